@@ -1,0 +1,70 @@
+//! A rectangle of pixels of one type.
+
+/// `width` x `height` values, row by row from the top left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plane<T> {
+    width: u32,
+    height: u32,
+    values: Vec<T>,
+}
+
+impl<T> Plane<T> {
+    /// A plane filled with one value.
+    #[must_use]
+    pub fn filled(width: u32, height: u32, value: T) -> Self
+    where
+        T: Clone,
+    {
+        Self { width, height, values: vec![value; width as usize * height as usize] }
+    }
+
+    /// A plane of given values, row by row.
+    ///
+    /// # Panics
+    /// If there are not `width * height` values.
+    #[must_use]
+    pub fn from_values(width: u32, height: u32, values: Vec<T>) -> Self {
+        assert_eq!(values.len(), width as usize * height as usize, "values of a plane");
+        Self { width, height, values }
+    }
+
+    /// Width in pixels.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// All values, row by row.
+    #[must_use]
+    pub fn values(&self) -> &[T] {
+        &self.values
+    }
+
+    /// All values, row by row.
+    pub fn values_mut(&mut self) -> &mut [T] {
+        &mut self.values
+    }
+
+    /// The value at column `x`, row `y`.
+    ///
+    /// # Panics
+    /// If the pixel lies outside.
+    #[must_use]
+    pub fn at(&self, x: u32, y: u32) -> &T {
+        assert!(x < self.width && y < self.height, "pixel ({x}, {y}) outside the plane");
+        &self.values[y as usize * self.width as usize + x as usize]
+    }
+
+    /// A plane of the same size, each value computed from this one's.
+    #[must_use]
+    pub fn map<U>(&self, f: impl Fn(&T) -> U) -> Plane<U> {
+        let values = self.values.iter().map(f).collect();
+        Plane { width: self.width, height: self.height, values }
+    }
+}

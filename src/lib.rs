@@ -1,0 +1,8 @@
+//! `splatref`: the ground truth for point-splatting renderers.
+
+pub mod error;
+pub mod frame;
+pub mod number;
+pub mod scene;
+
+pub use error::{Error, Result};

@@ -1,0 +1,2 @@
+//! The program `splatref`.
+fn main() {}

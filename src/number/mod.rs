@@ -1,0 +1,16 @@
+//! Numbers: one formula, several arithmetics.
+//!
+//! Every formula of a splat or a fragment is written once, generic over [`Real`]. With `f32` it is
+//! the executable specification, the bits that a GPU gets from the same IEEE operations in the same
+//! order; with `f64` it is the truth of the same problem.
+//!
+//! - [`real`]: the trait and its two implementations.
+//! - [`vector`]: two- and three-component vectors whose order of operations is written out.
+//! - [`elementary`]: the only home of exp, pow, sin ... in the crate.
+
+pub mod elementary;
+pub mod real;
+pub mod vector;
+
+pub use real::Real;
+pub use vector::{Vector2, Vector3};

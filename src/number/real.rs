@@ -1,0 +1,194 @@
+//! The number that every formula is generic over.
+
+use super::elementary;
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number that the formulas of the crate can be evaluated in.
+///
+/// An operation rounds once, to nearest, ties to even, and is never fused with another.
+/// Comparisons are the operators of [`PartialOrd`]. There are no `min`, `max` or `clamp`: their
+/// treatment of zeros and NaN is not portable, [`Real::at_least`] and [`Real::at_most`] are.
+pub trait Real:
+    Copy
+    + Debug
+    + PartialEq
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Send
+    + Sync
+    + 'static
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+    /// Positive infinity: the depth of an empty pixel.
+    const INFINITY: Self;
+
+    /// Exact: every input and every constant of the crate is an `f32`.
+    fn from_f32(value: f32) -> Self;
+    /// The `f32` nearest to this number, rounded once.
+    fn to_f32(self) -> f32;
+    /// The `f64` nearest to this number; exact for `f32` and `f64`.
+    fn to_f64(self) -> f64;
+    /// The square root, correctly rounded.
+    fn sqrt(self) -> Self;
+    /// The absolute value.
+    fn abs(self) -> Self;
+    /// e to this power, see [`elementary`].
+    fn exp(self) -> Self;
+    /// This number to the power of `exponent`, see [`elementary`]; `self` is not negative.
+    fn pow(self, exponent: Self) -> Self;
+    /// Whether this number is neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+    /// How many representable numbers lie between this one and `other`, 0 if they are equal.
+    ///
+    /// -0 and +0 are equal. The count is rounded to `f32`; +inf if either is NaN.
+    fn ulps_to(self, other: Self) -> f32;
+
+    /// `self`, or `low` if `self < low`.
+    #[inline(always)]
+    #[must_use]
+    fn at_least(self, low: Self) -> Self {
+        if self < low { low } else { self }
+    }
+
+    /// `self`, or `high` if `self > high`.
+    #[inline(always)]
+    #[must_use]
+    fn at_most(self, high: Self) -> Self {
+        if self > high { high } else { self }
+    }
+}
+
+impl Real for f32 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const INFINITY: Self = Self::INFINITY;
+
+    #[inline(always)]
+    fn from_f32(value: f32) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn to_f32(self) -> f32 {
+        self
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        elementary::exp_f32(self)
+    }
+    #[inline(always)]
+    fn pow(self, exponent: Self) -> Self {
+        elementary::pow(f64::from(self), f64::from(exponent)) as Self
+    }
+    #[inline(always)]
+    fn is_finite(self) -> bool {
+        self.is_finite()
+    }
+    #[inline]
+    fn ulps_to(self, other: Self) -> f32 {
+        if self.is_nan() || other.is_nan() {
+            return Self::INFINITY;
+        }
+        ordered_f32(self).abs_diff(ordered_f32(other)) as f32
+    }
+}
+
+impl Real for f64 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const INFINITY: Self = Self::INFINITY;
+
+    #[inline(always)]
+    fn from_f32(value: f32) -> Self {
+        Self::from(value)
+    }
+    #[inline(always)]
+    fn to_f32(self) -> f32 {
+        self as f32
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        elementary::exp(self)
+    }
+    #[inline(always)]
+    fn pow(self, exponent: Self) -> Self {
+        elementary::pow(self, exponent)
+    }
+    #[inline(always)]
+    fn is_finite(self) -> bool {
+        self.is_finite()
+    }
+    #[inline]
+    fn ulps_to(self, other: Self) -> f32 {
+        if self.is_nan() || other.is_nan() {
+            return f32::INFINITY;
+        }
+        ordered_f64(self).abs_diff(ordered_f64(other)) as f32
+    }
+}
+
+/// The position of a float in the ordered list of all floats; both zeros are 0.
+fn ordered_f32(value: f32) -> i64 {
+    let magnitude = i64::from(value.to_bits() & 0x7FFF_FFFF);
+    if value.is_sign_negative() { -magnitude } else { magnitude }
+}
+
+/// As [`ordered_f32`].
+fn ordered_f64(value: f64) -> i128 {
+    let magnitude = i128::from(value.to_bits() & 0x7FFF_FFFF_FFFF_FFFF);
+    if value.is_sign_negative() { -magnitude } else { magnitude }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ulps_count_representable_numbers() {
+        assert_eq!(1.0_f32.ulps_to(1.0), 0.0);
+        assert_eq!(1.0_f32.ulps_to(1.0 + f32::EPSILON), 1.0);
+        assert_eq!((-0.0_f32).ulps_to(0.0), 0.0);
+        let tiny = f32::from_bits(1);
+        assert_eq!((-tiny).ulps_to(tiny), 2.0, "one step to zero from either side");
+        assert_eq!(1.0_f32.ulps_to(f32::NAN), f32::INFINITY);
+        assert_eq!(1.0_f64.ulps_to(1.0 - f64::EPSILON), 2.0, "the spacing halves below one");
+    }
+
+    #[test]
+    fn bounds_keep_what_lies_inside() {
+        assert_eq!(2.0_f32.at_least(3.0), 3.0);
+        assert_eq!(2.0_f32.at_most(3.0), 2.0);
+        assert!(f32::NAN.at_least(0.0).is_nan(), "a comparison with NaN is false");
+    }
+}

@@ -1,0 +1,214 @@
+//! Perspective and orthographic cameras.
+//!
+//! ```text
+//!   view space: right-handed, +x right, +y up, the camera looks down -z
+//!   depth       t = -z_view > 0, linear, world units
+//!   pixel       (0, 0) is top left, its centre at (0.5, 0.5); x right, y down
+//!
+//!   perspective   X = cx + fx x/t      the ray of (X, Y): ((X - cx)/fx, -(Y - cy)/fy, -1) t
+//!                 Y = cy - fy y/t
+//!   orthographic  X = cx + fx x        fx, fy in pixels per world unit
+//!                 Y = cy - fy y
+//! ```
+
+use crate::error::{Error, Result};
+use glam::{DMat4, DVec3, Mat4};
+
+/// How depth shrinks what is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Projection {
+    /// Through a centre: `fx` and `fy` are focal lengths in pixels.
+    Perspective,
+    /// Parallel: `fx` and `fy` are pixels per world unit.
+    Orthographic,
+}
+
+/// The opening of a camera, in the terms a person gives it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lens {
+    /// Vertical field of view in degrees, in (0, 180).
+    FieldOfView(f64),
+    /// Focal length in pixels, > 0.
+    Focal(f64),
+    /// Orthographic: the height of the picture in world units, > 0.
+    Orthographic(f64),
+}
+
+/// Where a camera stands and looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// The centre of projection, in world units.
+    pub eye: DVec3,
+    /// The point seen in the middle of the picture.
+    pub target: DVec3,
+    /// The direction that is up in the picture.
+    pub up: DVec3,
+}
+
+/// A camera: numbers are `f32`, so that every number type is given the same problem.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Width of the picture in pixels.
+    pub width: u32,
+    /// Height of the picture in pixels.
+    pub height: u32,
+    /// Rigid transform from world to view space, computed in f64 and rounded once.
+    pub view_from_world: Mat4,
+    /// Perspective or orthographic.
+    pub projection: Projection,
+    /// Horizontal scale, see [`Projection`].
+    pub fx: f32,
+    /// Vertical scale, see [`Projection`].
+    pub fy: f32,
+    /// Column of the principal point in pixels.
+    pub cx: f32,
+    /// Row of the principal point in pixels.
+    pub cy: f32,
+    /// Near plane: what is not farther than this depth is not seen. > 0 for perspective cameras.
+    pub near: f32,
+}
+
+/// The largest width or height of a picture.
+pub const MAX_EXTENT: u32 = 65_536;
+/// The largest number of pixels of a picture: 2^28, a square of 16,384.
+pub const MAX_PIXELS: u64 = 1 << 28;
+
+impl Camera {
+    /// A camera at `pose`, the principal point in the middle of the picture.
+    ///
+    /// Everything is computed in f64 and rounded once. The near plane is at 1/1024 of the distance
+    /// from eye to target.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the picture has no pixels or more than [`MAX_EXTENT`] a side or
+    /// [`MAX_PIXELS`] in all, if the lens is out of range, if eye and target coincide, if up is 0
+    /// or parallel to the view, or if anything is not finite.
+    pub fn new(width: u32, height: u32, pose: Pose, lens: Lens) -> Result<Self> {
+        let (projection, scale) = scale(height, lens)?;
+        let invalid = |what: &str| Err(Error::Invalid(format!("camera: {what}")));
+        let Pose { eye, target, up } = pose;
+        if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
+            return invalid("eye, target and up must be finite numbers");
+        }
+        let distance = (target - eye).length();
+        if !(distance > 0.0 && distance.is_finite()) {
+            return invalid("eye and target are the same point: move one of them");
+        }
+        let back = (eye - target) / distance;
+        let right = up.cross(back);
+        // An angle below 1e-6 between up and the view leaves no digits for `right`.
+        if !(right.length() > 1e-6 * up.length()) {
+            return invalid("up is zero or parallel to the line of sight: choose another --up");
+        }
+        let right = right.normalize();
+        let up = back.cross(right);
+        let rotation = DMat4::from_cols(
+            right.extend(0.0),
+            up.extend(0.0),
+            back.extend(0.0),
+            DVec3::ZERO.extend(1.0),
+        )
+        .transpose();
+        let view = rotation * DMat4::from_translation(-eye);
+        let camera = Self {
+            width,
+            height,
+            view_from_world: view.as_mat4(),
+            projection,
+            fx: scale,
+            fy: scale,
+            cx: (f64::from(width) / 2.0) as f32,
+            cy: (f64::from(height) / 2.0) as f32,
+            near: (distance / 1024.0) as f32,
+        };
+        camera.check()?;
+        Ok(camera)
+    }
+
+    /// A camera that sees a sphere around the scene, from the direction `from`, +y up.
+    ///
+    /// The sphere touches the nearer pair of picture edges, with a margin of 5 %. `lens` must be
+    /// [`Lens::FieldOfView`] or [`Lens::Focal`] for a perspective camera; the height of
+    /// [`Lens::Orthographic`] is kept.
+    ///
+    /// # Errors
+    /// As [`Camera::new`].
+    pub fn framing(
+        width: u32,
+        height: u32,
+        (center, radius): (DVec3, f64),
+        from: DVec3,
+        lens: Lens,
+    ) -> Result<Self> {
+        let (projection, scale) = scale(height, lens)?;
+        let half_extent = f64::from(if width < height { width } else { height }) / 2.0;
+        // A single point has no extent: any distance frames it.
+        let radius = if radius > 0.0 { radius * 1.05 } else { 1.0 };
+        let distance = match projection {
+            // sin of the half opening angle of the cone that the nearer edges leave
+            Projection::Perspective => {
+                let tangent = half_extent / f64::from(scale);
+                radius * (1.0 + tangent * tangent).sqrt() / tangent
+            }
+            Projection::Orthographic => 2.0 * radius,
+        };
+        let up = if from.x == 0.0 && from.z == 0.0 { -DVec3::Z } else { DVec3::Y };
+        let eye = center + from.normalize() * distance;
+        Self::new(width, height, Pose { eye, target: center, up }, lens)
+    }
+
+    /// Whether a picture can be made with these numbers; for cameras that were filled in by hand.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Camera::new`].
+    pub fn check(&self) -> Result<()> {
+        let (w, h) = (self.width, self.height);
+        let pixels = u64::from(w) * u64::from(h);
+        if pixels == 0 || w > MAX_EXTENT || h > MAX_EXTENT || pixels > MAX_PIXELS {
+            return Err(Error::Invalid(format!(
+                "camera: a picture of {w} x {h} pixels; give 1 to {MAX_EXTENT} a side and at most \
+                 {MAX_PIXELS} in all"
+            )));
+        }
+        let numbers = [self.fx, self.fy, self.cx, self.cy, self.near];
+        let finite = self.view_from_world.is_finite() && numbers.iter().all(|v| v.is_finite());
+        let near_ok = match self.projection {
+            Projection::Perspective => self.near > 0.0,
+            Projection::Orthographic => true,
+        };
+        if !(finite && self.fx > 0.0 && self.fy > 0.0 && near_ok) {
+            return Err(Error::Invalid(
+                "camera: focal length, height and near plane must be finite and > 0".into(),
+            ));
+        }
+        Ok(())
+    }
+
+    /// The position of the camera in world space, in f64.
+    #[must_use]
+    pub fn eye(&self) -> DVec3 {
+        self.view_from_world.as_dmat4().inverse().w_axis.truncate()
+    }
+}
+
+/// Projection and pixels per unit of a lens.
+fn scale(height: u32, lens: Lens) -> Result<(Projection, f32)> {
+    let height = f64::from(height);
+    let (projection, scale) = match lens {
+        Lens::FieldOfView(degrees) => {
+            if !(degrees > 0.0 && degrees < 180.0) {
+                let what = format!("camera: field of view {degrees}; give degrees in (0, 180)");
+                return Err(Error::Invalid(what));
+            }
+            let half = degrees.to_radians() / 2.0;
+            (Projection::Perspective, height / 2.0 / crate::number::elementary::tan(half))
+        }
+        Lens::Focal(pixels) => (Projection::Perspective, pixels),
+        Lens::Orthographic(units) => (Projection::Orthographic, height / units),
+    };
+    if !(scale > 0.0 && (scale as f32).is_finite() && scale as f32 > 0.0) {
+        let what = "camera: the focal length or orthographic height must be finite and > 0";
+        return Err(Error::Invalid(what.into()));
+    }
+    Ok((projection, scale as f32))
+}

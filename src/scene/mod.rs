@@ -1,0 +1,31 @@
+//! What is rendered: surfels, camera, lights, and procedural scenes whose true picture is known.
+//!
+//! - [`cloud`]: points as a file holds them, nothing derived, nothing checked.
+//! - [`surfels`]: the checked structure of arrays that every method takes.
+//! - [`camera`]: perspective and orthographic cameras.
+//! - [`light`]: lights and the Phong material.
+
+pub mod camera;
+pub mod cloud;
+pub mod light;
+pub mod surfels;
+
+pub use camera::{Camera, Lens, Pose, Projection};
+pub use cloud::Cloud;
+pub use light::{Light, Phong};
+pub use surfels::{Dropped, Surfels};
+
+/// A picture to be made: surfels, what lights them, and what lies behind them.
+///
+/// The camera is not part of it: one scene has many pictures.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// What the scene is called in reports: a file name or a procedural shape.
+    pub name: String,
+    /// The surfels, in the order that every sum and every tie follows.
+    pub surfels: Surfels,
+    /// The lights; with none the resolved colour is shown unlit.
+    pub lights: Vec<Light>,
+    /// How the surface answers the lights.
+    pub material: Phong,
+}

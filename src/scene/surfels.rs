@@ -1,0 +1,263 @@
+//! Surfels: the checked structure of arrays that every method takes.
+
+use super::Cloud;
+use crate::error::{Error, Result};
+use glam::Vec3;
+
+/// Surfels as a structure of arrays, each of one length.
+///
+/// Guarantees, kept by construction: at least one surfel; positions finite; normals of length 1
+/// within 2^-20; radii finite and > 0; colours finite and >= 0; opacities in [0, 1]; tangents
+/// finite, not parallel, perpendicular to the normal as far as `f32` allows. An array that the
+/// scene does not need is not allocated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surfels {
+    position: Vec<Vec3>,
+    normal: Vec<Vec3>,
+    radius: Vec<f32>,
+    color: Option<Vec<Vec3>>,
+    opacity: Option<Vec<f32>>,
+    tangents: Option<Vec<[Vec3; 2]>>,
+}
+
+/// How many surfels of a cloud were dropped, each counted once, under the first reason that held.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Dropped {
+    /// A position that is NaN or infinite.
+    pub position: u64,
+    /// A normal that is not finite or whose length is 0.
+    pub normal: u64,
+    /// A radius that is not finite or not > 0.
+    pub radius: u64,
+    /// Colour not finite or negative, opacity outside [0, 1], tangents not finite or parallel.
+    pub attribute: u64,
+}
+
+impl Dropped {
+    /// All of them.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.position + self.normal + self.radius + self.attribute
+    }
+}
+
+impl Surfels {
+    /// Checks a complete cloud, drops what is degenerate, and counts it.
+    ///
+    /// A normal whose length is within 2^-20 of 1 is kept as it is; any other is divided by its
+    /// length in f64 and rounded once. Triangles are ignored.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if normals or radii are missing , if an array has
+    /// the wrong length, if nothing is left, or if there are more than 2^32 - 2 surfels.
+    pub fn new(cloud: Cloud) -> Result<(Self, Dropped)> {
+        let n = cloud.position.len();
+        let Cloud { position, normal, radius, color, opacity, tangents, .. } = cloud;
+        let mut normal =
+            normal.ok_or_else(|| Error::Invalid("the points have no normals".into()))?;
+        let radius = radius.ok_or_else(|| Error::Invalid("the points have no radii".into()))?;
+        check_lengths(n, normal.len(), radius.len(), &color, &opacity, &tangents)?;
+        if n as u64 >= u64::from(u32::MAX) {
+            return Err(Error::Invalid(format!(
+                "{n} surfels, but ids have 32 bits: split the scene"
+            )));
+        }
+
+        let mut dropped = Dropped::default();
+        let mut keep = vec![true; n];
+        for (i, keep) in keep.iter_mut().enumerate() {
+            let reason = if !position[i].is_finite() {
+                &mut dropped.position
+            } else if !unit(&mut normal[i]) {
+                &mut dropped.normal
+            } else if !(radius[i] > 0.0 && radius[i].is_finite()) {
+                &mut dropped.radius
+            } else if !color.as_ref().is_none_or(|c| c[i].is_finite() && c[i].min_element() >= 0.0)
+                || !opacity.as_ref().is_none_or(|o| (0.0..=1.0).contains(&o[i]))
+                || !tangents.as_ref().is_none_or(|t| spans_a_plane(t[i]))
+            {
+                &mut dropped.attribute
+            } else {
+                continue;
+            };
+            *reason += 1;
+            *keep = false;
+        }
+        if dropped.total() == n as u64 {
+            return Err(Error::Invalid(format!(
+                "the scene is empty: none of its {n} points can be a surfel"
+            )));
+        }
+        let surfels = Self {
+            position: retain(position, &keep),
+            normal: retain(normal, &keep),
+            radius: retain(radius, &keep),
+            color: color.map(|c| retain(c, &keep)),
+            opacity: opacity.map(|o| retain(o, &keep)),
+            tangents: tangents.map(|t| retain(t, &keep)),
+        };
+        Ok((surfels, dropped))
+    }
+
+    /// How many there are: at least 1, less than 2^32 - 1.
+    #[must_use]
+    #[expect(clippy::len_without_is_empty, reason = "never empty")]
+    pub fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Positions in world units.
+    #[must_use]
+    pub fn position(&self) -> &[Vec3] {
+        &self.position
+    }
+
+    /// Unit normals in world space.
+    #[must_use]
+    pub fn normal(&self) -> &[Vec3] {
+        &self.normal
+    }
+
+    /// Radii in world units; of an ellipse, its longer half axis.
+    #[must_use]
+    pub fn radius(&self) -> &[f32] {
+        &self.radius
+    }
+
+    /// Linear RGB, not premultiplied.
+    #[must_use]
+    pub fn color(&self) -> Option<&[Vec3]> {
+        self.color.as_deref()
+    }
+
+    /// Opacity in [0, 1].
+    #[must_use]
+    pub fn opacity(&self) -> Option<&[f32]> {
+        self.opacity.as_deref()
+    }
+
+    /// Half axes of elliptical surfels in world units.
+    #[must_use]
+    pub fn tangents(&self) -> Option<&[[Vec3; 2]]> {
+        self.tangents.as_deref()
+    }
+
+    /// The lower median of the radii: the element of rank (n - 1) / 2 in ascending order.
+    #[must_use]
+    pub fn median_radius(&self) -> f32 {
+        let mut radii = self.radius.clone();
+        let middle = (radii.len() - 1) / 2;
+        *radii.select_nth_unstable_by(middle, f32::total_cmp).1
+    }
+
+    /// The corners of the smallest axis-parallel box around all positions.
+    #[must_use]
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        let first = self.position[0];
+        self.position.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)))
+    }
+
+    /// The surfels back as a cloud, to be written to a file.
+    #[must_use]
+    pub fn into_cloud(self) -> Cloud {
+        Cloud {
+            position: self.position,
+            normal: Some(self.normal),
+            radius: Some(self.radius),
+            color: self.color,
+            opacity: self.opacity,
+            tangents: self.tangents,
+            triangles: Vec::new(),
+        }
+    }
+}
+
+/// Every array as long as the positions.
+fn check_lengths(
+    n: usize,
+    normals: usize,
+    radii: usize,
+    color: &Option<Vec<Vec3>>,
+    opacity: &Option<Vec<f32>>,
+    tangents: &Option<Vec<[Vec3; 2]>>,
+) -> Result<()> {
+    let others = [
+        ("normals", normals),
+        ("radii", radii),
+        ("colours", color.as_ref().map_or(n, Vec::len)),
+        ("opacities", opacity.as_ref().map_or(n, Vec::len)),
+        ("tangents", tangents.as_ref().map_or(n, Vec::len)),
+    ];
+    for (what, length) in others {
+        if length != n {
+            return Err(Error::Invalid(format!("{n} positions, but {length} {what}")));
+        }
+    }
+    Ok(())
+}
+
+/// Makes a normal a unit vector; false if it has no direction.
+fn unit(normal: &mut Vec3) -> bool {
+    let n = normal.as_dvec3();
+    let length = n.length();
+    if !(length > 0.0 && length.is_finite()) {
+        return false;
+    }
+    if (length - 1.0).abs() > 1.0 / 1_048_576.0 {
+        *normal = (n / length).as_vec3();
+    }
+    true
+}
+
+/// Whether two half axes are finite and span a plane, by the f64 area of their parallelogram.
+fn spans_a_plane([u, v]: [Vec3; 2]) -> bool {
+    u.is_finite() && v.is_finite() && u.as_dvec3().cross(v.as_dvec3()).length_squared() > 0.0
+}
+
+/// The elements marked in `keep`, in order; without a copy if all are.
+fn retain<T>(values: Vec<T>, keep: &[bool]) -> Vec<T> {
+    if keep.iter().all(|&k| k) {
+        return values;
+    }
+    values.into_iter().zip(keep).filter_map(|(value, &k)| k.then_some(value)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cloud(position: Vec<Vec3>, normal: Vec<Vec3>, radius: Vec<f32>) -> Cloud {
+        Cloud { position, normal: Some(normal), radius: Some(radius), ..Cloud::default() }
+    }
+
+    #[test]
+    fn degenerate_surfels_are_dropped_and_counted_once() {
+        let p = [Vec3::NAN, Vec3::ZERO, Vec3::ZERO, Vec3::X, Vec3::Y];
+        let n = [Vec3::ZERO, Vec3::ZERO, Vec3::Z, 3.0 * Vec3::Z, Vec3::Z];
+        let r = [-1.0, -1.0, -1.0, 0.5, f32::INFINITY];
+        let (surfels, dropped) = Surfels::new(cloud(p.into(), n.into(), r.into())).unwrap();
+        assert_eq!(dropped, Dropped { position: 1, normal: 1, radius: 2, attribute: 0 });
+        assert_eq!(surfels.position(), [Vec3::X]);
+        assert_eq!(surfels.normal(), [Vec3::Z], "made a unit vector");
+    }
+
+    #[test]
+    fn an_empty_scene_is_an_error() {
+        let error = Surfels::new(cloud(vec![], vec![], vec![])).unwrap_err();
+        assert!(error.to_string().contains("empty"), "{error}");
+    }
+
+    #[test]
+    fn the_median_radius_is_the_lower_one() {
+        let r = vec![4.0, 1.0, 3.0, 2.0];
+        let (surfels, _) = Surfels::new(cloud(vec![Vec3::ZERO; 4], vec![Vec3::Z; 4], r)).unwrap();
+        assert_eq!(surfels.median_radius(), 2.0);
+    }
+
+    #[test]
+    fn a_nearly_unit_normal_keeps_its_bits() {
+        let n = Vec3::new(0.6, 0.0, 0.800_000_1);
+        let (surfels, _) = Surfels::new(cloud(vec![Vec3::ZERO], vec![n], vec![1.0])).unwrap();
+        assert_eq!(surfels.normal(), [n]);
+    }
+}
