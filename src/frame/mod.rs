@@ -1,10 +1,23 @@
 //! What is rendered into: planes, named planes, the framebuffer, bins and tiles.
+//!
+//! - [`plane`], [`rect`], [`named`]: pixels, rectangles of them, and the names they have in files.
+//! - [`framebuffer`]: depth, stencil and floating accumulation.
+//! - [`bin`]: from screen bounds to tiles.
+//! - [`tile`]: tiles and the one parallel loop of the crate.
 
+pub mod bin;
+pub mod framebuffer;
 pub mod named;
 pub mod plane;
+pub mod rect;
+pub mod tile;
 
+pub use bin::Bins;
+pub use framebuffer::{Framebuffer, FramebufferTile};
 pub use named::{Channel, ChannelData, Frame, NamedPlane, Samples};
 pub use plane::Plane;
+pub use rect::Rect;
+pub use tile::{Exec, Grid, TileMut};
 
 /// The id of a pixel that no surfel covers.
 pub const NO_ID: u32 = u32::MAX;

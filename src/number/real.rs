@@ -36,6 +36,8 @@ pub trait Real:
     fn to_f32(self) -> f32;
     /// The `f64` nearest to this number; exact for `f32` and `f64`.
     fn to_f64(self) -> f64;
+    /// The integer part of a number in [0, 2^31); 0 for NaN.
+    fn to_pixel(self) -> u32;
     /// The square root, correctly rounded.
     fn sqrt(self) -> Self;
     /// The absolute value.
@@ -84,6 +86,11 @@ impl Real for f32 {
         f64::from(self)
     }
     #[inline(always)]
+    fn to_pixel(self) -> u32 {
+        // Through i32: vector units have no conversion to u32.
+        self as i32 as u32
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         self.sqrt()
     }
@@ -128,6 +135,11 @@ impl Real for f64 {
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self
+    }
+    #[inline(always)]
+    fn to_pixel(self) -> u32 {
+        // Through i32: vector units have no conversion to u32.
+        self as i32 as u32
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

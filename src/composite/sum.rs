@@ -1,0 +1,32 @@
+//! Weighted accumulation and normalization [ZP06, eq. 1].
+
+use crate::number::{Real, Vector3};
+
+/// `sum + weight value`, component by component: a multiplication, then an addition.
+#[inline(always)]
+pub fn add<R: Real>(sum: [R; 3], weight: R, value: [R; 3]) -> [R; 3] {
+    [sum[0] + weight * value[0], sum[1] + weight * value[1], sum[2] + weight * value[2]]
+}
+
+/// `sum / weight`, component by component; 0 where no weight has arrived.
+///
+/// Law: if every value was v, the average is v up to the rounding of the sums.
+#[inline(always)]
+pub fn average<R: Real>(sum: [R; 3], weight: R) -> [R; 3] {
+    if weight > R::ZERO {
+        [sum[0] / weight, sum[1] / weight, sum[2] / weight]
+    } else {
+        [R::ZERO; 3]
+    }
+}
+
+/// The direction of the average of normals: [`average`], then divided by its length.
+///
+/// Opposite normals that cancel leave the null vector. Averaging first keeps the squares of tiny
+/// weights from underflowing.
+#[inline(always)]
+pub fn direction<R: Real>(sum: [R; 3], weight: R) -> [R; 3] {
+    let [x, y, z] = average(sum, weight);
+    let n = Vector3::new(x, y, z).normalized();
+    [n.x, n.y, n.z]
+}

@@ -1,0 +1,173 @@
+//! How a picture is made, which cannot change one bit of it: threads and tiles.
+//!
+//! [`Exec::ordered`] is the one parallel loop of the crate. Its jobs own what they write, disjoint
+//! tiles or chunks, and its results come back in the order of the jobs.
+
+use super::{Plane, Rect};
+use crate::error::{Error, Result};
+use rayon::prelude::*;
+
+/// Threads and tile size: how, never what.
+#[derive(Debug)]
+pub struct Exec {
+    tile: u32,
+    pool: Option<rayon::ThreadPool>,
+}
+
+impl Exec {
+    /// `threads` = 0 takes every core; tiles of `tile` x `tile` pixels.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if the tile is not 8, 16, 32 or 64, or if the threads cannot be started.
+    pub fn new(threads: usize, tile: u32) -> Result<Self> {
+        if ![8, 16, 32, 64].contains(&tile) {
+            return Err(Error::Usage(format!("a tile of {tile} pixels; give 8, 16, 32 or 64")));
+        }
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = if threads == 0 { cores } else { threads };
+        if threads > 1024 {
+            return Err(Error::Usage(format!("{threads} threads; give at most 1024")));
+        }
+        let pool = if threads == 1 {
+            // No pool at all: targets without threads render too.
+            None
+        } else {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            Some(pool.map_err(|e| Error::Usage(format!("{threads} threads: {e}")))?)
+        };
+        Ok(Self { tile, pool })
+    }
+
+    /// One thread, tiles of 32 pixels.
+    #[must_use]
+    pub fn sequential() -> Self {
+        Self { tile: 32, pool: None }
+    }
+
+    /// How many threads work.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        self.pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads)
+    }
+
+    /// The tiles of a picture.
+    #[must_use]
+    pub fn grid(&self, width: u32, height: u32) -> Grid {
+        let tile = self.tile;
+        Grid { width, height, tile, columns: width.div_ceil(tile), rows: height.div_ceil(tile) }
+    }
+
+    /// Runs every job, in parallel, and returns the results in the order of the jobs.
+    pub fn ordered<J: Send, T: Send>(
+        &self,
+        jobs: Vec<J>,
+        run: impl Fn(J) -> T + Sync + Send,
+    ) -> Vec<T> {
+        match &self.pool {
+            None => jobs.into_iter().map(run).collect(),
+            Some(pool) => pool.install(|| jobs.into_par_iter().map(run).collect()),
+        }
+    }
+}
+
+/// The division of a picture into square tiles; those at the right and lower edge may be cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Grid {
+    width: u32,
+    height: u32,
+    /// Side of a tile in pixels.
+    pub tile: u32,
+    /// Tiles in a row.
+    pub columns: u32,
+    /// Rows of tiles.
+    pub rows: u32,
+}
+
+impl Grid {
+    /// How many tiles there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.columns as usize * self.rows as usize
+    }
+
+    /// Whether there is no tile.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The pixels of the tile at a column and row of tiles.
+    #[must_use]
+    pub fn rect(&self, column: u32, row: u32) -> Rect {
+        let (x0, y0) = (column * self.tile, row * self.tile);
+        Rect { x0, y0, x1: self.width.min(x0 + self.tile), y1: self.height.min(y0 + self.tile) }
+    }
+
+    /// The pixels of each tile, row by row.
+    #[must_use]
+    pub fn rects(&self) -> Vec<Rect> {
+        let tiles = (0..self.rows).flat_map(|row| (0..self.columns).map(move |c| (c, row)));
+        tiles.map(|(column, row)| self.rect(column, row)).collect()
+    }
+
+    /// A plane cut into its tiles, disjoint and writable, row by row.
+    #[must_use]
+    pub fn split<'a, T>(&self, plane: &'a mut Plane<T>) -> Vec<TileMut<'a, T>> {
+        let empty = || TileMut { rows: Vec::with_capacity(self.tile as usize) };
+        let mut tiles: Vec<_> = std::iter::repeat_with(empty).take(self.len()).collect();
+        let (width, tile) = (self.width as usize, self.tile as usize);
+        let columns = self.columns as usize;
+        for (y, row) in plane.values_mut().chunks_mut(width.max(1)).enumerate() {
+            let first = y / tile * columns;
+            for (tile, part) in tiles[first..].iter_mut().zip(row.chunks_mut(tile)) {
+                tile.rows.push(part);
+            }
+        }
+        tiles
+    }
+}
+
+/// The pixels of one tile of a plane, writable.
+#[derive(Debug)]
+pub struct TileMut<'a, T> {
+    rows: Vec<&'a mut [T]>,
+}
+
+impl<T> TileMut<'_, T> {
+    /// A row, counted from the top of the tile.
+    #[inline(always)]
+    pub fn row(&mut self, y: usize) -> &mut [T] {
+        self.rows[y]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_partition_the_picture() {
+        let exec = Exec::new(3, 16).unwrap();
+        for (width, height) in [(1, 1), (16, 16), (17, 33), (64, 5), (100, 1)] {
+            let grid = exec.grid(width, height);
+            let mut plane = Plane::filled(width, height, 0_u32);
+            let jobs: Vec<_> = grid.rects().into_iter().zip(grid.split(&mut plane)).collect();
+            let written = exec.ordered(jobs, |(rect, mut tile)| {
+                for y in rect.y0..rect.y1 {
+                    for (i, value) in tile.row((y - rect.y0) as usize).iter_mut().enumerate() {
+                        *value += 1 + (rect.x0 + i as u32) + width * y;
+                    }
+                }
+                rect
+            });
+            assert_eq!(written, grid.rects(), "results come in the order of the jobs");
+            let expected: Vec<_> = (1..=width * height).collect();
+            assert_eq!(plane.values(), expected, "each pixel written once: {width} x {height}");
+        }
+    }
+
+    #[test]
+    fn wrong_tiles_are_refused() {
+        assert_eq!(Exec::new(1, 12).unwrap_err().exit_code(), 2);
+    }
+}

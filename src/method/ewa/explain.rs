@@ -1,0 +1,1 @@
+//! Every decision at one pixel.

@@ -1,0 +1,190 @@
+//! The definition: every pass, one fragment at a time, over any number.
+
+use super::Settings;
+use super::prepare::Prepared;
+use crate::composite::{epsilon, sum};
+use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, Rect};
+use crate::number::{Real, Vector2};
+use crate::scene::{Camera, Surfels};
+use crate::splat::{Shared, Splat, Tally, batch};
+
+/// A picture between its passes.
+#[derive(Debug)]
+pub struct Plain<'a, R> {
+    surfels: &'a Surfels,
+    exec: &'a Exec,
+    grid: Grid,
+    prepared: Prepared<R>,
+    /// What has been drawn so far.
+    pub target: Framebuffer<R>,
+}
+
+impl<'a, R: Real> Plain<'a, R> {
+    /// Projection. `observed`: whether fragments are counted and margins kept.
+    #[must_use]
+    pub fn project(
+        surfels: &'a Surfels,
+        camera: &Camera,
+        settings: &Settings,
+        exec: &'a Exec,
+        observed: bool,
+    ) -> Self {
+        let grid = exec.grid(camera.width, camera.height);
+        let prepared = Prepared::new(surfels, camera, settings, exec, &grid, batch::splats);
+        let (empty, color) = (prepared.shared.empty(), surfels.color().is_some());
+        let target = Framebuffer::new(camera.width, camera.height, empty, color, observed);
+        Self { surfels, exec, grid, prepared, target }
+    }
+
+    /// What became of the surfels.
+    #[must_use]
+    pub fn tally(&self) -> Tally {
+        self.prepared.tally
+    }
+
+    /// Visibility splatting: the greatest nearness, and whose it is.
+    pub fn visibility(&mut self) {
+        let shared = self.prepared.shared;
+        self.each_fragment(|splat, (q, w), tile, (x, y)| {
+            let nearest = &mut tile.depth.row(y)[x];
+            if q <= shared.limit && w > *nearest {
+                *nearest = w;
+                tile.id.row(y)[x] = splat.surfel;
+            }
+        });
+    }
+
+    /// Attribute splatting: weighted sums over the fragments that pass the epsilon-z test.
+    pub fn attributes(&mut self) {
+        let (shared, epsilon) = (self.prepared.shared, self.prepared.epsilon);
+        let (normals, colors) = (self.surfels.normal(), self.surfels.color());
+        self.each_fragment(|splat, (q, w), tile, (x, y)| {
+            let nearest = shared.depth(tile.depth.row(y)[x]);
+            let t = shared.depth(w);
+            if let Some(margin) = &mut tile.margin {
+                let margin = &mut margin.row(y)[x];
+                let limit = epsilon::limit(nearest, epsilon);
+                let is_nearest = tile.id.row(y)[x] == splat.surfel;
+                let decisions = Decisions { q, t, w, nearest: tile.depth.row(y)[x], limit };
+                *margin = margin.at_most(decisions.margin(&shared, is_nearest));
+            }
+            if q <= shared.limit && epsilon::visible(t, nearest, epsilon) {
+                let i = splat.surfel as usize;
+                let weight = splat.footprint.weight(q);
+                let normal = facing(normals[i].to_array().map(R::from_f32), splat.back);
+                let sums = &mut tile.normal.row(y)[x];
+                *sums = sum::add(*sums, weight, normal);
+                if let (Some(sums), Some(colors)) = (&mut tile.color, colors) {
+                    let sums = &mut sums.row(y)[x];
+                    *sums = sum::add(*sums, weight, colors[i].to_array().map(R::from_f32));
+                }
+                let total = &mut tile.weight.row(y)[x];
+                *total = *total + weight;
+                if let Some(count) = &mut tile.stencil {
+                    let count = &mut count.row(y)[x];
+                    *count = count.saturating_add(1);
+                }
+            }
+        });
+    }
+
+    /// Normalization: depths, averages and directions in place of nearness and sums.
+    pub fn normalize(&mut self) {
+        let shared = self.prepared.shared;
+        self.each_tile(|_, mut tile| {
+            for y in 0..(tile.rect.y1 - tile.rect.y0) as usize {
+                for x in 0..(tile.rect.x1 - tile.rect.x0) as usize {
+                    let weight = tile.weight.row(y)[x];
+                    let depth = &mut tile.depth.row(y)[x];
+                    *depth = shared.depth(*depth);
+                    let normal = &mut tile.normal.row(y)[x];
+                    *normal = sum::direction(*normal, weight);
+                    if let Some(color) = &mut tile.color {
+                        let color = &mut color.row(y)[x];
+                        *color = sum::average(*color, weight);
+                    }
+                }
+            }
+        });
+    }
+
+    /// Runs `draw` for every fragment of every splat: splat, (q, nearness), tile, pixel in the tile.
+    fn each_fragment(
+        &mut self,
+        draw: impl Fn(&Splat<R>, (R, R), &mut FramebufferTile<'_, R>, (usize, usize)) + Sync + Send,
+    ) {
+        let shared = self.prepared.shared;
+        self.each_tile(|splats, mut tile| {
+            splats(&mut |splat| {
+                let Rect { x0, y0, x1, y1 } = splat.bounds.intersection(&tile.rect);
+                for y in y0..y1 {
+                    for x in x0..x1 {
+                        let fragment = fragment(&shared, splat, x, y);
+                        let at = ((x - tile.rect.x0) as usize, (y - tile.rect.y0) as usize);
+                        draw(splat, fragment, &mut tile, at);
+                    }
+                }
+            });
+        });
+    }
+
+    /// Runs `job` for every tile, with a function that visits the splats of the tile.
+    fn each_tile(
+        &mut self,
+        job: impl Fn(&dyn Fn(&mut dyn FnMut(&Splat<R>)), FramebufferTile<'_, R>) + Sync + Send,
+    ) {
+        let prepared = &self.prepared;
+        let tiles = self.target.tiles(&self.grid).into_iter().enumerate().collect();
+        self.exec.ordered(tiles, |(index, tile)| {
+            job(&|visit| prepared.for_each(index, visit), tile);
+        });
+    }
+}
+
+/// q and nearness of a splat at the centre of a pixel.
+pub(super) fn fragment<R: Real>(shared: &Shared<R>, splat: &Splat<R>, x: u32, y: u32) -> (R, R) {
+    let Vector2 { x: cx, y: cy } = splat.footprint.center;
+    let dx = R::from_f32(x as f32 + 0.5) - cx;
+    let dy = R::from_f32(y as f32 + 0.5) - cy;
+    splat.footprint.fragment(shared, dx, dy)
+}
+
+/// The normal, reversed if the back is seen.
+#[inline(always)]
+pub(super) fn facing<R: Real>(normal: [R; 3], back: bool) -> [R; 3] {
+    if back { normal.map(|component| -component) } else { normal }
+}
+
+/// The operands of the decisions on one fragment.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Decisions<R> {
+    pub(super) q: R,
+    pub(super) t: R,
+    pub(super) w: R,
+    /// Nearness of the nearest fragment of the pixel.
+    pub(super) nearest: R,
+    /// The greatest visible depth of the pixel.
+    pub(super) limit: R,
+}
+
+impl<R: Real> Decisions<R> {
+    /// How far the closest decision on this fragment is from flipping, in units of the last place.
+    ///
+    /// Inside: q against k^2, if the fragment is visible; a hidden one changes nothing. Epsilon: t
+    /// against the limit, if it is inside. Depth: nearness against that of the nearest, if it is
+    /// inside and another one.
+    fn margin(&self, shared: &Shared<R>, is_nearest: bool) -> R {
+        let (inside, visible) = (self.q <= shared.limit, self.t <= self.limit);
+        let mut margin = f32::INFINITY;
+        if visible {
+            margin = margin.at_most(self.q.ulps_to(shared.limit));
+        }
+        if inside {
+            margin = margin.at_most(self.t.ulps_to(self.limit));
+            if !is_nearest {
+                margin = margin.at_most(self.w.ulps_to(self.nearest));
+            }
+        }
+        R::from_f32(margin)
+    }
+}

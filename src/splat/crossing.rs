@@ -1,0 +1,83 @@
+//! Bounds of a disc that reaches the near plane: its projection is no ellipse.
+
+use super::project::Placed;
+use super::{Disc, View};
+use crate::number::{Real, Vector2, Vector3};
+
+/// Two half axes of a disc or ellipse in view space.
+pub(super) fn basis<R: Real>(
+    view: &View<R>,
+    placed: &Placed<R>,
+    disc: &Disc<R>,
+) -> [Vector3<R>; 2] {
+    if let Some(tangents) = disc.tangents {
+        return tangents.map(|t| view.direction(t));
+    }
+    let n = placed.n;
+    // Any axis that is not along the normal gives a basis of the plane.
+    let axis = if n.x.abs() < n.y.abs() {
+        Vector3::new(R::ONE, R::ZERO, R::ZERO)
+    } else {
+        Vector3::new(R::ZERO, R::ONE, R::ZERO)
+    };
+    let u = n.cross(axis).normalized();
+    [u * disc.radius, n.cross(u) * disc.radius]
+}
+
+/// The corners of the box around the visible part of the disc p + c u + s v, c c + s s <= 1.
+///
+/// The part at t >= near is convex, so its projection ends, in each direction of the screen, either
+/// where the rim's tangent is an axis of the picture or where the rim meets the near plane. All
+/// these points are solutions of A c + B s + C = 0 on the unit circle. The box is widened by 1 px
+/// and a thousandth for rounding; a rim without such points gives an empty box.
+pub(super) fn corners<R: Real>(
+    view: &View<R>,
+    p: Vector3<R>,
+    [u, v]: [Vector3<R>; 2],
+) -> (Vector2<R>, Vector2<R>) {
+    // Each a function of (c, s) as [constant, c, s]: x and y on the screen plane, and depth.
+    let x = [p.x, u.x, v.x];
+    let y = [p.y, u.y, v.y];
+    let t = [-p.z, -u.z, -v.z];
+    let horizon = [t[0] - view.near, t[1], t[2]];
+    let points = [on_circle(tangent(x, t)), on_circle(tangent(y, t)), on_circle(horizon)];
+
+    let mut low = Vector2::new(R::INFINITY, R::INFINITY);
+    let mut high = Vector2::new(-R::INFINITY, -R::INFINITY);
+    // A point of the rim on the near plane may round to just before it.
+    let near = view.near * R::from_f32(0.999);
+    for point in points.iter().flatten().flatten() {
+        let at = |f: [R; 3]| (f[0] + f[1] * point.x) + f[2] * point.y;
+        let depth = at(t);
+        if depth >= near {
+            let sx = view.cx + view.fx * (at(x) / depth);
+            let sy = view.cy - view.fy * (at(y) / depth);
+            low = Vector2::new(low.x.at_most(sx), low.y.at_most(sy));
+            high = Vector2::new(high.x.at_least(sx), high.y.at_least(sy));
+        }
+    }
+    let wider = R::from_f32(0.001);
+    let mx = (high.x - low.x) * wider + R::ONE;
+    let my = (high.y - low.y) * wider + R::ONE;
+    (Vector2::new(low.x - mx, low.y - my), Vector2::new(high.x + mx, high.y + my))
+}
+
+/// The equation of the points of the rim where x/t is stationary: the terms of second order cancel.
+fn tangent<R: Real>(x: [R; 3], t: [R; 3]) -> [R; 3] {
+    [x[2] * t[1] - x[1] * t[2], x[2] * t[0] - x[0] * t[2], x[0] * t[1] - x[1] * t[0]]
+}
+
+/// The points (c, s) of the unit circle with `f[0] + f[1] c + f[2] s = 0`.
+fn on_circle<R: Real>(f: [R; 3]) -> Option<[Vector2<R>; 2]> {
+    let length = (f[1] * f[1] + f[2] * f[2]).sqrt();
+    let (a, b, c) = (f[1] / length, f[2] / length, f[0] / length);
+    let rest = R::ONE - c * c;
+    if !(rest >= R::ZERO) {
+        return None;
+    }
+    let root = rest.sqrt();
+    Some([
+        Vector2::new(-(c * a) - root * b, -(c * b) + root * a),
+        Vector2::new(-(c * a) + root * b, -(c * b) - root * a),
+    ])
+}

@@ -1,0 +1,222 @@
+//! From a surfel to its footprint on the screen.
+//!
+//! ```text
+//!   surfel (position, normal, radius) ──View──▶ centre p, normal n       view space
+//!     ──project──▶ Splat = Footprint + bounds                            pixels
+//!     ──Footprint──▶ q(X, Y), nearness(X, Y)                             one fragment
+//! ```
+//!
+//! **Nearness** orders fragments: w = 1/t under a perspective camera, w = -t under an orthographic
+//! one, so that it is affine in the pixel position over a plane and the nearer fragment has the
+//! larger w in both. An empty pixel has the nearness of t = +inf: 0 or -inf.
+//!
+//! This module knows neither tiles nor pictures. Sources: [ZPvBG01] (affine), [ZRB+04]
+//! (perspective), [BHZK05] (ray casting).
+
+pub mod batch;
+pub mod bounds;
+pub mod crossing;
+pub mod project;
+pub mod view;
+
+pub use batch::Tally;
+pub use project::{Disc, Fate, Projector, project};
+pub use view::View;
+
+use crate::error::{Error, Result};
+use crate::frame::Rect;
+use crate::number::{Real, Vector2};
+
+/// How a disc becomes a shape on the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Outline {
+    /// The ellipse of the projection linearized at the centre, convolved with the low-pass filter
+    /// [ZPvBG01].
+    #[default]
+    Affine,
+    /// The ellipse that is the exact projection of the disc [ZRB+04], then the low-pass filter. A
+    /// disc that reaches the near plane has no such ellipse and is drawn as `Affine`; it is counted.
+    Perspective,
+    /// The disc itself, by intersecting each pixel's ray with its plane; the low-pass filter is the
+    /// larger of the two weights [BHZK05].
+    RayCast,
+}
+
+/// The reconstruction kernel and the low-pass filter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kernel {
+    /// How a disc becomes a shape on the screen.
+    pub outline: Outline,
+    /// The cut-off k: a disc of radius r is a Gaussian of standard deviation r/k, cut at k. In
+    /// [1/4, 4].
+    pub cutoff: f32,
+    /// The variance h of the low-pass filter in px^2. In [0, 16].
+    pub low_pass: f32,
+}
+
+impl Kernel {
+    /// The default: k = 2 (the disc is two standard deviations wide), h = 0.25 px^2.
+    pub const DEFAULT: Self = Self { outline: Outline::Affine, cutoff: 2.0, low_pass: 0.25 };
+    /// The choice of [ZPvBG01]: cut at one standard deviation, a low-pass filter of variance 1.
+    pub const ZPVBG01: Self = Self { outline: Outline::Affine, cutoff: 1.0, low_pass: 1.0 };
+
+    /// Whether the numbers are in range.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the cut-off or the low-pass variance is out of range.
+    pub fn check(&self) -> Result<()> {
+        if !(0.25..=4.0).contains(&self.cutoff) {
+            let what = format!("kernel: a cut-off of {}; give 0.25 to 4", self.cutoff);
+            return Err(Error::Invalid(what));
+        }
+        if !(0.0..=16.0).contains(&self.low_pass) {
+            let what = format!("kernel: a low-pass variance of {}; give 0 to 16", self.low_pass);
+            return Err(Error::Invalid(what));
+        }
+        Ok(())
+    }
+}
+
+impl Default for Kernel {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// A kernel on the screen: all that the fragments of one surfel need.
+///
+/// At the offset (dx, dy) = (X, Y) - `center`, in this order of operations:
+///
+/// ```text
+///   u = ux dx + uy dy      v = vy dy      f = u u + v v
+///   w = (w0 + wx dx) + wy dy
+///
+///   Affine, Perspective    q = f                     w clamped to [w_far, w_near]
+///   RayCast                q = the smaller of        w clamped likewise
+///                              f / (w w)  (orthographic: f)   if 0 < w <= 1/near, else +inf
+///                              (dx dx + dy dy) / h            if h > 0
+///
+///   inside                 q <= k k
+///   weight                 amplitude * exp(-0.5 q)
+/// ```
+///
+/// f is d^T Q d of the conic Q by its Cholesky factor: a sum of squares keeps the digits that the
+/// expanded form loses on thin ellipses, and is never negative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Footprint<R> {
+    /// The centre of the ellipse in pixels.
+    pub center: Vector2<R>,
+    /// Factor of the conic.
+    pub ux: R,
+    /// Factor of the conic.
+    pub uy: R,
+    /// Factor of the conic.
+    pub vy: R,
+    /// Nearness of the disc's plane at `center`.
+    pub w0: R,
+    /// Change of nearness per pixel to the right.
+    pub wx: R,
+    /// Change of nearness per pixel down.
+    pub wy: R,
+    /// The least nearness of the disc itself.
+    pub w_far: R,
+    /// The greatest nearness of the disc itself, at most that of the near plane.
+    pub w_near: R,
+    /// The weight at q = 0.
+    pub amplitude: R,
+}
+
+/// What the fragments of every splat of a picture share.
+#[derive(Clone, Copy, Debug)]
+pub struct Shared<R> {
+    /// k^2: a fragment is inside if q <= this.
+    pub limit: R,
+    /// Whether q comes from ray casting.
+    pub ray_cast: bool,
+    /// Whether nearness is 1/t; else it is -t.
+    pub perspective: bool,
+    /// h, the variance of the low-pass filter in px^2.
+    pub low_pass: R,
+    /// Nearness of the near plane.
+    pub w_clip: R,
+}
+
+impl<R: Real> Shared<R> {
+    /// The shared numbers of a picture.
+    #[must_use]
+    pub fn new(view: &View<R>, kernel: &Kernel) -> Self {
+        let cutoff = R::from_f32(kernel.cutoff);
+        Self {
+            limit: cutoff * cutoff,
+            ray_cast: kernel.outline == Outline::RayCast,
+            perspective: view.perspective,
+            low_pass: R::from_f32(kernel.low_pass),
+            w_clip: view.nearness(view.near),
+        }
+    }
+
+    /// The depth t of a nearness: 1/w, or -w under an orthographic camera.
+    #[inline(always)]
+    pub fn depth(&self, nearness: R) -> R {
+        if self.perspective { R::ONE / nearness } else { -nearness }
+    }
+
+    /// The nearness of an empty pixel, whose depth is +inf.
+    #[must_use]
+    pub fn empty(&self) -> R {
+        if self.perspective { R::ZERO } else { -R::INFINITY }
+    }
+}
+
+impl<R: Real> Footprint<R> {
+    /// The form f at an offset from the centre.
+    #[inline(always)]
+    pub fn form(&self, dx: R, dy: R) -> R {
+        let u = self.ux * dx + self.uy * dy;
+        let v = self.vy * dy;
+        u * u + v * v
+    }
+
+    /// The nearness of the disc's plane, not clamped.
+    #[inline(always)]
+    pub fn plane(&self, dx: R, dy: R) -> R {
+        (self.w0 + self.wx * dx) + self.wy * dy
+    }
+
+    /// q and nearness of the fragment at an offset from the centre.
+    #[inline(always)]
+    pub fn fragment(&self, shared: &Shared<R>, dx: R, dy: R) -> (R, R) {
+        let form = self.form(dx, dy);
+        let w = self.plane(dx, dy);
+        let q = if shared.ray_cast { ray_cast(shared, form, w, dx, dy) } else { form };
+        (q, w.at_least(self.w_far).at_most(self.w_near))
+    }
+
+    /// The weight of a fragment whose q is inside.
+    #[inline(always)]
+    pub fn weight(&self, q: R) -> R {
+        self.amplitude * (q * R::from_f32(-0.5)).exp()
+    }
+}
+
+/// q of the disc by ray casting, or of the low-pass filter where that is smaller.
+#[inline(always)]
+fn ray_cast<R: Real>(shared: &Shared<R>, form: R, w: R, dx: R, dy: R) -> R {
+    let q = if shared.perspective { form / (w * w) } else { form };
+    let hits = w <= shared.w_clip && (w > R::ZERO || !shared.perspective);
+    let q = if hits { q } else { R::INFINITY };
+    if shared.low_pass > R::ZERO { q.at_most((dx * dx + dy * dy) / shared.low_pass) } else { q }
+}
+
+/// A surfel on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Splat<R> {
+    /// Its kernel.
+    pub footprint: Footprint<R>,
+    /// The pixels that can be inside.
+    pub bounds: Rect,
+    /// The index of the surfel in its scene.
+    pub surfel: u32,
+    /// Whether the back of the surfel is seen; its normal then counts reversed.
+    pub back: bool,
+}

@@ -1,0 +1,406 @@
+//! Projection of one surfel: the specification of its [`Footprint`].
+//!
+//! **Placing.** p and n are the centre and the normal in view space, t = -p.z. Under a perspective
+//! camera m = 1/t and the ray through the centre is d = (p.x m, p.y m, -1); under an orthographic
+//! one m = 1 and d = (0, 0, -1). The rows of the projection's Jacobian, in px per world unit, are
+//!
+//! ```text
+//!   a = dX/dp = sx (1, 0, d.x)       sx = fx m
+//!   b = dY/dp = -sy (0, 1, d.y)      sy = fy m
+//!   X = cx + fx d.x  (p.x if orthographic)      Y = cy - fy d.y  (p.y)
+//!   g = (n.x d.x + n.y d.y) - n.z               < 0: the front is seen
+//! ```
+//!
+//! **Shape.** The covariance V0 in px^2 of the disc, a Gaussian of standard deviation s = r/k on its
+//! plane, needs no tangent basis: with c = (1, 0, d.x) x n, e = (0, 1, d.y) x n, rx = s sx, ry = s sy
+//!
+//! ```text
+//!   xx = (rx rx) c.c      xy = -((rx ry) c.e)      yy = (ry ry) e.e      area = |(rx ry) g|
+//!   half = r sqrt(n.x n.x + n.y n.y)               half the disc's range of depth
+//!   tilt = (a.z', b.z') m,  z' = s s (z - n.z n)   how nearness grows over V0
+//! ```
+//!
+//! and `area` is sqrt(det V0). An ellipse with half axes k U and k V (its tangents) has sums over
+//! both in place of the cross products, and U x V in place of n in `area`.
+//!
+//! **Nearness** of the plane: w0 = 1/t or -t at the centre, wx = m n.x / (fx g), wy = -m n.y / (fy g)
+//! per pixel, the ray-plane intersection relative to the centre. `Decided:` a fragment in the skirt
+//! of the low-pass filter, outside the disc, has no meaningful intersection; its nearness is clamped
+//! to that of the depths [t - half, t + half], the nearer not nearer than the near plane.
+//!
+//! **Outline.** See [`Projector::affine`], [`Projector::perspective`], [`Projector::ray_cast`].
+//!
+//! **Fate.** In this order: a surfel whose centre is not farther than the near plane is `Behind`;
+//! one whose amplitude is below 2^-96, whose gradient of nearness exceeds 2^96 a pixel, or of which
+//! any number is not finite is `Degenerate` (seen edge-on, or astronomically large or small); with
+//! culling, one with g >= 0 is `BackFacing`; one without a pixel in the picture is `Outside`.
+//!
+//! Source: [ZPvBG01, sections 3 and 4]; `Departs:` the determinant is a sum of terms >= 0, where
+//! the textbook xx yy - xy xy cancels.
+
+use super::{Footprint, Kernel, Outline, Splat, View, bounds, crossing};
+use crate::frame::Rect;
+use crate::number::{Real, Vector2, Vector3};
+
+/// What became of a surfel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Fate {
+    /// It is drawn.
+    Visible,
+    /// Its centre is not farther than the near plane.
+    Behind,
+    /// It has no footprint in this arithmetic, see the module page.
+    Degenerate,
+    /// Its back is seen, and culling is on.
+    BackFacing,
+    /// None of its pixels is in the picture.
+    Outside,
+}
+
+/// A surfel in world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc<R> {
+    /// Centre.
+    pub position: Vector3<R>,
+    /// Unit normal.
+    pub normal: Vector3<R>,
+    /// Radius; not used if there are tangents.
+    pub radius: R,
+    /// Half axes of an elliptical surfel.
+    pub tangents: Option<[Vector3<R>; 2]>,
+}
+
+/// All that the projection of a picture's surfels shares.
+#[derive(Clone, Copy, Debug)]
+pub struct Projector<R> {
+    /// The camera.
+    pub view: View<R>,
+    /// k, the cut-off.
+    pub cutoff: R,
+    /// h, the variance of the low-pass filter in px^2.
+    pub low_pass: R,
+    /// How a disc becomes a shape.
+    pub outline: Outline,
+    /// Whether surfels seen from behind are dropped.
+    pub cull: bool,
+}
+
+/// A surfel in view space, and the Jacobian there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed<R> {
+    /// Centre in view space.
+    pub(super) p: Vector3<R>,
+    /// Normal in view space.
+    pub(super) n: Vector3<R>,
+    /// Depth of the centre.
+    pub(super) t: R,
+    m: R,
+    d: Vector2<R>,
+    sx: R,
+    sy: R,
+    g: R,
+    center: Vector2<R>,
+}
+
+/// The covariance of a disc on the screen, without low-pass filter.
+#[derive(Clone, Copy, Debug)]
+struct Shape<R> {
+    xx: R,
+    xy: R,
+    yy: R,
+    area: R,
+    half: R,
+    tilt: Vector2<R>,
+}
+
+/// Projects one surfel; see the module page. The splat is meaningless unless its fate is `Visible`.
+#[must_use]
+pub fn project<R: Real>(projector: &Projector<R>, disc: &Disc<R>, surfel: u32) -> (Splat<R>, Fate) {
+    let placed = projector.place(disc.position, disc.normal);
+    let shape = match disc.tangents {
+        None => projector.disc(&placed, disc.radius),
+        Some(tangents) => projector.ellipse(&placed, tangents),
+    };
+    let (footprint, bounds) = match projector.outline {
+        Outline::Affine => projector.affine(&placed, &shape),
+        Outline::Perspective => projector.perspective(&placed, &shape),
+        Outline::RayCast => projector.ray_cast(&placed, &shape, disc),
+    };
+    let fate = projector.fate(&placed, &footprint, &bounds);
+    let back = placed.g > R::ZERO;
+    (Splat { footprint, bounds, surfel, back }, fate)
+}
+
+impl<R: Real> Projector<R> {
+    /// The shared numbers of a picture.
+    #[must_use]
+    pub fn new(view: View<R>, kernel: &Kernel, cull: bool) -> Self {
+        Self {
+            view,
+            cutoff: R::from_f32(kernel.cutoff),
+            low_pass: R::from_f32(kernel.low_pass),
+            outline: kernel.outline,
+            cull,
+        }
+    }
+
+    /// An affine disc without a branch, so that a loop over it vectorizes: footprint, bounds,
+    /// whether its back is seen, and fate.
+    #[inline(always)]
+    pub(super) fn affine_disc(
+        &self,
+        position: Vector3<R>,
+        normal: Vector3<R>,
+        radius: R,
+    ) -> (Footprint<R>, Rect, bool, Fate) {
+        let placed = self.place(position, normal);
+        let shape = self.disc(&placed, radius);
+        let (footprint, bounds) = self.affine(&placed, &shape);
+        let fate = self.fate(&placed, &footprint, &bounds);
+        (footprint, bounds, placed.g > R::ZERO, fate)
+    }
+
+    #[inline(always)]
+    pub(super) fn place(&self, position: Vector3<R>, normal: Vector3<R>) -> Placed<R> {
+        let view = &self.view;
+        let p = view.point(position);
+        let n = view.direction(normal);
+        let t = -p.z;
+        let (m, d, at) = if view.perspective {
+            let m = R::ONE / t;
+            let d = Vector2::new(p.x * m, p.y * m);
+            (m, d, d)
+        } else {
+            (R::ONE, Vector2::new(R::ZERO, R::ZERO), Vector2::new(p.x, p.y))
+        };
+        Placed {
+            p,
+            n,
+            t,
+            m,
+            d,
+            sx: view.fx * m,
+            sy: view.fy * m,
+            g: (n.x * d.x + n.y * d.y) - n.z,
+            center: Vector2::new(view.cx + view.fx * at.x, view.cy - view.fy * at.y),
+        }
+    }
+
+    #[inline(always)]
+    fn disc(&self, placed: &Placed<R>, radius: R) -> Shape<R> {
+        let Placed { n, m, d, sx, sy, g, .. } = *placed;
+        let s = radius / self.cutoff;
+        let (rx, ry) = (s * sx, s * sy);
+        let c = Vector3::new(-(d.x * n.y), d.x * n.x - n.z, n.y);
+        let e = Vector3::new(n.z - d.y * n.y, d.y * n.x, -n.x);
+        // The z axis in the disc's plane, times the variance.
+        let z = Vector3::new(-(n.z * n.x), -(n.z * n.y), n.x * n.x + n.y * n.y) * (s * s);
+        Shape {
+            xx: (rx * rx) * c.dot(c),
+            xy: -((rx * ry) * c.dot(e)),
+            yy: (ry * ry) * e.dot(e),
+            area: ((rx * ry) * g).abs(),
+            half: radius * (n.x * n.x + n.y * n.y).sqrt(),
+            tilt: Vector2::new((sx * (z.x + d.x * z.z)) * m, -((sy * (z.y + d.y * z.z)) * m)),
+        }
+    }
+
+    fn ellipse(&self, placed: &Placed<R>, tangents: [Vector3<R>; 2]) -> Shape<R> {
+        let Placed { m, d, sx, sy, .. } = *placed;
+        let [u, v] = tangents.map(|tangent| {
+            let t = self.view.direction(tangent);
+            Vector3::new(t.x / self.cutoff, t.y / self.cutoff, t.z / self.cutoff)
+        });
+        let (ux, uy) = (sx * (u.x + d.x * u.z), -(sy * (u.y + d.y * u.z)));
+        let (vx, vy) = (sx * (v.x + d.x * v.z), -(sy * (v.y + d.y * v.z)));
+        let normal = u.cross(v);
+        let along = (normal.x * d.x + normal.y * d.y) - normal.z;
+        Shape {
+            xx: ux * ux + vx * vx,
+            xy: ux * uy + vx * vy,
+            yy: uy * uy + vy * vy,
+            area: ((sx * sy) * along).abs(),
+            half: self.cutoff * (u.z * u.z + v.z * v.z).sqrt(),
+            tilt: Vector2::new((ux * u.z + vx * v.z) * m, (uy * u.z + vy * v.z) * m),
+        }
+    }
+
+    /// The projection linearized at the centre [ZPvBG01]: V = V0 + h I,
+    ///
+    /// ```text
+    ///   det = (area area + h (xx + yy)) + h h      amplitude = area / sqrt(det)
+    ///   ux = sqrt(yy' / det)    uy = -((xy / yy') ux)    vy = 1 / sqrt(yy')    yy' = yy + h
+    /// ```
+    ///
+    /// The amplitude is that of [ZPvBG01] up to the constant that normalization removes. Rect:
+    /// k sqrt(xx') and k sqrt(yy') about the centre.
+    #[inline(always)]
+    fn affine(&self, placed: &Placed<R>, shape: &Shape<R>) -> (Footprint<R>, Rect) {
+        self.gaussian(placed, shape, placed.center, self.view.nearness(placed.t))
+    }
+
+    /// The exact ellipse of the projected disc [ZRB+04], convolved with the low-pass filter.
+    ///
+    /// `Decided:` [ZRB+04] gives the outline as a conic; here its centre and covariance follow from
+    /// V0 by a rank-one update, without cancellation. With b = (half/t)^2,
+    /// 1 - b = ((t - half)/t) ((t + half)/t):
+    ///
+    /// ```text
+    ///   centre += (k k / (1 - b)) tilt                 w0 = m / (1 - b)
+    ///   V0 := (V0 + (k k / (1 - b)) tilt tilt^T) / (1 - b)
+    ///   area := (area / (1 - b)) / sqrt(1 - b)
+    /// ```
+    ///
+    /// then as [`Projector::affine`]. A disc with t - half <= near has no ellipse and is drawn
+    /// affine. Under an orthographic camera the affine outline is exact.
+    fn perspective(&self, placed: &Placed<R>, shape: &Shape<R>) -> (Footprint<R>, Rect) {
+        if !self.view.perspective || !(placed.t - shape.half > self.view.near) {
+            return self.affine(placed, shape);
+        }
+        let (shape, center, rest) = self.outline(placed, shape);
+        self.gaussian(placed, &shape, center, placed.m / rest)
+    }
+
+    /// The covariance and the centre of the exact outline, and 1 - b; see [`Self::perspective`].
+    fn outline(&self, placed: &Placed<R>, shape: &Shape<R>) -> (Shape<R>, Vector2<R>, R) {
+        let Shape { half, tilt, .. } = *shape;
+        let t = placed.t;
+        let rest = ((t - half) / t) * ((t + half) / t);
+        let factor = (self.cutoff * self.cutoff) / rest;
+        let exact = Shape {
+            xx: (shape.xx + factor * (tilt.x * tilt.x)) / rest,
+            xy: (shape.xy + factor * (tilt.x * tilt.y)) / rest,
+            yy: (shape.yy + factor * (tilt.y * tilt.y)) / rest,
+            area: (shape.area / rest) / rest.sqrt(),
+            ..*shape
+        };
+        let c = placed.center;
+        (exact, Vector2::new(c.x + factor * tilt.x, c.y + factor * tilt.y), rest)
+    }
+
+    /// The disc by ray casting, the low-pass filter beside it [BHZK05].
+    ///
+    /// f is the form of V0 alone (h = 0), times w0 w0 under a perspective camera: f/(w w) is then
+    /// exactly the squared distance from the centre in the disc's plane, in standard deviations. The
+    /// amplitude is 1. Bounds: those of the exact outline and of the filter's circle of radius
+    /// k sqrt(h), both; a disc that reaches the near plane has those of its visible part.
+    fn ray_cast(
+        &self,
+        placed: &Placed<R>,
+        shape: &Shape<R>,
+        disc: &Disc<R>,
+    ) -> (Footprint<R>, Rect) {
+        let view = &self.view;
+        let w0 = view.nearness(placed.t);
+        let mut footprint = self.nearness(placed, shape, placed.center, w0);
+        let scale = if view.perspective { w0 } else { R::ONE };
+        footprint.ux = (scale * shape.yy.sqrt()) / shape.area;
+        footprint.uy = -((shape.xy / shape.yy) * footprint.ux);
+        footprint.vy = scale / shape.yy.sqrt();
+        footprint.amplitude = if shape.area > R::ZERO { R::ONE } else { R::ZERO };
+
+        let reaches = view.perspective && !(placed.t - shape.half > view.near);
+        let (low, high) = if reaches {
+            let basis = crossing::basis(view, placed, disc);
+            crossing::corners(view, placed.p, basis)
+        } else {
+            let (exact, center) = if view.perspective {
+                let (exact, center, _) = self.outline(placed, shape);
+                (exact, center)
+            } else {
+                (*shape, placed.center)
+            };
+            let stretch = (exact.xx.sqrt() * exact.yy.sqrt()) / exact.area;
+            let ratio = if view.perspective { placed.t / (placed.t - shape.half) } else { R::ONE };
+            let grow = R::ONE + (stretch * ratio) * R::from_f32(1.0 / 262_144.0);
+            let ex = (self.cutoff * exact.xx.sqrt()) * grow;
+            let ey = (self.cutoff * exact.yy.sqrt()) * grow;
+            (Vector2::new(center.x - ex, center.y - ey), Vector2::new(center.x + ex, center.y + ey))
+        };
+        let circle = self.cutoff * self.low_pass.sqrt();
+        let slack = R::from_f32(1.0 / 128.0);
+        let c = placed.center;
+        let low =
+            Vector2::new(low.x.at_most(c.x - circle) - slack, low.y.at_most(c.y - circle) - slack);
+        let high = Vector2::new(
+            high.x.at_least(c.x + circle) + slack,
+            high.y.at_least(c.y + circle) + slack,
+        );
+        (footprint, bounds::between(view, low, high))
+    }
+
+    /// A Gaussian of covariance V0 + h I about `center`.
+    #[inline(always)]
+    fn gaussian(
+        &self,
+        placed: &Placed<R>,
+        shape: &Shape<R>,
+        center: Vector2<R>,
+        w0: R,
+    ) -> (Footprint<R>, Rect) {
+        let h = self.low_pass;
+        let det = (shape.area * shape.area + h * (shape.xx + shape.yy)) + h * h;
+        let (xx, yy) = (shape.xx + h, shape.yy + h);
+        let mut footprint = self.nearness(placed, shape, center, w0);
+        footprint.ux = (yy / det).sqrt();
+        footprint.uy = -((shape.xy / yy) * footprint.ux);
+        footprint.vy = R::ONE / yy.sqrt();
+        footprint.amplitude = shape.area / det.sqrt();
+        let extent = Vector2::new(self.cutoff * xx.sqrt(), self.cutoff * yy.sqrt());
+        let bounds = bounds::around(&self.view, center, extent, footprint.ux * xx.sqrt());
+        (footprint, bounds)
+    }
+
+    /// The plane and the range of nearness; the other fields are 0.
+    #[inline(always)]
+    fn nearness(
+        &self,
+        placed: &Placed<R>,
+        shape: &Shape<R>,
+        center: Vector2<R>,
+        w0: R,
+    ) -> Footprint<R> {
+        let view = &self.view;
+        let Placed { n, t, m, g, .. } = *placed;
+        let near = t - shape.half;
+        let near = if view.perspective { near.at_least(view.near) } else { near };
+        Footprint {
+            center,
+            ux: R::ZERO,
+            uy: R::ZERO,
+            vy: R::ZERO,
+            w0,
+            wx: (m * n.x) / (view.fx * g),
+            wy: -((m * n.y) / (view.fy * g)),
+            w_far: view.nearness(t + shape.half),
+            w_near: view.nearness(near),
+            amplitude: R::ZERO,
+        }
+    }
+
+    /// The first reason not to draw; see the module page.
+    #[inline(always)]
+    fn fate(&self, placed: &Placed<R>, footprint: &Footprint<R>, bounds: &Rect) -> Fate {
+        let f = footprint;
+        // Comparisons with NaN are false, so every test is one that a good surfel passes.
+        let largest = R::from_f32(LARGEST);
+        let sound = (f.amplitude >= R::from_f32(1.0 / LARGEST))
+            & (f.wx.abs() <= largest)
+            & (f.wy.abs() <= largest)
+            & (f.ux <= largest)
+            & (f.uy.abs() <= largest)
+            & (f.vy <= largest)
+            & (f.center.x.abs() <= largest)
+            & (f.center.y.abs() <= largest)
+            & (f.w_far <= f.w_near);
+        let fate = if bounds.is_empty() { Fate::Outside } else { Fate::Visible };
+        let fate = if self.cull & (placed.g >= R::ZERO) { Fate::BackFacing } else { fate };
+        let fate = if sound { fate } else { Fate::Degenerate };
+        if placed.t > self.view.near { fate } else { Fate::Behind }
+    }
+}
+
+/// 2^96: what the numbers of a footprint may reach, and its inverse what its amplitude may fall to.
+/// A product with any pixel offset (2^17) or any squared term then stays within `f32`.
+const LARGEST: f32 = 79_228_162_514_264_337_593_543_950_336.0;
