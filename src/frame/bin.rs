@@ -68,6 +68,12 @@ impl Bins {
         bins
     }
 
+    /// How many indices [`Bins::for_each`] visits.
+    #[must_use]
+    pub fn count(&self, tile: usize) -> usize {
+        (self.starts[tile + 1] - self.starts[tile]) as usize + self.wide.len()
+    }
+
     /// Calls `visit` for each index whose bounds may touch the tile, in ascending order.
     #[inline(always)]
     pub fn for_each(&self, tile: usize, mut visit: impl FnMut(u32)) {

@@ -59,19 +59,19 @@ pub fn disc<R: Real>(surfels: &Surfels, i: usize) -> Disc<R> {
     }
 }
 
-/// The visible splats of a range of surfels, in ascending order, one at a time.
+/// Calls `draw` for each visible splat of a range of surfels, in ascending order.
 pub fn splats<R: Real>(
     projector: &Projector<R>,
     surfels: &Surfels,
     range: Range<usize>,
-    splats: &mut Vec<Splat<R>>,
+    mut draw: impl FnMut(Splat<R>),
 ) -> Tally {
     let mut tally = Tally::default();
     for i in range {
         let (splat, fate) = project(projector, &disc(surfels, i), i as u32);
         tally.count(fate);
         if fate == Fate::Visible {
-            splats.push(splat);
+            draw(splat);
         }
     }
     tally
@@ -82,15 +82,15 @@ pub fn splats_f32(
     projector: &Projector<f32>,
     surfels: &Surfels,
     range: Range<usize>,
-    out: &mut Vec<Splat<f32>>,
+    mut draw: impl FnMut(Splat<f32>),
 ) -> Tally {
     if projector.outline != Outline::Affine || surfels.tangents().is_some() {
-        return splats(projector, surfels, range, out);
+        return splats(projector, surfels, range, draw);
     }
     let lanes = range.start..range.end - range.len() % LANES;
     let rest = lanes.end..range.end;
-    let tally = in_lanes(projector, surfels, lanes, out);
-    tally.plus(&splats(projector, surfels, rest, out))
+    let tally = in_lanes(projector, surfels, lanes, &mut draw);
+    tally.plus(&splats(projector, surfels, rest, draw))
 }
 
 /// Surfels that are projected side by side.
@@ -102,7 +102,7 @@ fn in_lanes(
     projector: &Projector<f32>,
     surfels: &Surfels,
     range: Range<usize>,
-    out: &mut Vec<Splat<f32>>,
+    draw: &mut impl FnMut(Splat<f32>),
 ) -> Tally {
     let projector = *projector;
     let mut counts = [0_u64; 8];
@@ -146,7 +146,7 @@ fn in_lanes(
             counts[fates[i] as usize & 7] += 1;
             if fates[i] == Fate::Visible as u32 {
                 let n = |field: usize| numbers[field][i];
-                out.push(Splat {
+                draw(Splat {
                     footprint: Footprint {
                         center: Vector2::new(n(0), n(1)),
                         ux: n(2),

@@ -16,7 +16,8 @@ use super::prepare::Prepared;
 use crate::composite::{epsilon, sum};
 use crate::frame::{Exec, Framebuffer, FramebufferTile, NO_ID, Rect};
 use crate::scene::{Camera, Surfels};
-use crate::splat::{Footprint, Shared, Tally, batch};
+use crate::splat::{Footprint, Shared, Splat, Tally, batch};
+use glam::Vec3;
 use multiversion::multiversion;
 use std::time::{Duration, Instant};
 
@@ -43,19 +44,21 @@ struct Block {
     color: [Lanes; 3],
 }
 
-/// A splat as a tile draws it.
-struct Drawn {
+/// A splat with its attributes: 80 bytes, so that a tile finds all it needs in one place.
+#[derive(Clone, Copy)]
+struct Record {
     footprint: Footprint<f32>,
     surfel: u32,
-    /// The blocks it may touch: columns and rows of blocks in the tile, the ends exclusive.
-    blocks: Rect,
+    /// First and last column, first and last row.
+    bounds: [u16; 4],
+    /// The normal of the side that is seen.
     normal: [f32; 3],
     color: [f32; 3],
 }
 
 /// What one tile works with, kept by its thread from tile to tile.
 struct Scratch {
-    drawn: Vec<Drawn>,
+    splats: Vec<Record>,
     blocks: Vec<Block>,
     columns: u32,
 }
@@ -90,14 +93,26 @@ pub fn render(
     assert_eq!((target.width, target.height), (camera.width, camera.height), "framebuffer size");
     let start = Instant::now();
     let grid = exec.grid(camera.width, camera.height);
-    let prepared = Prepared::new(surfels, camera, settings, exec, &grid, batch::splats_f32);
+    let colors = surfels.color();
+    let prepared = Prepared::new(
+        surfels,
+        camera,
+        settings,
+        (exec, &grid),
+        |projector, range, records| {
+            batch::splats_f32(projector, surfels, range, |splat| {
+                records.push(Record::new(&splat, surfels.normal(), colors));
+            })
+        },
+        Record::bounds,
+    );
     let project = start.elapsed();
 
     let start = Instant::now();
     let jobs = target.tiles(&grid).into_iter().enumerate().collect();
     let times = exec.ordered(jobs, |(index, mut tile)| {
         let start = Instant::now();
-        let mut scratch = Scratch::gather(&prepared, surfels, index, &tile.rect);
+        let mut scratch = Scratch::gather(&prepared, index, &tile.rect);
         let ray_cast = prepared.shared.ray_cast;
         if ray_cast {
             visibility::<true>(&mut scratch, &prepared.shared, &tile.rect);
@@ -115,7 +130,12 @@ pub fn render(
             (true, true) => attributes::<true, true>(&mut scratch, &prepared.shared, &tile.rect),
         }
         let added = Instant::now();
-        normalize(&scratch, &prepared.shared, &mut tile);
+        if surfels.color().is_some() {
+            normalize::<true>(&mut scratch, &prepared.shared);
+        } else {
+            normalize::<false>(&mut scratch, &prepared.shared);
+        }
+        store(&scratch, &mut tile);
         [visible - start, added - visible, added.elapsed()]
     });
     let wall = start.elapsed();
@@ -131,29 +151,47 @@ pub fn render(
     (prepared.tally, timings)
 }
 
+impl Record {
+    #[inline(always)]
+    fn new(splat: &Splat<f32>, normals: &[Vec3], colors: Option<&[Vec3]>) -> Self {
+        let Rect { x0, y0, x1, y1 } = splat.bounds;
+        let i = splat.surfel as usize;
+        Self {
+            footprint: splat.footprint,
+            surfel: splat.surfel,
+            // Pictures have at most 65,536 pixels a side, so the last pixel fits.
+            bounds: [x0, x1 - 1, y0, y1 - 1].map(|pixel| pixel as u16),
+            normal: facing(normals[i].to_array(), splat.back),
+            color: colors.map_or([0.0; 3], |c| c[i].to_array()),
+        }
+    }
+
+    fn bounds(&self) -> Rect {
+        let [x0, x1, y0, y1] = self.bounds.map(u32::from);
+        Rect { x0, y0, x1: x1 + 1, y1: y1 + 1 }
+    }
+
+    /// The blocks of a tile that it may touch: columns and rows, the ends exclusive.
+    #[inline(always)]
+    fn blocks(&self, tile: &Rect) -> Rect {
+        let inside = self.bounds().intersection(tile);
+        if inside.is_empty() {
+            return Rect::default();
+        }
+        Rect {
+            x0: (inside.x0 - tile.x0) / SIDE,
+            y0: (inside.y0 - tile.y0) / SIDE,
+            x1: (inside.x1 - tile.x0).div_ceil(SIDE),
+            y1: (inside.y1 - tile.y0).div_ceil(SIDE),
+        }
+    }
+}
+
 impl Scratch {
     /// The splats of a tile, and its empty blocks.
-    fn gather(prepared: &Prepared<f32>, surfels: &Surfels, index: usize, rect: &Rect) -> Self {
-        let (normals, colors) = (surfels.normal(), surfels.color());
-        let mut drawn = Vec::new();
-        prepared.for_each(index, |splat| {
-            let inside = splat.bounds.intersection(rect);
-            if !inside.is_empty() {
-                let i = splat.surfel as usize;
-                drawn.push(Drawn {
-                    footprint: splat.footprint,
-                    surfel: splat.surfel,
-                    blocks: Rect {
-                        x0: (inside.x0 - rect.x0) / SIDE,
-                        y0: (inside.y0 - rect.y0) / SIDE,
-                        x1: (inside.x1 - rect.x0).div_ceil(SIDE),
-                        y1: (inside.y1 - rect.y0).div_ceil(SIDE),
-                    },
-                    normal: facing(normals[i].to_array(), splat.back),
-                    color: colors.map_or([0.0; 3], |c| c[i].to_array()),
-                });
-            }
-        });
+    fn gather(prepared: &Prepared<f32, Record>, index: usize, rect: &Rect) -> Self {
+        let mut splats = Vec::with_capacity(prepared.count(index));
+        prepared.for_each(index, |record| splats.push(*record));
         let columns = (rect.x1 - rect.x0).div_ceil(SIDE);
         let rows = (rect.y1 - rect.y0).div_ceil(SIDE);
         let zero = [0.0; LANES];
@@ -165,7 +203,7 @@ impl Scratch {
             normal: [zero; 3],
             color: [zero; 3],
         };
-        Self { drawn, blocks: vec![empty; (columns * rows) as usize], columns }
+        Self { splats, blocks: vec![empty; (columns * rows) as usize], columns }
     }
 }
 
@@ -192,17 +230,21 @@ fn fragments<const RAY_CAST: bool>(
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn visibility<const RAY_CAST: bool>(scratch: &mut Scratch, shared: &Shared<f32>, rect: &Rect) {
     let shared = *shared;
-    for splat in &scratch.drawn {
-        for row in splat.blocks.y0..splat.blocks.y1 {
-            for column in splat.blocks.x0..splat.blocks.x1 {
+    for splat in &scratch.splats {
+        let (footprint, surfel) = (splat.footprint, splat.surfel);
+        let blocks = splat.blocks(rect);
+        for row in blocks.y0..blocks.y1 {
+            for column in blocks.x0..blocks.x1 {
                 let block = &mut scratch.blocks[(row * scratch.columns + column) as usize];
                 let (x, y) = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
-                let (q, w) = fragments::<RAY_CAST>(&shared, &splat.footprint, x, y);
+                let (q, w) = fragments::<RAY_CAST>(&shared, &footprint, x, y);
+                let (mut nearest, mut id) = (block.nearest, block.id);
                 for i in 0..LANES {
-                    let hit = (q[i] <= shared.limit) & (w[i] > block.nearest[i]);
-                    block.nearest[i] = if hit { w[i] } else { block.nearest[i] };
-                    block.id[i] = if hit { splat.surfel } else { block.id[i] };
+                    let hit = (q[i] <= shared.limit) & (w[i] > nearest[i]);
+                    nearest[i] = if hit { w[i] } else { nearest[i] };
+                    id[i] = if hit { surfel } else { id[i] };
                 }
+                (block.nearest, block.id) = (nearest, id);
             }
         }
     }
@@ -247,38 +289,34 @@ fn attributes<const RAY_CAST: bool, const COLOR: bool>(
     rect: &Rect,
 ) {
     let shared = *shared;
-    for splat in &scratch.drawn {
-        for row in splat.blocks.y0..splat.blocks.y1 {
-            for column in splat.blocks.x0..splat.blocks.x1 {
+    for splat in &scratch.splats {
+        let (footprint, normal, color) = (splat.footprint, splat.normal, splat.color);
+        let blocks = splat.blocks(rect);
+        for row in blocks.y0..blocks.y1 {
+            for column in blocks.x0..blocks.x1 {
                 let block = &mut scratch.blocks[(row * scratch.columns + column) as usize];
                 let (x, y) = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
-                let (q, w) = fragments::<RAY_CAST>(&shared, &splat.footprint, x, y);
-                let mut any = false;
+                let (q, w) = fragments::<RAY_CAST>(&shared, &footprint, x, y);
+                let least = block.least;
+                let mut hit = [0_u32; LANES];
                 for i in 0..LANES {
-                    any |= (q[i] <= shared.limit) & (w[i] >= block.least[i]);
+                    hit[i] = u32::from((q[i] <= shared.limit) & (w[i] >= least[i]));
                 }
-                if !any {
+                if hit.iter().all(|&h| h == 0) {
                     continue;
                 }
                 let mut weight = [0.0; LANES];
                 for i in 0..LANES {
-                    let hit = (q[i] <= shared.limit) & (w[i] >= block.least[i]);
-                    let value = splat.footprint.weight(q[i]);
-                    weight[i] = if hit { value } else { 0.0 };
+                    let value = footprint.weight(q[i]);
+                    weight[i] = if hit[i] != 0 { value } else { 0.0 };
                 }
-                for i in 0..LANES {
-                    block.weight[i] += weight[i];
-                }
+                add(&mut block.weight, &weight, 1.0);
                 for c in 0..3 {
-                    for i in 0..LANES {
-                        block.normal[c][i] += weight[i] * splat.normal[c];
-                    }
+                    add(&mut block.normal[c], &weight, normal[c]);
                 }
                 if COLOR {
                     for c in 0..3 {
-                        for i in 0..LANES {
-                            block.color[c][i] += weight[i] * splat.color[c];
-                        }
+                        add(&mut block.color[c], &weight, color[c]);
                     }
                 }
             }
@@ -286,22 +324,76 @@ fn attributes<const RAY_CAST: bool, const COLOR: bool>(
     }
 }
 
-/// Normalization, from the blocks into the rows of the framebuffer.
-fn normalize(scratch: &Scratch, shared: &Shared<f32>, tile: &mut FramebufferTile<'_, f32>) {
-    for y in 0..(tile.rect.y1 - tile.rect.y0) as usize {
-        for x in 0..(tile.rect.x1 - tile.rect.x0) as usize {
-            let side = SIDE as usize;
-            let block = &scratch.blocks[y / side * scratch.columns as usize + x / side];
-            let lane = y % side * side + x % side;
-            let weight = block.weight[lane];
-            tile.depth.row(y)[x] = shared.depth(block.nearest[lane]);
-            tile.id.row(y)[x] = block.id[lane];
-            tile.weight.row(y)[x] = weight;
-            tile.normal.row(y)[x] =
-                sum::direction(block.normal.each_ref().map(|c| c[lane]), weight);
-            if let Some(color) = &mut tile.color {
-                color.row(y)[x] = sum::average(block.color.each_ref().map(|c| c[lane]), weight);
+/// `sum + weight value` in each lane.
+#[inline(always)]
+fn add(sum: &mut Lanes, weight: &Lanes, value: f32) {
+    let mut lanes = *sum;
+    for i in 0..LANES {
+        lanes[i] += weight[i] * value;
+    }
+    *sum = lanes;
+}
+
+/// Normalization, in place.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn normalize<const COLOR: bool>(scratch: &mut Scratch, shared: &Shared<f32>) {
+    let shared = *shared;
+    for block in &mut scratch.blocks {
+        let weight = block.weight;
+        let (mut depth, mut normal, mut color) = (block.nearest, block.normal, block.color);
+        for i in 0..LANES {
+            depth[i] = shared.depth(depth[i]);
+            let [x, y, z] = sum::direction([normal[0][i], normal[1][i], normal[2][i]], weight[i]);
+            (normal[0][i], normal[1][i], normal[2][i]) = (x, y, z);
+            if COLOR {
+                let [r, g, b] = sum::average([color[0][i], color[1][i], color[2][i]], weight[i]);
+                (color[0][i], color[1][i], color[2][i]) = (r, g, b);
             }
         }
+        (block.nearest, block.normal, block.color) = (depth, normal, color);
     }
+}
+
+/// Copies the blocks into the rows of the framebuffer.
+fn store(scratch: &Scratch, tile: &mut FramebufferTile<'_, f32>) {
+    let columns = scratch.columns as usize;
+    for y in 0..(tile.rect.y1 - tile.rect.y0) as usize {
+        let blocks = &scratch.blocks[y / ROW * columns..][..columns];
+        let first = y % ROW * ROW;
+        store_row(blocks, tile.depth.row(y), |block| row(&block.nearest, first));
+        store_row(blocks, tile.id.row(y), |block| row(&block.id, first));
+        store_row(blocks, tile.weight.row(y), |block| row(&block.weight, first));
+        store_row(blocks, tile.normal.row(y), |block| interleaved(&block.normal, first));
+        if let Some(color) = &mut tile.color {
+            store_row(blocks, color.row(y), |block| interleaved(&block.color, first));
+        }
+    }
+}
+
+/// Pixels of a row of a block.
+const ROW: usize = SIDE as usize;
+
+/// Copies one row of pixels, a block at a time; the last may be cut by the edge of the picture.
+#[inline(always)]
+fn store_row<T: Copy>(blocks: &[Block], pixels: &mut [T], row: impl Fn(&Block) -> [T; ROW]) {
+    let (whole, rest) = pixels.as_chunks_mut::<ROW>();
+    for (block, pixels) in blocks.iter().zip(whole.iter_mut()) {
+        *pixels = row(block);
+    }
+    if let Some(block) = blocks.get(whole.len()) {
+        rest.copy_from_slice(&row(block)[..rest.len()]);
+    }
+}
+
+/// The row of a block that starts at a lane.
+#[inline(always)]
+fn row<T: Copy>(lanes: &[T; LANES], first: usize) -> [T; ROW] {
+    std::array::from_fn(|x| lanes[first + x])
+}
+
+/// The row of three components that starts at a lane.
+#[inline(always)]
+fn interleaved(components: &[Lanes; 3], first: usize) -> [[f32; 3]; ROW] {
+    let [a, b, c] = components.each_ref().map(|lanes| row(lanes, first));
+    std::array::from_fn(|x| [a[x], b[x], c[x]])
 }

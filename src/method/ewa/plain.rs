@@ -14,7 +14,7 @@ pub struct Plain<'a, R> {
     surfels: &'a Surfels,
     exec: &'a Exec,
     grid: Grid,
-    prepared: Prepared<R>,
+    prepared: Prepared<R, Splat<R>>,
     /// What has been drawn so far.
     pub target: Framebuffer<R>,
 }
@@ -30,7 +30,16 @@ impl<'a, R: Real> Plain<'a, R> {
         observed: bool,
     ) -> Self {
         let grid = exec.grid(camera.width, camera.height);
-        let prepared = Prepared::new(surfels, camera, settings, exec, &grid, batch::splats);
+        let prepared = Prepared::new(
+            surfels,
+            camera,
+            settings,
+            (exec, &grid),
+            |projector, range, splats| {
+                batch::splats(projector, surfels, range, |splat| splats.push(splat))
+            },
+            |splat: &Splat<R>| splat.bounds,
+        );
         let (empty, color) = (prepared.shared.empty(), surfels.color().is_some());
         let target = Framebuffer::new(camera.width, camera.height, empty, color, observed);
         Self { surfels, exec, grid, prepared, target }
