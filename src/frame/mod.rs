@@ -2,6 +2,7 @@
 
 pub mod named;
 pub mod plane;
+pub mod stencil;
 
 pub use named::{Channel, ChannelData, Frame, NamedPlane, Samples};
 pub use plane::Plane;
