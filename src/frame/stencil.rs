@@ -158,6 +158,9 @@ mod tests {
         (Function::Always, [true, true, true]),
     ];
 
+    /// The new value from the stored one and the reference.
+    type Truth = fn(i32, i32) -> i32;
+
     /// The eight bits of a number, lowest first.
     fn bits(value: i32) -> [bool; 8] {
         std::array::from_fn(|i| value.rem_euclid(256) / (1 << i) % 2 == 1)
@@ -185,7 +188,7 @@ mod tests {
 
     #[test]
     fn every_operation_writes_the_bits_of_the_write_mask() {
-        let operations: [(Operation, fn(i32, i32) -> i32); 8] = [
+        let operations: [(Operation, Truth); 8] = [
             (Operation::Keep, |s, _| s),
             (Operation::Zero, |_, _| 0),
             (Operation::Replace, |_, r| r),
