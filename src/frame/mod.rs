@@ -11,6 +11,7 @@ pub mod named;
 pub mod plane;
 pub mod rect;
 pub mod tile;
+pub mod stencil;
 
 pub use bin::Bins;
 pub use framebuffer::{Framebuffer, FramebufferTile};

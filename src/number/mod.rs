@@ -7,8 +7,10 @@
 //! - [`real`]: the trait and its two implementations.
 //! - [`vector`]: two- and three-component vectors whose order of operations is written out.
 //! - [`elementary`]: the only home of exp, pow, sin ... in the crate.
+//! - [`random`]: random values as functions of a seed and an index.
 
 pub mod elementary;
+pub mod random;
 pub mod real;
 pub mod vector;
 

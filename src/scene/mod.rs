@@ -4,15 +4,18 @@
 //! - [`surfels`]: the checked structure of arrays that every method takes.
 //! - [`camera`]: perspective and orthographic cameras.
 //! - [`light`]: lights and the Phong material.
+//! - [`procedural`]: shapes whose true picture is known.
 
 pub mod camera;
 pub mod cloud;
 pub mod light;
+pub mod procedural;
 pub mod surfels;
 
 pub use camera::{Camera, Lens, Pose, Projection};
 pub use cloud::Cloud;
 pub use light::{Light, Phong};
+pub use procedural::Shape;
 pub use surfels::{Dropped, Surfels};
 
 /// A picture to be made: surfels, what lights them, and what lies behind them.
