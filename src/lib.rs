@@ -2,7 +2,9 @@
 
 pub mod error;
 pub mod frame;
+pub mod io;
 pub mod number;
 pub mod scene;
+pub mod verify;
 
 pub use error::{Error, Result};
