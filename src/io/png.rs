@@ -27,7 +27,9 @@ pub fn write(path: &Path, color: &Plane<[f32; 3]>, alpha: Option<&Plane<f32>>) -
         )));
     }
     if alpha.is_some_and(|a| (a.width(), a.height()) != (width, height)) {
-        return Err(Error::Invalid(format!("the alpha of a PNG must be {width} x {height} pixels")));
+        return Err(Error::Invalid(format!(
+            "the alpha of a PNG must be {width} x {height} pixels"
+        )));
     }
     let srgb = Srgb::new();
     let (pixels, kind) = match alpha {
@@ -43,11 +45,10 @@ pub fn write(path: &Path, color: &Plane<[f32; 3]>, alpha: Option<&Plane<f32>>) -
         }
     };
     write_atomically(path, |file| {
-        PngEncoder::new(file).write_image(&pixels, width, height, kind).map_err(|error| {
-            match error {
-                ImageError::IoError(error) => error,
-                other => io::Error::other(other),
-            }
+        PngEncoder::new(file).write_image(&pixels, width, height, kind).map_err(|error| match error
+        {
+            ImageError::IoError(error) => error,
+            other => io::Error::other(other),
         })
     })
 }
@@ -110,11 +111,8 @@ mod tests {
         // The decoding formula, the standard's own inverse, leads back to every code.
         for code in 0..=255_u8 {
             let v = f64::from(code) / 255.0;
-            let linear = if v <= 0.04045 {
-                v / 12.92
-            } else {
-                elementary::pow((v + 0.055) / 1.055, 2.4)
-            };
+            let linear =
+                if v <= 0.04045 { v / 12.92 } else { elementary::pow((v + 0.055) / 1.055, 2.4) };
             assert_eq!(srgb.encode(linear as f32), code);
         }
     }

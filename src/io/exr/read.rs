@@ -70,13 +70,16 @@ fn open(path: &Path) -> Result<(File, u64)> {
     };
     let (file, length, magic) = start().map_err(|source| Error::io(path, source))?;
     if magic != exr::meta::magic_number::BYTES {
-        return Err(Error::format(path, "byte 0: not an EXR file; give one that starts 76 2f 31 01"));
+        return Err(Error::format(
+            path,
+            "byte 0: not an EXR file; give one that starts 76 2f 31 01",
+        ));
     }
     Ok((file, length))
 }
 
 /// Runs a decoder; its panic, of which there is none known, becomes a reason instead of a message.
-fn guarded<T>(decode: impl FnOnce() -> Reason<T>) -> Reason<T> {
+pub(super) fn guarded<T>(decode: impl FnOnce() -> Reason<T>) -> Reason<T> {
     thread_local!(static SILENT: Cell<bool> = const { Cell::new(false) });
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -90,7 +93,8 @@ fn guarded<T>(decode: impl FnOnce() -> Reason<T>) -> Reason<T> {
     SILENT.set(true);
     let result = panic::catch_unwind(AssertUnwindSafe(decode));
     SILENT.set(false);
-    result.unwrap_or_else(|_| Err("damaged in a way the decoder gives up on; write it again".into()))
+    result
+        .unwrap_or_else(|_| Err("damaged in a way the decoder gives up on; write it again".into()))
 }
 
 /// The header, if a file of `length` bytes can hold what it promises.
@@ -191,7 +195,7 @@ fn reason(place: &str, error: exr::error::Error) -> String {
 }
 
 /// A whole file.
-fn decode(bytes: &[u8]) -> Reason<Image> {
+pub(super) fn decode(bytes: &[u8]) -> Reason<Image> {
     let mut rest = bytes;
     let meta = metadata(&mut rest, bytes.len() as u64)?;
     let Header { width, height, text, .. } = summary(&meta);
