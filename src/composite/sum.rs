@@ -14,7 +14,8 @@ pub fn add<R: Real>(sum: [R; 3], weight: R, value: [R; 3]) -> [R; 3] {
 #[inline(always)]
 pub fn average<R: Real>(sum: [R; 3], weight: R) -> [R; 3] {
     if weight > R::ZERO {
-        [sum[0] / weight, sum[1] / weight, sum[2] / weight]
+        // Adding 0 turns a -0, of an underflow, into +0.
+        [sum[0] / weight + R::ZERO, sum[1] / weight + R::ZERO, sum[2] / weight + R::ZERO]
     } else {
         [R::ZERO; 3]
     }
@@ -28,5 +29,5 @@ pub fn average<R: Real>(sum: [R; 3], weight: R) -> [R; 3] {
 pub fn direction<R: Real>(sum: [R; 3], weight: R) -> [R; 3] {
     let [x, y, z] = average(sum, weight);
     let n = Vector3::new(x, y, z).normalized();
-    [n.x, n.y, n.z]
+    [n.x + R::ZERO, n.y + R::ZERO, n.z + R::ZERO]
 }

@@ -2,6 +2,7 @@
 //!
 //! - [`plane`], [`rect`], [`named`]: pixels, rectangles of them, and the names they have in files.
 //! - [`framebuffer`]: depth, stencil and floating accumulation.
+//! - [`stencil`]: the 8-bit stencil of GPU APIs.
 //! - [`bin`]: from screen bounds to tiles.
 //! - [`tile`]: tiles and the one parallel loop of the crate.
 
@@ -10,14 +11,15 @@ pub mod framebuffer;
 pub mod named;
 pub mod plane;
 pub mod rect;
-pub mod tile;
 pub mod stencil;
+pub mod tile;
 
 pub use bin::Bins;
 pub use framebuffer::{Framebuffer, FramebufferTile};
 pub use named::{Channel, ChannelData, Frame, NamedPlane, Samples};
 pub use plane::Plane;
 pub use rect::Rect;
+pub use stencil::Stencil;
 pub use tile::{Exec, Grid, TileMut};
 
 /// The id of a pixel that no surfel covers.

@@ -21,8 +21,11 @@
 
 pub mod explain;
 pub mod fast;
+mod picture;
 pub mod plain;
 mod prepare;
+
+pub use picture::{Picture, render, render_f32};
 
 use crate::error::{Error, Result};
 use crate::scene::Surfels;

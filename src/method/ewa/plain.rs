@@ -3,6 +3,7 @@
 use super::Settings;
 use super::prepare::Prepared;
 use crate::composite::{epsilon, sum};
+use crate::frame::stencil::{Outcome, Stencil};
 use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, Rect};
 use crate::number::{Real, Vector2};
 use crate::scene::{Camera, Surfels};
@@ -91,7 +92,7 @@ impl<'a, R: Real> Plain<'a, R> {
                 *total = *total + weight;
                 if let Some(count) = &mut tile.stencil {
                     let count = &mut count.row(y)[x];
-                    *count = count.saturating_add(1);
+                    *count = Stencil::COUNT.update(*count, Outcome::Pass);
                 }
             }
         });

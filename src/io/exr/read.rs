@@ -1,0 +1,317 @@
+//! File to image, trusting nothing.
+
+use super::{ATTRIBUTE, ChannelType, Header, Image, Values};
+use crate::{Error, Result};
+use exr::block::UncompressedBlock;
+use exr::block::chunk::{
+    Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates,
+};
+use exr::meta::attribute::{AttributeValue, SampleType, Text as ExrText};
+use exr::meta::header::Header as PartHeader;
+use exr::meta::{BlockDescription, MetaData};
+use exr::prelude::{Compression, Vec2, f16};
+use std::cell::Cell;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek};
+use std::panic::{self, AssertUnwindSafe};
+use std::path::Path;
+use std::sync::Once;
+
+/// Deflate gives at most 1032 bytes for one, PXR24 drops one byte in four before it: 1376.
+const MOST_EXPANSION: u64 = 1376;
+/// A block has an entry of 8 bytes in the table of offsets, and its place and size in 8 more.
+const LEAST_BLOCK: u64 = 16;
+
+/// A reason, without the file's name.
+type Reason<T> = std::result::Result<T, String>;
+
+/// Reads every channel of the flat EXR file at `path`, whoever wrote it.
+///
+/// Scan lines or tiles, of which only the full resolution is read; compressed in any way but DWA and
+/// HTJ2K; one part or several. A channel of a file with several parts is called `part.channel`.
+/// `HALF` values are widened exactly (a signalling NaN becomes quiet); all other bits are kept.
+///
+/// Memory beside the file's own bytes: the planes, at most 1376 bytes (twice that for `HALF`) for a
+/// byte of the file, the most that any compression of the format can hold.
+///
+/// # Errors
+/// [`Error::Io`] if the file cannot be read. [`Error::Format`] if it is not an EXR, is damaged,
+/// promises more than its bytes can hold, or is of a kind that has no planes to compare: deep data,
+/// subsampled channels, a data window that is not the display window, parts of different sizes, two
+/// channels of one name.
+pub fn read(path: &Path) -> Result<Image> {
+    let (mut file, length) = open(path)?;
+    let mut bytes = Vec::new();
+    // Bounded by the length taken once: the budget holds even if the file grows meanwhile.
+    let all = (&mut file).take(length).read_to_end(&mut bytes);
+    all.map_err(|source| Error::io(path, source))?;
+    guarded(|| decode(&bytes)).map_err(|what| Error::format(path, what))
+}
+
+/// Reads what the header of the EXR file at `path` promises, and no pixel.
+///
+/// # Errors
+/// As [`read()`], as far as the header tells.
+pub fn read_header(path: &Path) -> Result<Header> {
+    let (file, length) = open(path)?;
+    guarded(|| Ok(summary(&metadata(BufReader::new(file), length)?)))
+        .map_err(|what| Error::format(path, what))
+}
+
+/// The file at its start, known to begin as an EXR does, and its length.
+fn open(path: &Path) -> Result<(File, u64)> {
+    let start = || -> std::io::Result<(File, u64, [u8; 4])> {
+        let mut file = File::open(path)?;
+        let length = file.metadata()?.len();
+        let mut magic = [0; 4];
+        let all = file.read(&mut magic)? == magic.len();
+        file.rewind()?;
+        Ok((file, length, if all { magic } else { [0; 4] }))
+    };
+    let (file, length, magic) = start().map_err(|source| Error::io(path, source))?;
+    if magic != exr::meta::magic_number::BYTES {
+        return Err(Error::format(
+            path,
+            "byte 0: not an EXR file; give one that starts 76 2f 31 01",
+        ));
+    }
+    Ok((file, length))
+}
+
+/// Runs a decoder; its panic, of which there is none known, becomes a reason instead of a message.
+pub(super) fn guarded<T>(decode: impl FnOnce() -> Reason<T>) -> Reason<T> {
+    thread_local!(static SILENT: Cell<bool> = const { Cell::new(false) });
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        let loud = panic::take_hook();
+        panic::set_hook(Box::new(move |what| {
+            if !SILENT.get() {
+                loud(what);
+            }
+        }));
+    });
+    SILENT.set(true);
+    let result = panic::catch_unwind(AssertUnwindSafe(decode));
+    SILENT.set(false);
+    result
+        .unwrap_or_else(|_| Err("damaged in a way the decoder gives up on; write it again".into()))
+}
+
+/// The header, if a file of `length` bytes can hold what it promises.
+fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
+    let meta = MetaData::read_from_buffered(read, true).map_err(|e| reason("header", e))?;
+    MetaData::validate(&meta.headers, true).map_err(|e| reason("header", e))?;
+    let mut blocks: u64 = 0;
+    let mut needed: u64 = 0;
+    for header in &meta.headers {
+        let Vec2(width, height) = header.layer_size;
+        let (data, display) = (header.data_window(), header.shared_attributes.display_window);
+        if data != display || header.layer_size != meta.headers[0].layer_size {
+            return Err(format!(
+                "header: a data window of {width} x {height} pixels at ({}, {}) is not the display \
+                 window or not that of the first part; save the whole picture",
+                data.position.x(),
+                data.position.y()
+            ));
+        }
+        let pixels = (width as u64).saturating_mul(height as u64);
+        let bytes = pixels.saturating_mul(header.channels.bytes_per_pixel as u64);
+        let expansion = match header.compression {
+            Compression::Uncompressed => 1,
+            _ => MOST_EXPANSION,
+        };
+        needed = needed.saturating_add(bytes.div_ceil(expansion));
+        blocks = blocks.saturating_add(header.chunk_count as u64);
+    }
+    if needed > length || blocks.saturating_mul(LEAST_BLOCK) > length {
+        let Vec2(width, height) = meta.headers[0].layer_size;
+        return Err(format!(
+            "header: promises {width} x {height} pixels in {blocks} blocks, more than a file of \
+             {length} bytes can hold; write it again"
+        ));
+    }
+    let names = summary(&meta).channels;
+    match names.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+        Some(pair) => Err(format!("header: two channels are called `{}`; rename one", pair[0].0)),
+        None => Ok(meta),
+    }
+}
+
+/// The part of a checked header that this crate speaks of.
+fn summary(meta: &MetaData) -> Header {
+    let mut channels = Vec::new();
+    for part in &meta.headers {
+        channels.extend(part.channels.list.iter().map(|channel| {
+            let kind = match channel.sample_type {
+                SampleType::F16 => ChannelType::Half,
+                SampleType::F32 => ChannelType::Float,
+                SampleType::U32 => ChannelType::Uint,
+            };
+            (full_name(meta, part, &channel.name), kind)
+        }));
+    }
+    channels.sort_by(|a, b| a.0.cmp(&b.0));
+    let first = &meta.headers[0];
+    Header {
+        // Less than 2^30 each: the exr crate has checked the windows.
+        width: first.layer_size.width() as u32,
+        height: first.layer_size.height() as u32,
+        channels,
+        compressions: meta.headers.iter().map(|part| part.compression.to_string()).collect(),
+        text: text(first),
+    }
+}
+
+/// The attribute of this crate.
+fn text(part: &PartHeader) -> Option<String> {
+    match part.own_attributes.other.get(&ExrText::from_slice_unchecked(ATTRIBUTE.as_bytes()))? {
+        AttributeValue::Text(text) => Some(utf8(text)),
+        _ => None,
+    }
+}
+
+/// `channel`, or `part.channel` in a file of several parts.
+fn full_name(meta: &MetaData, part: &PartHeader, channel: &ExrText) -> String {
+    match &part.own_attributes.layer_name {
+        Some(name) if meta.headers.len() > 1 => format!("{}.{}", utf8(name), utf8(channel)),
+        _ => utf8(channel),
+    }
+}
+
+/// A text of a file, which may hold any bytes.
+fn utf8(text: &ExrText) -> String {
+    String::from_utf8_lossy(text.as_slice()).into_owned()
+}
+
+/// An error of the exr crate as where, what, and what to do.
+fn reason(place: &str, error: exr::error::Error) -> String {
+    match error {
+        exr::error::Error::NotSupported(what) => {
+            format!("{place}: {what}; save it as a flat EXR with ZIP compression")
+        }
+        exr::error::Error::Invalid(what) => format!("{place}: {what}; write the file again"),
+        other => format!("{place}: {other}"),
+    }
+}
+
+/// A whole file.
+pub(super) fn decode(bytes: &[u8]) -> Reason<Image> {
+    let mut rest = bytes;
+    let meta = metadata(&mut rest, bytes.len() as u64)?;
+    let Header { width, height, text, .. } = summary(&meta);
+    let mut channels = Vec::new();
+    for (part, header) in meta.headers.iter().enumerate() {
+        let mut planes = empty_planes(header);
+        for (index, tile) in header.blocks_increasing_y_order().enumerate() {
+            let place = || format!("part {part}, block {index}");
+            let offset = take(&mut rest).ok_or_else(|| ends_early(&place()))?;
+            if tile.location.level_index == Vec2(0, 0) {
+                let chunk = chunk(bytes, u64::from_le_bytes(offset), &meta, part, tile.location)
+                    .map_err(|what| format!("{}: {what}", place()))?;
+                let block = UncompressedBlock::decompress_chunk(chunk, &meta, true)
+                    .map_err(|error| reason(&place(), error))?;
+                fill(&mut planes, header, &block);
+            }
+        }
+        let names = header.channels.list.iter().map(|c| full_name(&meta, header, &c.name));
+        channels.extend(names.zip(planes));
+    }
+    channels.sort_by(|a, b| a.0.cmp(&b.0));
+    Ok(Image { width, height, channels, text })
+}
+
+/// The planes of a part, all 0.
+fn empty_planes(header: &PartHeader) -> Vec<Values> {
+    let pixels = header.layer_size.area();
+    let plane = |sample_type| match sample_type {
+        SampleType::U32 => Values::Index(vec![0; pixels]),
+        SampleType::F16 | SampleType::F32 => Values::Float(vec![0.0; pixels]),
+    };
+    header.channels.list.iter().map(|channel| plane(channel.sample_type)).collect()
+}
+
+/// The compressed block that the table of offsets places at byte `offset`, if it is the expected one.
+///
+/// Read here and not by the exr crate, whose reader allocates what a block claims to be, loses its
+/// place after a small gap between blocks, and takes a block twice.
+fn chunk(
+    bytes: &[u8],
+    offset: u64,
+    meta: &MetaData,
+    part: usize,
+    expected: TileCoordinates,
+) -> Reason<Chunk> {
+    let early = || ends_early(&format!("byte {offset}"));
+    let mut rest = usize::try_from(offset).ok().and_then(|o| bytes.get(o..)).ok_or_else(early)?;
+    let mut number = || take(&mut rest).map(i32::from_le_bytes).ok_or_else(early);
+    let header = &meta.headers[part];
+    let Vec2(column, row) = expected.tile_index;
+    let mut place = Vec::new();
+    if meta.requirements.has_multiple_layers {
+        place.push(part as i64);
+    }
+    match header.blocks {
+        BlockDescription::ScanLines => {
+            let line = header.compression.scan_lines_per_block() * row;
+            place.push(i64::from(header.own_attributes.layer_position.y()) + line as i64);
+        }
+        BlockDescription::Tiles(_) => place.extend([column as i64, row as i64, 0, 0]),
+    }
+    for expected in place {
+        let found = number()?;
+        if i64::from(found) != expected {
+            return Err(format!(
+                "byte {offset}: another block, {found} where {expected} belongs; write the file again"
+            ));
+        }
+    }
+    let size = usize::try_from(number()?).map_err(|_| early())?;
+    let compressed_pixels_le = rest.get(..size).ok_or_else(early)?.to_vec();
+    let compressed_block = match header.blocks {
+        BlockDescription::ScanLines => CompressedBlock::ScanLine(CompressedScanLineBlock {
+            y_coordinate: header.own_attributes.layer_position.y()
+                + (header.compression.scan_lines_per_block() * row) as i32,
+            compressed_pixels_le,
+        }),
+        BlockDescription::Tiles(_) => CompressedBlock::Tile(CompressedTileBlock {
+            coordinates: expected,
+            compressed_pixels_le,
+        }),
+    };
+    Ok(Chunk { layer_index: part, compressed_block })
+}
+
+/// The next `N` bytes.
+fn take<const N: usize>(rest: &mut &[u8]) -> Option<[u8; N]> {
+    let (first, after) = rest.split_first_chunk()?;
+    *rest = after;
+    Some(*first)
+}
+
+/// A file that was cut.
+fn ends_early(place: &str) -> String {
+    format!("{place}: the file ends too early; write it again")
+}
+
+/// Copies a block to its place in the planes.
+fn fill(planes: &mut [Values], header: &PartHeader, block: &UncompressedBlock) {
+    for line in block.lines(&header.channels) {
+        let place = line.location;
+        let first = place.position.y() * header.layer_size.width() + place.position.x();
+        let pixels = first..first + place.sample_count;
+        match &mut planes[place.channel] {
+            Values::Index(values) => {
+                let line = line.value.as_chunks().0.iter().map(|&b| u32::from_ne_bytes(b));
+                values[pixels].iter_mut().zip(line).for_each(|(to, v)| *to = v);
+            }
+            Values::Float(values) if line.value.len() == 2 * place.sample_count => {
+                let line = line.value.as_chunks().0.iter().map(|&b| f16::from_ne_bytes(b).to_f32());
+                values[pixels].iter_mut().zip(line).for_each(|(to, v)| *to = v);
+            }
+            Values::Float(values) => {
+                let line = line.value.as_chunks().0.iter().map(|&b| f32::from_ne_bytes(b));
+                values[pixels].iter_mut().zip(line).for_each(|(to, v)| *to = v);
+            }
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Frame to file.
+
+use super::ATTRIBUTE;
+use crate::frame::{Channel, ChannelData, Frame};
+use crate::io::replace::write_atomically;
+use crate::{Error, Result};
+use exr::block::lines::LineRefMut;
+use exr::block::writer::ChunksWriter;
+use exr::block::{self, UncompressedBlock};
+use exr::error::UnitResult;
+use exr::meta::attribute::{
+    AttributeValue, ChannelDescription, LineOrder, SampleType, Text as ExrText,
+};
+use exr::meta::header::{Header, LayerAttributes};
+use exr::meta::{BlockDescription, Headers, MetaData};
+use exr::prelude::Compression;
+use std::io::{self, Seek, Write};
+use std::path::Path;
+
+/// A reader without the long-names flag takes 31 bytes; the exr crate never sets it for channels.
+const LONGEST_NAME: usize = 31;
+
+/// Writes all channels of `frame` and `text`, the attribute [`ATTRIBUTE`], to the file at `path`.
+///
+/// One part of scan lines, ZIP-compressed 16 lines at a time, lossless: [`ChannelData::Float`] as
+/// `FLOAT`, [`ChannelData::Index`] and [`ChannelData::Count`] as `UINT`. The bytes of the file are a
+/// function of `frame` and `text`. The planes are not copied: beside them stands one block of 16
+/// lines at a time, raw and compressed.
+///
+/// # Errors
+/// [`Error::Invalid`] if the frame has no channel, no pixel, a plane of another size, or a channel
+/// name that is empty, longer than 31 bytes or given twice; [`Error::Io`] if the file cannot be
+/// written, and then nothing is left of it.
+pub fn write(path: &Path, frame: &Frame<f32>, text: &str) -> Result<()> {
+    let channels = frame.channels();
+    check(frame, &channels)?;
+    let headers: Headers = std::iter::once(header(frame, &channels, text)).collect();
+    MetaData::validate(&headers, true).map_err(|e| Error::Invalid(format!("no EXR: {e}")))?;
+    write_atomically(path, |file| {
+        encode(file, headers, &channels).map_err(|error| match error {
+            exr::error::Error::Io(error) => error,
+            other => io::Error::other(other.to_string()),
+        })
+    })
+}
+
+/// What the exr crate would panic at, or write although other readers refuse it.
+fn check(frame: &Frame<f32>, channels: &[Channel<'_>]) -> Result<()> {
+    let (width, height) = (frame.width, frame.height);
+    if width == 0 || height == 0 || channels.is_empty() {
+        let count = channels.len();
+        return Err(Error::Invalid(format!(
+            "no EXR holds {width} x {height} pixels in {count} channels: render at least one of each"
+        )));
+    }
+    for Channel { name, data } in channels {
+        if name.is_empty() || name.len() > LONGEST_NAME {
+            return Err(Error::Invalid(format!(
+                "channel `{name}`: an EXR channel name has 1 to {LONGEST_NAME} bytes"
+            )));
+        }
+        let (len, stride) = match data {
+            ChannelData::Float { values, stride, .. } => (values.len(), *stride),
+            ChannelData::Index(values) => (values.len(), 1),
+            ChannelData::Count(values) => (values.len(), 1),
+        };
+        if len != width as usize * height as usize * stride {
+            return Err(Error::Invalid(format!(
+                "channel `{name}`: its plane has not the {width} x {height} pixels of the frame"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The header of the one part.
+fn header(frame: &Frame<f32>, channels: &[Channel<'_>], text: &str) -> Header {
+    let described = channels.iter().map(|channel| {
+        let sample_type = match channel.data {
+            ChannelData::Float { .. } => SampleType::F32,
+            ChannelData::Index(_) | ChannelData::Count(_) => SampleType::U32,
+        };
+        ChannelDescription::named(bytes(&channel.name), sample_type)
+    });
+    let size = (frame.width as usize, frame.height as usize);
+    // One custom attribute: the exr crate keeps them in a HashMap, whose order would be random.
+    let attributes = LayerAttributes {
+        other: std::iter::once((bytes(ATTRIBUTE), AttributeValue::Text(bytes(text)))).collect(),
+        ..LayerAttributes::default()
+    };
+    Header::new(bytes(""), size, described.collect())
+        .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
+        .with_attributes(attributes)
+}
+
+/// A text as its UTF-8 bytes, which is what EXR means by text since version 3.
+fn bytes(text: &str) -> ExrText {
+    ExrText::from_slice_unchecked(text.as_bytes())
+}
+
+/// Header and blocks, in the order of the lines.
+fn encode(
+    write: &mut (impl Write + Seek),
+    headers: Headers,
+    channels: &[Channel<'_>],
+) -> UnitResult {
+    block::write(write, headers, true, |meta, chunks| {
+        let list = &meta.headers[0].channels;
+        let mut compressor = chunks.sequential_blocks_compressor(&meta);
+        for (index, place) in meta.enumerate_ordered_header_block_indices() {
+            let block = UncompressedBlock::from_lines(list, place, |line| fill(line, channels));
+            compressor.compress_block(index, block)?;
+        }
+        Ok(())
+    })
+}
+
+/// One line of one channel, as bytes of this machine's order; the exr crate turns them if need be.
+fn fill(line: LineRefMut<'_>, channels: &[Channel<'_>]) {
+    let place = line.location;
+    // The blocks are as wide as the picture: the line starts at x = 0.
+    let first = place.position.y() * place.sample_count;
+    let bytes = line.value.as_chunks_mut::<4>().0;
+    match channels[place.channel].data {
+        ChannelData::Float { values, stride, offset } => {
+            let line = values[stride * first + offset..].iter().step_by(stride);
+            bytes.iter_mut().zip(line).for_each(|(to, value)| *to = value.to_ne_bytes());
+        }
+        ChannelData::Index(values) => {
+            bytes.iter_mut().zip(&values[first..]).for_each(|(to, v)| *to = v.to_ne_bytes());
+        }
+        ChannelData::Count(values) => {
+            let line = values[first..].iter().map(|&v| u32::from(v));
+            bytes.iter_mut().zip(line).for_each(|(to, v)| *to = v.to_ne_bytes());
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! From attributes to light: deferred shading, pixel by pixel.
+//!
+//! - [`phong`]: the Phong reflection model.
+
+pub mod phong;

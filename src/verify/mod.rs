@@ -1,0 +1,7 @@
+//! Whether a picture is right: comparison plane by plane, and the usual distances.
+//!
+//! - [`compare`]: equal bit for bit, or where and by how much not.
+//! - [`metrics`]: RMSE, PSNR and SSIM of planes.
+
+pub mod compare;
+pub mod metrics;
