@@ -2,6 +2,7 @@
 
 pub mod error;
 pub mod frame;
+pub mod io;
 pub mod number;
 pub mod scene;
 
