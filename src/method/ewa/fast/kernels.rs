@@ -180,12 +180,12 @@ fn attributes<const RAY_CAST: bool, const COLOR: bool>(
                     continue;
                 };
                 add(&mut block.weight, &weight, 1.0);
-                for c in 0..3 {
-                    add(&mut block.normal[c], &weight, normal[c]);
+                for (sum, value) in block.normal.iter_mut().zip(normal) {
+                    add(sum, &weight, value);
                 }
                 if COLOR {
-                    for c in 0..3 {
-                        add(&mut block.color[c], &weight, color[c]);
+                    for (sum, value) in block.color.iter_mut().zip(color) {
+                        add(sum, &weight, value);
                     }
                 }
             }

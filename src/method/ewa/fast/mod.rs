@@ -89,7 +89,10 @@ pub fn render(
     let wall = start.elapsed();
     let sums = times.iter().fold([Duration::ZERO; 3], |a, b| [0, 1, 2].map(|i| a[i] + b[i]));
     let total: Duration = sums.iter().sum();
-    let share = |part: Duration| wall.mul_f64(part.as_secs_f64() / total.as_secs_f64().max(1e-9));
+    let share = |part: Duration| match total.as_secs_f64() {
+        0.0 => Duration::ZERO,
+        total => wall.mul_f64(part.as_secs_f64() / total),
+    };
     let timings = Timings {
         project,
         visibility: share(sums[0]),
