@@ -1,6 +1,6 @@
 //! Bounds of a disc that reaches the near plane: its projection is no ellipse.
 
-use super::project::Placed;
+use super::shape::Placed;
 use super::{Disc, View};
 use crate::number::{Real, Vector2, Vector3};
 

@@ -15,8 +15,10 @@
 
 pub mod batch;
 pub mod bounds;
-pub mod crossing;
+mod crossing;
+pub mod frustum;
 pub mod project;
+mod shape;
 pub mod view;
 
 pub use batch::Tally;

@@ -32,14 +32,21 @@ use crate::scene::Surfels;
 use crate::splat::Kernel;
 
 /// What is computed; everything here may change the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Reconstruction kernel and low-pass filter.
     pub kernel: Kernel,
     /// Depth of the band that belongs to the visible surface.
     pub epsilon: Epsilon,
-    /// Whether surfels seen from behind are dropped.
+    /// Whether surfels seen from behind are dropped. On by default: at the silhouette of a closed
+    /// surface, discs of its far side stick out.
     pub cull: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { kernel: Kernel::DEFAULT, epsilon: Epsilon::default(), cull: true }
+    }
 }
 
 /// A depth, in one of two units.
