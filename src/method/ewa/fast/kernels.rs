@@ -108,7 +108,7 @@ fn columns<const RAY_CAST: bool>(
 }
 
 /// Columns of blocks from which on the rows of a splat are cut to its ellipse.
-const WIDE: u32 = 4;
+const WIDE: u32 = 6;
 
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn visibility<const RAY_CAST: bool>(scratch: &mut Scratch, shared: &Shared<f32>) {
