@@ -64,7 +64,7 @@ pub fn atan2(y: f64, x: f64) -> f64 {
 
 /// The polynomial of degree 10 with the least greatest relative error from e^r, 2.1e-16, for
 /// |r| <= ln(2)/2: coefficients of 1, r, r^2 ... by the Remez exchange in 40 digits, rounded.
-const EXP: [f64; 11] = [
+pub const EXP: [f64; 11] = [
     1.0,
     f64::from_bits(0x3FF0_0000_0000_001D),
     f64::from_bits(0x3FDF_FFFF_FFFF_FE17),
@@ -78,15 +78,17 @@ const EXP: [f64; 11] = [
     f64::from_bits(0x3E92_727A_87DC_A817),
 ];
 
-/// ln 2 in two parts: the first has 32 significant bits, so that n times it is exact.
-const LN2_HIGH: f64 = f64::from_bits(0x3FE6_2E42_FEE0_0000);
-const LN2_LOW: f64 = f64::from_bits(0x3DEA_39EF_3579_3C76);
+/// The upper part of ln 2, of 32 significant bits, so that n times it is exact.
+pub const LN2_HIGH: f64 = f64::from_bits(0x3FE6_2E42_FEE0_0000);
+/// The rest of ln 2.
+pub const LN2_LOW: f64 = f64::from_bits(0x3DEA_39EF_3579_3C76);
 /// 1.5 * 2^52: adding it rounds to an integer, which the low bits of the sum then hold.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// e^x for `f32`, correctly rounded; branch-free, so that a loop over it vectorizes.
 ///
-/// In f64: n = x log2(e) rounded to an integer, ties to even; r = (x - n `LN2_HIGH`) - n `LN2_LOW`;
+/// In f64: n = x log2(e) rounded to an integer, ties to even (by adding and subtracting 1.5 2^52);
+/// r = (x - n [`LN2_HIGH`]) - n [`LN2_LOW`];
 /// the polynomial [`EXP`] in r, by Estrin's scheme as written (a third of the latency of
 /// Horner's rule); times 2^n; rounded to `f32` once. Below -104 the result is 0, above 89 +inf; NaN
 /// stays NaN.

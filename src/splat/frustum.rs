@@ -47,7 +47,7 @@ impl<R: Real> Frustum<R> {
     }
 
     /// Whether a sphere about a point p of view space, at depth t, reaches into the view; the
-    /// condition of [`super::project`], fate `Outside`.
+    /// condition of [`mod@super::project`], fate `Outside`.
     #[inline(always)]
     pub fn touches(&self, p: Vector3<R>, t: R, radius: R) -> bool {
         let t = if self.perspective { t } else { R::ONE };

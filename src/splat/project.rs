@@ -28,7 +28,41 @@
 //! of the low-pass filter, outside the disc, has no meaningful intersection; its nearness is clamped
 //! to that of the depths [t - half, t + half], the nearer not nearer than the near plane.
 //!
-//! **Outline.** See [`Projector::affine`], [`Projector::perspective`], [`Projector::ray_cast`].
+//! **Outline.** `Affine`, the projection linearized at the centre \[ZPvBG01\]: V = V0 + h I,
+//!
+//! ```text
+//!   det = (area area + h (xx + yy)) + h h      xx' = xx + h      yy' = yy + h
+//!   ux = sqrt(yy' / det)    uy = -((xy / yy') ux)    vy = 1 / sqrt(yy')
+//!   amplitude = area / sqrt(det)
+//! ```
+//!
+//! The amplitude is that of \[ZPvBG01\] up to the constant that normalization removes. Bounds:
+//! k sqrt(xx') and k sqrt(yy') about the centre, see [`super::bounds`].
+//!
+//! `Perspective`, the exact ellipse of the projected disc \[ZRB+04\], then the low-pass filter.
+//! `Decided:` \[ZRB+04\] gives the outline as a conic; here its centre and covariance follow from V0
+//! by a rank-one update, without cancellation. With rest = ((t - half)/t) ((t + half)/t) and
+//! factor = (k k) / rest, before the formulas of `Affine`:
+//!
+//! ```text
+//!   centre += factor tilt        w0 = m / rest       area := (area / rest) / sqrt(rest)
+//!   xx := (xx + factor (tilt.x tilt.x)) / rest       and so for xy, yy
+//! ```
+//!
+//! A disc with t - half <= near has no ellipse and is drawn `Affine`. Under an orthographic camera
+//! the affine outline is exact.
+//!
+//! `RayCast`, the disc itself with the low-pass filter beside it \[BHZK05\]: the form of V0 alone,
+//! times w0 w0 under a perspective camera (scale = w0, else 1), is the squared distance from the
+//! centre in the disc's plane, in standard deviations, once divided by w w:
+//!
+//! ```text
+//!   ux = (scale sqrt(yy)) / area     uy = -((xy / yy) ux)     vy = scale / sqrt(yy)
+//!   amplitude = 1, or 0 if area is 0
+//! ```
+//!
+//! Bounds: those of the exact outline and of the filter's circle of radius k sqrt(h), both; a disc
+//! that reaches the near plane has those of its visible part.
 //!
 //! **Fate.** In this order: a surfel whose centre is not farther than the near plane is `Behind`;
 //! one whose amplitude is below 2^-96, whose gradient of nearness exceeds 2^96 a pixel, or of which
@@ -45,7 +79,7 @@
 //! beside the camera the ellipse of a disc that is out of sight, linearized at its centre, would
 //! reach across the picture. A disc that is partly in sight is drawn.)
 //!
-//! Source: [ZPvBG01, sections 3 and 4]; `Departs:` the determinant is a sum of terms >= 0, where
+//! Source: \[ZPvBG01, sections 3 and 4\]; `Departs:` the determinant is a sum of terms >= 0, where
 //! the textbook xx yy - xy xy cancels.
 
 use super::frustum::Frustum;
@@ -148,34 +182,13 @@ impl<R: Real> Projector<R> {
         (footprint, bounds, placed.g > R::ZERO, fate)
     }
 
-    /// The projection linearized at the centre [ZPvBG01]: V = V0 + h I,
-    ///
-    /// ```text
-    ///   det = (area area + h (xx + yy)) + h h      amplitude = area / sqrt(det)
-    ///   ux = sqrt(yy' / det)    uy = -((xy / yy') ux)    vy = 1 / sqrt(yy')    yy' = yy + h
-    /// ```
-    ///
-    /// The amplitude is that of [ZPvBG01] up to the constant that normalization removes. Rect:
-    /// k sqrt(xx') and k sqrt(yy') about the centre.
+    /// The projection linearized at the centre.
     #[inline(always)]
     fn affine(&self, placed: &Placed<R>, shape: &Shape<R>) -> (Footprint<R>, Rect) {
         self.gaussian(placed, shape, placed.center, self.view.nearness(placed.t))
     }
 
-    /// The exact ellipse of the projected disc [ZRB+04], convolved with the low-pass filter.
-    ///
-    /// `Decided:` [ZRB+04] gives the outline as a conic; here its centre and covariance follow from
-    /// V0 by a rank-one update, without cancellation. With b = (half/t)^2,
-    /// 1 - b = ((t - half)/t) ((t + half)/t):
-    ///
-    /// ```text
-    ///   centre += (k k / (1 - b)) tilt                 w0 = m / (1 - b)
-    ///   V0 := (V0 + (k k / (1 - b)) tilt tilt^T) / (1 - b)
-    ///   area := (area / (1 - b)) / sqrt(1 - b)
-    /// ```
-    ///
-    /// then as [`Projector::affine`]. A disc with t - half <= near has no ellipse and is drawn
-    /// affine. Under an orthographic camera the affine outline is exact.
+    /// The exact ellipse of the projected disc, convolved with the low-pass filter.
     fn perspective(&self, placed: &Placed<R>, shape: &Shape<R>) -> (Footprint<R>, Rect) {
         if !self.view.perspective || !(placed.t - shape.half > self.view.near) {
             return self.affine(placed, shape);
@@ -184,7 +197,7 @@ impl<R: Real> Projector<R> {
         self.gaussian(placed, &shape, center, placed.m / rest)
     }
 
-    /// The covariance and the centre of the exact outline, and 1 - b; see [`Self::perspective`].
+    /// The covariance and the centre of the exact outline, and `rest`.
     fn outline(&self, placed: &Placed<R>, shape: &Shape<R>) -> (Shape<R>, Vector2<R>, R) {
         let Shape { half, tilt, .. } = *shape;
         let t = placed.t;
@@ -201,12 +214,7 @@ impl<R: Real> Projector<R> {
         (exact, Vector2::new(c.x + factor * tilt.x, c.y + factor * tilt.y), rest)
     }
 
-    /// The disc by ray casting, the low-pass filter beside it [BHZK05].
-    ///
-    /// f is the form of V0 alone (h = 0), times w0 w0 under a perspective camera: f/(w w) is then
-    /// exactly the squared distance from the centre in the disc's plane, in standard deviations. The
-    /// amplitude is 1. Bounds: those of the exact outline and of the filter's circle of radius
-    /// k sqrt(h), both; a disc that reaches the near plane has those of its visible part.
+    /// The disc by ray casting, the low-pass filter beside it.
     fn ray_cast(
         &self,
         placed: &Placed<R>,

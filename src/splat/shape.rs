@@ -1,4 +1,4 @@
-//! Placing and shape: the first two steps of [`super::project`].
+//! Placing and shape: the first two steps of [`mod@super::project`].
 
 use super::Projector;
 use crate::number::{Real, Vector2, Vector3};

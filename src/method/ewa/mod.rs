@@ -1,8 +1,8 @@
 //! EWA surface splatting in two geometry passes and a normalization.
 //!
-//! The passes of [GBP04, section 3] (after [GP03]) and of the 2+1-pass method of [ZP06, section 3.1]:
+//! The passes of \[GBP04, section 3\] (after \[GP03\]) and of the 2+1-pass method of \[ZP06, section 3.1\]:
 //!
-//! 1. **Projection.** Each surfel becomes a [`Splat`] (see [`crate::splat::project`]).
+//! 1. **Projection.** Each surfel becomes a [`Splat`] (see [`mod@crate::splat::project`]).
 //! 2. **Visibility splatting.** Each pixel keeps the greatest nearness of all fragments that are
 //!    inside (q <= k^2), and the surfel it came from. Ties: the lower surfel index.
 //! 3. **Attribute splatting.** Each fragment that is inside and whose depth passes the epsilon-z
