@@ -232,8 +232,7 @@ impl<R: Real> Projector<R> {
 
         let reaches = view.perspective && !(placed.t - shape.half > view.near);
         let (low, high) = if reaches {
-            let basis = crossing::basis(view, placed, disc);
-            crossing::corners(view, placed.p, basis)
+            crossing::corners(view, placed, disc)
         } else {
             let (exact, center) = if view.perspective {
                 let (exact, center, _) = self.outline(placed, shape);
@@ -293,8 +292,7 @@ impl<R: Real> Projector<R> {
     ) -> Footprint<R> {
         let view = &self.view;
         let Placed { n, t, m, g, .. } = *placed;
-        let near = t - shape.half;
-        let near = if view.perspective { near.at_least(view.near) } else { near };
+        let near = (t - shape.half).at_least(view.near);
         Footprint {
             center,
             ux: R::ZERO,
