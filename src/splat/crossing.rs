@@ -59,7 +59,7 @@ pub(super) fn corners<R: Real>(
             include(*point, depth);
         }
     }
-    let rounding = (disc.radius * R::from_f32(1.0 / 1_048_576.0)) / near;
+    let rounding = (disc.reach() * R::from_f32(1.0 / 1_048_576.0)) / near;
     let wider = R::from_f32(0.001);
     let mx = ((high.x - low.x) * wider + view.fx * rounding) + R::ONE;
     let my = ((high.y - low.y) * wider + view.fy * rounding) + R::ONE;

@@ -68,8 +68,9 @@
 //! one whose amplitude is below 2^-96, whose gradient of nearness exceeds 2^96 a pixel, or of which
 //! any number is not finite is `Degenerate` (seen edge-on, or astronomically large or small); with
 //! culling, one with g >= 0 is `BackFacing`; one that cannot be seen is `Outside`: no pixel of the
-//! picture is in its bounds, or the sphere of its radius r about p lies beyond a side of the view by
-//! more than the reach of the low-pass filter, k sqrt(h) px. For the left side that is
+//! picture is in its bounds, or the sphere about p that holds it, of radius r or, for an ellipse,
+//! sqrt(k U . k U + k V . k V), lies beyond a side of the view by more than the reach of the low-pass
+//! filter, k sqrt(h) px. For the left side that is
 //!
 //! ```text
 //!   fx p.x + cx t < -(r sqrt(fx fx + cx cx) + (k sqrt(h)) t)      orthographic: t = 1, and fx r
@@ -117,6 +118,17 @@ pub struct Disc<R> {
     pub tangents: Option<[Vector3<R>; 2]>,
 }
 
+impl<R: Real> Disc<R> {
+    /// The radius of a sphere that holds it: r, or sqrt(U . U + V . V) of an ellipse, whose half axes
+    /// need not be perpendicular.
+    pub(super) fn reach(&self) -> R {
+        match self.tangents {
+            None => self.radius,
+            Some([u, v]) => (u.dot(u) + v.dot(v)).sqrt(),
+        }
+    }
+}
+
 /// All that the projection of a picture's surfels shares.
 #[derive(Clone, Copy, Debug)]
 pub struct Projector<R> {
@@ -147,7 +159,7 @@ pub fn project<R: Real>(projector: &Projector<R>, disc: &Disc<R>, surfel: u32) -
         Outline::Perspective => projector.perspective(&placed, &shape),
         Outline::RayCast => projector.ray_cast(&placed, &shape, disc),
     };
-    let fate = projector.fate(&placed, disc.radius, &footprint, &bounds);
+    let fate = projector.fate(&placed, disc.reach(), &footprint, &bounds);
     let back = placed.g > R::ZERO;
     (Splat { footprint, bounds, surfel, back }, fate)
 }
