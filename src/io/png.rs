@@ -2,7 +2,7 @@
 
 use crate::frame::Plane;
 use crate::io::replace::write_atomically;
-use crate::number::elementary;
+use crate::io::srgb;
 use crate::{Error, Result};
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
@@ -59,16 +59,9 @@ fn quantize(value: f64) -> u8 {
     (255.0 * value + 0.5) as u8
 }
 
-/// The 8-bit code of a linear value: IEC 61966-2-1 in f64, then [`quantize`].
-///
-/// 12.92 x up to 0.0031308, 1.055 x^(1/2.4) - 0.055 above.
+/// The 8-bit code of a linear value.
 fn exact(linear: f32) -> u8 {
-    let x = f64::from(linear);
-    quantize(if x <= 0.003_130_8 {
-        12.92 * x
-    } else {
-        1.055 * elementary::pow(x, 1.0 / 2.4) - 0.055
-    })
+    quantize(srgb::from_linear(f64::from(linear)))
 }
 
 /// The function [`exact`] as the smallest `f32` of each code but 0.
@@ -100,6 +93,7 @@ impl Srgb {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::elementary;
 
     #[test]
     fn codes_are_those_of_the_standard() {

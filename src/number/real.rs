@@ -115,7 +115,7 @@ impl Real for f32 {
         if self.is_nan() || other.is_nan() {
             return Self::INFINITY;
         }
-        ordered_f32(self).abs_diff(ordered_f32(other)) as f32
+        ordered_f32(self).abs_diff(ordered_f32(other)) as Self
     }
 }
 

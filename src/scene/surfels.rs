@@ -25,7 +25,7 @@ pub struct Surfels {
 pub struct Dropped {
     /// A position that is NaN or infinite.
     pub position: u64,
-    /// A normal that is not finite or whose length is 0.
+    /// A normal that is not finite or shorter than 2^-80.
     pub normal: u64,
     /// A radius that is not finite or not > 0.
     pub radius: u64,
@@ -200,7 +200,8 @@ fn check_lengths(
 fn unit(normal: &mut Vec3) -> bool {
     let n = normal.as_dvec3();
     let length = n.length();
-    if !(length > 0.0 && length.is_finite()) {
+    // 2^-80: what is shorter is the rounding error of a sum that cancelled.
+    if !(length >= 1.0 / 1_208_925_819_614_629_174_706_176.0 && length.is_finite()) {
         return false;
     }
     if (length - 1.0).abs() > 1.0 / 1_048_576.0 {

@@ -1,0 +1,118 @@
+//! What the fast path works with: records of splats, and the blocks of a tile.
+
+use super::super::plain::facing;
+use super::super::prepare::Prepared;
+use crate::frame::{NO_ID, Rect};
+use crate::splat::{Footprint, Splat};
+use glam::Vec3;
+
+/// Side of a block in pixels.
+pub(super) const SIDE: u32 = 4;
+/// Pixels of a row of a block.
+pub(super) const ROW: usize = SIDE as usize;
+/// Pixels of a block.
+pub(super) const LANES: usize = (SIDE * SIDE) as usize;
+
+/// One number for each pixel of a block, row by row.
+pub(super) type Lanes = [f32; LANES];
+
+/// The pixels of a block.
+#[derive(Clone)]
+#[repr(align(64))]
+pub(super) struct Block {
+    /// Nearness of the nearest fragment.
+    pub(super) nearest: Lanes,
+    /// Its surfel.
+    pub(super) id: [u32; LANES],
+    /// The least nearness that passes the epsilon-z test.
+    pub(super) least: Lanes,
+    pub(super) weight: Lanes,
+    pub(super) normal: [Lanes; 3],
+    pub(super) color: [Lanes; 3],
+}
+
+/// A splat with its attributes: 80 bytes, so that a tile finds all it needs in one place.
+#[derive(Clone, Copy)]
+pub(super) struct Record {
+    pub(super) footprint: Footprint<f32>,
+    pub(super) surfel: u32,
+    /// First and last column, first and last row.
+    pub(super) bounds: [u16; 4],
+    /// The normal of the side that is seen.
+    pub(super) normal: [f32; 3],
+    pub(super) color: [f32; 3],
+}
+
+impl Record {
+    #[inline(always)]
+    pub(super) fn new(splat: &Splat<f32>, normals: &[Vec3], colors: Option<&[Vec3]>) -> Self {
+        let Rect { x0, y0, x1, y1 } = splat.bounds;
+        let i = splat.surfel as usize;
+        Self {
+            footprint: splat.footprint,
+            surfel: splat.surfel,
+            // Pictures have at most 65,536 pixels a side, so the last pixel fits.
+            bounds: [x0, x1 - 1, y0, y1 - 1].map(|pixel| pixel as u16),
+            normal: facing(normals[i].to_array(), splat.back),
+            color: colors.map_or([0.0; 3], |c| c[i].to_array()),
+        }
+    }
+
+    pub(super) fn bounds(&self) -> Rect {
+        let [x0, x1, y0, y1] = self.bounds.map(u32::from);
+        Rect { x0, y0, x1: x1 + 1, y1: y1 + 1 }
+    }
+
+    /// The blocks of a tile that it may touch: columns and rows, the ends exclusive.
+    #[inline(always)]
+    pub(super) fn blocks(&self, tile: &Rect) -> Rect {
+        let inside = self.bounds().intersection(tile);
+        if inside.is_empty() {
+            return Rect::default();
+        }
+        Rect {
+            x0: (inside.x0 - tile.x0) / SIDE,
+            y0: (inside.y0 - tile.y0) / SIDE,
+            x1: (inside.x1 - tile.x0).div_ceil(SIDE),
+            y1: (inside.y1 - tile.y0).div_ceil(SIDE),
+        }
+    }
+}
+
+/// What one tile works with.
+pub(super) struct Scratch {
+    pub(super) splats: Vec<Record>,
+    pub(super) blocks: Vec<Block>,
+    /// The pixels of the tile.
+    pub(super) rect: Rect,
+    /// Blocks in a row.
+    pub(super) columns: u32,
+    /// Whether the scene has colours.
+    pub(super) color: bool,
+}
+
+impl Scratch {
+    /// The splats of a tile, and its empty blocks; no blocks if there are no splats.
+    pub(super) fn gather(
+        prepared: &Prepared<f32, Record>,
+        index: usize,
+        rect: Rect,
+        color: bool,
+    ) -> Self {
+        let mut splats = Vec::with_capacity(prepared.count(index));
+        prepared.for_each(index, |record| splats.push(*record));
+        let columns = (rect.x1 - rect.x0).div_ceil(SIDE);
+        let rows = (rect.y1 - rect.y0).div_ceil(SIDE);
+        let count = if splats.is_empty() { 0 } else { columns * rows };
+        let zero = [0.0; LANES];
+        let empty = Block {
+            nearest: [prepared.shared.empty(); LANES],
+            id: [NO_ID; LANES],
+            least: zero,
+            weight: zero,
+            normal: [zero; 3],
+            color: [zero; 3],
+        };
+        Self { splats, blocks: vec![empty; count as usize], rect, columns, color }
+    }
+}

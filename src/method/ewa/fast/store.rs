@@ -1,0 +1,58 @@
+//! From the blocks of a tile to the rows of the framebuffer.
+
+use super::scratch::{Block, LANES, Lanes, ROW, Scratch};
+use crate::frame::{FramebufferTile, NO_ID};
+
+/// Writes a tile without splats.
+pub(super) fn clear(tile: &mut FramebufferTile<'_, f32>) {
+    for y in 0..(tile.rect.y1 - tile.rect.y0) as usize {
+        tile.depth.row(y).fill(f32::INFINITY);
+        tile.id.row(y).fill(NO_ID);
+        tile.weight.row(y).fill(0.0);
+        tile.normal.row(y).fill([0.0; 3]);
+        if let Some(color) = &mut tile.color {
+            color.row(y).fill([0.0; 3]);
+        }
+    }
+}
+
+/// Copies the blocks into the rows of the framebuffer.
+pub(super) fn store(scratch: &Scratch, tile: &mut FramebufferTile<'_, f32>) {
+    let columns = scratch.columns as usize;
+    for y in 0..(tile.rect.y1 - tile.rect.y0) as usize {
+        let blocks = &scratch.blocks[y / ROW * columns..][..columns];
+        let first = y % ROW * ROW;
+        store_row(blocks, tile.depth.row(y), |block| row(&block.nearest, first));
+        store_row(blocks, tile.id.row(y), |block| row(&block.id, first));
+        store_row(blocks, tile.weight.row(y), |block| row(&block.weight, first));
+        store_row(blocks, tile.normal.row(y), |block| interleaved(&block.normal, first));
+        if let Some(color) = &mut tile.color {
+            store_row(blocks, color.row(y), |block| interleaved(&block.color, first));
+        }
+    }
+}
+
+/// Copies one row of pixels, a block at a time; the last may be cut by the edge of the picture.
+#[inline(always)]
+fn store_row<T: Copy>(blocks: &[Block], pixels: &mut [T], row: impl Fn(&Block) -> [T; ROW]) {
+    let (whole, rest) = pixels.as_chunks_mut::<ROW>();
+    for (block, pixels) in blocks.iter().zip(whole.iter_mut()) {
+        *pixels = row(block);
+    }
+    if let Some(block) = blocks.get(whole.len()) {
+        rest.copy_from_slice(&row(block)[..rest.len()]);
+    }
+}
+
+/// The row of a block that starts at a lane.
+#[inline(always)]
+fn row<T: Copy>(lanes: &[T; LANES], first: usize) -> [T; ROW] {
+    std::array::from_fn(|x| lanes[first + x])
+}
+
+/// The row of three components that starts at a lane.
+#[inline(always)]
+fn interleaved(components: &[Lanes; 3], first: usize) -> [[f32; 3]; ROW] {
+    let [a, b, c] = components.each_ref().map(|lanes| row(lanes, first));
+    std::array::from_fn(|x| [a[x], b[x], c[x]])
+}
