@@ -44,6 +44,12 @@ impl<'a> Oracle<'a> {
         Self { scene, optics, epsilon, splats, step, guard }
     }
 
+    /// How many surfels are drawn or outside the picture; none if that is in doubt.
+    pub(crate) fn drawn(&self) -> Option<u64> {
+        let doubt = self.splats.iter().any(|s| s.doubtful);
+        (!doubt).then_some(self.splats.len() as u64)
+    }
+
     /// The pixel at a column and row.
     pub(crate) fn pixel(&self, x: u32, y: u32) -> Pixel {
         let (px, py) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
@@ -191,14 +197,5 @@ impl<'a> Oracle<'a> {
             }
         }
         color
-    }
-}
-impl Oracle<'_> {
-    pub(crate) fn debug(&self, x: f64, y: f64) {
-        for s in &self.splats {
-            if let Some(f) = s.fragment(&self.optics, x, y) {
-                println!("{} q {} t {} w {} tc {} half {} dq {:e} dt {:e} back {} {}", s.index, f.value.q, f.value.t, f.value.weight, s.figure.t, s.figure.half, f.spread.q, f.spread.t, s.back, s.doubtful);
-            }
-        }
     }
 }
