@@ -38,7 +38,8 @@ fn unclean<R: Real>(frame: &Frame<R>) -> Option<&str> {
     let negative_zero = (-0.0_f64).to_bits();
     let bad = |v: &u64| *v == negative_zero || f64::from_bits(*v).is_nan();
     let floats = |s: &Samples<R>| !matches!(s, Samples::Index(_) | Samples::Count(_));
-    let plane = frame.planes.iter().find(|p| floats(&p.samples) && bits(&p.samples).iter().any(bad));
+    let plane =
+        frame.planes.iter().find(|p| floats(&p.samples) && bits(&p.samples).iter().any(bad));
     plane.map(|p| p.name.as_str())
 }
 
@@ -94,9 +95,10 @@ fn threads_and_tiles_leave_no_trace() {
         .into_iter()
         .flat_map(|threads| [8, 16, 32, 64].map(|tile| Exec::new(threads, tile).expect("in range")))
         .collect();
-    for (number, kind) in [Kind::Discs, Kind::Sizes, Kind::Degenerate, Kind::Shape(1), Kind::Tilted, Kind::Layers]
-        .into_iter()
-        .enumerate()
+    for (number, kind) in
+        [Kind::Discs, Kind::Sizes, Kind::Degenerate, Kind::Shape(1), Kind::Tilted, Kind::Layers]
+            .into_iter()
+            .enumerate()
     {
         let kernel = Kernel { outline: OUTLINES[number % 3], ..Kernel::DEFAULT };
         let settings = Settings { kernel, ..Settings::default() };

@@ -72,17 +72,14 @@ impl Eye {
 
     /// The magnitudes that a view-space point is the sum of.
     fn magnitude(&self, v: V3) -> V3 {
-        self.rows.map(|m| (m[0] * v[0]).abs() + (m[1] * v[1]).abs() + (m[2] * v[2]).abs() + m[3].abs())
+        self.rows
+            .map(|m| (m[0] * v[0]).abs() + (m[1] * v[1]).abs() + (m[2] * v[2]).abs() + m[3].abs())
     }
 
     /// Origin and direction of the ray through a point of the picture; the parameter is depth.
     pub(crate) fn ray(&self, x: f64, y: f64) -> (V3, V3) {
         let (u, v) = ((x - self.cx) / self.fx, (self.cy - y) / self.fy);
-        if self.perspective {
-            ([0.0; 3], [u, v, -1.0])
-        } else {
-            ([u, v, 0.0], [0.0, 0.0, -1.0])
-        }
+        if self.perspective { ([0.0; 3], [u, v, -1.0]) } else { ([u, v, 0.0], [0.0, 0.0, -1.0]) }
     }
 
     /// The picture of a point.
@@ -216,7 +213,8 @@ impl Figure {
             facing: dot(body.n, ray),
         };
         let exact = optics.outline == Outline::Perspective && eye.perspective;
-        let area = if exact && t - half > eye.near { figure.dual(optics) } else { figure.affine(optics) };
+        let area =
+            if exact && t - half > eye.near { figure.dual(optics) } else { figure.affine(optics) };
         figure.covariance[0] += optics.h;
         figure.covariance[2] += optics.h;
         let [xx, xy, yy] = figure.covariance;
@@ -237,7 +235,8 @@ impl Figure {
             [[eye.fx, 0.0, 0.0], [0.0, -eye.fy, 0.0]]
         };
         let [u, v] = self.axes.map(|axis| jacobian.map(|row| dot(row, axis) / optics.k));
-        self.covariance = [u[0] * u[0] + v[0] * v[0], u[0] * u[1] + v[0] * v[1], u[1] * u[1] + v[1] * v[1]];
+        self.covariance =
+            [u[0] * u[0] + v[0] * v[0], u[0] * u[1] + v[0] * v[1], u[1] * u[1] + v[1] * v[1]];
         (u[0] * v[1] - u[1] * v[0]).abs()
     }
 
@@ -345,7 +344,8 @@ impl Splat {
         let nearest = figure.t - figure.half - eye.near;
         let grazing = exact && nearest.abs() <= guard * spread(|f| f.t - f.half);
         let leaving = (figure.t - eye.near).abs() <= reach && figure.t != eye.near;
-        if figure.facing == 0.0 || figure.t == eye.near || (cull && !turning && figure.facing > 0.0) {
+        if figure.facing == 0.0 || figure.t == eye.near || (cull && !turning && figure.facing > 0.0)
+        {
             return None;
         }
         // 2^-96 on purpose: below, the definition calls it degenerate.

@@ -35,7 +35,12 @@ pub(crate) struct Oracle<'a> {
 
 impl<'a> Oracle<'a> {
     /// `step`: the relative rounding error that conditions are measured for.
-    pub(crate) fn new(scene: &'a Scene, camera: &Camera, settings: &Settings, [step, guard]: [f64; 2]) -> Self {
+    pub(crate) fn new(
+        scene: &'a Scene,
+        camera: &Camera,
+        settings: &Settings,
+        [step, guard]: [f64; 2],
+    ) -> Self {
         let optics = Optics::new(camera, settings);
         let splats = (0..scene.surfels.len())
             .filter_map(|i| Splat::new(&optics, &scene.surfels, i, settings.cull, [step, guard]))
@@ -65,9 +70,14 @@ impl<'a> Oracle<'a> {
         };
         let inside: Vec<_> = all.iter().filter(|(_, f)| f.value.q <= limit).collect();
         let first = inside.iter().map(|(_, f)| f.value.t).fold(f64::INFINITY, f64::min);
-        let slack = |f: &Fragment| self.guard * (f.spread.t + self.step * (f.value.t.abs() + self.epsilon.min(1e30)));
-        let first_slack =
-            inside.iter().filter(|(_, f)| f.value.t == first).map(|(_, f)| slack(f)).fold(0.0, f64::max);
+        let slack = |f: &Fragment| {
+            self.guard * (f.spread.t + self.step * (f.value.t.abs() + self.epsilon.min(1e30)))
+        };
+        let first_slack = inside
+            .iter()
+            .filter(|(_, f)| f.value.t == first)
+            .map(|(_, f)| slack(f))
+            .fold(0.0, f64::max);
         let close = |f: &Fragment, to: f64| f.value.t - to <= slack(f) + first_slack;
         let mut ambiguous = all.iter().any(|(s, f)| {
             let near_limit = f.value.q - limit <= self.guard * (f.spread.q + self.step * limit);
@@ -79,9 +89,13 @@ impl<'a> Oracle<'a> {
             let beyond = f.value.t - (first + self.epsilon);
             f.value.t != first && beyond.abs() <= slack(f) + first_slack
         });
-        let seen: Vec<_> = inside.iter().filter(|(_, f)| f.value.t <= first + self.epsilon).collect();
-        let depth_condition =
-            inside.iter().filter(|(_, f)| close(f, first)).map(|(_, f)| f.spread.t).fold(0.0, f64::max);
+        let seen: Vec<_> =
+            inside.iter().filter(|(_, f)| f.value.t <= first + self.epsilon).collect();
+        let depth_condition = inside
+            .iter()
+            .filter(|(_, f)| close(f, first))
+            .map(|(_, f)| f.spread.t)
+            .fold(0.0, f64::max);
         let mut entries = Vec::new();
         if !seen.is_empty() {
             self.sum(&seen, &mut entries);
@@ -105,9 +119,9 @@ impl<'a> Oracle<'a> {
         let mut normal = Entry { plane: "attributes.normal", ..weight };
         let mut color = Entry { plane: "attributes", ..weight };
         let add = |sum: &mut Entry, value: V3, f: &Fragment| {
-            for i in 0..3 {
-                sum.value[i] += f.value.weight * value[i];
-                sum.condition[i] += (f.spread.weight + self.step * f.value.weight) * value[i].abs();
+            for (i, v) in value.into_iter().enumerate() {
+                sum.value[i] += f.value.weight * v;
+                sum.condition[i] += (f.spread.weight + self.step * f.value.weight) * v.abs();
             }
         };
         for (splat, f) in seen.iter().map(|pair| **pair) {
@@ -179,9 +193,13 @@ impl<'a> Oracle<'a> {
         let mut color = scaled(surface, phong.ambient.into());
         for light in &self.scene.lights {
             let (l, light_color) = match *light {
-                Light::Directional { towards, color } => (unit(eye.direction(wide(towards))), color),
+                Light::Directional { towards, color } => {
+                    (unit(eye.direction(wide(towards))), color)
+                }
                 Light::Headlight { towards, color } => (unit(wide(towards)), color),
-                Light::Point { position, color } => (unit(sub(eye.point(wide(position)), p)), color),
+                Light::Point { position, color } => {
+                    (unit(sub(eye.point(wide(position)), p)), color)
+                }
             };
             let incident = dot(n, l);
             if incident <= 0.0 {

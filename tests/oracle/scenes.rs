@@ -18,12 +18,19 @@ pub(crate) struct Case {
     pub(crate) exact: bool,
 }
 
+impl std::fmt::Debug for Case {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} at {}x{}", self.name, self.camera.width, self.camera.height)
+    }
+}
+
 /// Random numbers: a 64-bit congruential generator, upper bits.
 pub(crate) struct Dice(pub(crate) u64);
 
 impl Dice {
     fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         self.0 >> 33
     }
 
@@ -138,7 +145,8 @@ impl Kind {
             Self::Axes | Self::Ellipses => (around, dice.axis(), radius),
             Self::Sizes => {
                 let radius = [1e-12, 1e-6, 1e-3, 0.01, 0.1, 1.0, 30.0, 1000.0][dice.below(8)];
-                let normal = if radius > 10.0 { dice.direction() + Vec3::Z * 2.0 } else { dice.direction() };
+                let normal =
+                    if radius > 10.0 { dice.direction() + Vec3::Z * 2.0 } else { dice.direction() };
                 (around, normal.normalize(), radius)
             }
             Self::Layers => {
@@ -234,10 +242,14 @@ pub(crate) fn all() -> Vec<Case> {
     let mut cases = Vec::new();
     for (o, outline) in OUTLINES.into_iter().enumerate() {
         for number in 0..24 {
-            let [ortho, cull, kernel, band] = [number % 2, number / 2 % 2, number / 4 % 2, number / 8];
-            let epsilon = [Epsilon::World(0.0), Epsilon::MedianRadii(1.0), Epsilon::World(f32::INFINITY)][band];
+            let [ortho, cull, kernel, band] =
+                [number % 2, number / 2 % 2, number / 4 % 2, number / 8];
+            let epsilon =
+                [Epsilon::World(0.0), Epsilon::MedianRadii(1.0), Epsilon::World(f32::INFINITY)]
+                    [band];
             let kernel = [Kernel::DEFAULT, Kernel::ZPVBG01][kernel];
-            let settings = Settings { kernel: Kernel { outline, ..kernel }, epsilon, cull: cull == 1 };
+            let settings =
+                Settings { kernel: Kernel { outline, ..kernel }, epsilon, cull: cull == 1 };
             for turn in 0..4 {
                 let kind = KINDS[(number * 5 + o + turn * 3) % KINDS.len()];
                 if kind.flat() && band == 0 {

@@ -58,7 +58,11 @@ fn check<R: Real>(frame: &Frame<R>, truth: &Pixel, i: usize, place: &str) {
     }
     for name in ["visibility.id", "id"] {
         if let Some(id) = index(frame, name, i) {
-            assert!(truth.nearest.contains(&id), "{place}: {name} {id}, not of {:?}", truth.nearest);
+            assert!(
+                truth.nearest.contains(&id),
+                "{place}: {name} {id}, not of {:?}",
+                truth.nearest
+            );
         }
     }
     if let Some(count) = frame.plane("attributes.count") {
@@ -83,12 +87,12 @@ fn measure<R: Real>(
         let Some(samples) = frame.plane(entry.plane) else { continue };
         planes += 1;
         let value = at(samples, i);
-        for c in 0..3 {
-            let error = (value[c] - entry.value[c]).abs();
+        for (c, found) in value.into_iter().enumerate() {
+            let error = (found - entry.value[c]).abs();
             let unit = entry.condition[c] * arithmetic.step().1;
             let deviation = if error == 0.0 { 0.0 } else { error / unit };
             measured.add(entry.plane, arithmetic, deviation, || {
-                format!("{place}: {} for {} (unit {unit:e})", value[c], entry.value[c])
+                format!("{place}: {found} for {} (unit {unit:e})", entry.value[c])
             });
         }
     }
@@ -144,14 +148,25 @@ fn every_stage_equals_the_oracle() {
         let narrow = [plain, fast];
         let left = compare(case, Arithmetic::F32, &narrow, &mut measured) as f64 / pixels;
         worst[0] = worst[0].max(left);
-        assert!(left <= 0.005, "f32: {} % of the pixels are ambiguous in {}", left * 100.0, case.name);
+        assert!(
+            left <= 0.005,
+            "f32: {} % of the pixels are ambiguous in {}",
+            left * 100.0,
+            case.name
+        );
         let left = compare(case, wide, &[truth], &mut measured) as f64;
         let slot = if case.exact { 1 } else { 2 };
         worst[slot] = worst[slot].max(left);
         let most = if case.exact { 4.0 } else { 0.005 * pixels };
         assert!(left <= most, "f64: {left} pixels are ambiguous in {}", case.name);
     }
-    println!("{} scenes; most ambiguous: f32 {:.4}, f64 {} px, rounded {} px", cases.len(), worst[0], worst[1], worst[2]);
+    println!(
+        "{} scenes; most ambiguous: f32 {:.4}, f64 {} px, rounded {} px",
+        cases.len(),
+        worst[0],
+        worst[1],
+        worst[2]
+    );
     for (key, (worst, place)) in &measured.0 {
         println!("{key:?}: {worst:.3} {place}");
     }

@@ -53,7 +53,12 @@ pub(crate) const TABLE: &[Row] = &[
     row("visibility.Z", F64Rounded, 1.0, "half the range of depth takes the normal for a unit"),
     row("attributes.weight", F32, 4.0, "sqrt and quotients of the conic, exp, one rounding a term"),
     row("attributes.weight", F64, 4.0, "as in f32; the oracle's determinant cancels as much"),
-    row("attributes.weight", F64Rounded, 0.5, "area takes the normal for a unit, the covariance not"),
+    row(
+        "attributes.weight",
+        F64Rounded,
+        0.5,
+        "area takes the normal for a unit, the covariance not",
+    ),
     row("attributes.normal", F32, 4.0, "a product more than the weight"),
     row("attributes.normal", F64, 4.0, "as in f32"),
     row("attributes.normal", F64Rounded, 0.5, "as the weight"),
@@ -82,7 +87,13 @@ pub(crate) const TABLE: &[Row] = &[
 pub(crate) struct Measured(pub(crate) BTreeMap<(&'static str, Arithmetic), (f64, String)>);
 
 impl Measured {
-    pub(crate) fn add(&mut self, plane: &'static str, arithmetic: Arithmetic, deviation: f64, place: impl FnOnce() -> String) {
+    pub(crate) fn add(
+        &mut self,
+        plane: &'static str,
+        arithmetic: Arithmetic,
+        deviation: f64,
+        place: impl FnOnce() -> String,
+    ) {
         let entry = self.0.entry((plane, arithmetic)).or_insert((0.0, String::new()));
         if !(deviation <= entry.0) {
             *entry = (deviation, place());
