@@ -1,4 +1,109 @@
 //! `splatref`: the ground truth for point-splatting renderers.
+//!
+//! A pure-CPU, tile-parallel software rasterizer that implements published splatting algorithms as
+//! specified, so that the authors of GPU backends can generate golden images, prove their compositing
+//! math, and learn whether their picture is right. The documentation of each stage is normative: an
+//! engineer who has only these pages, in another language, gets the same bits.
+//!
+//! # The contract
+//!
+//! 1. **One formula, several numbers.** The arithmetic of a splat or a fragment is written once,
+//!    generic over [`number::Real`]. `f32` is the executable specification: the bits that a GPU gets
+//!    from the same IEEE operations in the same order. `f64` is the truth of the same problem: every
+//!    input and every constant is an `f32`.
+//! 2. **What may change the picture, how may not.** [`method::ewa::Settings`] says what is computed.
+//!    [`frame::Exec`] (threads, tile size) says how, and cannot change one bit.
+//! 3. **Every pass can be seen.** Each stage leaves named planes that can be kept, written to one EXR
+//!    file, compared, and explained pixel by pixel.
+//!
+//! Bits are a function of (scene, camera, settings, number type) alone: not of threads, tile size,
+//! build flags or host. Only + - * / sqrt, floor, comparisons and conversions are used; `mul_add`
+//! nowhere; exp, pow, sin ... only from [`number::elementary`]. Sums run in ascending surfel index.
+//! clippy rejects the rest (`clippy.toml`). Whoever links this crate gets scalar glam: its features
+//! `scalar-math` and `libm` are on, because its SIMD changes bits.
+//!
+//! # Conventions
+//!
+//! ```text
+//!            +y up                      0 ───▶ X (pixels)
+//!             │                         │ ┌───┬───┐
+//!             │                         ▼ │0,0│1,0│  pixel (0, 0) is top left,
+//!   camera ●──┼───▶ +x right            Y ├───┼───┤  its centre at (0.5, 0.5)
+//!         ╱                               │0,1│1,1│
+//!     -z ╱  the camera looks along -z     └───┴───┘
+//!
+//!   depth t = -z > 0, linear, world units
+//! ```
+//!
+//! - An empty pixel has depth +inf, weight 0, colour 0, id [`frame::NO_ID`]. No plane ever holds a
+//!   NaN, and -0 is stored as +0.
+//! - Colours are linear RGB, not premultiplied. EXR holds the numbers, PNG previews are sRGB.
+//! - Every tie: the lower surfel index wins. Every threshold states < or <=.
+//!
+//! # The pipeline
+//!
+//! ```text
+//!   io::ply ─▶ Cloud ─▶ scene::derive ─▶ Surfels ──▶ splat::project ─▶ Splat ─▶ frame::Bins
+//!                       Shape::surfels ──┘                                        │
+//!                                                                           tiles │
+//!   io::exr ◀─ Frame ◀─ shade::phong ◀─ normalization ◀─ attributes ◀─ visibility ┘
+//!      │                                └──────────── method::ewa ──────────────┘
+//!      └─▶ verify::compare
+//! ```
+//!
+//! # Glossary
+//!
+//! | term | meaning |
+//! |---|---|
+//! | surfel | a disc or ellipse of the scene: position, normal, radius, attributes |
+//! | splat | a surfel on the screen: its footprint and its bounds |
+//! | footprint | the kernel on the screen: centre, conic, plane of nearness, amplitude |
+//! | conic | the matrix Q of the form q = d^T Q d at an offset d from the centre |
+//! | kernel | the Gaussian of the disc, cut at k standard deviations |
+//! | low-pass filter | the Gaussian of variance h px^2 that the kernel is convolved with |
+//! | fragment | one splat at one pixel |
+//! | nearness | 1/t, or -t under an orthographic camera: larger is nearer |
+//! | visibility pass | finds the nearest fragment of every pixel |
+//! | attribute pass | adds weighted attributes of the visible fragments |
+//! | epsilon-z | the test that a fragment lies within epsilon of the nearest: t <= `t_min` + epsilon |
+//! | normalization | sums divided by the sum of weights |
+//! | plane | one quantity for every pixel |
+//! | tile, bin | a square of pixels that one thread owns; the list of its splats |
+//! | margin | how far a decision was from flipping, in units of the last place |
+//!
+//! Sources: \[ZPvBG01\] Zwicker, Pfister, van Baar, Gross: Surface Splatting, SIGGRAPH 2001. \[GP03\]
+//! Guennebaud, Paulin: Efficient screen space approach for hardware accelerated surfel rendering, VMV
+//! 2003. \[GBP04\] Guennebaud, Barthe, Paulin: Deferred Splatting, Eurographics 2004. \[ZRB+04\]
+//! Zwicker, Räsänen, Botsch, Dachsbacher, Pauly: Perspective Accurate Splatting, Graphics Interface
+//! 2004. \[BHZK05\] Botsch, Hornung, Zwicker, Kobbelt: High-Quality Surface Splatting on Today's GPUs,
+//! PBG 2005. \[ZP06\] Zhang, Pajarola: Single-Pass Point Rendering and Transparent Shading, PBG 2006.
+//! \[WBSS04\] Wang, Bovik, Sheikh, Simoncelli: Image Quality Assessment, IEEE TIP 2004. In the pages of
+//! the modules, `Decided:` marks what a source leaves open, `Departs:` where this crate differs.
+//!
+//! # Example
+//!
+//! ```
+//! use splatref::frame::{Exec, Samples};
+//! use splatref::method::ewa::{self, Settings};
+//! use splatref::scene::{Camera, Light, Phong, Scene, Shape};
+//!
+//! let shape = Shape::Sphere;
+//! let scene = Scene {
+//!     name: "sphere".into(),
+//!     surfels: shape.surfels(5_000, 0)?,
+//!     lights: vec![Light::Headlight { towards: glam::Vec3::Z, color: glam::Vec3::ONE }],
+//!     material: Phong::default(),
+//! };
+//! let camera = Camera::new(64, 64, shape.default_pose(), shape.default_lens())?;
+//! let picture = ewa::render_f32(&scene, &camera, &Settings::default(), &Exec::sequential())?;
+//!
+//! let Some(Samples::Scalar(depth)) = picture.frame.plane("Z") else { unreachable!() };
+//! assert!(depth.at(32, 32).is_finite(), "the sphere is in the middle");
+//! assert!(depth.at(0, 0).is_infinite(), "and not in the corner");
+//! # Ok::<(), splatref::Error>(())
+//! ```
+
+#![warn(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod composite;
 pub mod error;

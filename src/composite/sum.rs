@@ -1,4 +1,4 @@
-//! Weighted accumulation and normalization [ZP06, eq. 1].
+//! Weighted accumulation and normalization \[ZP06, eq. 1\].
 
 use crate::number::{Real, Vector3};
 

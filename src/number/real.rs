@@ -36,7 +36,7 @@ pub trait Real:
     fn to_f32(self) -> f32;
     /// The `f64` nearest to this number; exact for `f32` and `f64`.
     fn to_f64(self) -> f64;
-    /// The integer part of a number in [0, 2^31); 0 for NaN.
+    /// The integer part of a number in [0, 2^22].
     fn to_pixel(self) -> u32;
     /// The square root, correctly rounded.
     fn sqrt(self) -> Self;
@@ -87,8 +87,12 @@ impl Real for f32 {
     }
     #[inline(always)]
     fn to_pixel(self) -> u32 {
-        // Through i32: vector units have no conversion to u32.
-        self as i32 as u32
+        // A float-to-integer conversion that saturates does not vectorize. Adding 2^23 rounds to an
+        // integer, which the mantissa of the sum then holds.
+        let shifted = self + 8_388_608.0;
+        let above = shifted - 8_388_608.0 > self;
+        let shifted = if above { shifted - 1.0 } else { shifted };
+        shifted.to_bits() & 0x007F_FFFF
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -138,8 +142,7 @@ impl Real for f64 {
     }
     #[inline(always)]
     fn to_pixel(self) -> u32 {
-        // Through i32: vector units have no conversion to u32.
-        self as i32 as u32
+        self as u32
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -195,6 +198,19 @@ mod tests {
         assert_eq!((-tiny).ulps_to(tiny), 2.0, "one step to zero from either side");
         assert_eq!(1.0_f32.ulps_to(f32::NAN), f32::INFINITY);
         assert_eq!(1.0_f64.ulps_to(1.0 - f64::EPSILON), 2.0, "the spacing halves below one");
+    }
+
+    #[test]
+    fn a_pixel_is_the_integer_part() {
+        let values = [0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.5, 65_535.5, 65_536.0, 4_194_303.75];
+        for value in values {
+            for near in [value, f32::next_down(value), f32::next_up(value)] {
+                if near >= 0.0 {
+                    assert_eq!(near.to_pixel(), near.trunc() as u32, "{near}");
+                    assert_eq!(f64::from(near).to_pixel(), near.trunc() as u32, "{near}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -33,8 +33,11 @@ pub fn between<R: Real>(view: &View<R>, low: Vector2<R>, high: Vector2<R>) -> Re
     }
 }
 
-/// The first pixel whose centre lies after `position`, at most `count`.
+/// The first pixel whose centre lies after `position`, at most `count`; 0 for NaN.
 #[inline(always)]
 fn first_pixel<R: Real>(position: R, count: R) -> u32 {
-    (position + R::from_f32(0.5)).at_least(R::ZERO).at_most(count).to_pixel()
+    let position = position + R::from_f32(0.5);
+    // A comparison that NaN fails.
+    let position = if position > R::ZERO { position } else { R::ZERO };
+    position.at_most(count).to_pixel()
 }

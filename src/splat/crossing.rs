@@ -1,15 +1,11 @@
 //! Bounds of a disc that reaches the near plane: its projection is no ellipse.
 
-use super::project::Placed;
+use super::shape::Placed;
 use super::{Disc, View};
 use crate::number::{Real, Vector2, Vector3};
 
 /// Two half axes of a disc or ellipse in view space.
-pub(super) fn basis<R: Real>(
-    view: &View<R>,
-    placed: &Placed<R>,
-    disc: &Disc<R>,
-) -> [Vector3<R>; 2] {
+fn basis<R: Real>(view: &View<R>, placed: &Placed<R>, disc: &Disc<R>) -> [Vector3<R>; 2] {
     if let Some(tangents) = disc.tangents {
         return tangents.map(|t| view.direction(t));
     }
@@ -24,41 +20,49 @@ pub(super) fn basis<R: Real>(
     [u * disc.radius, n.cross(u) * disc.radius]
 }
 
-/// The corners of the box around the visible part of the disc p + c u + s v, c c + s s <= 1.
+/// The corners of the box around the visible part of a disc p + c u + s v, c c + s s <= 1.
 ///
 /// The part at t >= near is convex, so its projection ends, in each direction of the screen, either
 /// where the rim's tangent is an axis of the picture or where the rim meets the near plane. All
-/// these points are solutions of A c + B s + C = 0 on the unit circle. The box is widened by 1 px
-/// and a thousandth for rounding; a rim without such points gives an empty box.
+/// these points are solutions of A c + B s + C = 0 on the unit circle.
+///
+/// A point of the rim is exact to a few roundings of the radius, which the near plane magnifies by
+/// f/near; the box is widened by 2^-20 radii there, and by 1 px and a thousandth of its size.
 pub(super) fn corners<R: Real>(
     view: &View<R>,
-    p: Vector3<R>,
-    [u, v]: [Vector3<R>; 2],
+    placed: &Placed<R>,
+    disc: &Disc<R>,
 ) -> (Vector2<R>, Vector2<R>) {
-    // Each a function of (c, s) as [constant, c, s]: x and y on the screen plane, and depth.
+    let (p, near) = (placed.p, view.near);
+    let [u, v] = basis(view, placed, disc);
+    // Each a function of (c, s) as [constant, c, s]: x and y in view space, and depth.
     let x = [p.x, u.x, v.x];
     let y = [p.y, u.y, v.y];
     let t = [-p.z, -u.z, -v.z];
-    let horizon = [t[0] - view.near, t[1], t[2]];
-    let points = [on_circle(tangent(x, t)), on_circle(tangent(y, t)), on_circle(horizon)];
+    let at = |f: [R; 3], point: Vector2<R>| (f[0] + f[1] * point.x) + f[2] * point.y;
 
     let mut low = Vector2::new(R::INFINITY, R::INFINITY);
     let mut high = Vector2::new(-R::INFINITY, -R::INFINITY);
-    // A point of the rim on the near plane may round to just before it.
-    let near = view.near * R::from_f32(0.999);
-    for point in points.iter().flatten().flatten() {
-        let at = |f: [R; 3]| (f[0] + f[1] * point.x) + f[2] * point.y;
-        let depth = at(t);
-        if depth >= near {
-            let sx = view.cx + view.fx * (at(x) / depth);
-            let sy = view.cy - view.fy * (at(y) / depth);
-            low = Vector2::new(low.x.at_most(sx), low.y.at_most(sy));
-            high = Vector2::new(high.x.at_least(sx), high.y.at_least(sy));
+    let mut include = |point: Vector2<R>, depth: R| {
+        let sx = view.cx + view.fx * (at(x, point) / depth);
+        let sy = view.cy - view.fy * (at(y, point) / depth);
+        low = Vector2::new(low.x.at_most(sx), low.y.at_most(sy));
+        high = Vector2::new(high.x.at_least(sx), high.y.at_least(sy));
+    };
+    for point in on_circle([t[0] - near, t[1], t[2]]).iter().flatten() {
+        include(*point, near);
+    }
+    let tangents = [on_circle(tangent(x, t)), on_circle(tangent(y, t))];
+    for point in tangents.iter().flatten().flatten() {
+        let depth = at(t, *point);
+        if depth > near {
+            include(*point, depth);
         }
     }
+    let rounding = (disc.radius * R::from_f32(1.0 / 1_048_576.0)) / near;
     let wider = R::from_f32(0.001);
-    let mx = (high.x - low.x) * wider + R::ONE;
-    let my = (high.y - low.y) * wider + R::ONE;
+    let mx = ((high.x - low.x) * wider + view.fx * rounding) + R::ONE;
+    let my = ((high.y - low.y) * wider + view.fy * rounding) + R::ONE;
     (Vector2::new(low.x - mx, low.y - my), Vector2::new(high.x + mx, high.y + my))
 }
 

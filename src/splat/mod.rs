@@ -10,13 +10,15 @@
 //! one, so that it is affine in the pixel position over a plane and the nearer fragment has the
 //! larger w in both. An empty pixel has the nearness of t = +inf: 0 or -inf.
 //!
-//! This module knows neither tiles nor pictures. Sources: [ZPvBG01] (affine), [ZRB+04]
-//! (perspective), [BHZK05] (ray casting).
+//! This module knows neither tiles nor pictures. Sources: \[ZPvBG01\] (affine), \[ZRB+04\]
+//! (perspective), \[BHZK05\] (ray casting).
 
 pub mod batch;
 pub mod bounds;
-pub mod crossing;
+mod crossing;
+pub mod frustum;
 pub mod project;
+mod shape;
 pub mod view;
 
 pub use batch::Tally;
@@ -31,14 +33,14 @@ use crate::number::{Real, Vector2};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Outline {
     /// The ellipse of the projection linearized at the centre, convolved with the low-pass filter
-    /// [ZPvBG01].
+    /// \[ZPvBG01\].
     #[default]
     Affine,
-    /// The ellipse that is the exact projection of the disc [ZRB+04], then the low-pass filter. A
+    /// The ellipse that is the exact projection of the disc \[ZRB+04\], then the low-pass filter. A
     /// disc that reaches the near plane has no such ellipse and is drawn as `Affine`; it is counted.
     Perspective,
     /// The disc itself, by intersecting each pixel's ray with its plane; the low-pass filter is the
-    /// larger of the two weights [BHZK05].
+    /// larger of the two weights \[BHZK05\].
     RayCast,
 }
 
@@ -57,7 +59,7 @@ pub struct Kernel {
 impl Kernel {
     /// The default: k = 2 (the disc is two standard deviations wide), h = 0.25 px^2.
     pub const DEFAULT: Self = Self { outline: Outline::Affine, cutoff: 2.0, low_pass: 0.25 };
-    /// The choice of [ZPvBG01]: cut at one standard deviation, a low-pass filter of variance 1.
+    /// The choice of \[ZPvBG01\]: cut at one standard deviation, a low-pass filter of variance 1.
     pub const ZPVBG01: Self = Self { outline: Outline::Affine, cutoff: 1.0, low_pass: 1.0 };
 
     /// Whether the numbers are in range.

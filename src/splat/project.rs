@@ -28,16 +28,62 @@
 //! of the low-pass filter, outside the disc, has no meaningful intersection; its nearness is clamped
 //! to that of the depths [t - half, t + half], the nearer not nearer than the near plane.
 //!
-//! **Outline.** See [`Projector::affine`], [`Projector::perspective`], [`Projector::ray_cast`].
+//! **Outline.** `Affine`, the projection linearized at the centre \[ZPvBG01\]: V = V0 + h I,
+//!
+//! ```text
+//!   det = (area area + h (xx + yy)) + h h      xx' = xx + h      yy' = yy + h
+//!   ux = sqrt(yy' / det)    uy = -((xy / yy') ux)    vy = 1 / sqrt(yy')
+//!   amplitude = area / sqrt(det)
+//! ```
+//!
+//! The amplitude is that of \[ZPvBG01\] up to the constant that normalization removes. Bounds:
+//! k sqrt(xx') and k sqrt(yy') about the centre, see [`super::bounds`].
+//!
+//! `Perspective`, the exact ellipse of the projected disc \[ZRB+04\], then the low-pass filter.
+//! `Decided:` \[ZRB+04\] gives the outline as a conic; here its centre and covariance follow from V0
+//! by a rank-one update, without cancellation. With rest = ((t - half)/t) ((t + half)/t) and
+//! factor = (k k) / rest, before the formulas of `Affine`:
+//!
+//! ```text
+//!   centre += factor tilt        w0 = m / rest       area := (area / rest) / sqrt(rest)
+//!   xx := (xx + factor (tilt.x tilt.x)) / rest       and so for xy, yy
+//! ```
+//!
+//! A disc with t - half <= near has no ellipse and is drawn `Affine`. Under an orthographic camera
+//! the affine outline is exact.
+//!
+//! `RayCast`, the disc itself with the low-pass filter beside it \[BHZK05\]: the form of V0 alone,
+//! times w0 w0 under a perspective camera (scale = w0, else 1), is the squared distance from the
+//! centre in the disc's plane, in standard deviations, once divided by w w:
+//!
+//! ```text
+//!   ux = (scale sqrt(yy)) / area     uy = -((xy / yy) ux)     vy = scale / sqrt(yy)
+//!   amplitude = 1, or 0 if area is 0
+//! ```
+//!
+//! Bounds: those of the exact outline and of the filter's circle of radius k sqrt(h), both; a disc
+//! that reaches the near plane has those of its visible part.
 //!
 //! **Fate.** In this order: a surfel whose centre is not farther than the near plane is `Behind`;
 //! one whose amplitude is below 2^-96, whose gradient of nearness exceeds 2^96 a pixel, or of which
 //! any number is not finite is `Degenerate` (seen edge-on, or astronomically large or small); with
-//! culling, one with g >= 0 is `BackFacing`; one without a pixel in the picture is `Outside`.
+//! culling, one with g >= 0 is `BackFacing`; one that cannot be seen is `Outside`: no pixel of the
+//! picture is in its bounds, or the sphere of its radius r about p lies beyond a side of the view by
+//! more than the reach of the low-pass filter, k sqrt(h) px. For the left side that is
 //!
-//! Source: [ZPvBG01, sections 3 and 4]; `Departs:` the determinant is a sum of terms >= 0, where
+//! ```text
+//!   fx p.x + cx t < -(r sqrt(fx fx + cx cx) + (k sqrt(h)) t)      orthographic: t = 1, and fx r
+//! ```
+//!
+//! and so for the others with width - cx and -p.x, cy and -p.y, height - cy and p.y. (`Decided:`
+//! beside the camera the ellipse of a disc that is out of sight, linearized at its centre, would
+//! reach across the picture. A disc that is partly in sight is drawn.)
+//!
+//! Source: \[ZPvBG01, sections 3 and 4\]; `Departs:` the determinant is a sum of terms >= 0, where
 //! the textbook xx yy - xy xy cancels.
 
+use super::frustum::Frustum;
+use super::shape::{Placed, Shape};
 use super::{Footprint, Kernel, Outline, Splat, View, bounds, crossing};
 use crate::frame::Rect;
 use crate::number::{Real, Vector2, Vector3};
@@ -84,34 +130,8 @@ pub struct Projector<R> {
     pub outline: Outline,
     /// Whether surfels seen from behind are dropped.
     pub cull: bool,
-}
-
-/// A surfel in view space, and the Jacobian there.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Placed<R> {
-    /// Centre in view space.
-    pub(super) p: Vector3<R>,
-    /// Normal in view space.
-    pub(super) n: Vector3<R>,
-    /// Depth of the centre.
-    pub(super) t: R,
-    m: R,
-    d: Vector2<R>,
-    sx: R,
-    sy: R,
-    g: R,
-    center: Vector2<R>,
-}
-
-/// The covariance of a disc on the screen, without low-pass filter.
-#[derive(Clone, Copy, Debug)]
-struct Shape<R> {
-    xx: R,
-    xy: R,
-    yy: R,
-    area: R,
-    half: R,
-    tilt: Vector2<R>,
+    /// The sides of the view.
+    frustum: Frustum<R>,
 }
 
 /// Projects one surfel; see the module page. The splat is meaningless unless its fate is `Visible`.
@@ -127,7 +147,7 @@ pub fn project<R: Real>(projector: &Projector<R>, disc: &Disc<R>, surfel: u32) -
         Outline::Perspective => projector.perspective(&placed, &shape),
         Outline::RayCast => projector.ray_cast(&placed, &shape, disc),
     };
-    let fate = projector.fate(&placed, &footprint, &bounds);
+    let fate = projector.fate(&placed, disc.radius, &footprint, &bounds);
     let back = placed.g > R::ZERO;
     (Splat { footprint, bounds, surfel, back }, fate)
 }
@@ -137,6 +157,7 @@ impl<R: Real> Projector<R> {
     #[must_use]
     pub fn new(view: View<R>, kernel: &Kernel, cull: bool) -> Self {
         Self {
+            frustum: Frustum::new(&view, kernel),
             view,
             cutoff: R::from_f32(kernel.cutoff),
             low_pass: R::from_f32(kernel.low_pass),
@@ -157,103 +178,17 @@ impl<R: Real> Projector<R> {
         let placed = self.place(position, normal);
         let shape = self.disc(&placed, radius);
         let (footprint, bounds) = self.affine(&placed, &shape);
-        let fate = self.fate(&placed, &footprint, &bounds);
+        let fate = self.fate(&placed, radius, &footprint, &bounds);
         (footprint, bounds, placed.g > R::ZERO, fate)
     }
 
-    #[inline(always)]
-    pub(super) fn place(&self, position: Vector3<R>, normal: Vector3<R>) -> Placed<R> {
-        let view = &self.view;
-        let p = view.point(position);
-        let n = view.direction(normal);
-        let t = -p.z;
-        let (m, d, at) = if view.perspective {
-            let m = R::ONE / t;
-            let d = Vector2::new(p.x * m, p.y * m);
-            (m, d, d)
-        } else {
-            (R::ONE, Vector2::new(R::ZERO, R::ZERO), Vector2::new(p.x, p.y))
-        };
-        Placed {
-            p,
-            n,
-            t,
-            m,
-            d,
-            sx: view.fx * m,
-            sy: view.fy * m,
-            g: (n.x * d.x + n.y * d.y) - n.z,
-            center: Vector2::new(view.cx + view.fx * at.x, view.cy - view.fy * at.y),
-        }
-    }
-
-    #[inline(always)]
-    fn disc(&self, placed: &Placed<R>, radius: R) -> Shape<R> {
-        let Placed { n, m, d, sx, sy, g, .. } = *placed;
-        let s = radius / self.cutoff;
-        let (rx, ry) = (s * sx, s * sy);
-        let c = Vector3::new(-(d.x * n.y), d.x * n.x - n.z, n.y);
-        let e = Vector3::new(n.z - d.y * n.y, d.y * n.x, -n.x);
-        // The z axis in the disc's plane, times the variance.
-        let z = Vector3::new(-(n.z * n.x), -(n.z * n.y), n.x * n.x + n.y * n.y) * (s * s);
-        Shape {
-            xx: (rx * rx) * c.dot(c),
-            xy: -((rx * ry) * c.dot(e)),
-            yy: (ry * ry) * e.dot(e),
-            area: ((rx * ry) * g).abs(),
-            half: radius * (n.x * n.x + n.y * n.y).sqrt(),
-            tilt: Vector2::new((sx * (z.x + d.x * z.z)) * m, -((sy * (z.y + d.y * z.z)) * m)),
-        }
-    }
-
-    fn ellipse(&self, placed: &Placed<R>, tangents: [Vector3<R>; 2]) -> Shape<R> {
-        let Placed { m, d, sx, sy, .. } = *placed;
-        let [u, v] = tangents.map(|tangent| {
-            let t = self.view.direction(tangent);
-            Vector3::new(t.x / self.cutoff, t.y / self.cutoff, t.z / self.cutoff)
-        });
-        let (ux, uy) = (sx * (u.x + d.x * u.z), -(sy * (u.y + d.y * u.z)));
-        let (vx, vy) = (sx * (v.x + d.x * v.z), -(sy * (v.y + d.y * v.z)));
-        let normal = u.cross(v);
-        let along = (normal.x * d.x + normal.y * d.y) - normal.z;
-        Shape {
-            xx: ux * ux + vx * vx,
-            xy: ux * uy + vx * vy,
-            yy: uy * uy + vy * vy,
-            area: ((sx * sy) * along).abs(),
-            half: self.cutoff * (u.z * u.z + v.z * v.z).sqrt(),
-            tilt: Vector2::new((ux * u.z + vx * v.z) * m, (uy * u.z + vy * v.z) * m),
-        }
-    }
-
-    /// The projection linearized at the centre [ZPvBG01]: V = V0 + h I,
-    ///
-    /// ```text
-    ///   det = (area area + h (xx + yy)) + h h      amplitude = area / sqrt(det)
-    ///   ux = sqrt(yy' / det)    uy = -((xy / yy') ux)    vy = 1 / sqrt(yy')    yy' = yy + h
-    /// ```
-    ///
-    /// The amplitude is that of [ZPvBG01] up to the constant that normalization removes. Rect:
-    /// k sqrt(xx') and k sqrt(yy') about the centre.
+    /// The projection linearized at the centre.
     #[inline(always)]
     fn affine(&self, placed: &Placed<R>, shape: &Shape<R>) -> (Footprint<R>, Rect) {
         self.gaussian(placed, shape, placed.center, self.view.nearness(placed.t))
     }
 
-    /// The exact ellipse of the projected disc [ZRB+04], convolved with the low-pass filter.
-    ///
-    /// `Decided:` [ZRB+04] gives the outline as a conic; here its centre and covariance follow from
-    /// V0 by a rank-one update, without cancellation. With b = (half/t)^2,
-    /// 1 - b = ((t - half)/t) ((t + half)/t):
-    ///
-    /// ```text
-    ///   centre += (k k / (1 - b)) tilt                 w0 = m / (1 - b)
-    ///   V0 := (V0 + (k k / (1 - b)) tilt tilt^T) / (1 - b)
-    ///   area := (area / (1 - b)) / sqrt(1 - b)
-    /// ```
-    ///
-    /// then as [`Projector::affine`]. A disc with t - half <= near has no ellipse and is drawn
-    /// affine. Under an orthographic camera the affine outline is exact.
+    /// The exact ellipse of the projected disc, convolved with the low-pass filter.
     fn perspective(&self, placed: &Placed<R>, shape: &Shape<R>) -> (Footprint<R>, Rect) {
         if !self.view.perspective || !(placed.t - shape.half > self.view.near) {
             return self.affine(placed, shape);
@@ -262,7 +197,7 @@ impl<R: Real> Projector<R> {
         self.gaussian(placed, &shape, center, placed.m / rest)
     }
 
-    /// The covariance and the centre of the exact outline, and 1 - b; see [`Self::perspective`].
+    /// The covariance and the centre of the exact outline, and `rest`.
     fn outline(&self, placed: &Placed<R>, shape: &Shape<R>) -> (Shape<R>, Vector2<R>, R) {
         let Shape { half, tilt, .. } = *shape;
         let t = placed.t;
@@ -279,12 +214,7 @@ impl<R: Real> Projector<R> {
         (exact, Vector2::new(c.x + factor * tilt.x, c.y + factor * tilt.y), rest)
     }
 
-    /// The disc by ray casting, the low-pass filter beside it [BHZK05].
-    ///
-    /// f is the form of V0 alone (h = 0), times w0 w0 under a perspective camera: f/(w w) is then
-    /// exactly the squared distance from the centre in the disc's plane, in standard deviations. The
-    /// amplitude is 1. Bounds: those of the exact outline and of the filter's circle of radius
-    /// k sqrt(h), both; a disc that reaches the near plane has those of its visible part.
+    /// The disc by ray casting, the low-pass filter beside it.
     fn ray_cast(
         &self,
         placed: &Placed<R>,
@@ -302,8 +232,7 @@ impl<R: Real> Projector<R> {
 
         let reaches = view.perspective && !(placed.t - shape.half > view.near);
         let (low, high) = if reaches {
-            let basis = crossing::basis(view, placed, disc);
-            crossing::corners(view, placed.p, basis)
+            crossing::corners(view, placed, disc)
         } else {
             let (exact, center) = if view.perspective {
                 let (exact, center, _) = self.outline(placed, shape);
@@ -363,8 +292,7 @@ impl<R: Real> Projector<R> {
     ) -> Footprint<R> {
         let view = &self.view;
         let Placed { n, t, m, g, .. } = *placed;
-        let near = t - shape.half;
-        let near = if view.perspective { near.at_least(view.near) } else { near };
+        let near = (t - shape.half).at_least(view.near);
         Footprint {
             center,
             ux: R::ZERO,
@@ -381,7 +309,7 @@ impl<R: Real> Projector<R> {
 
     /// The first reason not to draw; see the module page.
     #[inline(always)]
-    fn fate(&self, placed: &Placed<R>, footprint: &Footprint<R>, bounds: &Rect) -> Fate {
+    fn fate(&self, placed: &Placed<R>, radius: R, footprint: &Footprint<R>, bounds: &Rect) -> Fate {
         let f = footprint;
         // Comparisons with NaN are false, so every test is one that a good surfel passes.
         let largest = R::from_f32(LARGEST);
@@ -394,7 +322,11 @@ impl<R: Real> Projector<R> {
             & (f.center.x.abs() <= largest)
             & (f.center.y.abs() <= largest)
             & (f.w_far <= f.w_near);
-        let fate = if bounds.is_empty() { Fate::Outside } else { Fate::Visible };
+        let fate = if bounds.is_empty() | !self.frustum.touches(placed.p, placed.t, radius) {
+            Fate::Outside
+        } else {
+            Fate::Visible
+        };
         let fate = if self.cull & (placed.g >= R::ZERO) { Fate::BackFacing } else { fate };
         let fate = if sound { fate } else { Fate::Degenerate };
         if placed.t > self.view.near { fate } else { Fate::Behind }

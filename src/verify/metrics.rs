@@ -8,7 +8,7 @@
 use crate::io::exr::{Image, Values};
 use crate::number::elementary;
 
-/// The side of the window of [WBSS04], in pixels.
+/// The side of the window of \[WBSS04\], in pixels.
 const WINDOW: usize = 11;
 /// Its standard deviation, in pixels.
 const SIGMA: f64 = 1.5;
@@ -77,7 +77,7 @@ pub fn psnr(rmse: f64) -> f64 {
     -20.0 * elementary::ln(rmse) / std::f64::consts::LN_10
 }
 
-/// The mean structural similarity of two planes, `width` values a row, as [WBSS04] defines it.
+/// The mean structural similarity of two planes, `width` values a row, as \[WBSS04\] defines it.
 ///
 /// At each position of the 11 x 11 Gaussian window g (standard deviation 1.5, sum 1) inside the
 /// plane, with the weighted means m = sum g x, variances v = sum g x^2 - m^2 (population, not sample)

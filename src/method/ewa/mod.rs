@@ -1,8 +1,8 @@
 //! EWA surface splatting in two geometry passes and a normalization.
 //!
-//! The passes of [GBP04, section 3] (after [GP03]) and of the 2+1-pass method of [ZP06, section 3.1]:
+//! The passes of \[GBP04, section 3\] (after \[GP03\]) and of the 2+1-pass method of \[ZP06, section 3.1\]:
 //!
-//! 1. **Projection.** Each surfel becomes a [`Splat`] (see [`crate::splat::project`]).
+//! 1. **Projection.** Each surfel becomes a [`Splat`] (see [`mod@crate::splat::project`]).
 //! 2. **Visibility splatting.** Each pixel keeps the greatest nearness of all fragments that are
 //!    inside (q <= k^2), and the surfel it came from. Ties: the lower surfel index.
 //! 3. **Attribute splatting.** Each fragment that is inside and whose depth passes the epsilon-z
@@ -32,14 +32,21 @@ use crate::scene::Surfels;
 use crate::splat::Kernel;
 
 /// What is computed; everything here may change the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Reconstruction kernel and low-pass filter.
     pub kernel: Kernel,
     /// Depth of the band that belongs to the visible surface.
     pub epsilon: Epsilon,
-    /// Whether surfels seen from behind are dropped.
+    /// Whether surfels seen from behind are dropped. On by default: at the silhouette of a closed
+    /// surface, discs of its far side stick out.
     pub cull: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { kernel: Kernel::DEFAULT, epsilon: Epsilon::default(), cull: true }
+    }
 }
 
 /// A depth, in one of two units.

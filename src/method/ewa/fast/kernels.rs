@@ -99,15 +99,16 @@ fn columns<const RAY_CAST: bool>(
     let slack = 1.0 / 64.0 + (reach + (a.abs() + b.abs())) * (1.0 / 65_536.0);
     let origin = f.center.x - tile.x0 as f32;
     let first = (origin + left - reach - slack - 0.5) * (1.0 / SIDE as f32);
-    let last = (origin + right + reach + slack - 0.5) * (1.0 / SIDE as f32);
-    let count = blocks.x1 as f32;
-    let first = first.at_least(blocks.x0 as f32).at_most(count).to_pixel();
-    let last = (last + 1.0).at_least(0.0).at_most(count).to_pixel();
-    (first, last)
+    let last = (origin + right + reach + slack - 0.5) * (1.0 / SIDE as f32) + 1.0;
+    let (start, end) = (blocks.x0 as f32, blocks.x1 as f32);
+    // Comparisons that NaN fails: such a row keeps its bounds.
+    let first = if first > start { first.at_most(end) } else { start };
+    let last = if last < end { last.at_least(0.0) } else { end };
+    (first.to_pixel(), last.to_pixel())
 }
 
 /// Columns of blocks from which on the rows of a splat are cut to its ellipse.
-const WIDE: u32 = 4;
+const WIDE: u32 = 6;
 
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn visibility<const RAY_CAST: bool>(scratch: &mut Scratch, shared: &Shared<f32>) {

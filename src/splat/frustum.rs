@@ -1,0 +1,61 @@
+//! The sides of the view.
+
+use super::{Kernel, View};
+use crate::number::{Real, Vector3};
+
+/// The four sides of what a picture shows, moved out by the reach of the low-pass filter.
+#[derive(Clone, Copy, Debug)]
+pub struct Frustum<R> {
+    sides: [Side<R>; 4],
+    /// k sqrt(h), in px.
+    skirt: R,
+    perspective: bool,
+}
+
+/// A side of the view: a point (x, y) at depth t is `along x + across y + past t` px t inside.
+#[derive(Clone, Copy, Debug)]
+struct Side<R> {
+    along: R,
+    across: R,
+    past: R,
+    /// The change of that per world unit towards the outside.
+    slope: R,
+}
+
+impl<R: Real> Frustum<R> {
+    /// The sides for a camera and a kernel.
+    #[must_use]
+    pub fn new(view: &View<R>, kernel: &Kernel) -> Self {
+        let side = |along: R, across: R, past: R| {
+            let scale = along + across;
+            let slope =
+                if view.perspective { (scale * scale + past * past).sqrt() } else { scale.abs() };
+            Side { along, across, past, slope }
+        };
+        let (o, &View { fx, fy, cx, cy, .. }) = (R::ZERO, view);
+        let sides = [
+            side(fx, o, cx),
+            side(-fx, o, view.width - cx),
+            side(o, -fy, cy),
+            side(o, fy, view.height - cy),
+        ];
+        Self {
+            sides,
+            skirt: R::from_f32(kernel.cutoff) * R::from_f32(kernel.low_pass).sqrt(),
+            perspective: view.perspective,
+        }
+    }
+
+    /// Whether a sphere about a point p of view space, at depth t, reaches into the view; the
+    /// condition of [`mod@super::project`], fate `Outside`.
+    #[inline(always)]
+    pub fn touches(&self, p: Vector3<R>, t: R, radius: R) -> bool {
+        let t = if self.perspective { t } else { R::ONE };
+        let inside = |side: &Side<R>| {
+            let distance = (side.along * p.x + side.across * p.y) + side.past * t;
+            distance >= -(radius * side.slope + self.skirt * t)
+        };
+        let [left, right, top, bottom] = &self.sides;
+        inside(left) & inside(right) & inside(top) & inside(bottom)
+    }
+}

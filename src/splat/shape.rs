@@ -1,0 +1,102 @@
+//! Placing and shape: the first two steps of [`mod@super::project`].
+
+use super::Projector;
+use crate::number::{Real, Vector2, Vector3};
+
+/// A surfel in view space, and the Jacobian there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed<R> {
+    /// Centre in view space.
+    pub(super) p: Vector3<R>,
+    /// Normal in view space.
+    pub(super) n: Vector3<R>,
+    /// Depth of the centre.
+    pub(super) t: R,
+    pub(super) m: R,
+    d: Vector2<R>,
+    sx: R,
+    sy: R,
+    pub(super) g: R,
+    pub(super) center: Vector2<R>,
+}
+
+/// The covariance of a disc on the screen, without low-pass filter.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shape<R> {
+    pub(super) xx: R,
+    pub(super) xy: R,
+    pub(super) yy: R,
+    pub(super) area: R,
+    pub(super) half: R,
+    pub(super) tilt: Vector2<R>,
+}
+
+impl<R: Real> Projector<R> {
+    /// A surfel in view space, and the Jacobian there.
+    #[inline(always)]
+    pub(super) fn place(&self, position: Vector3<R>, normal: Vector3<R>) -> Placed<R> {
+        let view = &self.view;
+        let p = view.point(position);
+        let n = view.direction(normal);
+        let t = -p.z;
+        let (m, d, at) = if view.perspective {
+            let m = R::ONE / t;
+            let d = Vector2::new(p.x * m, p.y * m);
+            (m, d, d)
+        } else {
+            (R::ONE, Vector2::new(R::ZERO, R::ZERO), Vector2::new(p.x, p.y))
+        };
+        Placed {
+            p,
+            n,
+            t,
+            m,
+            d,
+            sx: view.fx * m,
+            sy: view.fy * m,
+            g: (n.x * d.x + n.y * d.y) - n.z,
+            center: Vector2::new(view.cx + view.fx * at.x, view.cy - view.fy * at.y),
+        }
+    }
+
+    /// The covariance of a disc.
+    #[inline(always)]
+    pub(super) fn disc(&self, placed: &Placed<R>, radius: R) -> Shape<R> {
+        let Placed { n, m, d, sx, sy, g, .. } = *placed;
+        let s = radius / self.cutoff;
+        let (rx, ry) = (s * sx, s * sy);
+        let c = Vector3::new(-(d.x * n.y), d.x * n.x - n.z, n.y);
+        let e = Vector3::new(n.z - d.y * n.y, d.y * n.x, -n.x);
+        // The z axis in the disc's plane, times the variance.
+        let z = Vector3::new(-(n.z * n.x), -(n.z * n.y), n.x * n.x + n.y * n.y) * (s * s);
+        Shape {
+            xx: (rx * rx) * c.dot(c),
+            xy: -((rx * ry) * c.dot(e)),
+            yy: (ry * ry) * e.dot(e),
+            area: ((rx * ry) * g).abs(),
+            half: radius * (n.x * n.x + n.y * n.y).sqrt(),
+            tilt: Vector2::new((sx * (z.x + d.x * z.z)) * m, -((sy * (z.y + d.y * z.z)) * m)),
+        }
+    }
+
+    /// The covariance of an ellipse.
+    pub(super) fn ellipse(&self, placed: &Placed<R>, tangents: [Vector3<R>; 2]) -> Shape<R> {
+        let Placed { m, d, sx, sy, .. } = *placed;
+        let [u, v] = tangents.map(|tangent| {
+            let t = self.view.direction(tangent);
+            Vector3::new(t.x / self.cutoff, t.y / self.cutoff, t.z / self.cutoff)
+        });
+        let (ux, uy) = (sx * (u.x + d.x * u.z), -(sy * (u.y + d.y * u.z)));
+        let (vx, vy) = (sx * (v.x + d.x * v.z), -(sy * (v.y + d.y * v.z)));
+        let normal = u.cross(v);
+        let along = (normal.x * d.x + normal.y * d.y) - normal.z;
+        Shape {
+            xx: ux * ux + vx * vx,
+            xy: ux * uy + vx * vy,
+            yy: uy * uy + vy * vy,
+            area: ((sx * sy) * along).abs(),
+            half: self.cutoff * (u.z * u.z + v.z * v.z).sqrt(),
+            tilt: Vector2::new((ux * u.z + vx * v.z) * m, (uy * u.z + vy * v.z) * m),
+        }
+    }
+}
