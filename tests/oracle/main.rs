@@ -1,6 +1,7 @@
 //! The oracle: the picture by other means, known answers, laws, and bits.
 //!
-//! - [`naive`]: a renderer in f64 without tiles, bins or bounds, that shares no formula with the crate.
+//! - [`eye`], [`naive`], [`pixel`]: a renderer in f64 without tiles, bins or bounds, that shares no
+//!   formula with the crate; [`scenes`]: what it renders.
 //! - [`tolerance`]: the one table of how far the crate may be from it, and why.
 //! - [`stages`]: every stage of every path against the oracle.
 //! - [`known`]: pictures whose numbers are known in closed form.
@@ -16,6 +17,7 @@
 mod bits;
 mod bounds;
 mod counter;
+mod eye;
 mod known;
 mod laws;
 mod naive;

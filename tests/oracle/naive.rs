@@ -6,88 +6,10 @@
 //! the plane. Every number comes with the sum of its changes when each input moves by one step: its
 //! condition, in which the rounding errors of the crate are measured.
 
-use glam::Vec3;
+use crate::eye::{Eye, V3, cross, dot, scaled, sub, unit, wide};
 use splatref::method::ewa::Settings;
-use splatref::scene::{Camera, Projection, Surfels};
+use splatref::scene::{Camera, Surfels};
 use splatref::splat::Outline;
-
-pub(crate) type V3 = [f64; 3];
-
-pub(crate) fn dot(a: V3, b: V3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: V3, b: V3) -> V3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-pub(crate) fn sub(a: V3, b: V3) -> V3 {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(crate) fn scaled(a: V3, s: f64) -> V3 {
-    a.map(|v| v * s)
-}
-
-pub(crate) fn unit(a: V3) -> V3 {
-    scaled(a, 1.0 / dot(a, a).sqrt())
-}
-
-pub(crate) fn wide(v: Vec3) -> V3 {
-    v.to_array().map(f64::from)
-}
-
-/// The camera in f64.
-pub(crate) struct Eye {
-    rows: [[f64; 4]; 3],
-    pub(crate) perspective: bool,
-    fx: f64,
-    fy: f64,
-    cx: f64,
-    cy: f64,
-    near: f64,
-}
-
-impl Eye {
-    pub(crate) fn new(camera: &Camera) -> Self {
-        let row = |i| camera.view_from_world.row(i).to_array().map(f64::from);
-        Self {
-            rows: [row(0), row(1), row(2)],
-            perspective: camera.projection == Projection::Perspective,
-            fx: camera.fx.into(),
-            fy: camera.fy.into(),
-            cx: camera.cx.into(),
-            cy: camera.cy.into(),
-            near: camera.near.into(),
-        }
-    }
-
-    pub(crate) fn direction(&self, v: V3) -> V3 {
-        self.rows.map(|m| m[0] * v[0] + m[1] * v[1] + m[2] * v[2])
-    }
-
-    pub(crate) fn point(&self, v: V3) -> V3 {
-        self.rows.map(|m| m[0] * v[0] + m[1] * v[1] + m[2] * v[2] + m[3])
-    }
-
-    /// The magnitudes that a view-space point is the sum of.
-    fn magnitude(&self, v: V3) -> V3 {
-        self.rows
-            .map(|m| (m[0] * v[0]).abs() + (m[1] * v[1]).abs() + (m[2] * v[2]).abs() + m[3].abs())
-    }
-
-    /// Origin and direction of the ray through a point of the picture; the parameter is depth.
-    pub(crate) fn ray(&self, x: f64, y: f64) -> (V3, V3) {
-        let (u, v) = ((x - self.cx) / self.fx, (self.cy - y) / self.fy);
-        if self.perspective { ([0.0; 3], [u, v, -1.0]) } else { ([u, v, 0.0], [0.0, 0.0, -1.0]) }
-    }
-
-    /// The picture of a point.
-    pub(crate) fn pixel(&self, p: V3) -> [f64; 2] {
-        let t = if self.perspective { -p[2] } else { 1.0 };
-        [self.cx + self.fx * p[0] / t, self.cy - self.fy * p[1] / t]
-    }
-}
 
 /// A surfel in view space.
 #[derive(Clone, Copy)]
@@ -310,6 +232,8 @@ pub(crate) struct Splat {
     pub(crate) index: usize,
     pub(crate) figure: Figure,
     pub(crate) back: bool,
+    /// Whether it lies beyond a side of the view.
+    pub(crate) outside: bool,
     /// Whether a decision on the whole surfel is within its condition.
     pub(crate) doubtful: bool,
     neighbours: Vec<Figure>,
@@ -354,8 +278,12 @@ impl Splat {
         }
         let shift = [eye.cx, eye.cy];
         let shift = std::array::from_fn(|i| step * (figure.center[i].abs() + shift[i].abs()));
-        let (back, doubtful) = (figure.facing > 0.0, turning || grazing || leaving);
-        Some(Self { index, figure, back, doubtful, neighbours, shift })
+        let radius = f64::from(surfels.radius()[index]);
+        let [excess, terms] = eye.beyond(body.p, radius, optics.k * optics.h.sqrt());
+        let parting = excess.abs() <= guard * step * terms;
+        let back = figure.facing > 0.0;
+        let doubtful = turning || grazing || leaving || parting;
+        Some(Self { index, figure, back, outside: excess > 0.0, doubtful, neighbours, shift })
     }
 
     /// The fragment at a point; without its condition where it is far outside.

@@ -1,6 +1,7 @@
 //! One pixel of the oracle: both passes, normalization and shading over every surfel of the scene.
 
-use crate::naive::{Eye, Fragment, Optics, Splat, V3, dot, scaled, sub, unit, wide};
+use crate::eye::{Eye, V3, dot, scaled, sub, unit, wide};
+use crate::naive::{Fragment, Optics, Splat};
 use splatref::method::ewa::Settings;
 use splatref::scene::{Camera, Light, Scene};
 
@@ -61,6 +62,7 @@ impl<'a> Oracle<'a> {
         let all: Vec<(&Splat, Fragment)> = self
             .splats
             .iter()
+            .filter(|s| !s.outside || s.doubtful)
             .filter_map(|s| s.fragment(&self.optics, px, py).map(|f| (s, f)))
             .collect();
         let limit = self.optics.k * self.optics.k;

@@ -221,10 +221,6 @@ impl Case {
             let surfels = Surfels::new(kind.cloud(&mut dice, 40)).expect("good surfels").0;
             (surfels, straight(orthographic, size))
         };
-        if orthographic && kind == Kind::Sizes {
-            // See `known::orthographic_depths_stop_at_the_near_plane`.
-            camera.near = -4096.0;
-        }
         let rolled = !kind.exact() && !matches!(kind, Kind::Shape(_));
         if rolled {
             let roll = Mat4::from_rotation_x(0.1) * Mat4::from_rotation_z(dice.within(-3.0, 3.0));
