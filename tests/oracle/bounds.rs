@@ -112,7 +112,9 @@ fn leak<R: Real>(given: &Given, kernel: &Kernel, camera: &Camera) -> Option<(u32
     }
     let reach = f64::from(kernel.cutoff) * f64::from(kernel.low_pass).sqrt();
     let [excess, terms] = Eye::new(camera).beyond(wide(given.position), given.radius.into(), reach);
-    if fate == Fate::Outside && excess > -1e-5 * terms {
+    // Only the linearized ellipse of a disc reaches farther than the disc itself.
+    let linear = kernel.outline != Outline::RayCast || given.tangents.is_some();
+    if fate == Fate::Outside && linear && excess > -1e-5 * terms {
         return None;
     }
     let half = R::from_f32(0.5);
