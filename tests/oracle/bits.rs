@@ -1,0 +1,122 @@
+//! Bits: the fast path is the plain one, and neither threads nor tiles can be seen in a picture.
+
+use crate::scenes::{Case, KINDS, Kind, OUTLINES};
+use proptest::prelude::*;
+use sha2::{Digest, Sha256};
+use splatref::frame::{Exec, Frame, Samples};
+use splatref::method::ewa::{self, Epsilon, Settings};
+use splatref::number::Real;
+use splatref::splat::Kernel;
+
+/// The bits of a plane; through f64, which keeps those of f32 apart.
+fn bits<R: Real>(samples: &Samples<R>) -> Vec<u64> {
+    let number = |v: R| v.to_f64().to_bits();
+    match samples {
+        Samples::Scalar(plane) => plane.values().iter().map(|v| number(*v)).collect(),
+        Samples::Color(plane) | Samples::Vector(plane) => {
+            plane.values().iter().flatten().map(|v| number(*v)).collect()
+        }
+        Samples::Index(plane) => plane.values().iter().map(|v| u64::from(*v)).collect(),
+        Samples::Count(plane) => plane.values().iter().map(|v| u64::from(*v)).collect(),
+    }
+}
+
+/// One hash of all planes and their names.
+fn digest<R: Real>(frame: &Frame<R>) -> Vec<u8> {
+    let mut hash = Sha256::new();
+    for plane in &frame.planes {
+        hash.update(plane.name.as_bytes());
+        for value in bits(&plane.samples) {
+            hash.update(value.to_le_bytes());
+        }
+    }
+    hash.finalize().to_vec()
+}
+
+/// A -0 or a NaN, which no plane may hold.
+fn unclean<R: Real>(frame: &Frame<R>) -> Option<&str> {
+    let negative_zero = (-0.0_f64).to_bits();
+    let bad = |v: &u64| *v == negative_zero || f64::from_bits(*v).is_nan();
+    let floats = |s: &Samples<R>| !matches!(s, Samples::Index(_) | Samples::Count(_));
+    let plane =
+        frame.planes.iter().find(|p| floats(&p.samples) && bits(&p.samples).iter().any(bad));
+    plane.map(|p| p.name.as_str())
+}
+
+fn settings() -> impl Strategy<Value = Settings> {
+    let kernel = (0..3_usize, prop_oneof![Just(2.0_f32), Just(1.0), 0.25_f32..4.0]);
+    let low_pass = prop_oneof![Just(0.25_f32), Just(1.0), Just(0.0), 0.0_f32..16.0];
+    let epsilon = prop_oneof![
+        Just(Epsilon::World(0.0)),
+        Just(Epsilon::World(f32::INFINITY)),
+        (0.0_f32..3.0).prop_map(Epsilon::MedianRadii),
+        (0.0_f32..1e-6).prop_map(Epsilon::World),
+    ];
+    (kernel, low_pass, epsilon, any::<bool>()).prop_map(|((o, cutoff), low_pass, epsilon, cull)| {
+        Settings { kernel: Kernel { outline: OUTLINES[o], cutoff, low_pass }, epsilon, cull }
+    })
+}
+
+fn case() -> impl Strategy<Value = Case> {
+    let which = (0..KINDS.len(), any::<u32>(), any::<bool>());
+    let size = (1_u32..70, 1_u32..50);
+    (which, settings(), size).prop_map(|((kind, seed, orthographic), settings, (width, height))| {
+        let mut case = Case::new(KINDS[kind], seed.into(), settings, orthographic);
+        case.camera.width = width;
+        case.camera.height = height;
+        case
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(160))]
+
+    #[test]
+    fn the_fast_path_has_the_bits_of_the_plain_one(case in case(), tile in 0..4_usize) {
+        let Case { scene, camera, settings, .. } = &case;
+        let exec = Exec::new(1, 8 << tile).expect("a tile size");
+        let plain = ewa::render::<f32>(scene, camera, settings, &exec, true).expect("renders");
+        let fast = ewa::render_f32(scene, camera, settings, &Exec::sequential()).expect("renders");
+        prop_assert_eq!(plain.tally, fast.tally);
+        prop_assert!(fast.frame.planes.len() >= 6);
+        for plane in &fast.frame.planes {
+            let same = plain.frame.plane(&plane.name).expect("a shared plane");
+            prop_assert!(bits(same) == bits(&plane.samples), "plane '{}' of {}", plane.name, case.name);
+        }
+        prop_assert_eq!(unclean(&plain.frame), None, "{}", case.name);
+        let wide = ewa::render::<f64>(scene, camera, settings, &exec, true).expect("renders");
+        prop_assert_eq!(unclean(&wide.frame), None, "{}", case.name);
+    }
+}
+
+#[test]
+fn threads_and_tiles_leave_no_trace() {
+    let execs: Vec<Exec> = [1, 2, 3, 7, 16]
+        .into_iter()
+        .flat_map(|threads| [8, 16, 32, 64].map(|tile| Exec::new(threads, tile).expect("in range")))
+        .collect();
+    for (number, kind) in
+        [Kind::Discs, Kind::Sizes, Kind::Degenerate, Kind::Shape(1), Kind::Tilted, Kind::Layers]
+            .into_iter()
+            .enumerate()
+    {
+        let kernel = Kernel { outline: OUTLINES[number % 3], ..Kernel::DEFAULT };
+        let settings = Settings { kernel, ..Settings::default() };
+        let mut case = Case::new(kind, number as u64, settings, number % 2 == 1);
+        (case.camera.width, case.camera.height) = (131, 70);
+        let Case { scene, camera, settings, .. } = &case;
+        let mut seen = None;
+        for exec in &execs {
+            // Counts and margins are among the planes of the stages.
+            let fast = ewa::render_f32(scene, camera, settings, exec).expect("renders");
+            let plain = ewa::render::<f32>(scene, camera, settings, exec, true).expect("renders");
+            let wide = ewa::render::<f64>(scene, camera, settings, exec, true).expect("renders");
+            for name in ["attributes.count", "margin"] {
+                assert!(plain.frame.plane(name).is_some(), "no plane {name}");
+            }
+            let all = [digest(&fast.frame), digest(&plain.frame), digest(&wide.frame)];
+            let first = seen.get_or_insert_with(|| all.clone());
+            assert!(*first == all, "{} threads, {exec:?}: {}", exec.threads(), case.name);
+        }
+    }
+}

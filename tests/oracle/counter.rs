@@ -1,0 +1,216 @@
+//! A third number: f64 that counts its operations. Every formula of the crate runs on it.
+
+use crate::scenes::{Case, Kind, OUTLINES};
+use glam::Vec3;
+use splatref::composite::{epsilon, sum};
+use splatref::frame::{Exec, Samples};
+use splatref::method::ewa::{self, Settings};
+use splatref::number::{Real, Vector3};
+use splatref::scene::Light;
+use splatref::splat::project::Disc;
+use splatref::splat::{Kernel, Outline, Projector, Shared, View, project};
+use std::cmp::Ordering;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
+
+/// What is counted.
+#[derive(Clone, Copy)]
+enum Op {
+    Add,
+    Mul,
+    Div,
+    Sqrt,
+    Exp,
+    Pow,
+    Compare,
+}
+
+static COUNTS: [AtomicU64; 7] = [const { AtomicU64::new(0) }; 7];
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+#[derive(Clone, Copy, Debug)]
+struct Counted(f64);
+
+fn tick(op: Op, value: f64) -> Counted {
+    COUNTS[op as usize].fetch_add(1, Relaxed);
+    Counted(value)
+}
+
+impl PartialEq for Counted {
+    fn eq(&self, other: &Self) -> bool {
+        tick(Op::Compare, self.0).0 == other.0
+    }
+}
+
+impl PartialOrd for Counted {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        tick(Op::Compare, self.0).0.partial_cmp(&other.0)
+    }
+}
+
+impl Add for Counted {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        tick(Op::Add, self.0 + other.0)
+    }
+}
+
+impl Sub for Counted {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        tick(Op::Add, self.0 - other.0)
+    }
+}
+
+impl Mul for Counted {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        tick(Op::Mul, self.0 * other.0)
+    }
+}
+
+impl Div for Counted {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        tick(Op::Div, self.0 / other.0)
+    }
+}
+
+impl Neg for Counted {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl Real for Counted {
+    const ZERO: Self = Self(0.0);
+    const ONE: Self = Self(1.0);
+    const INFINITY: Self = Self(f64::INFINITY);
+
+    fn from_f32(value: f32) -> Self {
+        Self(value.into())
+    }
+    fn to_f32(self) -> f32 {
+        self.0 as f32
+    }
+    fn to_f64(self) -> f64 {
+        self.0
+    }
+    fn to_pixel(self) -> u32 {
+        Real::to_pixel(self.0)
+    }
+    fn sqrt(self) -> Self {
+        tick(Op::Sqrt, self.0.sqrt())
+    }
+    fn abs(self) -> Self {
+        Self(self.0.abs())
+    }
+    fn exp(self) -> Self {
+        tick(Op::Exp, Real::exp(self.0))
+    }
+    fn pow(self, exponent: Self) -> Self {
+        tick(Op::Pow, Real::pow(self.0, exponent.0))
+    }
+    fn is_finite(self) -> bool {
+        self.0.is_finite()
+    }
+    fn ulps_to(self, other: Self) -> f32 {
+        self.0.ulps_to(other.0)
+    }
+}
+
+/// Additions, multiplications, divisions, roots, exponentials, powers, comparisons of a job.
+fn count<T>(job: impl FnOnce() -> T) -> (T, [u64; 7]) {
+    COUNTS.iter().for_each(|c| c.store(0, Relaxed));
+    let value = job();
+    (value, std::array::from_fn(|i| COUNTS[i].load(Relaxed)))
+}
+
+fn scene(outline: Outline, orthographic: bool) -> Case {
+    let settings =
+        Settings { kernel: Kernel { outline, ..Kernel::DEFAULT }, ..Settings::default() };
+    let mut case = Case::new(Kind::Shape(0), 3, settings, orthographic);
+    let color = Vec3::ONE;
+    case.scene.lights = vec![
+        Light::Headlight { towards: Vec3::new(0.25, 0.5, 1.0), color },
+        Light::Point { position: Vec3::new(2.0, 3.0, 4.0), color },
+    ];
+    case
+}
+
+#[test]
+fn the_fragment_takes_the_operations_that_the_specification_lists() {
+    let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    for outline in OUTLINES {
+        for orthographic in [false, true] {
+            let case = scene(outline, orthographic);
+            let kernel = &case.settings.kernel;
+            let view = View::<Counted>::new(&case.camera);
+            let shared = Shared::new(&view, kernel);
+            let disc = Disc {
+                position: Vector3::from_glam(Vec3::new(0.25, 0.5, 0.25)),
+                normal: Vector3::from_glam(Vec3::Z),
+                radius: Counted(0.25),
+                tangents: None,
+            };
+            let ((splat, _), setup) =
+                count(|| project(&Projector::new(view, kernel, false), &disc, 0));
+            assert!(setup[Op::Mul as usize] > 30, "projection: {setup:?}");
+            let (dx, dy) = (Counted(0.25), Counted(0.5));
+            let ((q, _), ops) = count(|| splat.footprint.fragment(&shared, dx, dy));
+            // u, v, f, w: 7 products and 4 sums. Casting: w w, dx dx, dy dy, a sum, two quotients.
+            let expected = match (outline, orthographic) {
+                (Outline::RayCast, false) => [5, 10, 2],
+                (Outline::RayCast, true) => [5, 9, 1],
+                _ => [4, 7, 0],
+            };
+            assert_eq!(ops[..3], expected, "{outline:?} orthographic {orthographic}");
+            assert_eq!(
+                ops[Op::Sqrt as usize] + ops[Op::Exp as usize],
+                0,
+                "no root, no exponential"
+            );
+            let (_, ops) = count(|| splat.footprint.weight(q));
+            assert_eq!(ops[..6], [0, 2, 0, 0, 1, 0], "weight");
+        }
+    }
+    let (three, n) = ([Counted(0.25); 3], Counted(0.5));
+    assert_eq!(count(|| sum::add(three, n, three)).1[..3], [3, 3, 0], "weighted sum");
+    // The sums are those with 0 that keep -0 out of the planes.
+    assert_eq!(count(|| sum::average(three, n)).1[..3], [3, 0, 3], "average");
+    assert_eq!(count(|| epsilon::visible(n, n, n)).1, [1, 0, 0, 0, 0, 0, 1], "epsilon-z test");
+}
+
+#[test]
+fn every_formula_runs_on_a_third_number_with_the_bits_of_the_second() {
+    let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    for outline in OUTLINES {
+        let case = scene(outline, false);
+        let exec = Exec::sequential();
+        let render =
+            || ewa::render::<Counted>(&case.scene, &case.camera, &case.settings, &exec, true);
+        let (picture, ops) = count(render);
+        assert!(ops.iter().all(|n| *n > 100), "{outline:?}: {ops:?}");
+        let counted = picture.expect("renders").frame;
+        let wide = ewa::render::<f64>(&case.scene, &case.camera, &case.settings, &exec, true);
+        let wide = wide.expect("renders").frame;
+        assert_eq!(counted.planes.len(), wide.planes.len());
+        for (a, b) in counted.planes.iter().zip(&wide.planes) {
+            let same = match (&a.samples, &b.samples) {
+                (Samples::Scalar(a), Samples::Scalar(b)) => {
+                    a.values().iter().map(|v| v.0).eq(b.values().iter().copied())
+                }
+                (Samples::Color(a), Samples::Color(b))
+                | (Samples::Vector(a), Samples::Vector(b)) => {
+                    a.values().iter().map(|v| v.map(|v| v.0)).eq(b.values().iter().copied())
+                }
+                (Samples::Index(a), Samples::Index(b)) => a == b,
+                (Samples::Count(a), Samples::Count(b)) => a == b,
+                _ => false,
+            };
+            assert!(same, "{outline:?}: plane '{}'", a.name);
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! The oracle: the picture by other means, known answers, laws, and bits.
+//!
+//! - [`eye`], [`naive`], [`pixel`]: a renderer in f64 without tiles, bins or bounds, that shares no
+//!   formula with the crate; [`scenes`]: what it renders.
+//! - [`tolerance`]: the one table of how far the crate may be from it, and why.
+//! - [`stages`]: every stage of every path against the oracle.
+//! - [`known`]: pictures whose numbers are known in closed form.
+//! - [`bounds`]: no pixel outside a splat's bounds is inside the splat.
+//! - [`counter`]: a third number runs every formula and counts its operations.
+//! - [`bits`]: fast and plain, threads and tiles, to the last bit.
+//! - [`laws`]: what compositing must keep.
+#![expect(
+    clippy::disallowed_methods,
+    reason = "std's functions, so that the oracle shares no code with the crate; its bits are free"
+)]
+
+mod bits;
+mod bounds;
+mod counter;
+mod eye;
+mod known;
+mod laws;
+mod naive;
+mod pixel;
+mod scenes;
+mod stages;
+mod tolerance;

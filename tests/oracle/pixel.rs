@@ -1,0 +1,221 @@
+//! One pixel of the oracle: both passes, normalization and shading over every surfel of the scene.
+
+use crate::eye::{Eye, V3, dot, scaled, sub, unit, wide};
+use crate::naive::{Fragment, Optics, Splat};
+use splatref::method::ewa::Settings;
+use splatref::scene::{Camera, Light, Scene};
+
+/// A plane's value at a pixel, and the change of it that rounding may cause.
+#[derive(Clone, Copy)]
+pub(crate) struct Entry {
+    pub(crate) plane: &'static str,
+    pub(crate) value: V3,
+    pub(crate) condition: V3,
+}
+
+/// What the oracle knows of a pixel.
+pub(crate) struct Pixel {
+    /// Whether a decision lies within its rounding error.
+    pub(crate) ambiguous: bool,
+    /// The surfels that may be the nearest; empty: the pixel is.
+    pub(crate) nearest: Vec<u32>,
+    pub(crate) count: usize,
+    pub(crate) entries: Vec<Entry>,
+}
+
+/// A scene before a camera.
+pub(crate) struct Oracle<'a> {
+    scene: &'a Scene,
+    optics: Optics,
+    epsilon: f64,
+    splats: Vec<Splat>,
+    /// Step of the inputs, and how many conditions count as rounding.
+    step: f64,
+    guard: f64,
+}
+
+impl<'a> Oracle<'a> {
+    /// `step`: the relative rounding error that conditions are measured for.
+    pub(crate) fn new(
+        scene: &'a Scene,
+        camera: &Camera,
+        settings: &Settings,
+        [step, guard]: [f64; 2],
+    ) -> Self {
+        let optics = Optics::new(camera, settings);
+        let splats = (0..scene.surfels.len())
+            .filter_map(|i| Splat::new(&optics, &scene.surfels, i, settings.cull, [step, guard]))
+            .collect();
+        let epsilon = settings.epsilon.resolve(&scene.surfels).into();
+        Self { scene, optics, epsilon, splats, step, guard }
+    }
+
+    /// How many surfels are drawn or outside the picture; none if that is in doubt.
+    pub(crate) fn drawn(&self) -> Option<u64> {
+        let doubt = self.splats.iter().any(|s| s.doubtful);
+        (!doubt).then_some(self.splats.len() as u64)
+    }
+
+    /// The pixel at a column and row.
+    pub(crate) fn pixel(&self, x: u32, y: u32) -> Pixel {
+        let (px, py) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let all: Vec<(&Splat, Fragment)> = self
+            .splats
+            .iter()
+            .filter(|s| !s.outside || s.doubtful)
+            .filter_map(|s| s.fragment(&self.optics, px, py).map(|f| (s, f)))
+            .collect();
+        let limit = self.optics.k * self.optics.k;
+        let unsure = |s: &Splat, f: &Fragment| {
+            let margin = self.guard * (f.spread.q + self.step * limit);
+            s.doubtful || (f.value.q - limit).abs() <= margin
+        };
+        let inside: Vec<_> = all.iter().filter(|(_, f)| f.value.q <= limit).collect();
+        let first = inside.iter().map(|(_, f)| f.value.t).fold(f64::INFINITY, f64::min);
+        let slack = |f: &Fragment| {
+            self.guard * (f.spread.t + self.step * (f.value.t.abs() + self.epsilon.min(1e30)))
+        };
+        let first_slack = inside
+            .iter()
+            .filter(|(_, f)| f.value.t == first)
+            .map(|(_, f)| slack(f))
+            .fold(0.0, f64::max);
+        let close = |f: &Fragment, to: f64| f.value.t - to <= slack(f) + first_slack;
+        let mut ambiguous = all.iter().any(|(s, f)| {
+            let near_limit = f.value.q - limit <= self.guard * (f.spread.q + self.step * limit);
+            near_limit && unsure(s, f) && close(f, first + self.epsilon)
+        });
+        let nearest: Vec<u32> =
+            inside.iter().filter(|(_, f)| close(f, first)).map(|(s, _)| s.index as u32).collect();
+        ambiguous |= inside.iter().any(|(_, f)| {
+            let beyond = f.value.t - (first + self.epsilon);
+            f.value.t != first && beyond.abs() <= slack(f) + first_slack
+        });
+        let seen: Vec<_> =
+            inside.iter().filter(|(_, f)| f.value.t <= first + self.epsilon).collect();
+        let depth_condition = inside
+            .iter()
+            .filter(|(_, f)| close(f, first))
+            .map(|(_, f)| f.spread.t)
+            .fold(0.0, f64::max);
+        let mut entries = Vec::new();
+        if !seen.is_empty() {
+            self.sum(&seen, &mut entries);
+            let depth = Entry { plane: "Z", value: [first; 3], condition: [depth_condition; 3] };
+            entries.push(Entry { plane: "visibility.Z", ..depth });
+            entries.push(depth);
+            self.shade(px, py, &mut entries);
+        }
+        for entry in &mut entries {
+            for i in 0..3 {
+                entry.condition[i] += self.step * entry.value[i].abs();
+            }
+        }
+        Pixel { ambiguous, nearest, count: seen.len(), entries }
+    }
+
+    /// The sums and what normalization makes of them.
+    fn sum(&self, seen: &[&&(&Splat, Fragment)], entries: &mut Vec<Entry>) {
+        let surfels = &self.scene.surfels;
+        let mut weight = Entry { plane: "weight", value: [0.0; 3], condition: [0.0; 3] };
+        let mut normal = Entry { plane: "attributes.normal", ..weight };
+        let mut color = Entry { plane: "attributes", ..weight };
+        let add = |sum: &mut Entry, value: V3, f: &Fragment| {
+            for (i, v) in value.into_iter().enumerate() {
+                sum.value[i] += f.value.weight * v;
+                sum.condition[i] += (f.spread.weight + self.step * f.value.weight) * v.abs();
+            }
+        };
+        for (splat, f) in seen.iter().map(|pair| **pair) {
+            let n = wide(surfels.normal()[splat.index]);
+            add(&mut weight, [1.0; 3], f);
+            add(&mut normal, scaled(n, if splat.back { -1.0 } else { 1.0 }), f);
+            if let Some(colors) = surfels.color() {
+                add(&mut color, wide(colors[splat.index]), f);
+            }
+        }
+        let (w, dw) = (weight.value[0], weight.condition[0]);
+        let average = |sum: &Entry, plane| {
+            let value = scaled(sum.value, 1.0 / w);
+            let condition = std::array::from_fn(|i| (sum.condition[i] + value[i].abs() * dw) / w);
+            Entry { plane, value, condition }
+        };
+        let resolved = average(&color, "resolved");
+        let mean = average(&normal, "normal");
+        let length = dot(mean.value, mean.value).sqrt();
+        let error = dot(mean.condition, mean.condition).sqrt() / length;
+        let direction = Entry {
+            value: scaled(mean.value, 1.0 / length),
+            condition: [error; 3],
+            plane: "normal",
+        };
+        entries.extend([weight, Entry { plane: "attributes.weight", ..weight }, normal, direction]);
+        if surfels.color().is_some() {
+            entries.extend([color, resolved]);
+        }
+    }
+
+    /// Phong shading, and its change with each of its inputs.
+    fn shade(&self, x: f64, y: f64, entries: &mut Vec<Entry>) {
+        let find = |plane| entries.iter().find(|e| e.plane == plane).copied();
+        let (Some(normal), Some(depth)) = (find("normal"), find("Z")) else { return };
+        let material = wide(self.scene.material.color);
+        let own = Entry { plane: "", value: material, condition: [0.0; 3] };
+        let surface = find("resolved").unwrap_or(own);
+        let value = self.phong([x, y], depth.value[0], normal.value, surface.value);
+        let mut condition = scaled(value, 0.0);
+        let mut vary = |t: f64, n: V3, s: V3| {
+            let change = sub(self.phong([x, y], t, n, s), value);
+            for i in 0..3 {
+                condition[i] += change[i].abs();
+            }
+        };
+        vary(depth.value[0] + depth.condition[0], normal.value, surface.value);
+        for i in 0..3 {
+            let mut n = normal.value;
+            n[i] += normal.condition[i] + self.step;
+            vary(depth.value[0], n, surface.value);
+        }
+        let brighter = std::array::from_fn(|i| surface.value[i] + surface.condition[i]);
+        vary(depth.value[0], normal.value, brighter);
+        entries.push(Entry { plane: "", value, condition });
+    }
+
+    /// The colour of a surface with a world-space normal at depth t.
+    fn phong(&self, [x, y]: [f64; 2], t: f64, normal: V3, surface: V3) -> V3 {
+        let eye: &Eye = &self.optics.eye;
+        if self.scene.lights.is_empty() {
+            return surface;
+        }
+        let phong = &self.scene.material;
+        let (origin, ray) = eye.ray(x, y);
+        let p: V3 = std::array::from_fn(|i| origin[i] + t * ray[i]);
+        let v = if eye.perspective { unit(scaled(p, -1.0)) } else { [0.0, 0.0, 1.0] };
+        let n = eye.direction(normal);
+        let mut color = scaled(surface, phong.ambient.into());
+        for light in &self.scene.lights {
+            let (l, light_color) = match *light {
+                Light::Directional { towards, color } => {
+                    (unit(eye.direction(wide(towards))), color)
+                }
+                Light::Headlight { towards, color } => (unit(wide(towards)), color),
+                Light::Point { position, color } => {
+                    (unit(sub(eye.point(wide(position)), p)), color)
+                }
+            };
+            let incident = dot(n, l);
+            if incident <= 0.0 {
+                continue;
+            }
+            let r = sub(scaled(n, 2.0 * incident), l);
+            let gloss = dot(r, v);
+            let highlight = if gloss > 0.0 { gloss.powf(phong.shininess.into()) } else { 0.0 };
+            for i in 0..3 {
+                let body = f64::from(phong.diffuse) * incident * surface[i];
+                let shine = f64::from(phong.specular) * highlight;
+                color[i] += wide(light_color)[i] * (body + shine);
+            }
+        }
+        color
+    }
+}
