@@ -1,5 +1,7 @@
 //! Real scans, if they are there: `SPLATREF_MODELS`, or `../shared/models`.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use splatref::frame::Exec;
 use splatref::io::ply;
 use splatref::scene::Cloud;

@@ -8,20 +8,20 @@ pub fn add<R: Real>(sum: [R; 3], weight: R, value: [R; 3]) -> [R; 3] {
     [sum[0] + weight * value[0], sum[1] + weight * value[1], sum[2] + weight * value[2]]
 }
 
-/// `sum / weight`, component by component; 0 where no weight has arrived.
+/// `sum / weight + 0`, component by component; 0 where no weight has arrived. Adding 0 turns a -0,
+/// of an underflow, into +0.
 ///
 /// Law: if every value was v, the average is v up to the rounding of the sums.
 #[inline(always)]
 pub fn average<R: Real>(sum: [R; 3], weight: R) -> [R; 3] {
     if weight > R::ZERO {
-        // Adding 0 turns a -0, of an underflow, into +0.
         [sum[0] / weight + R::ZERO, sum[1] / weight + R::ZERO, sum[2] / weight + R::ZERO]
     } else {
         [R::ZERO; 3]
     }
 }
 
-/// The direction of the average of normals: [`average`], then divided by its length.
+/// The direction of the average of normals: [`average`], divided by its length, plus 0.
 ///
 /// Opposite normals that cancel leave the null vector. Averaging first keeps the squares of tiny
 /// weights from underflowing.

@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn a_pixel_is_the_integer_part() {
-        let values = [0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.5, 65_535.5, 65_536.0, 4_194_303.75];
+        let values = [0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.5, 65_535.5, 65_536.0, 4_194_303.5];
         for value in values {
             for near in [value, f32::next_down(value), f32::next_up(value)] {
                 if near >= 0.0 {

@@ -8,7 +8,8 @@ use glam::Vec3;
 ///
 /// Guarantees, kept by construction: at least one surfel; positions finite; normals of length 1
 /// within 2^-20; radii finite and > 0; colours finite and >= 0; opacities in [0, 1]; tangents
-/// finite, not parallel, perpendicular to the normal as far as `f32` allows. An array that the
+/// finite and not parallel. (Whether they are perpendicular to each other and to the normal is the
+/// business of whoever gives them.) An array that the
 /// scene does not need is not allocated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surfels {
@@ -118,7 +119,7 @@ impl Surfels {
         &self.normal
     }
 
-    /// Radii in world units; of an ellipse, its longer half axis.
+    /// Radii in world units. An ellipse is drawn by its tangents; its radius enters the median only.
     #[must_use]
     pub fn radius(&self) -> &[f32] {
         &self.radius

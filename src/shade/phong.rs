@@ -7,7 +7,7 @@
 //!   p = (x, y, -t)      perspective: x = ((X - cx)/fx) t, y = -((Y - cy)/fy) t; else without t
 //!   v = -p / |p|        orthographic: (0, 0, 1)
 //!   colour = ambient s + sum over the lights, in order, of light colour times
-//!              (diffuse (n . l)) s + specular (r . v)^shininess     r = (2 (n . l)) n - l
+//!              ((diffuse (n . l)) s + specular (r . v)^shininess)     r = n (2 (n . l)) - l
 //! ```
 //!
 //! A light with n . l <= 0 adds nothing; a highlight needs r . v > 0. Without any light the colour is

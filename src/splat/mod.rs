@@ -95,7 +95,8 @@ impl Default for Kernel {
 ///
 ///   Affine, Perspective    q = f                     w clamped to [w_far, w_near]
 ///   RayCast                q = the smaller of        w clamped likewise
-///                              f / (w w)  (orthographic: f)   if 0 < w <= 1/near, else +inf
+///                              f / (w w)   if 0 < w <= 1/near, else +inf
+///                              (orthographic: f   if w <= -near, else +inf)
 ///                              (dx dx + dy dy) / h            if h > 0
 ///
 ///   inside                 q <= k k

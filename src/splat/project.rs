@@ -20,8 +20,17 @@
 //!   tilt = (a.z', b.z') m,  z' = s s (z - n.z n)   how nearness grows over V0
 //! ```
 //!
-//! and `area` is sqrt(det V0). An ellipse with half axes k U and k V (its tangents) has sums over
-//! both in place of the cross products, and U x V in place of n in `area`.
+//! and `area` is sqrt(det V0). For an ellipse with half axes k U and k V (its tangents, of any
+//! angle between them):
+//!
+//! ```text
+//!   xx = (a.U)^2 + (a.V)^2     xy = (a.U) (b.U) + (a.V) (b.V)     yy = (b.U)^2 + (b.V)^2
+//!   area = |(sx sy) ((U x V) . d)|      half = k sqrt(U.z U.z + V.z V.z)
+//!   tilt = (((a.U) U.z + (a.V) V.z) m, ((b.U) U.z + (b.V) V.z) m)
+//! ```
+//!
+//! Its plane and its facing are those of the surfel's normal, not of U x V. n is not made a unit
+//! vector again in view space.
 //!
 //! **Nearness** of the plane: w0 = 1/t or -t at the centre, wx = m n.x / (fx g), wy = -m n.y / (fy g)
 //! per pixel, the ray-plane intersection relative to the centre. `Decided:` a fragment in the skirt
@@ -64,7 +73,7 @@
 //! Bounds: those of the exact outline and of the filter's circle of radius k sqrt(h), both; a disc
 //! that reaches the near plane has those of its visible part.
 //!
-//! **Fate.** In this order: a surfel whose centre is not farther than the near plane is `Behind`;
+//! **Fate**, in this arithmetic: it may differ between `f32` and `f64`. In this order: a surfel whose centre is not farther than the near plane is `Behind`;
 //! one whose amplitude is below 2^-96, whose gradient of nearness exceeds 2^96 a pixel, or of which
 //! any number is not finite is `Degenerate` (seen edge-on, or astronomically large or small); with
 //! culling, one with g >= 0 is `BackFacing`; one that cannot be seen is `Outside`: no pixel of the
@@ -101,7 +110,7 @@ pub enum Fate {
     Degenerate,
     /// Its back is seen, and culling is on.
     BackFacing,
-    /// None of its pixels is in the picture.
+    /// None of its pixels is in the picture, or it lies beyond a side of the view.
     Outside,
 }
 
@@ -112,7 +121,7 @@ pub struct Disc<R> {
     pub position: Vector3<R>,
     /// Unit normal.
     pub normal: Vector3<R>,
-    /// Radius; not used if there are tangents.
+    /// Radius; with tangents they count instead.
     pub radius: R,
     /// Half axes of an elliptical surfel.
     pub tangents: Option<[Vector3<R>; 2]>,

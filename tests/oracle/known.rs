@@ -290,7 +290,6 @@ fn orthographic_depths_stop_at_the_near_plane() {
 }
 
 #[test]
-#[ignore = "fails: the side planes of the view are tested with a radius that need not hold the ellipse"]
 fn an_ellipse_partly_in_sight_is_drawn() {
     let camera = camera(Lens::Orthographic(6.0), 60);
     // Conjugate half axes that are not perpendicular reach sqrt(1 + 0.81) = 1.345 to the right; and

@@ -278,7 +278,13 @@ impl Splat {
         }
         let shift = [eye.cx, eye.cy];
         let shift = std::array::from_fn(|i| step * (figure.center[i].abs() + shift[i].abs()));
-        let radius = f64::from(surfels.radius()[index]);
+        let radius = match surfels.tangents() {
+            None => f64::from(surfels.radius()[index]),
+            Some(axes) => {
+                let squared = axes[index].map(|axis| axis.as_dvec3().length_squared());
+                (squared[0] + squared[1]).sqrt()
+            }
+        };
         let [excess, terms] = eye.beyond(body.p, radius, optics.k * optics.h.sqrt());
         let parting = excess.abs() <= guard * step * terms;
         let back = figure.facing > 0.0;

@@ -29,7 +29,7 @@ pub struct Picture<R> {
 /// |---|---|
 /// | visibility | `visibility.Z`, `visibility.id` |
 /// | attributes | `attributes.R G B` (if the scene has colours), `attributes.normal.X Y Z`, `attributes.weight`: sums; `attributes.count`: fragments, up to 255 |
-/// | | `margin`: how far the nearest decision of the pixel was from flipping, in ulp; +inf: no decision |
+/// | | `margin`: how far the nearest decision of the pixel was from flipping, in ulp; +inf: no decision. Taken over the splats whose bounds hold the pixel |
 /// | normalization | `resolved.R G B` (if the scene has colours) |
 ///
 /// # Errors
