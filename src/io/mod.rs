@@ -1,9 +1,14 @@
-//! Files: pictures in and out. Only this module, `cli` and `main` know of them.
+//! Files: everything that touches the disk, besides the command line.
 //!
 //! - [`exr`]: every plane of a frame, exactly; reading guards against lying files.
+//! - [`ply`]: point clouds and meshes, in and out.
 //! - [`png`]: an 8-bit preview.
-//! - [`replace`]: the one way a file is written: beside, then renamed.
+//! - [`replace`]: output files that are whole or not there.
+//! - [`scene_file`]: scenes as TOML: models, lights, camera, settings.
+//! - [`srgb`]: the transfer function between stored colours and linear light.
 
 pub mod exr;
+pub mod ply;
 pub mod png;
 pub mod replace;
+pub mod srgb;

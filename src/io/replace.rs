@@ -1,38 +1,107 @@
-//! Writing a file beside its place and renaming it, so that nothing half-written is ever found.
+//! Output files that are whole or not there: written beside their place, then renamed into it.
 
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Replaces the file at `path` by what `write` writes.
+/// Writes a file so that nobody ever sees half of it.
 ///
-/// It goes to `.NAME.partial-PID` in the same directory and is renamed when complete.
+/// The bytes go to `.NAME.partial-PID` in the same directory, which is renamed to `path` when
+/// `write` has succeeded and removed in every other case, a panic included. A file that was at
+/// `path` stays as it was until then.
 ///
 /// # Errors
-/// [`Error::Io`] if the directory or the file refuses; the partial file is removed then, and a file
-/// that was at `path` stays as it was.
+/// [`Error::Io`] on `path` if it names no file, or something that is not a regular file, if its
+/// directory does not exist or cannot be written to, or if `write` fails.
 pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> Result<()> {
+    replace(path, write).map_err(|source| Error::io(path, source))
+}
+
+fn replace(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> io::Result<()> {
+    let refuse = |what| Err(io::Error::new(io::ErrorKind::InvalidInput, what));
     let Some(name) = path.file_name() else {
-        return Err(Error::io(path, io::Error::from(io::ErrorKind::InvalidFilename)));
+        return refuse("this names no file; give the name of the file to write");
     };
-    let mut partial_name = std::ffi::OsString::from(".");
-    partial_name.push(name);
-    partial_name.push(format!(".partial-{}", std::process::id()));
-    let partial = path.with_file_name(partial_name);
-    let written = File::create(&partial).and_then(|file| {
-        let mut file = BufWriter::new(file);
-        write(&mut file)?;
-        file.flush()?;
-        drop(file);
-        fs::rename(&partial, path)
-    });
-    written.map_err(|source| {
-        // The first failure is the one to report; the partial file may not even exist.
-        let _ = fs::remove_file(&partial);
-        Error::io(path, source)
-    })
+    // A rename would put a file in the place of a device such as /dev/null.
+    if fs::metadata(path).is_ok_and(|at| !at.is_file()) {
+        return refuse("this is there and is no regular file; give another name");
+    }
+    let mut partial = std::ffi::OsString::from(".");
+    partial.push(name);
+    partial.push(format!(".partial-{}", std::process::id()));
+    let partial = Partial(path.with_file_name(partial));
+
+    let mut out = BufWriter::new(File::create(&partial.0)?);
+    write(&mut out)?;
+    out.flush()?;
+    drop(out);
+    fs::rename(&partial.0, path)
+}
+
+/// The file beside, removed when this goes; after the rename nothing is left to remove.
+struct Partial(PathBuf);
+
+impl Drop for Partial {
+    fn drop(&mut self) {
+        // There is nobody to tell, and the error that led here is the one that matters.
+        let _ = fs::remove_file(&self.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a directory holds.
+    fn names(directory: &Path) -> Vec<String> {
+        let entries = fs::read_dir(directory).unwrap();
+        entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect()
+    }
+
+    #[test]
+    fn a_file_is_replaced_and_nothing_else_stays() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.ply");
+        fs::write(&path, "old").unwrap();
+        write_atomically(&path, |out| {
+            assert_eq!(fs::read_to_string(&path).unwrap(), "old", "untouched while writing");
+            out.write_all(b"new")
+        })
+        .unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+        assert_eq!(names(directory.path()), ["a.ply"]);
+    }
+
+    #[test]
+    fn a_failure_leaves_the_old_file_and_no_partial_one() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.ply");
+        fs::write(&path, "old").unwrap();
+        let error = write_atomically(&path, |out| {
+            out.write_all(b"half")?;
+            Err(io::Error::other("disk on fire"))
+        })
+        .unwrap_err();
+        assert_eq!(error.to_string(), format!("{}: disk on fire", path.display()));
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(names(directory.path()), ["a.ply"]);
+    }
+
+    #[test]
+    fn places_that_no_file_can_take_are_refused() {
+        let directory = tempfile::tempdir().unwrap();
+        let refused = |path: &Path| write_atomically(path, |_| Ok(())).unwrap_err().to_string();
+        assert!(refused(directory.path()).contains("no regular file"));
+        assert!(refused(&directory.path().join("..")).contains("names no file"));
+        let missing = directory.path().join("missing/a.ply");
+        assert!(refused(&missing).starts_with(&missing.display().to_string()));
+        assert!(names(directory.path()).is_empty());
+    }
 }

@@ -3,11 +3,13 @@
 //! - [`cloud`]: points as a file holds them, nothing derived, nothing checked.
 //! - [`surfels`]: the checked structure of arrays that every method takes.
 //! - [`camera`]: perspective and orthographic cameras.
+//! - [`derive`]: from what a file gives to complete surfels.
 //! - [`light`]: lights and the Phong material.
 //! - [`procedural`]: shapes whose true picture is known.
 
 pub mod camera;
 pub mod cloud;
+pub mod derive;
 pub mod light;
 pub mod procedural;
 pub mod surfels;

@@ -1,0 +1,252 @@
+//! The header of a PLY file: what the body holds, in which order and of which types.
+
+use std::collections::BTreeSet;
+
+/// How numbers are stored in the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    Ascii,
+    Little,
+    Big,
+}
+
+/// The type of one number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn parse(name: &str, line: u64) -> Result<Self, String> {
+        match name {
+            "char" | "int8" => Ok(Self::I8),
+            "uchar" | "uint8" => Ok(Self::U8),
+            "short" | "int16" => Ok(Self::I16),
+            "ushort" | "uint16" => Ok(Self::U16),
+            "int" | "int32" => Ok(Self::I32),
+            "uint" | "uint32" => Ok(Self::U32),
+            "float" | "float32" => Ok(Self::F32),
+            "double" | "float64" => Ok(Self::F64),
+            _ => Err(format!(
+                "line {line}: unknown type {}; the types are char, uchar, short, ushort, int, \
+                 uint, float, double",
+                quote(name)
+            )),
+        }
+    }
+
+    /// The name that the format's description gives it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::I8 => "char",
+            Self::U8 => "uchar",
+            Self::I16 => "short",
+            Self::U16 => "ushort",
+            Self::I32 => "int",
+            Self::U32 => "uint",
+            Self::F32 => "float",
+            Self::F64 => "double",
+        }
+    }
+
+    /// Bytes in a binary body.
+    pub(super) fn size(self) -> u64 {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    pub(super) fn is_integer(self) -> bool {
+        !matches!(self, Self::F32 | Self::F64)
+    }
+}
+
+/// One number, or a list that starts with how many there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    One(Scalar),
+    List { count: Scalar, item: Scalar },
+}
+
+#[derive(Debug)]
+pub(super) struct Property {
+    pub(super) name: String,
+    pub(super) kind: Kind,
+}
+
+#[derive(Debug)]
+pub(super) struct Element {
+    pub(super) name: String,
+    /// What the header claims; nothing is known to be true of it.
+    pub(super) count: u64,
+    pub(super) properties: Vec<Property>,
+}
+
+#[derive(Debug)]
+pub(super) struct Header {
+    pub(super) format: Format,
+    pub(super) elements: Vec<Element>,
+    /// Where the body starts, in bytes.
+    pub(super) body: usize,
+    /// The line that the body starts on, counted from 1.
+    pub(super) line: u64,
+}
+
+/// Reads the header of a file.
+pub(super) fn parse(bytes: &[u8]) -> Result<Header, String> {
+    let mut lines = Lines { bytes, at: 0, number: 0 };
+    if lines.next().as_deref() != Some("ply") {
+        return Err("line 1: not a PLY file: the first line must be `ply`".into());
+    }
+    let mut format = None;
+    let mut elements = Vec::new();
+    let mut names = BTreeSet::new();
+    loop {
+        let Some(text) = lines.next() else {
+            let what = "the header has no end_header: the file is truncated or no PLY file";
+            return Err(format!("line {}: {what}", lines.number));
+        };
+        let line = lines.number;
+        // No line of a header has more than five words; a comment may.
+        let words: Vec<&str> = text.split_ascii_whitespace().take(6).collect();
+        match words[..] {
+            ["end_header"] => break,
+            [] | ["comment" | "obj_info", ..] => {}
+            ["format", name, version] => {
+                if format.replace(parse_format(name, version, line)?).is_some() {
+                    return Err(format!("line {line}: the format is given twice; keep one"));
+                }
+            }
+            ["element", name, count] => {
+                elements.push(parse_element(name, count, line)?);
+                unique(&mut names, (name.to_owned(), None), line)?;
+            }
+            ["property", ref rest @ ..] => {
+                let property = parse_property(rest, &text, line)?;
+                let Some(element) = elements.last_mut() else {
+                    let what = "a property before the first element; declare the element first";
+                    return Err(format!("line {line}: {what}"));
+                };
+                unique(&mut names, (element.name.clone(), Some(property.name.clone())), line)?;
+                element.properties.push(property);
+            }
+            _ => return Err(unknown_line(&text, line)),
+        }
+    }
+    let format = format.ok_or_else(|| {
+        format!("line {}: no format line; add `format ascii 1.0` or a binary one", lines.number)
+    })?;
+    Ok(Header { format, elements, body: lines.at, line: lines.number + 1 })
+}
+
+fn unknown_line(text: &str, line: u64) -> String {
+    format!(
+        "line {line}: {} is no line of a PLY header, which has format, comment, obj_info, \
+         element NAME COUNT, property TYPE NAME, property list TYPE TYPE NAME, end_header",
+        quote(text)
+    )
+}
+
+fn parse_format(name: &str, version: &str, line: u64) -> Result<Format, String> {
+    let format = match name {
+        "ascii" => Format::Ascii,
+        "binary_little_endian" => Format::Little,
+        "binary_big_endian" => Format::Big,
+        _ => {
+            return Err(format!(
+                "line {line}: unknown format {}; it must be ascii, binary_little_endian or \
+                 binary_big_endian",
+                quote(name)
+            ));
+        }
+    };
+    if version != "1.0" {
+        return Err(format!(
+            "line {line}: unknown version {} of the format; only 1.0 is read",
+            quote(version)
+        ));
+    }
+    Ok(format)
+}
+
+fn parse_element(name: &str, count: &str, line: u64) -> Result<Element, String> {
+    let count = count.parse().map_err(|_| {
+        let count = quote(count);
+        format!("line {line}: element {}: {count} is no count below 2^64", quote(name))
+    })?;
+    Ok(Element { name: name.to_owned(), count, properties: Vec::new() })
+}
+
+/// The words after `property`; `text` is the whole line.
+fn parse_property(words: &[&str], text: &str, line: u64) -> Result<Property, String> {
+    let (kind, name) = match *words {
+        ["list", count, item, name] => {
+            let (count, item) = (Scalar::parse(count, line)?, Scalar::parse(item, line)?);
+            if !count.is_integer() {
+                let what = format!("counts its list in {}; use uchar or int", count.name());
+                return Err(format!("line {line}: property {} {what}", quote(name)));
+            }
+            (Kind::List { count, item }, name)
+        }
+        [kind, name] => (Kind::One(Scalar::parse(kind, line)?), name),
+        _ => return Err(unknown_line(text, line)),
+    };
+    Ok(Property { name: name.to_owned(), kind })
+}
+
+/// Notes a name; an element has no second part, a property its own name there.
+fn unique(
+    names: &mut BTreeSet<(String, Option<String>)>,
+    name: (String, Option<String>),
+    line: u64,
+) -> Result<(), String> {
+    let what = match &name.1 {
+        Some(property) => format!("property {} of element {}", quote(property), quote(&name.0)),
+        None => format!("element {}", quote(&name.0)),
+    };
+    if names.insert(name) {
+        return Ok(());
+    }
+    Err(format!("line {line}: {what} is declared twice; rename or remove one"))
+}
+
+/// The lines of a header; text that is not UTF-8, which only comments may hold, is replaced.
+struct Lines<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    number: u64,
+}
+
+impl<'a> Lines<'a> {
+    /// The next line without its LF or CR LF; none at the end of the file.
+    fn next(&mut self) -> Option<std::borrow::Cow<'a, str>> {
+        let rest = &self.bytes[self.at..];
+        if rest.is_empty() {
+            return None;
+        }
+        let end = rest.iter().position(|&b| b == b'\n');
+        let line = &rest[..end.unwrap_or(rest.len())];
+        self.at += end.map_or(rest.len(), |end| end + 1);
+        self.number += 1;
+        Some(String::from_utf8_lossy(line.strip_suffix(b"\r").unwrap_or(line)))
+    }
+}
+
+/// Text from a file, fit for one line of a message: escaped, at most 40 characters.
+pub(super) fn quote(text: &str) -> String {
+    let mut shown: String = text.chars().take(40).flat_map(char::escape_debug).collect();
+    if text.chars().nth(40).is_some() {
+        shown.push_str("...");
+    }
+    format!("`{shown}`")
+}

@@ -1,0 +1,62 @@
+//! PLY out.
+
+use crate::error::Result;
+use crate::io::replace::write_atomically;
+use crate::scene::Cloud;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Writes a cloud as binary little-endian PLY, whole or not at all.
+///
+/// Vertices are floats: `x y z`, then what there is of `nx ny nz`, `radius`, `red green blue`
+/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`; triangles follow as `face` with
+/// `list uchar uint vertex_indices`. [`super::read`] gives the same cloud back, bit for bit.
+///
+/// # Errors
+/// [`crate::Error::Invalid`] if the arrays of the cloud differ in length; [`crate::Error::Io`] as
+/// [`write_atomically`].
+pub fn write(path: &Path, cloud: &Cloud) -> Result<()> {
+    cloud.check()?;
+    write_atomically(path, |out| encode(cloud, out))
+}
+
+/// The bytes of a checked cloud.
+pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
+    let names = [
+        (true, "x y z"),
+        (cloud.normal.is_some(), "nx ny nz"),
+        (cloud.radius.is_some(), "radius"),
+        (cloud.color.is_some(), "red green blue"),
+        (cloud.opacity.is_some(), "opacity"),
+        (cloud.tangents.is_some(), "tux tuy tuz tvx tvy tvz"),
+    ];
+    writeln!(out, "ply\nformat binary_little_endian 1.0")?;
+    writeln!(out, "element vertex {}", cloud.position.len())?;
+    for name in names.iter().filter(|n| n.0).flat_map(|n| n.1.split(' ')) {
+        writeln!(out, "property float {name}")?;
+    }
+    if !cloud.triangles.is_empty() {
+        writeln!(out, "element face {}", cloud.triangles.len())?;
+        writeln!(out, "property list uchar uint vertex_indices")?;
+    }
+    writeln!(out, "end_header")?;
+    for i in 0..cloud.position.len() {
+        let mut put = |values: &[f32]| {
+            values.iter().try_for_each(|value| out.write_all(&value.to_le_bytes()))
+        };
+        put(&cloud.position[i].to_array())?;
+        cloud.normal.as_ref().map_or(Ok(()), |normal| put(&normal[i].to_array()))?;
+        cloud.radius.as_ref().map_or(Ok(()), |radius| put(&[radius[i]]))?;
+        cloud.color.as_ref().map_or(Ok(()), |color| put(&color[i].to_array()))?;
+        cloud.opacity.as_ref().map_or(Ok(()), |opacity| put(&[opacity[i]]))?;
+        if let Some(tangents) = &cloud.tangents {
+            put(&tangents[i][0].to_array())?;
+            put(&tangents[i][1].to_array())?;
+        }
+    }
+    for triangle in &cloud.triangles {
+        out.write_all(&[3])?;
+        triangle.iter().try_for_each(|index| out.write_all(&index.to_le_bytes()))?;
+    }
+    Ok(())
+}

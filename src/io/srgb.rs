@@ -1,0 +1,33 @@
+//! The transfer function of sRGB (IEC 61966-2-1) between stored colours and linear light.
+
+use crate::number::elementary;
+
+/// The linear value of a stored one, both in [0, 1].
+///
+/// `c / 12.92` if `c <= 0.04045`, else `((c + 0.055) / 1.055)^2.4`, in f64.
+#[must_use]
+pub fn to_linear(c: f64) -> f64 {
+    if c <= 0.04045 { c / 12.92 } else { elementary::pow((c + 0.055) / 1.055, 2.4) }
+}
+
+/// The linear value of each code 0 to `max`, rounded to f32 once; code `max` is white, 1.
+#[must_use]
+pub fn table(max: u16) -> Vec<f32> {
+    (0..=max).map(|code| to_linear(f64::from(code) / f64::from(max)) as f32).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_holds_known_values() {
+        let table = table(255);
+        assert_eq!(table.len(), 256);
+        assert_eq!((table[0], table[255]), (0.0, 1.0));
+        assert_eq!(table[10], (10.0 / 255.0 / 12.92) as f32, "the last code on the straight part");
+        // 188 is the code of half the light: 0.502886 in the tables of the standard.
+        assert!((table[188] - 0.502_886_5).abs() < 1e-6, "{}", table[188]);
+        assert!(table.is_sorted());
+    }
+}

@@ -1,0 +1,37 @@
+//! Clouds whose arrays fit together.
+
+use crate::error::{Error, Result};
+use crate::scene::Cloud;
+
+impl Cloud {
+    /// Checks what [`Cloud`] promises: one length for all arrays, triangles of existing points,
+    /// and fewer than 2^32 - 1 points.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] that names the array.
+    pub fn check(&self) -> Result<()> {
+        let n = self.position.len();
+        if n as u64 >= u64::from(u32::MAX) {
+            let what = format!("{n} points, but ids have 32 bits: split the scene");
+            return Err(Error::Invalid(what));
+        }
+        let lengths = [
+            ("normals", self.normal.as_ref().map(Vec::len)),
+            ("radii", self.radius.as_ref().map(Vec::len)),
+            ("colours", self.color.as_ref().map(Vec::len)),
+            ("opacities", self.opacity.as_ref().map(Vec::len)),
+            ("tangents", self.tangents.as_ref().map(Vec::len)),
+        ];
+        for (what, length) in lengths {
+            if let Some(length) = length.filter(|&length| length != n) {
+                return Err(Error::Invalid(format!("{n} positions, but {length} {what}")));
+            }
+        }
+        let outside = |triangle: &[u32; 3]| triangle.iter().any(|&i| i as usize >= n);
+        if let Some(at) = self.triangles.iter().position(outside) {
+            let what = format!("triangle {at} has a corner that is none of the {n} points");
+            return Err(Error::Invalid(what));
+        }
+        Ok(())
+    }
+}
