@@ -3,6 +3,7 @@
 //! - [`exr`]: every plane of a frame, exactly; reading guards against lying files.
 //! - [`ply`]: point clouds and meshes, in and out.
 //! - [`png`]: an 8-bit preview.
+//! - [`provenance`]: the text that a picture carries.
 //! - [`replace`]: output files that are whole or not there.
 //! - [`scene_file`]: scenes as TOML: models, lights, camera, settings.
 //! - [`srgb`]: the transfer function between stored colours and linear light.
@@ -10,5 +11,7 @@
 pub mod exr;
 pub mod ply;
 pub mod png;
+pub mod provenance;
 pub mod replace;
+pub mod scene_file;
 pub mod srgb;
