@@ -123,12 +123,15 @@ fn timed(times: &mut Times, render: impl Fn() -> Result<draw::Drawing>) -> Resul
 }
 
 fn print_times(exec: &splatref::frame::Exec, loading: Duration, times: Times, writing: Duration) {
-    let threads = exec.threads();
+    let threads = match exec.threads() {
+        1 => "1 thread".into(),
+        n => format!("{n} threads"),
+    };
     let of = match times.len() {
         1 => String::new(),
         n => format!(", minimum and median of {n} pictures"),
     };
-    report::line("time", format!("{threads} threads{of}"));
+    report::line("time", format!("{threads}{of}"));
     report::time("loading", vec![loading]);
     for stage in 0..times[0].len() {
         let laps = times.iter().map(|laps| laps[stage].1).collect();
