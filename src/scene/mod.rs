@@ -3,7 +3,7 @@
 //! - [`cloud`]: points as a file holds them, nothing derived, nothing checked.
 //! - [`surfels`]: the checked structure of arrays that every method takes.
 //! - [`camera`]: perspective and orthographic cameras.
-//! - [`derive`]: from what a file gives to complete surfels.
+//! - [`mod@derive`]: from what a file gives to complete surfels.
 //! - [`hash`]: the identity of a scene.
 //! - [`light`]: lights and the Phong material.
 //! - [`merge`]: several models as one cloud.

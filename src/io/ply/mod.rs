@@ -40,7 +40,7 @@ use crate::scene::Cloud;
 use std::path::Path;
 use values::Values;
 
-/// Reads a file. It needs memory for the file and the cloud, and about 50 ms for a million points.
+/// Reads a file. It needs memory for the file and the cloud, and about 0.1 s for a million points.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be read, [`Error::Format`] as [`parse`].

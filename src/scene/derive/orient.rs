@@ -8,60 +8,100 @@ pub(super) const TIES: usize = 8;
 
 /// Flips normals so that neighbours agree.
 ///
-/// Each place is tied to its nearest ones by edges of weight `1 - |n . n'|` (f64, at least 0, rounded
-/// to `f32`). Along a minimum spanning tree, ties of weight by the lower pair of indices, the normals
-/// of two ends get a dot product >= 0.
+/// Each place is tied to its nearest ones by edges of weight `1 - |n . n'|` (f64, at least 0,
+/// rounded to `f32`). Along a minimum spanning tree, ties of weight by the lower pair of indices,
+/// the normals of two ends get a dot product >= 0.
 ///
-/// `Decided:` each connected part is then flipped as a whole so that the normal of its outermost
-/// place points outwards: the one farthest from the mean of all places, the lower index of equal
-/// ones. If that normal is nearly perpendicular to the way out (|cosine| <= 1/8), as on a flat
-/// part, its largest component, the first of equal ones, becomes positive.
+/// `Decided:` each connected part is then flipped as a whole so that the volume behind it is
+/// positive, see [`Side::is_inner`]. Hoppe's choice, the normal of one extreme point, turns a whole
+/// scan inside out where that point is on a thin tip.
 pub(super) fn agree(places: &[Vec3], ties: &[[u32; TIES]], normals: &mut [Vec3]) {
     let mut parts = Parts::new(places.len());
     for (_, a, b) in edges(ties, normals) {
         let against = dot(normals[a as usize], normals[b as usize]) < 0.0;
         parts.join(a, b, against);
     }
-
-    let mut mean = DVec3::ZERO;
-    for place in places {
-        mean += place.as_dvec3();
-    }
-    mean /= places.len() as f64;
-    let outwards = |i: u32| places[i as usize].as_dvec3() - mean;
-    let mut outermost: Vec<Option<u32>> = vec![None; places.len()];
-    for i in 0..places.len() as u32 {
-        let best = &mut outermost[parts.find(i).0 as usize];
-        if best.is_none_or(|b| outwards(i).length_squared() > outwards(b).length_squared()) {
-            *best = Some(i);
+    // Number the parts, and let each place agree with the root of its part.
+    let mut number: Vec<Option<usize>> = vec![None; places.len()];
+    let mut part = Vec::with_capacity(places.len());
+    let mut count = 0;
+    for (i, normal) in (0..).zip(&mut *normals) {
+        let (root, against) = parts.find(i);
+        part.push(*number[root as usize].get_or_insert_with(|| {
+            count += 1;
+            count - 1
+        }));
+        if against {
+            *normal = -*normal;
         }
     }
-    let mut flip = vec![false; places.len()]; // by root: whether it and what agrees with it flip
-    for seed in outermost.into_iter().flatten() {
-        let (root, against) = parts.find(seed);
-        flip[root as usize] = against ^ points_inwards(normals[seed as usize], outwards(seed));
+
+    let mut sides = vec![Side::default(); count];
+    for i in 0..places.len() {
+        sides[part[i]].locate(places[i], area(places, i, &ties[i]));
     }
-    for i in 0..places.len() as u32 {
-        let (root, against) = parts.find(i);
-        if flip[root as usize] ^ against {
-            normals[i as usize] = -normals[i as usize];
+    for i in 0..places.len() {
+        sides[part[i]].add(places[i], normals[i], area(places, i, &ties[i]));
+    }
+    for (normal, part) in normals.iter_mut().zip(part) {
+        if sides[part].is_inner() {
+            *normal = -*normal;
         }
     }
 }
 
-/// Whether the normal of an outermost place has to be flipped.
-fn points_inwards(normal: Vec3, out: DVec3) -> bool {
-    let cosine = normal.as_dvec3().dot(out);
-    if 8.0 * cosine.abs() > out.length() {
-        return cosine < 0.0;
+/// What a place stands for, up to a factor: the squared distance to the farthest place it is tied
+/// to.
+fn area(places: &[Vec3], of: usize, ties: &[u32; TIES]) -> f64 {
+    let distance2 =
+        |&tie: &u32| places[tie as usize].as_dvec3().distance_squared(places[of].as_dvec3());
+    ties.iter().map(distance2).fold(0.0, |most, d| if d > most { d } else { most })
+}
+
+/// On which side of a part its normals are; sums in ascending index, in f64.
+#[derive(Clone, Copy, Default)]
+struct Side {
+    /// The sum of areas, and of places times areas.
+    area: f64,
+    place: DVec3,
+    /// The sums of `n . (p - mean)` and `|p - mean|`, and of the normals, times areas.
+    volume: f64,
+    size: f64,
+    facing: DVec3,
+}
+
+impl Side {
+    fn locate(&mut self, place: Vec3, area: f64) {
+        self.area += area;
+        self.place += place.as_dvec3() * area;
     }
-    let mut largest = 0;
-    for other in 1..3 {
-        if normal[other].abs() > normal[largest].abs() {
-            largest = other;
+
+    fn add(&mut self, place: Vec3, normal: Vec3, area: f64) {
+        let out = place.as_dvec3() - self.place / self.area;
+        self.volume += normal.as_dvec3().dot(out) * area;
+        self.size += out.length() * area;
+        self.facing += normal.as_dvec3() * area;
+    }
+
+    /// Whether the normals have to be flipped.
+    ///
+    /// By the divergence theorem the sum of `n . (p - c)` over a closed surface is three times its
+    /// volume for any c. On an open part, with c its mean, it tells the convex side. If it is at
+    /// most 1/256 of what a sphere would give, the part is flat: then the largest component, the
+    /// first of equal ones, of its mean normal becomes positive.
+    fn is_inner(&self) -> bool {
+        if 256.0 * self.volume.abs() > self.size {
+            return self.volume < 0.0;
         }
+        let facing = self.facing.to_array();
+        let mut largest = 0;
+        for other in 1..3 {
+            if facing[other].abs() > facing[largest].abs() {
+                largest = other;
+            }
+        }
+        facing[largest] < 0.0
     }
-    normal[largest] < 0.0
 }
 
 fn dot(a: Vec3, b: Vec3) -> f64 {

@@ -1,0 +1,136 @@
+//! Bad files and what their refusal says.
+
+use super::super::parse;
+use super::{INDICES, XYZ, ascii, faces, vertices};
+
+/// Holds the one line of a refusal against what it must say.
+fn refused(bytes: Vec<u8>, expected: &str) {
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    let message = parse(&bytes).expect_err(&text);
+    assert!(message.contains(expected), "{text}\n{message}\nshould say: {expected}");
+    assert!(!message.contains('\n') && message.len() < 300, "{message}");
+}
+
+#[test]
+fn what_is_no_ply_file() {
+    refused(vec![], "line 1: not a PLY file: the first line must be `ply`");
+    refused(b"plywood\n".into(), "line 1: not a PLY file");
+    refused(vec![0xFF; 9], "line 1: not a PLY file");
+    refused(b"ply".into(), "line 1: the header has no end_header: the file is truncated");
+    refused(b"ply\nformat ascii 1.0\ncomment".into(), "line 3: the header has no end_header");
+    refused(b"ply\nformat text 1.0\n".into(), "line 2: unknown format `text`; it must be ascii");
+    refused(b"ply\nformat ascii 2.0\n".into(), "line 2: unknown version `2.0`");
+    refused(b"ply\nformat ascii\n".into(), "line 2: `format ascii` is no line of a PLY header");
+    refused(b"ply\nend_header\n".into(), "line 2: no format line; add `format ascii 1.0`");
+}
+
+#[test]
+fn lines_of_the_header() {
+    let header = |lines: &[&str], expected: &str| refused(ascii(lines, ""), expected);
+    header(&["format ascii 1.0"], "line 3: the format is given twice; keep one");
+    header(&["hello\tworld"], "line 3: `hello\\tworld` is no line of a PLY header");
+    header(&["property float x"], "line 3: a property before the first element");
+    header(&["element vertex"], "line 3: `element vertex` is no line");
+    header(&["element a -1"], "line 3: element `a`: `-1` is no count below 2^64");
+    header(&["element a 18446744073709551616"], "is no count below 2^64");
+    header(&["element a 1", "element a 1"], "line 4: element `a` is declared twice");
+    header(&["element a 1", "property half x"], "line 4: unknown type `half`; the types are char");
+    header(&["element a 1", "property list float int i"], "line 4: property `i` counts its list");
+    header(&["element a 1", "property list uchar int"], "line 4: `property list uchar int` is no");
+    header(&[&"x".repeat(1000)], &format!("line 3: `{}...` is no line", "x".repeat(40)));
+}
+
+#[test]
+fn elements_and_properties() {
+    let more = |more: &[&str], expected: &str| refused(vertices("1", more, "0 0 0"), expected);
+    more(&[XYZ[1]], "line 7: property `y` of element `vertex` is declared twice");
+    more(&["property float ny"], "element vertex has property ny but no nx");
+    more(&["property float tvz"], "element vertex has property tvz but no tux");
+    more(
+        &["property uchar alpha", "property float opacity"],
+        "element vertex has both opacity and alpha; keep one",
+    );
+    more(&["property int red"], "property `red` has type int, but its range is known for uchar");
+    let header = |lines: &[&str], expected: &str| refused(ascii(lines, ""), expected);
+    header(&[], "there is no element vertex: the file holds no points");
+    header(&["element vertex 1"], "element vertex has no properties x, y, z");
+    header(&["element vertex 1", XYZ[0], XYZ[1]], "has property x but no z");
+    header(
+        &["element vertex 1", "property list uchar float x", XYZ[1], XYZ[2]],
+        "element vertex: property `x` is a list, but must be one number",
+    );
+    refused(vertices("0", &[], ""), "element vertex has count 0: the file holds no points");
+    // Corners are held against the vertices, of which there are none.
+    let empty = ["element face 1", INDICES, "element vertex 0", XYZ[0], XYZ[1], XYZ[2]];
+    refused(ascii(&empty, "3 0 0 0\n"), "element vertex has count 0");
+}
+
+#[test]
+fn counts_that_lie() {
+    let three = "0 0 0\n1 0 0\n0 1 0\n";
+    for count in ["4", "4294967296", "18446744073709551615"] {
+        let declares = format!("element `vertex`: the header declares {count}, but the 18 bytes");
+        refused(vertices(count, &[], three), &declares);
+        refused(
+            vertices(count, &[], three),
+            "from line 8 on hold at most 3: the file is truncated",
+        );
+        let skipped = format!("element other {count}");
+        let more = [skipped.as_str(), "property double a"];
+        refused(vertices("3", &more, three), "element `other`: the header declares");
+    }
+    refused(vertices("2", &[], three), "line 10: 6 bytes are left over after the last element");
+    refused(
+        vertices("3", &[], "0 0 0\n1 0 0\n0     1\n"),
+        "vertex 2 (line 11), property `z`: the file ends here: it is truncated, or a count",
+    );
+}
+
+#[test]
+fn values_of_vertices() {
+    let rows = |rows, expected| refused(vertices("3", &[], rows), expected);
+    rows("0 0 0\n1 0 0 7\n0 1 0\n", "vertex 1 (line 9): the line goes on after the last property");
+    rows("0 0 0\n1.5 0\n0 1 0\n", "vertex 1 (line 10): the line goes on");
+    rows(
+        "0 0 0\n1 O 0\n0 1 0\n",
+        "vertex 1 (line 9), property `y`: `O` is no number of type float",
+    );
+    rows("0 0 \u{e4}\n1 0 0\n0 1 0\n", "property `z`: `\u{e4}` is no number of type float");
+    rows("0 0 \u{7}\n1 0 0\n0 1 0\n", "property `z`: `\\u{7}` is no number of type float");
+    let one = |property, value: &str, expected| {
+        refused(vertices("1", &[property], &format!("0 0 0 {value}")), expected);
+    };
+    one("property uchar alpha", "256", "vertex 0 (line 9), property `alpha`: `256` is no number");
+    one("property char c", "1.0", "`1.0` is no number of type char");
+    one("property uint c", "-1", "`-1` is no number of type uint");
+}
+
+#[test]
+fn corners_of_faces() {
+    let face = |face, expected| refused(faces(&[INDICES], face), expected);
+    face(
+        "3 0 1 3",
+        "face 0 (line 13), property `vertex_indices`: vertex 3 does not exist, they are 0 to 2",
+    );
+    face("3 0 -1 2", "vertex -1 does not exist");
+    face("3 0 1", "face 0 (line 14), property `vertex_indices`: the file ends here");
+    face(
+        "9 0 1 2",
+        "face 0 (line 13), property `vertex_indices`: a list of 9 values, but only 7 bytes",
+    );
+    face("3 0 1 2 0", "face 0 (line 13): the line goes on");
+    let list = |property, face, expected| refused(faces(&[property], face), expected);
+    list("property list int int vertex_indices", "-3 0 1 2", "a list of -3 values; a count is");
+    list(
+        "property list uint int vertex_indices",
+        "4294967295 0 1 2",
+        "a list of 4294967295 values, but only",
+    );
+    list(
+        "property list uchar float vertex_indices",
+        "3 0 1 2",
+        "property `vertex_indices` must be a list of integers",
+    );
+    list("property int vertex_index", "3", "property `vertex_index` must be a list of integers");
+    list("property int flags", "3", "element face has no property list vertex_indices");
+}
