@@ -1,2 +1,7 @@
-//! The program `splatref`.
-fn main() {}
+//! The program `splatref`: `splatref --help` tells what it does.
+
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::run()
+}

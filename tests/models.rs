@@ -4,8 +4,8 @@
 
 use splatref::frame::Exec;
 use splatref::io::ply;
-use splatref::scene::Cloud;
 use splatref::scene::derive::{Derive, Origin, surfels};
+use splatref::scene::{Cloud, Dropped};
 use std::path::PathBuf;
 
 /// The clouds of the models, with the counts of vertices and triangles that their source states.
@@ -40,8 +40,10 @@ fn models_have_the_counts_that_their_source_states() {
         let (surfels, derived) =
             surfels(cloud, &Derive::default(), &Exec::sequential(), &|_, _, _| ()).unwrap();
         assert_eq!((derived.normals, derived.radii), (Origin::File, Origin::Triangles), "{name}");
-        assert_eq!(derived.dropped.total(), 0, "{name}");
-        assert_eq!(surfels.len(), vertices, "{name}");
+        // One normal of the dragon is the rounding error of a sum that cancelled, 1.5e-31 long.
+        let dropped = Dropped { normal: u64::from(name == "dragon"), ..Dropped::default() };
+        assert_eq!(derived.dropped, dropped, "{name}");
+        assert_eq!((surfels.len() as u64) + dropped.total(), vertices as u64, "{name}");
     }
 }
 

@@ -1,13 +1,17 @@
 //! Files: everything that touches the disk. Only this module, `cli` and `main` know of them.
 //!
 //! - [`exr`]: every plane of a frame, exactly; reading guards against lying files.
-//! - [`png`]: an 8-bit preview.
 //! - [`ply`]: point clouds and meshes, in and out.
+//! - [`png`]: an 8-bit preview.
+//! - [`provenance`]: the text that a picture carries.
 //! - [`replace`]: output files that are whole or not there.
+//! - [`scene_file`]: scenes as TOML: models, lights, camera, settings.
 //! - [`srgb`]: the transfer function between stored colours and linear light.
 
 pub mod exr;
 pub mod ply;
 pub mod png;
+pub mod provenance;
 pub mod replace;
+pub mod scene_file;
 pub mod srgb;

@@ -35,7 +35,9 @@ fn replace(
     }
     let mut partial = std::ffi::OsString::from(".");
     partial.push(name);
-    partial.push(format!(".partial-{}", std::process::id()));
+    // WASI has no process ids, and std panics when asked for one.
+    let process = if cfg!(target_family = "wasm") { 0 } else { std::process::id() };
+    partial.push(format!(".partial-{process}"));
     let partial = Partial(path.with_file_name(partial));
 
     let mut out = BufWriter::new(File::create(&partial.0)?);

@@ -84,6 +84,7 @@ impl Camera {
     /// [`MAX_PIXELS`] in all, if the lens is out of range, if eye and target coincide, if up is 0
     /// or parallel to the view, or if anything is not finite.
     pub fn new(width: u32, height: u32, pose: Pose, lens: Lens) -> Result<Self> {
+        check_size(width, height)?;
         let (projection, scale) = scale(height, lens)?;
         let invalid = |what: &str| Err(Error::Invalid(format!("camera: {what}")));
         let Pose { eye, target, up } = pose;
@@ -140,6 +141,7 @@ impl Camera {
         from: DVec3,
         lens: Lens,
     ) -> Result<Self> {
+        check_size(width, height)?;
         let (projection, scale) = scale(height, lens)?;
         let half_extent = f64::from(if width < height { width } else { height }) / 2.0;
         // A single point has no extent: any distance frames it.
@@ -162,14 +164,7 @@ impl Camera {
     /// # Errors
     /// [`Error::Invalid`] as [`Camera::new`].
     pub fn check(&self) -> Result<()> {
-        let (w, h) = (self.width, self.height);
-        let pixels = u64::from(w) * u64::from(h);
-        if pixels == 0 || w > MAX_EXTENT || h > MAX_EXTENT || pixels > MAX_PIXELS {
-            return Err(Error::Invalid(format!(
-                "camera: a picture of {w} x {h} pixels; give 1 to {MAX_EXTENT} a side and at most \
-                 {MAX_PIXELS} in all"
-            )));
-        }
+        check_size(self.width, self.height)?;
         let numbers = [self.fx, self.fy, self.cx, self.cy, self.near];
         let finite = self.view_from_world.is_finite() && numbers.iter().all(|v| v.is_finite());
         let near_ok = match self.projection {
@@ -189,6 +184,18 @@ impl Camera {
     pub fn eye(&self) -> DVec3 {
         self.view_from_world.as_dmat4().inverse().w_axis.truncate()
     }
+}
+
+/// Whether a picture can have this size.
+fn check_size(width: u32, height: u32) -> Result<()> {
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels == 0 || width > MAX_EXTENT || height > MAX_EXTENT || pixels > MAX_PIXELS {
+        return Err(Error::Invalid(format!(
+            "camera: a picture of {width} x {height} pixels; give 1 to {MAX_EXTENT} a side and at \
+             most {MAX_PIXELS} in all"
+        )));
+    }
+    Ok(())
 }
 
 /// Projection and pixels per unit of a lens.

@@ -1,5 +1,6 @@
 //! Lights and the material that answers them.
 
+use crate::error::{Error, Result};
 use glam::Vec3;
 
 /// A light.
@@ -28,6 +29,45 @@ pub enum Light {
     },
 }
 
+/// The largest component of a light's colour.
+pub const MAX_RADIANCE: f32 = 65_536.0;
+
+impl Light {
+    /// The headlight of pictures that name no light: white, from the upper left.
+    pub const DEFAULT: Self =
+        Self::Headlight { towards: Vec3::new(-0.5, 0.75, 1.0), color: Vec3::ONE };
+
+    /// Whether the light can be shaded with.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if a number is not finite, if the square of a direction's length is not a
+    /// normal `f32` (such a direction has lost its digits), or if a colour is not in
+    /// [0, [`MAX_RADIANCE`]].
+    pub fn check(&self) -> Result<()> {
+        let color = match *self {
+            Self::Directional { towards, color } | Self::Headlight { towards, color } => {
+                if !towards.length_squared().is_normal() {
+                    let what = "light: towards must be finite, neither 0 nor without measure";
+                    return Err(Error::Invalid(what.into()));
+                }
+                color
+            }
+            Self::Point { position, color } => {
+                if !position.is_finite() {
+                    return Err(Error::Invalid("light: position must be finite numbers".into()));
+                }
+                color
+            }
+        };
+        if color.to_array().iter().all(|v| (0.0..=MAX_RADIANCE).contains(v)) {
+            Ok(())
+        } else {
+            let what = format!("light: color must be three numbers in [0, {MAX_RADIANCE}]");
+            Err(Error::Invalid(what))
+        }
+    }
+}
+
 /// The Phong reflection model: ambient + diffuse (n . l) + specular (r . v)^shininess.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phong {
@@ -52,5 +92,52 @@ impl Default for Phong {
             shininess: 32.0,
             color: Vec3::new(0.75, 0.75, 0.75),
         }
+    }
+}
+
+impl Phong {
+    /// Whether the numbers are in range.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if a weight or a component of the colour is not in [0, 1], or if the
+    /// shininess is not in [0, 65536].
+    pub fn check(&self) -> Result<()> {
+        let [r, g, b] = self.color.to_array();
+        let numbers = [
+            ("ambient", self.ambient, 1.0),
+            ("diffuse", self.diffuse, 1.0),
+            ("specular", self.specular, 1.0),
+            ("shininess", self.shininess, 65_536.0),
+            ("color", r, 1.0),
+            ("color", g, 1.0),
+            ("color", b, 1.0),
+        ];
+        for (what, value, most) in numbers {
+            if !(0.0..=most).contains(&value) {
+                let what = format!("material: {what} {value}; give a number in [0, {most}]");
+                return Err(Error::Invalid(what));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_out_of_range_are_refused() {
+        assert!(Light::DEFAULT.check().is_ok() && Phong::default().check().is_ok());
+        for towards in [Vec3::ZERO, Vec3::splat(1e-30), Vec3::splat(1e30), Vec3::NAN] {
+            assert!(Light::Headlight { towards, color: Vec3::ONE }.check().is_err(), "{towards}");
+        }
+        for color in [-Vec3::X, Vec3::NAN, Vec3::splat(1e6)] {
+            assert!(Light::Point { position: Vec3::ZERO, color }.check().is_err(), "{color}");
+            assert!(Phong { color, ..Phong::default() }.check().is_err(), "{color}");
+        }
+        let position = Vec3::splat(f32::INFINITY);
+        assert!(Light::Point { position, color: Vec3::ONE }.check().is_err());
+        assert!(Phong { shininess: -1.0, ..Phong::default() }.check().is_err());
     }
 }

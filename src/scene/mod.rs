@@ -4,21 +4,28 @@
 //! - [`surfels`]: the checked structure of arrays that every method takes.
 //! - [`camera`]: perspective and orthographic cameras.
 //! - [`mod@derive`]: from what a file gives to complete surfels.
+//! - [`hash`]: the identity of a scene.
 //! - [`light`]: lights and the Phong material.
+//! - [`merge`]: several models as one cloud.
 //! - [`procedural`]: shapes whose true picture is known.
+//! - [`transform`]: moving, turning and scaling a model.
 
 pub mod camera;
 pub mod cloud;
 pub mod derive;
+pub mod hash;
 pub mod light;
+pub mod merge;
 pub mod procedural;
 pub mod surfels;
+pub mod transform;
 
 pub use camera::{Camera, Lens, Pose, Projection};
 pub use cloud::Cloud;
 pub use light::{Light, Phong};
 pub use procedural::Shape;
 pub use surfels::{Dropped, Surfels};
+pub use transform::Similarity;
 
 /// A picture to be made: surfels, what lights them, and what lies behind them.
 ///

@@ -2,7 +2,7 @@
 
 use super::Cloud;
 use crate::error::{Error, Result};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Surfels as a structure of arrays, each of one length.
 ///
@@ -158,6 +158,17 @@ impl Surfels {
         self.position.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)))
     }
 
+    /// A sphere around all discs: the middle of [`Surfels::bounds`], and the largest distance from
+    /// there to a surfel plus its radius; in f64.
+    #[must_use]
+    pub fn bounding_sphere(&self) -> (DVec3, f64) {
+        let (low, high) = self.bounds();
+        let center = (low.as_dvec3() + high.as_dvec3()) / 2.0;
+        let reach = |(p, r): (&Vec3, &f32)| (p.as_dvec3() - center).length() + f64::from(*r);
+        let reaches = self.position.iter().zip(&self.radius).map(reach);
+        (center, reaches.fold(0.0, |most, reach| if reach > most { reach } else { most }))
+    }
+
     /// The surfels back as a cloud, to be written to a file.
     #[must_use]
     pub fn into_cloud(self) -> Cloud {
@@ -254,6 +265,14 @@ mod tests {
         let r = vec![4.0, 1.0, 3.0, 2.0];
         let (surfels, _) = Surfels::new(cloud(vec![Vec3::ZERO; 4], vec![Vec3::Z; 4], r)).unwrap();
         assert_eq!(surfels.median_radius(), 2.0);
+    }
+
+    #[test]
+    fn the_bounding_sphere_holds_every_disc() {
+        let p = vec![Vec3::new(-1.0, 0.0, 0.0), Vec3::new(3.0, 0.0, 0.0), Vec3::X];
+        let r = vec![0.5, 0.25, 4.0];
+        let (surfels, _) = Surfels::new(cloud(p, vec![Vec3::Z; 3], r)).unwrap();
+        assert_eq!(surfels.bounding_sphere(), (DVec3::X, 4.0));
     }
 
     #[test]

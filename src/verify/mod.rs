@@ -1,7 +1,9 @@
 //! Whether a picture is right: comparison plane by plane, and the usual distances.
 //!
 //! - [`compare`]: equal bit for bit, or where and by how much not.
+//! - [`digest`]: one hash of many pictures.
 //! - [`metrics`]: RMSE, PSNR and SSIM of planes.
 
 pub mod compare;
+pub mod digest;
 pub mod metrics;

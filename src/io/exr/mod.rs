@@ -12,6 +12,8 @@ mod write;
 pub use read::{read, read_header};
 pub use write::write;
 
+use crate::frame::{ChannelData, Frame};
+
 /// The name of the one text attribute that a file of this crate carries.
 pub const ATTRIBUTE: &str = "splatref";
 
@@ -61,6 +63,26 @@ pub enum ChannelType {
     Float,
     /// 32-bit unsigned integers.
     Uint,
+}
+
+impl From<&Frame<f32>> for Image {
+    /// What [`read()`] gives after [`write()`], text aside.
+    fn from(frame: &Frame<f32>) -> Self {
+        let channels = frame.channels().into_iter().map(|channel| {
+            let values = match channel.data {
+                ChannelData::Float { values, stride, offset } => {
+                    Values::Float(values.iter().skip(offset).step_by(stride).copied().collect())
+                }
+                ChannelData::Index(values) => Values::Index(values.to_vec()),
+                ChannelData::Count(values) => {
+                    Values::Index(values.iter().map(|&count| u32::from(count)).collect())
+                }
+            };
+            (channel.name, values)
+        });
+        let channels = channels.collect();
+        Self { width: frame.width, height: frame.height, channels, text: None }
+    }
 }
 
 impl Image {

@@ -1,0 +1,175 @@
+//! `splatref golden`: the pictures under `golden/` are reproduced bit for bit, or blessed.
+
+use super::options::ExecOptions;
+use super::{Finding, Outcome, draw, say};
+use splatref::frame::{Exec, Frame, NamedPlane, Plane, Samples};
+use splatref::io::exr::{self, Image, Values};
+use splatref::io::provenance;
+use splatref::io::scene_file::SceneFile;
+use splatref::verify::compare::{Finding as PlaneFinding, Report, Tolerance, Verdict, compare};
+use splatref::verify::digest;
+use splatref::{Error, Result};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+#[command(after_help = "\
+A case is a scene NAME.toml beside its picture NAME.exr. Exit codes: 0 all equal, 1 any different
+or blessed.
+
+Examples:
+  splatref golden
+  splatref golden ewa_raycast_sheets --threads 1 --tile 8
+  splatref golden --bless")]
+pub(super) struct Args {
+    /// The cases to check; all if none is named
+    names: Vec<String>,
+    /// Rewrite pictures that differ or are missing, and still exit 1
+    #[arg(long)]
+    bless: bool,
+    /// Where the cases are
+    #[arg(long, value_name = "PATH", default_value = "golden")]
+    dir: PathBuf,
+    #[command(flatten)]
+    exec: ExecOptions,
+}
+
+/// One case, and what rendering it gave.
+struct Case {
+    scene: PathBuf,
+    picture: PathBuf,
+    text: String,
+    frame: Frame<f32>,
+}
+
+pub(super) fn run(args: &Args) -> Finding {
+    let exec = args.exec.exec()?;
+    let names = names(&args.dir, &args.names)?;
+    let mut rendered = Vec::new();
+    let mut equal = 0;
+    for name in &names {
+        match check(args, &exec, name) {
+            Ok((image, is_equal)) => {
+                equal += usize::from(is_equal);
+                rendered.push((name.as_str(), image));
+            }
+            // A case that cannot be rendered is different from every picture; the others go on.
+            Err(error) => say(format!("different  {name}: {error}")),
+        }
+    }
+    let different = names.len() - equal;
+    say(format!("{equal} equal, {different} different"));
+    say(format!("sha256 {}", digest::sha256(rendered.iter().map(|(name, image)| (*name, image)))));
+    Ok(if different == 0 { Outcome::Good } else { Outcome::Different })
+}
+
+/// The cases of a directory, in the order of names; a picture without its scene is one too.
+fn names(dir: &Path, wanted: &[String]) -> Result<Vec<String>> {
+    let mut found = BTreeSet::new();
+    for entry in fs::read_dir(dir).map_err(|source| Error::io(dir, source))? {
+        let path = entry.map_err(|source| Error::io(dir, source))?.path();
+        let is_part = path.extension().is_some_and(|e| e == "toml" || e == "exr");
+        if let Some(name) = path.file_stem().and_then(|name| name.to_str()).filter(|_| is_part) {
+            found.insert(name.to_owned());
+        }
+    }
+    if found.is_empty() {
+        return Err(Error::format(dir, "there is no case here: add a scene NAME.toml"));
+    }
+    if let Some(unknown) = wanted.iter().find(|name| !found.contains(*name)) {
+        return Err(Error::Usage(format!("{}: no case is called {unknown}", dir.display())));
+    }
+    Ok(found.into_iter().filter(|name| wanted.is_empty() || wanted.contains(name)).collect())
+}
+
+/// Renders a case, says what became of it, and tells the picture and whether it is equal.
+fn check(args: &Args, exec: &Exec, name: &str) -> Result<(Image, bool)> {
+    let case = render(&args.dir, exec, name)?;
+    let actual = Image::from(&case.frame);
+    let stored = match fs::exists(&case.picture) {
+        Ok(false) => Err("there is no picture yet".to_owned()),
+        _ => exr::read(&case.picture).map_err(|error| error.to_string()),
+    };
+    let report = stored.as_ref().map(|stored| compare(stored, &actual, Tolerance::default()));
+    if report.as_ref().is_ok_and(|report| report.verdict() == Verdict::Equal) {
+        say(format!("equal      {name}"));
+        return Ok((actual, true));
+    }
+    match &report {
+        Ok(report) => differences(name, &case, report),
+        Err(why) => say(format!("different  {name}: {why}")),
+    }
+    if args.bless {
+        exr::write(&case.picture, &case.frame, &case.text)?;
+        say(format!("  blessed: wrote {}", case.picture.display()));
+    } else {
+        keep(name, &case, stored.as_ref().ok())?;
+    }
+    Ok((actual, false))
+}
+
+fn render(dir: &Path, exec: &Exec, name: &str) -> Result<Case> {
+    let (scene, picture) = (dir.join(format!("{name}.toml")), dir.join(format!("{name}.exr")));
+    let file = SceneFile::read(&scene)?;
+    let loaded = file.load(&exec, &|_, _, _| ())?;
+    let camera = file.camera(&loaded.scene.surfels)?;
+    let settings = file.method.settings();
+    let drawing = draw::draw(&loaded.scene, &camera, &settings, exec, file.output)?;
+    let text = provenance::text(&loaded.scene, &camera, &settings, file.output.number);
+    Ok(Case { scene, picture, text, frame: drawing.frame })
+}
+
+/// The first planes that differ, and how to look into the first pixel.
+fn differences(name: &str, case: &Case, report: &Report) {
+    let lines = report.lines();
+    let (verdict, planes) = lines.split_last().map_or(("", [].as_slice()), |(v, p)| (v, p));
+    say(format!("different  {name}: {}", verdict.trim_start_matches("different: ")));
+    let different = |i: &usize| report.planes[*i].verdict() != Verdict::Equal;
+    for i in (0..planes.len()).filter(different).take(4) {
+        say(format!("  {}", planes[i]));
+    }
+    let pixel = report.planes.iter().find_map(|plane| match &plane.finding {
+        PlaneFinding::Values(values) => values.first,
+        _ => None,
+    });
+    if let Some(at) = pixel {
+        say(format!("  splatref explain {} {} {}", case.scene.display(), at.x, at.y));
+    }
+}
+
+/// Leaves what was expected and what came for a person to look at.
+fn keep(name: &str, case: &Case, stored: Option<&Image>) -> Result<()> {
+    let folder = Path::new("out").join("golden");
+    fs::create_dir_all(&folder).map_err(|source| Error::io(&folder, source))?;
+    let place = |what: &str| folder.join(format!("{name}.{what}"));
+    exr::write(&place("actual.exr"), &case.frame, &case.text)?;
+    draw::write_png(&place("actual.png"), &case.frame)?;
+    if let Some(stored) = stored {
+        let to = place("expected.exr");
+        fs::copy(&case.picture, &to).map_err(|source| Error::io(&to, source))?;
+        draw::write_png(&place("expected.png"), &preview(stored))?;
+    }
+    say(format!("  see {}", folder.join(format!("{name}.*")).display()));
+    Ok(())
+}
+
+/// The colour and the coverage of a stored picture, as far as it has them.
+fn preview(image: &Image) -> Frame<f32> {
+    let (width, height) = (image.width, image.height);
+    let channel = |name: &str| match image.channel(name) {
+        Some(Values::Float(values)) => Some(values.clone()),
+        _ => None,
+    };
+    let mut planes = Vec::new();
+    if let (Some(r), Some(g), Some(b)) = (channel("R"), channel("G"), channel("B")) {
+        let color = (0..r.len()).map(|i| [r[i], g[i], b[i]]).collect();
+        let samples = Samples::Color(Plane::from_values(width, height, color));
+        planes.push(NamedPlane { name: String::new(), samples });
+    }
+    if let Some(alpha) = channel("A") {
+        let samples = Samples::Scalar(Plane::from_values(width, height, alpha));
+        planes.push(NamedPlane { name: "A".into(), samples });
+    }
+    Frame { width, height, planes }
+}

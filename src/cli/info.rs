@@ -1,0 +1,120 @@
+//! `splatref info`: what a file holds.
+
+use super::options::{Kind, kind};
+use super::report::{self, line};
+use super::{Finding, Outcome, progress, say};
+use splatref::Result;
+use splatref::frame::Exec;
+use splatref::io::exr::{self, ChannelType};
+use splatref::io::scene_file::{SceneFile, Source};
+use splatref::io::{ply, scene_file::Loaded};
+use splatref::scene::Light;
+use splatref::scene::derive::{self, Derive};
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  splatref info bunny.ply
+  splatref info out/cluster.exr")]
+pub(super) struct Args {
+    /// A .ply, a scene .toml or an .exr
+    file: PathBuf,
+}
+
+pub(super) fn run(args: &Args) -> Finding {
+    match kind(&args.file)? {
+        Kind::Ply => points(&args.file)?,
+        Kind::Toml => scene(&args.file)?,
+        Kind::Exr => picture(&args.file)?,
+    }
+    Ok(Outcome::Good)
+}
+
+fn points(path: &Path) -> Result<()> {
+    let cloud = ply::read(path)?;
+    line("points", cloud.position.len());
+    line("triangles", cloud.triangles.len());
+    let arrays = [
+        ("normals", cloud.normal.is_some()),
+        ("radii", cloud.radius.is_some()),
+        ("colours", cloud.color.is_some()),
+        ("opacities", cloud.opacity.is_some()),
+        ("tangents", cloud.tangents.is_some()),
+    ];
+    let there: Vec<&str> = arrays.iter().filter(|(_, is)| *is).map(|(name, _)| *name).collect();
+    line("has", if there.is_empty() { "positions only".into() } else { there.join(", ") });
+
+    let steps = progress::Steps::new();
+    let show = |what: &str, done, of| steps.show(what, done, of);
+    let (surfels, derived) = derive::surfels(cloud, &Derive::default(), &Exec::new(0, 32)?, &show)
+        .map_err(|error| splatref::Error::format(path, error.to_string()))?;
+    drop(steps);
+    line("surfels", surfels.len());
+    line("  normals", report::normals(derived.normals));
+    line("  radii", report::radii(derived.radii));
+    line("  dropped", report::dropped(&derived.dropped));
+    report::bounds(&surfels);
+    Ok(())
+}
+
+fn scene(path: &Path) -> Result<()> {
+    let file = SceneFile::read(path)?;
+    for model in &file.models {
+        line(
+            "source",
+            match &model.source {
+                Source::File { path, .. } => path.display().to_string(),
+                Source::Shape { shape, count, seed } => {
+                    format!("{shape:?}, about {count} surfels, seed {seed}")
+                }
+            },
+        );
+    }
+    let steps = progress::Steps::new();
+    let loaded: Loaded =
+        file.load(&Exec::new(0, 32)?, &|what, done, of| steps.show(what, done, of))?;
+    drop(steps);
+    let surfels = &loaded.scene.surfels;
+    report::scene(&loaded);
+    line("  sha256", loaded.scene.sha256());
+    for light in &file.lights {
+        line(
+            "light",
+            match light {
+                Light::Directional { towards, .. } => format!("directional, towards {towards}"),
+                Light::Headlight { towards, .. } => format!("headlight, towards {towards}"),
+                Light::Point { position, .. } => format!("point, at {position}"),
+            },
+        );
+    }
+    let camera = file.camera(surfels)?;
+    report::camera(&camera);
+    report::picture(&camera, file.output);
+    report::settings(&file.method.settings(), surfels);
+    Ok(())
+}
+
+fn picture(path: &Path) -> Result<()> {
+    let header = exr::read_header(path)?;
+    line("picture", format!("{} x {} pixels", header.width, header.height));
+    line("stored", header.compressions.join("; "));
+    for (name, kind) in &header.channels {
+        line(
+            "channel",
+            format!(
+                "{name}: {}",
+                match kind {
+                    ChannelType::Half => "half",
+                    ChannelType::Float => "float",
+                    ChannelType::Uint => "uint",
+                }
+            ),
+        );
+    }
+    match header.text {
+        Some(text) => say(format!("\n{}", text.trim_end())),
+        None => line("text", "none of splatref"),
+    }
+    Ok(())
+}

@@ -1,0 +1,115 @@
+//! The command line: arguments to library calls to an exit code.
+//!
+//! One file a command. What a command prints goes to stdout; an error is one line on stderr, and
+//! the exit code is 2 for wrong usage and 1 for everything else, a picture that differs included.
+
+mod compare;
+mod draw;
+mod explain;
+mod golden;
+mod info;
+mod options;
+mod progress;
+mod render;
+mod report;
+
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+use splatref::Result;
+use std::fmt::Display;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+/// The ground truth for point-splatting renderers
+#[derive(Parser)]
+#[command(version, arg_required_else_help = false, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  splatref render                              a procedural scene, into out/
+  splatref render bunny.ply --outline raycast  a scan, framed by the camera
+  splatref compare a.exr b.exr                 exit code 0 if every plane is equal
+  splatref explain bunny.ply 512 400           why this pixel is what it is
+
+Exit codes: 0 as it should be, 1 different or failed, 2 wrong usage.";
+
+#[derive(Subcommand)]
+enum Command {
+    /// Render a scene into an EXR with every plane and a PNG
+    Render(render::Args),
+    /// Check that the pictures under golden/ are reproduced bit for bit
+    Golden(golden::Args),
+    /// Compare two EXR files, plane by plane
+    Compare(compare::Args),
+    /// Print every decision at one pixel
+    Explain(explain::Args),
+    /// Describe a PLY, a scene file or an EXR
+    Info(info::Args),
+}
+
+/// Runs the program.
+pub(crate) fn run() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return usage(&error),
+    };
+    let outcome = match cli.command {
+        Command::Render(args) => render::run(&args),
+        Command::Golden(args) => golden::run(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Explain(args) => explain::run(&args),
+        Command::Info(args) => info::run(&args),
+    };
+    match outcome {
+        Ok(Outcome::Good) => ExitCode::SUCCESS,
+        Ok(Outcome::Different) => ExitCode::FAILURE,
+        Err(error) => {
+            complain(&error);
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+/// What a command that did its work found.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    /// As it should be.
+    Good,
+    /// Pictures that should be equal are not.
+    Different,
+}
+
+/// A command's result.
+type Finding = Result<Outcome>;
+
+/// Help and version as they are; errors of clap as one line.
+fn usage(error: &clap::Error) -> ExitCode {
+    let text = error.render().to_string();
+    if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
+        say(text.trim_end());
+        return ExitCode::SUCCESS;
+    }
+    let what: Vec<&str> = text
+        .lines()
+        .map(str::trim)
+        .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"))
+        .filter(|line| !line.is_empty())
+        .collect();
+    let what = what.join(" ");
+    complain(format!("{}; see --help", what.strip_prefix("error: ").unwrap_or(&what)));
+    ExitCode::from(2)
+}
+
+/// A line on stdout. A reader that has gone, such as `head`, is no reason to stop.
+fn say(text: impl Display) {
+    let _ = writeln!(io::stdout(), "{text}");
+}
+
+/// The line on stderr.
+fn complain(error: impl Display) {
+    let _ = writeln!(io::stderr(), "splatref: {}", error.to_string().replace('\n', " "));
+}

@@ -1,0 +1,214 @@
+//! Options that several commands share.
+
+use glam::DVec3;
+use splatref::frame::Exec;
+use splatref::io::scene_file::{DEFAULT_COUNT, Number, SceneFile, Source, words};
+use splatref::method::ewa::Epsilon;
+use splatref::scene::{Lens, Shape};
+use splatref::splat::{Kernel, Outline};
+use splatref::{Error, Result};
+use std::path::Path;
+
+/// How a picture is made; cannot change one bit of it.
+#[derive(clap::Args)]
+pub(super) struct ExecOptions {
+    /// Threads; 0 takes every core
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
+    /// Side of a tile in pixels: 8, 16, 32 or 64
+    #[arg(long, value_name = "N", default_value_t = 32)]
+    tile: u32,
+}
+
+impl ExecOptions {
+    pub(super) fn exec(&self) -> Result<Exec> {
+        Exec::new(self.threads, self.tile)
+    }
+}
+
+/// What is pictured; each option replaces what a scene file says.
+#[derive(clap::Args)]
+pub(super) struct SceneOptions {
+    /// Size of the picture in pixels [default: 1024x768]
+    #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Camera")]
+    size: Option<[u32; 2]>,
+    /// Where the camera stands
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
+        help_heading = "Camera")]
+    eye: Option<DVec3>,
+    /// What is in the middle of the picture
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
+        help_heading = "Camera")]
+    target: Option<DVec3>,
+    /// What is up in the picture
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
+        help_heading = "Camera")]
+    up: Option<DVec3>,
+    /// Vertical field of view in degrees
+    #[arg(
+        long,
+        value_name = "DEG",
+        group = "lens",
+        allow_hyphen_values = true,
+        help_heading = "Camera"
+    )]
+    fov: Option<f64>,
+    /// Focal length in pixels
+    #[arg(
+        long,
+        value_name = "PX",
+        group = "lens",
+        allow_hyphen_values = true,
+        help_heading = "Camera"
+    )]
+    focal: Option<f64>,
+    /// Orthographic, with this height of the picture in world units
+    #[arg(
+        long,
+        value_name = "HEIGHT",
+        group = "lens",
+        allow_hyphen_values = true,
+        help_heading = "Camera"
+    )]
+    ortho: Option<f64>,
+
+    /// Preset of outline, cut-off and low-pass filter: default or zpvbg01
+    #[arg(long, value_name = "NAME", value_parser = words::kernel, help_heading = "Method")]
+    kernel: Option<Kernel>,
+    /// Shape of a splat: affine, perspective or raycast
+    #[arg(long, value_name = "NAME", value_parser = words::outline, help_heading = "Method")]
+    outline: Option<Outline>,
+    /// Cut-off in standard deviations
+    #[arg(long, value_name = "K", allow_hyphen_values = true, help_heading = "Method")]
+    cutoff: Option<f32>,
+    /// Variance of the low-pass filter in px^2
+    #[arg(long, value_name = "H", allow_hyphen_values = true, help_heading = "Method")]
+    low_pass: Option<f32>,
+    /// Depth of the visible band in world units, or in median radii as in 1.5r; or inf
+    #[arg(long, value_name = "DEPTH", value_parser = words::epsilon, allow_hyphen_values = true,
+        help_heading = "Method")]
+    epsilon: Option<Epsilon>,
+    /// Whether surfels seen from behind are dropped: on or off [default: on]
+    #[arg(long, value_name = "on|off", value_parser = switch, num_args = 0..=1,
+        require_equals = true, default_missing_value = "on", help_heading = "Method")]
+    cull: Option<bool>,
+    /// Arithmetic: f32 or f64
+    #[arg(long, value_name = "TYPE", value_parser = words::number, help_heading = "Method")]
+    number: Option<Number>,
+
+    /// Surfels of a procedural shape [default: 200000]
+    #[arg(long, value_name = "N", help_heading = "Shapes")]
+    count: Option<usize>,
+    /// Seed of a procedural shape [default: 0]
+    #[arg(long, value_name = "N", help_heading = "Shapes")]
+    seed: Option<u64>,
+}
+
+impl SceneOptions {
+    /// The scene that `name` stands for, a shape or a file, with these options on top.
+    pub(super) fn scene_file(&self, name: &Path) -> Result<SceneFile> {
+        let mut file = self.named(name)?;
+        let camera = &mut file.camera;
+        replace(&mut camera.size, self.size);
+        replace(&mut camera.eye, self.eye);
+        replace(&mut camera.target, self.target);
+        replace(&mut camera.up, self.up);
+        replace(&mut camera.lens, self.fov.map(Lens::FieldOfView));
+        replace(&mut camera.lens, self.focal.map(Lens::Focal));
+        replace(&mut camera.lens, self.ortho.map(Lens::Orthographic));
+        let method = &mut file.method;
+        if self.kernel.is_some() {
+            // A preset replaces all that the file says of the kernel.
+            (method.outline, method.cutoff, method.low_pass) = (None, None, None);
+        }
+        replace(&mut method.kernel, self.kernel);
+        replace(&mut method.outline, self.outline);
+        replace(&mut method.cutoff, self.cutoff);
+        replace(&mut method.low_pass, self.low_pass);
+        replace(&mut method.epsilon, self.epsilon);
+        replace(&mut method.cull, self.cull);
+        file.output.number = self.number.unwrap_or(file.output.number);
+        Ok(file)
+    }
+
+    fn named(&self, name: &Path) -> Result<SceneFile> {
+        if let Some(shape) = name.to_str().and_then(Shape::by_name) {
+            let count = self.count.unwrap_or(DEFAULT_COUNT);
+            return Ok(SceneFile::of_model(Source::Shape {
+                shape,
+                count,
+                seed: self.seed.unwrap_or(0),
+            }));
+        }
+        if self.count.is_some() || self.seed.is_some() {
+            let what = "--count and --seed are for procedural shapes; this scene is a file";
+            return Err(Error::Usage(what.into()));
+        }
+        match kind(name)? {
+            Kind::Ply => {
+                Ok(SceneFile::of_model(Source::File { path: name.to_owned(), radius: None }))
+            }
+            Kind::Toml => SceneFile::read(name),
+            Kind::Exr => Err(Error::Usage(format!(
+                "{}: an EXR is a picture, not a scene; `splatref info` describes it",
+                name.display()
+            ))),
+        }
+    }
+}
+
+/// What a file is, by its extension.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Ply,
+    Toml,
+    Exr,
+}
+
+pub(super) fn kind(path: &Path) -> Result<Kind> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    match extension.as_deref() {
+        Some("ply") => Ok(Kind::Ply),
+        Some("toml") => Ok(Kind::Toml),
+        Some("exr") => Ok(Kind::Exr),
+        _ => {
+            let shapes: Vec<&str> = Shape::ALL.iter().map(Shape::name).collect();
+            Err(Error::Usage(format!(
+                "{}: no known kind of file; give a .ply, a scene .toml, an .exr, or a shape: {}",
+                path.display(),
+                shapes.join(", ")
+            )))
+        }
+    }
+}
+
+/// Replaces what was chosen, if there is something to replace it by.
+fn replace<T>(chosen: &mut Option<T>, by: Option<T>) {
+    if by.is_some() {
+        *chosen = by;
+    }
+}
+
+/// `640x480`.
+fn size(text: &str) -> std::result::Result<[u32; 2], String> {
+    let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    sides.ok_or_else(|| "give width and height in pixels, such as 640x480".into())
+}
+
+/// `on` or `off`.
+fn switch(text: &str) -> std::result::Result<bool, String> {
+    match text {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err("give on or off".into()),
+    }
+}
+
+/// `1,-2.5,3`.
+fn vector(text: &str) -> std::result::Result<DVec3, String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|v| v.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, z]) => Ok(DVec3::new(x, y, z)),
+        _ => Err("give three numbers, such as 1,-2.5,3".into()),
+    }
+}

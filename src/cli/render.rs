@@ -1,0 +1,141 @@
+//! `splatref render`: a scene into an EXR and a PNG.
+
+use super::options::{ExecOptions, Kind, SceneOptions, kind};
+use super::{Finding, Outcome, draw, progress, report};
+use splatref::io::{exr, provenance};
+use splatref::{Error, Result};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  splatref render
+  splatref render torus --count 5000 --outline raycast --stages
+  splatref render bunny.ply --eye -1,2,3 --target 0,0.1,0 --fov 30 -o bunny.exr
+  splatref render scene.toml --number f64 --epsilon 1.5r")]
+pub(super) struct Args {
+    /// A .ply, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster
+    #[arg(default_value = "cluster", hide_default_value = false)]
+    scene: PathBuf,
+    /// Where the EXR goes, the PNG beside it [default: out/NAME.exr]
+    #[arg(short, long, value_name = "FILE.exr")]
+    output: Option<PathBuf>,
+    /// Keep the planes of every stage
+    #[arg(long)]
+    stages: bool,
+    /// Render N times; print the minimum and the median of each stage
+    #[arg(long, value_name = "N", default_value_t = 1,
+        value_parser = clap::value_parser!(u32).range(1..))]
+    repeat: u32,
+    #[command(flatten)]
+    exec: ExecOptions,
+    #[command(flatten)]
+    options: SceneOptions,
+}
+
+pub(super) fn run(args: &Args) -> Finding {
+    let start = Instant::now();
+    let mut file = args.options.scene_file(&args.scene)?;
+    file.output.stages |= args.stages;
+    let exec = args.exec.exec()?;
+    if let Some(path) = &args.output {
+        check_place(path)?;
+    }
+    let settings = file.method.settings();
+    settings.check()?;
+    let loaded = {
+        let steps = progress::Steps::new();
+        file.load(&exec, &|what, done, of| steps.show(what, done, of))?
+    };
+    let loading = start.elapsed();
+    let scene = &loaded.scene;
+    let camera = file.camera(&scene.surfels)?;
+
+    let render = || draw::draw(scene, &camera, &settings, &exec, file.output);
+    let mut times = Vec::new();
+    let drawing = progress::during("rendering", || -> Result<_> {
+        let mut drawing = timed(&mut times, render)?;
+        for _ in 1..args.repeat {
+            drawing = timed(&mut times, render)?;
+        }
+        Ok(drawing)
+    })?;
+
+    let writing = Instant::now();
+    let picture = match &args.output {
+        Some(path) => path.clone(),
+        None => {
+            let folder = Path::new("out");
+            fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+            folder.join(format!("{}.exr", scene.name))
+        }
+    };
+    let preview = picture.with_extension("png");
+    progress::during("writing", || {
+        let text = provenance::text(scene, &camera, &settings, file.output.number);
+        exr::write(&picture, &drawing.frame, &text)?;
+        draw::write_png(&preview, &drawing.frame)
+    })?;
+    let writing = writing.elapsed();
+
+    report::scene(&loaded);
+    report::camera(&camera);
+    report::picture(&camera, file.output);
+    report::settings(&settings, &scene.surfels);
+    report::tally(&drawing.tally);
+    print_times(&exec, loading, times, writing);
+    report::time("total", vec![start.elapsed()]);
+    report::line("files", picture.display());
+    report::line("", preview.display());
+    Ok(Outcome::Good)
+}
+
+/// Whether a file could be written there, before much is computed for it.
+fn check_place(path: &Path) -> Result<()> {
+    if !matches!(kind(path), Ok(Kind::Exr)) {
+        let path = path.display();
+        return Err(Error::Usage(format!("{path}: the picture is an EXR; give a name in .exr")));
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder.map(fs::metadata) {
+        Some(Ok(found)) if !found.is_dir() => {
+            Err(Error::format(path, "what should be its directory is a file"))
+        }
+        Some(Err(source)) => Err(Error::io(path, source)),
+        _ => Ok(()),
+    }
+}
+
+/// Each stage, and last the whole, of each repetition.
+type Times = Vec<Vec<(&'static str, Duration)>>;
+
+/// Draws once and notes how long it took.
+fn timed(times: &mut Times, render: impl Fn() -> Result<draw::Drawing>) -> Result<draw::Drawing> {
+    let start = Instant::now();
+    let mut drawing = render()?;
+    let whole = start.elapsed();
+    let mut laps = std::mem::take(&mut drawing.timings);
+    laps.push(("picture", whole));
+    times.push(laps);
+    Ok(drawing)
+}
+
+fn print_times(exec: &splatref::frame::Exec, loading: Duration, times: Times, writing: Duration) {
+    let threads = match exec.threads() {
+        1 => "1 thread".into(),
+        n => format!("{n} threads"),
+    };
+    let of = match times.len() {
+        1 => String::new(),
+        n => format!(", minimum and median of {n} pictures"),
+    };
+    report::line("time", format!("{threads}{of}"));
+    report::time("loading", vec![loading]);
+    for stage in 0..times[0].len() {
+        let laps = times.iter().map(|laps| laps[stage].1).collect();
+        report::time(times[0][stage].0, laps);
+    }
+    report::time("writing", vec![writing]);
+}

@@ -1,0 +1,151 @@
+//! Scenes, cameras, settings and times in words.
+
+use super::say;
+use splatref::io::scene_file::{Loaded, ModelReport, Output, words};
+use splatref::method::ewa::{Epsilon, Settings};
+use splatref::scene::derive::Origin;
+use splatref::scene::{Camera, Dropped, Projection, Surfels};
+use splatref::splat::Tally;
+use std::time::Duration;
+
+/// A line with its label.
+pub(super) fn line(label: &str, text: impl std::fmt::Display) {
+    say(format!("{label:<10} {text}"));
+}
+
+/// The models, what was derived for them, and what was dropped.
+pub(super) fn scene(loaded: &Loaded) {
+    let surfels = &loaded.scene.surfels;
+    let origin = |model: &ModelReport| match &model.derived {
+        None => "procedural".into(),
+        Some(d) => format!("normals {}, radii {}", normals(d.normals), radii(d.radii)),
+    };
+    let name = &loaded.scene.name;
+    match loaded.models.as_slice() {
+        [one] => line("scene", format!("{name}: {} surfels, {}", surfels.len(), origin(one))),
+        several => {
+            line("scene", format!("{name}: {} surfels", surfels.len()));
+            for model in several {
+                let origin = origin(model);
+                line("  model", format!("{}: {} surfels, {origin}", model.name, model.surfels));
+            }
+        }
+    }
+    line("  dropped", dropped(&loaded.dropped));
+    bounds(surfels);
+}
+
+/// Where surfels are and how large.
+pub(super) fn bounds(surfels: &Surfels) {
+    let (low, high) = surfels.bounds();
+    let [low, high] = [low, high].map(|corner| point(corner.to_array().map(f64::from)));
+    line("  bounds", format!("{low} to {high}"));
+    line("  radius", format!("{} in the median", short(f64::from(surfels.median_radius()))));
+}
+
+pub(super) fn normals(origin: Origin) -> &'static str {
+    match origin {
+        Origin::File | Origin::Given => "from the file",
+        Origin::Tangents => "derived from the tangents",
+        Origin::Triangles => "derived from the triangles",
+        Origin::Neighbours => "derived from the nearest neighbours",
+    }
+}
+
+pub(super) fn radii(origin: Origin) -> &'static str {
+    match origin {
+        Origin::File => "from the file",
+        Origin::Given => "as the scene says",
+        Origin::Tangents => "derived from the tangents",
+        Origin::Triangles => "derived from the edges",
+        Origin::Neighbours => "derived from the nearest neighbours",
+    }
+}
+
+/// How many points were dropped, and why.
+pub(super) fn dropped(dropped: &Dropped) -> String {
+    let reasons = [
+        (dropped.position, "not finite"),
+        (dropped.normal, "without a normal"),
+        (dropped.radius, "without a radius"),
+        (dropped.attribute, "with a bad colour, opacity or tangent"),
+    ];
+    let reasons = reasons.iter().filter(|(count, _)| *count > 0);
+    let reasons: Vec<String> = reasons.map(|(count, why)| format!("{count} {why}")).collect();
+    match reasons.as_slice() {
+        [] => "none".into(),
+        _ => format!("{} points: {}", dropped.total(), reasons.join(", ")),
+    }
+}
+
+pub(super) fn camera(camera: &Camera) {
+    let world = camera.view_from_world.row(2);
+    let towards = point([world.x, world.y, world.z].map(|v| f64::from(-v)));
+    let scale = short(f64::from(camera.fy));
+    let kind = match camera.projection {
+        Projection::Perspective => format!("perspective, focal length {scale} px"),
+        Projection::Orthographic => format!("orthographic, {scale} px a world unit"),
+    };
+    let eye = point(camera.eye().to_array());
+    line("camera", format!("{kind}, at {eye} looking along {towards}"));
+}
+
+pub(super) fn settings(settings: &Settings, surfels: &Surfels) {
+    let kernel = settings.kernel;
+    let depth = short(f64::from(settings.epsilon.resolve(surfels)));
+    let epsilon = match settings.epsilon {
+        Epsilon::World(_) => depth,
+        Epsilon::MedianRadii(count) => format!("{count} median radii = {depth}"),
+    };
+    line(
+        "method",
+        format!(
+            "ewa, {} outline, cut-off {}, low-pass {} px^2, epsilon {epsilon}, {}",
+            words::of_outline(kernel.outline),
+            kernel.cutoff,
+            kernel.low_pass,
+            if settings.cull { "back faces culled" } else { "both sides" },
+        ),
+    );
+}
+
+pub(super) fn picture(camera: &Camera, output: Output) {
+    let number = words::of_number(output.number);
+    let stages = if output.stages { ", with the planes of every stage" } else { "" };
+    line("picture", format!("{} x {} pixels, {number}{stages}", camera.width, camera.height));
+}
+
+pub(super) fn tally(tally: &Tally) {
+    line(
+        "surfels",
+        format!(
+            "{} drawn, {} behind the camera, {} degenerate, {} back-facing, {} outside",
+            tally.visible, tally.behind, tally.degenerate, tally.back_facing, tally.outside
+        ),
+    );
+}
+
+/// One time, or the minimum and the lower median of several.
+pub(super) fn time(what: &str, mut times: Vec<Duration>) {
+    times.sort();
+    let show = |time: Duration| format!("{:>10.2} ms", time.as_secs_f64() * 1e3);
+    match times.as_slice() {
+        [] => {}
+        [one] => line("", format!("{what:<14}{}", show(*one))),
+        [least, ..] => {
+            let median = times[(times.len() - 1) / 2];
+            line("", format!("{what:<14}{} {}", show(*least), show(median)));
+        }
+    }
+}
+
+fn point(v: [f64; 3]) -> String {
+    format!("({})", v.map(short).join(", "))
+}
+
+/// Five digits of a number.
+pub(super) fn short(value: f64) -> String {
+    let rounded = format!("{value:.4e}").parse().unwrap_or(value);
+    // -0 is 0 to a reader.
+    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
+}

@@ -1,0 +1,87 @@
+//! The text that a picture carries: what it is a picture of, and by which settings.
+
+use crate::io::scene_file::{Number, words};
+use crate::method::ewa::Settings;
+use crate::scene::{Camera, Projection, Scene};
+
+/// The text as TOML, for the attribute [`super::exr::ATTRIBUTE`].
+///
+/// Equal for equal pictures: nothing in it depends on the time, the machine, the directory or the
+/// way the picture was computed. Floats are the shortest decimals that give the same `f32`. The
+/// scene is identified by [`Scene::sha256`], the camera by all its numbers.
+#[must_use]
+pub fn text(scene: &Scene, camera: &Camera, settings: &Settings, number: Number) -> String {
+    let Settings { kernel, epsilon, cull } = settings;
+    let projection = match camera.projection {
+        Projection::Perspective => "perspective",
+        Projection::Orthographic => "orthographic",
+    };
+    let rows: Vec<String> =
+        (0..4).map(|i| format!("  {:?},\n", camera.view_from_world.row(i).to_array())).collect();
+    format!(
+        "splatref = \"{version}\"\nnumber = \"{number}\"\n\n\
+         [scene]\nname = {name}\nsurfels = {surfels}\nsha256 = \"{hash}\"\n\n\
+         [method]\nname = \"ewa\"\noutline = \"{outline}\"\ncutoff = {cutoff:?}\n\
+         low_pass = {low_pass:?}\nepsilon = \"{epsilon}\"\nepsilon_in_world_units = {depth:?}\n\
+         cull = {cull}\n\n\
+         [camera]\nsize = [{width}, {height}]\nprojection = \"{projection}\"\n\
+         f = [{fx:?}, {fy:?}]\nc = [{cx:?}, {cy:?}]\nnear = {near:?}\n\
+         view_from_world = [\n{rows}]\n",
+        version = env!("CARGO_PKG_VERSION"),
+        number = words::of_number(number),
+        name = toml::Value::String(scene.name.clone()),
+        surfels = scene.surfels.len(),
+        hash = scene.sha256(),
+        outline = words::of_outline(kernel.outline),
+        cutoff = kernel.cutoff,
+        low_pass = kernel.low_pass,
+        epsilon = words::of_epsilon(*epsilon),
+        depth = epsilon.resolve(&scene.surfels),
+        width = camera.width,
+        height = camera.height,
+        fx = camera.fx,
+        fy = camera.fy,
+        cx = camera.cx,
+        cy = camera.cy,
+        near = camera.near,
+        rows = rows.concat(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Lens, Light, Phong, Pose, Shape};
+    use glam::DVec3;
+
+    #[test]
+    fn the_text_is_toml_with_exact_numbers() {
+        let shape = Shape::by_name("torus").unwrap();
+        let name = "a \"b\"\n\u{e4}".to_owned();
+        let surfels = shape.surfels(100, 0).unwrap();
+        let lights = vec![Light::DEFAULT];
+        let scene = Scene { name: name.clone(), surfels, lights, material: Phong::default() };
+        let eye = DVec3::new(0.1, 1.0 / 3.0, 5.0);
+        let pose = Pose { eye, target: DVec3::ZERO, up: DVec3::Y };
+        let camera = Camera::new(61, 47, pose, Lens::FieldOfView(33.3)).unwrap();
+        let settings = Settings::default();
+        let text = text(&scene, &camera, &settings, Number::F64);
+
+        let table: toml::Table = text.parse().unwrap();
+        assert_eq!(table["number"].as_str(), Some("f64"));
+        assert_eq!(table["scene"]["name"].as_str(), Some(name.as_str()));
+        assert_eq!(table["scene"]["sha256"].as_str(), Some(scene.sha256().as_str()));
+        assert_eq!(
+            words::epsilon(table["method"]["epsilon"].as_str().unwrap()),
+            Ok(settings.epsilon)
+        );
+        let f = table["camera"]["f"][0].as_float().unwrap();
+        assert_eq!((f as f32).to_bits(), camera.fx.to_bits());
+        for i in 0..4 {
+            for j in 0..4 {
+                let value = table["camera"]["view_from_world"][i][j].as_float().unwrap() as f32;
+                assert_eq!(value.to_bits(), camera.view_from_world.row(i)[j].to_bits());
+            }
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! Scenes as TOML: models and shapes, lights, camera, method and settings.
+//!
+//! A complete file:
+//!
+//! ```toml
+#![doc = include_str!("example.toml")]
+//! ```
+//!
+//! Numbers are read as f64 and rounded to f32 where the scene holds f32; any decimal that `f32`
+//! prints comes back with its bits. Keys that are not in this example are refused, so that a typing
+//! error is not a default.
+//!
+//! [`SceneFile`] is what such a file says. One PLY file or one shape alone makes a scene file too:
+//! [`SceneFile::of_model`].
+
+mod load;
+mod parse;
+#[cfg(test)]
+mod tests;
+pub mod words;
+
+pub use load::{Loaded, ModelReport};
+
+use crate::error::{Error, Result};
+use crate::method::ewa::{Epsilon, Settings};
+use crate::scene::{Camera, Lens, Light, Phong, Pose, Shape, Similarity, Surfels};
+use crate::splat::{Kernel, Outline};
+use glam::{DVec3, Vec3};
+use std::path::{Path, PathBuf};
+
+/// How many surfels cover a shape if nobody says.
+pub const DEFAULT_COUNT: usize = 200_000;
+/// The size of a picture if nobody says.
+pub const DEFAULT_SIZE: [u32; 2] = [1024, 768];
+/// The lens if neither a person nor a shape says: the vertical field of view in degrees.
+pub const DEFAULT_FIELD_OF_VIEW: f64 = 34.0;
+/// The side from which a scene is framed if nobody says: from the front, the right and above.
+pub const DEFAULT_SIDE: DVec3 = DVec3::new(0.5, 0.375, 1.0);
+
+/// What a scene file says: nothing is loaded, and what it leaves open is still open.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneFile {
+    /// What the scene is called: the name of the file without its extension, or of the shape.
+    pub name: String,
+    /// The models, at least one.
+    pub models: Vec<Model>,
+    /// Where it is seen from.
+    pub camera: CameraChoice,
+    /// The lights; none at all shows the colours unlit.
+    pub lights: Vec<Light>,
+    /// How surfaces answer the lights.
+    pub material: Phong,
+    /// What is computed.
+    pub method: MethodChoice,
+    /// What is kept.
+    pub output: Output,
+}
+
+/// Surfels from one place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    /// Where they come from.
+    pub source: Source,
+    /// Where they are put.
+    pub transform: Similarity,
+    /// Linear RGB for all of them, in place of their own.
+    pub color: Option<Vec3>,
+}
+
+/// Where the surfels of a model come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// A PLY file.
+    File {
+        /// Where it is.
+        path: PathBuf,
+        /// The radius of points without one, in the file's units; derived if absent.
+        radius: Option<f32>,
+    },
+    /// A procedural shape.
+    Shape {
+        /// Which.
+        shape: Shape,
+        /// About how many surfels.
+        count: usize,
+        /// Of the random displacements.
+        seed: u64,
+    },
+}
+
+/// A camera as far as it was chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CameraChoice {
+    /// Width and height in pixels.
+    pub size: Option<[u32; 2]>,
+    /// See [`Pose`].
+    pub eye: Option<DVec3>,
+    /// See [`Pose`].
+    pub target: Option<DVec3>,
+    /// See [`Pose`].
+    pub up: Option<DVec3>,
+    /// The opening.
+    pub lens: Option<Lens>,
+}
+
+/// Settings as far as they were chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MethodChoice {
+    /// A preset; the three that follow replace parts of it.
+    pub kernel: Option<Kernel>,
+    /// See [`Kernel`].
+    pub outline: Option<Outline>,
+    /// See [`Kernel`].
+    pub cutoff: Option<f32>,
+    /// See [`Kernel`].
+    pub low_pass: Option<f32>,
+    /// See [`Settings`].
+    pub epsilon: Option<Epsilon>,
+    /// See [`Settings`].
+    pub cull: Option<bool>,
+}
+
+/// The arithmetic of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Number {
+    /// The executable specification.
+    #[default]
+    F32,
+    /// The truth; files hold it rounded to `f32`.
+    F64,
+}
+
+/// What is kept of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Output {
+    /// The arithmetic.
+    pub number: Number,
+    /// Whether the planes of every stage are kept.
+    pub stages: bool,
+}
+
+impl SceneFile {
+    /// Reads a scene file; model files are looked for in its directory.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if it cannot be read, [`Error::Format`] as [`SceneFile::parse`].
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|source| Error::io(path, source))?;
+        Self::parse(&text, path)
+    }
+
+    /// What the text of the scene file at `path` says; nothing is read.
+    ///
+    /// # Errors
+    /// [`Error::Format`] with the line if it is no TOML, has an unknown key, a value of the wrong
+    /// type, no model, or a number that no picture can be made with.
+    pub fn parse(text: &str, path: &Path) -> Result<Self> {
+        parse::parse(text, path)
+    }
+
+    /// The scene of one model, everything else left open.
+    #[must_use]
+    pub fn of_model(source: Source) -> Self {
+        let name = match &source {
+            Source::File { path, .. } => stem(path),
+            Source::Shape { shape, .. } => shape.name().to_owned(),
+        };
+        let model = Model { source, transform: Similarity::IDENTITY, color: None };
+        Self {
+            name,
+            models: vec![model],
+            camera: CameraChoice::default(),
+            lights: vec![Light::DEFAULT],
+            material: Phong::default(),
+            method: MethodChoice::default(),
+            output: Output::default(),
+        }
+    }
+
+    /// The camera: what was chosen, and for the rest what shows `surfels`, those of this scene.
+    ///
+    /// A scene of one shape that is not transformed has the shape's own pose and lens. Any other is
+    /// framed from [`DEFAULT_SIDE`], see [`Camera::framing`]; where only the eye was chosen it looks
+    /// at the middle of [`Surfels::bounding_sphere`], where only the target was chosen it looks from
+    /// [`DEFAULT_SIDE`] at a sphere of that radius around it.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Camera::new`].
+    pub fn camera(&self, surfels: &Surfels) -> Result<Camera> {
+        let CameraChoice { size, eye, target, up, lens } = self.camera;
+        let [width, height] = size.unwrap_or(DEFAULT_SIZE);
+        let shape = match self.models.as_slice() {
+            [Model { source: Source::Shape { shape, .. }, transform, .. }]
+                if *transform == Similarity::IDENTITY =>
+            {
+                Some(shape)
+            }
+            _ => None,
+        };
+        let lens = lens
+            .or_else(|| shape.map(Shape::default_lens))
+            .unwrap_or(Lens::FieldOfView(DEFAULT_FIELD_OF_VIEW));
+        if let (Some(eye), Some(target)) = (eye, target) {
+            return Camera::new(
+                width,
+                height,
+                Pose { eye, target, up: up.unwrap_or(DVec3::Y) },
+                lens,
+            );
+        }
+        let pose = match shape {
+            Some(shape) => shape.default_pose(),
+            None => {
+                let (middle, radius) = surfels.bounding_sphere();
+                let target = target.unwrap_or(middle);
+                let framed = Camera::framing(width, height, (target, radius), DEFAULT_SIDE, lens)?;
+                if eye.is_none() && up.is_none() {
+                    return Ok(framed);
+                }
+                Pose { eye: framed.eye(), target, up: DVec3::Y }
+            }
+        };
+        let pose = Pose {
+            eye: eye.unwrap_or(pose.eye),
+            target: target.unwrap_or(pose.target),
+            up: up.unwrap_or(pose.up),
+        };
+        Camera::new(width, height, pose, lens)
+    }
+}
+
+impl MethodChoice {
+    /// The settings: what was chosen, and the defaults for the rest.
+    #[must_use]
+    pub fn settings(&self) -> Settings {
+        let preset = self.kernel.unwrap_or_default();
+        let default = Settings::default();
+        Settings {
+            kernel: Kernel {
+                outline: self.outline.unwrap_or(preset.outline),
+                cutoff: self.cutoff.unwrap_or(preset.cutoff),
+                low_pass: self.low_pass.unwrap_or(preset.low_pass),
+            },
+            epsilon: self.epsilon.unwrap_or(default.epsilon),
+            cull: self.cull.unwrap_or(default.cull),
+        }
+    }
+}
+
+/// The name of a file without its extension.
+fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned())
+}

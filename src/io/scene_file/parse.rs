@@ -1,0 +1,370 @@
+//! From text to a [`SceneFile`].
+//!
+//! Each table is read into a struct that mirrors its keys and then converted; a conversion that
+//! fails is reported by serde at the table's place in the text.
+
+use super::{
+    CameraChoice, DEFAULT_COUNT, MethodChoice, Model, Number, Output, SceneFile, Source, stem,
+    words,
+};
+use crate::error::{Error, Result};
+use crate::method::ewa::Epsilon;
+use crate::scene::transform::{self, Similarity};
+use crate::scene::{Lens, Light, Phong, Shape};
+use glam::{DMat3, DVec3, Vec3};
+use serde::de::{self, Deserialize, Deserializer, Visitor};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
+    let file: File = toml::from_str(text).map_err(|error| {
+        let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
+        let what = error.message().trim().replace('\n', " ");
+        match line {
+            Some(line) => Error::format(path, format!("line {line}: {what}")),
+            None => Error::format(path, what),
+        }
+    })?;
+    if file.model.is_empty() {
+        let what = "there is no [[model]]: name a file or a shape";
+        return Err(Error::format(path, what));
+    }
+    let mut models = file.model;
+    for model in &mut models {
+        if let Source::File { path: model, .. } = &mut model.source {
+            // Joining keeps a path that is absolute.
+            *model = path.parent().unwrap_or(Path::new("")).join(&*model);
+        }
+    }
+    Ok(SceneFile {
+        name: stem(path),
+        models,
+        camera: file.camera,
+        lights: file.light.unwrap_or_else(|| vec![Light::DEFAULT]),
+        material: file.material,
+        method: file.method,
+        output: file.output,
+    })
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(default)]
+    model: Vec<Model>,
+    #[serde(default)]
+    camera: CameraChoice,
+    light: Option<Vec<Light>>,
+    #[serde(default)]
+    material: Phong,
+    #[serde(default)]
+    method: MethodChoice,
+    #[serde(default)]
+    output: Output,
+}
+
+/// Implements `Deserialize` through a struct that mirrors the keys.
+macro_rules! through {
+    ($($target:ty: $raw:ty, $convert:expr;)*) => {$(
+        impl<'de> Deserialize<'de> for $target {
+            fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
+                let convert: fn($raw) -> std::result::Result<$target, String> = $convert;
+                <$raw>::deserialize(from).and_then(|raw| convert(raw).map_err(de::Error::custom))
+            }
+        }
+    )*};
+}
+
+through! {
+    Model: RawModel, RawModel::model;
+    CameraChoice: RawCamera, RawCamera::choice;
+    Light: RawLight, RawLight::light;
+    Phong: RawMaterial, RawMaterial::material;
+    MethodChoice: RawMethod, RawMethod::choice;
+    Output: RawOutput, RawOutput::output;
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawModel {
+    file: Option<PathBuf>,
+    radius: Option<f32>,
+    shape: Option<String>,
+    square: Option<f32>,
+    gap: Option<f32>,
+    step: Option<f32>,
+    thickness: Option<f32>,
+    count: Option<usize>,
+    seed: Option<u64>,
+    color: Option<[f32; 3]>,
+    #[serde(default)]
+    transform: RawTransform,
+}
+
+impl RawModel {
+    fn model(mut self) -> std::result::Result<Model, String> {
+        let source = match (self.file.take(), self.shape.take()) {
+            (Some(path), None) => Source::File { path, radius: self.radius.take() },
+            (None, Some(name)) => {
+                let shape = Shape::by_name(&name).ok_or_else(|| {
+                    let known: Vec<&str> = Shape::ALL.iter().map(Shape::name).collect();
+                    format!("shape `{name}`; give one of {}", known.join(", "))
+                })?;
+                let shape = self.parameters(shape);
+                let count = self.count.take().unwrap_or(DEFAULT_COUNT);
+                Source::Shape { shape, count, seed: self.seed.take().unwrap_or(0) }
+            }
+            _ => return Err("a model is either a `file` or a `shape`".into()),
+        };
+        // Every key that the source uses has been taken.
+        let left = [
+            ("radius", self.radius.is_some()),
+            ("square", self.square.is_some()),
+            ("gap", self.gap.is_some()),
+            ("step", self.step.is_some()),
+            ("thickness", self.thickness.is_some()),
+            ("count", self.count.is_some()),
+            ("seed", self.seed.is_some()),
+        ];
+        if let Some((key, _)) = left.iter().find(|(_, is_left)| *is_left) {
+            let of = match &source {
+                Source::File { .. } => "a file",
+                Source::Shape { shape, .. } => shape.name(),
+            };
+            return Err(format!("`{key}` means nothing to {of}: remove it"));
+        }
+        let color = self.color.map(Vec3::from_array);
+        if !color.is_none_or(|c| c.is_finite() && c.min_element() >= 0.0) {
+            return Err("color must be three finite numbers >= 0".into());
+        }
+        Ok(Model { source, transform: self.transform.similarity()?, color })
+    }
+
+    /// The shape with the parameters that were given for it.
+    fn parameters(&mut self, mut shape: Shape) -> Shape {
+        let given = |parameter: &mut f32, key: &mut Option<f32>| {
+            *parameter = key.take().unwrap_or(*parameter);
+        };
+        match &mut shape {
+            Shape::Sphere | Shape::Torus | Shape::Cluster => {}
+            Shape::Checkerboard { square } => given(square, &mut self.square),
+            Shape::Sheets { gap } => given(gap, &mut self.gap),
+            Shape::Staircase { step, thickness } => {
+                given(step, &mut self.step);
+                given(thickness, &mut self.thickness);
+            }
+        }
+        shape
+    }
+}
+
+#[derive(serde::Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct RawTransform {
+    scale: Option<f64>,
+    rotate: Option<RawRotation>,
+    translate: Option<[f64; 3]>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawRotation {
+    axis: Option<[f64; 3]>,
+    degrees: Option<f64>,
+    matrix: Option<[[f64; 3]; 3]>,
+}
+
+impl RawTransform {
+    fn similarity(self) -> std::result::Result<Similarity, String> {
+        let rotation = match self.rotate {
+            None => DMat3::IDENTITY,
+            Some(RawRotation { axis: Some(axis), degrees: Some(degrees), matrix: None }) => {
+                let axis = DVec3::from_array(axis);
+                if !(axis.length() > 0.0 && axis.is_finite() && degrees.is_finite()) {
+                    return Err("rotate: axis must not be 0, nor any number infinite".into());
+                }
+                transform::rotation(axis, degrees)
+            }
+            Some(RawRotation { axis: None, degrees: None, matrix: Some(rows) }) => {
+                DMat3::from_cols_array_2d(&rows).transpose()
+            }
+            Some(_) => return Err("rotate: give axis and degrees, or a matrix".into()),
+        };
+        let similarity = Similarity {
+            rotation,
+            scale: self.scale.unwrap_or(1.0),
+            translation: self.translate.unwrap_or_default().into(),
+        };
+        similarity.check().map_err(|error| error.to_string())?;
+        Ok(similarity)
+    }
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawCamera {
+    size: Option<[u32; 2]>,
+    eye: Option<[f64; 3]>,
+    target: Option<[f64; 3]>,
+    up: Option<[f64; 3]>,
+    fov: Option<f64>,
+    focal: Option<f64>,
+    ortho: Option<f64>,
+}
+
+impl RawCamera {
+    fn choice(self) -> std::result::Result<CameraChoice, String> {
+        let lenses = [
+            self.fov.map(Lens::FieldOfView),
+            self.focal.map(Lens::Focal),
+            self.ortho.map(Lens::Orthographic),
+        ];
+        let mut lenses = lenses.into_iter().flatten();
+        let lens = lenses.next();
+        if lenses.next().is_some() {
+            return Err("camera: give one of fov, focal and ortho".into());
+        }
+        let vector = |v: Option<[f64; 3]>| v.map(DVec3::from_array);
+        Ok(CameraChoice {
+            size: self.size,
+            eye: vector(self.eye),
+            target: vector(self.target),
+            up: vector(self.up),
+            lens,
+        })
+    }
+}
+
+#[derive(serde::Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+enum RawLight {
+    Directional {
+        towards: [f32; 3],
+        #[serde(default = "white")]
+        color: [f32; 3],
+    },
+    Headlight {
+        towards: [f32; 3],
+        #[serde(default = "white")]
+        color: [f32; 3],
+    },
+    Point {
+        position: [f32; 3],
+        #[serde(default = "white")]
+        color: [f32; 3],
+    },
+}
+
+fn white() -> [f32; 3] {
+    [1.0; 3]
+}
+
+impl RawLight {
+    fn light(self) -> std::result::Result<Light, String> {
+        let light = match self {
+            Self::Directional { towards, color } => {
+                Light::Directional { towards: towards.into(), color: color.into() }
+            }
+            Self::Headlight { towards, color } => {
+                Light::Headlight { towards: towards.into(), color: color.into() }
+            }
+            Self::Point { position, color } => {
+                Light::Point { position: position.into(), color: color.into() }
+            }
+        };
+        light.check().map(|()| light).map_err(|error| error.to_string())
+    }
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawMaterial {
+    ambient: Option<f32>,
+    diffuse: Option<f32>,
+    specular: Option<f32>,
+    shininess: Option<f32>,
+    color: Option<[f32; 3]>,
+}
+
+impl RawMaterial {
+    fn material(self) -> std::result::Result<Phong, String> {
+        let default = Phong::default();
+        let material = Phong {
+            ambient: self.ambient.unwrap_or(default.ambient),
+            diffuse: self.diffuse.unwrap_or(default.diffuse),
+            specular: self.specular.unwrap_or(default.specular),
+            shininess: self.shininess.unwrap_or(default.shininess),
+            color: self.color.map_or(default.color, Vec3::from_array),
+        };
+        material.check().map(|()| material).map_err(|error| error.to_string())
+    }
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawMethod {
+    name: Option<String>,
+    kernel: Option<String>,
+    outline: Option<String>,
+    cutoff: Option<f32>,
+    low_pass: Option<f32>,
+    epsilon: Option<RawEpsilon>,
+    cull: Option<bool>,
+}
+
+impl RawMethod {
+    fn choice(self) -> std::result::Result<MethodChoice, String> {
+        if let Some(name) = self.name.filter(|name| name != "ewa") {
+            return Err(format!("method `{name}`; the one there is is `ewa`"));
+        }
+        let choice = MethodChoice {
+            kernel: self.kernel.map(|word| words::kernel(&word)).transpose()?,
+            outline: self.outline.map(|word| words::outline(&word)).transpose()?,
+            cutoff: self.cutoff,
+            low_pass: self.low_pass,
+            epsilon: self.epsilon.map(|epsilon| epsilon.0),
+            cull: self.cull,
+        };
+        choice.settings().check().map_err(|error| error.to_string())?;
+        Ok(choice)
+    }
+}
+
+/// A number of world units, or a text as [`words::epsilon`] reads it.
+struct RawEpsilon(Epsilon);
+
+impl<'de> Deserialize<'de> for RawEpsilon {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
+        struct Either;
+        impl Visitor<'_> for Either {
+            type Value = Epsilon;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number of world units or a text such as \"1.5r\"")
+            }
+            fn visit_f64<E>(self, value: f64) -> std::result::Result<Epsilon, E> {
+                Ok(Epsilon::World(value as f32))
+            }
+            fn visit_i64<E>(self, value: i64) -> std::result::Result<Epsilon, E> {
+                Ok(Epsilon::World(value as f32))
+            }
+            fn visit_str<E: de::Error>(self, text: &str) -> std::result::Result<Epsilon, E> {
+                words::epsilon(text).map_err(E::custom)
+            }
+        }
+        from.deserialize_any(Either).map(Self)
+    }
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawOutput {
+    number: Option<String>,
+    stages: Option<bool>,
+}
+
+impl RawOutput {
+    fn output(self) -> std::result::Result<Output, String> {
+        let number = self.number.map_or(Ok(Number::default()), |word| words::number(&word))?;
+        Ok(Output { number, stages: self.stages.unwrap_or(false) })
+    }
+}

@@ -1,0 +1,248 @@
+use super::*;
+use crate::frame::Exec;
+use crate::scene::derive::Origin;
+use proptest::prelude::*;
+use std::fs;
+
+const EXAMPLE: &str = include_str!("example.toml");
+const SHAPE: &str = "[[model]]\nshape = \"sphere\"\ncount = 100\n";
+
+fn parse(text: &str) -> SceneFile {
+    SceneFile::parse(text, Path::new("a/scene.toml")).unwrap()
+}
+
+/// The one line that a bad file gives.
+fn refused(text: &str) -> String {
+    let error = SceneFile::parse(text, Path::new("a/scene.toml")).unwrap_err();
+    assert_eq!(error.exit_code(), 1);
+    let line = error.to_string();
+    assert!(!line.contains('\n'), "{line}");
+    line
+}
+
+fn load(file: &SceneFile) -> Loaded {
+    file.load(&Exec::sequential(), &|_, _, _| ()).unwrap()
+}
+
+#[test]
+fn the_example_says_what_it_says() {
+    let file = parse(EXAMPLE);
+    assert_eq!(file.name, "scene");
+    let [bunny, sheets] = file.models.as_slice() else { panic!("two models") };
+    let path = Path::new("a").join("bunny.ply");
+    assert_eq!(bunny.source, Source::File { path, radius: Some(0.002) });
+    assert_eq!(bunny.color, Some(Vec3::new(0.75, 0.5, 0.25)));
+    assert_eq!((bunny.transform.scale, bunny.transform.translation), (10.0, -DVec3::Y));
+    let shape = Shape::Sheets { gap: 0.25 };
+    assert_eq!(sheets.source, Source::Shape { shape, count: 20_000, seed: 1 });
+    assert_eq!(sheets.transform.rotation * DVec3::Y, DVec3::X, "the matrix is given by rows");
+    let camera = CameraChoice {
+        size: Some([640, 480]),
+        eye: Some(DVec3::new(0.0, 1.0, 5.0)),
+        target: Some(DVec3::ZERO),
+        up: Some(DVec3::Y),
+        lens: Some(Lens::FieldOfView(40.0)),
+    };
+    assert_eq!(file.camera, camera);
+    let lights = [
+        Light::Headlight { towards: Vec3::new(-1.0, 1.0, 1.0), color: Vec3::ONE },
+        Light::Directional { towards: Vec3::Y, color: Vec3::ONE },
+        Light::Point { position: Vec3::splat(4.0), color: Vec3::ONE },
+    ];
+    assert_eq!(file.lights, lights);
+    let kernel = Kernel { outline: Outline::Perspective, cutoff: 2.0, low_pass: 0.25 };
+    let settings = Settings { kernel, epsilon: Epsilon::MedianRadii(1.5), cull: false };
+    assert_eq!(file.method.settings(), settings);
+    assert_eq!(file.output, Output { number: Number::F32, stages: true });
+}
+
+#[test]
+fn what_is_absent_has_its_default() {
+    let file = parse("[[model]]\nshape = \"staircase\"\n");
+    let source = Source::Shape { shape: Shape::ALL[4], count: DEFAULT_COUNT, seed: 0 };
+    assert_eq!(file, SceneFile { name: "scene".into(), ..SceneFile::of_model(source) });
+    assert_eq!(file.method.settings(), Settings::default());
+    assert_eq!(parse(&format!("light = []\n{SHAPE}")).lights, []);
+}
+
+#[test]
+fn errors_name_the_file_the_line_and_the_key() {
+    for (text, line, what) in [
+        ("", None, "no [[model]]"),
+        ("[[model]\n", Some(1), ""),
+        ("[[model]]\nshap = \"torus\"\n", Some(2), "shap"),
+        ("\n[[model]]\nshape = \"ball\"\n", Some(2), "`ball`; give one of sphere, torus"),
+        (
+            "[[model]]\nshape = \"torus\"\nfile = \"a.ply\"\n",
+            Some(1),
+            "either a `file` or a `shape`",
+        ),
+        ("[[model]]\nshape = \"torus\"\ngap = 1\n", Some(1), "`gap` means nothing to torus"),
+        ("[[model]]\nfile = \"a.ply\"\ncount = 1\n", Some(1), "`count` means nothing to a file"),
+        ("[[model]]\nfile = \"a.ply\"\ncolor = [1, 2]\n", Some(3), "length"),
+        ("[[model]]\nfile = \"a.ply\"\ncolor = [1, 2, -1]\n", Some(1), "color"),
+        ("[[model]]\nshape = \"torus\"\ncount = -1\n", Some(3), "-1"),
+    ] {
+        let found = refused(text);
+        assert!(found.starts_with("a/scene.toml: ") && found.contains(what), "{found}");
+        if let Some(line) = line {
+            assert!(found.contains(&format!(" line {line}: ")), "{found}");
+        }
+    }
+    for (table, what) in [
+        ("[camera]\nfov = 30\northo = 2\n", "one of fov, focal and ortho"),
+        ("[camera]\nsize = [0.5, 1]\n", "0.5"),
+        ("[camera]\nsize = [-1, 1]\n", "-1"),
+        ("[[light]]\nkind = \"lamp\"\n", "lamp"),
+        ("[[light]]\nkind = \"point\"\ntowards = [0, 0, 1]\n", "towards"),
+        ("[[light]]\nkind = \"headlight\"\ntowards = [0, 0, 0]\n", "towards"),
+        ("[material]\ndiffuse = 2\n", "diffuse 2"),
+        ("[method]\nname = \"magic\"\n", "magic"),
+        ("[method]\noutline = \"round\"\n", "affine, perspective, raycast"),
+        ("[method]\nepsilon = \"1.5 radii\"\n", "1.5 radii"),
+        ("[method]\nepsilon = -1\n", "epsilon: -1"),
+        ("[method]\nepsilon = nan\n", "epsilon"),
+        ("[method]\ncutoff = 9\n", "cut-off of 9"),
+        ("[output]\nnumber = \"f16\"\n", "f32, f64"),
+        ("[ouput]\nstages = true\n", "ouput"),
+    ] {
+        let found = refused(&format!("{SHAPE}{table}"));
+        assert!(found.contains(what) && found.contains("line "), "{table}: {found}");
+    }
+    for transform in [
+        "scale = 0",
+        "rotate = { axis = [0, 0, 0], degrees = 3 }",
+        "rotate = { degrees = 3 }",
+        "rotate = { matrix = [[-1, 0, 0], [0, 1, 0], [0, 0, 1]] }",
+        "shear = 1",
+    ] {
+        let found = refused(&format!("{SHAPE}[model.transform]\n{transform}\n"));
+        assert!(found.contains("line "), "{transform}: {found}");
+    }
+}
+
+#[test]
+fn epsilon_is_a_number_or_radii() {
+    let epsilon = |text: &str| {
+        parse(&format!("{SHAPE}[method]\nepsilon = {text}\n")).method.settings().epsilon
+    };
+    assert_eq!(epsilon("0.25"), Epsilon::World(0.25));
+    assert_eq!(epsilon("2"), Epsilon::World(2.0));
+    assert_eq!(epsilon("inf"), Epsilon::World(f32::INFINITY));
+    assert_eq!(epsilon("\"0.5r\""), Epsilon::MedianRadii(0.5));
+    assert_eq!(epsilon("\"inf\""), Epsilon::World(f32::INFINITY));
+}
+
+proptest! {
+    #[test]
+    fn numbers_come_back_with_their_bits(bits: [u32; 3], camera: [f64; 3]) {
+        let numbers = bits.map(f32::from_bits);
+        prop_assume!(numbers.iter().all(|v| v.is_finite()));
+        let position = format!("[[light]]\nkind = \"point\"\nposition = {numbers:?}\n");
+        let eye = format!("[camera]\neye = {camera:?}\n");
+        let file = parse(&format!("{SHAPE}{position}{eye}"));
+        let Light::Point { position, .. } = file.lights[0] else { unreachable!() };
+        prop_assert_eq!(position.to_array().map(f32::to_bits), bits);
+        let eye = file.camera.eye.unwrap();
+        prop_assert_eq!(eye.to_array().map(f64::to_bits), camera.map(f64::to_bits));
+        for epsilon in [Epsilon::World(numbers[0]), Epsilon::MedianRadii(numbers[1])] {
+            prop_assert_eq!(words::epsilon(&words::of_epsilon(epsilon)), Ok(epsilon));
+        }
+    }
+}
+
+#[test]
+fn models_are_joined_in_their_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n\
+                  property float z\nend_header\n";
+    fs::write(folder.path().join("a.ply"), format!("{header}0 0 0\n1 0 0\nnan 0 0\n0 1 0\n"))
+        .unwrap();
+    let path = folder.path().join("scene.toml");
+    let text = "[[model]]\nshape = \"sphere\"\ncount = 50\n\
+                [[model]]\nfile = \"a.ply\"\n[model.transform]\nscale = 2\ntranslate = [10, 0, 0]\n\
+                [material]\ncolor = [0.5, 0.25, 0.125]\n";
+    fs::write(&path, text).unwrap();
+    let file = SceneFile::read(&path).unwrap();
+    let loaded = load(&file);
+    let surfels = &loaded.scene.surfels;
+    assert_eq!(loaded.scene.name, "scene");
+    assert_eq!(surfels.len(), 53);
+    let placed = [Vec3::new(10.0, 0.0, 0.0), Vec3::new(12.0, 0.0, 0.0), Vec3::new(10.0, 2.0, 0.0)];
+    assert_eq!(surfels.position()[50..], placed);
+    assert_eq!(surfels.color().unwrap()[50..], [Vec3::new(0.5, 0.25, 0.125); 3]);
+    assert_eq!(loaded.dropped.position, 1);
+    let derived = loaded.models[1].derived.unwrap();
+    assert_eq!((derived.normals, derived.radii), (Origin::Neighbours, Origin::Neighbours));
+    // The radii of the file's own derivation, twice as large.
+    assert!(surfels.radius()[50..].iter().all(|&r| r > 1.9 && r < 3.0), "{:?}", surfels.radius());
+}
+
+#[test]
+fn one_model_alone_is_as_its_source_made_it() {
+    let shape = Shape::by_name("torus").unwrap();
+    let file = SceneFile::of_model(Source::Shape { shape, count: 500, seed: 3 });
+    assert_eq!(load(&file).scene.surfels, shape.surfels(500, 3).unwrap());
+}
+
+#[test]
+fn errors_of_models_name_their_file() {
+    let missing = SceneFile::of_model(Source::File { path: "no/such.ply".into(), radius: None });
+    let error = missing.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err();
+    assert!(error.to_string().starts_with("no/such.ply: "), "{error}");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("one.ply");
+    fs::write(
+        &path,
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n\
+        property float y\nproperty float z\nend_header\n0 0 0\n",
+    )
+    .unwrap();
+    let lone = SceneFile::of_model(Source::File { path: path.clone(), radius: None });
+    let error = lone.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err();
+    assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");
+}
+
+#[test]
+fn what_the_camera_leaves_open_shows_the_scene() {
+    let shape = Shape::Sphere;
+    let mut file = SceneFile::of_model(Source::Shape { shape, count: 400, seed: 0 });
+    file.camera.size = Some([40, 30]);
+    let surfels = load(&file).scene.surfels;
+    let own = Camera::new(40, 30, shape.default_pose(), shape.default_lens()).unwrap();
+    assert_eq!(file.camera(&surfels).unwrap(), own, "a shape has a pose of its own");
+
+    // A shape that was moved is framed like any other model.
+    file.models[0].transform.translation = DVec3::new(100.0, 0.0, 0.0);
+    let surfels = load(&file).scene.surfels;
+    let (middle, radius) = surfels.bounding_sphere();
+    let lens = Lens::FieldOfView(DEFAULT_FIELD_OF_VIEW);
+    let framed = Camera::framing(40, 30, (middle, radius), DEFAULT_SIDE, lens).unwrap();
+    assert_eq!(file.camera(&surfels).unwrap(), framed);
+
+    // The rest follows from what was chosen: the middle of the picture is the target.
+    let looks_at = |camera: &Camera, target: DVec3| {
+        let p = camera.view_from_world.as_dmat4().transform_point3(target);
+        assert!(p.x.abs() < 1e-4 && p.y.abs() < 1e-4 && p.z < 0.0, "{p}");
+    };
+    let eye = DVec3::new(100.0, 9.0, 3.0);
+    file.camera.eye = Some(eye);
+    let camera = file.camera(&surfels).unwrap();
+    looks_at(&camera, middle);
+    assert!((camera.eye() - eye).length() < 1e-4);
+    file.camera.eye = None;
+    file.camera.target = Some(DVec3::new(100.5, 0.0, 0.0));
+    looks_at(&file.camera(&surfels).unwrap(), DVec3::new(100.5, 0.0, 0.0));
+    file.camera.up = Some(DVec3::X);
+    let camera = file.camera(&surfels).unwrap();
+    looks_at(&camera, DVec3::new(100.5, 0.0, 0.0));
+    let right = camera.view_from_world.row(0).truncate();
+    assert!(right.x.abs() < 1e-6, "up is x, so right is not: {right}");
+}
+
+#[test]
+fn a_preset_can_be_changed_in_part() {
+    let settings = parse(&format!("{SHAPE}[method]\nkernel = \"zpvbg01\"\nlow_pass = 0\n"));
+    let kernel = settings.method.settings().kernel;
+    assert_eq!(kernel, Kernel { low_pass: 0.0, ..Kernel::ZPVBG01 });
+}

@@ -1,0 +1,93 @@
+//! Settings as words: what scene files, the command line and the text in a picture call them.
+
+use crate::method::ewa::Epsilon;
+use crate::splat::{Kernel, Outline};
+
+use super::Number;
+
+/// Something that a word stands for, or a line that says which words there are.
+type Found<T> = Result<T, String>;
+
+/// `default` or `zpvbg01`.
+///
+/// # Errors
+/// The words there are.
+pub fn kernel(word: &str) -> Found<Kernel> {
+    choose("kernel", word, &[("default", Kernel::DEFAULT), ("zpvbg01", Kernel::ZPVBG01)])
+}
+
+const OUTLINES: [(&str, Outline); 3] = [
+    ("affine", Outline::Affine),
+    ("perspective", Outline::Perspective),
+    ("raycast", Outline::RayCast),
+];
+
+/// `affine`, `perspective` or `raycast`.
+///
+/// # Errors
+/// The words there are.
+pub fn outline(word: &str) -> Found<Outline> {
+    choose("outline", word, &OUTLINES)
+}
+
+/// The word for an outline.
+#[must_use]
+pub fn of_outline(outline: Outline) -> &'static str {
+    match outline {
+        Outline::Affine => "affine",
+        Outline::Perspective => "perspective",
+        Outline::RayCast => "raycast",
+    }
+}
+
+/// `f32` or `f64`.
+///
+/// # Errors
+/// The words there are.
+pub fn number(word: &str) -> Found<Number> {
+    choose("number", word, &[("f32", Number::F32), ("f64", Number::F64)])
+}
+
+/// The word for a number type.
+#[must_use]
+pub fn of_number(number: Number) -> &'static str {
+    match number {
+        Number::F32 => "f32",
+        Number::F64 => "f64",
+    }
+}
+
+/// A depth: `0.25` in world units, `1.5r` in median radii; `inf` and `infr` are numbers too.
+///
+/// # Errors
+/// What such a text looks like.
+pub fn epsilon(text: &str) -> Found<Epsilon> {
+    let (number, in_radii) = match text.strip_suffix('r') {
+        Some(number) => (number, true),
+        None => (text, false),
+    };
+    let value: f32 = number.trim().parse().map_err(|_| {
+        format!(
+            "epsilon `{text}`; give world units such as 0.25, median radii such as 1.5r, or inf"
+        )
+    })?;
+    Ok(if in_radii { Epsilon::MedianRadii(value) } else { Epsilon::World(value) })
+}
+
+/// The text for a depth; [`epsilon`] reads it back exactly.
+#[must_use]
+pub fn of_epsilon(epsilon: Epsilon) -> String {
+    match epsilon {
+        Epsilon::World(value) => format!("{value:?}"),
+        Epsilon::MedianRadii(value) => format!("{value:?}r"),
+    }
+}
+
+/// The value of a word.
+fn choose<T: Copy>(what: &str, word: &str, words: &[(&str, T)]) -> Found<T> {
+    let found = words.iter().find(|(of, _)| *of == word).map(|(_, value)| *value);
+    found.ok_or_else(|| {
+        let known: Vec<&str> = words.iter().map(|(of, _)| *of).collect();
+        format!("{what} `{word}`; give one of {}", known.join(", "))
+    })
+}

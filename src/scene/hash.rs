@@ -1,0 +1,142 @@
+//! The identity of a scene: one hash over everything a picture depends on but camera and settings.
+
+use super::{Light, Phong, Scene};
+use glam::Vec3;
+use sha2::{Digest, Sha256};
+
+impl Scene {
+    /// SHA-256 in lower-case hexadecimal; the name is not part of it.
+    ///
+    /// Of the bytes, numbers in little-endian order and `f32` by their bits:
+    ///
+    /// ```text
+    ///   "splatref scene 1\n"
+    ///   u64 count of surfels
+    ///   position (3 f32 each), normal (3 f32), radius (f32)
+    ///   colour (3 f32), opacity (f32), tangents (6 f32): each after a byte 1, or a byte 0 alone
+    ///   u64 count of lights; each a byte 0 directional, 1 headlight, 2 point; then direction or
+    ///     position (3 f32), colour (3 f32)
+    ///   material: ambient, diffuse, specular, shininess (f32), colour (3 f32)
+    /// ```
+    #[must_use]
+    pub fn sha256(&self) -> String {
+        let mut hash = Hasher(Sha256::new());
+        hash.0.update(b"splatref scene 1\n");
+        let surfels = &self.surfels;
+        hash.count(surfels.len());
+        hash.floats(surfels.position().iter().flat_map(Vec3::to_array));
+        hash.floats(surfels.normal().iter().flat_map(Vec3::to_array));
+        hash.floats(surfels.radius().iter().copied());
+        hash.optional(surfels.color(), |c| c.to_array());
+        hash.optional(surfels.opacity(), |&o| [o]);
+        hash.optional(surfels.tangents(), |[u, v]| [u.x, u.y, u.z, v.x, v.y, v.z]);
+        hash.count(self.lights.len());
+        for light in &self.lights {
+            let (kind, place, color) = match *light {
+                Light::Directional { towards, color } => (0, towards, color),
+                Light::Headlight { towards, color } => (1, towards, color),
+                Light::Point { position, color } => (2, position, color),
+            };
+            hash.0.update([kind]);
+            hash.floats(place.to_array().into_iter().chain(color.to_array()));
+        }
+        let Phong { ambient, diffuse, specular, shininess, color } = self.material;
+        hash.floats([ambient, diffuse, specular, shininess].into_iter().chain(color.to_array()));
+        hash.finish()
+    }
+}
+
+/// Numbers into bytes into a hash.
+struct Hasher(Sha256);
+
+impl Hasher {
+    fn count(&mut self, count: usize) {
+        self.0.update((count as u64).to_le_bytes());
+    }
+
+    fn floats(&mut self, values: impl IntoIterator<Item = f32>) {
+        values.into_iter().for_each(|value| self.0.update(value.to_le_bytes()));
+    }
+
+    fn optional<T, const N: usize>(&mut self, values: Option<&[T]>, of: impl Fn(&T) -> [f32; N]) {
+        self.0.update([u8::from(values.is_some())]);
+        self.floats(values.unwrap_or_default().iter().flat_map(of));
+    }
+
+    fn finish(self) -> String {
+        self.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Cloud, Surfels};
+
+    fn scene(cloud: Cloud) -> Scene {
+        let lights = vec![Light::Point { position: Vec3::X, color: Vec3::ONE }];
+        let surfels = Surfels::new(cloud).unwrap().0;
+        Scene { name: "a".into(), surfels, lights, material: Phong::default() }
+    }
+
+    fn cloud() -> Cloud {
+        Cloud {
+            position: vec![Vec3::new(1.0, 2.0, 3.0)],
+            normal: Some(vec![Vec3::Z]),
+            radius: Some(vec![0.5]),
+            ..Cloud::default()
+        }
+    }
+
+    /// The documented bytes, written out by hand and hashed here by the crate that `sha256sum` checks.
+    #[test]
+    fn the_bytes_are_those_documented() {
+        let mut bytes = b"splatref scene 1\n".to_vec();
+        bytes.extend(1_u64.to_le_bytes());
+        for value in [1.0_f32, 2.0, 3.0, 0.0, 0.0, 1.0, 0.5] {
+            bytes.extend(value.to_le_bytes());
+        }
+        bytes.extend([0, 0, 0]);
+        bytes.extend(1_u64.to_le_bytes());
+        bytes.push(2);
+        for value in [1.0_f32, 0.0, 0.0, 1.0, 1.0, 1.0] {
+            bytes.extend(value.to_le_bytes());
+        }
+        for value in [0.125_f32, 0.75, 0.25, 32.0, 0.75, 0.75, 0.75] {
+            bytes.extend(value.to_le_bytes());
+        }
+        let expected: String = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
+        assert_eq!(scene(cloud()).sha256(), expected);
+    }
+
+    #[test]
+    fn every_part_counts_and_the_name_does_not() {
+        let of = |change: fn(&mut Cloud)| {
+            let mut cloud = cloud();
+            change(&mut cloud);
+            scene(cloud).sha256()
+        };
+        let mut lit = scene(cloud());
+        lit.lights.clear();
+        let mut dull = scene(cloud());
+        dull.material.specular = 0.0;
+        let mut all = vec![
+            of(|_| ()),
+            of(|c| c.position[0].x = -1.0),
+            of(|c| c.normal = Some(vec![Vec3::Y])),
+            of(|c| c.radius = Some(vec![0.25])),
+            of(|c| c.color = Some(vec![Vec3::ZERO])),
+            of(|c| c.opacity = Some(vec![0.0])),
+            of(|c| c.tangents = Some(vec![[Vec3::X, Vec3::Y]])),
+            lit.sha256(),
+            dull.sha256(),
+        ];
+        let mut named = scene(cloud());
+        named.name = "b".into();
+        assert_eq!(named.sha256(), all[0]);
+        let count = all.len();
+        all.sort();
+        all.dedup();
+        assert_eq!(all.len(), count, "all different");
+    }
+}

@@ -1,0 +1,111 @@
+//! Several models as one cloud.
+
+use super::Cloud;
+use glam::{DVec3, Vec3};
+
+/// Joins complete clouds, with normals and radii, in their order; triangles are left out.
+///
+/// What only some of them have is filled in for the others: colour by `color`, opacity by 1, the
+/// half axes of a disc by two perpendicular ones of the length of its radius.
+#[must_use]
+pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
+    let colored = clouds.iter().any(|c| c.color.is_some());
+    let veiled = clouds.iter().any(|c| c.opacity.is_some());
+    let elliptic = clouds.iter().any(|c| c.tangents.is_some());
+    if clouds.len() == 1 {
+        // The usual case, without a copy.
+        return Cloud { triangles: Vec::new(), ..clouds.remove(0) };
+    }
+    let mut all = Cloud {
+        normal: Some(Vec::new()),
+        radius: Some(Vec::new()),
+        color: colored.then(Vec::new),
+        opacity: veiled.then(Vec::new),
+        tangents: elliptic.then(Vec::new),
+        ..Cloud::default()
+    };
+    for cloud in clouds {
+        let n = cloud.position.len();
+        let normal = cloud.normal.unwrap_or_default();
+        let radius = cloud.radius.unwrap_or_default();
+        if let Some(to) = &mut all.tangents {
+            let discs = || normal.iter().zip(&radius).map(|(&n, &r)| disc(n, r)).collect();
+            to.extend(cloud.tangents.unwrap_or_else(discs));
+        }
+        append(&mut all.color, cloud.color, n, color);
+        append(&mut all.opacity, cloud.opacity, n, 1.0);
+        all.position.extend(cloud.position);
+        append(&mut all.normal, Some(normal), n, Vec3::ZERO);
+        append(&mut all.radius, Some(radius), n, 0.0);
+    }
+    all
+}
+
+/// Appends the values, or `n` times the one that stands for them, if there is anything to fill.
+fn append<T: Clone>(to: &mut Option<Vec<T>>, values: Option<Vec<T>>, n: usize, missing: T) {
+    if let Some(to) = to {
+        to.extend(values.unwrap_or_else(|| vec![missing; n]));
+    }
+}
+
+/// Two perpendicular half axes of a disc, u x v along its normal, in f64 and rounded once.
+///
+/// The first is perpendicular to the coordinate axis along which the normal is shortest; ties go to
+/// the earlier axis.
+fn disc(normal: Vec3, radius: f32) -> [Vec3; 2] {
+    let n = normal.as_dvec3();
+    let [x, y, z] = normal.abs().to_array();
+    let axis = if x <= y && x <= z {
+        DVec3::X
+    } else if y <= z {
+        DVec3::Y
+    } else {
+        DVec3::Z
+    };
+    let u = axis.cross(n).normalize();
+    let v = n.cross(u);
+    [u, v].map(|half| (half * f64::from(radius)).as_vec3())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cloud(n: usize) -> Cloud {
+        Cloud {
+            position: vec![Vec3::ONE; n],
+            normal: Some(vec![Vec3::new(0.6, 0.0, 0.8); n]),
+            radius: Some(vec![2.0; n]),
+            ..Cloud::default()
+        }
+    }
+
+    #[test]
+    fn what_is_missing_is_filled_in() {
+        let second = Cloud {
+            color: Some(vec![Vec3::X; 2]),
+            opacity: Some(vec![0.5; 2]),
+            tangents: Some(vec![[Vec3::X, Vec3::Y]; 2]),
+            ..cloud(2)
+        };
+        let all = merge(vec![cloud(1), second, cloud(1)], Vec3::Y);
+        all.check().unwrap();
+        assert_eq!(all.position.len(), 4);
+        assert_eq!(all.color, Some(vec![Vec3::Y, Vec3::X, Vec3::X, Vec3::Y]));
+        assert_eq!(all.opacity, Some(vec![1.0, 0.5, 0.5, 1.0]));
+        let tangents = all.tangents.unwrap();
+        assert_eq!(tangents[1..3], [[Vec3::X, Vec3::Y]; 2]);
+        let [u, v] = tangents[3].map(|half| half.as_dvec3());
+        let normal = DVec3::new(0.6, 0.0, 0.8);
+        assert!((u.length() - 2.0).abs() < 1e-6 && (v.length() - 2.0).abs() < 1e-6);
+        assert!((u.cross(v) - 4.0 * normal).length() < 1e-6, "right-handed with the normal");
+    }
+
+    #[test]
+    fn what_nobody_has_is_not_allocated() {
+        let all = merge(vec![cloud(1), cloud(3)], Vec3::Y);
+        assert_eq!((all.position.len(), all.radius), (4, Some(vec![2.0; 4])));
+        assert!(all.color.is_none() && all.opacity.is_none() && all.tangents.is_none());
+        assert_eq!(merge(vec![cloud(2)], Vec3::Y), cloud(2), "one model stays as it is");
+    }
+}

@@ -1,0 +1,137 @@
+//! Moving, turning and scaling a model.
+
+use super::Cloud;
+use crate::error::{Error, Result};
+use crate::number::elementary;
+use glam::{DMat3, DVec3, Vec3};
+
+/// A similarity: a point p goes to `rotation (p scale) + translation`.
+///
+/// Everything is computed in f64 and rounded to f32 once. Normals are turned, radii scaled, half
+/// axes both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Similarity {
+    /// A rotation matrix, see [`Similarity::check`].
+    pub rotation: DMat3,
+    /// Scale in all directions, finite and > 0.
+    pub scale: f64,
+    /// Displacement in world units.
+    pub translation: DVec3,
+}
+
+impl Similarity {
+    /// Everything stays where it is, bit for bit.
+    pub const IDENTITY: Self =
+        Self { rotation: DMat3::IDENTITY, scale: 1.0, translation: DVec3::ZERO };
+
+    /// Whether the matrix is a rotation and the numbers are in range.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the scale is not finite and > 0, if the translation is not finite, if
+    /// a component of R^T R differs from that of the unit matrix by more than 1e-6, or if R is a
+    /// reflection.
+    pub fn check(&self) -> Result<()> {
+        let invalid = |what: &str| Err(Error::Invalid(format!("transform: {what}")));
+        if !(self.scale > 0.0 && self.scale.is_finite()) {
+            return invalid("the scale must be a finite number > 0");
+        }
+        if !self.translation.is_finite() {
+            return invalid("the translation must be finite numbers");
+        }
+        let product = self.rotation.transpose() * self.rotation;
+        let off = (product - DMat3::IDENTITY).to_cols_array();
+        if !(off.iter().all(|v| v.abs() <= 1e-6) && self.rotation.determinant() > 0.0) {
+            return invalid(
+                "the matrix is no rotation: its rows must be perpendicular, of length 1 and \
+                 right-handed",
+            );
+        }
+        Ok(())
+    }
+
+    /// Applies it to every array of a cloud.
+    pub fn apply(&self, cloud: &mut Cloud) {
+        if *self == Self::IDENTITY {
+            return;
+        }
+        let turn = |v: &mut Vec3| *v = (self.rotation * v.as_dvec3()).as_vec3();
+        let extend = |v: &mut Vec3| *v = (self.rotation * (v.as_dvec3() * self.scale)).as_vec3();
+        for p in &mut cloud.position {
+            *p = (self.rotation * (p.as_dvec3() * self.scale) + self.translation).as_vec3();
+        }
+        cloud.normal.iter_mut().flatten().for_each(turn);
+        for radius in cloud.radius.iter_mut().flatten() {
+            *radius = (f64::from(*radius) * self.scale) as f32;
+        }
+        cloud.tangents.iter_mut().flatten().flatten().for_each(extend);
+    }
+}
+
+/// The rotation about an axis of any length but 0, counter-clockwise when it points at the viewer.
+///
+/// With k the axis divided by its length, c and s of the angle: `c I + s [k]x + (1 - c) k k^T`.
+#[must_use]
+pub fn rotation(axis: DVec3, degrees: f64) -> DMat3 {
+    let k = axis.normalize();
+    let angle = degrees.to_radians();
+    let (c, s) = (elementary::cos(angle), elementary::sin(angle));
+    let column = |e: DVec3| e * c + k.cross(e) * s + k * (k.dot(e) * (1.0 - c));
+    DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_array_is_transformed() {
+        let mut cloud = Cloud {
+            position: vec![Vec3::new(1.0, 2.0, 3.0)],
+            normal: Some(vec![Vec3::X]),
+            radius: Some(vec![0.5]),
+            tangents: Some(vec![[Vec3::Y, Vec3::Z]]),
+            ..Cloud::default()
+        };
+        // x to y, y to z, z to x: exact, so that the answer is known to the bit.
+        let rotation = DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X);
+        let moved = Similarity { rotation, scale: 2.0, translation: DVec3::new(10.0, 0.0, 0.0) };
+        moved.check().unwrap();
+        moved.apply(&mut cloud);
+        assert_eq!(cloud.position, [Vec3::new(16.0, 2.0, 4.0)]);
+        assert_eq!(cloud.normal, Some(vec![Vec3::Y]));
+        assert_eq!(cloud.radius, Some(vec![1.0]));
+        assert_eq!(cloud.tangents, Some(vec![[2.0 * Vec3::Z, 2.0 * Vec3::X]]));
+    }
+
+    #[test]
+    fn rotations_turn_the_right_way() {
+        let quarter = rotation(DVec3::new(0.0, 0.0, 7.0), 90.0) * DVec3::X;
+        assert!((quarter - DVec3::Y).length() < 1e-15, "{quarter}");
+        let third = rotation(DVec3::ONE, 120.0) * DVec3::new(1.0, 2.0, 3.0);
+        assert!((third - DVec3::new(3.0, 1.0, 2.0)).length() < 1e-14, "{third}");
+    }
+
+    #[test]
+    fn what_is_no_similarity_is_refused() {
+        let with = |rotation, scale, x| Similarity {
+            rotation,
+            scale,
+            translation: DVec3::new(x, 0.0, 0.0),
+        };
+        let one = DMat3::IDENTITY;
+        let mirror = DMat3::from_cols(-DVec3::X, DVec3::Y, DVec3::Z);
+        let nothing = rotation(DVec3::ZERO, 30.0);
+        for bad in [
+            with(one, 0.0, 0.0),
+            with(one, -1.0, 0.0),
+            with(one, f64::INFINITY, 0.0),
+            with(one, 1.0, f64::NAN),
+            with(one * 1.001, 1.0, 0.0),
+            with(mirror, 1.0, 0.0),
+            with(nothing, 1.0, 0.0),
+        ] {
+            assert!(bad.check().is_err(), "{bad:?}");
+        }
+        assert!(with(rotation(DVec3::ONE, 12.0), 3.0, 1.0).check().is_ok());
+    }
+}

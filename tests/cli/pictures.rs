@@ -1,0 +1,88 @@
+//! `splatref render`.
+
+use super::*;
+use tempfile::TempDir;
+
+#[test]
+fn without_arguments_a_picture_is_made() {
+    let at = TempDir::new().unwrap();
+    let said = succeeds(at.path(), &["render"]);
+    assert_eq!(names(at.path()), ["out"]);
+    assert_eq!(names(&at.path().join("out")), ["cluster.exr", "cluster.png"]);
+    for word in ["200000 surfels", "perspective", "1024 x 768", "ewa", "visibility", "total"] {
+        assert!(said.contains(word), "{word} in {said}");
+    }
+    let image = exr::read(&at.path().join("out/cluster.exr")).unwrap();
+    let covered = floats(&image, "A").iter().filter(|&&a| a == 1.0).count();
+    let share = covered as f64 / (1024.0 * 768.0);
+    assert!((0.1..0.9).contains(&share), "the scene fills a good part of the picture: {share}");
+    let png = image::open(at.path().join("out/cluster.png")).unwrap();
+    assert_eq!((png.width(), png.height()), (1024, 768));
+}
+
+#[test]
+fn the_bits_do_not_depend_on_threads_tiles_or_the_path() {
+    let at = TempDir::new().unwrap();
+    let outline = ["--outline", "raycast"];
+    succeeds(at.path(), &[&small(&["-o", "a.exr", "--threads", "1"])[..], &outline].concat());
+    let other = ["-o", "b.exr", "--threads", "3", "--tile", "8", "--repeat", "2"];
+    let said = succeeds(at.path(), &[&small(&other)[..], &outline].concat());
+    assert!(said.contains("minimum and median of 2"), "{said}");
+    assert_eq!(names(at.path()), ["a.exr", "a.png", "b.exr", "b.png"]);
+    let [a, b] = ["a.exr", "b.exr"].map(|name| fs::read(at.path().join(name)).unwrap());
+    assert_eq!(a, b, "the whole file, its text included");
+}
+
+#[test]
+fn stages_and_f64_change_planes_and_numbers() {
+    let at = TempDir::new().unwrap();
+    succeeds(at.path(), &small(&["-o", "fast.exr"]));
+    succeeds(at.path(), &small(&["-o", "plain.exr", "--stages"]));
+    succeeds(at.path(), &small(&["-o", "truth.exr", "--number", "f64"]));
+    let read = |name: &str| exr::read(&at.path().join(name)).unwrap();
+    let (fast, plain, truth) = (read("fast.exr"), read("plain.exr"), read("truth.exr"));
+    for name in ["R", "G", "B", "A", "Z", "normal.X", "weight"] {
+        assert_eq!(floats(&fast, name), floats(&plain, name), "{name}");
+    }
+    assert!(fast.channel("margin").is_none() && plain.channel("margin").is_some());
+    assert_eq!(fast.text, plain.text);
+    assert_ne!(floats(&fast, "Z"), floats(&truth, "Z"), "rounded differently");
+    assert!(truth.text.unwrap().contains("number = \"f64\""));
+}
+
+#[test]
+fn negative_coordinates_are_numbers_not_options() {
+    let at = TempDir::new().unwrap();
+    let camera = ["--eye", "-1,-2,-3.5", "--target", "-0.5,0,0", "--up", "0,0,-1", "--fov", "20"];
+    let said = succeeds(at.path(), &small(&camera));
+    assert!(said.contains("at (-1, -2, -3.5)"), "{said}");
+    succeeds(at.path(), &small(&["--ortho", "3", "--epsilon", "inf", "--cull=off"]));
+    succeeds(at.path(), &small(&["--focal", "40", "--epsilon", "1.5r", "--kernel", "zpvbg01"]));
+}
+
+#[test]
+fn the_widest_picture_is_made() {
+    let at = TempDir::new().unwrap();
+    succeeds(at.path(), &["render", "sphere", "--count", "300", "--size", "65536x1"]);
+    let header = exr::read_header(&at.path().join("out/sphere.exr")).unwrap();
+    assert_eq!((header.width, header.height), (65536, 1));
+}
+
+#[test]
+fn options_replace_what_a_scene_file_says() {
+    let at = TempDir::new().unwrap();
+    let scene = "[[model]]\nshape = \"sphere\"\ncount = 100\n[camera]\nsize = [20, 10]\nfov = 30\n\
+                 [method]\nkernel = \"zpvbg01\"\noutline = \"raycast\"\ncutoff = 3\n\
+                 [output]\nnumber = \"f64\"\nstages = true\n";
+    fs::write(at.path().join("s.toml"), scene).unwrap();
+    let said = succeeds(at.path(), &["render", "s.toml"]);
+    for word in ["20 x 10 pixels, f64", "raycast outline, cut-off 3, low-pass 1", "every stage"] {
+        assert!(said.contains(word), "{word} in {said}");
+    }
+    let more = ["--size", "12x8", "--ortho", "4", "--kernel", "default", "--number", "f32"];
+    let said = succeeds(at.path(), &[&["render", "s.toml"], &more[..]].concat());
+    for word in ["12 x 8 pixels, f32", "affine outline, cut-off 2, low-pass 0.25", "orthographic"] {
+        assert!(said.contains(word), "{word} in {said}");
+    }
+    assert_eq!(names(&at.path().join("out")), ["s.exr", "s.png"]);
+}

@@ -1,0 +1,109 @@
+//! What is refused, and that nothing is left behind.
+
+use super::*;
+use tempfile::TempDir;
+
+#[test]
+fn wrong_usage_is_exit_code_2() {
+    let at = TempDir::new().unwrap();
+    let line = fails(at.path(), &["render", "--sise", "3x3"], 2);
+    assert!(line.contains("--sise"), "{line}");
+    fails(at.path(), &[], 2);
+    fails(at.path(), &["paint"], 2);
+    fails(at.path(), &["render", "nothing-of-the-kind"], 2);
+    fails(at.path(), &["render", "picture.exr"], 2);
+    fails(at.path(), &["render", "a.ply", "--count", "3"], 2);
+    fails(at.path(), &["explain", "torus"], 2);
+    fails(at.path(), &["explain", "sphere", "32", "0", "--count", "9", "--size", "32x24"], 2);
+    fails(at.path(), &["compare", "a.exr", "b.exr", "--max-abs", "-1"], 2);
+    for more in [
+        &["--size", "3"] as &[&str],
+        &["--size", "axb"],
+        &["--eye", "1,2"],
+        &["--eye", "1,2,x"],
+        &["--fov", "30", "--ortho", "2"],
+        &["--tile", "12"],
+        &["--threads", "5000"],
+        &["--repeat", "0"],
+        &["--outline", "round"],
+        &["--kernel", "gauss"],
+        &["--number", "f16"],
+        &["--epsilon", "1.5x"],
+        &["-o", "picture.png"],
+    ] {
+        fails(at.path(), &small(more), 2);
+    }
+    assert!(names(at.path()).is_empty());
+}
+
+#[test]
+fn pictures_that_cannot_be_are_refused() {
+    let at = TempDir::new().unwrap();
+    for (more, what) in [
+        (&["--size", "0x0"] as &[&str], "0 x 0"),
+        (&["--size", "70000x1"], "70000 x 1"),
+        (&["--size", "65536x65536"], "65536 x 65536"),
+        (&["--eye", "1,1,1", "--target", "1,1,1"], "same point"),
+        (&["--eye", "0,5,0", "--target", "0,0,0"], "--up"),
+        (&["--eye", "nan,0,0"], "finite"),
+        (&["--fov", "180"], "180"),
+        (&["--focal", "0"], "focal length"),
+        (&["--ortho", "-1"], "height"),
+        (&["--epsilon", "-1"], "epsilon"),
+        (&["--epsilon", "nan"], "epsilon"),
+        (&["--cutoff", "9"], "cut-off of 9"),
+        (&["--low-pass", "-1"], "low-pass"),
+    ] {
+        let line = fails(at.path(), &small(more), 1);
+        assert!(line.contains(what), "{line}");
+    }
+    let line = fails(at.path(), &["render", "torus", "--count", "0"], 1);
+    assert!(line.contains("0 surfels"), "{line}");
+    assert!(names(at.path()).is_empty(), "{:?}", names(at.path()));
+}
+
+#[test]
+fn broken_files_leave_nothing_behind() {
+    let at = TempDir::new().unwrap();
+    let line = fails(at.path(), &["render", "missing.ply"], 1);
+    assert!(line.contains("missing.ply"), "{line}");
+    fails(at.path(), &["render", "missing.toml"], 1);
+    let vertices = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n\
+                    property float y\nproperty float z\nend_header\n";
+    for (name, text) in [
+        ("noise.ply", "pretty noise"),
+        ("short.ply", &format!("{vertices}0 0 0\n1 0 0\n")),
+        ("nan.ply", &format!("{vertices}nan 0 0\nnan 0 0\nnan 0 0\n")),
+        ("heap.ply", &format!("{vertices}0 0 0\n0 0 0\n0 0 0\n")),
+        ("bad.toml", "[[model]\n"),
+        ("typo.toml", "[[model]]\nshape = \"sphere\"\n\n[camera]\nfow = 30\n"),
+        ("points.toml", "[[model]]\nfile = \"missing.ply\"\n"),
+    ] {
+        fs::write(at.path().join(name), text).unwrap();
+        for command in ["render", "info"] {
+            let line = fails(at.path(), &[command, name], 1);
+            let names_the_file = line.contains(name) || line.contains("missing.ply");
+            assert!(names_the_file, "{line}");
+        }
+    }
+    let line = fails(at.path(), &["render", "typo.toml"], 1);
+    assert!(line.contains("line 5") && line.contains("fow"), "{line}");
+    assert!(!at.path().join("out").exists());
+}
+
+#[test]
+fn what_cannot_be_written_is_not_half_written() {
+    let at = TempDir::new().unwrap();
+    let line = fails(at.path(), &small(&["-o", "missing/a.exr"]), 1);
+    assert!(line.contains("missing"), "{line}");
+    fs::write(at.path().join("file"), "kept").unwrap();
+    fails(at.path(), &small(&["-o", "file/a.exr"]), 1);
+    fs::create_dir(at.path().join("b.exr")).unwrap();
+    fails(at.path(), &small(&["-o", "b.exr"]), 1);
+    assert_eq!(names(at.path()), ["b.exr", "file"]);
+    assert!(names(&at.path().join("b.exr")).is_empty());
+    // `out` is in the way of the default place.
+    fs::write(at.path().join("out"), "kept").unwrap();
+    fails(at.path(), &small(&[]), 1);
+    assert_eq!(fs::read_to_string(at.path().join("out")).unwrap(), "kept");
+}

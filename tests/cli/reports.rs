@@ -1,0 +1,104 @@
+//! `splatref compare`, `explain`, `info` and `--help`.
+
+use super::*;
+use tempfile::TempDir;
+
+#[test]
+fn compare_tells_equal_from_different() {
+    let at = TempDir::new().unwrap();
+    succeeds(at.path(), &small(&["-o", "a.exr"]));
+    fs::copy(at.path().join("a.exr"), at.path().join("b.exr")).unwrap();
+    let said = succeeds(at.path(), &["compare", "a.exr", "b.exr"]);
+    assert!(said.contains("bit for bit") && said.contains("SSIM 1.000000"), "{said}");
+
+    flip_a_bit(&at.path().join("b.exr"));
+    let output = splatref(at.path(), &["compare", "a.exr", "b.exr"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert_eq!((output.status.code(), output.stderr.len()), (Some(1), 0), "{said}");
+    assert!(said.contains("Z: 1 of 768 pixels differ, first (16, 12)"), "{said}");
+    assert!(said.contains("1 ulp"), "{said}");
+    succeeds(at.path(), &["compare", "a.exr", "b.exr", "--max-ulp", "1"]);
+    succeeds(at.path(), &["compare", "a.exr", "b.exr", "--max-abs", "1e-6"]);
+
+    succeeds(at.path(), &["render", "sphere", "--count", "9", "--size", "8x8", "-o", "c.exr"]);
+    assert_eq!(splatref(at.path(), &["compare", "a.exr", "c.exr"]).status.code(), Some(1));
+    fs::write(at.path().join("d.exr"), "no picture").unwrap();
+    fails(at.path(), &["compare", "a.exr", "d.exr"], 1);
+    fails(at.path(), &["compare", "a.exr", "missing.exr"], 1);
+}
+
+#[test]
+fn explain_agrees_with_the_picture() {
+    let at = TempDir::new().unwrap();
+    let options = ["--count", "300", "--size", "32x24"];
+    for number in ["f32", "f64"] {
+        let scene = [&options[..], &["--number", number]].concat();
+        succeeds(at.path(), &[&["render", "cluster", "-o", "a.exr"], &scene[..]].concat());
+        let image = exr::read(&at.path().join("a.exr")).unwrap();
+        let (id, depth) = (indices(&image, "id"), floats(&image, "Z"));
+        let (mut seen, mut empty) = (0, 0);
+        for i in (0..32 * 24).step_by(37) {
+            let (x, y) = ((i % 32).to_string(), (i / 32).to_string());
+            let said = succeeds(at.path(), &[&["explain", "cluster", &x, &y], &scene[..]].concat());
+            if id[i] == u32::MAX {
+                assert!(said.contains("the pixel is empty"), "{said}");
+                empty += 1;
+            } else {
+                assert!(said.contains(&format!(", surfel {},", id[i])), "{} in {said}", id[i]);
+                let nearest = said.split("(nearest ").nth(1).unwrap().split(',').next().unwrap();
+                let nearest: f64 = nearest.parse().unwrap();
+                assert_eq!((nearest as f32).to_bits(), depth[i].to_bits());
+                seen += 1;
+            }
+        }
+        assert!(seen > 2 && empty > 2, "{seen} {empty}");
+    }
+}
+
+#[test]
+fn info_describes_every_kind_of_file() {
+    let at = TempDir::new().unwrap();
+    succeeds(at.path(), &small(&["-o", "a.exr", "--stages"]));
+    let said = succeeds(at.path(), &["info", "a.exr"]);
+    for word in ["32 x 24", "visibility.Z: float", "id: uint", "zip", "sha256 = ", "[camera]"] {
+        assert!(said.contains(word), "{word} in {said}");
+    }
+    let header = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n\
+                  property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
+                  element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let vertices = "0 0 0 255 0 0\n2 0 0 0 0 0\n0 3 0 0 0 0\nnan 0 0 0 0 0\n9 9 9 0 0 0\n";
+    fs::write(at.path().join("a.ply"), format!("{header}{vertices}3 0 1 2\n")).unwrap();
+    let said = succeeds(at.path(), &["info", "a.ply"]);
+    for word in [
+        "points     5",
+        "triangles  1",
+        "has        colours",
+        "surfels    3",
+        "derived from the triangles",
+        "derived from the edges",
+        "2 points: 1 not finite, 1 without",
+        "(0, 0, 0) to (2, 3, 0)",
+    ] {
+        assert!(said.contains(word), "{word} in {said}");
+    }
+    let scene = "[[model]]\nfile = \"a.ply\"\n[[model]]\nshape = \"torus\"\ncount = 100\n\
+                 [camera]\nsize = [20, 10]\northo = 3\n[method]\noutline = \"raycast\"\n";
+    fs::write(at.path().join("a.toml"), scene).unwrap();
+    let said = succeeds(at.path(), &["info", "a.toml"]);
+    for word in ["a.ply", "Torus", "103 surfels", "20 x 10", "orthographic", "raycast", "headlight"]
+    {
+        assert!(said.contains(word), "{word} in {said}");
+    }
+    fails(at.path(), &["info", "a.txt"], 2);
+    fails(at.path(), &["info", "b.exr"], 1);
+}
+
+#[test]
+fn help_and_version_are_not_errors() {
+    let at = TempDir::new().unwrap();
+    for command in ["render", "golden", "compare", "explain", "info"] {
+        assert!(succeeds(at.path(), &["--help"]).contains(command));
+        assert!(succeeds(at.path(), &[command, "--help"]).contains("Usage: splatref"));
+    }
+    assert!(succeeds(at.path(), &["--version"]).contains(env!("CARGO_PKG_VERSION")));
+}
