@@ -2,11 +2,11 @@
 //!
 //! `cargo bench --bench ewa` prints Markdown; an argument is a pattern that the names of workloads
 //! must contain. Each row is the median over the frames of one run, the minimum in brackets, in
-//! milliseconds: both geometry passes and the normalization, `f32`, back faces culled, colour,
-//! normal, weight, depth and id written, into a framebuffer that is kept from frame to frame.
+//! milliseconds: both geometry passes and the normalization, `f32`, back faces culled, into a
+//! framebuffer that is kept from frame to frame: colour, weight, depth and id, or also normals.
 
 use glam::{DVec3, Vec3};
-use splatref::frame::{Exec, Framebuffer};
+use splatref::frame::{Exec, Framebuffer, Wanted};
 use splatref::method::ewa::{Settings, fast};
 use splatref::number::elementary::{cos, sin};
 use splatref::number::random::unit;
@@ -36,33 +36,48 @@ fn main() {
     // cargo passes --bench.
     let pattern = std::env::args().skip(1).find(|a| !a.starts_with('-')).unwrap_or_default();
     println!(
-        "| workload | kernel | threads | frame | projection | visibility | attributes | normalization |"
+        "| workload | kernel | planes | threads | frame | projection | visibility | attributes | normalization |"
     );
-    println!("|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|");
     for workload in WORKLOADS.iter().filter(|w| w.name.contains(&pattern)) {
         let surfels = sphere(workload);
-        for (name, kernel) in [("ZPvBG01", Kernel::ZPVBG01), ("default", Kernel::DEFAULT)] {
+        for (name, kernel, normal) in VARIANTS {
             for threads in [1, 2] {
-                let times = measure(&surfels, kernel, threads);
+                let times = measure(&surfels, kernel, normal, threads);
+                let planes = if normal { "colour, normal" } else { "colour" };
                 let cells: Vec<_> =
                     times.iter().map(|t| format!("{} ({})", ms(t.0), ms(t.1))).collect();
-                println!("| {} | {name} | {threads} | {} |", workload.name, cells.join(" | "));
+                let cells = cells.join(" | ");
+                println!("| {} | {name} | {planes} | {threads} | {cells} |", workload.name);
             }
         }
     }
 }
+
+/// Kernel, and whether normals are wanted.
+const VARIANTS: [(&str, Kernel, bool); 3] = [
+    ("ZPvBG01", Kernel::ZPVBG01, false),
+    ("default", Kernel::DEFAULT, false),
+    ("default", Kernel::DEFAULT, true),
+];
 
 fn ms(time: Duration) -> String {
     format!("{:.1}", time.as_secs_f64() * 1e3)
 }
 
 /// Median and minimum of the frame and of each stage.
-fn measure(surfels: &Surfels, kernel: Kernel, threads: usize) -> Vec<(Duration, Duration)> {
+fn measure(
+    surfels: &Surfels,
+    kernel: Kernel,
+    normal: bool,
+    threads: usize,
+) -> Vec<(Duration, Duration)> {
     let pose = Pose { eye: DVec3::new(0.0, 0.0, 4.0), target: DVec3::ZERO, up: DVec3::Y };
     let camera = Camera::new(1024, 1024, pose, Lens::Focal(1900.0)).expect("a camera");
     let settings = Settings { kernel, ..Settings::default() };
     let exec = Exec::new(threads, 32).expect("threads");
-    let mut target = Framebuffer::new(1024, 1024, 0.0, true, false);
+    let wanted = Wanted { normal, color: true, observed: false };
+    let mut target = Framebuffer::new(1024, 1024, 0.0, wanted);
     let mut columns = vec![Vec::new(); 5];
     let start = Instant::now();
     // At least 9 frames, then up to 101 within two seconds.

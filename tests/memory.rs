@@ -5,7 +5,7 @@
 #![cfg(target_os = "linux")]
 
 use glam::DVec3;
-use splatref::frame::{Exec, Framebuffer};
+use splatref::frame::{Exec, Framebuffer, Wanted};
 use splatref::method::ewa::{Settings, fast};
 use splatref::scene::{Camera, Lens, Pose, Shape};
 
@@ -24,6 +24,7 @@ fn a_render_stays_within_its_budget() {
     let surfels = Shape::Sphere.surfels(SURFELS, 0).expect("a sphere");
     let pose = Pose { eye: DVec3::new(0.0, 0.0, 4.0), target: DVec3::ZERO, up: DVec3::Y };
     let camera = Camera::new(SIDE, SIDE, pose, Lens::Focal(3000.0)).expect("a camera");
+    let wanted = Wanted { normal: true, color: true, observed: false };
     let settings = Settings { cull: false, ..Settings::default() };
     let exec = Exec::new(2, 32).expect("threads");
     // Writing 5 resets the peak of the process to what it holds now.
@@ -32,7 +33,7 @@ fn a_render_stays_within_its_budget() {
         return;
     }
     let before = status("VmRSS").expect("a resident size");
-    let mut target = Framebuffer::new(SIDE, SIDE, 0.0, true, false);
+    let mut target = Framebuffer::new(SIDE, SIDE, 0.0, wanted);
     let (tally, _) = fast::render(&surfels, &camera, &settings, &exec, &mut target);
     let peak = status("VmHWM").expect("a peak").saturating_sub(before);
     assert_eq!(tally.visible, SURFELS as u64);

@@ -3,40 +3,35 @@
 use splatref::Result;
 use splatref::frame::{Exec, Frame, Plane, Samples};
 use splatref::io::scene_file::{Number, Output};
-use splatref::method::ewa::{self, Settings};
+use splatref::method::ewa::{self, Picture, Settings};
 use splatref::scene::{Camera, Scene};
-use splatref::splat::Tally;
 use std::path::Path;
-use std::time::Duration;
 
-/// A picture in `f32`, and how it came about.
-pub(super) struct Drawing {
-    pub(super) frame: Frame<f32>,
-    pub(super) tally: Tally,
-    pub(super) timings: Vec<(&'static str, Duration)>,
-}
-
+/// Draws; `earlier` is a picture whose memory may be used again.
 pub(super) fn draw(
     scene: &Scene,
     camera: &Camera,
     settings: &Settings,
     exec: &Exec,
     output: Output,
-) -> Result<Drawing> {
-    let picture = match output {
-        Output { number: Number::F32, stages: false } => {
-            ewa::render_f32(scene, camera, settings, exec)?
+    earlier: Option<Picture<f32>>,
+) -> Result<Picture<f32>> {
+    match (output, earlier) {
+        (Output { number: Number::F32, stages: false }, Some(earlier)) => {
+            ewa::render_f32_again(scene, camera, settings, exec, earlier)
         }
-        Output { number: Number::F32, stages: true } => {
-            ewa::render::<f32>(scene, camera, settings, exec, true)?
+        (Output { number: Number::F32, stages: false }, None) => {
+            ewa::render_f32(scene, camera, settings, exec)
         }
-        Output { number: Number::F64, stages } => {
+        (Output { number: Number::F32, stages: true }, _) => {
+            ewa::render::<f32>(scene, camera, settings, exec, true)
+        }
+        (Output { number: Number::F64, stages }, _) => {
             let exact = ewa::render::<f64>(scene, camera, settings, exec, stages)?;
-            let ewa::Picture { frame, tally, timings } = exact;
-            ewa::Picture { frame: frame.to_f32(), tally, timings }
+            let Picture { frame, tally, timings } = exact;
+            Ok(Picture { frame: frame.to_f32(), tally, timings })
         }
-    };
-    Ok(Drawing { frame: picture.frame, tally: picture.tally, timings: picture.timings })
+    }
 }
 
 /// Writes the preview of a picture: its colour over its coverage.

@@ -112,10 +112,10 @@ fn check(args: &Args, exec: &Exec, name: &str) -> Result<(Image, bool)> {
 fn render(dir: &Path, exec: &Exec, name: &str) -> Result<Case> {
     let (scene, picture) = (dir.join(format!("{name}.toml")), dir.join(format!("{name}.exr")));
     let file = SceneFile::read(&scene)?;
-    let loaded = file.load(&exec, &|_, _, _| ())?;
+    let loaded = file.load(exec, &|_, _, _| ())?;
     let camera = file.camera(&loaded.scene.surfels)?;
     let settings = file.method.settings();
-    let drawing = draw::draw(&loaded.scene, &camera, &settings, exec, file.output)?;
+    let drawing = draw::draw(&loaded.scene, &camera, &settings, exec, file.output, None)?;
     let text = provenance::text(&loaded.scene, &camera, &settings, file.output.number);
     Ok(Case { scene, picture, text, frame: drawing.frame })
 }

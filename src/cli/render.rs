@@ -3,6 +3,7 @@
 use super::options::{ExecOptions, Kind, SceneOptions, kind};
 use super::{Finding, Outcome, draw, progress, report};
 use splatref::io::{exr, provenance};
+use splatref::method::ewa::Picture;
 use splatref::{Error, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -53,12 +54,12 @@ pub(super) fn run(args: &Args) -> Finding {
     let scene = &loaded.scene;
     let camera = file.camera(&scene.surfels)?;
 
-    let render = || draw::draw(scene, &camera, &settings, &exec, file.output);
+    let render = |earlier| draw::draw(scene, &camera, &settings, &exec, file.output, earlier);
     let mut times = Vec::new();
     let drawing = progress::during("rendering", || -> Result<_> {
-        let mut drawing = timed(&mut times, render)?;
+        let mut drawing = timed(&mut times, || render(None))?;
         for _ in 1..args.repeat {
-            drawing = timed(&mut times, render)?;
+            drawing = timed(&mut times, || render(Some(drawing)))?;
         }
         Ok(drawing)
     })?;
@@ -112,7 +113,7 @@ fn check_place(path: &Path) -> Result<()> {
 type Times = Vec<Vec<(&'static str, Duration)>>;
 
 /// Draws once and notes how long it took.
-fn timed(times: &mut Times, render: impl Fn() -> Result<draw::Drawing>) -> Result<draw::Drawing> {
+fn timed(times: &mut Times, render: impl FnOnce() -> Result<Picture<f32>>) -> Result<Picture<f32>> {
     let start = Instant::now();
     let mut drawing = render()?;
     let whole = start.elapsed();

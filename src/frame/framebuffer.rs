@@ -1,8 +1,19 @@
 //! The framebuffer: depth, stencil and floating accumulation.
 
 use super::tile::TileMut;
-use super::{Grid, NO_ID, Plane, Rect};
+use super::{Exec, Grid, NO_ID, Plane, Rect};
 use crate::number::Real;
+
+/// Which planes a picture needs besides depth, id and weight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// Normals: where there is light.
+    pub normal: bool,
+    /// Colours: where the surfels have their own.
+    pub color: bool,
+    /// Counts of fragments and margins of decisions.
+    pub observed: bool,
+}
 
 /// What splats are drawn into.
 ///
@@ -22,7 +33,7 @@ pub struct Framebuffer<R> {
     /// Sum of the weights.
     pub weight: Plane<R>,
     /// Weighted sum of normals, then their direction; world space.
-    pub normal: Plane<[R; 3]>,
+    pub normal: Option<Plane<[R; 3]>>,
     /// Weighted sum of colours, then their average; linear RGB.
     pub color: Option<Plane<[R; 3]>>,
     /// Fragments that were accumulated, up to 255.
@@ -43,7 +54,7 @@ pub struct FramebufferTile<'a, R> {
     /// See [`Framebuffer::weight`].
     pub weight: TileMut<'a, R>,
     /// See [`Framebuffer::normal`].
-    pub normal: TileMut<'a, [R; 3]>,
+    pub normal: Option<TileMut<'a, [R; 3]>>,
     /// See [`Framebuffer::color`].
     pub color: Option<TileMut<'a, [R; 3]>>,
     /// See [`Framebuffer::stencil`].
@@ -54,11 +65,8 @@ pub struct FramebufferTile<'a, R> {
 
 impl<R: Real> Framebuffer<R> {
     /// A framebuffer cleared to `empty`, the nearness of an empty pixel.
-    ///
-    /// `color`: whether the scene has colours. `observed`: whether fragments are counted and margins
-    /// kept.
     #[must_use]
-    pub fn new(width: u32, height: u32, empty: R, color: bool, observed: bool) -> Self {
+    pub fn new(width: u32, height: u32, empty: R, wanted: Wanted) -> Self {
         let zero = [R::ZERO; 3];
         Self {
             width,
@@ -66,39 +74,71 @@ impl<R: Real> Framebuffer<R> {
             depth: Plane::filled(width, height, empty),
             id: Plane::filled(width, height, NO_ID),
             weight: Plane::filled(width, height, R::ZERO),
-            normal: Plane::filled(width, height, zero),
-            color: color.then(|| Plane::filled(width, height, zero)),
-            stencil: observed.then(|| Plane::filled(width, height, 0)),
-            margin: observed.then(|| Plane::filled(width, height, R::INFINITY)),
+            normal: wanted.normal.then(|| Plane::filled(width, height, zero)),
+            color: wanted.color.then(|| Plane::filled(width, height, zero)),
+            stencil: wanted.observed.then(|| Plane::filled(width, height, 0)),
+            margin: wanted.observed.then(|| Plane::filled(width, height, R::INFINITY)),
         }
     }
 
     /// The tiles of every plane, row by row.
-    pub fn tiles(&mut self, grid: &Grid) -> Vec<FramebufferTile<'_, R>> {
-        fn optional<'a, T>(
-            grid: &Grid,
-            plane: &'a mut Option<Plane<T>>,
-        ) -> impl Iterator<Item = Option<TileMut<'a, T>>> {
-            let mut tiles = plane.as_mut().map(|plane| grid.split(plane).into_iter());
-            std::iter::repeat_with(move || tiles.as_mut().and_then(Iterator::next))
-        }
-        let mut id = grid.split(&mut self.id).into_iter();
-        let mut weight = grid.split(&mut self.weight).into_iter();
-        let mut normal = grid.split(&mut self.normal).into_iter();
-        let mut color = optional(grid, &mut self.color);
-        let mut stencil = optional(grid, &mut self.stencil);
-        let mut margin = optional(grid, &mut self.margin);
-        let depth = grid.split(&mut self.depth).into_iter();
-        let tiles = grid.rects().into_iter().zip(depth).filter_map(|(rect, depth)| {
-            Some(FramebufferTile {
-                rect,
-                depth,
+    pub fn tiles(&mut self, grid: &Grid, exec: &Exec) -> Vec<FramebufferTile<'_, R>> {
+        let mut depth = grid.bands(&mut self.depth);
+        let mut id = grid.bands(&mut self.id);
+        let mut weight = grid.bands(&mut self.weight);
+        let mut normal = self.normal.as_mut().map(|plane| grid.bands(plane));
+        let mut color = self.color.as_mut().map(|plane| grid.bands(plane));
+        let mut stencil = self.stencil.as_mut().map(|plane| grid.bands(plane));
+        let mut margin = self.margin.as_mut().map(|plane| grid.bands(plane));
+        let bands = (0..grid.rows).filter_map(|row| {
+            Some(Band {
+                row,
+                depth: depth.next()?,
                 id: id.next()?,
                 weight: weight.next()?,
-                normal: normal.next()?,
-                color: color.next()?,
-                stencil: stencil.next()?,
-                margin: margin.next()?,
+                normal: normal.as_mut().and_then(Iterator::next),
+                color: color.as_mut().and_then(Iterator::next),
+                stencil: stencil.as_mut().and_then(Iterator::next),
+                margin: margin.as_mut().and_then(Iterator::next),
+            })
+        });
+        // A tile is many short rows: cutting them out is work enough to be shared.
+        let tiles = exec.ordered(bands.collect(), |band| band.tiles(grid));
+        tiles.into_iter().flatten().collect()
+    }
+}
+
+/// A row of tiles of every plane.
+struct Band<'a, R> {
+    row: u32,
+    depth: &'a mut [R],
+    id: &'a mut [u32],
+    weight: &'a mut [R],
+    normal: Option<&'a mut [[R; 3]]>,
+    color: Option<&'a mut [[R; 3]]>,
+    stencil: Option<&'a mut [u8]>,
+    margin: Option<&'a mut [R]>,
+}
+
+impl<'a, R: Real> Band<'a, R> {
+    fn tiles(self, grid: &Grid) -> Vec<FramebufferTile<'a, R>> {
+        let mut depth = grid.split(self.depth);
+        let mut id = grid.split(self.id);
+        let mut weight = grid.split(self.weight);
+        let mut normal = self.normal.map(|band| grid.split(band));
+        let mut color = self.color.map(|band| grid.split(band));
+        let mut stencil = self.stencil.map(|band| grid.split(band));
+        let mut margin = self.margin.map(|band| grid.split(band));
+        let tiles = (0..grid.columns).filter_map(|column| {
+            Some(FramebufferTile {
+                rect: grid.rect(column, self.row),
+                depth: depth.next()?,
+                id: id.next()?,
+                weight: weight.next()?,
+                normal: normal.as_mut().and_then(Iterator::next),
+                color: color.as_mut().and_then(Iterator::next),
+                stencil: stencil.as_mut().and_then(Iterator::next),
+                margin: margin.as_mut().and_then(Iterator::next),
             })
         });
         tiles.collect()

@@ -15,7 +15,7 @@ pub mod stencil;
 pub mod tile;
 
 pub use bin::Bins;
-pub use framebuffer::{Framebuffer, FramebufferTile};
+pub use framebuffer::{Framebuffer, FramebufferTile, Wanted};
 pub use named::{Channel, ChannelData, Frame, NamedPlane, Samples};
 pub use plane::Plane;
 pub use rect::Rect;

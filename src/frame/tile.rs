@@ -6,6 +6,7 @@
 use super::{Plane, Rect};
 use crate::error::{Error, Result};
 use rayon::prelude::*;
+use std::slice::ChunksMut;
 
 /// Threads and tile size: how, never what.
 #[derive(Debug)]
@@ -110,20 +111,23 @@ impl Grid {
         tiles.map(|(column, row)| self.rect(column, row)).collect()
     }
 
-    /// A plane cut into its tiles, disjoint and writable, row by row.
-    #[must_use]
-    pub fn split<'a, T>(&self, plane: &'a mut Plane<T>) -> Vec<TileMut<'a, T>> {
-        let empty = || TileMut { rows: Vec::with_capacity(self.tile as usize) };
-        let mut tiles: Vec<_> = std::iter::repeat_with(empty).take(self.len()).collect();
-        let (width, tile) = (self.width as usize, self.tile as usize);
-        let columns = self.columns as usize;
-        for (y, row) in plane.values_mut().chunks_mut(width.max(1)).enumerate() {
-            let first = y / tile * columns;
-            for (tile, part) in tiles[first..].iter_mut().zip(row.chunks_mut(tile)) {
+    /// A plane cut into its rows of tiles.
+    pub fn bands<'a, T>(&self, plane: &'a mut Plane<T>) -> ChunksMut<'a, T> {
+        let rows = self.width as usize * self.tile as usize;
+        plane.values_mut().chunks_mut(rows.max(1))
+    }
+
+    /// One of the [`Grid::bands`] cut into its tiles, disjoint and writable, from left to right.
+    pub fn split<'a, T>(&self, band: &'a mut [T]) -> std::vec::IntoIter<TileMut<'a, T>> {
+        let (width, tile) = (self.width.max(1) as usize, self.tile as usize);
+        let empty = || TileMut { rows: Vec::with_capacity(band.len() / width) };
+        let mut tiles: Vec<_> = std::iter::repeat_with(empty).take(self.columns as usize).collect();
+        for row in band.chunks_mut(width) {
+            for (tile, part) in tiles.iter_mut().zip(row.chunks_mut(tile)) {
                 tile.rows.push(part);
             }
         }
-        tiles
+        tiles.into_iter()
     }
 }
 
@@ -151,7 +155,8 @@ mod tests {
         for (width, height) in [(1, 1), (16, 16), (17, 33), (64, 5), (100, 1)] {
             let grid = exec.grid(width, height);
             let mut plane = Plane::filled(width, height, 0_u32);
-            let jobs: Vec<_> = grid.rects().into_iter().zip(grid.split(&mut plane)).collect();
+            let tiles = grid.bands(&mut plane).flat_map(|band| grid.split(band));
+            let jobs: Vec<_> = grid.rects().into_iter().zip(tiles).collect();
             let written = exec.ordered(jobs, |(rect, mut tile)| {
                 for y in rect.y0..rect.y1 {
                     for (i, value) in tile.row((y - rect.y0) as usize).iter_mut().enumerate() {

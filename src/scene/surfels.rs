@@ -19,6 +19,7 @@ pub struct Surfels {
     color: Option<Vec<Vec3>>,
     opacity: Option<Vec<f32>>,
     tangents: Option<Vec<[Vec3; 2]>>,
+    median_radius: f32,
 }
 
 /// How many surfels of a cloud were dropped, each counted once, under the first reason that held.
@@ -89,10 +90,12 @@ impl Surfels {
                 "the scene is empty: none of its {n} points can be a surfel"
             )));
         }
+        let radius = retain(radius, &keep);
         let surfels = Self {
+            median_radius: lower_median(radius.clone()),
             position: retain(position, &keep),
             normal: retain(normal, &keep),
-            radius: retain(radius, &keep),
+            radius,
             color: color.map(|c| retain(c, &keep)),
             opacity: opacity.map(|o| retain(o, &keep)),
             tangents: tangents.map(|t| retain(t, &keep)),
@@ -146,9 +149,7 @@ impl Surfels {
     /// The lower median of the radii: the element of rank (n - 1) / 2 in ascending order.
     #[must_use]
     pub fn median_radius(&self) -> f32 {
-        let mut radii = self.radius.clone();
-        let middle = (radii.len() - 1) / 2;
-        *radii.select_nth_unstable_by(middle, f32::total_cmp).1
+        self.median_radius
     }
 
     /// The corners of the smallest axis-parallel box around all positions.
@@ -182,6 +183,12 @@ impl Surfels {
             triangles: Vec::new(),
         }
     }
+}
+
+/// The element of rank (n - 1) / 2; there is at least one.
+fn lower_median(mut values: Vec<f32>) -> f32 {
+    let middle = (values.len() - 1) / 2;
+    *values.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
 /// Every array as long as the positions.

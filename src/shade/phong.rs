@@ -58,12 +58,12 @@ impl<R: Real> Shader<R> {
 
     /// Shades every pixel; `color` may be reused as the result.
     ///
-    /// `depth` is +inf and `normal` 0 where a pixel is empty.
+    /// `depth` is +inf where a pixel is empty; only an unlit scene can do without normals.
     #[must_use]
     pub fn shade(
         &self,
         depth: &Plane<R>,
-        normal: &Plane<[R; 3]>,
+        normal: Option<&Plane<[R; 3]>>,
         color: Option<Plane<[R; 3]>>,
         exec: &Exec,
     ) -> Plane<[R; 3]> {
@@ -75,7 +75,7 @@ impl<R: Real> Shader<R> {
         exec.ordered(rows, |(y, pixels): (usize, &mut [[R; 3]])| {
             for (x, pixel) in pixels.iter_mut().enumerate() {
                 let i = y * row + x;
-                let [nx, ny, nz] = normal.values()[i];
+                let [nx, ny, nz] = normal.map_or([R::ZERO; 3], |normal| normal.values()[i]);
                 let normal = Vector3::new(nx, ny, nz);
                 *pixel = self.pixel((x, y), depth.values()[i], normal, *pixel);
             }

@@ -25,7 +25,7 @@ mod picture;
 pub mod plain;
 mod prepare;
 
-pub use picture::{Picture, render, render_f32};
+pub use picture::{Picture, render, render_f32, render_f32_again};
 
 use crate::error::{Error, Result};
 use crate::scene::Surfels;

@@ -4,7 +4,7 @@ use super::Settings;
 use super::fast;
 use super::plain::Plain;
 use crate::error::Result;
-use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Samples};
+use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Samples, Wanted};
 use crate::number::Real;
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 #[derive(Clone, Debug)]
 pub struct Picture<R> {
     /// The planes: the shaded colour (`R G B`), `A` (1 where a surfel is seen, else 0), `Z`,
-    /// `normal` (world space), `weight`, `id`; before them those of the stages, if asked for.
+    /// `normal` (world space; not of an unlit scene), `weight`, `id`; before them those of the stages, if asked for.
     pub frame: Frame<R>,
     /// What became of the surfels.
     pub tally: Tally,
@@ -45,7 +45,8 @@ pub fn render<R: Real>(
     settings.check()?;
     let mut clock = Clock::default();
     let mut planes = Vec::new();
-    let mut plain = Plain::<R>::project(&scene.surfels, camera, settings, exec, stages);
+    let mut plain =
+        Plain::<R>::project(&scene.surfels, camera, settings, exec, wanted(scene, stages));
     clock.lap("projection");
 
     plain.visibility();
@@ -63,7 +64,8 @@ pub fn render<R: Real>(
     if stages {
         let target = &mut plain.target;
         planes.extend(target.color.clone().map(|p| named("attributes", Samples::Color(p))));
-        planes.push(named("attributes.normal", Samples::Vector(target.normal.clone())));
+        planes
+            .extend(target.normal.clone().map(|p| named("attributes.normal", Samples::Vector(p))));
         planes.push(named("attributes.weight", Samples::Scalar(target.weight.clone())));
         planes.extend(target.stencil.take().map(|p| named("attributes.count", Samples::Count(p))));
         planes.extend(target.margin.take().map(|p| named("margin", Samples::Scalar(p))));
@@ -90,10 +92,42 @@ pub fn render_f32(
     settings: &Settings,
     exec: &Exec,
 ) -> Result<Picture<f32>> {
+    let target = Framebuffer::new(0, 0, 0.0, wanted(scene, false));
+    render_into(scene, camera, settings, exec, target)
+}
+
+/// As [`render_f32`], in the memory of an earlier picture, which is much of the time of a small one.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_f32_again(
+    scene: &Scene,
+    camera: &Camera,
+    settings: &Settings,
+    exec: &Exec,
+    earlier: Picture<f32>,
+) -> Result<Picture<f32>> {
+    render_into(scene, camera, settings, exec, recycle(earlier.frame))
+}
+
+fn render_into(
+    scene: &Scene,
+    camera: &Camera,
+    settings: &Settings,
+    exec: &Exec,
+    mut target: Framebuffer<f32>,
+) -> Result<Picture<f32>> {
     camera.check()?;
     settings.check()?;
-    let color = scene.surfels.color().is_some();
-    let mut target = Framebuffer::new(camera.width, camera.height, 0.0, color, false);
+    let (size, wanted) = ((camera.width, camera.height), wanted(scene, false));
+    let whole = |width: u32, height: u32| (width, height) == size;
+    let fits = whole(target.depth.width(), target.depth.height())
+        && whole(target.id.width(), target.id.height())
+        && whole(target.weight.width(), target.weight.height())
+        && (target.normal.is_some(), target.color.is_some()) == (wanted.normal, wanted.color);
+    if !fits {
+        target = Framebuffer::new(size.0, size.1, 0.0, wanted);
+    }
     let (tally, times) = fast::render(&scene.surfels, camera, settings, exec, &mut target);
     let clock = Clock {
         laps: vec![
@@ -107,6 +141,33 @@ pub fn render_f32(
     Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
 }
 
+/// The planes of a frame as a framebuffer; what it lacks has no pixels.
+fn recycle(frame: Frame<f32>) -> Framebuffer<f32> {
+    let Frame { width, height, planes } = frame;
+    let none = Wanted { normal: false, color: false, observed: false };
+    let mut target = Framebuffer { width, height, ..Framebuffer::new(0, 0, 0.0, none) };
+    for NamedPlane { name, samples } in planes {
+        match (name.as_str(), samples) {
+            ("Z", Samples::Scalar(plane)) => target.depth = plane,
+            ("weight", Samples::Scalar(plane)) => target.weight = plane,
+            ("id", Samples::Index(plane)) => target.id = plane,
+            ("normal", Samples::Vector(plane)) => target.normal = Some(plane),
+            ("", Samples::Color(plane)) => target.color = Some(plane),
+            _ => {}
+        }
+    }
+    target
+}
+
+/// The planes that a scene needs.
+fn wanted(scene: &Scene, stages: bool) -> Wanted {
+    Wanted {
+        normal: stages || !scene.lights.is_empty(),
+        color: scene.surfels.color().is_some(),
+        observed: stages,
+    }
+}
+
 /// Deferred shading, and the planes of the picture.
 fn finish<R: Real>(
     target: Framebuffer<R>,
@@ -118,13 +179,13 @@ fn finish<R: Real>(
     let Framebuffer { width, height, depth, id, weight, normal, color, .. } = target;
     clock.restart();
     let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
-    let color = shader.shade(&depth, &normal, color, exec);
+    let color = shader.shade(&depth, normal.as_ref(), color, exec);
     clock.lap("shading");
     let alpha: Plane<R> = weight.map(|&w| if w > R::ZERO { R::ONE } else { R::ZERO });
     planes.push(named("", Samples::Color(color)));
     planes.push(named("A", Samples::Scalar(alpha)));
     planes.push(named("Z", Samples::Scalar(depth)));
-    planes.push(named("normal", Samples::Vector(normal)));
+    planes.extend(normal.map(|p| named("normal", Samples::Vector(p))));
     planes.push(named("weight", Samples::Scalar(weight)));
     planes.push(named("id", Samples::Index(id)));
     Picture { frame: Frame { width, height, planes }, tally, timings: clock.laps }

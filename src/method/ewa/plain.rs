@@ -4,7 +4,7 @@ use super::Settings;
 use super::prepare::Prepared;
 use crate::composite::{epsilon, sum};
 use crate::frame::stencil::{Outcome, Stencil};
-use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, Rect};
+use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, Rect, Wanted};
 use crate::number::{Real, Vector2};
 use crate::scene::{Camera, Surfels};
 use crate::splat::{Shared, Splat, Tally, batch};
@@ -21,14 +21,14 @@ pub struct Plain<'a, R> {
 }
 
 impl<'a, R: Real> Plain<'a, R> {
-    /// Projection. `observed`: whether fragments are counted and margins kept.
+    /// Projection. `wanted` chooses the planes; colours need a scene that has them.
     #[must_use]
     pub fn project(
         surfels: &'a Surfels,
         camera: &Camera,
         settings: &Settings,
         exec: &'a Exec,
-        observed: bool,
+        wanted: Wanted,
     ) -> Self {
         let grid = exec.grid(camera.width, camera.height);
         let prepared = Prepared::new(
@@ -41,8 +41,7 @@ impl<'a, R: Real> Plain<'a, R> {
             },
             |splat: &Splat<R>| splat.bounds,
         );
-        let (empty, color) = (prepared.shared.empty(), surfels.color().is_some());
-        let target = Framebuffer::new(camera.width, camera.height, empty, color, observed);
+        let target = Framebuffer::new(camera.width, camera.height, prepared.shared.empty(), wanted);
         Self { surfels, exec, grid, prepared, target }
     }
 
@@ -81,9 +80,11 @@ impl<'a, R: Real> Plain<'a, R> {
             if q <= shared.limit && epsilon::visible(t, nearest, epsilon) {
                 let i = splat.surfel as usize;
                 let weight = splat.footprint.weight(q);
-                let normal = facing(normals[i].to_array().map(R::from_f32), splat.back);
-                let sums = &mut tile.normal.row(y)[x];
-                *sums = sum::add(*sums, weight, normal);
+                if let Some(sums) = &mut tile.normal {
+                    let normal = facing(normals[i].to_array().map(R::from_f32), splat.back);
+                    let sums = &mut sums.row(y)[x];
+                    *sums = sum::add(*sums, weight, normal);
+                }
                 if let (Some(sums), Some(colors)) = (&mut tile.color, colors) {
                     let sums = &mut sums.row(y)[x];
                     *sums = sum::add(*sums, weight, colors[i].to_array().map(R::from_f32));
@@ -107,8 +108,10 @@ impl<'a, R: Real> Plain<'a, R> {
                     let weight = tile.weight.row(y)[x];
                     let depth = &mut tile.depth.row(y)[x];
                     *depth = shared.depth(*depth);
-                    let normal = &mut tile.normal.row(y)[x];
-                    *normal = sum::direction(*normal, weight);
+                    if let Some(normal) = &mut tile.normal {
+                        let normal = &mut normal.row(y)[x];
+                        *normal = sum::direction(*normal, weight);
+                    }
                     if let Some(color) = &mut tile.color {
                         let color = &mut color.row(y)[x];
                         *color = sum::average(*color, weight);
@@ -144,7 +147,7 @@ impl<'a, R: Real> Plain<'a, R> {
         job: impl Fn(&dyn Fn(&mut dyn FnMut(&Splat<R>)), FramebufferTile<'_, R>) + Sync + Send,
     ) {
         let prepared = &self.prepared;
-        let tiles = self.target.tiles(&self.grid).into_iter().enumerate().collect();
+        let tiles = self.target.tiles(&self.grid, self.exec).into_iter().enumerate().collect();
         self.exec.ordered(tiles, |(index, tile)| {
             job(&|visit| prepared.for_each(index, visit), tile);
         });

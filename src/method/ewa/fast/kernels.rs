@@ -47,20 +47,25 @@ impl Scratch {
 
     /// Attribute splatting.
     pub(super) fn attributes(&mut self, shared: &Shared<f32>) {
-        match (shared.ray_cast, self.color) {
-            (false, false) => attributes::<false, false>(self, shared),
-            (false, true) => attributes::<false, true>(self, shared),
-            (true, false) => attributes::<true, false>(self, shared),
-            (true, true) => attributes::<true, true>(self, shared),
+        match (shared.ray_cast, self.normal, self.color) {
+            (false, false, false) => attributes::<false, false, false>(self, shared),
+            (false, false, true) => attributes::<false, false, true>(self, shared),
+            (false, true, false) => attributes::<false, true, false>(self, shared),
+            (false, true, true) => attributes::<false, true, true>(self, shared),
+            (true, false, false) => attributes::<true, false, false>(self, shared),
+            (true, false, true) => attributes::<true, false, true>(self, shared),
+            (true, true, false) => attributes::<true, true, false>(self, shared),
+            (true, true, true) => attributes::<true, true, true>(self, shared),
         }
     }
 
     /// Normalization, in place.
     pub(super) fn normalize(&mut self, shared: &Shared<f32>) {
-        if self.color {
-            normalize::<true>(&mut self.blocks, shared);
-        } else {
-            normalize::<false>(&mut self.blocks, shared);
+        match (self.normal, self.color) {
+            (false, false) => normalize::<false, false>(&mut self.blocks, shared),
+            (false, true) => normalize::<false, true>(&mut self.blocks, shared),
+            (true, false) => normalize::<true, false>(&mut self.blocks, shared),
+            (true, true) => normalize::<true, true>(&mut self.blocks, shared),
         }
     }
 }
@@ -163,7 +168,7 @@ fn least_nearness(shared: &Shared<f32>, limit: f32) -> f32 {
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn attributes<const RAY_CAST: bool, const COLOR: bool>(
+fn attributes<const RAY_CAST: bool, const NORMAL: bool, const COLOR: bool>(
     scratch: &mut Scratch,
     shared: &Shared<f32>,
 ) {
@@ -181,8 +186,10 @@ fn attributes<const RAY_CAST: bool, const COLOR: bool>(
                     continue;
                 };
                 add(&mut block.weight, &weight, 1.0);
-                for (sum, value) in block.normal.iter_mut().zip(normal) {
-                    add(sum, &weight, value);
+                if NORMAL {
+                    for (sum, value) in block.normal.iter_mut().zip(normal) {
+                        add(sum, &weight, value);
+                    }
                 }
                 if COLOR {
                     for (sum, value) in block.color.iter_mut().zip(color) {
@@ -230,18 +237,20 @@ fn add(sum: &mut Lanes, weight: &Lanes, value: f32) {
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn normalize<const COLOR: bool>(blocks: &mut [Block], shared: &Shared<f32>) {
+fn normalize<const NORMAL: bool, const COLOR: bool>(blocks: &mut [Block], shared: &Shared<f32>) {
     let shared = *shared;
     for block in blocks {
         let weight = block.weight;
         let (mut depth, mut normal, mut color) = (block.nearest, block.normal, block.color);
         for i in 0..LANES {
             depth[i] = shared.depth(depth[i]);
-            let [x, y, z] = sum::direction([normal[0][i], normal[1][i], normal[2][i]], weight[i]);
-            (normal[0][i], normal[1][i], normal[2][i]) = (x, y, z);
+            if NORMAL {
+                let sums = [normal[0][i], normal[1][i], normal[2][i]];
+                [normal[0][i], normal[1][i], normal[2][i]] = sum::direction(sums, weight[i]);
+            }
             if COLOR {
-                let [r, g, b] = sum::average([color[0][i], color[1][i], color[2][i]], weight[i]);
-                (color[0][i], color[1][i], color[2][i]) = (r, g, b);
+                let sums = [color[0][i], color[1][i], color[2][i]];
+                [color[0][i], color[1][i], color[2][i]] = sum::average(sums, weight[i]);
             }
         }
         (block.nearest, block.normal, block.color) = (depth, normal, color);

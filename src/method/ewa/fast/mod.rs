@@ -68,11 +68,11 @@ pub fn render(
     let project = start.elapsed();
 
     let start = Instant::now();
-    let jobs = target.tiles(&grid).into_iter().enumerate().collect();
+    let jobs = target.tiles(&grid, exec).into_iter().enumerate().collect();
     let times = exec.ordered(jobs, |(index, mut tile)| {
         let start = Instant::now();
         let shared = &prepared.shared;
-        let mut scratch = Scratch::gather(&prepared, index, tile.rect, surfels.color().is_some());
+        let mut scratch = Scratch::gather(&prepared, index, &tile);
         if scratch.splats.is_empty() {
             store::clear(&mut tile);
             return [start.elapsed(), Duration::ZERO, Duration::ZERO];

@@ -2,7 +2,7 @@
 
 use super::super::plain::facing;
 use super::super::prepare::Prepared;
-use crate::frame::{NO_ID, Rect};
+use crate::frame::{FramebufferTile, NO_ID, Rect};
 use crate::splat::{Footprint, Splat};
 use glam::Vec3;
 
@@ -87,7 +87,9 @@ pub(super) struct Scratch {
     pub(super) rect: Rect,
     /// Blocks in a row.
     pub(super) columns: u32,
-    /// Whether the scene has colours.
+    /// Whether normals are wanted.
+    pub(super) normal: bool,
+    /// Whether colours are wanted.
     pub(super) color: bool,
 }
 
@@ -96,11 +98,11 @@ impl Scratch {
     pub(super) fn gather(
         prepared: &Prepared<f32, Record>,
         index: usize,
-        rect: Rect,
-        color: bool,
+        tile: &FramebufferTile<'_, f32>,
     ) -> Self {
         let mut splats = Vec::with_capacity(prepared.count(index));
         prepared.for_each(index, |record| splats.push(*record));
+        let rect = tile.rect;
         let columns = (rect.x1 - rect.x0).div_ceil(SIDE);
         let rows = (rect.y1 - rect.y0).div_ceil(SIDE);
         let count = if splats.is_empty() { 0 } else { columns * rows };
@@ -113,6 +115,7 @@ impl Scratch {
             normal: [zero; 3],
             color: [zero; 3],
         };
-        Self { splats, blocks: vec![empty; count as usize], rect, columns, color }
+        let (normal, color) = (tile.normal.is_some(), tile.color.is_some());
+        Self { splats, blocks: vec![empty; count as usize], rect, columns, normal, color }
     }
 }

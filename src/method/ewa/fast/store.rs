@@ -9,9 +9,8 @@ pub(super) fn clear(tile: &mut FramebufferTile<'_, f32>) {
         tile.depth.row(y).fill(f32::INFINITY);
         tile.id.row(y).fill(NO_ID);
         tile.weight.row(y).fill(0.0);
-        tile.normal.row(y).fill([0.0; 3]);
-        if let Some(color) = &mut tile.color {
-            color.row(y).fill([0.0; 3]);
+        for plane in [&mut tile.normal, &mut tile.color].into_iter().flatten() {
+            plane.row(y).fill([0.0; 3]);
         }
     }
 }
@@ -25,7 +24,9 @@ pub(super) fn store(scratch: &Scratch, tile: &mut FramebufferTile<'_, f32>) {
         store_row(blocks, tile.depth.row(y), |block| row(&block.nearest, first));
         store_row(blocks, tile.id.row(y), |block| row(&block.id, first));
         store_row(blocks, tile.weight.row(y), |block| row(&block.weight, first));
-        store_row(blocks, tile.normal.row(y), |block| interleaved(&block.normal, first));
+        if let Some(normal) = &mut tile.normal {
+            store_row(blocks, normal.row(y), |block| interleaved(&block.normal, first));
+        }
         if let Some(color) = &mut tile.color {
             store_row(blocks, color.row(y), |block| interleaved(&block.color, first));
         }
