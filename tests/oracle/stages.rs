@@ -136,7 +136,8 @@ fn compare<R: Real>(
 fn every_stage_equals_the_oracle() {
     let exec = Exec::sequential();
     let mut measured = Measured::default();
-    let cases = scenes::all();
+    let mut cases = scenes::all();
+    cases.extend(scenes::goldens());
     let mut worst = [0.0_f64; 3];
     for case in &cases {
         let Case { scene, camera, settings, .. } = case;
