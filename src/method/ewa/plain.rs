@@ -201,3 +201,36 @@ impl<R: Real> Decisions<R> {
         R::from_f32(margin)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Camera, Lens, Pose};
+    use crate::splat::{Kernel, View};
+    use glam::DVec3;
+
+    fn shared() -> Shared<f32> {
+        let pose = Pose { eye: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y };
+        let camera = Camera::new(8, 8, pose, Lens::Focal(8.0)).unwrap();
+        Shared::new(&View::new(&camera), &Kernel::DEFAULT)
+    }
+
+    /// A number some steps up from another.
+    fn up(value: f32, steps: u32) -> f32 {
+        f32::from_bits(value.to_bits() + steps)
+    }
+
+    #[test]
+    fn the_margin_is_that_of_the_closest_decision_that_matters() {
+        let nearest = Decisions { q: 1.0, t: 2.0, w: 0.5, nearest: 0.5, limit: up(2.0, 700) };
+        assert_eq!(nearest.margin(&shared(), true), 700.0, "epsilon: t against the limit");
+        let rim = Decisions { q: up(4.0, 3), ..nearest };
+        assert_eq!(rim.margin(&shared(), false), 3.0, "inside: q against k^2 = 4");
+        let second = Decisions { w: up(0.5, 5), nearest: up(0.5, 7), ..nearest };
+        assert_eq!(second.margin(&shared(), false), 2.0, "depth: against the nearest");
+        let hidden = Decisions { q: up(4.0, 3), t: 3.0, ..nearest };
+        assert_eq!(hidden.margin(&shared(), false), f32::INFINITY, "outside and hidden: no matter");
+        let behind = Decisions { t: up(2.0, 709), w: 0.25, ..nearest };
+        assert_eq!(behind.margin(&shared(), false), 9.0, "inside, but beyond the limit by 9");
+    }
+}
