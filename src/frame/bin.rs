@@ -78,6 +78,9 @@ impl Bins {
     #[inline(always)]
     pub fn for_each(&self, tile: usize, mut visit: impl FnMut(u32)) {
         let items = &self.items[self.starts[tile] as usize..self.starts[tile + 1] as usize];
+        if self.wide.is_empty() {
+            return items.iter().for_each(|&i| visit(i));
+        }
         let mut wide = self.wide.iter().peekable();
         for &item in items {
             while let Some(&i) = wide.next_if(|&&i| i < item) {
