@@ -127,11 +127,16 @@ fn visibility<const RAY_CAST: bool>(scratch: &mut Scratch, shared: &Shared<f32>)
                 let block = &mut scratch.blocks[(row * scratch.columns + column) as usize];
                 let (x, y) = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
                 let (q, w) = fragments::<RAY_CAST>(&shared, &footprint, x, y);
-                let (mut nearest, mut id) = (block.nearest, block.id);
+                let inside = inside(&q, &w, shared.limit);
+                let (before, mut id) = (block.nearest, block.id);
+                let mut nearest = before;
                 for i in 0..LANES {
-                    let hit = (q[i] <= shared.limit) & (w[i] > nearest[i]);
-                    nearest[i] = if hit { w[i] } else { nearest[i] };
-                    id[i] = if hit { surfel } else { id[i] };
+                    nearest[i] = if inside[i] > before[i] { inside[i] } else { before[i] };
+                }
+                for i in 0..LANES {
+                    // A select of integers by a comparison of floats would not become a vector.
+                    let mask = u32::from(inside[i] > before[i]).wrapping_neg();
+                    id[i] = (surfel & mask) | (id[i] & !mask);
                 }
                 (block.nearest, block.id) = (nearest, id);
             }
@@ -201,6 +206,16 @@ fn attributes<const RAY_CAST: bool, const NORMAL: bool, const COLOR: bool>(
     }
 }
 
+/// The nearness of the fragments that are inside; NaN, which fails every comparison, for the others.
+#[inline(always)]
+fn inside(q: &Lanes, w: &Lanes, limit: f32) -> Lanes {
+    let mut inside = [f32::NAN; LANES];
+    for i in 0..LANES {
+        inside[i] = if q[i] <= limit { w[i] } else { inside[i] };
+    }
+    inside
+}
+
 /// The weights of the fragments that are inside and visible, 0 for the others; none if all are.
 #[inline(always)]
 fn weights(
@@ -210,9 +225,10 @@ fn weights(
     limit: f32,
     footprint: &Footprint<f32>,
 ) -> Option<Lanes> {
+    let inside = inside(q, w, limit);
     let mut hit = [0_u32; LANES];
     for i in 0..LANES {
-        hit[i] = u32::from((q[i] <= limit) & (w[i] >= least[i]));
+        hit[i] = u32::from(inside[i] >= least[i]);
     }
     if hit.iter().all(|&h| h == 0) {
         return None;
