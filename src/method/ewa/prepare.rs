@@ -31,8 +31,9 @@ impl<R: Real, S: Send> Prepared<R, S> {
         let view = View::new(camera);
         let projector = Projector::new(view, &settings.kernel, settings.cull);
         let count = surfels.len();
-        // At least so many surfels that the starts of their bins, 4 bytes a tile, take 2 bytes each.
-        let size = (2 * grid.len()).max(8192);
+        // Many batches, so that threads end together, of at most 8192 surfels, which fit the cache; but
+        // at least two surfels for each tile, so that the starts of its bins take 2 bytes a surfel.
+        let size = (count / 64).min(8192).max(2 * grid.len());
         let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
         let results = exec.ordered(ranges.collect(), |range: Range<usize>| {
             let mut splats = Vec::with_capacity(range.len());
