@@ -1,11 +1,13 @@
 //! Bits: the fast path is the plain one, and neither threads nor tiles can be seen in a picture.
 
 use crate::scenes::{Case, KINDS, Kind, OUTLINES};
+use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
 use splatref::frame::{Exec, Frame, Samples};
 use splatref::method::ewa::{self, Epsilon, Settings};
 use splatref::number::Real;
+use splatref::scene::{Camera, Cloud, Lens, Phong, Pose, Scene, Surfels};
 use splatref::splat::Kernel;
 
 /// The bits of a plane; through f64, which keeps those of f32 apart.
@@ -118,5 +120,33 @@ fn threads_and_tiles_leave_no_trace() {
             let first = seen.get_or_insert_with(|| all.clone());
             assert!(*first == all, "{} threads, {exec:?}: {}", exec.threads(), case.name);
         }
+    }
+}
+
+/// A flat ellipse that ends exactly in a row of pixel centres: there q = u u + k k rounds to k k for
+/// a stretch of the row, all of which is inside, however narrow the ellipse is at its tip.
+#[test]
+fn the_tip_of_a_wide_ellipse_has_the_bits_of_the_plain_path() {
+    let pose = Pose { eye: DVec3::new(0.0, 0.0, 4.0), target: DVec3::ZERO, up: DVec3::Y };
+    let camera = Camera::new(64, 64, pose, Lens::Orthographic(64.0)).expect("one px a unit");
+    for half_width in [64.0, 4096.0, 32_768.0, 1e6] {
+        let cloud = Cloud {
+            position: vec![Vec3::new(0.5, 0.5, 0.0)],
+            normal: Some(vec![Vec3::Z]),
+            radius: Some(vec![half_width]),
+            tangents: Some(vec![[Vec3::new(half_width, 0.0, 0.0), Vec3::new(0.0, 16.0, 0.0)]]),
+            ..Cloud::default()
+        };
+        let surfels = Surfels::new(cloud).expect("a surfel").0;
+        let (lights, material) = (Vec::new(), Phong::default());
+        let scene = Scene { name: String::new(), surfels, lights, material };
+        let kernel = Kernel { low_pass: 0.0, ..Kernel::DEFAULT };
+        let settings = Settings { kernel, ..Settings::default() };
+        let exec = Exec::sequential();
+        let plain = ewa::render::<f32>(&scene, &camera, &settings, &exec, false).expect("renders");
+        let fast = ewa::render_f32(&scene, &camera, &settings, &exec).expect("renders");
+        assert!(digest(&plain.frame) == digest(&fast.frame), "half width {half_width}");
+        let Some(Samples::Scalar(alpha)) = plain.frame.plane("A") else { unreachable!() };
+        assert_eq!((*alpha.at(32, 47), *alpha.at(32, 48)), (1.0, 0.0), "the tip is in row 47");
     }
 }

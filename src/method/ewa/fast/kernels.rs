@@ -97,7 +97,8 @@ fn columns<const RAY_CAST: bool>(
         0.0
     };
     let v = f.vy * closest;
-    let reach = (limit - v * v).at_least(0.0).sqrt() / f.ux;
+    // Near the tip of the ellipse the difference is all rounding error, and its root is not small.
+    let reach = ((limit - v * v).at_least(0.0) + limit * (1.0 / 1_048_576.0)).sqrt() / f.ux;
     let skew = -(f.uy / f.ux);
     let (a, b) = (skew * top, skew * bottom);
     let (left, right) = if a < b { (a, b) } else { (b, a) };
