@@ -1,4 +1,4 @@
-//! The only home of exp, pow, sin ... in the crate.
+//! The only home of exp, pow, sin ... in the crate; what it lacks nobody needs yet.
 //!
 //! std leaves the bits of these functions to the platform, so clippy's `disallowed-methods` rejects
 //! them everywhere.
@@ -12,12 +12,6 @@
 #[must_use]
 pub fn exp(x: f64) -> f64 {
     libm::exp(x)
-}
-
-/// 2^x in f64.
-#[must_use]
-pub fn exp2(x: f64) -> f64 {
-    libm::exp2(x)
 }
 
 /// The natural logarithm in f64.
@@ -48,18 +42,6 @@ pub fn cos(x: f64) -> f64 {
 #[must_use]
 pub fn tan(x: f64) -> f64 {
     libm::tan(x)
-}
-
-/// The arc cosine in f64, in radians.
-#[must_use]
-pub fn acos(x: f64) -> f64 {
-    libm::acos(x)
-}
-
-/// The angle of the vector (x, y) in f64, in radians.
-#[must_use]
-pub fn atan2(y: f64, x: f64) -> f64 {
-    libm::atan2(y, x)
 }
 
 /// The polynomial of degree 10 with the least greatest relative error from e^r, 2.1e-16, for
