@@ -5,6 +5,7 @@ use glam::{Mat4, Vec3, Vec4};
 use proptest::prelude::*;
 use splatref::composite::{epsilon, sum};
 use splatref::frame::{Exec, Frame, NO_ID, Samples};
+use splatref::method::ewa::explain::explain;
 use splatref::method::ewa::{self, Epsilon, Settings};
 use splatref::number::Real;
 use splatref::scene::{Cloud, Surfels};
@@ -144,12 +145,22 @@ proptest! {
         for plane in ["attributes.weight", "attributes", "attributes.normal"] {
             prop_assert!(close(&numbers(&before, plane), &numbers(&after, plane), 1e-5), "{}", plane);
         }
+        // An id that does not follow is that of a tie, which goes to the lower index.
         let (ids, others) = (numbers(&before, "id"), numbers(&after, "id"));
-        let swapped = ids.iter().zip(&others).filter(|(a, b)| {
-            **a != f64::from(NO_ID) && f64::from(last) - **a != **b
-        });
-        // Ties go to the lower index, which is then another surfel.
-        prop_assert!(swapped.count() * 100 <= ids.len(), "ids follow");
+        let Case { scene, camera, settings, .. } = &case;
+        for (i, (id, other)) in (0_u32..).zip(ids.iter().zip(&others)) {
+            let follows = f64::from(last) - id;
+            if *id == f64::from(NO_ID) || follows == *other {
+                continue;
+            }
+            let pixel = (i % camera.width, i / camera.width);
+            let exec = Exec::sequential();
+            let why = explain::<f32>(&scene.surfels, camera, settings, &exec, pixel).expect("inside");
+            let nearness = |id: f64| why.touches.iter().find(|t| f64::from(t.surfel) == id).map(|t| t.w);
+            prop_assert!(nearness(follows).is_some(), "{follows} is not at {pixel:?}");
+            prop_assert_eq!(nearness(follows), nearness(*other), "no tie at {:?}", pixel);
+            prop_assert!(*other < follows, "the tie went to the higher index at {pixel:?}");
+        }
     }
 
     #[test]
