@@ -37,7 +37,7 @@ pub enum Outline {
     #[default]
     Affine,
     /// The ellipse that is the exact projection of the disc \[ZRB+04\], then the low-pass filter. A
-    /// disc that reaches the near plane has no such ellipse and is drawn as `Affine`; it is counted.
+    /// disc that reaches the near plane has no such ellipse and is drawn as `Affine`.
     Perspective,
     /// The disc itself, by intersecting each pixel's ray with its plane; the low-pass filter is the
     /// larger of the two weights \[BHZK05\].
