@@ -6,7 +6,7 @@ const [program, ...args] = process.argv.slice(2);
 const wasi = new WASI({
   version: "preview1",
   args: ["splatref", ...args],
-  preopens: { "/": "/", ".": process.cwd() },
+  preopens: { ".": process.cwd() },
   returnOnExit: true,
 });
 const module = await WebAssembly.compile(await readFile(program));
