@@ -174,7 +174,7 @@ impl Real for f64 {
 }
 
 /// The position of a float in the ordered list of all floats; both zeros are 0.
-fn ordered_f32(value: f32) -> i64 {
+pub(crate) fn ordered_f32(value: f32) -> i64 {
     let magnitude = i64::from(value.to_bits() & 0x7FFF_FFFF);
     if value.is_sign_negative() { -magnitude } else { magnitude }
 }

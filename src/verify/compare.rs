@@ -1,6 +1,7 @@
 //! Two pictures, plane by plane: equal bit for bit, or where, and by how much, not.
 
 use crate::io::exr::{Image, Values};
+use crate::number::real::ordered_f32;
 use std::fmt;
 
 /// What may differ on purpose. The default lets nothing differ.
@@ -123,10 +124,7 @@ impl Value {
     /// too.
     fn rank(self) -> i64 {
         match self {
-            Self::Float(value) => {
-                let magnitude = i64::from(value.to_bits() & 0x7FFF_FFFF);
-                if value.is_sign_negative() { -magnitude } else { magnitude }
-            }
+            Self::Float(value) => ordered_f32(value),
             Self::Index(value) => i64::from(value),
         }
     }

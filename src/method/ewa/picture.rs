@@ -8,7 +8,7 @@ use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Samples, Wanted}
 use crate::number::Real;
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
-use crate::splat::{Shared, Tally, View};
+use crate::splat::{Tally, View};
 use std::time::{Duration, Instant};
 
 /// A picture and how it came about.
@@ -52,9 +52,7 @@ pub fn render<R: Real>(
     plain.visibility();
     clock.lap("visibility");
     if stages {
-        let shared = Shared::<R>::new(&View::new(camera), &settings.kernel);
-        let depth = plain.target.depth.map(|&w| shared.depth(w));
-        planes.push(named("visibility.Z", Samples::Scalar(depth)));
+        planes.push(named("visibility.Z", Samples::Scalar(plain.depth())));
         planes.push(named("visibility.id", Samples::Index(plain.target.id.clone())));
     }
 

@@ -4,7 +4,7 @@ use super::Settings;
 use super::prepare::Prepared;
 use crate::composite::{epsilon, sum};
 use crate::frame::stencil::{Outcome, Stencil};
-use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, Rect, Wanted};
+use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, Plane, Rect, Wanted};
 use crate::number::{Real, Vector2};
 use crate::scene::{Camera, Surfels};
 use crate::splat::{Shared, Splat, Tally, batch};
@@ -49,6 +49,12 @@ impl<'a, R: Real> Plain<'a, R> {
     #[must_use]
     pub fn tally(&self) -> Tally {
         self.prepared.tally
+    }
+
+    /// The depth of the nearest fragments, between visibility splatting and normalization.
+    #[must_use]
+    pub fn depth(&self) -> Plane<R> {
+        self.target.depth.map(|&nearness| self.prepared.shared.depth(nearness))
     }
 
     /// Visibility splatting: the greatest nearness, and whose it is.
