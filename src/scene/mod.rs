@@ -4,6 +4,7 @@
 //! - [`surfels`]: the checked structure of arrays that every method takes.
 //! - [`camera`]: perspective and orthographic cameras.
 //! - [`mod@derive`]: from what a file gives to complete surfels.
+//! - [`group`]: groups of surfels that do not overlap.
 //! - [`hash`]: the identity of a scene.
 //! - [`light`]: lights and the Phong material.
 //! - [`merge`]: several models as one cloud.
@@ -13,6 +14,7 @@
 pub mod camera;
 pub mod cloud;
 pub mod derive;
+pub mod group;
 pub mod hash;
 pub mod light;
 pub mod merge;
