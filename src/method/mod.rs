@@ -1,5 +1,11 @@
 //! One file or folder for each published method; each reads as its paper's pass list.
 //!
 //! - [`ewa`]: EWA surface splatting in two geometry passes and a normalization \[ZPvBG01, GP03\].
+//! - [`single_pass`]: one geometry pass into the depth-images of groups, then compositing \[ZP06\].
 
 pub mod ewa;
+mod picture;
+mod prepare;
+pub mod single_pass;
+
+pub use picture::Picture;

@@ -40,6 +40,8 @@ pub trait Real:
     fn to_pixel(self) -> u32;
     /// The square root, correctly rounded.
     fn sqrt(self) -> Self;
+    /// The greatest integer that is not greater; exact.
+    fn floor(self) -> Self;
     /// The absolute value.
     fn abs(self) -> Self;
     /// e to this power, see [`elementary`].
@@ -99,6 +101,10 @@ impl Real for f32 {
         self.sqrt()
     }
     #[inline(always)]
+    fn floor(self) -> Self {
+        self.floor()
+    }
+    #[inline(always)]
     fn abs(self) -> Self {
         self.abs()
     }
@@ -147,6 +153,10 @@ impl Real for f64 {
     #[inline(always)]
     fn sqrt(self) -> Self {
         self.sqrt()
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        self.floor()
     }
     #[inline(always)]
     fn abs(self) -> Self {
