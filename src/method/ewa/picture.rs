@@ -113,15 +113,12 @@ fn render_into(
         target = Framebuffer::new(size.0, size.1, 0.0, wanted);
     }
     let (tally, times) = fast::render(&scene.surfels, camera, settings, exec, &mut target);
-    let clock = Clock {
-        laps: vec![
-            ("projection", times.project),
-            ("visibility", times.visibility),
-            ("attributes", times.attributes),
-            ("normalization", times.normalize),
-        ],
-        ..Clock::default()
-    };
+    let clock = Clock::of(vec![
+        ("projection", times.project),
+        ("visibility", times.visibility),
+        ("attributes", times.attributes),
+        ("normalization", times.normalize),
+    ]);
     Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
 }
 

@@ -74,8 +74,7 @@ pub fn render_f32(
     let wanted = check(scene, groups, camera, settings, false)?;
     let mut target = Framebuffer::new(camera.width, camera.height, 0.0, wanted);
     let (tally, times) = fast::render(&scene.surfels, groups, camera, settings, exec, &mut target)?;
-    let clock = Clock { laps: times.to_vec(), ..Clock::default() };
-    Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
+    Ok(finish(target, Vec::new(), tally, Clock::of(times.to_vec()), (scene, camera, exec)))
 }
 
 /// The planes that a picture needs.
