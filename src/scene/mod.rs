@@ -8,6 +8,7 @@
 //! - [`hash`]: the identity of a scene.
 //! - [`light`]: lights and the Phong material.
 //! - [`merge`]: several models as one cloud.
+//! - [`order`]: surfels from back to front, for every view.
 //! - [`procedural`]: shapes whose true picture is known.
 //! - [`transform`]: moving, turning and scaling a model.
 
@@ -18,9 +19,11 @@ pub mod group;
 pub mod hash;
 pub mod light;
 pub mod merge;
+pub mod order;
 pub mod procedural;
 pub mod surfels;
 pub mod transform;
+mod tree;
 
 pub use camera::{Camera, Lens, Pose, Projection};
 pub use cloud::Cloud;
