@@ -6,8 +6,8 @@ use crate::frame::Plane;
 use crate::scene::environment::{Environment, Map};
 use std::path::Path;
 
-/// Reads the latitude-longitude map at `path`: the channels `R`, `G` and `B` of a flat EXR, `HALF` or
-/// `FLOAT`, as [`exr::read`] takes it; see [`crate::scene::environment::map`] for its orientation.
+/// Reads the latitude-longitude map at `path`: the channels `R`, `G` and `B` of a flat EXR, `HALF`
+/// or `FLOAT`, as [`exr::read`] takes it; [`crate::scene::environment::map`] tells its orientation.
 /// Other channels are passed over.
 ///
 /// # Errors

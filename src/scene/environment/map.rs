@@ -89,7 +89,7 @@ impl Map {
         let t = t.at_least(R::ZERO).at_most(R::from_f32(last_row as f32));
         let (i, j) = (s.floor(), t.floor());
         let (f, g) = (s - i, t - j);
-        // u is at most 1/2, so i and i + 1 are columns as they are or once the map's width is added.
+        // u is at most 1/2: i and i + 1 are columns as they are, or once the width is added.
         let column = |i: R| (if i < R::ZERO { i + width } else { i }).to_pixel();
         let columns = [column(i), column(i + R::ONE)];
         let upper = j.to_pixel();
@@ -186,8 +186,8 @@ mod tests {
         }
     }
 
-    /// The error of linear interpolation is at most h^2/8 times the second derivative, once for each
-    /// axis; every second derivative of a direction by its angles is at most 1.
+    /// The error of linear interpolation is at most h^2/8 times the second derivative, once for
+    /// each axis; every second derivative of a direction by its angles is at most 1.
     #[test]
     fn a_known_function_comes_back_within_the_bound_of_interpolation() {
         for height in [8, 32, 128] {

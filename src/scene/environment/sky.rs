@@ -16,8 +16,8 @@ pub const GROUND: [f32; 3] = [0.1875, 0.15625, 0.125];
 pub const SUN: [f32; 3] = [24.0, 20.0, 16.0];
 /// Linear RGB that the glow around the sun adds in its middle.
 pub const GLOW: [f32; 3] = [0.75, 0.625, 0.375];
-/// Seven times the unit direction towards the sun: to the left, above and behind a camera that looks
-/// along -z.
+/// Seven times the unit direction towards the sun: to the left, above and behind a camera that
+/// looks along -z.
 pub const TOWARDS_SUN: [f32; 3] = [-2.0, 3.0, 6.0];
 
 /// Linear RGB radiance from the unit direction (x, y, z).
@@ -35,8 +35,8 @@ pub const TOWARDS_SUN: [f32; 3] = [-2.0, 3.0, 6.0];
 /// ```
 ///
 /// The pattern has three families of soft rings, 16 around each axis, and does not change with
-/// the signs of the components or their order. The disc of the sun fades between 1.8 and 2.5 degrees
-/// from its middle.
+/// the signs of the components or their order. The disc of the sun fades between 1.8 and 2.5
+/// degrees from its middle.
 #[must_use]
 pub fn radiance<R: Real>(direction: Vector3<R>) -> [R; 3] {
     let Vector3 { x, y, z } = direction;

@@ -12,25 +12,29 @@
 //!           + (1 - F_c) ((1 - alpha) C_O_c + (1 - hidden) (1 - alpha)^l env(T_c)_c))
 //! ```
 //!
-//! C_F is the Phong colour of the composited nearest layer, C_O the average of the images of the
-//! other layers over black. One ratio for each channel is chromatic dispersion.
+//! `C_F` is the Phong colour of the composited nearest layer, `C_O` the average of the images of
+//! the other layers over black. One ratio for each channel is chromatic dispersion.
 //!
 //! Decided: the paper combines the parts "using" Fresnel's equations without saying how.
 //! - The equations are the exact ones of an unpolarized dielectric, not Schlick's approximation,
 //!   which has no total reflection and no Brewster angle, and misses the ratios near 1.
 //! - Opacity covers the optics: F acts on the part 1 - alpha of a surface. So an opaque pixel is its
 //!   Phong colour exactly, a nearly opaque one nearly so, and without reflection (F = 0) the result
-//!   is the paper's alpha C_F + (1 - alpha) C_O over the absorbed environment.
+//!   is the paper's alpha `C_F` + (1 - alpha) `C_O` over the absorbed environment.
 //! - l counts the nearest layer itself, so that eq. 11 attenuates by it too.
 //! - Opaque surfels among the other layers hide the environment, `hidden` says in what part; eq. 11
 //!   alone, made for one opacity everywhere, would let light through them.
-//! - C_O is seen straight through the surface, not refracted: there is nothing to look it up in.
+//! - `C_O` is seen straight through the surface, not refracted: there is nothing to look it up in.
 //! - [`Layers::Single`] is Fig. 14 a: reflection and refraction at the nearest surface alone, l = 1
-//!   and C_O = hidden = 0.
+//!   and `C_O` = hidden = 0.
 //! - A normal that faces away is turned round: a sheet has two sides.
 //!
 //! A law that follows: in an environment of radiance 1, a surface of colour 1 before layers that
-//! send what they absorb, C_O = 1 - (1 - alpha)^(l - 1), sends 1, whatever the angle and the ratios.
+//! send what they absorb, `C_O` = 1 - (1 - alpha)^(l - 1), sends 1, whatever the angle and the
+//! ratios.
+
+#[cfg(test)]
+mod tests;
 
 use crate::error::{Error, Result};
 use crate::number::{Real, Vector3};
@@ -77,7 +81,7 @@ impl Refraction {
 /// The composited nearest layer of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest<R> {
-    /// C_F: linear RGB after Phong shading.
+    /// `C_F`: linear RGB after Phong shading.
     pub color: [R; 3],
     /// alpha, in [0, 1].
     pub opacity: R,
@@ -88,7 +92,7 @@ pub struct Nearest<R> {
 /// What lies behind the nearest layer, averaged over the groups.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Behind<R> {
-    /// C_O: linear RGB, blended over black.
+    /// `C_O`: linear RGB, blended over black.
     pub color: [R; 3],
     /// The opacities of the layers in front of the first opaque one, summed.
     pub opacity: R,
@@ -106,17 +110,18 @@ pub fn reflect<R: Real>(view: Vector3<R>, normal: Vector3<R>) -> Vector3<R> {
     normal * (cosine + cosine) - view
 }
 
-/// The direction in which light is seen through `layers` surfaces, eq. 12: sin(theta_T) = ratio^layers
-/// sin(theta_I), in the plane of `view` and `normal`, on the other side of the surface. None under
-/// total internal reflection, where the sine is > 1; at 1 it runs along the surface.
+/// The direction in which light is seen through `layers` surfaces, eq. 12: the sine of its angle is
+/// ratio^layers times that of the angle of incidence, in the plane of `view` and `normal`, on the
+/// other side of the surface. None under total internal reflection, where that sine is > 1; at 1 it
+/// runs along the surface.
 ///
 /// `view` points from the surface to the eye; both are unit vectors, n . v >= 0; `ratio` > 0,
 /// `layers` >= 0.
 ///
 /// ```text
-///   c = n . v      t = n c - v, the tangent, of length sin(theta_I)      s = |t|, at most 1
+///   c = n . v      t = n c - v, the tangent      s = |t|, at most 1: the sine of incidence
 ///   m = ratio^layers
-///   k = (1 - m)(1 + m) + (m c)(m c)  if m <= 1, else  1 - (m s)(m s):  cos(theta_T)^2
+///   k = (1 - m)(1 + m) + (m c)(m c)  if m <= 1, else  1 - (m s)(m s):  the squared cosine of T
 ///   T = t m - n sqrt(k)
 /// ```
 ///
@@ -232,6 +237,3 @@ pub fn shade<R: Real>(
                 + (R::ONE - f) * (clear * behind_color[c] + through * beyond))
     })
 }
-
-#[cfg(test)]
-mod tests;
