@@ -4,6 +4,7 @@
 //! - [`surfels`]: the checked structure of arrays that every method takes.
 //! - [`camera`]: perspective and orthographic cameras.
 //! - [`mod@derive`]: from what a file gives to complete surfels.
+//! - [`environment`]: the light that surrounds a scene.
 //! - [`group`]: groups of surfels that do not overlap.
 //! - [`hash`]: the identity of a scene.
 //! - [`light`]: lights and the Phong material.
@@ -15,6 +16,7 @@
 pub mod camera;
 pub mod cloud;
 pub mod derive;
+pub mod environment;
 pub mod group;
 pub mod hash;
 pub mod light;
@@ -27,6 +29,7 @@ mod tree;
 
 pub use camera::{Camera, Lens, Pose, Projection};
 pub use cloud::Cloud;
+pub use environment::Environment;
 pub use light::{Light, Phong};
 pub use procedural::Shape;
 pub use surfels::{Dropped, Surfels};
@@ -45,4 +48,6 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// How the surface answers the lights.
     pub material: Phong,
+    /// What surrounds the surfels; black if absent.
+    pub environment: Option<Environment>,
 }
