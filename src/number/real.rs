@@ -42,8 +42,6 @@ pub trait Real:
     fn floor(self) -> Self;
     /// The square root, correctly rounded.
     fn sqrt(self) -> Self;
-    /// The greatest integer that is not greater; exact.
-    fn floor(self) -> Self;
     /// The absolute value.
     fn abs(self) -> Self;
     /// e to this power, see [`elementary`].
@@ -109,10 +107,6 @@ impl Real for f32 {
         self.sqrt()
     }
     #[inline(always)]
-    fn floor(self) -> Self {
-        self.floor()
-    }
-    #[inline(always)]
     fn abs(self) -> Self {
         self.abs()
     }
@@ -169,10 +163,6 @@ impl Real for f64 {
     #[inline(always)]
     fn sqrt(self) -> Self {
         self.sqrt()
-    }
-    #[inline(always)]
-    fn floor(self) -> Self {
-        self.floor()
     }
     #[inline(always)]
     fn abs(self) -> Self {
