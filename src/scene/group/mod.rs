@@ -96,3 +96,12 @@ impl Groups {
         &self.scale
     }
 }
+
+impl Groups {
+    /// The groups that a surfel is in: its own, then those it was added to.
+    pub fn of(&self, surfel: u32) -> impl Iterator<Item = u8> + '_ {
+        let first = self.added.partition_point(|&(added, _)| added < surfel);
+        let added = self.added[first..].iter().take_while(move |(added, _)| *added == surfel);
+        std::iter::once(self.own[surfel as usize]).chain(added.map(|&(_, group)| group))
+    }
+}
