@@ -3,7 +3,8 @@
 use splatref::Result;
 use splatref::frame::{Exec, Frame, Plane, Samples};
 use splatref::io::scene_file::{Number, Output};
-use splatref::method::ewa::{self, Picture, Settings};
+use splatref::method::Picture;
+use splatref::method::ewa::{self, Settings};
 use splatref::scene::{Camera, Scene};
 use std::path::Path;
 

@@ -3,7 +3,7 @@
 use super::options::{ExecOptions, Kind, SceneOptions, kind};
 use super::{Finding, Outcome, draw, progress, report};
 use splatref::io::{exr, provenance};
-use splatref::method::ewa::Picture;
+use splatref::method::Picture;
 use splatref::{Error, Result};
 use std::fs;
 use std::path::{Path, PathBuf};

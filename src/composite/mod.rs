@@ -1,7 +1,13 @@
 //! The algebra of fragments, as plain functions with laws.
 //!
+//! - [`bins`]: low-precision and Voronoi-enhanced depth.
 //! - [`epsilon`]: which fragments belong to the visible surface.
+//! - [`groups`]: the n-ary operator over the depth-images of groups.
+//! - [`over`]: alpha-blending of layers.
 //! - [`sum`]: weighted accumulation and normalization.
 
+pub mod bins;
 pub mod epsilon;
+pub mod groups;
+pub mod over;
 pub mod sum;

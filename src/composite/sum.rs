@@ -8,6 +8,12 @@ pub fn add<R: Real>(sum: [R; 3], weight: R, value: [R; 3]) -> [R; 3] {
     [sum[0] + weight * value[0], sum[1] + weight * value[1], sum[2] + weight * value[2]]
 }
 
+/// `a + b`, component by component.
+#[inline(always)]
+pub fn plus<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
 /// `sum / weight + 0`, component by component; 0 where no weight has arrived. Adding 0 turns a -0,
 /// of an underflow, into +0.
 ///

@@ -111,6 +111,22 @@ impl Grid {
         tiles.map(|(column, row)| self.rect(column, row)).collect()
     }
 
+    /// The plane whose values are given by tile and by pixel in the tile, both counted row by row.
+    pub fn assemble<T: Clone>(&self, fill: T, value: impl Fn(usize, usize) -> T) -> Plane<T> {
+        let mut plane = Plane::filled(self.width, self.height, fill);
+        for (tile, rect) in self.rects().iter().enumerate() {
+            let columns = (rect.x1 - rect.x0) as usize;
+            for y in rect.y0..rect.y1 {
+                let start = y as usize * self.width as usize + rect.x0 as usize;
+                let first = (y - rect.y0) as usize * columns;
+                for x in 0..columns {
+                    plane.values_mut()[start + x] = value(tile, first + x);
+                }
+            }
+        }
+        plane
+    }
+
     /// A plane cut into its rows of tiles.
     pub fn bands<'a, T>(&self, plane: &'a mut Plane<T>) -> ChunksMut<'a, T> {
         let rows = self.width as usize * self.tile as usize;

@@ -20,6 +20,7 @@ pub struct Surfels {
     opacity: Option<Vec<f32>>,
     tangents: Option<Vec<[Vec3; 2]>>,
     median_radius: f32,
+    bounding_sphere: (DVec3, f64),
 }
 
 /// How many surfels of a cloud were dropped, each counted once, under the first reason that held.
@@ -91,8 +92,9 @@ impl Surfels {
             )));
         }
         let radius = retain(radius, &keep);
-        let surfels = Self {
+        let mut surfels = Self {
             median_radius: lower_median(radius.clone()),
+            bounding_sphere: (DVec3::ZERO, 0.0),
             position: retain(position, &keep),
             normal: retain(normal, &keep),
             radius,
@@ -100,6 +102,7 @@ impl Surfels {
             opacity: opacity.map(|o| retain(o, &keep)),
             tangents: tangents.map(|t| retain(t, &keep)),
         };
+        surfels.bounding_sphere = surfels.sphere();
         Ok((surfels, dropped))
     }
 
@@ -160,14 +163,28 @@ impl Surfels {
     }
 
     /// A sphere around all discs: the middle of [`Surfels::bounds`], and the largest distance from
-    /// there to a surfel plus its radius; in f64.
+    /// there to a surfel plus its reach, the radius or sqrt(U . U + V . V) of an ellipse; in f64.
     #[must_use]
     pub fn bounding_sphere(&self) -> (DVec3, f64) {
+        self.bounding_sphere
+    }
+
+    fn sphere(&self) -> (DVec3, f64) {
         let (low, high) = self.bounds();
         let center = (low.as_dvec3() + high.as_dvec3()) / 2.0;
-        let reach = |(p, r): (&Vec3, &f32)| (p.as_dvec3() - center).length() + f64::from(*r);
-        let reaches = self.position.iter().zip(&self.radius).map(reach);
-        (center, reaches.fold(0.0, |most, reach| if reach > most { reach } else { most }))
+        let mut most = 0.0;
+        for (i, position) in self.position.iter().enumerate() {
+            let reach = match &self.tangents {
+                None => f64::from(self.radius[i]),
+                Some(tangents) => {
+                    let [u, v] = tangents[i].map(Vec3::as_dvec3);
+                    (u.length_squared() + v.length_squared()).sqrt()
+                }
+            };
+            let far = (position.as_dvec3() - center).length() + reach;
+            most = if far > most { far } else { most };
+        }
+        (center, most)
     }
 
     /// The surfels back as a cloud, to be written to a file.

@@ -4,7 +4,7 @@ use crate::pixel::{Entry, Oracle, Pixel};
 use crate::scenes::{self, Case};
 use crate::tolerance::{Arithmetic, Measured};
 use splatref::frame::{Exec, Frame, NO_ID, Samples};
-use splatref::method::ewa::{self, Picture};
+use splatref::method::{Picture, ewa};
 use splatref::number::Real;
 
 /// How many conditions of rounding leave a decision open.

@@ -23,9 +23,8 @@ pub mod explain;
 pub mod fast;
 mod picture;
 pub mod plain;
-mod prepare;
 
-pub use picture::{Picture, render, render_f32, render_f32_again};
+pub use picture::{render, render_f32, render_f32_again};
 
 use crate::error::{Error, Result};
 use crate::scene::Surfels;

@@ -4,24 +4,10 @@ use super::Settings;
 use super::fast;
 use super::plain::Plain;
 use crate::error::Result;
-use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Samples, Wanted};
+use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Samples, Wanted};
+use crate::method::picture::{Clock, Picture, finish, named};
 use crate::number::Real;
 use crate::scene::{Camera, Scene};
-use crate::shade::phong::Shader;
-use crate::splat::{Tally, View};
-use std::time::{Duration, Instant};
-
-/// A picture and how it came about.
-#[derive(Clone, Debug)]
-pub struct Picture<R> {
-    /// The planes: the shaded colour (`R G B`), `A` (1 where a surfel is seen, else 0), `Z`,
-    /// `normal` (world space; not of an unlit scene), `weight`, `id`; before them those of the stages, if asked for.
-    pub frame: Frame<R>,
-    /// What became of the surfels.
-    pub tally: Tally,
-    /// The wall time of each stage, in order.
-    pub timings: Vec<(&'static str, Duration)>,
-}
 
 /// Renders with the definition, in any number; with `stages`, every stage leaves its planes:
 ///
@@ -127,15 +113,12 @@ fn render_into(
         target = Framebuffer::new(size.0, size.1, 0.0, wanted);
     }
     let (tally, times) = fast::render(&scene.surfels, camera, settings, exec, &mut target);
-    let clock = Clock {
-        laps: vec![
-            ("projection", times.project),
-            ("visibility", times.visibility),
-            ("attributes", times.attributes),
-            ("normalization", times.normalize),
-        ],
-        ..Clock::default()
-    };
+    let clock = Clock::of(vec![
+        ("projection", times.project),
+        ("visibility", times.visibility),
+        ("attributes", times.attributes),
+        ("normalization", times.normalize),
+    ]);
     Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
 }
 
@@ -163,56 +146,5 @@ fn wanted(scene: &Scene, stages: bool) -> Wanted {
         normal: stages || !scene.lights.is_empty(),
         color: scene.surfels.color().is_some(),
         observed: stages,
-    }
-}
-
-/// Deferred shading, and the planes of the picture.
-fn finish<R: Real>(
-    target: Framebuffer<R>,
-    mut planes: Vec<NamedPlane<R>>,
-    tally: Tally,
-    mut clock: Clock,
-    (scene, camera, exec): (&Scene, &Camera, &Exec),
-) -> Picture<R> {
-    let Framebuffer { width, height, depth, id, weight, normal, color, .. } = target;
-    clock.restart();
-    let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
-    let color = shader.shade(&depth, normal.as_ref(), color, exec);
-    clock.lap("shading");
-    let alpha: Plane<R> = weight.map(|&w| if w > R::ZERO { R::ONE } else { R::ZERO });
-    planes.push(named("", Samples::Color(color)));
-    planes.push(named("A", Samples::Scalar(alpha)));
-    planes.push(named("Z", Samples::Scalar(depth)));
-    planes.extend(normal.map(|p| named("normal", Samples::Vector(p))));
-    planes.push(named("weight", Samples::Scalar(weight)));
-    planes.push(named("id", Samples::Index(id)));
-    Picture { frame: Frame { width, height, planes }, tally, timings: clock.laps }
-}
-
-fn named<R>(name: &str, samples: Samples<R>) -> NamedPlane<R> {
-    NamedPlane { name: name.to_owned(), samples }
-}
-
-/// Wall times of stages.
-struct Clock {
-    start: Instant,
-    laps: Vec<(&'static str, Duration)>,
-}
-
-impl Default for Clock {
-    fn default() -> Self {
-        Self { start: Instant::now(), laps: Vec::new() }
-    }
-}
-
-impl Clock {
-    fn restart(&mut self) {
-        self.start = Instant::now();
-    }
-
-    /// Ends a stage that began at the last call, or at `restart`.
-    fn lap(&mut self, name: &'static str) {
-        self.laps.push((name, self.start.elapsed()));
-        self.start = Instant::now();
     }
 }

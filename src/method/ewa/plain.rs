@@ -1,10 +1,10 @@
 //! The definition: every pass, one fragment at a time, over any number.
 
 use super::Settings;
-use super::prepare::Prepared;
 use crate::composite::{epsilon, sum};
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, Plane, Rect, Wanted};
+use crate::method::prepare::Prepared;
 use crate::number::{Real, Vector2};
 use crate::scene::{Camera, Surfels};
 use crate::splat::{Shared, Splat, Tally, batch};
@@ -32,7 +32,7 @@ impl<'a, R: Real> Plain<'a, R> {
     ) -> Self {
         let grid = exec.grid(camera.width, camera.height);
         let prepared = Prepared::new(
-            surfels,
+            (surfels, surfels.len()),
             camera,
             settings,
             (exec, &grid),
@@ -161,7 +161,12 @@ impl<'a, R: Real> Plain<'a, R> {
 }
 
 /// q and nearness of a splat at the centre of a pixel.
-pub(super) fn fragment<R: Real>(shared: &Shared<R>, splat: &Splat<R>, x: u32, y: u32) -> (R, R) {
+pub(in crate::method) fn fragment<R: Real>(
+    shared: &Shared<R>,
+    splat: &Splat<R>,
+    x: u32,
+    y: u32,
+) -> (R, R) {
     let Vector2 { x: cx, y: cy } = splat.footprint.center;
     let dx = R::from_f32(x as f32 + 0.5) - cx;
     let dy = R::from_f32(y as f32 + 0.5) - cy;
@@ -170,7 +175,7 @@ pub(super) fn fragment<R: Real>(shared: &Shared<R>, splat: &Splat<R>, x: u32, y:
 
 /// The normal, reversed if the back is seen.
 #[inline(always)]
-pub(super) fn facing<R: Real>(normal: [R; 3], back: bool) -> [R; 3] {
+pub(in crate::method) fn facing<R: Real>(normal: [R; 3], back: bool) -> [R; 3] {
     if back { normal.map(|component| -component) } else { normal }
 }
 

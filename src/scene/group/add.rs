@@ -1,6 +1,6 @@
 //! Extension (1): surfels of other groups are added to a group \[ZP06, section 4.2.2\].
 
-use super::clipped::{SAMPLES, cover};
+use super::clipped::{SAMPLES, Samples};
 use super::graph::Graph;
 use super::tree::Tree;
 
@@ -14,12 +14,12 @@ pub(super) fn added(tree: &Tree, graph: &Graph, own: &[u8], k: u8, most: f32) ->
     let group = |place: usize| own[tree.surfel[place] as usize];
     let too_big = |covered: u64| covered.count_ones() as f32 / SAMPLES as f32 > most;
     let mut covered = vec![0; own.len()];
-    let mut join = |covered: &mut [u64], place: usize| {
+    let join = |covered: &mut [u64], place: usize| {
         let by = tree.disc(place);
         for &other in graph.of(place) {
             let mask = &mut covered[other as usize];
             if *mask != u64::MAX {
-                *mask |= cover(&tree.disc(other as usize), &by);
+                *mask |= Samples::of(tree.disc(other as usize)).covered_by(&by);
             }
         }
     };

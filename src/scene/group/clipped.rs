@@ -1,11 +1,13 @@
 //! Clipped(p, r, k): how much of a disc others cover \[ZP06, section 4.2.2\].
 
 use super::graph::{Budget, ranges};
-use super::tree::Tree;
+use super::tree::{LANES, Tree};
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::elementary::{cos, sin};
+use crate::number::random;
 use glam::DVec3;
+use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
 /// How many points of a disc are asked whether they are covered.
@@ -17,50 +19,65 @@ const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 /// A disc in space.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Disc {
+    /// Which surfel it is of.
+    pub(super) surfel: u32,
     pub(super) center: DVec3,
     /// Of length 1.
     pub(super) normal: DVec3,
     pub(super) radius: f64,
 }
 
-impl Disc {
-    /// The same with another radius.
-    pub(super) fn scaled(self, scale: f64) -> Self {
-        Self { radius: scale * self.radius, ..self }
-    }
-}
-
-/// The samples of the unit disc: x, y and x^2 + y^2 of each.
+/// The samples of the unit disc: x, y and x^2 + y^2 of each; and the cosines and sines of the angles
+/// that they are turned by.
 struct Pattern {
     x: [f64; SAMPLES],
     y: [f64; SAMPLES],
     q: [f64; SAMPLES],
+    turn: [(f64, f64); SAMPLES],
 }
 
 static PATTERN: LazyLock<Pattern> = LazyLock::new(|| {
     let q: [f64; SAMPLES] = std::array::from_fn(|m| (m as f64 + 0.5) / SAMPLES as f64);
-    let along =
-        |of: fn(f64) -> f64| std::array::from_fn(|m| q[m].sqrt() * of(m as f64 * GOLDEN_ANGLE));
-    Pattern { x: along(cos), y: along(sin), q }
+    let along = |of: fn(f64) -> f64| {
+        std::array::from_fn(|m| q[m].sqrt() * of(m as f64 * GOLDEN_ANGLE))
+    };
+    let angle = |m: usize| m as f64 * (TAU / SAMPLES as f64);
+    let turn = std::array::from_fn(|m| (cos(angle(m)), sin(angle(m))));
+    Pattern { x: along(cos), y: along(sin), q, turn }
 });
 
-/// Bit m is set if sample m of `disc` is covered by `by`, see the [module](super).
-#[inline]
-pub(super) fn cover(disc: &Disc, by: &Disc) -> u64 {
-    if dot(disc.normal, by.normal) < 0.0 {
-        return 0;
+/// The samples of a disc.
+pub(super) struct Samples {
+    disc: Disc,
+    u: DVec3,
+    v: DVec3,
+}
+
+impl Samples {
+    #[inline]
+    pub(super) fn of(disc: Disc) -> Self {
+        let (u, v) = axes(disc.normal);
+        let (c, s) = PATTERN.turn[(random::bits(0, disc.surfel.into()) >> 58) as usize];
+        Self { disc, u: c * u + s * v, v: c * v - s * u }
     }
-    let (u, v) = axes(disc.normal);
-    let d = disc.center - by.center;
-    let r = disc.radius;
-    let (a, b) = (2.0 * r * dot(d, u), 2.0 * r * dot(d, v));
-    let (r2, most) = (r * r, by.radius * by.radius - dot(d, d));
-    let Pattern { x, y, q } = &*PATTERN;
-    let mut covered = 0;
-    for m in 0..SAMPLES {
-        covered |= u64::from((a * x[m] + b * y[m]) + r2 * q[m] <= most) << m;
+
+    /// Bit m is set if sample m is covered by a disc, see the [module](super).
+    #[inline]
+    pub(super) fn covered_by(&self, other: &Disc) -> u64 {
+        if dot(self.disc.normal, other.normal) < 0.0 {
+            return 0;
+        }
+        let d = self.disc.center - other.center;
+        let r = self.disc.radius;
+        let (a, b) = (2.0 * r * dot(d, self.u), 2.0 * r * dot(d, self.v));
+        let (r2, most) = (r * r, other.radius * other.radius - dot(d, d));
+        let Pattern { x, y, q, .. } = &*PATTERN;
+        let mut covered = 0;
+        for m in 0..SAMPLES {
+            covered |= u64::from((a * x[m] + b * y[m]) + r2 * q[m] <= most) << m;
+        }
+        covered
     }
-    covered
 }
 
 /// Two perpendicular axes of the plane across a unit normal; no length has to be divided by.
@@ -97,14 +114,19 @@ pub(super) fn by_lower(
     let budget = Budget::new(tree.surfel.len(), scale);
     let job = |blocks: std::ops::Range<usize>| {
         let first = tree.places(blocks.start).start;
+        let disc = |place: usize| {
+            let disc = tree.disc(place);
+            Disc { radius: scale * disc.radius, ..disc }
+        };
         let mut covered = vec![0; tree.places(blocks.end - 1).end - first];
         for block in blocks {
+            let samples: Vec<Samples> = tree.places(block).map(|i| Samples::of(disc(i))).collect();
             let mut seen = 0;
             tree.near(block, scale, |i, j| {
                 let mask = &mut covered[i - first];
                 seen += 1;
                 if tree.surfel[j] < tree.surfel[i] {
-                    *mask |= cover(&tree.disc(i).scaled(scale), &tree.disc(j).scaled(scale));
+                    *mask |= samples[i - block * LANES].covered_by(&disc(j));
                 }
                 *mask != u64::MAX
             });

@@ -83,6 +83,7 @@ impl Tree {
     pub(super) fn disc(&self, place: usize) -> Disc {
         let (block, lane) = (&self.blocks[place / LANES], place % LANES);
         Disc {
+            surfel: self.surfel[place],
             center: DVec3::new(block.x[lane], block.y[lane], block.z[lane]),
             normal: self.normal[place].as_dvec3(),
             radius: block.r[lane],

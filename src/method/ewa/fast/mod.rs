@@ -15,8 +15,8 @@ mod scratch;
 mod store;
 
 use super::Settings;
-use super::prepare::Prepared;
 use crate::frame::{Exec, Framebuffer};
+use crate::method::prepare::Prepared;
 use crate::scene::{Camera, Surfels};
 use crate::splat::{Tally, batch};
 use scratch::{Record, Scratch};
@@ -54,7 +54,7 @@ pub fn render(
     let grid = exec.grid(camera.width, camera.height);
     let colors = surfels.color();
     let prepared = Prepared::new(
-        surfels,
+        (surfels, surfels.len()),
         camera,
         settings,
         (exec, &grid),

@@ -1,8 +1,8 @@
 //! What the fast path works with: records of splats, and the blocks of a tile.
 
 use super::super::plain::facing;
-use super::super::prepare::Prepared;
 use crate::frame::{FramebufferTile, NO_ID, Rect};
+use crate::method::prepare::Prepared;
 use crate::splat::{Footprint, Splat};
 use glam::Vec3;
 

@@ -1,13 +1,15 @@
-//! Projection and binning: what both paths do first.
+//! Projection and binning: what every method does first.
 
-use super::Settings;
+use super::ewa::Settings;
 use crate::frame::{Bins, Exec, Grid, Rect};
 use crate::number::Real;
 use crate::scene::{Camera, Surfels};
 use crate::splat::{Projector, Shared, Tally, View};
 use std::ops::Range;
 
-/// The visible splats of a picture, as records `S`, in batches of ascending surfels with their bins.
+/// The visible splats of a picture, as records `S`, in batches of ascending items with their bins.
+///
+/// An item is what is drawn as one splat: a surfel, or a surfel in one of its groups.
 #[derive(Debug)]
 pub(super) struct Prepared<R, S> {
     pub(super) shared: Shared<R>,
@@ -17,11 +19,11 @@ pub(super) struct Prepared<R, S> {
 }
 
 impl<R: Real, S: Send> Prepared<R, S> {
-    /// Projects every surfel and sorts the splats into tiles.
+    /// Projects `count` items and sorts the splats into tiles.
     ///
-    /// `project` makes the records of a range of surfels; `bounds` gives the pixels of a record.
+    /// `project` makes the records of a range of items; `bounds` gives the pixels of a record.
     pub(super) fn new(
-        surfels: &Surfels,
+        (surfels, count): (&Surfels, usize),
         camera: &Camera,
         settings: &Settings,
         (exec, grid): (&Exec, &Grid),
@@ -30,9 +32,8 @@ impl<R: Real, S: Send> Prepared<R, S> {
     ) -> Self {
         let view = View::new(camera);
         let projector = Projector::new(view, &settings.kernel, settings.cull);
-        let count = surfels.len();
         // Many batches, so that threads end together, of at most 8192 surfels, which fit the cache; but
-        // at least two surfels for each tile, so that the starts of its bins take 2 bytes a surfel.
+        // at least two items for each tile, so that the starts of its bins take 2 bytes an item.
         let size = (count / 64).min(8192).max(2 * grid.len());
         let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
         let results = exec.ordered(ranges.collect(), |range: Range<usize>| {
@@ -55,7 +56,7 @@ impl<R: Real, S: Send> Prepared<R, S> {
         self.batches.iter().map(|(_, bins)| bins.count(tile)).sum()
     }
 
-    /// Calls `visit` for each splat that may touch a tile, in ascending surfel index.
+    /// Calls `visit` for each splat that may touch a tile, in the order of the items.
     #[inline(always)]
     pub(super) fn for_each(&self, tile: usize, mut visit: impl FnMut(&S)) {
         for (splats, bins) in &self.batches {

@@ -1,0 +1,85 @@
+//! The compositing operator over the depth-images of groups \[ZP06, section 3.2, Fig. 5\].
+//!
+//! [`compose`] is n-ary, and has to be: the epsilon-z test of one image needs the nearest depth of all.
+//! With `t_k`, the depth of image k, and its weighted attributes:
+//!
+//! ```text
+//!   nearest = the least t_k                                         line 4
+//!   sums    = over k in ascending order, if t_k <= nearest + epsilon:
+//!               weight += weight_k, color += color_k ...             lines 5 to 10
+//! ```
+//!
+//! Normalization, line 11, is [`super::sum::average`]. Laws:
+//!
+//! - An empty image (depth +inf) is neutral.
+//! - epsilon = 0 keeps the images of the nearest depth alone; epsilon = +inf sums all that are not
+//!   empty.
+//! - Relabelling the groups changes nothing but the order of the sums.
+//! - Taking one fragment out of an image into an image of its own changes nothing but the order of
+//!   the sums: what counts is the set of fragments. (Splitting a group can show a fragment that the
+//!   depth test of the whole group hid: that is the depth test's doing, not this operator's.)
+//! - It is **not** associative: folding it over pairs is another function. With epsilon = 1 and
+//!   depths 0, 0.75, 1.5, all three together keep the first two; `(1 with 2) with 0` keeps all three
+//!   if the pair is represented by its nearest depth, 0.75 - the pair was blended before the nearest
+//!   was known. So a backend may not composite images as they come.
+
+use super::{epsilon, sum};
+use crate::number::Real;
+
+/// What a depth-image holds at a pixel: the attributes of one fragment, times its weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<R> {
+    /// Depth t of the fragment; +inf where the image is empty.
+    pub depth: R,
+    /// Its weight.
+    pub weight: R,
+    /// Weight times normal.
+    pub normal: [R; 3],
+    /// Weight times colour.
+    pub color: [R; 3],
+    /// Weight times opacity.
+    pub opacity: R,
+}
+
+impl<R: Real> Sample<R> {
+    /// An empty pixel.
+    pub const EMPTY: Self = Self {
+        depth: R::INFINITY,
+        weight: R::ZERO,
+        normal: [R::ZERO; 3],
+        color: [R::ZERO; 3],
+        opacity: R::ZERO,
+    };
+
+    /// One fragment: each attribute is multiplied by the weight once.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(depth: R, weight: R, normal: [R; 3], color: [R; 3], opacity: R) -> Self {
+        let weighted = |value: [R; 3]| value.map(|component| weight * component);
+        let (normal, color) = (weighted(normal), weighted(color));
+        Self { depth, weight, normal, color, opacity: weight * opacity }
+    }
+}
+
+/// The operator of Fig. 5 over the samples of all images at one pixel, in the order of the groups.
+///
+/// Gives the sums, with the nearest depth, and how many samples passed the epsilon-z test. `epsilon`
+/// is >= 0 and may be +inf.
+pub fn compose<R: Real>(samples: &[Sample<R>], epsilon: R) -> (Sample<R>, u32) {
+    let mut sums = Sample::<R>::EMPTY;
+    for sample in samples {
+        sums.depth = sums.depth.at_most(sample.depth);
+    }
+    let mut count = 0;
+    for sample in samples {
+        // An empty sample passes where epsilon or the nearest depth is infinite, and adds nothing.
+        if sample.depth < R::INFINITY && epsilon::visible(sample.depth, sums.depth, epsilon) {
+            sums.weight = sums.weight + sample.weight;
+            sums.normal = sum::plus(sums.normal, sample.normal);
+            sums.color = sum::plus(sums.color, sample.color);
+            sums.opacity = sums.opacity + sample.opacity;
+            count += 1;
+        }
+    }
+    (sums, count)
+}

@@ -1,0 +1,48 @@
+//! Alpha-blending of transparent layers.
+//!
+//! Colours are accumulated over black, that is, multiplied by their opacity; whatever lies behind is
+//! blended in at the end by what the layers let through.
+
+use super::sum;
+use crate::number::Real;
+
+/// Layers that have been blended: their colour over black, and their opacity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blend<R> {
+    /// Linear RGB over black.
+    pub color: [R; 3],
+    /// Opacity in [0, 1].
+    pub alpha: R,
+}
+
+impl<R: Real> Blend<R> {
+    /// Nothing: black and transparent.
+    pub const CLEAR: Self = Self { color: [R::ZERO; 3], alpha: R::ZERO };
+
+    /// The sum of two, as averaging needs it.
+    #[inline(always)]
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self { color: sum::plus(self.color, other.color), alpha: self.alpha + other.alpha }
+    }
+
+    /// The next nearer layer, back to front: `alpha c + (1 - alpha) below`, of the colour and, with
+    /// c = 1, of the opacity \[ZP06, section 3.3\].
+    ///
+    /// Laws: alpha = 1 leaves the layer alone, alpha = 0 leaves what was, and the opacity of layers is
+    /// 1 - the product of their 1 - alpha, up to rounding.
+    #[inline(always)]
+    #[must_use]
+    pub fn over(self, alpha: R, color: [R; 3]) -> Self {
+        let through = R::ONE - alpha;
+        let [r, g, b] = color;
+        Self {
+            color: [
+                alpha * r + through * self.color[0],
+                alpha * g + through * self.color[1],
+                alpha * b + through * self.color[2],
+            ],
+            alpha: alpha + through * self.alpha,
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! Single-pass point rendering: deferred blending over groups \[ZP06, Algorithm 1\].
+//!
+//! The passes of \[ZP06, Fig. 7\], for surfels whose [`Groups`] are known:
+//!
+//! 1. **Projection.** Each surfel becomes a [`Splat`], as in [`super::ewa`].
+//! 2. **Geometry pass.** Each group k has a depth-image `I_k`. Each fragment of its surfels that is
+//!    inside (q <= k^2), in ascending surfel index, replaces what the pixel of `I_k` holds if it passes
+//!    the depth test ([`DepthTest`]); the fragment kept leaves its depth, its weight, and its weight
+//!    times normal and times colour (eq. 4). A surfel seen from behind gives its normal reversed.
+//! 3. **Compositing pass.** The operator of Fig. 5 over all `I_k`, see [`crate::composite::groups`],
+//!    with the sums in the order of the groups; then depth, average colour and direction of the
+//!    normal as in [`super::ewa`]. The id of a pixel is that of the greatest nearness of all `I_k`,
+//!    ties to the lower surfel.
+//! 4. **Deferred shading**, see [`crate::shade`].
+//!
+//! The depth test of the geometry pass:
+//!
+//! - [`DepthTest::Plain`]: the greater nearness wins, ties to the lower surfel.
+//! - [`DepthTest::Voronoi`]: the smaller Voronoi-enhanced depth wins (eq. 10, see
+//!   [`crate::composite::bins`]), ties to the lower surfel, with `ratio = sqrt(q / (k k))`. With the
+//!   paper's kernel, a disc by ray casting without low-pass filter, that is `|f_i - p_i| / r_i`.
+//!   `Decided:` with any other footprint q is the squared distance from its own centre in its own
+//!   standard deviations, and the ratio is the same formula.
+//!
+//! `Decided:` `d_min` and `d_max` are the depths of [`depth_range`], which a backend knows before it has
+//! drawn anything; the depth of a fragment is brought into the bins (an enlarged splat can leave
+//! them).
+//!
+//! # When it is the 2+1-pass method
+//!
+//! At a pixel where no two fragments of one group are within epsilon of the nearest fragment of all,
+//! and with the plain depth test, the sums of both methods are over the same fragments: the pictures
+//! differ by the order of the sums alone. Groups that do not overlap (c = 1, nothing relaxed) leave
+//! these pixels where it does not hold, because two fragments of one group are within epsilon:
+//!
+//! - discs that do not overlap in space, but do on the screen within epsilon of depth: at steep
+//!   angles, at the silhouette, and where two sheets are closer than epsilon;
+//! - footprints that are larger than their disc: the skirt of a low-pass filter, and the affine
+//!   outline of a disc under perspective.
+//!
+//! There the group keeps the nearer fragment alone.
+//!
+//! [`plain`] is the definition, over any [`Real`]; [`fast`] gives the same bits for `f32`.
+//!
+//! [`Splat`]: crate::splat::Splat
+//! [`Real`]: crate::number::Real
+//! [`Groups`]: crate::scene::group::Groups
+
+pub mod fast;
+mod picture;
+pub mod plain;
+
+pub(super) use picture::image_planes;
+pub use picture::{render, render_f32};
+
+use super::ewa;
+use crate::composite::bins::{MAX_BINS, Range};
+use crate::error::{Error, Result};
+use crate::scene::{Camera, Surfels};
+
+/// What is computed; everything here may change the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// Footprints, the epsilon of the compositing pass, culling.
+    pub splats: ewa::Settings,
+    /// Which fragment of a group is kept.
+    pub depth: DepthTest,
+}
+
+/// Which fragment of a group a pixel keeps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DepthTest {
+    /// The nearest.
+    #[default]
+    Plain,
+    /// In the nearest depth bin the one nearest to its own centre \[ZP06, section 5.1\].
+    Voronoi(BinCount),
+}
+
+/// How many depth bins there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BinCount {
+    /// Bins no deeper than epsilon, see [`Range::of_epsilon`].
+    #[default]
+    Epsilon,
+    /// n, 1 to [`MAX_BINS`].
+    Count(u32),
+}
+
+impl BinCount {
+    /// Whether the number is in range.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if it is not.
+    pub fn check(&self) -> Result<()> {
+        match *self {
+            Self::Count(n) if !(1..=MAX_BINS).contains(&n) => {
+                Err(Error::Invalid(format!("bins: n = {n}; give 1 to {MAX_BINS}")))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The bins of a picture; `epsilon` in world units.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Range::of_epsilon`].
+    pub fn resolve(&self, surfels: &Surfels, camera: &Camera, epsilon: f32) -> Result<Range> {
+        let (nearest, farthest) = depth_range(surfels, camera);
+        match *self {
+            Self::Count(count) => Ok(Range { nearest, farthest, count }),
+            Self::Epsilon => Range::of_epsilon(nearest, farthest, epsilon),
+        }
+    }
+}
+
+impl Settings {
+    /// Whether the numbers are in range.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`ewa::Settings::check`] and [`BinCount::check`].
+    pub fn check(&self) -> Result<()> {
+        self.splats.check()?;
+        match &self.depth {
+            DepthTest::Plain => Ok(()),
+            DepthTest::Voronoi(bins) => bins.check(),
+        }
+    }
+}
+
+/// `d_min` and `d_max` of \[ZP06, eq. 6\]: the depths of the scene's bounding sphere.
+///
+/// With the centre (x, y, z) and the radius r of [`Surfels::bounding_sphere`] and the third row m of
+/// the view matrix, in f64: `t = -(((m0 x + m1 y) + m2 z) + m3)`; `d_min` is t - r, at least the near
+/// plane, and `d_max` is t + r, each rounded once to `f32`. Where `d_max` would not be greater than `d_min`
+/// (nothing is in sight) it is 2 `d_min`, or 1 more under an orthographic camera.
+#[must_use]
+pub fn depth_range(surfels: &Surfels, camera: &Camera) -> (f32, f32) {
+    let (center, radius) = surfels.bounding_sphere();
+    let [m0, m1, m2, m3] = camera.view_from_world.row(2).to_array().map(f64::from);
+    let t = -(((m0 * center.x + m1 * center.y) + m2 * center.z) + m3);
+    let (low, high) = ((t - radius) as f32, (t + radius) as f32);
+    let low = if low > camera.near { low } else { camera.near };
+    let beyond = if low > 0.0 { 2.0 * low } else { low + 1.0 };
+    (low, if high > low { high } else { beyond })
+}

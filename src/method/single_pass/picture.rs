@@ -1,0 +1,150 @@
+//! All stages in one call: from a scene to named planes.
+
+use super::plain::{Composite, Geometry, Images, store};
+use super::{Settings, fast};
+use crate::composite::groups::Sample;
+use crate::error::Result;
+use crate::frame::{Exec, Framebuffer, Grid, NO_ID, NamedPlane, Samples, Wanted};
+use crate::method::picture::{Clock, Picture, finish, named};
+use crate::number::Real;
+use crate::scene::group::Groups;
+use crate::scene::{Camera, Scene};
+
+/// Renders with the definition, in any number; with `stages`, every stage leaves its planes:
+///
+/// | stage | planes |
+/// |---|---|
+/// | geometry pass | for each group k (of two digits) `groupK.Z`, `groupK.id`, `groupK.weight`, `groupK.normal.X Y Z` and, if the scene has colours, `groupK.R G B`: weighted, as eq. 4 has them; `groupK.voronoi`: Voronoi-enhanced depth in bins, if it is used; +inf: empty |
+/// | compositing pass | `sums.R G B` (if the scene has colours), `sums.normal.X Y Z`, `sums.weight`; `sums.count`: how many groups passed the epsilon-z test |
+/// | normalization | `resolved.R G B` (if the scene has colours) |
+///
+/// # Errors
+/// [`crate::Error::Invalid`] if the camera or the settings are out of range.
+///
+/// # Panics
+/// If the groups are not those of the scene's surfels.
+pub fn render<R: Real>(
+    scene: &Scene,
+    groups: &Groups,
+    camera: &Camera,
+    settings: &Settings,
+    exec: &Exec,
+    stages: bool,
+) -> Result<Picture<R>> {
+    let wanted = check(scene, groups, camera, settings, stages)?;
+    let mut clock = Clock::default();
+    let geometry = Geometry::<R>::project(&scene.surfels, groups, camera, settings, exec)?;
+    let mut target = Framebuffer::new(camera.width, camera.height, R::ZERO, wanted);
+    clock.lap("projection");
+
+    let kept = geometry.each_tile(&mut target, exec, |index, mut tile| {
+        let images = geometry.images(index, tile.rect);
+        let composites = geometry.composite(&images);
+        store(&composites, &mut tile);
+        stages.then_some((images, composites))
+    });
+    clock.lap("groups");
+
+    let mut planes = Vec::new();
+    if stages {
+        let (images, composites): (Vec<_>, Vec<_>) = kept.into_iter().flatten().unzip();
+        let voronoi = settings.depth != super::DepthTest::Plain;
+        planes.extend(image_planes("", &geometry, &images, (wanted.color, voronoi)));
+        planes.extend(sum_planes(geometry.grid(), &composites, wanted.color));
+        planes.extend(target.stencil.take().map(|p| named("sums.count", Samples::Count(p))));
+        planes.extend(target.color.clone().map(|p| named("resolved", Samples::Color(p))));
+    }
+    Ok(finish(target, planes, geometry.tally(), clock, (scene, camera, exec)))
+}
+
+/// Renders in `f32` by the fast path: the bits of [`render`], without the planes of the stages.
+///
+/// # Errors
+/// As [`render`].
+///
+/// # Panics
+/// As [`render`].
+pub fn render_f32(
+    scene: &Scene,
+    groups: &Groups,
+    camera: &Camera,
+    settings: &Settings,
+    exec: &Exec,
+) -> Result<Picture<f32>> {
+    let wanted = check(scene, groups, camera, settings, false)?;
+    let mut target = Framebuffer::new(camera.width, camera.height, 0.0, wanted);
+    let (tally, times) = fast::render(&scene.surfels, groups, camera, settings, exec, &mut target)?;
+    Ok(finish(target, Vec::new(), tally, Clock::of(times.to_vec()), (scene, camera, exec)))
+}
+
+/// The planes that a picture needs.
+fn check(
+    scene: &Scene,
+    groups: &Groups,
+    camera: &Camera,
+    settings: &Settings,
+    stages: bool,
+) -> Result<Wanted> {
+    camera.check()?;
+    settings.check()?;
+    assert_eq!(groups.own().len(), scene.surfels.len(), "groups of other surfels");
+    Ok(Wanted {
+        normal: stages || !scene.lights.is_empty(),
+        color: scene.surfels.color().is_some(),
+        observed: stages,
+    })
+}
+
+/// The depth-image of each group.
+pub(in crate::method) fn image_planes<R: Real>(
+    prefix: &str,
+    geometry: &Geometry<'_, R>,
+    images: &[Images<R>],
+    (color, voronoi): (bool, bool),
+) -> Vec<NamedPlane<R>> {
+    let grid = geometry.grid();
+    let groups = images.first().map_or(0, |image| image.groups.len());
+    let mut planes = Vec::new();
+    for k in 0..groups {
+        let kept = |tile: usize, pixel: usize| images[tile].groups[k][pixel];
+        let sample = |tile: usize, pixel: usize| geometry.sample(&kept(tile, pixel));
+        let name = |plane: &str| format!("{prefix}group{k:02}{plane}");
+        let scalar =
+            |value: &dyn Fn(usize, usize) -> R| Samples::Scalar(grid.assemble(R::ZERO, value));
+        let triple = |value: &dyn Fn(usize, usize) -> [R; 3]| grid.assemble([R::ZERO; 3], value);
+        planes.push(named(&name(".Z"), scalar(&|t, i| sample(t, i).depth)));
+        let ids = grid.assemble(NO_ID, |t, i| kept(t, i).surfel);
+        planes.push(named(&name(".id"), Samples::Index(ids)));
+        planes.push(named(&name(".weight"), scalar(&|t, i| sample(t, i).weight)));
+        let normals = triple(&|t, i| sample(t, i).normal.map(|n| n + R::ZERO));
+        planes.push(named(&name(".normal"), Samples::Vector(normals)));
+        if color {
+            let colors = Samples::Color(triple(&|t, i| sample(t, i).color));
+            planes.push(named(&name(""), colors));
+        }
+        if voronoi {
+            planes.push(named(&name(".voronoi"), scalar(&|t, i| kept(t, i).z)));
+        }
+    }
+    planes
+}
+
+/// The sums of the compositing pass.
+fn sum_planes<R: Real>(
+    grid: &Grid,
+    composites: &[Vec<Composite<R>>],
+    color: bool,
+) -> Vec<NamedPlane<R>> {
+    let sums = |tile: usize, pixel: usize| -> Sample<R> { composites[tile][pixel].sums };
+    let zero = [R::ZERO; 3];
+    let mut planes = Vec::new();
+    if color {
+        let colors = grid.assemble(zero, |t, i| sums(t, i).color);
+        planes.push(named("sums", Samples::Color(colors)));
+    }
+    let normals = grid.assemble(zero, |t, i| sums(t, i).normal.map(|n| n + R::ZERO));
+    planes.push(named("sums.normal", Samples::Vector(normals)));
+    let weights = grid.assemble(R::ZERO, |t, i| sums(t, i).weight);
+    planes.push(named("sums.weight", Samples::Scalar(weights)));
+    planes
+}
