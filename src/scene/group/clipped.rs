@@ -38,9 +38,8 @@ struct Pattern {
 
 static PATTERN: LazyLock<Pattern> = LazyLock::new(|| {
     let q: [f64; SAMPLES] = std::array::from_fn(|m| (m as f64 + 0.5) / SAMPLES as f64);
-    let along = |of: fn(f64) -> f64| {
-        std::array::from_fn(|m| q[m].sqrt() * of(m as f64 * GOLDEN_ANGLE))
-    };
+    let along =
+        |of: fn(f64) -> f64| std::array::from_fn(|m| q[m].sqrt() * of(m as f64 * GOLDEN_ANGLE));
     let angle = |m: usize| m as f64 * (TAU / SAMPLES as f64);
     let turn = std::array::from_fn(|m| (cos(angle(m)), sin(angle(m))));
     Pattern { x: along(cos), y: along(sin), q, turn }

@@ -217,6 +217,8 @@ fn color(
         average_degree: 2.0 * graph.edges() as f64 / n as f64,
     };
     Ok((color, report))
+}
+
 impl Groups {
     /// Groups that somebody else has made: the group of each surfel, further ones as (surfel, group)
     /// in any order, and the scale of each group.
