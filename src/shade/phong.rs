@@ -83,8 +83,14 @@ impl<R: Real> Shader<R> {
         shaded
     }
 
-    /// The colour of one pixel; see the module page.
-    fn pixel(&self, (x, y): (usize, usize), t: R, normal: Vector3<R>, surface: [R; 3]) -> [R; 3] {
+    /// The colour of one pixel at depth t, +inf if it is empty; see the module page. `surface` is s.
+    pub(crate) fn pixel(
+        &self,
+        (x, y): (usize, usize),
+        t: R,
+        normal: Vector3<R>,
+        surface: [R; 3],
+    ) -> [R; 3] {
         if !t.is_finite() {
             return [R::ZERO; 3];
         }
