@@ -63,8 +63,8 @@ impl Map {
     ///
     /// ```text
     ///   u = atan2(x, 0 - z) / (2 pi)           s = u W - 1/2     i = floor(s)    f = s - i
-    ///   v = atan2(sqrt(x x + z z), y) / pi     t = v H - 1/2, brought into [0, H - 1]
-    ///                                          j = floor(t)      g = t - j
+    ///   v = atan2(sqrt(x x + z z), y) / pi     t = v H - 1/2, at least 0
+    ///                                          j = floor(t)     g = t - j
     ///   columns i and i + 1, W added to what is negative; rows j and min(j + 1, H - 1)
     ///   row      a + (b - a) f
     ///   result   upper + (lower - upper) g
@@ -80,13 +80,12 @@ impl Map {
         let half = R::from_f32(0.5);
         let width = R::from_f32(self.0.width() as f32);
         let last_row = self.0.height() - 1;
-        // 0 - z is +0 for either zero, so that atan2 does not see the sign.
         let pi = R::ZERO.atan2(-R::ONE);
+        // 0 - z is +0 for either zero, so that atan2 does not see the sign.
         let u = x.atan2(R::ZERO - z) / (pi + pi);
         let v = (x * x + z * z).sqrt().atan2(y) / pi;
         let s = u * width - half;
-        let t = v * R::from_f32(self.0.height() as f32) - half;
-        let t = t.at_least(R::ZERO).at_most(R::from_f32(last_row as f32));
+        let t = (v * R::from_f32(self.0.height() as f32) - half).at_least(R::ZERO);
         let (i, j) = (s.floor(), t.floor());
         let (f, g) = (s - i, t - j);
         // u is at most 1/2: i and i + 1 are columns as they are, or once the width is added.

@@ -119,7 +119,7 @@ pub fn reflect<R: Real>(view: Vector3<R>, normal: Vector3<R>) -> Vector3<R> {
 /// `layers` >= 0.
 ///
 /// ```text
-///   c = n . v      t = n c - v, the tangent      s = |t|, at most 1: the sine of incidence
+///   c = n . v      t = n c - v, the tangent      s = |t|, the sine of incidence
 ///   m = ratio^layers
 ///   k = (1 - m)(1 + m) + (m c)(m c)  if m <= 1, else  1 - (m s)(m s):  the squared cosine of T
 ///   T = t m - n sqrt(k)
@@ -136,7 +136,7 @@ pub fn refract<R: Real>(
 ) -> Option<Vector3<R>> {
     let c = normal.dot(view);
     let tangent = normal * c - view;
-    let s = tangent.length().at_most(R::ONE);
+    let s = tangent.length();
     if !(s > R::ZERO) {
         return Some(-normal);
     }
