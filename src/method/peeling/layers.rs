@@ -108,8 +108,7 @@ impl<'a, R: Real> Peeling<'a, R> {
         most: u32,
         keep: usize,
     ) -> (Vec<Pixel<R>>, Vec<Vec<Layer<R>>>) {
-        let count = (rect.x1 - rect.x0) as usize * (rect.y1 - rect.y0) as usize;
-        let mut pixels = vec![Pixel::new(); count];
+        let mut pixels = vec![Pixel::new(); rect.pixels()];
         let mut kept = Vec::new();
         for _ in 0..most {
             let Some(layer) = self.layer(index, rect, &pixels) else { break };

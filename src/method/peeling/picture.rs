@@ -58,7 +58,7 @@ pub fn render<R: Real>(
     planes.push(named("layers", Samples::Count(count)));
     clock.lap("planes");
     let frame = Frame { width: camera.width, height: camera.height, planes };
-    Ok(Picture { frame, tally: peeling.tally(), timings: clock.laps })
+    Ok(Picture { frame, tally: peeling.tally(), timings: clock.into_laps() })
 }
 
 /// The planes of the first layers: `layers[tile][layer][pixel]`, fewer where a tile has fewer.

@@ -13,7 +13,8 @@ use proptest::prelude::*;
 
 fn scene(cloud: Cloud, lights: Vec<Light>) -> Scene {
     let surfels = Surfels::new(cloud).unwrap().0;
-    Scene { name: "test".into(), surfels, lights, material: Phong::default() }
+    let (name, material) = ("test".into(), Phong::default());
+    Scene { name, surfels, lights, material, environment: None }
 }
 
 /// Looks from the origin along -z.
