@@ -82,7 +82,7 @@ pub(super) struct SceneOptions {
         help_heading = "Environment")]
     environment: Option<EnvironmentChoice>,
 
-    /// The method: ewa, single-pass, transparent or transparent-hq [default: ewa]
+    /// The method: ewa, single-pass, transparent, transparent-hq, peeling [default: ewa]
     #[arg(long, value_name = "NAME", value_parser = words::method, help_heading = "Method")]
     method: Option<MethodName>,
     /// Preset of outline, cut-off and low-pass filter: default, zpvbg01 or zp06
@@ -138,6 +138,9 @@ pub(super) struct SceneOptions {
     /// How many layers bend light: single or multiple [default: multiple]
     #[arg(long, value_name = "NAME", value_parser = words::bends, help_heading = "Transparency")]
     bends: Option<Layers>,
+    /// Most layers that are peeled, 1 to 256 [default: 64]
+    #[arg(long, value_name = "N", help_heading = "Transparency")]
+    peel: Option<u32>,
 
     /// Surfels of a procedural shape [default: 200000]
     #[arg(long, value_name = "N", help_heading = "Shapes")]
@@ -174,6 +177,7 @@ impl SceneOptions {
         replace(&mut method.holes, self.holes);
         replace(&mut method.refraction, self.refraction);
         replace(&mut method.bends, self.bends);
+        replace(&mut method.peel, self.peel);
         if self.kernel.is_some() {
             // A preset replaces all that the file says of the kernel.
             (method.outline, method.cutoff, method.low_pass) = (None, None, None);

@@ -72,6 +72,7 @@ pub fn name(method: &Method) -> &'static str {
         Method::SinglePass(_) => "single-pass",
         Method::Transparent(Settings { nearest: None, .. }) => "transparent",
         Method::Transparent(_) => "transparent-hq",
+        Method::Peeling(_) => "peeling",
     }
 }
 
@@ -88,6 +89,7 @@ pub fn further(method: &Method) -> String {
     };
     match method {
         Method::Ewa(_) => String::new(),
+        Method::Peeling(settings) => format!("peel = {}\n", settings.layers),
         Method::SinglePass(settings) => match &settings.depth {
             DepthTest::Plain => depth(&settings.depth).to_owned(),
             DepthTest::Voronoi(count) => format!("{}{}", depth(&settings.depth), bins(count)),

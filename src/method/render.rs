@@ -1,6 +1,6 @@
 //! Any method, chosen by a value, with what it needs before the first view.
 
-use super::{Picture, ewa, single_pass, transparent};
+use super::{Picture, ewa, peeling, single_pass, transparent};
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::Real;
@@ -17,6 +17,8 @@ pub enum Method {
     SinglePass(single_pass::Settings),
     /// Algorithms 2 and 3 of \[ZP06\].
     Transparent(transparent::Settings),
+    /// Depth peeling.
+    Peeling(peeling::Settings),
 }
 
 impl Method {
@@ -27,6 +29,7 @@ impl Method {
             Self::Ewa(settings) => settings,
             Self::SinglePass(settings) => &settings.splats,
             Self::Transparent(settings) => &settings.splats,
+            Self::Peeling(settings) => &settings.splats,
         }
     }
 
@@ -39,6 +42,7 @@ impl Method {
             Self::Ewa(settings) => settings.check(),
             Self::SinglePass(settings) => settings.check(),
             Self::Transparent(settings) => settings.check(),
+            Self::Peeling(settings) => settings.check(),
         }
     }
 
@@ -141,6 +145,7 @@ pub fn render<R: Real>(
 ) -> Result<Picture<R>> {
     match (method, preparation) {
         (Method::Ewa(settings), _) => ewa::render(scene, camera, settings, exec, stages),
+        (Method::Peeling(settings), _) => peeling::render(scene, camera, settings, exec, stages),
         (Method::SinglePass(settings), Preparation { groups: Some(groups), .. }) => {
             single_pass::render(scene, groups, camera, settings, exec, stages)
         }

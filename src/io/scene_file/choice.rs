@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::method::ewa::{self, Epsilon};
 use crate::method::single_pass::{self, BinCount, DepthTest};
 use crate::method::transparent::{self, Holes};
-use crate::method::{Grouping, Method};
+use crate::method::{Grouping, Method, peeling};
 use crate::scene::group::{Coplanar, Extension, Rules};
 use crate::shade::optics::{Layers, Refraction};
 use crate::splat::{Kernel, Outline};
@@ -21,6 +21,8 @@ pub enum MethodName {
     Transparent,
     /// `transparent-hq`: Algorithm 3 of \[ZP06\].
     TransparentHq,
+    /// `peeling`: depth peeling.
+    Peeling,
 }
 
 /// Settings as far as they were chosen; one that its method does not have is refused.
@@ -50,6 +52,8 @@ pub struct MethodChoice {
     pub refraction: Option<[f32; 3]>,
     /// How many layers bend; [`Layers::Multiple`] if absent.
     pub bends: Option<Layers>,
+    /// The most layers that are peeled, see [`peeling::Settings`].
+    pub peel: Option<u32>,
 }
 
 /// How groups are extended, without its parameter.
@@ -93,14 +97,15 @@ impl MethodChoice {
     /// # Errors
     /// [`Error::Invalid`] if something was chosen that the method does not have, or is out of range.
     pub fn method(&self) -> Result<Method> {
-        use MethodName::{Ewa, SinglePass, Transparent, TransparentHq};
+        use MethodName::{Ewa, Peeling, SinglePass, Transparent, TransparentHq};
         let name = self.name.unwrap_or_default();
-        let keys: [(&str, bool, &[MethodName]); 5] = [
+        let keys: [(&str, bool, &[MethodName]); 6] = [
             ("depth", self.voronoi.is_some(), &[SinglePass, TransparentHq]),
             ("bins", self.bins.is_some(), &[SinglePass, Transparent, TransparentHq]),
             ("holes", self.holes.is_some(), &[Transparent, TransparentHq]),
             ("refraction", self.refraction.is_some(), &[TransparentHq]),
             ("bends", self.bends.is_some(), &[TransparentHq]),
+            ("peel", self.peel.is_some(), &[Peeling]),
         ];
         if let Some((key, ..)) = keys.iter().find(|(_, given, of)| *given && !of.contains(&name)) {
             let name = super::words::of_method(name);
@@ -113,6 +118,13 @@ impl MethodChoice {
         let method = match name {
             Ewa => Method::Ewa(splats),
             SinglePass => Method::SinglePass(single_pass::Settings { splats, depth: self.depth() }),
+            Peeling => {
+                let default = peeling::Settings::default();
+                Method::Peeling(peeling::Settings {
+                    splats: self.splats(default.splats),
+                    layers: self.peel.unwrap_or(default.layers),
+                })
+            }
             Transparent | TransparentHq => {
                 let default = transparent::Settings::default();
                 Method::Transparent(transparent::Settings {

@@ -47,14 +47,15 @@ pub fn of_outline(outline: Outline) -> &'static str {
 }
 
 /// The methods.
-const METHODS: [(&str, MethodName); 4] = [
+const METHODS: [(&str, MethodName); 5] = [
     ("ewa", MethodName::Ewa),
     ("single-pass", MethodName::SinglePass),
     ("transparent", MethodName::Transparent),
     ("transparent-hq", MethodName::TransparentHq),
+    ("peeling", MethodName::Peeling),
 ];
 
-/// `ewa`, `single-pass`, `transparent` or `transparent-hq`.
+/// `ewa`, `single-pass`, `transparent`, `transparent-hq` or `peeling`.
 ///
 /// # Errors
 /// The words there are.

@@ -3,7 +3,7 @@
 use super::{Layer, Peeling, Settings};
 use crate::error::Result;
 use crate::frame::{Exec, Frame, Grid, NO_ID, NamedPlane, Samples};
-use crate::method::picture::{Clock, Picture, named};
+use crate::method::picture::{Clock, Picture, before_environment, named};
 use crate::number::Real;
 use crate::scene::{Camera, Scene};
 
@@ -18,7 +18,7 @@ pub const STAGES: u32 = 8;
 /// | `layerJ.A` | its opacity, 0 where there is none |
 /// | `layerJ.Z` | depth of its nearest fragment; +inf where there is none |
 /// | `layerJ.count` | fragments that were averaged, up to 255 |
-/// | `R G B` | all layers, blended over black: multiplied by `A` |
+/// | `R G B` | all layers, blended over black: multiplied by `A`; over the environment where the scene has one, and then `A` is 1 |
 /// | `A` | opacity, in [0, 1] |
 /// | `Z`, `id` | depth and surfel of the nearest fragment of all |
 /// | `layers` | how many layers were peeled, up to 255 |
@@ -47,8 +47,9 @@ pub fn render<R: Real>(
 
     let mut planes = layer_planes(grid, &layers, keep);
     let color = grid.assemble([R::ZERO; 3], |t, i| pixels[t][i].blend.color);
-    planes.push(named("", Samples::Color(color)));
     let alpha = grid.assemble(R::ZERO, |t, i| pixels[t][i].blend.alpha.at_most(R::ONE));
+    let (color, alpha) = before_environment(scene, camera, color, alpha, exec);
+    planes.push(named("", Samples::Color(color)));
     planes.push(named("A", Samples::Scalar(alpha)));
     let depth = grid.assemble(R::INFINITY, |t, i| pixels[t][i].depth);
     planes.push(named("Z", Samples::Scalar(depth)));

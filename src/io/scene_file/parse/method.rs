@@ -21,6 +21,7 @@ pub(super) struct RawMethod {
     holes: Option<String>,
     refraction: Option<[f32; 3]>,
     bends: Option<String>,
+    peel: Option<u32>,
 }
 
 impl RawMethod {
@@ -38,6 +39,7 @@ impl RawMethod {
             holes: self.holes.map(|word| words::holes(&word)).transpose()?,
             refraction: self.refraction,
             bends: self.bends.map(|word| words::bends(&word)).transpose()?,
+            peel: self.peel,
         };
         choice.method().map_err(|error| error.to_string())?;
         Ok(choice)
