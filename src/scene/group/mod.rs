@@ -244,6 +244,24 @@ impl Groups {
         Ok(Self { own, added, scale })
     }
 
+    /// The groups of the surfels that are marked, in order; a group may be left without any.
+    pub(super) fn retain(self, keep: &[bool]) -> Self {
+        if keep.iter().all(|&keep| keep) {
+            return self;
+        }
+        let mut kept = 0;
+        let index: Vec<Option<u32>> = keep
+            .iter()
+            .map(|&keep| {
+                kept += u32::from(keep);
+                keep.then(|| kept - 1)
+            })
+            .collect();
+        let own = self.own.iter().zip(keep).filter(|pair| *pair.1).map(|pair| *pair.0);
+        let added = self.added.iter().filter_map(|&(i, group)| Some((index[i as usize]?, group)));
+        Self { own: own.collect(), added: added.collect(), scale: self.scale }
+    }
+
     /// The groups that a surfel is in: its own, then those it was added to.
     pub fn of(&self, surfel: u32) -> impl Iterator<Item = u8> + '_ {
         let first = self.added.partition_point(|&(added, _)| added < surfel);
