@@ -1,7 +1,7 @@
 //! The identity of a scene: one hash over everything a picture depends on but camera and settings.
 
-use super::group::Groups;
 use super::{Environment, Light, Phong, Scene};
+use crate::scene::group::Groups;
 use glam::Vec3;
 use sha2::{Digest, Sha256};
 
@@ -20,8 +20,6 @@ impl Scene {
     ///   material: ambient, diffuse, specular, shininess (f32), colour (3 f32)
     ///   environment: nothing if there is none; a byte 1 for the sky; or a byte 2, then width and
     ///     height (u64), and the pixels (3 f32 each) row by row from the top left
-    ///   groups: nothing if there are none; or a byte 3, then the group of each surfel (u8), u64 count
-    ///     of additions, each a surfel (u32) and a group (u8), u64 count of groups, their scales (f32)
     /// ```
     #[must_use]
     pub fn sha256(&self) -> String {
@@ -58,8 +56,28 @@ impl Scene {
                 hash.floats(pixels.values().iter().flatten().copied());
             }
         }
-        if let Some(groups) = surfels.groups() {
-            hash.groups(groups);
+        hash.finish()
+    }
+}
+
+impl Groups {
+    /// SHA-256 in lower-case hexadecimal.
+    ///
+    /// Of the bytes `"splatref groups 1\n"`, the u64 count of groups and the scale of each (f32), the
+    /// u64 count of surfels and the own group of each (a byte), the u64 count of additions, each a u32
+    /// surfel and a byte, ascending; numbers in little-endian order.
+    #[must_use]
+    pub fn sha256(&self) -> String {
+        let mut hash = Hasher(Sha256::new());
+        hash.0.update(b"splatref groups 1\n");
+        hash.count(self.len());
+        hash.floats(self.scale().iter().copied());
+        hash.count(self.own().len());
+        hash.0.update(self.own());
+        hash.count(self.added().len());
+        for (surfel, group) in self.added() {
+            hash.0.update(surfel.to_le_bytes());
+            hash.0.update([*group]);
         }
         hash.finish()
     }
@@ -80,18 +98,6 @@ impl Hasher {
     fn optional<T, const N: usize>(&mut self, values: Option<&[T]>, of: impl Fn(&T) -> [f32; N]) {
         self.0.update([u8::from(values.is_some())]);
         self.floats(values.unwrap_or_default().iter().flat_map(of));
-    }
-
-    fn groups(&mut self, groups: &Groups) {
-        self.0.update([3]);
-        self.0.update(groups.own());
-        self.count(groups.added().len());
-        for &(surfel, group) in groups.added() {
-            self.0.update(surfel.to_le_bytes());
-            self.0.update([group]);
-        }
-        self.count(groups.len());
-        self.floats(groups.scale().iter().copied());
     }
 
     fn finish(self) -> String {
@@ -147,11 +153,6 @@ mod tests {
         let surrounded = |environment| Scene { environment: Some(environment), ..scene(cloud()) };
         let sky = [&bytes[..], &[1]].concat();
         assert_eq!(surrounded(Environment::Sky).sha256(), hash(&sky));
-        let groups = Groups::new(vec![2], vec![(0, 1)], vec![1.0, 2.0, 3.0]).unwrap();
-        let mut grouped = vec![3, 2, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 3, 0, 0, 0, 0, 0, 0, 0];
-        grouped.extend([1.0_f32, 2.0, 3.0].into_iter().flat_map(f32::to_le_bytes));
-        let of = scene(Cloud { groups: Some(groups), ..cloud() });
-        assert_eq!(of.sha256(), hash(&[&bytes[..], &grouped].concat()));
         bytes.push(2);
         bytes.extend([2_u64, 1].into_iter().flat_map(u64::to_le_bytes));
         bytes.extend([0.5_f32, 0.25, 0.0, 1.0, 2.0, 3.0].into_iter().flat_map(f32::to_le_bytes));

@@ -48,6 +48,18 @@ pub fn group(
     Ok((groups(&tree, &color, report.groups), report))
 }
 
+/// Whether there can be so many groups.
+///
+/// # Errors
+/// [`Error::Invalid`] if there cannot.
+pub fn check_count(groups: usize) -> Result<()> {
+    if (1..=MAX_GROUPS).contains(&groups) {
+        Ok(())
+    } else {
+        Err(Error::Invalid(format!("{groups} groups; give 1 to {MAX_GROUPS}")))
+    }
+}
+
 /// As [`group`], with the largest c that gives at most `count` groups, as the [module](super) defines it.
 ///
 /// # Errors
@@ -60,9 +72,7 @@ pub fn group_into(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<(Groups, Report)> {
     rules.check()?;
-    if !(1..=MAX_GROUPS).contains(&count) {
-        return Err(Error::Invalid(format!("{count} groups; give 1 to {MAX_GROUPS}")));
-    }
+    check_count(count)?;
     progress("sorting surfels", 0, 1);
     let tree = Tree::new(surfels, 0..surfels.len() as u32);
     let colored = |c: f32| color(surfels, &tree, rules, c, exec, progress);

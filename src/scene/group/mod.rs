@@ -112,7 +112,7 @@ mod tree;
 
 use crate::error::{Error, Result};
 
-pub use color::{Report, group, group_into};
+pub use color::{Report, check_count, group, group_into};
 pub use enlarge::{MAX_SCALE, MAX_STEPS, SMALL_STEP};
 pub use extend::{Coverage, Extended, Extension, extend};
 
@@ -220,9 +220,7 @@ impl Groups {
     /// or if a surfel or a group does not exist.
     pub fn new(own: Vec<u8>, added: Vec<(u32, u8)>, scale: Vec<f32>) -> Result<Self> {
         let groups = scale.len();
-        if !(1..=MAX_GROUPS).contains(&groups) {
-            return Err(Error::Invalid(format!("{groups} groups; give 1 to {MAX_GROUPS}")));
-        }
+        check_count(groups)?;
         if let Some(wrong) = scale.iter().find(|scale| !(**scale > 0.0 && scale.is_finite())) {
             return Err(Error::Invalid(format!("groups: a scale of {wrong}; give a number > 0")));
         }
