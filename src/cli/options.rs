@@ -153,7 +153,7 @@ pub(super) struct SceneOptions {
 impl SceneOptions {
     /// The scene that `name` stands for, a shape or a file, with these options on top.
     pub(super) fn scene_file(&self, name: &Path) -> Result<SceneFile> {
-        let mut file = self.named(name)?;
+        let mut file = named(name, self.count, self.seed)?;
         let camera = &mut file.camera;
         replace(&mut camera.size, self.size);
         replace(&mut camera.eye, self.eye);
@@ -199,30 +199,25 @@ impl SceneOptions {
         file.output.number = self.number.unwrap_or(file.output.number);
         Ok(file)
     }
+}
 
-    fn named(&self, name: &Path) -> Result<SceneFile> {
-        if let Some(shape) = name.to_str().and_then(Shape::by_name) {
-            let count = self.count.unwrap_or(DEFAULT_COUNT);
-            return Ok(SceneFile::of_model(Source::Shape {
-                shape,
-                count,
-                seed: self.seed.unwrap_or(0),
-            }));
-        }
-        if self.count.is_some() || self.seed.is_some() {
-            let what = "--count and --seed are for procedural shapes; this scene is a file";
-            return Err(Error::Usage(what.into()));
-        }
-        match kind(name)? {
-            Kind::Ply => {
-                Ok(SceneFile::of_model(Source::File { path: name.to_owned(), radius: None }))
-            }
-            Kind::Toml => SceneFile::read(name),
-            Kind::Exr => Err(Error::Usage(format!(
-                "{}: an EXR is a picture, not a scene; `splatref info` describes it",
-                name.display()
-            ))),
-        }
+/// The scene that `name` stands for; count and seed are for shapes alone.
+pub(super) fn named(name: &Path, count: Option<usize>, seed: Option<u64>) -> Result<SceneFile> {
+    if let Some(shape) = name.to_str().and_then(Shape::by_name) {
+        let count = count.unwrap_or(DEFAULT_COUNT);
+        return Ok(SceneFile::of_model(Source::Shape { shape, count, seed: seed.unwrap_or(0) }));
+    }
+    if count.is_some() || seed.is_some() {
+        let what = "--count and --seed are for procedural shapes; this scene is a file";
+        return Err(Error::Usage(what.into()));
+    }
+    match kind(name)? {
+        Kind::Ply => Ok(SceneFile::of_model(Source::File { path: name.to_owned(), radius: None })),
+        Kind::Toml => SceneFile::read(name),
+        Kind::Exr => Err(Error::Usage(format!(
+            "{}: an EXR is a picture, not a scene; `splatref info` describes it",
+            name.display()
+        ))),
     }
 }
 

@@ -125,6 +125,7 @@ impl Kind {
             color: (dice.below(4) > 0).then(Vec::new),
             opacity: None,
             tangents: matches!(self, Self::Ellipses | Self::Tilted).then(Vec::new),
+            groups: None,
             triangles: Vec::new(),
         };
         for _ in 0..count {
