@@ -46,8 +46,8 @@ const fn row(plane: &'static str, arithmetic: Arithmetic, bound: f64, reason: &'
 
 use Arithmetic::{F32, F64, F64Rounded};
 
-/// The table.
-pub(crate) const TABLE: &[Row] = &[
+/// The 2+1-pass method.
+pub(crate) const EWA: &[Row] = &[
     row("visibility.Z", F32, 4.0, "three roundings of the nearness, one reciprocal"),
     row("visibility.Z", F64, 4.0, "as in f32"),
     row("visibility.Z", F64Rounded, 1.0, "half the range of depth takes the normal for a unit"),
@@ -101,10 +101,10 @@ impl Measured {
     }
 
     /// Every complaint: a plane beyond its bound or without a row, a row too loose or unused.
-    pub(crate) fn complaints(&self) -> Vec<String> {
+    pub(crate) fn complaints(&self, table: &[Row]) -> Vec<String> {
         let mut all = Vec::new();
         for (&(plane, arithmetic), (worst, place)) in &self.0 {
-            let row = TABLE.iter().find(|r| r.plane == plane && r.arithmetic == arithmetic);
+            let row = table.iter().find(|r| r.plane == plane && r.arithmetic == arithmetic);
             let name = format!("plane '{plane}', {arithmetic:?}: worst {worst:.3} at {place}");
             match row {
                 None => all.push(format!("{name}: no row in the table")),
@@ -117,7 +117,7 @@ impl Measured {
                 Some(_) => {}
             }
         }
-        for r in TABLE {
+        for r in table {
             if !self.0.contains_key(&(r.plane, r.arithmetic)) {
                 all.push(format!("row '{}', {:?}: nothing was measured", r.plane, r.arithmetic));
             }

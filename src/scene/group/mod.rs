@@ -71,6 +71,21 @@ pub struct Groups {
 }
 
 impl Groups {
+    /// Groups that are known: that of each surfel, and how many there are; nothing added or enlarged.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if `count` is not in 1 to [`MAX_GROUPS`] or a group is not below it.
+    pub fn new(own: Vec<u8>, count: usize) -> Result<Self> {
+        if !(1..=MAX_GROUPS).contains(&count) {
+            return Err(Error::Invalid(format!("{count} groups; give 1 to {MAX_GROUPS}")));
+        }
+        if let Some(i) = own.iter().position(|group| usize::from(*group) >= count) {
+            let what = format!("surfel {i}: group {}, of {count} groups", own[i]);
+            return Err(Error::Invalid(format!("{what}; give one below {count}")));
+        }
+        Ok(Self { own, added: Vec::new(), scale: vec![1.0; count] })
+    }
+
     /// How many groups there are: 1 to [`MAX_GROUPS`].
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "never empty")]
