@@ -107,9 +107,6 @@ impl Real for Counted {
     fn sqrt(self) -> Self {
         tick(Op::Sqrt, self.0.sqrt())
     }
-    fn floor(self) -> Self {
-        Self(self.0.floor())
-    }
     fn abs(self) -> Self {
         Self(self.0.abs())
     }

@@ -23,5 +23,7 @@ mod laws;
 mod naive;
 mod pixel;
 mod scenes;
+mod single_pass;
+mod single_pass_stages;
 mod stages;
 mod tolerance;

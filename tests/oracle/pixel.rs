@@ -80,9 +80,14 @@ impl<'a> Oracle<'a> {
         s.doubtful || (f.value.q - self.limit()).abs() <= self.margin(f)
     }
 
-    /// The rounding error of a depth, and of a comparison with one that is epsilon away.
+    /// The rounding error of a depth.
     pub(crate) fn slack(&self, f: &Fragment) -> f64 {
-        self.guard * (f.spread.t + self.step * (f.value.t.abs() + self.epsilon.min(1e30)))
+        self.guard * (f.spread.t + self.step * f.value.t.abs())
+    }
+
+    /// The rounding error that epsilon adds to a comparison with one that is epsilon away.
+    fn band(&self) -> f64 {
+        if self.epsilon.is_finite() { 2.0 * self.guard * self.step * self.epsilon } else { 0.0 }
     }
 
     /// The pixel at a column and row.
@@ -92,25 +97,36 @@ impl<'a> Oracle<'a> {
         let limit = self.limit();
         let inside: Vec<_> = all.iter().filter(|(_, f)| f.value.q <= limit).copied().collect();
         let (first, first_slack) = self.first(&inside);
-        let close = |f: &Fragment, to: f64| f.value.t - to <= self.slack(f) + first_slack;
+        let reach = first + self.epsilon + first_slack + self.band();
         let mut ambiguous = all.iter().any(|seen| {
             let near_limit = seen.1.value.q - limit <= self.margin(&seen.1);
-            near_limit && self.unsure(seen) && close(&seen.1, first + self.epsilon)
+            near_limit && self.unsure(seen) && seen.1.value.t - self.slack(&seen.1) <= reach
         });
         ambiguous |= self.grazes(&inside);
-        let nearest: Vec<u32> =
-            inside.iter().filter(|(_, f)| close(f, first)).map(|(s, _)| s.index as u32).collect();
-        let seen: Vec<_> =
-            inside.iter().filter(|(_, f)| f.value.t <= first + self.epsilon).copied().collect();
+        let nearest = self.nearest(&inside);
+        let seen = self.seen(&inside);
         let entries = self.entries(at, &inside, &seen);
         Pixel { ambiguous, nearest, count: seen.len(), entries }
     }
 
     /// The least depth, and its rounding error.
-    pub(crate) fn first(&self, inside: &[Seen<'_>]) -> (f64, f64) {
+    fn first(&self, inside: &[Seen<'_>]) -> (f64, f64) {
         let first = inside.iter().map(|(_, f)| f.value.t).fold(f64::INFINITY, f64::min);
         let those = inside.iter().filter(|(_, f)| f.value.t == first);
         (first, those.map(|(_, f)| self.slack(f)).fold(0.0, f64::max))
+    }
+
+    /// Those that pass the epsilon-z test.
+    pub(crate) fn seen<'b>(&self, inside: &[Seen<'b>]) -> Vec<Seen<'b>> {
+        let (first, _) = self.first(inside);
+        inside.iter().filter(|(_, f)| f.value.t <= first + self.epsilon).copied().collect()
+    }
+
+    /// The surfels that may be the nearest.
+    pub(crate) fn nearest(&self, inside: &[Seen<'_>]) -> Vec<u32> {
+        let (first, first_slack) = self.first(inside);
+        let close = |f: &Fragment| f.value.t - first <= self.slack(f) + first_slack;
+        inside.iter().filter(|(_, f)| close(f)).map(|(s, _)| s.index as u32).collect()
     }
 
     /// Whether the epsilon-z test of any fragment is within its rounding error.
@@ -118,7 +134,7 @@ impl<'a> Oracle<'a> {
         let (first, first_slack) = self.first(inside);
         inside.iter().any(|(_, f)| {
             let beyond = f.value.t - (first + self.epsilon);
-            f.value.t != first && beyond.abs() <= self.slack(f) + first_slack
+            f.value.t != first && beyond.abs() <= self.slack(f) + first_slack + self.band()
         })
     }
 

@@ -82,6 +82,11 @@ pub(crate) const EWA: &[Row] = &[
     row("", F64Rounded, 0.25, "as the resolved colour"),
 ];
 
+/// Algorithm 1: `group` stands for the depth-image of any group.
+pub(crate) const SINGLE_PASS: &[Row] = &[
+    row("group.Z", F32, 4.0, "as visibility.Z: the same fragment"),
+];
+
 /// The worst deviation of each plane in each arithmetic so far.
 #[derive(Default)]
 pub(crate) struct Measured(pub(crate) BTreeMap<(&'static str, Arithmetic), (f64, String)>);
