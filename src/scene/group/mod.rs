@@ -1,6 +1,22 @@
 //! Minimal independent groups: surfels that do not overlap share one depth-image \[ZP06, section 4\].
 
+mod add;
+mod clipped;
+mod color;
+mod enlarge;
+mod extend;
+mod graph;
+#[cfg(test)]
+mod tests;
+mod tree;
+
 use crate::error::{Error, Result};
+use crate::frame::Exec;
+use crate::scene::Surfels;
+use tree::Tree;
+
+pub use enlarge::{MAX_SCALE, MAX_STEPS, SMALL_STEP};
+pub use extend::{Coverage, Extended, Extension, extend};
 
 /// The most groups that a scene may need; a GPU of the paper's time had 16 texture units.
 pub const MAX_GROUPS: usize = 64;
@@ -71,19 +87,13 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// Groups that are known: that of each surfel, and how many there are; nothing added or enlarged.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if `count` is not in 1 to [`MAX_GROUPS`] or a group is not below it.
-    pub fn new(own: Vec<u8>, count: usize) -> Result<Self> {
-        if !(1..=MAX_GROUPS).contains(&count) {
-            return Err(Error::Invalid(format!("{count} groups; give 1 to {MAX_GROUPS}")));
+    /// Of the colour of every place of a tree.
+    fn of_colors(tree: &Tree, color: &[u32], groups: usize) -> Self {
+        let mut own = vec![0; color.len()];
+        for (&surfel, &color) in tree.surfel.iter().zip(color) {
+            own[surfel as usize] = color as u8;
         }
-        if let Some(i) = own.iter().position(|group| usize::from(*group) >= count) {
-            let what = format!("surfel {i}: group {}, of {count} groups", own[i]);
-            return Err(Error::Invalid(format!("{what}; give one below {count}")));
-        }
-        Ok(Self { own, added: Vec::new(), scale: vec![1.0; count] })
+        Self { own, added: Vec::new(), scale: vec![1.0; groups] }
     }
 
     /// How many groups there are: 1 to [`MAX_GROUPS`].
@@ -110,6 +120,103 @@ impl Groups {
     pub fn scale(&self) -> &[f32] {
         &self.scale
     }
+}
+
+/// What [`group`] found: a row of Table 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Report {
+    /// Surfels of the scene.
+    pub surfels: u64,
+    /// c.
+    pub overlap: f32,
+    /// K.
+    pub groups: usize,
+    /// Edges of the graph.
+    pub edges: u64,
+    /// The most edges at one surfel.
+    pub max_degree: u32,
+    /// Edges at a surfel, on the average.
+    pub average_degree: f64,
+}
+
+/// Divides surfels into groups by the rules, see the module.
+///
+/// # Errors
+/// [`Error::Invalid`] as [`Rules::check`]; if there would be more than [`MAX_GROUPS`]; if more than
+/// 64 pairs a surfel, and a million, overlap.
+pub fn group(
+    surfels: &Surfels,
+    rules: &Rules,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<(Groups, Report)> {
+    rules.check()?;
+    progress("sorting surfels", 0, 1);
+    let tree = Tree::new(surfels, 0..surfels.len() as u32);
+    let (color, report) = color(surfels, &tree, rules, rules.overlap, exec, progress)?;
+    if report.groups > MAX_GROUPS {
+        return Err(Error::Invalid(format!(
+            "c = {} needs {} groups, and at most {MAX_GROUPS} can be: give a lower c or smaller radii",
+            rules.overlap, report.groups
+        )));
+    }
+    Ok((Groups::of_colors(&tree, &color, report.groups), report))
+}
+
+/// As [`group`], with the c of [`fitting`] that gives at most `count` groups.
+///
+/// # Errors
+/// [`Error::Invalid`] as [`Rules::check`], and if `count` is not in 1 to [`MAX_GROUPS`].
+pub fn group_into(
+    surfels: &Surfels,
+    rules: &Rules,
+    count: usize,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<(Groups, Report)> {
+    rules.check()?;
+    if !(1..=MAX_GROUPS).contains(&count) {
+        return Err(Error::Invalid(format!("{count} groups; give 1 to {MAX_GROUPS}")));
+    }
+    progress("sorting surfels", 0, 1);
+    let tree = Tree::new(surfels, 0..surfels.len() as u32);
+    let colored = |c: f32| color(surfels, &tree, rules, c, exec, progress);
+    // c = 0 has no edges, and so fits; what is above the c of the rules does not.
+    let mut best = colored(0.0)?;
+    let (mut fits, mut fails) = (0, (64.0 * rules.overlap) as u16 + 1);
+    while fails - fits > 1 {
+        let middle = u16::midpoint(fits, fails);
+        match colored(f32::from(middle) / 64.0) {
+            Ok(found) if found.1.groups <= count => (fits, best) = (middle, found),
+            _ => fails = middle,
+        }
+    }
+    let (color, report) = best;
+    Ok((Groups::of_colors(&tree, &color, report.groups), report))
+}
+
+/// The colour of every place, by the rules with another c.
+fn color(
+    surfels: &Surfels,
+    tree: &Tree,
+    rules: &Rules,
+    overlap: f32,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<(Vec<u32>, Report)> {
+    let graph = graph::conflicts(surfels, tree, rules, overlap, exec, progress)?;
+    progress("colouring", 0, 1);
+    let color = color::largest_first(&graph, &tree.surfel);
+    let n = surfels.len();
+    let report = Report {
+        surfels: n as u64,
+        overlap,
+        groups: color.iter().fold(0, |most, &color| most.max(color)) as usize + 1,
+        edges: graph.edges(),
+        max_degree: (0..n).map(|place| graph.degree(place)).fold(0, u32::max),
+        average_degree: 2.0 * graph.edges() as f64 / n as f64,
+    };
+    Ok((color, report))
 }
 
 impl Groups {

@@ -1,0 +1,42 @@
+//! Extension (2): the radii of a group are enlarged until it covers the surface \[ZP06, section
+//! 4.2.2\].
+
+use super::clipped::{area, by_lower};
+use super::tree::Tree;
+use crate::error::Result;
+use crate::frame::Exec;
+
+/// The most that radii are multiplied by.
+pub const MAX_SCALE: f32 = 8.0;
+/// The most steps of the iteration.
+pub const MAX_STEPS: u32 = 32;
+/// The iteration ends when a step changes the scale by at most this part of it: 2^-10.
+pub const SMALL_STEP: f32 = 1.0 / 1024.0;
+
+/// What the iteration came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Enlarged {
+    pub(super) scale: f32,
+    pub(super) converged: bool,
+}
+
+/// Iterates eq. 9 for a group, `target` being A divided by pi.
+pub(super) fn enlarged(tree: &Tree, target: f64, exec: &Exec) -> Result<Enlarged> {
+    let mut scale = 1.0;
+    for _ in 0..MAX_STEPS {
+        let covered = by_lower(tree, scale, exec, &|_, _| ())?;
+        let (area, sum) = area(tree, &covered);
+        let square = scale * scale;
+        let next = ((target + square * (sum - area)) / sum).sqrt();
+        if !(next < f64::from(MAX_SCALE)) {
+            return Ok(Enlarged { scale: MAX_SCALE, converged: false });
+        }
+        let next = if next < 1.0 { 1.0 } else { next };
+        let step = (next - scale).abs();
+        scale = next;
+        if step <= f64::from(SMALL_STEP) * scale {
+            return Ok(Enlarged { scale: scale as f32, converged: true });
+        }
+    }
+    Ok(Enlarged { scale: scale as f32, converged: false })
+}

@@ -1,0 +1,183 @@
+//! The graph of section 4.1: which surfels may not share a group.
+
+use super::tree::Tree;
+use super::{Coplanar, Rules};
+use crate::error::{Error, Result};
+use crate::frame::Exec;
+use crate::scene::Surfels;
+use glam::Vec3;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Blocks of one parallel job, and jobs between two reports of progress.
+const JOB: usize = 128;
+const BATCH: usize = 128;
+
+/// How many pairs of near surfels are looked at, at most.
+///
+/// Colours and average degree are much the same in practice (Table 1 of the paper), so that twice as
+/// many neighbours on the average as there can be groups is more than any good scene needs. The
+/// bound is for memory and time where a million surfels stand at one place.
+#[derive(Debug)]
+pub(super) struct Budget {
+    surfels: usize,
+    factor: f64,
+    /// Ordered pairs: each pair counts twice.
+    spent: AtomicU64,
+}
+
+impl Budget {
+    /// For so many surfels, near by this factor.
+    pub(super) fn new(surfels: usize, factor: f64) -> Self {
+        Self { surfels, factor, spent: AtomicU64::new(0) }
+    }
+
+    /// Takes from the budget. Whether there is an error in the end does not depend on who asks when.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if more is spent than there is.
+    pub(super) fn spend(&self, pairs: u64) -> Result<()> {
+        let most = 64 * self.surfels as u64 + (1 << 20);
+        let before = self.spent.fetch_add(pairs, Ordering::Relaxed);
+        if before.saturating_add(pairs) <= 2 * most {
+            return Ok(());
+        }
+        Err(Error::Invalid(format!(
+            "more than {most} pairs of {} surfels overlap at c = {}, over 64 a surfel: give a lower \
+             c or smaller radii",
+            self.surfels, self.factor
+        )))
+    }
+}
+
+/// The neighbours of every place of a tree, as one array.
+#[derive(Debug, Default)]
+pub(super) struct Graph {
+    /// Where the neighbours of each place start, and last how many there are in all.
+    start: Vec<usize>,
+    neighbour: Vec<u32>,
+}
+
+impl Graph {
+    /// Of the pairs of places that are [near](Tree::near) and are kept.
+    pub(super) fn new(
+        tree: &Tree,
+        factor: f64,
+        keep: impl Fn(usize, usize) -> bool + Sync,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Self> {
+        let n = tree.surfel.len();
+        let budget = Budget::new(n, factor);
+        let job = |blocks: std::ops::Range<usize>| {
+            let first = tree.places(blocks.start).start;
+            let mut degree = vec![0_u32; tree.places(blocks.end - 1).end - first];
+            let mut neighbour = Vec::new();
+            for block in blocks {
+                let mut seen = 0;
+                tree.near(block, factor, |i, j| {
+                    seen += 1;
+                    if keep(i, j) {
+                        degree[i - first] += 1;
+                        neighbour.push(j as u32);
+                    }
+                    true
+                });
+                budget.spend(seen)?;
+            }
+            Ok((degree, neighbour))
+        };
+        let mut graph = Self { start: Vec::with_capacity(n + 1), neighbour: Vec::new() };
+        graph.start.push(0);
+        let ranges: Vec<_> = ranges(tree.blocks(), JOB).collect();
+        for batch in ranges.chunks(BATCH) {
+            progress("finding overlaps", graph.start.len() as u64 - 1, n as u64);
+            for part in exec.ordered(batch.to_vec(), job) {
+                let (degrees, neighbours) = part?;
+                for degree in degrees {
+                    graph.start.push(graph.start[graph.start.len() - 1] + degree as usize);
+                }
+                graph.neighbour.extend(neighbours);
+            }
+        }
+        progress("finding overlaps", n as u64, n as u64);
+        Ok(graph)
+    }
+
+    /// The neighbours of a place, ascending.
+    #[inline]
+    pub(super) fn of(&self, place: usize) -> &[u32] {
+        &self.neighbour[self.start[place]..self.start[place + 1]]
+    }
+
+    pub(super) fn degree(&self, place: usize) -> u32 {
+        (self.start[place + 1] - self.start[place]) as u32
+    }
+
+    /// How many edges there are, each counted once.
+    pub(super) fn edges(&self) -> u64 {
+        self.neighbour.len() as u64 / 2
+    }
+}
+
+/// 0..n in ranges of a length.
+pub(super) fn ranges(n: usize, length: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
+    (0..n).step_by(length).map(move |start| start..n.min(start + length))
+}
+
+/// The graph of some rules, at their c or another.
+pub(super) fn conflicts(
+    surfels: &Surfels,
+    tree: &Tree,
+    rules: &Rules,
+    overlap: f32,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<Graph> {
+    let keep = |i: usize, j: usize| {
+        let [i, j] = [i, j].map(|place| tree.surfel[place] as usize);
+        !relaxed(surfels, rules, i, j)
+    };
+    let all = |_, _| true;
+    if rules.opposite || rules.coplanar.is_some() {
+        Graph::new(tree, overlap.into(), keep, exec, progress)
+    } else {
+        Graph::new(tree, overlap.into(), all, exec, progress)
+    }
+}
+
+/// Whether modification 1 or 2 takes the edge of two surfels away.
+pub(super) fn relaxed(surfels: &Surfels, rules: &Rules, i: usize, j: usize) -> bool {
+    let cosine = dot(surfels.normal()[i], surfels.normal()[j]);
+    if rules.opposite && cosine < 0.0 {
+        return true;
+    }
+    rules.coplanar.is_some_and(|rule| {
+        cosine >= f64::from(rule.cosine)
+            && within_planes(surfels, &rule, i, j)
+            && of_one_color(surfels, &rule, i, j)
+    })
+}
+
+fn within_planes(surfels: &Surfels, rule: &Coplanar, i: usize, j: usize) -> bool {
+    let [p, q] = [i, j].map(|i| surfels.position()[i].as_dvec3());
+    let d = p - q;
+    let radius = super::tree::radii(surfels);
+    let most = f64::from(rule.offset) * (radius(i as u32) + radius(j as u32));
+    [i, j].into_iter().all(|i| {
+        let n = surfels.normal()[i].as_dvec3();
+        ((d.x * n.x + d.y * n.y) + d.z * n.z).abs() <= most
+    })
+}
+
+fn of_one_color(surfels: &Surfels, rule: &Coplanar, i: usize, j: usize) -> bool {
+    surfels.color().is_none_or(|color| {
+        let [a, b] = [i, j].map(|i| color[i].as_dvec3().to_array());
+        a.into_iter().zip(b).all(|(a, b)| (a - b).abs() <= f64::from(rule.color))
+    })
+}
+
+/// `(x x' + y y') + z z'` in f64.
+fn dot(a: Vec3, b: Vec3) -> f64 {
+    let (a, b) = (a.as_dvec3(), b.as_dvec3());
+    (a.x * b.x + a.y * b.y) + a.z * b.z
+}
