@@ -116,7 +116,8 @@ fn own_center_wins<R: Real>(range: &Range, part: f64, ratios: [f32; 2]) -> TestC
     let bins = DepthBins::<R>::new(range);
     let t = at::<R>(range, part);
     let bin = bins.bin(t);
-    let (a, b) = if ratios[0] < ratios[1] { (ratios[0], ratios[1]) } else { (ratios[1], ratios[0]) };
+    let (a, b) =
+        if ratios[0] < ratios[1] { (ratios[0], ratios[1]) } else { (ratios[1], ratios[0]) };
     let [near, far] = [a, b].map(|ratio| bins.voronoi(t, R::from_f32(ratio)));
     prop_assert!(bin <= near && near <= far && far < bin + R::ONE);
     prop_assert_eq!(bins.voronoi(t, R::ZERO), bin);
@@ -223,9 +224,12 @@ fn bins_of_epsilon_have_bounds() {
     assert_eq!(count(1.0, 2.0, 1.0).expect("one"), 1);
     assert_eq!(count(1.0, 2.0, f32::INFINITY).expect("at least one"), 1);
     assert_eq!(count(0.0, 65_535.0, 1.0).expect("the most"), MAX_BINS);
-    for (low, high, epsilon) in
-        [(0.0, 65_536.0, 1.0), (0.0, f32::next_up(65_535.0), 1.0), (1.0, 2.0, 0.0), (1.0, 2.0, 1e-6)]
-    {
+    for (low, high, epsilon) in [
+        (0.0, 65_536.0, 1.0),
+        (0.0, f32::next_up(65_535.0), 1.0),
+        (1.0, 2.0, 0.0),
+        (1.0, 2.0, 1e-6),
+    ] {
         let error = count(low, high, epsilon).expect_err("too many").to_string();
         assert!(error.contains("65535") && error.contains(&epsilon.to_string()), "{error}");
         assert_eq!(error.lines().count(), 1, "{error}");

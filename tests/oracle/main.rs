@@ -27,6 +27,7 @@ mod over_laws;
 mod pixel;
 mod scenes;
 mod single_pass;
+mod single_pass_identity;
 mod single_pass_stages;
 mod stages;
 mod tolerance;

@@ -10,7 +10,8 @@ use splatref::number::Real;
 type Layer = [(f32, f32); 4];
 
 fn layer() -> impl Strategy<Value = Layer> {
-    let alpha = prop_oneof![4 => 0.0_f32..1.0, 1 => Just(0.0_f32), 1 => Just(1.0_f32), 1 => 1e-7_f32..1e-5];
+    let alpha =
+        prop_oneof![4 => 0.0_f32..1.0, 1 => Just(0.0_f32), 1 => Just(1.0_f32), 1 => 1e-7_f32..1e-5];
     // Opacities stay at most 1 when they are filled.
     let fine = || -1.0_f32..0.0;
     (alpha, prop::array::uniform3(0.0_f32..2.0), [fine(), fine(), fine(), fine()]).prop_map(
@@ -67,7 +68,11 @@ fn ends<R: Real>(layers: &[Layer], top: &Layer) -> TestCaseResult {
 }
 
 /// Whatever is below, an opaque layer makes its own colour of it: what is nearer decides alone.
-fn nothing_shines_through<R: Real>(layers: &[Layer], others: &[Layer], wall: &Layer) -> TestCaseResult {
+fn nothing_shines_through<R: Real>(
+    layers: &[Layer],
+    others: &[Layer],
+    wall: &Layer,
+) -> TestCaseResult {
     let mut wall = *wall;
     wall[0] = (1.0, 0.0);
     let before = |far: &[Layer]| blend::<R>(&[far, &[wall], others].concat());
