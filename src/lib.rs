@@ -11,7 +11,7 @@
 //!    generic over [`number::Real`]. `f32` is the executable specification: the bits that a GPU gets
 //!    from the same IEEE operations in the same order. `f64` is the truth of the same problem: every
 //!    input and every constant is an `f32`.
-//! 2. **What may change the picture, how may not.** [`method::ewa::Settings`] says what is computed.
+//! 2. **What may change the picture, how may not.** [`method::Method`] says what is computed.
 //!    [`frame::Exec`] (threads, tile size) says how, and cannot change one bit.
 //! 3. **Every pass can be seen.** Each stage leaves named planes that can be kept, written to one EXR
 //!    file, compared, and explained pixel by pixel.
@@ -44,11 +44,15 @@
 //!
 //! ```text
 //!   io::ply ─▶ Cloud ─▶ scene::derive ─▶ Surfels ──▶ splat::project ─▶ Splat ─▶ frame::Bins
-//!                       Shape::surfels ──┘                                        │
-//!                                                                           tiles │
-//!   io::exr ◀─ Frame ◀─ shade::phong ◀─ normalization ◀─ attributes ◀─ visibility ┘
-//!      │                                └──────────── method::ewa ──────────────┘
-//!      └─▶ verify::compare
+//!                       Shape::surfels ──┘ │                                      │
+//!   before any view:  scene::group ◀───────┤                                tiles │
+//!                     scene::order ◀───────┘                                      ▼
+//!   method::ewa            visibility ─▶ attributes ─▶ normalization ────────────┐
+//!   method::single_pass    depth-images of groups ─▶ compositing ────────────────┤
+//!   method::transparent    (nearest layer,) blended groups ─▶ average ───────────┤
+//!   method::peeling        layer after layer ────────────────────────────────────┤
+//!                                                                                ▼
+//!   verify::compare ◀─ io::exr ◀─ Frame ◀─ scene::environment ◀─ shade::{phong, optics}
 //! ```
 //!
 //! # Glossary
@@ -67,6 +71,12 @@
 //! | attribute pass | adds weighted attributes of the visible fragments |
 //! | epsilon-z | the test that a fragment lies within epsilon of the nearest: t <= `t_min` + epsilon |
 //! | normalization | sums divided by the sum of weights |
+//! | group | surfels that share one depth-image, because they do not overlap, or little |
+//! | depth-image | what the splats of one group leave: one fragment a pixel |
+//! | depth bin | a step of low-precision depth; fragments of one bin are one layer |
+//! | Voronoi-enhanced depth | depth bin, then distance from the splat's own centre |
+//! | layer | one of the surfaces that a ray passes through |
+//! | opacity | alpha, the part of the light from behind that a surfel blocks |
 //! | plane | one quantity for every pixel |
 //! | tile, bin | a square of pixels that one thread owns; the list of its splats |
 //! | margin | how far a decision was from flipping, in units of the last place |
@@ -77,6 +87,10 @@
 //! Zwicker, Räsänen, Botsch, Dachsbacher, Pauly: Perspective Accurate Splatting, Graphics Interface
 //! 2004. \[BHZK05\] Botsch, Hornung, Zwicker, Kobbelt: High-Quality Surface Splatting on Today's GPUs,
 //! PBG 2005. \[ZP06\] Zhang, Pajarola: Single-Pass Point Rendering and Transparent Shading, PBG 2006.
+//! \[TCH05\] Talton, Carr, Hart: Voronoi Rasterization of Sparse Point Sets, PBG 2005. \[Lei79\] Leighton:
+//! A Graph Coloring Algorithm for Large Scheduling Problems, J. Res. NBS 84, 1979. \[Sam89\] Samet: The
+//! Design and Analysis of Spatial Data Structures, 1989. \[Eve02\] Everitt: Interactive Order-Independent
+//! Transparency, 2002. \[Mam89\] Mammen: Transparency and Antialiasing Algorithms, IEEE CG&A 9(4), 1989.
 //! \[WBSS04\] Wang, Bovik, Sheikh, Simoncelli: Image Quality Assessment, IEEE TIP 2004. In the pages of
 //! the modules, `Decided:` marks what a source leaves open, `Departs:` where this crate differs.
 //!
