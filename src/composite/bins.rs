@@ -17,11 +17,13 @@
 //! Laws, for numbers t >= 0 as depths are:
 //!
 //! - `bin` never falls as t grows: no rounding turns two layers around.
-//! - Depths that differ by at least (1 + 2^-5) `(d_max - d_min) / n` are in different bins, and then z
-//!   decides as the depth does, whatever the ratios. (In exact arithmetic 1/n is enough; `f32` with
-//!   the most bins rounds away up to 2^-5 of one.)
+//! - Depths in [`d_min`, `d_max`] that differ by at least (1 + 2^-5) `(d_max - d_min) / n` are in
+//!   different bins, and then z decides as the depth does, whatever the ratios. (In exact arithmetic
+//!   1/n is enough; `f32` with the most bins rounds away up to 2^-5 of one.) Depths beyond an end
+//!   are all in its bin.
 //! - Within a bin z never falls as the ratio grows: the fragment nearest to its own centre wins. Two
-//!   ratios that differ by less than the spacing of `f32` at the bin, at most 2^-8, may tie.
+//!   ratios that differ by no more than the spacing of `f32` at the bin, at most 2^-8, may tie; all
+//!   from 255/256 on do.
 
 use crate::error::{Error, Result};
 use crate::number::Real;

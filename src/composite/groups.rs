@@ -17,7 +17,8 @@
 //! - Relabelling the groups changes nothing but the order of the sums.
 //! - Taking one fragment out of an image into an image of its own changes nothing but the order of
 //!   the sums: what counts is the set of fragments. (Splitting a group can show a fragment that the
-//!   depth test of the whole group hid: that is the depth test's doing, not this operator's.)
+//!   depth test of the whole group hid, and, if that is the Voronoi one, hide another by a nearer
+//!   depth: that is the depth test's doing, not this operator's.)
 //! - It is **not** associative: folding it over pairs is another function. With epsilon = 1 and
 //!   depths 0, 0.75, 1.5, all three together keep the first two; `(1 with 2) with 0` keeps all three
 //!   if the pair is represented by its nearest depth, 0.75 - the pair was blended before the nearest

@@ -235,3 +235,25 @@ fn bins_of_epsilon_have_bounds() {
         assert_eq!(error.lines().count(), 1, "{error}");
     }
 }
+
+/// Why the law of separation needs its 2^-5: the widest bin that a search over ranges has found.
+#[test]
+fn in_f32_a_bin_can_be_wider_than_its_part_of_the_range() {
+    let [nearest, farthest, near, far] =
+        [0x3e87_b789, 0x3f4f_8766, 0x3f44_e3c8, 0x3f44_e455].map(f32::from_bits);
+    let range = Range { nearest, farthest, count: MAX_BINS };
+    let bins = DepthBins::<f32>::new(&range);
+    assert_eq!((bins.bin(near), bins.bin(far)), (60_543.0, 60_543.0));
+    let apart = (f64::from(far) - f64::from(near)) / (f64::from(farthest) - f64::from(nearest));
+    let apart = apart * f64::from(MAX_BINS);
+    assert!(apart > 1.009 && apart < 1.0 + 1.0 / 32.0, "{apart} bins");
+}
+
+/// Ratios that differ by the spacing itself can tie, where both lie half-way between numbers.
+#[test]
+fn ratios_half_way_between_numbers_tie() {
+    let range = Range { nearest: 0.0, farthest: 65_535.0, count: MAX_BINS };
+    let z = |ratio: f32| DepthBins::<f32>::new(&range).voronoi(32_768.0, ratio);
+    assert_eq!(z(1.5 / 256.0), z(2.5 / 256.0));
+    assert!(z(1.5 / 256.0) < z(f32::next_up(2.5 / 256.0)));
+}

@@ -1,10 +1,13 @@
 //! A third number: f64 that counts its operations. Every formula of the crate runs on it.
 
+use crate::bits::digest;
 use crate::scenes::{Case, Kind, OUTLINES};
+use crate::single_pass_stages::groups;
 use glam::Vec3;
 use splatref::composite::{epsilon, sum};
 use splatref::frame::{Exec, Samples};
 use splatref::method::ewa::{self, Settings};
+use splatref::method::single_pass::{self, BinCount, DepthTest};
 use splatref::number::{Real, Vector3};
 use splatref::scene::Light;
 use splatref::splat::project::Disc;
@@ -219,4 +222,20 @@ fn every_formula_runs_on_a_third_number_with_the_bits_of_the_second() {
             assert!(same, "{outline:?}: plane '{}'", a.name);
         }
     }
+}
+
+#[test]
+fn the_single_pass_runs_on_a_third_number_with_the_bits_of_the_second() {
+    let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    let case = scene(Outline::RayCast, false);
+    let depth = DepthTest::Voronoi(BinCount::Count(100));
+    let settings = single_pass::Settings { splats: case.settings, depth };
+    let own = (0..case.scene.surfels.len()).map(|i| (i % 5) as u8).collect();
+    let (groups, exec, camera) = (groups(own, 5), Exec::sequential(), &case.camera);
+    let wide = single_pass::render::<f64>(&case.scene, &groups, camera, &settings, &exec, true);
+    let (counted, ops) = count(|| {
+        single_pass::render::<Counted>(&case.scene, &groups, camera, &settings, &exec, true)
+    });
+    assert!(ops.iter().all(|n| *n > 100), "{ops:?}");
+    assert!(digest(&counted.expect("renders").frame) == digest(&wide.expect("renders").frame));
 }

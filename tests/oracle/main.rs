@@ -2,13 +2,17 @@
 //!
 //! - [`eye`], [`naive`], [`pixel`]: a renderer in f64 without tiles, bins or bounds, that shares no
 //!   formula with the crate; [`scenes`]: what it renders.
-//! - [`tolerance`]: the one table of how far the crate may be from it, and why.
+//! - [`tolerance`]: the tables of how far the crate may be from it, and why.
 //! - [`stages`]: every stage of every path against the oracle.
+//! - [`single_pass`], [`single_pass_stages`]: the same for the single-pass method;
+//!   [`single_pass_identity`]: where it is the 2+1-pass method, and why not elsewhere;
+//!   [`single_pass_laws`]: what groups may change in a picture; [`depth_range`]: its range of depth.
 //! - [`known`]: pictures whose numbers are known in closed form.
 //! - [`bounds`]: no pixel outside a splat's bounds is inside the splat.
 //! - [`counter`]: a third number runs every formula and counts its operations.
 //! - [`bits`]: fast and plain, threads and tiles, to the last bit.
-//! - [`laws`]: what compositing must keep.
+//! - [`laws`]: what compositing must keep; [`groups_laws`], [`bins_laws`], [`over_laws`]: the laws of
+//!   the operator over depth-images, of depth bins and of alpha-blending.
 #![expect(
     clippy::disallowed_methods,
     reason = "std's functions, so that the oracle shares no code with the crate; its bits are free"

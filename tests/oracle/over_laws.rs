@@ -34,9 +34,9 @@ fn bits<R: Real>(blend: &Blend<R>) -> [u64; 4] {
     [r, g, b, blend.alpha].map(|v| v.to_f64().to_bits())
 }
 
-/// Back to front, m layers: alpha = 1 - prod (1 - alpha_i), colour = sum of alpha_i c_i times the
-/// product of 1 - alpha_j of the nearer ones. A layer costs four roundings of numbers that are no
-/// larger than the result's bound, the closed form's own are those of f64.
+/// Back to front, m layers: opacity is 1 - the product of all 1 - alpha, colour the sum of alpha c
+/// times the product of 1 - alpha of the nearer ones. A layer costs four roundings of numbers that
+/// are no larger than the result's bound, the closed form's own are those of f64.
 fn closed_form<R: Real>(layers: &[Layer]) -> TestCaseResult {
     let found = blend::<R>(layers);
     let (mut through, mut color, mut largest) = (1.0_f64, [0.0_f64; 3], 1.0_f64);

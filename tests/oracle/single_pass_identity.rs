@@ -24,7 +24,7 @@ const ULP: f64 = f64::EPSILON;
 /// The paper's kernel: distance in the splat's plane, nothing else.
 const PAPER: Kernel = Kernel { outline: Outline::RayCast, cutoff: 2.0, low_pass: 0.0 };
 
-/// Greedy colouring with |p_i - p_j| >= r_i + r_j in a group.
+/// Greedy colouring with `|p_i - p_j| >= r_i + r_j` in a group.
 fn colored(surfels: &Surfels) -> Vec<u8> {
     let mut own: Vec<u8> = Vec::new();
     for (i, p) in surfels.position().iter().enumerate() {

@@ -11,9 +11,11 @@ use splatref::method::single_pass::{self, BinCount, DepthTest, Settings};
 use splatref::number::Real;
 use splatref::scene::group::Groups;
 
-/// The planes of a depth-image: the end of the name, the row of the table that holds for all groups,
-/// and what the plane holds where the image is empty.
-const PLANES: [(&str, &str, f64); 5] = [
+/// A plane of a depth-image: the end of its name, the row of the table that holds for all groups,
+/// and what it holds where the image is empty.
+type Kind = (&'static str, &'static str, f64);
+
+const PLANES: [Kind; 5] = [
     (".Z", "group.Z", f64::INFINITY),
     (".weight", "group.weight", 0.0),
     (".normal", "group.normal", 0.0),
@@ -24,7 +26,7 @@ const PLANES: [(&str, &str, f64); 5] = [
 /// A depth-image: its surfels, and those of [`PLANES`] that are there.
 struct Layer<'a, R> {
     id: &'a Samples<R>,
-    planes: Vec<(&'a Samples<R>, (&'static str, &'static str, f64))>,
+    planes: Vec<(&'a Samples<R>, Kind)>,
 }
 
 impl<'a, R: Real> Layer<'a, R> {

@@ -1,6 +1,7 @@
 //! Single-pass point rendering: deferred blending over groups \[ZP06, Algorithm 1\].
 //!
-//! The passes of \[ZP06, Fig. 7\], for surfels whose [`Groups`] are known:
+//! The passes of \[ZP06, Fig. 7\], for surfels whose [`Groups`] are known, each in its own group and
+//! at its own radius (what an extension added or enlarged is for transparency alone):
 //!
 //! 1. **Projection.** Each surfel becomes a [`Splat`], as in [`super::ewa`].
 //! 2. **Geometry pass.** Each group k has a depth-image `I_k`. Each fragment of its surfels that is
