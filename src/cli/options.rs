@@ -171,7 +171,10 @@ impl SceneOptions {
         replace(&mut file.groups.count, self.groups);
         replace(&mut file.groups.extension, self.extend);
         let method = &mut file.method;
-        replace(&mut method.name, self.method);
+        if let Some(name) = self.method {
+            // What the file says of its own method does not hold for another.
+            *method = method.of_method(name);
+        }
         replace(&mut method.voronoi, self.depth);
         replace(&mut method.bins, self.bins);
         replace(&mut method.holes, self.holes);
@@ -188,6 +191,11 @@ impl SceneOptions {
         replace(&mut method.low_pass, self.low_pass);
         replace(&mut method.epsilon, self.epsilon);
         replace(&mut method.cull, self.cull);
+        let grouped = self.overlap.is_some() || self.groups.is_some() || self.extend.is_some();
+        if grouped && !file.method.method()?.needs_groups() {
+            let what = "--overlap, --groups and --extend are for methods that draw groups; give a --method";
+            return Err(Error::Usage(what.into()));
+        }
         file.output.number = self.number.unwrap_or(file.output.number);
         Ok(file)
     }

@@ -14,14 +14,22 @@
     reason = "std's functions, so that the oracle shares no code with the crate; its bits are free"
 )]
 
+mod bins_laws;
 mod bits;
 mod bounds;
 mod counter;
+mod depth_range;
 mod eye;
+mod groups_laws;
 mod known;
 mod laws;
 mod naive;
+mod over_laws;
 mod pixel;
 mod scenes;
+mod single_pass;
+mod single_pass_identity;
+mod single_pass_laws;
+mod single_pass_stages;
 mod stages;
 mod tolerance;

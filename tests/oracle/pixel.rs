@@ -23,15 +23,18 @@ pub(crate) struct Pixel {
     pub(crate) entries: Vec<Entry>,
 }
 
+/// A fragment, and whose it is.
+pub(crate) type Seen<'a> = (&'a Splat, Fragment);
+
 /// A scene before a camera.
 pub(crate) struct Oracle<'a> {
     scene: &'a Scene,
-    optics: Optics,
-    epsilon: f64,
+    pub(crate) optics: Optics,
+    pub(crate) epsilon: f64,
     splats: Vec<Splat>,
     /// Step of the inputs, and how many conditions count as rounding.
-    step: f64,
-    guard: f64,
+    pub(crate) step: f64,
+    pub(crate) guard: f64,
 }
 
 impl<'a> Oracle<'a> {
@@ -56,66 +59,115 @@ impl<'a> Oracle<'a> {
         (!doubt).then_some(self.splats.len() as u64)
     }
 
+    /// The fragments at a point of the picture, of splats in ascending surfel index.
+    pub(crate) fn fragments(&self, [x, y]: [f64; 2]) -> Vec<Seen<'_>> {
+        let drawn = self.splats.iter().filter(|s| !s.outside || s.doubtful);
+        drawn.filter_map(|s| s.fragment(&self.optics, x, y).map(|f| (s, f))).collect()
+    }
+
+    /// k^2: a fragment is inside if q <= this.
+    pub(crate) fn limit(&self) -> f64 {
+        self.optics.k * self.optics.k
+    }
+
+    /// The rounding error of q.
+    pub(crate) fn margin(&self, f: &Fragment) -> f64 {
+        self.guard * (f.spread.q + self.step * self.limit())
+    }
+
+    /// Whether it is in doubt that the fragment is drawn and inside, or that it is not.
+    pub(crate) fn unsure(&self, (s, f): &Seen<'_>) -> bool {
+        s.doubtful || (f.value.q - self.limit()).abs() <= self.margin(f)
+    }
+
+    /// The rounding error of a depth.
+    pub(crate) fn slack(&self, f: &Fragment) -> f64 {
+        self.guard * (f.spread.t + self.step * f.value.t.abs())
+    }
+
+    /// The rounding error that epsilon adds to a comparison with one that is epsilon away.
+    fn band(&self) -> f64 {
+        if self.epsilon.is_finite() { 2.0 * self.guard * self.step * self.epsilon } else { 0.0 }
+    }
+
     /// The pixel at a column and row.
     pub(crate) fn pixel(&self, x: u32, y: u32) -> Pixel {
-        let (px, py) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
-        let all: Vec<(&Splat, Fragment)> = self
-            .splats
-            .iter()
-            .filter(|s| !s.outside || s.doubtful)
-            .filter_map(|s| s.fragment(&self.optics, px, py).map(|f| (s, f)))
-            .collect();
-        let limit = self.optics.k * self.optics.k;
-        let unsure = |s: &Splat, f: &Fragment| {
-            let margin = self.guard * (f.spread.q + self.step * limit);
-            s.doubtful || (f.value.q - limit).abs() <= margin
-        };
-        let inside: Vec<_> = all.iter().filter(|(_, f)| f.value.q <= limit).collect();
+        let at = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+        let all = self.fragments(at);
+        let limit = self.limit();
+        let inside: Vec<_> = all.iter().filter(|(_, f)| f.value.q <= limit).copied().collect();
+        let (first, first_slack) = self.first(&inside);
+        let reach = first + self.epsilon + first_slack + self.band();
+        let mut ambiguous = all.iter().any(|seen| {
+            let near_limit = seen.1.value.q - limit <= self.margin(&seen.1);
+            near_limit && self.unsure(seen) && seen.1.value.t - self.slack(&seen.1) <= reach
+        });
+        ambiguous |= self.grazes(&inside);
+        let nearest = self.nearest(&inside);
+        let seen = self.seen(&inside);
+        let entries = self.entries(at, &inside, &seen);
+        Pixel { ambiguous, nearest, count: seen.len(), entries }
+    }
+
+    /// The least depth, and its rounding error.
+    fn first(&self, inside: &[Seen<'_>]) -> (f64, f64) {
         let first = inside.iter().map(|(_, f)| f.value.t).fold(f64::INFINITY, f64::min);
-        let slack = |f: &Fragment| {
-            self.guard * (f.spread.t + self.step * (f.value.t.abs() + self.epsilon.min(1e30)))
-        };
-        let first_slack = inside
-            .iter()
-            .filter(|(_, f)| f.value.t == first)
-            .map(|(_, f)| slack(f))
-            .fold(0.0, f64::max);
-        let close = |f: &Fragment, to: f64| f.value.t - to <= slack(f) + first_slack;
-        let mut ambiguous = all.iter().any(|(s, f)| {
-            let near_limit = f.value.q - limit <= self.guard * (f.spread.q + self.step * limit);
-            near_limit && unsure(s, f) && close(f, first + self.epsilon)
-        });
-        let nearest: Vec<u32> =
-            inside.iter().filter(|(_, f)| close(f, first)).map(|(s, _)| s.index as u32).collect();
-        ambiguous |= inside.iter().any(|(_, f)| {
+        let those = inside.iter().filter(|(_, f)| f.value.t == first);
+        (first, those.map(|(_, f)| self.slack(f)).fold(0.0, f64::max))
+    }
+
+    /// Those that pass the epsilon-z test.
+    pub(crate) fn seen<'b>(&self, inside: &[Seen<'b>]) -> Vec<Seen<'b>> {
+        let (first, _) = self.first(inside);
+        inside.iter().filter(|(_, f)| f.value.t <= first + self.epsilon).copied().collect()
+    }
+
+    /// The surfels that may be the nearest.
+    pub(crate) fn nearest(&self, inside: &[Seen<'_>]) -> Vec<u32> {
+        let (first, first_slack) = self.first(inside);
+        let close = |f: &Fragment| f.value.t - first <= self.slack(f) + first_slack;
+        inside.iter().filter(|(_, f)| close(f)).map(|(s, _)| s.index as u32).collect()
+    }
+
+    /// Whether the epsilon-z test of any fragment is within its rounding error.
+    pub(crate) fn grazes(&self, inside: &[Seen<'_>]) -> bool {
+        let (first, first_slack) = self.first(inside);
+        inside.iter().any(|(_, f)| {
             let beyond = f.value.t - (first + self.epsilon);
-            f.value.t != first && beyond.abs() <= slack(f) + first_slack
-        });
-        let seen: Vec<_> =
-            inside.iter().filter(|(_, f)| f.value.t <= first + self.epsilon).collect();
-        let depth_condition = inside
-            .iter()
-            .filter(|(_, f)| close(f, first))
-            .map(|(_, f)| f.spread.t)
-            .fold(0.0, f64::max);
+            f.value.t != first && beyond.abs() <= self.slack(f) + first_slack + self.band()
+        })
+    }
+
+    /// The values of all planes from the `seen` of the fragments `inside`.
+    pub(crate) fn entries(
+        &self,
+        at: [f64; 2],
+        inside: &[Seen<'_>],
+        seen: &[Seen<'_>],
+    ) -> Vec<Entry> {
         let mut entries = Vec::new();
-        if !seen.is_empty() {
-            self.sum(&seen, &mut entries);
-            let depth = Entry { plane: "Z", value: [first; 3], condition: [depth_condition; 3] };
-            entries.push(Entry { plane: "visibility.Z", ..depth });
-            entries.push(depth);
-            self.shade(px, py, &mut entries);
+        if seen.is_empty() {
+            return entries;
         }
+        let (first, first_slack) = self.first(inside);
+        let close = |f: &Fragment| f.value.t - first <= self.slack(f) + first_slack;
+        let spreads = inside.iter().filter(|(_, f)| close(f)).map(|(_, f)| f.spread.t);
+        let condition = [spreads.fold(0.0, f64::max); 3];
+        self.sum(seen, &mut entries);
+        let depth = Entry { plane: "Z", value: [first; 3], condition };
+        entries.push(Entry { plane: "visibility.Z", ..depth });
+        entries.push(depth);
+        self.shade(at, &mut entries);
         for entry in &mut entries {
             for i in 0..3 {
                 entry.condition[i] += self.step * entry.value[i].abs();
             }
         }
-        Pixel { ambiguous, nearest, count: seen.len(), entries }
+        entries
     }
 
     /// The sums and what normalization makes of them.
-    fn sum(&self, seen: &[&&(&Splat, Fragment)], entries: &mut Vec<Entry>) {
+    fn sum(&self, seen: &[Seen<'_>], entries: &mut Vec<Entry>) {
         let surfels = &self.scene.surfels;
         let mut weight = Entry { plane: "weight", value: [0.0; 3], condition: [0.0; 3] };
         let mut normal = Entry { plane: "attributes.normal", ..weight };
@@ -126,7 +178,7 @@ impl<'a> Oracle<'a> {
                 sum.condition[i] += (f.spread.weight + self.step * f.value.weight) * v.abs();
             }
         };
-        for (splat, f) in seen.iter().map(|pair| **pair) {
+        for (splat, f) in seen {
             let n = wide(surfels.normal()[splat.index]);
             add(&mut weight, [1.0; 3], f);
             add(&mut normal, scaled(n, if splat.back { -1.0 } else { 1.0 }), f);
@@ -156,7 +208,7 @@ impl<'a> Oracle<'a> {
     }
 
     /// Phong shading, and its change with each of its inputs.
-    fn shade(&self, x: f64, y: f64, entries: &mut Vec<Entry>) {
+    fn shade(&self, [x, y]: [f64; 2], entries: &mut Vec<Entry>) {
         let find = |plane| entries.iter().find(|e| e.plane == plane).copied();
         let (Some(normal), Some(depth)) = (find("normal"), find("Z")) else { return };
         let material = wide(self.scene.material.color);

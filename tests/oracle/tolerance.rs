@@ -46,8 +46,8 @@ const fn row(plane: &'static str, arithmetic: Arithmetic, bound: f64, reason: &'
 
 use Arithmetic::{F32, F64, F64Rounded};
 
-/// The table.
-pub(crate) const TABLE: &[Row] = &[
+/// The 2+1-pass method.
+pub(crate) const EWA: &[Row] = &[
     row("visibility.Z", F32, 4.0, "three roundings of the nearness, one reciprocal"),
     row("visibility.Z", F64, 4.0, "as in f32"),
     row("visibility.Z", F64Rounded, 1.0, "half the range of depth takes the normal for a unit"),
@@ -82,6 +82,49 @@ pub(crate) const TABLE: &[Row] = &[
     row("", F64Rounded, 0.25, "as the resolved colour"),
 ];
 
+/// Algorithm 1: `group` stands for the depth-image of any group.
+pub(crate) const SINGLE_PASS: &[Row] = &[
+    row("group.Z", F32, 4.0, "as visibility.Z: the same fragment"),
+    row("group.Z", F64, 4.0, "as in f32"),
+    row("group.Z", F64Rounded, 1.0, "as visibility.Z"),
+    row("group.weight", F32, 4.0, "as attributes.weight, of one fragment"),
+    row("group.weight", F64, 4.0, "as in f32"),
+    row("group.weight", F64Rounded, 0.5, "as attributes.weight"),
+    row("group.normal", F32, 4.0, "a product more than the weight"),
+    row("group.normal", F64, 4.0, "as in f32"),
+    row("group.normal", F64Rounded, 0.5, "as the weight"),
+    row("group", F32, 4.0, "a product more than the weight"),
+    row("group", F64, 4.0, "as in f32"),
+    row("group", F64Rounded, 0.5, "as the weight"),
+    row("group.voronoi", F32, 4.0, "the bin is exact; a root, a quotient, and the sum rounds at n"),
+    row("group.voronoi", F64, 4.0, "as in f32"),
+    row("group.voronoi", F64Rounded, 1.0, "q takes the normal for a unit"),
+    row("sums.weight", F32, 4.0, "one rounding more for each group"),
+    row("sums.weight", F64, 4.0, "as in f32"),
+    row("sums.weight", F64Rounded, 0.5, "as group.weight"),
+    row("sums.normal", F32, 4.0, "one rounding more for each group"),
+    row("sums.normal", F64, 4.0, "as in f32"),
+    row("sums.normal", F64Rounded, 0.5, "as group.weight"),
+    row("sums", F32, 4.0, "one rounding more for each group"),
+    row("sums", F64, 4.0, "as in f32"),
+    row("sums", F64Rounded, 0.5, "as group.weight"),
+    row("resolved", F32, 4.0, "errors of sum and weight partly cancel, a quotient rounds"),
+    row("resolved", F64, 4.0, "as in f32"),
+    row("resolved", F64Rounded, 0.25, "a common factor of the amplitudes cancels"),
+    row("Z", F32, 4.0, "the same numbers as group.Z"),
+    row("Z", F64, 4.0, "the same numbers as group.Z"),
+    row("Z", F64Rounded, 1.0, "the same numbers as group.Z"),
+    row("weight", F32, 4.0, "the same numbers as sums.weight"),
+    row("weight", F64, 4.0, "the same numbers as sums.weight"),
+    row("weight", F64Rounded, 0.5, "the same numbers as sums.weight"),
+    row("normal", F32, 2.0, "three components share one condition, the largest"),
+    row("normal", F64, 2.0, "as in f32"),
+    row("normal", F64Rounded, 0.25, "a common factor of the amplitudes cancels"),
+    row("", F32, 4.0, "without lights the resolved colour; else Phong's own condition is larger"),
+    row("", F64, 4.0, "as in f32"),
+    row("", F64Rounded, 0.25, "as the resolved colour"),
+];
+
 /// The worst deviation of each plane in each arithmetic so far.
 #[derive(Default)]
 pub(crate) struct Measured(pub(crate) BTreeMap<(&'static str, Arithmetic), (f64, String)>);
@@ -101,10 +144,10 @@ impl Measured {
     }
 
     /// Every complaint: a plane beyond its bound or without a row, a row too loose or unused.
-    pub(crate) fn complaints(&self) -> Vec<String> {
+    pub(crate) fn complaints(&self, table: &[Row]) -> Vec<String> {
         let mut all = Vec::new();
         for (&(plane, arithmetic), (worst, place)) in &self.0 {
-            let row = TABLE.iter().find(|r| r.plane == plane && r.arithmetic == arithmetic);
+            let row = table.iter().find(|r| r.plane == plane && r.arithmetic == arithmetic);
             let name = format!("plane '{plane}', {arithmetic:?}: worst {worst:.3} at {place}");
             match row {
                 None => all.push(format!("{name}: no row in the table")),
@@ -117,7 +160,7 @@ impl Measured {
                 Some(_) => {}
             }
         }
-        for r in TABLE {
+        for r in table {
             if !self.0.contains_key(&(r.plane, r.arithmetic)) {
                 all.push(format!("row '{}', {:?}: nothing was measured", r.plane, r.arithmetic));
             }
