@@ -29,6 +29,9 @@
 //! one more than the largest number of edges. (The paper bounds the chromatic number by the largest
 //! degree alone, which fails for complete graphs.)
 //!
+//! Low colours are filled first, so that groups are of very different size: of a randomly sampled
+//! surface in four groups (c about 0.15) the first covers all, the second a fifth, the last nothing.
+//!
 //! [`group_into`] looks for the largest c that gives at most a number of groups. `Decided:` it is
 //! bisection that defines the result, as K need not fall with c from one step to the next: of the
 //! multiples of 1/64 up to the c of the rules, c = 0 has no edge and one group, and fits; the first

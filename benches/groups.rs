@@ -1,0 +1,143 @@
+//! Table 1 of Zhang and Pajarola 2006, measured again, and what covering the surface takes.
+//!
+//! `cargo bench --bench groups` prints Markdown; an argument is a pattern that the names of models
+//! must contain, a number after it the largest count of points. Of each model there are the
+//! vertices, and the same surface sampled at random with the counts of the paper's models. Radii are
+//! those that this crate derives, which overlap more than the paper's; in the rows marked with the
+//! factor they are scaled until the average degree at c = 1 is that of the paper's model.
+
+mod common;
+
+use common::{models, resample};
+use splatref::frame::Exec;
+use splatref::scene::derive::{self, Derive};
+use splatref::scene::group::{Extension, Report, Rules, extend, group, group_into};
+use splatref::scene::{Cloud, Surfels};
+use std::time::{Duration, Instant};
+
+/// The paper's models: points, and K / max degree / average degree at each c.
+const PAPER: [(&str, usize, [&str; 4], f64); 4] = [
+    (
+        "BallJoint",
+        137_000,
+        ["17 / 31 / 18.6", "12 / 23 / 13.6", "9 / 14 / 7.1", "5 / 7 / 2.3"],
+        18.6,
+    ),
+    ("Female", 303_000, ["19 / 49 / 18.9", "15 / 32 / 13.2", "10 / 18 / 6.9", "8 / 9 / 2.3"], 18.9),
+    ("Dragon", 1_100_000, ["14 / 34 / 8.8", "12 / 29 / 6.3", "8 / 15 / 3.0", "5 / 7 / 0.8"], 8.8),
+    (
+        "David Head",
+        2_000_000,
+        ["18 / 37 / 17.2", "14 / 31 / 11.6", "11 / 24 / 9.4", "7 / 8 / 3.9"],
+        17.2,
+    ),
+];
+const OVERLAPS: [f32; 4] = [1.0, 0.8, 0.6, 0.4];
+
+fn main() {
+    // cargo passes --bench.
+    let mut words = std::env::args().skip(1).filter(|a| !a.starts_with('-'));
+    let pattern = words.next().unwrap_or_default();
+    let most = words.next().and_then(|word| word.parse().ok()).unwrap_or(usize::MAX);
+    let exec = Exec::new(0, 32).expect("threads");
+    println!("K / most / average degree at each c; {} threads\n", exec.threads());
+    println!(
+        "| model | points | radii | c = 1.0 | c = 0.8 | c = 0.6 | c = 0.4 | time at c = 1 | all four |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for (name, points, cells, _) in PAPER {
+        println!("| {name} (the paper) | {points} | | {} | | |", cells.join(" | "));
+    }
+    let models = models(&pattern);
+    for (name, cloud) in &models {
+        rows(name, &surfels(cloud.clone(), &exec), 17.5, &exec);
+        for (_, count, _, degree) in PAPER.iter().filter(|paper| paper.1 <= most) {
+            rows(name, &surfels(resample(cloud, *count, 1), &exec), *degree, &exec);
+        }
+    }
+    println!("\nAdded so that K groups cover the surface, scaled radii\n");
+    println!("| model | points | K | c | most | added | coverage before | after | time |");
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for (name, cloud) in &models {
+        let (_, count, _, degree) = PAPER[if most < PAPER[2].1 { 0 } else { 2 }];
+        let (scene, _) = scaled(&surfels(resample(cloud, count, 1), &exec), degree, &exec);
+        for most in [0.25, 0.5, 0.75] {
+            covering(name, &scene, most, &exec);
+        }
+    }
+}
+
+fn surfels(cloud: Cloud, exec: &Exec) -> Surfels {
+    derive::surfels(cloud, &Derive::default(), exec, &|_, _, _| ()).expect("a model").0
+}
+
+/// One row with the derived radii, one with those of the paper's degree.
+fn rows(name: &str, surfels: &Surfels, degree: f64, exec: &Exec) {
+    row(name, surfels, "derived", exec);
+    let (scaled, factor) = scaled(surfels, degree, exec);
+    row(name, &scaled, &format!("{factor:.3}"), exec);
+}
+
+fn row(name: &str, surfels: &Surfels, radii: &str, exec: &Exec) {
+    let mut cells = Vec::new();
+    let mut times = Vec::new();
+    for overlap in OVERLAPS {
+        let start = Instant::now();
+        let found = divide(surfels, overlap, exec);
+        times.push(start.elapsed());
+        cells.push(found.map_or_else(
+            || "over 64".into(),
+            |r| format!("{} / {} / {:.1}", r.groups, r.max_degree, r.average_degree),
+        ));
+    }
+    let all: Duration = times.iter().sum();
+    let [first, all] = [times[0], all].map(|time| format!("{:.2} s", time.as_secs_f64()));
+    let cells = cells.join(" | ");
+    println!("| {name} | {} | {radii} | {cells} | {first} | {all} |", surfels.len());
+}
+
+fn divide(surfels: &Surfels, overlap: f32, exec: &Exec) -> Option<Report> {
+    let rules = Rules { overlap, ..Rules::default() };
+    group(surfels, &rules, exec, &|_, _, _| ()).ok().map(|found| found.1)
+}
+
+/// Radii times a factor, which is found in three steps as the degree is that of an area.
+fn scaled(surfels: &Surfels, degree: f64, exec: &Exec) -> (Surfels, f64) {
+    // The degree of a graph with few enough edges to be made.
+    let mut factor = 0.5;
+    for _ in 0..3 {
+        let found = divide(&times(surfels, factor), 1.0, exec).expect("few groups");
+        factor *= (degree / found.average_degree).sqrt();
+    }
+    (times(surfels, factor), factor)
+}
+
+fn times(surfels: &Surfels, factor: f64) -> Surfels {
+    let mut cloud = surfels.clone().into_cloud();
+    let radii = cloud.radius.iter_mut().flatten();
+    radii.for_each(|radius| *radius = (f64::from(*radius) * factor) as f32);
+    Surfels::new(cloud).expect("surfels").0
+}
+
+fn covering(name: &str, surfels: &Surfels, most: f32, exec: &Exec) {
+    let silent = |_: &str, _, _| ();
+    let (groups, report) =
+        group_into(surfels, &Rules::default(), 4, exec, &silent).expect("four groups");
+    let start = Instant::now();
+    let extension = Extension::Add { most };
+    let (_, extended) = extend(surfels, &groups, &extension, exec, &silent).expect("coverage");
+    let percents = |of: fn(&splatref::scene::group::Coverage) -> f64| {
+        let parts = extended.groups.iter().map(|g| format!("{:.0} %", 100.0 * of(g)));
+        parts.collect::<Vec<_>>().join(", ")
+    };
+    println!(
+        "| {name} | {} | {} | {} | {most} | {:.0} % | {} | {} | {:.1} s |",
+        surfels.len(),
+        report.groups,
+        report.overlap,
+        extended.percent,
+        percents(|g| g.before),
+        percents(|g| g.after),
+        start.elapsed().as_secs_f64()
+    );
+}
