@@ -4,6 +4,7 @@
 //! - [`single_pass`]: one geometry pass into the depth-images of groups, then compositing \[ZP06\].
 
 pub mod ewa;
+mod fast;
 mod picture;
 mod prepare;
 pub mod single_pass;
