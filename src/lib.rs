@@ -93,6 +93,7 @@
 //!     surfels: shape.surfels(5_000, 0)?,
 //!     lights: vec![Light::Headlight { towards: glam::Vec3::Z, color: glam::Vec3::ONE }],
 //!     material: Phong::default(),
+//!     environment: None,
 //! };
 //! let camera = Camera::new(64, 64, shape.default_pose(), shape.default_lens())?;
 //! let picture = ewa::render_f32(&scene, &camera, &Settings::default(), &Exec::sequential())?;

@@ -6,7 +6,7 @@ use super::{Finding, Outcome, progress, say};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
-use splatref::io::scene_file::{SceneFile, Source};
+use splatref::io::scene_file::{EnvironmentChoice, SceneFile, Source};
 use splatref::io::{ply, scene_file::Loaded};
 use splatref::scene::Light;
 use splatref::scene::derive::{self, Derive};
@@ -87,6 +87,11 @@ fn scene(path: &Path) -> Result<()> {
                 Light::Point { position, .. } => format!("point, at {position}"),
             },
         );
+    }
+    match &file.environment {
+        None => {}
+        Some(EnvironmentChoice::Sky) => line("around", "the procedural sky"),
+        Some(EnvironmentChoice::File(path)) => line("around", path.display()),
     }
     let camera = file.camera(surfels)?;
     report::camera(&camera);

@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 use splatref::frame::Exec;
-use splatref::io::scene_file::{DEFAULT_COUNT, Number, SceneFile, Source, words};
+use splatref::io::scene_file::{
+    DEFAULT_COUNT, EnvironmentChoice, Number, SceneFile, Source, words,
+};
 use splatref::method::ewa::Epsilon;
 use splatref::scene::{Lens, Shape};
 use splatref::splat::{Kernel, Outline};
@@ -72,6 +74,11 @@ pub(super) struct SceneOptions {
     )]
     ortho: Option<f64>,
 
+    /// What surrounds the scene: a latitude-longitude map, or the procedural sky
+    #[arg(long, value_name = "FILE.exr|sky", value_parser = environment,
+        help_heading = "Environment")]
+    environment: Option<EnvironmentChoice>,
+
     /// Preset of outline, cut-off and low-pass filter: default or zpvbg01
     #[arg(long, value_name = "NAME", value_parser = words::kernel, help_heading = "Method")]
     kernel: Option<Kernel>,
@@ -116,6 +123,7 @@ impl SceneOptions {
         replace(&mut camera.lens, self.fov.map(Lens::FieldOfView));
         replace(&mut camera.lens, self.focal.map(Lens::Focal));
         replace(&mut camera.lens, self.ortho.map(Lens::Orthographic));
+        replace(&mut file.environment, self.environment.clone());
         let method = &mut file.method;
         if self.kernel.is_some() {
             // A preset replaces all that the file says of the kernel.
@@ -202,6 +210,11 @@ fn switch(text: &str) -> std::result::Result<bool, String> {
         "off" => Ok(false),
         _ => Err("give on or off".into()),
     }
+}
+
+/// `sky` or a file.
+fn environment(text: &str) -> std::result::Result<EnvironmentChoice, String> {
+    Ok(words::environment(text))
 }
 
 /// `1,-2.5,3`.

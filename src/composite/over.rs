@@ -3,6 +3,7 @@
 //! Colours are accumulated over black, that is, multiplied by their opacity; whatever lies behind is
 //! blended in at the end by what the layers let through.
 
+use super::sum;
 use crate::number::Real;
 
 /// Layers that have been blended: their colour over black, and their opacity.
@@ -17,6 +18,13 @@ pub struct Blend<R> {
 impl<R: Real> Blend<R> {
     /// Nothing: black and transparent.
     pub const CLEAR: Self = Self { color: [R::ZERO; 3], alpha: R::ZERO };
+
+    /// The sum of two, as averaging needs it.
+    #[inline(always)]
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self { color: sum::plus(self.color, other.color), alpha: self.alpha + other.alpha }
+    }
 
     /// The next nearer layer, back to front: `alpha c + (1 - alpha) below`, of the colour and, with
     /// c = 1, of the opacity \[ZP06, section 3.3\].

@@ -21,6 +21,16 @@ impl Rect {
         self.x0 >= self.x1 || self.y0 >= self.y1
     }
 
+    /// How many pixels are inside.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        if self.is_empty() {
+            0
+        } else {
+            (self.x1 - self.x0) as usize * (self.y1 - self.y0) as usize
+        }
+    }
+
     /// Whether the pixel is inside.
     #[must_use]
     pub fn contains(&self, x: u32, y: u32) -> bool {

@@ -1,5 +1,6 @@
 //! Files: everything that touches the disk. Only this module, `cli` and `main` know of them.
 //!
+//! - [`environment`]: environment maps from EXR files.
 //! - [`exr`]: every plane of a frame, exactly; reading guards against lying files.
 //! - [`ply`]: point clouds and meshes, in and out.
 //! - [`png`]: an 8-bit preview.
@@ -8,6 +9,7 @@
 //! - [`scene_file`]: scenes as TOML: models, lights, camera, settings.
 //! - [`srgb`]: the transfer function between stored colours and linear light.
 
+pub mod environment;
 pub mod exr;
 pub mod ply;
 pub mod png;

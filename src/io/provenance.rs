@@ -60,7 +60,8 @@ mod tests {
         let name = "a \"b\"\n\u{e4}".to_owned();
         let surfels = shape.surfels(100, 0).unwrap();
         let lights = vec![Light::DEFAULT];
-        let scene = Scene { name: name.clone(), surfels, lights, material: Phong::default() };
+        let material = Phong::default();
+        let scene = Scene { name: name.clone(), surfels, lights, material, environment: None };
         let eye = DVec3::new(0.1, 1.0 / 3.0, 5.0);
         let pose = Pose { eye, target: DVec3::ZERO, up: DVec3::Y };
         let camera = Camera::new(61, 47, pose, Lens::FieldOfView(33.3)).unwrap();

@@ -39,7 +39,7 @@ pub(super) fn finish<R: Real>(
     planes.extend(normal.map(|p| named("normal", Samples::Vector(p))));
     planes.push(named("weight", Samples::Scalar(weight)));
     planes.push(named("id", Samples::Index(id)));
-    Picture { frame: Frame { width, height, planes }, tally, timings: clock.laps }
+    Picture { frame: Frame { width, height, planes }, tally, timings: clock.into_laps() }
 }
 
 pub(super) fn named<R>(name: &str, samples: Samples<R>) -> NamedPlane<R> {
@@ -66,6 +66,11 @@ impl Clock {
 
     pub(super) fn restart(&mut self) {
         self.start = Instant::now();
+    }
+
+    /// The stages and how long they took.
+    pub(super) fn into_laps(self) -> Vec<(&'static str, Duration)> {
+        self.laps
     }
 
     /// Ends a stage that began at the last call, or at `restart`.

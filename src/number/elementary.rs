@@ -44,6 +44,13 @@ pub fn tan(x: f64) -> f64 {
     libm::tan(x)
 }
 
+/// The angle of the point (x, y) from the x axis, in [-pi, pi] radians in f64; 0 or +-pi, with the
+/// sign of y, where y is 0.
+#[must_use]
+pub fn atan2(y: f64, x: f64) -> f64 {
+    libm::atan2(y, x)
+}
+
 /// The polynomial of degree 10 with the least greatest relative error from e^r, 2.1e-16, for
 /// |r| <= ln(2)/2: coefficients of 1, r, r^2 ... by the Remez exchange in 40 digits, rounded.
 pub const EXP: [f64; 11] = [

@@ -38,16 +38,18 @@ pub trait Real:
     fn to_f64(self) -> f64;
     /// The integer part of a number in [0, 2^22].
     fn to_pixel(self) -> u32;
+    /// The largest integer that is not greater, exactly.
+    fn floor(self) -> Self;
     /// The square root, correctly rounded.
     fn sqrt(self) -> Self;
-    /// The greatest integer that is not greater; exact.
-    fn floor(self) -> Self;
     /// The absolute value.
     fn abs(self) -> Self;
     /// e to this power, see [`elementary`].
     fn exp(self) -> Self;
     /// This number to the power of `exponent`, see [`elementary`]; `self` is not negative.
     fn pow(self, exponent: Self) -> Self;
+    /// The angle of the point (x, `self`) from the x axis, in radians, see [`elementary::atan2`].
+    fn atan2(self, x: Self) -> Self;
     /// Whether this number is neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// How many representable numbers lie between this one and `other`, 0 if they are equal.
@@ -97,12 +99,12 @@ impl Real for f32 {
         shifted.to_bits() & 0x007F_FFFF
     }
     #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.sqrt()
-    }
-    #[inline(always)]
     fn floor(self) -> Self {
         self.floor()
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
     }
     #[inline(always)]
     fn abs(self) -> Self {
@@ -115,6 +117,10 @@ impl Real for f32 {
     #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
         elementary::pow(f64::from(self), f64::from(exponent)) as Self
+    }
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        elementary::atan2(f64::from(self), f64::from(x)) as Self
     }
     #[inline(always)]
     fn is_finite(self) -> bool {
@@ -151,12 +157,12 @@ impl Real for f64 {
         self as u32
     }
     #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.sqrt()
-    }
-    #[inline(always)]
     fn floor(self) -> Self {
         self.floor()
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
     }
     #[inline(always)]
     fn abs(self) -> Self {
@@ -169,6 +175,10 @@ impl Real for f64 {
     #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
         elementary::pow(self, exponent)
+    }
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        elementary::atan2(self, x)
     }
     #[inline(always)]
     fn is_finite(self) -> bool {
@@ -221,6 +231,31 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn floor_and_angle_are_those_of_their_type() {
+        assert_eq!([-0.25_f32, -1.0, 2.75, 1e30].map(Real::floor), [-1.0, -1.0, 2.0, 1e30]);
+        assert_eq!((-0.25_f64).floor(), -1.0);
+        // Around the circle, against angles that are known.
+        let eighth = std::f64::consts::FRAC_PI_4;
+        for (i, (y, x)) in
+            [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (1.0, -1.0), (0.0, -1.0)].into_iter().enumerate()
+        {
+            assert_eq!(Real::atan2(y, x), i as f64 * eighth);
+            assert_eq!(Real::atan2(y as f32, x as f32), (i as f64 * eighth) as f32);
+            assert_eq!(Real::atan2(-y, x), -(i as f64 * eighth));
+        }
+        let mut worst = 0.0;
+        for i in 0..10_000 {
+            let angle = (crate::number::random::unit(1, i) - 0.5) * 6.25;
+            let (y, x) = (core_math::sinf(angle), core_math::cosf(angle));
+            let ulps = Real::atan2(y, x).ulps_to(core_math::atan2f(y, x));
+            if ulps > worst {
+                worst = ulps;
+            }
+        }
+        assert_eq!(worst, 0.0, "correctly rounded");
     }
 
     #[test]

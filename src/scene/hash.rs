@@ -1,6 +1,6 @@
 //! The identity of a scene: one hash over everything a picture depends on but camera and settings.
 
-use super::{Light, Phong, Scene};
+use super::{Environment, Light, Phong, Scene};
 use glam::Vec3;
 use sha2::{Digest, Sha256};
 
@@ -17,6 +17,8 @@ impl Scene {
     ///   u64 count of lights; each a byte 0 directional, 1 headlight, 2 point; then direction or
     ///     position (3 f32), colour (3 f32)
     ///   material: ambient, diffuse, specular, shininess (f32), colour (3 f32)
+    ///   environment: nothing if there is none; a byte 1 for the sky; or a byte 2, then width and
+    ///     height (u64), and the pixels (3 f32 each) row by row from the top left
     /// ```
     #[must_use]
     pub fn sha256(&self) -> String {
@@ -42,6 +44,17 @@ impl Scene {
         }
         let Phong { ambient, diffuse, specular, shininess, color } = self.material;
         hash.floats([ambient, diffuse, specular, shininess].into_iter().chain(color.to_array()));
+        match &self.environment {
+            None => {}
+            Some(Environment::Sky) => hash.0.update([1]),
+            Some(Environment::Map(map)) => {
+                let pixels = map.pixels();
+                hash.0.update([2]);
+                hash.count(pixels.width() as usize);
+                hash.count(pixels.height() as usize);
+                hash.floats(pixels.values().iter().flatten().copied());
+            }
+        }
         hash.finish()
     }
 }
@@ -71,12 +84,15 @@ impl Hasher {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::Plane;
+    use crate::scene::environment::Map;
     use crate::scene::{Cloud, Surfels};
 
     fn scene(cloud: Cloud) -> Scene {
         let lights = vec![Light::Point { position: Vec3::X, color: Vec3::ONE }];
         let surfels = Surfels::new(cloud).unwrap().0;
-        Scene { name: "a".into(), surfels, lights, material: Phong::default() }
+        let material = Phong::default();
+        Scene { name: "a".into(), surfels, lights, material, environment: None }
     }
 
     fn cloud() -> Cloud {
@@ -105,8 +121,20 @@ mod tests {
         for value in [0.125_f32, 0.75, 0.25, 32.0, 0.75, 0.75, 0.75] {
             bytes.extend(value.to_le_bytes());
         }
-        let expected: String = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
-        assert_eq!(scene(cloud()).sha256(), expected);
+        let hash = |bytes: &[u8]| -> String {
+            Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
+        };
+        assert_eq!(scene(cloud()).sha256(), hash(&bytes));
+
+        let surrounded = |environment| Scene { environment: Some(environment), ..scene(cloud()) };
+        let sky = [&bytes[..], &[1]].concat();
+        assert_eq!(surrounded(Environment::Sky).sha256(), hash(&sky));
+        bytes.push(2);
+        bytes.extend([2_u64, 1].into_iter().flat_map(u64::to_le_bytes));
+        bytes.extend([0.5_f32, 0.25, 0.0, 1.0, 2.0, 3.0].into_iter().flat_map(f32::to_le_bytes));
+        let pixels = vec![[0.5, 0.25, 0.0], [1.0, 2.0, 3.0]];
+        let map = Map::new(Plane::from_values(2, 1, pixels)).unwrap();
+        assert_eq!(surrounded(Environment::Map(map)).sha256(), hash(&bytes));
     }
 
     #[test]

@@ -4,26 +4,32 @@
 //! - [`surfels`]: the checked structure of arrays that every method takes.
 //! - [`camera`]: perspective and orthographic cameras.
 //! - [`mod@derive`]: from what a file gives to complete surfels.
+//! - [`environment`]: the light that surrounds a scene.
 //! - [`group`]: groups of surfels that do not overlap.
 //! - [`hash`]: the identity of a scene.
 //! - [`light`]: lights and the Phong material.
 //! - [`merge`]: several models as one cloud.
+//! - [`order`]: surfels from back to front, for every view.
 //! - [`procedural`]: shapes whose true picture is known.
 //! - [`transform`]: moving, turning and scaling a model.
 
 pub mod camera;
 pub mod cloud;
 pub mod derive;
+pub mod environment;
 pub mod group;
 pub mod hash;
 pub mod light;
 pub mod merge;
+pub mod order;
 pub mod procedural;
 pub mod surfels;
 pub mod transform;
+mod tree;
 
 pub use camera::{Camera, Lens, Pose, Projection};
 pub use cloud::Cloud;
+pub use environment::Environment;
 pub use light::{Light, Phong};
 pub use procedural::Shape;
 pub use surfels::{Dropped, Surfels};
@@ -42,4 +48,6 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// How the surface answers the lights.
     pub material: Phong,
+    /// What surrounds the surfels; black if absent.
+    pub environment: Option<Environment>,
 }

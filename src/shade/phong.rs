@@ -83,24 +83,44 @@ impl<R: Real> Shader<R> {
         shaded
     }
 
-    /// The colour of one pixel; see the module page.
-    fn pixel(&self, (x, y): (usize, usize), t: R, normal: Vector3<R>, surface: [R; 3]) -> [R; 3] {
+    /// The colour of one pixel at depth t, +inf if it is empty; see the module page. `surface` is s.
+    pub(crate) fn pixel(
+        &self,
+        (x, y): (usize, usize),
+        t: R,
+        normal: Vector3<R>,
+        surface: [R; 3],
+    ) -> [R; 3] {
         if !t.is_finite() {
             return [R::ZERO; 3];
-        }
-        if self.lights.is_empty() {
-            return surface;
         }
         let view = &self.view;
         let px = (R::from_f32(x as f32 + 0.5) - view.cx) / view.fx;
         let py = -((R::from_f32(y as f32 + 0.5) - view.cy) / view.fy);
-        let (p, v) = if view.perspective {
-            let p = Vector3::new(px * t, py * t, -t);
-            (p, (-p).normalized())
+        let p = if view.perspective {
+            Vector3::new(px * t, py * t, -t)
         } else {
-            (Vector3::new(px, py, -t), Vector3::new(R::ZERO, R::ZERO, R::ONE))
+            Vector3::new(px, py, -t)
         };
-        let n = view.direction(normal);
+        self.lit(p, view.direction(normal), surface)
+    }
+
+    /// The colour of a surfel, shaded once at its centre: p is its position, n its normal, turned
+    /// towards the side that is seen, both in world space.
+    pub(crate) fn surfel(&self, p: Vector3<R>, n: Vector3<R>, surface: [R; 3]) -> [R; 3] {
+        self.lit(self.view.point(p), self.view.direction(n), surface)
+    }
+
+    /// The colour of a point p with normal n, both in view space.
+    fn lit(&self, p: Vector3<R>, n: Vector3<R>, surface: [R; 3]) -> [R; 3] {
+        if self.lights.is_empty() {
+            return surface;
+        }
+        let v = if self.view.perspective {
+            (-p).normalized()
+        } else {
+            Vector3::new(R::ZERO, R::ZERO, R::ONE)
+        };
         let [ambient, diffuse, specular, shininess] = [
             self.material.ambient,
             self.material.diffuse,

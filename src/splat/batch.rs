@@ -25,7 +25,7 @@ pub struct Tally {
 impl Tally {
     /// Counts one surfel.
     #[inline(always)]
-    fn count(&mut self, fate: Fate) {
+    pub(crate) fn count(&mut self, fate: Fate) {
         match fate {
             Fate::Visible => self.visible += 1,
             Fate::Behind => self.behind += 1,

@@ -53,6 +53,7 @@ fn pictures_that_cannot_be_are_refused() {
         (&["--epsilon", "nan"], "epsilon"),
         (&["--cutoff", "9"], "cut-off of 9"),
         (&["--low-pass", "-1"], "low-pass"),
+        (&["--environment", "none.exr"], "none.exr"),
     ] {
         let line = fails(at.path(), &small(more), 1);
         assert!(line.contains(what), "{line}");

@@ -101,6 +101,9 @@ impl Real for Counted {
     fn to_pixel(self) -> u32 {
         Real::to_pixel(self.0)
     }
+    fn floor(self) -> Self {
+        Self(self.0.floor())
+    }
     fn sqrt(self) -> Self {
         tick(Op::Sqrt, self.0.sqrt())
     }
@@ -112,6 +115,9 @@ impl Real for Counted {
     }
     fn pow(self, exponent: Self) -> Self {
         tick(Op::Pow, Real::pow(self.0, exponent.0))
+    }
+    fn atan2(self, x: Self) -> Self {
+        Self(Real::atan2(self.0, x.0))
     }
     fn is_finite(self) -> bool {
         self.0.is_finite()

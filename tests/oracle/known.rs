@@ -21,7 +21,13 @@ fn scene(discs: &[(Vec3, Vec3)], radius: f32, color: Option<Vec3>) -> Scene {
         triangles: Vec::new(),
     };
     let surfels = Surfels::new(cloud).expect("good discs").0;
-    Scene { name: String::new(), surfels, lights: Vec::new(), material: Phong::default() }
+    Scene {
+        name: String::new(),
+        surfels,
+        lights: Vec::new(),
+        material: Phong::default(),
+        environment: None,
+    }
 }
 
 /// At the origin, looking along -z.
@@ -206,6 +212,7 @@ fn the_depth_of_a_sphere_is_within_the_sagitta_of_its_discs() {
         surfels: shape.surfels(2000, 1).expect("surfels"),
         lights: Vec::new(),
         material: Phong::default(),
+        environment: None,
     };
     let radius = f64::from(scene.surfels.radius()[0]);
     for lens in [shape.default_lens(), Lens::Orthographic(2.25)] {

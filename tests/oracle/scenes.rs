@@ -230,7 +230,7 @@ impl Case {
         }
         let name = format!("{kind:?} seed {seed} orthographic {orthographic} {settings:?}");
         let (lights, material) = (lights(&mut dice), Phong::default());
-        let scene = Scene { name: String::new(), surfels, lights, material };
+        let scene = Scene { name: String::new(), surfels, lights, material, environment: None };
         Self { name, scene, camera, settings, exact: kind.exact() }
     }
 }

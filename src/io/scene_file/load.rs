@@ -1,12 +1,12 @@
 //! From a [`SceneFile`] to surfels.
 
-use super::{Model, SceneFile, Source, stem};
+use super::{EnvironmentChoice, Model, SceneFile, Source, stem};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::io::ply;
+use crate::io::{environment, ply};
 use crate::scene::derive::{self, Derive, Derived};
 use crate::scene::merge::merge;
-use crate::scene::{Cloud, Dropped, Scene, Surfels};
+use crate::scene::{Cloud, Dropped, Environment, Scene, Surfels};
 
 /// A scene and how it came about.
 #[derive(Clone, Debug)]
@@ -31,14 +31,20 @@ pub struct ModelReport {
 }
 
 impl SceneFile {
-    /// Reads the model files, derives what they do not give, and joins the models in order.
+    /// Reads the model files, derives what they do not give, and joins the models in order; reads
+    /// the environment.
     ///
     /// `progress` as in [`derive::surfels`].
     ///
     /// # Errors
-    /// Those of [`ply::read`], [`derive::surfels`] and [`crate::scene::Shape::surfels`], the file
+    /// Those of [`environment::read`], [`ply::read`], [`derive::surfels`] and [`crate::scene::Shape::surfels`], the file
     /// named; [`Error::Invalid`] if no surfel is left or there are too many.
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
+        let environment = match &self.environment {
+            None => None,
+            Some(EnvironmentChoice::Sky) => Some(Environment::Sky),
+            Some(EnvironmentChoice::File(path)) => Some(environment::read(path)?),
+        };
         let mut models = Vec::new();
         let mut clouds = Vec::new();
         for model in &self.models {
@@ -55,7 +61,7 @@ impl SceneFile {
             dropped.attribute += one.attribute;
         }
         let (name, lights) = (self.name.clone(), self.lights.clone());
-        let scene = Scene { name, surfels, lights, material: self.material };
+        let scene = Scene { name, surfels, lights, material: self.material, environment };
         Ok(Loaded { scene, models, dropped })
     }
 }

@@ -50,6 +50,8 @@ pub struct SceneFile {
     pub lights: Vec<Light>,
     /// How surfaces answer the lights.
     pub material: Phong,
+    /// What surrounds the scene; black if absent.
+    pub environment: Option<EnvironmentChoice>,
     /// What is computed.
     pub method: MethodChoice,
     /// What is kept.
@@ -101,6 +103,15 @@ pub struct CameraChoice {
     pub up: Option<DVec3>,
     /// The opening.
     pub lens: Option<Lens>,
+}
+
+/// An environment as it was chosen; nothing is read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum EnvironmentChoice {
+    /// [`crate::scene::Environment::Sky`].
+    Sky,
+    /// A latitude-longitude map, see [`crate::io::environment::read`].
+    File(PathBuf),
 }
 
 /// Settings as far as they were chosen.
@@ -172,6 +183,7 @@ impl SceneFile {
             camera: CameraChoice::default(),
             lights: vec![Light::DEFAULT],
             material: Phong::default(),
+            environment: None,
             method: MethodChoice::default(),
             output: Output::default(),
         }

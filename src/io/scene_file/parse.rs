@@ -4,8 +4,8 @@
 //! fails is reported by serde at the table's place in the text.
 
 use super::{
-    CameraChoice, DEFAULT_COUNT, MethodChoice, Model, Number, Output, SceneFile, Source, stem,
-    words,
+    CameraChoice, DEFAULT_COUNT, EnvironmentChoice, MethodChoice, Model, Number, Output, SceneFile,
+    Source, stem, words,
 };
 use crate::error::{Error, Result};
 use crate::method::ewa::Epsilon;
@@ -29,12 +29,17 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
         let what = "there is no [[model]]: name a file or a shape";
         return Err(Error::format(path, what));
     }
+    // Joining keeps a path that is absolute.
+    let beside = |other: &Path| path.parent().unwrap_or(Path::new("")).join(other);
     let mut models = file.model;
     for model in &mut models {
         if let Source::File { path: model, .. } = &mut model.source {
-            // Joining keeps a path that is absolute.
-            *model = path.parent().unwrap_or(Path::new("")).join(&*model);
+            *model = beside(model);
         }
+    }
+    let mut environment = file.environment;
+    if let Some(EnvironmentChoice::File(map)) = &mut environment {
+        *map = beside(map);
     }
     Ok(SceneFile {
         name: stem(path),
@@ -42,6 +47,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
         camera: file.camera,
         lights: file.light.unwrap_or_else(|| vec![Light::DEFAULT]),
         material: file.material,
+        environment,
         method: file.method,
         output: file.output,
     })
@@ -57,6 +63,7 @@ struct File {
     light: Option<Vec<Light>>,
     #[serde(default)]
     material: Phong,
+    environment: Option<EnvironmentChoice>,
     #[serde(default)]
     method: MethodChoice,
     #[serde(default)]
@@ -80,6 +87,7 @@ through! {
     CameraChoice: RawCamera, RawCamera::choice;
     Light: RawLight, RawLight::light;
     Phong: RawMaterial, RawMaterial::material;
+    EnvironmentChoice: RawEnvironment, RawEnvironment::choice;
     MethodChoice: RawMethod, RawMethod::choice;
     Output: RawOutput, RawOutput::output;
 }
@@ -297,6 +305,23 @@ impl RawMaterial {
             color: self.color.map_or(default.color, Vec3::from_array),
         };
         material.check().map(|()| material).map_err(|error| error.to_string())
+    }
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawEnvironment {
+    file: Option<PathBuf>,
+    sky: Option<bool>,
+}
+
+impl RawEnvironment {
+    fn choice(self) -> std::result::Result<EnvironmentChoice, String> {
+        match (self.file, self.sky) {
+            (Some(path), None) => Ok(EnvironmentChoice::File(path)),
+            (None, Some(true)) => Ok(EnvironmentChoice::Sky),
+            _ => Err("environment: give either a `file` or `sky = true`".into()),
+        }
     }
 }
 

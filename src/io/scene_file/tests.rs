@@ -1,6 +1,8 @@
 use super::*;
-use crate::frame::Exec;
+use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples};
+use crate::io::exr;
 use crate::scene::derive::Origin;
+use crate::scene::environment::{Environment, Map};
 use proptest::prelude::*;
 use std::fs;
 
@@ -50,6 +52,8 @@ fn the_example_says_what_it_says() {
         Light::Point { position: Vec3::splat(4.0), color: Vec3::ONE },
     ];
     assert_eq!(file.lights, lights);
+    let map = Path::new("a").join("sky.exr");
+    assert_eq!(file.environment, Some(EnvironmentChoice::File(map)));
     let kernel = Kernel { outline: Outline::Perspective, cutoff: 2.0, low_pass: 0.25 };
     let settings = Settings { kernel, epsilon: Epsilon::MedianRadii(1.5), cull: false };
     assert_eq!(file.method.settings(), settings);
@@ -97,6 +101,10 @@ fn errors_name_the_file_the_line_and_the_key() {
         ("[[light]]\nkind = \"point\"\ntowards = [0, 0, 1]\n", "towards"),
         ("[[light]]\nkind = \"headlight\"\ntowards = [0, 0, 0]\n", "towards"),
         ("[material]\ndiffuse = 2\n", "diffuse 2"),
+        ("[environment]\n", "either a `file` or `sky = true`"),
+        ("[environment]\nsky = false\n", "either a `file` or `sky = true`"),
+        ("[environment]\nsky = true\nfile = \"a.exr\"\n", "either a `file` or `sky = true`"),
+        ("[environment]\nmap = \"a.exr\"\n", "map"),
         ("[method]\nname = \"magic\"\n", "magic"),
         ("[method]\noutline = \"round\"\n", "affine, perspective, raycast"),
         ("[method]\nepsilon = \"1.5 radii\"\n", "1.5 radii"),
@@ -176,6 +184,30 @@ fn models_are_joined_in_their_order() {
     assert_eq!((derived.normals, derived.radii), (Origin::Neighbours, Origin::Neighbours));
     // The radii of the file's own derivation, twice as large.
     assert!(surfels.radius()[50..].iter().all(|&r| r > 1.9 && r < 3.0), "{:?}", surfels.radius());
+}
+
+#[test]
+fn an_environment_is_the_sky_or_a_file() {
+    let file = |text: &str| parse(&format!("{SHAPE}{text}"));
+    assert_eq!(load(&file("")).scene.environment, None);
+    let sky = file("[environment]\nsky = true\n");
+    assert_eq!(load(&sky).scene.environment, Some(Environment::Sky));
+    assert_eq!(words::environment("sky"), EnvironmentChoice::Sky);
+    assert_eq!(words::environment("b/sky.exr"), EnvironmentChoice::File("b/sky.exr".into()));
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, format!("{SHAPE}[environment]\nfile = \"a.exr\"\n")).unwrap();
+    let named = SceneFile::read(&path).unwrap();
+    let error = named.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err().to_string();
+    let map = folder.path().join("a.exr");
+    assert!(error.starts_with(&map.display().to_string()) && !error.contains('\n'), "{error}");
+
+    let pixels = Plane::from_values(2, 1, vec![[1.0_f32, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    let plane = NamedPlane { name: String::new(), samples: Samples::Color(pixels.clone()) };
+    exr::write(&map, &Frame { width: 2, height: 1, planes: vec![plane] }, "").unwrap();
+    let pixels = Map::new(pixels).unwrap();
+    assert_eq!(load(&named).scene.environment, Some(Environment::Map(pixels)));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::method::ewa::Epsilon;
 use crate::splat::{Kernel, Outline};
 
-use super::Number;
+use super::{EnvironmentChoice, Number};
 
 /// Something that a word stands for, or a line that says which words there are.
 type Found<T> = Result<T, String>;
@@ -54,6 +54,15 @@ pub fn of_number(number: Number) -> &'static str {
     match number {
         Number::F32 => "f32",
         Number::F64 => "f64",
+    }
+}
+
+/// `sky`, or else the name of a file.
+#[must_use]
+pub fn environment(text: &str) -> EnvironmentChoice {
+    match text {
+        "sky" => EnvironmentChoice::Sky,
+        file => EnvironmentChoice::File(file.into()),
     }
 }
 

@@ -50,6 +50,7 @@ pub mod fast;
 mod picture;
 pub mod plain;
 
+pub(super) use picture::image_planes;
 pub use picture::{render, render_f32};
 
 use super::ewa;

@@ -49,7 +49,7 @@ pub fn render<R: Real>(
     if stages {
         let (images, composites): (Vec<_>, Vec<_>) = kept.into_iter().flatten().unzip();
         let voronoi = settings.depth != super::DepthTest::Plain;
-        planes.extend(image_planes(&geometry, &images, (wanted.color, voronoi)));
+        planes.extend(image_planes("", &geometry, &images, (wanted.color, voronoi)));
         planes.extend(sum_planes(geometry.grid(), &composites, wanted.color));
         planes.extend(target.stencil.take().map(|p| named("sums.count", Samples::Count(p))));
         planes.extend(target.color.clone().map(|p| named("resolved", Samples::Color(p))));
@@ -97,6 +97,7 @@ fn check(
 
 /// The depth-image of each group.
 pub(in crate::method) fn image_planes<R: Real>(
+    prefix: &str,
     geometry: &Geometry<'_, R>,
     images: &[Images<R>],
     (color, voronoi): (bool, bool),
@@ -107,7 +108,7 @@ pub(in crate::method) fn image_planes<R: Real>(
     for k in 0..groups {
         let kept = |tile: usize, pixel: usize| images[tile].groups[k][pixel];
         let sample = |tile: usize, pixel: usize| geometry.sample(&kept(tile, pixel));
-        let name = |plane: &str| format!("group{k:02}{plane}");
+        let name = |plane: &str| format!("{prefix}group{k:02}{plane}");
         let scalar =
             |value: &dyn Fn(usize, usize) -> R| Samples::Scalar(grid.assemble(R::ZERO, value));
         let triple = |value: &dyn Fn(usize, usize) -> [R; 3]| grid.assemble([R::ZERO; 3], value);

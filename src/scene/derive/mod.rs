@@ -125,7 +125,7 @@ fn missing_normals(
     if !cloud.triangles.is_empty() {
         return Ok((faces::normals(points, &cloud.triangles), Origin::Triangles));
     }
-    let places = places.get_or_init(|| Places::new(points, progress));
+    let places = places.get_or_init(|| Places::new(points, exec, progress));
     Ok((places.normals(exec, progress)?, Origin::Neighbours))
 }
 
@@ -150,7 +150,7 @@ fn missing_radii(
     if !cloud.triangles.is_empty() {
         return Ok((faces::radii(points, &cloud.triangles), Origin::Triangles));
     }
-    let places = places.get_or_init(|| Places::new(points, progress));
+    let places = places.get_or_init(|| Places::new(points, exec, progress));
     Ok((places.radii(exec, progress)?, Origin::Neighbours))
 }
 

@@ -1,10 +1,10 @@
 //! The k nearest neighbours of every point, exactly and in a fixed order.
 //!
-//! An implicit k-d tree: the points are permuted so that the middle of each range splits it along
-//! its widest axis. Unlike a grid it does not care how unevenly the points are spread, and its
-//! depth is the logarithm of their number whatever they are.
+//! By the k-d tree of [`crate::scene::tree`]: unlike a grid it does not care how unevenly the points
+//! are spread.
 
 use crate::frame::Exec;
+use crate::scene::tree::{Entry, Tree};
 use glam::Vec3;
 
 /// Ranges up to this length are searched through: so few points cost less than a branch for each.
@@ -16,15 +16,7 @@ const JOB: usize = 1 << 8;
 /// Points ordered for the search.
 #[derive(Debug)]
 pub(super) struct Neighbours {
-    entries: Vec<Entry>,
-    /// For the middle of a range longer than [`LEAF`], the axis along which it splits it.
-    axis: Vec<u8>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Entry {
-    point: Vec3,
-    id: u32,
+    tree: Tree,
 }
 
 /// A point and how far it is.
@@ -38,11 +30,8 @@ pub(super) struct Neighbour {
 
 impl Neighbours {
     /// Of fewer than 2^32 finite points.
-    pub(super) fn new(points: &[Vec3]) -> Self {
-        let entries = points.iter().zip(0..).map(|(&point, id)| Entry { point, id });
-        let mut tree = Self { entries: entries.collect(), axis: vec![0; points.len()] };
-        split(&mut tree.entries, &mut tree.axis);
-        tree
+    pub(super) fn new(points: &[Vec3], exec: &Exec) -> Self {
+        Self { tree: Tree::new(points, LEAF, exec) }
     }
 
     /// `f(id, neighbours)` for every point, in the order of the ids.
@@ -57,19 +46,20 @@ impl Neighbours {
         progress: &dyn Fn(u64, u64),
         f: impl Fn(u32, &[Neighbour]) -> T + Sync + Send,
     ) -> Vec<T> {
-        let mut results = vec![T::default(); self.entries.len()];
+        let all = self.tree.entries();
+        let mut results = vec![T::default(); all.len()];
         let job = |entries: &[Entry]| -> Vec<T> {
             let mut nearest = Nearest { k, found: Vec::with_capacity(k + 1) };
             let each = entries.iter().map(|entry| {
                 nearest.found.clear();
-                self.search(0..self.entries.len(), entry, [0.0; 3], &mut nearest);
+                self.search(0..all.len(), entry, [0.0; 3], &mut nearest);
                 f(entry.id, &nearest.found)
             });
             each.collect()
         };
         let mut done = 0;
-        for batch in self.entries.chunks(BATCH) {
-            progress(done, self.entries.len() as u64);
+        for batch in all.chunks(BATCH) {
+            progress(done, all.len() as u64);
             let jobs = exec.ordered(batch.chunks(JOB).collect(), job);
             for (entry, result) in batch.iter().zip(jobs.into_iter().flatten()) {
                 results[entry.id as usize] = result;
@@ -91,13 +81,13 @@ impl Neighbours {
         offset: [f64; 3],
         nearest: &mut Nearest,
     ) {
+        let entries = self.tree.entries();
         if range.len() <= LEAF {
-            self.entries[range].iter().for_each(|entry| nearest.offer(query, entry));
+            entries[range].iter().for_each(|entry| nearest.offer(query, entry));
             return;
         }
-        let middle = range.start + range.len() / 2;
-        let axis = usize::from(self.axis[middle]);
-        let entry = &self.entries[middle];
+        let (middle, axis) = self.tree.node(&range);
+        let entry = &entries[middle];
         let beyond = f64::from(query.point[axis]) - f64::from(entry.point[axis]);
         let (low, high) = (range.start..middle, middle + 1..range.end);
         let (near, far) = if beyond < 0.0 { (low, high) } else { (high, low) };
@@ -110,34 +100,6 @@ impl Neighbours {
             self.search(far, query, offset, nearest);
         }
     }
-}
-
-/// Puts the median of a range into its middle, lower ones before and higher ones after it.
-fn split(entries: &mut [Entry], axes: &mut [u8]) {
-    if entries.len() <= LEAF {
-        return;
-    }
-    let (mut low, mut high) = (entries[0].point, entries[0].point);
-    for entry in entries.iter() {
-        low = low.min(entry.point);
-        high = high.max(entry.point);
-    }
-    let extent = high.as_dvec3() - low.as_dvec3();
-    let mut axis = 0;
-    for other in 1..3 {
-        if extent[other] > extent[axis] {
-            axis = other;
-        }
-    }
-    let middle = entries.len() / 2;
-    entries.select_nth_unstable_by(middle, |a, b| {
-        a.point[axis].total_cmp(&b.point[axis]).then(a.id.cmp(&b.id))
-    });
-    axes[middle] = axis as u8;
-    let ((low, high), (low_axes, high_axes)) =
-        (entries.split_at_mut(middle), axes.split_at_mut(middle));
-    split(low, low_axes);
-    split(&mut high[1..], &mut high_axes[1..]);
 }
 
 fn length2([x, y, z]: [f64; 3]) -> f64 {
@@ -178,6 +140,7 @@ impl Nearest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::tree::given::points;
     use proptest::prelude::*;
 
     /// All others by (distance, index), by the definition.
@@ -193,29 +156,10 @@ mod tests {
         all
     }
 
-    fn coordinate() -> impl Strategy<Value = f32> {
-        prop_oneof![
-            4 => (-3_i8..=3).prop_map(f32::from),
-            4 => -1.0_f32..1.0,
-            1 => prop::sample::select(vec![-0.0, f32::MIN_POSITIVE, 1e-45, -1e-40]),
-            1 => prop::sample::select(vec![f32::MAX, -f32::MAX, 1e30, 3e38, 16_777_216.0]),
-            2 => (0_u32..4).prop_map(|ulps| f32::from_bits(1.0_f32.to_bits() + ulps)),
-        ]
-    }
-
-    fn points() -> impl Strategy<Value = Vec<Vec3>> {
-        let point = prop_oneof![
-            6 => [coordinate(), coordinate(), coordinate()].prop_map(Vec3::from_array),
-            2 => coordinate().prop_map(|t| Vec3::new(t, 2.0, -1.0)),
-            1 => Just(Vec3::ONE),
-        ];
-        prop::collection::vec(point, 1..120)
-    }
-
     proptest! {
         #[test]
         fn the_tree_finds_what_brute_force_finds(points in points(), k in 1_usize..20) {
-            let tree = Neighbours::new(&points);
+            let tree = Neighbours::new(&points, &Exec::sequential());
             // The closure may not return a Vec, so it compares in place.
             let same = tree.map(&Exec::sequential(), k, &|_, _| (), |id, found| {
                 let found: Vec<_> = found.iter().map(|n| (n.distance2, n.id)).collect();
@@ -231,9 +175,12 @@ mod tests {
         let grid = |i: usize| Vec3::new((i % 311) as f32, (i / 311) as f32, 0.0) * 1e-6;
         let mut points: Vec<Vec3> = (0..100_000).map(grid).collect();
         points.push(Vec3::splat(1e30));
-        let nearest =
-            Neighbours::new(&points)
-                .map(&Exec::sequential(), 3, &|_, _| (), |_, found| found[0].id);
+        let nearest = Neighbours::new(&points, &Exec::sequential()).map(
+            &Exec::sequential(),
+            3,
+            &|_, _| (),
+            |_, found| found[0].id,
+        );
         assert_eq!(nearest[0], 1);
         assert_eq!(nearest[100_000], 0, "all are equally far: the lowest wins");
     }

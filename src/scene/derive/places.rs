@@ -16,10 +16,10 @@ pub(super) struct Places {
 
 impl Places {
     /// Of fewer than 2^32 finite points.
-    pub(super) fn new(points: &[Vec3], progress: &dyn Fn(&str, u64, u64)) -> Self {
+    pub(super) fn new(points: &[Vec3], exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Self {
         progress("ordering points", 0, points.len() as u64);
         let distinct = Distinct::new(points);
-        let neighbours = Neighbours::new(&distinct.place);
+        let neighbours = Neighbours::new(&distinct.place, exec);
         Self { distinct, neighbours }
     }
 

@@ -96,3 +96,44 @@ impl Groups {
         &self.scale
     }
 }
+
+impl Groups {
+    /// Groups that somebody else has made: the group of each surfel, further ones as (surfel, group)
+    /// in any order, and the scale of each group.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there are not 1 to [`MAX_GROUPS`] scales, if one is not finite and > 0,
+    /// or if a surfel or a group does not exist.
+    pub fn new(own: Vec<u8>, added: Vec<(u32, u8)>, scale: Vec<f32>) -> Result<Self> {
+        let groups = scale.len();
+        if !(1..=MAX_GROUPS).contains(&groups) {
+            return Err(Error::Invalid(format!("{groups} groups; give 1 to {MAX_GROUPS}")));
+        }
+        if let Some(wrong) = scale.iter().find(|scale| !(**scale > 0.0 && scale.is_finite())) {
+            return Err(Error::Invalid(format!("groups: a scale of {wrong}; give a number > 0")));
+        }
+        let all = own.iter().enumerate().map(|(surfel, &group)| (surfel as u64, group));
+        let further = added.iter().map(|&(surfel, group)| (u64::from(surfel), group));
+        let exists = |(surfel, group): &(u64, u8)| {
+            *surfel < own.len() as u64 && usize::from(*group) < groups
+        };
+        if let Some((surfel, group)) = all.chain(further).find(|member| !exists(member)) {
+            return Err(Error::Invalid(format!(
+                "surfel {surfel} in group {group}: there are {} surfels and {groups} groups",
+                own.len()
+            )));
+        }
+        let mut added = added;
+        added.retain(|&(surfel, group)| own[surfel as usize] != group);
+        added.sort_unstable();
+        added.dedup();
+        Ok(Self { own, added, scale })
+    }
+
+    /// The groups that a surfel is in: its own, then those it was added to.
+    pub fn of(&self, surfel: u32) -> impl Iterator<Item = u8> + '_ {
+        let first = self.added.partition_point(|&(added, _)| added < surfel);
+        let added = self.added[first..].iter().take_while(move |(added, _)| *added == surfel);
+        std::iter::once(self.own[surfel as usize]).chain(added.map(|&(_, group)| group))
+    }
+}

@@ -1,0 +1,254 @@
+//! The geometry pass of Algorithm 2: every layer of every group, blended from back to front.
+
+use super::{Holes, Settings};
+use crate::composite::bins::DepthBins;
+use crate::composite::epsilon;
+use crate::composite::over::Blend;
+use crate::error::Result;
+use crate::frame::{Exec, NO_ID, Rect};
+use crate::method::ewa::plain::{facing, fragment};
+use crate::method::prepare::Prepared;
+use crate::number::{Real, Vector3};
+use crate::scene::group::Groups;
+use crate::scene::order::BackToFront;
+use crate::scene::{Camera, Scene};
+use crate::shade::phong::Shader;
+use crate::splat::{Disc, Fate, Projector, Splat, Tally, View, batch, project};
+
+/// A surfel in one of its groups, on the screen.
+#[derive(Clone, Copy, Debug)]
+struct Drawn<R> {
+    splat: Splat<R>,
+    group: u8,
+    /// Shaded at the centre.
+    color: [R; 3],
+    alpha: R,
+}
+
+/// What the image of a group holds at a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layers<R> {
+    /// The bin of the nearest fragment so far; +inf where there is none.
+    pub(super) bin: R,
+    /// All fragments that passed, blended.
+    pub(super) blend: Blend<R>,
+    /// The sum of the opacities in front of the nearest opaque fragment.
+    pub(super) opacity: R,
+    /// 1 if an opaque fragment hides what is behind, else 0.
+    pub(super) hidden: R,
+    /// How many fragments passed, up to 255.
+    pub(super) count: u8,
+    /// Depth of the fragment that passed last, the nearest; +inf where there is none.
+    pub(super) depth: R,
+    /// Its surfel.
+    pub(super) surfel: u32,
+}
+
+impl<R: Real> Layers<R> {
+    const EMPTY: Self = Self {
+        bin: R::INFINITY,
+        blend: Blend::CLEAR,
+        opacity: R::ZERO,
+        hidden: R::ZERO,
+        count: 0,
+        depth: R::INFINITY,
+        surfel: NO_ID,
+    };
+
+    /// Blends a fragment that passed the depth test.
+    fn add(&mut self, drawn: &Drawn<R>, bin: R, depth: R) {
+        let Drawn { alpha, color, .. } = *drawn;
+        let opaque = alpha >= R::ONE;
+        *self = Self {
+            bin,
+            blend: self.blend.over(alpha, color),
+            opacity: if opaque { R::ZERO } else { self.opacity + alpha },
+            hidden: if opaque { R::ONE } else { self.hidden },
+            count: self.count.saturating_add(1),
+            depth,
+            surfel: drawn.splat.surfel,
+        };
+    }
+}
+
+/// The splats of all groups, projected and sorted into tiles.
+#[derive(Debug)]
+pub(super) struct Blending<R> {
+    prepared: Prepared<R, Drawn<R>>,
+    bins: DepthBins<R>,
+    groups: usize,
+    holes: Holes,
+}
+
+impl<R: Real> Blending<R> {
+    /// Order, projection and shading.
+    pub(super) fn project(
+        scene: &Scene,
+        (groups, order): (&Groups, &BackToFront),
+        camera: &Camera,
+        settings: &Settings,
+        exec: &Exec,
+    ) -> Result<Self> {
+        let surfels = &scene.surfels;
+        let epsilon = settings.splats.epsilon.resolve(surfels);
+        let bins = DepthBins::new(&settings.bins.resolve(surfels, camera, epsilon)?);
+        let mut items = Vec::with_capacity(surfels.len() + groups.added().len());
+        for surfel in order.walk(camera) {
+            items.extend(groups.of(surfel).map(|group| (surfel, group)));
+        }
+        let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
+        let grid = exec.grid(camera.width, camera.height);
+        let prepared = Prepared::new(
+            (surfels, items.len()),
+            camera,
+            &settings.splats,
+            (exec, &grid),
+            |projector, range, drawn| {
+                let mut tally = Tally::default();
+                for &(surfel, group) in &items[range] {
+                    let scale = groups.scale()[usize::from(group)];
+                    let (splat, fate) = place(scene, surfel, scale, projector);
+                    tally.count(fate);
+                    if fate == Fate::Visible {
+                        let (color, alpha) = appearance(scene, &shader, &splat);
+                        drawn.push(Drawn { splat, group, color, alpha });
+                    }
+                }
+                tally
+            },
+            |drawn: &Drawn<R>| drawn.splat.bounds,
+        );
+        Ok(Self { prepared, bins, groups: groups.len(), holes: settings.holes })
+    }
+
+    /// What became of the surfels, each counted once in each of its groups.
+    pub(super) fn tally(&self) -> Tally {
+        self.prepared.tally
+    }
+
+    /// The geometry pass over one tile: the image of each group, row by row.
+    ///
+    /// With `mask`, the depth of the nearest layer at each pixel, fragments up to epsilon behind it
+    /// are dropped.
+    pub(super) fn images(
+        &self,
+        tile: usize,
+        rect: Rect,
+        mask: Option<&[R]>,
+    ) -> Vec<Vec<Layers<R>>> {
+        let (shared, band) = (&self.prepared.shared, self.prepared.epsilon);
+        let columns = rect.x1 - rect.x0;
+        let pixels = (columns * (rect.y1 - rect.y0)) as usize;
+        let mut images = vec![vec![Layers::EMPTY; pixels]; self.groups];
+        self.prepared.for_each(tile, |drawn| {
+            let image = &mut images[usize::from(drawn.group)];
+            let Rect { x0, y0, x1, y1 } = drawn.splat.bounds.intersection(&rect);
+            for y in y0..y1 {
+                for x in x0..x1 {
+                    let (q, nearness) = fragment(shared, &drawn.splat, x, y);
+                    let depth = shared.depth(nearness);
+                    let i = ((y - rect.y0) * columns + (x - rect.x0)) as usize;
+                    let masked = mask.is_some_and(|mask| epsilon::visible(depth, mask[i], band));
+                    if q <= shared.limit && !masked {
+                        let bin = self.bins.bin(depth);
+                        if bin < image[i].bin {
+                            image[i].add(drawn, bin, depth);
+                        }
+                    }
+                }
+            }
+        });
+        images
+    }
+
+    /// The compositing pass: the average of all groups at one pixel of their images.
+    pub(super) fn average(&self, images: &[Vec<Layers<R>>], pixel: usize) -> Average<R> {
+        let mut sum = Average::EMPTY;
+        let mut count = 0_u8;
+        for image in images {
+            let layers = &image[pixel];
+            count += u8::from(layers.count > 0 || self.holes == Holes::Background);
+            sum.add(layers);
+        }
+        // An image that is left out has added zeros.
+        if count == 0 { sum } else { sum.divided(R::from_f32(f32::from(count))) }
+    }
+}
+
+/// The groups of a pixel together.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Average<R> {
+    pub(super) blend: Blend<R>,
+    /// See [`Layers::opacity`].
+    pub(super) opacity: R,
+    /// See [`Layers::hidden`].
+    pub(super) hidden: R,
+    /// Mean count of layers.
+    pub(super) layers: R,
+    /// Least depth of any group.
+    pub(super) depth: R,
+    /// Its surfel; ties: the lower one.
+    pub(super) surfel: u32,
+}
+
+impl<R: Real> Average<R> {
+    pub(super) const EMPTY: Self = Self {
+        blend: Blend::CLEAR,
+        opacity: R::ZERO,
+        hidden: R::ZERO,
+        layers: R::ZERO,
+        depth: R::INFINITY,
+        surfel: NO_ID,
+    };
+
+    fn add(&mut self, layers: &Layers<R>) {
+        self.blend = self.blend.plus(&layers.blend);
+        self.opacity = self.opacity + layers.opacity;
+        self.hidden = self.hidden + layers.hidden;
+        self.layers = self.layers + R::from_f32(f32::from(layers.count));
+        if (layers.depth, layers.surfel) < (self.depth, self.surfel) {
+            (self.depth, self.surfel) = (layers.depth, layers.surfel);
+        }
+    }
+
+    fn divided(self, count: R) -> Self {
+        Self {
+            blend: Blend {
+                color: self.blend.color.map(|c| c / count),
+                alpha: self.blend.alpha / count,
+            },
+            opacity: self.opacity / count,
+            hidden: self.hidden / count,
+            layers: self.layers / count,
+            ..self
+        }
+    }
+}
+
+/// Projects a surfel that is enlarged.
+fn place<R: Real>(
+    scene: &Scene,
+    surfel: u32,
+    scale: f32,
+    projector: &Projector<R>,
+) -> (Splat<R>, Fate) {
+    let scale = R::from_f32(scale);
+    let disc: Disc<R> = batch::disc(&scene.surfels, surfel as usize);
+    let disc = Disc {
+        radius: disc.radius * scale,
+        tangents: disc.tangents.map(|[u, v]| [u * scale, v * scale]),
+        ..disc
+    };
+    project(projector, &disc, surfel)
+}
+
+/// The shaded colour and the opacity of a surfel.
+fn appearance<R: Real>(scene: &Scene, shader: &Shader<R>, splat: &Splat<R>) -> ([R; 3], R) {
+    let (surfels, i) = (&scene.surfels, splat.surfel as usize);
+    let color = surfels.color().map_or(scene.material.color, |colors| colors[i]);
+    let normal = surfels.normal()[i].to_array().map(R::from_f32);
+    let [x, y, z] = facing(normal, splat.back);
+    let place = Vector3::from_glam(surfels.position()[i]);
+    let color = shader.surfel(place, Vector3::new(x, y, z), color.to_array().map(R::from_f32));
+    (color, surfels.opacity().map_or(R::ONE, |opacity| R::from_f32(opacity[i])))
+}

@@ -1,0 +1,304 @@
+//! All stages in one call: from a scene to named planes.
+
+use super::Settings;
+use super::blend::{Average, Blending, Layers};
+use crate::composite::over::Blend;
+use crate::composite::sum;
+use crate::error::{Error, Result};
+use crate::frame::stencil::{Operation, Outcome};
+use crate::frame::{
+    Exec, Frame, Framebuffer, Grid, NO_ID, NamedPlane, Plane, Rect, Samples, Stencil, Wanted,
+};
+use crate::method::picture::{Clock, Picture, named};
+use crate::method::single_pass;
+use crate::method::single_pass::plain::{Composite, Geometry, store};
+use crate::number::{Real, Vector3};
+use crate::scene::group::Groups;
+use crate::scene::order::BackToFront;
+use crate::scene::{Camera, Environment, Scene};
+use crate::shade::optics::{self, Behind, Nearest};
+use crate::shade::phong::Shader;
+use crate::splat::{Tally, View};
+
+/// The stencil of pixels that the nearest layer covers: 1.
+const MASK: Stencil = Stencil { reference: 1, pass: Operation::Replace, ..Stencil::DISABLED };
+
+/// Renders by Algorithm 2 or 3 \[ZP06\], in any number.
+///
+/// The planes of the picture: `R G B` and `A`; `Z` and `id` of the nearest fragment; `layers`, the mean
+/// count of layers, and of Algorithm 3 `normal` and `weight` of the nearest layer. With `stages`:
+///
+/// | stage | planes |
+/// |---|---|
+/// | nearest layer | `nearest.groupK.*` as in [`single_pass::render`]; `nearest.R G B`: `C_F`; `nearest.A`: alpha; `nearest.mask`: the stencil |
+/// | blending | for each group k `blended.groupK.R G B`, `.A`, `.opacity` (the sum of opacities), `.bin` (+inf: empty), `.count`, `.id` |
+/// | average | `blended.R G B`, `.A`, `.opacity`, `.hidden`, `.layers`; of Algorithm 3 `l`: the layer count of eq. 11 and 12, 0 where there is no layer |
+///
+/// # Errors
+/// [`crate::Error::Invalid`] if the camera or the settings are out of range, or if the low-precision
+/// depth takes too many bins.
+///
+/// # Panics
+/// If the groups or the order are not those of the scene's surfels.
+pub fn render<R: Real>(
+    scene: &Scene,
+    (groups, order): (&Groups, &BackToFront),
+    camera: &Camera,
+    settings: &Settings,
+    exec: &Exec,
+    stages: bool,
+) -> Result<Picture<R>> {
+    camera.check()?;
+    settings.check()?;
+    if settings.refraction.is_some() && scene.environment.is_none() {
+        let what = "refraction: there is nothing to be seen through it; give an environment";
+        return Err(Error::Invalid(what.into()));
+    }
+    assert_eq!(groups.own().len(), scene.surfels.len(), "groups of other surfels");
+    let mut clock = Clock::default();
+    let mut planes = Vec::new();
+    let grid = exec.grid(camera.width, camera.height);
+    let first = match settings.nearest {
+        None => None,
+        Some(depth) => {
+            let settings = single_pass::Settings { splats: settings.splats, depth };
+            let first = First::new(scene, groups, camera, &settings, exec, stages, &mut planes)?;
+            clock.lap("nearest layer");
+            Some(first)
+        }
+    };
+    let blending = Blending::project(scene, (groups, order), camera, settings, exec)?;
+    clock.lap("order, projection");
+
+    let tail = Tail { scene, settings, view: View::new(camera), first: first.as_ref() };
+    let tiles = grid.rects().into_iter().enumerate().collect();
+    let done = exec.ordered(tiles, |(tile, rect): (usize, Rect)| {
+        let mask = first.as_ref().map(|first| first.mask(rect));
+        let images = blending.images(tile, rect, mask.as_deref());
+        let pixels: Vec<_> = (0..rect.pixels())
+            .map(|i| {
+                let average = blending.average(&images, i);
+                (average, tail.pixel((tile, i), rect, &average))
+            })
+            .collect();
+        (stages.then_some(images), pixels)
+    });
+    clock.lap("blending");
+
+    let (images, pixels): (Vec<_>, Vec<_>) = done.into_iter().unzip();
+    let images: Vec<_> = images.into_iter().flatten().collect();
+    planes.extend(image_planes(&grid, &images, groups.len()));
+    let average = |tile: usize, i: usize| -> &Average<R> { &pixels[tile][i].0 };
+    if stages {
+        planes.extend(average_planes(&grid, average));
+        planes.extend(first.as_ref().map(|first| {
+            let l = grid.assemble(R::ZERO, |tile, i| first.layers((tile, i), average(tile, i)));
+            named("l", Samples::Scalar(l))
+        }));
+    }
+    let blend = |tile: usize, i: usize| -> &Blend<R> { &pixels[tile][i].1 };
+    planes.push(color("", grid.assemble([R::ZERO; 3], |t, i| blend(t, i).color)));
+    planes.push(scalar("A", grid.assemble(R::ZERO, |t, i| blend(t, i).alpha)));
+    let tally = first.as_ref().map_or(blending.tally(), |first| first.tally);
+    let counts = grid.assemble(R::ZERO, |t, i| average(t, i).layers);
+    match first {
+        None => {
+            planes.push(scalar("Z", grid.assemble(R::ZERO, |t, i| average(t, i).depth)));
+            let ids = grid.assemble(NO_ID, |t, i| average(t, i).surfel);
+            planes.push(named("id", Samples::Index(ids)));
+            planes.push(scalar("layers", counts));
+        }
+        Some(first) => planes.extend(first.planes(&counts)),
+    }
+    let frame = Frame { width: camera.width, height: camera.height, planes };
+    Ok(Picture { frame, tally, timings: clock.into_laps() })
+}
+
+/// The nearest layer, composited and shaded: pass 1 of Algorithm 3.
+struct First<R> {
+    target: Framebuffer<R>,
+    /// Phong-shaded.
+    color: Plane<[R; 3]>,
+    /// Average opacity, by tile and pixel.
+    alpha: Vec<Vec<R>>,
+    tally: Tally,
+}
+
+impl<R: Real> First<R> {
+    fn new(
+        scene: &Scene,
+        groups: &Groups,
+        camera: &Camera,
+        settings: &single_pass::Settings,
+        exec: &Exec,
+        stages: bool,
+        planes: &mut Vec<NamedPlane<R>>,
+    ) -> Result<Self> {
+        let geometry = Geometry::<R>::project(&scene.surfels, groups, camera, settings, exec)?;
+        let wanted =
+            Wanted { normal: true, color: scene.surfels.color().is_some(), observed: stages };
+        let mut target = Framebuffer::new(camera.width, camera.height, R::INFINITY, wanted);
+        let done = geometry.each_tile(&mut target, exec, |index, mut tile| {
+            let images = geometry.images(index, tile.rect);
+            let composites = geometry.composite(&images);
+            store(&composites, &mut tile);
+            if let Some(stencil) = &mut tile.stencil {
+                let columns = (tile.rect.x1 - tile.rect.x0) as usize;
+                for (i, composite) in composites.iter().enumerate() {
+                    let outcome =
+                        if composite.count > 0 { Outcome::Pass } else { Outcome::DepthFail };
+                    stencil.row(i / columns)[i % columns] = MASK.update(0, outcome);
+                }
+            }
+            (stages.then_some(images), composites.iter().map(opacity).collect())
+        });
+        let (images, alpha): (Vec<_>, Vec<Vec<R>>) = done.into_iter().unzip();
+        let images: Vec<_> = images.into_iter().flatten().collect();
+        let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
+        let shaded = shader.shade(&target.depth, target.normal.as_ref(), target.color.take(), exec);
+        if stages {
+            let voronoi = settings.depth != single_pass::DepthTest::Plain;
+            let kinds = (wanted.color, voronoi);
+            planes.extend(single_pass::image_planes("nearest.", &geometry, &images, kinds));
+            planes.push(color("nearest", shaded.clone()));
+            let alphas = geometry.grid().assemble(R::ZERO, |tile, i| alpha[tile][i]);
+            planes.push(scalar("nearest.A", alphas));
+            planes.extend(target.stencil.take().map(|p| named("nearest.mask", Samples::Count(p))));
+        }
+        Ok(Self { target, color: shaded, alpha, tally: geometry.tally() })
+    }
+
+    /// The depths of a tile, row by row.
+    fn mask(&self, rect: Rect) -> Vec<R> {
+        let (width, depth) = (self.target.width as usize, self.target.depth.values());
+        let row = |y: u32| &depth[y as usize * width..][rect.x0 as usize..rect.x1 as usize];
+        (rect.y0..rect.y1).flat_map(row).copied().collect()
+    }
+
+    /// l of \[ZP06, section 5.2.3\]: the sum of all opacities over that of the nearest layer.
+    fn layers(&self, (tile, i): (usize, usize), others: &Average<R>) -> R {
+        let alpha = self.alpha[tile][i];
+        if alpha > R::ZERO { R::ONE + optics::layers(others.opacity, alpha) } else { R::ZERO }
+    }
+
+    /// The planes of the picture that are those of the nearest layer, and the count of layers, that
+    /// of the others and one where there is one.
+    fn planes(self, others: &Plane<R>) -> Vec<NamedPlane<R>> {
+        let Framebuffer { depth, id, weight, normal, .. } = self.target;
+        let mut layers = others.clone();
+        for (count, depth) in layers.values_mut().iter_mut().zip(depth.values()) {
+            *count = if depth.is_finite() { *count + R::ONE } else { *count };
+        }
+        let mut planes = vec![scalar("Z", depth)];
+        planes.extend(normal.map(|p| named("normal", Samples::Vector(p))));
+        planes.push(scalar("weight", weight));
+        planes.push(named("id", Samples::Index(id)));
+        planes.push(scalar("layers", layers));
+        planes
+    }
+}
+
+/// The average opacity of the nearest layer.
+fn opacity<R: Real>(composite: &Composite<R>) -> R {
+    let sums = &composite.sums;
+    let [alpha, ..] = sum::average([sums.opacity, R::ZERO, R::ZERO], sums.weight);
+    // The quotient of two sums may exceed 1 by their rounding.
+    alpha.at_most(R::ONE)
+}
+
+/// The last step: what the layers of a pixel make together, and what is behind them.
+struct Tail<'a, R> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    view: View<R>,
+    first: Option<&'a First<R>>,
+}
+
+impl<R: Real> Tail<'_, R> {
+    /// The colour and the opacity of pixel `i` of a tile.
+    fn pixel(&self, (tile, i): (usize, usize), rect: Rect, others: &Average<R>) -> Blend<R> {
+        let columns = (rect.x1 - rect.x0) as usize;
+        let (x, y) = (rect.x0 + (i % columns) as u32, rect.y0 + (i / columns) as u32);
+        let environment = self.scene.environment.as_ref();
+        let blend = match self.first {
+            None => others.blend,
+            Some(first) if !first.target.depth.at(x, y).is_finite() => others.blend,
+            Some(first) => {
+                let alpha = first.alpha[tile][i];
+                let near = *first.color.at(x, y);
+                match (&self.settings.refraction, environment) {
+                    (Some(refraction), Some(environment)) => {
+                        let normal = first.target.normal.as_ref().map(|plane| *plane.at(x, y));
+                        let [nx, ny, nz] = normal.unwrap_or([R::ZERO; 3]);
+                        let normal = Vector3::new(nx, ny, nz);
+                        let nearest = Nearest { color: near, opacity: alpha, normal };
+                        let Average { blend, opacity, hidden, .. } = *others;
+                        let behind = Behind { color: blend.color, opacity, hidden };
+                        let view = -self.view.ray(x, y).normalized();
+                        let color = optics::shade(environment, refraction, view, &nearest, &behind);
+                        return Blend { color, alpha: R::ONE };
+                    }
+                    _ => others.blend.over(alpha, near),
+                }
+            }
+        };
+        match environment {
+            None => blend,
+            Some(environment) => before(blend, environment, self.view.ray(x, y)),
+        }
+    }
+}
+
+/// Layers before an environment: colour + (1 - A) env, of opacity 1.
+fn before<R: Real>(blend: Blend<R>, environment: &Environment, ray: Vector3<R>) -> Blend<R> {
+    let through = R::ONE - blend.alpha;
+    let behind = environment.radiance(ray).map(|c| through * c);
+    Blend { color: sum::plus(blend.color, behind), alpha: R::ONE }
+}
+
+/// The image of each group.
+fn image_planes<R: Real>(
+    grid: &Grid,
+    images: &[Vec<Vec<Layers<R>>>],
+    groups: usize,
+) -> Vec<NamedPlane<R>> {
+    let groups = if images.is_empty() { 0 } else { groups };
+    let of = |k: usize| {
+        let at = |tile: usize, i: usize| &images[tile][k][i];
+        let name = |plane: &str| format!("blended.group{k:02}{plane}");
+        let counts = grid.assemble(0, |t, i| at(t, i).count);
+        let ids = grid.assemble(NO_ID, |t, i| at(t, i).surfel);
+        [
+            color(&name(""), grid.assemble([R::ZERO; 3], |t, i| at(t, i).blend.color)),
+            scalar(&name(".A"), grid.assemble(R::ZERO, |t, i| at(t, i).blend.alpha)),
+            scalar(&name(".opacity"), grid.assemble(R::ZERO, |t, i| at(t, i).opacity)),
+            scalar(&name(".bin"), grid.assemble(R::ZERO, |t, i| at(t, i).bin)),
+            named(&name(".count"), Samples::Count(counts)),
+            named(&name(".id"), Samples::Index(ids)),
+        ]
+    };
+    (0..groups).flat_map(of).collect()
+}
+
+/// The averages of the compositing pass.
+fn average_planes<'a, R: Real>(
+    grid: &Grid,
+    at: impl Fn(usize, usize) -> &'a Average<R>,
+) -> Vec<NamedPlane<R>> {
+    let of = |value: &dyn Fn(&Average<R>) -> R| grid.assemble(R::ZERO, |t, i| value(at(t, i)));
+    vec![
+        color("blended", grid.assemble([R::ZERO; 3], |t, i| at(t, i).blend.color)),
+        scalar("blended.A", of(&|average| average.blend.alpha)),
+        scalar("blended.opacity", of(&|average| average.opacity)),
+        scalar("blended.hidden", of(&|average| average.hidden)),
+        scalar("blended.layers", of(&|average| average.layers)),
+    ]
+}
+
+fn scalar<R>(name: &str, plane: Plane<R>) -> NamedPlane<R> {
+    named(name, Samples::Scalar(plane))
+}
+
+fn color<R>(name: &str, plane: Plane<[R; 3]>) -> NamedPlane<R> {
+    named(name, Samples::Color(plane))
+}

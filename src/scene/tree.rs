@@ -1,0 +1,132 @@
+//! Points split in halves, and those again: the tree behind the search of neighbours and behind the
+//! order from back to front.
+//!
+//! A node is a range of points, and it is split in the place where it lies. Its axis is the widest:
+//! that of the largest extent (largest minus smallest coordinate, in f64), of equal ones the first.
+//! Its own point is that of rank `len / 2`, counted from 0, in the order of (coordinate along the
+//! axis, index); those before it are the low half, those after it the high half. `Decided:`
+//! coordinates compare as numbers, so that -0 and +0 are a tie.
+//!
+//! So the tree is a function of the points and their indices, and its depth is the logarithm of their
+//! number whatever they are, coincident ones included.
+
+use crate::frame::Exec;
+use glam::Vec3;
+use std::cmp::Ordering;
+
+/// Ranges up to this length are split in one job.
+const JOB: usize = 1 << 13;
+
+/// The points in the order of the tree: low half, own point, high half.
+#[derive(Debug)]
+pub(super) struct Tree {
+    entries: Vec<Entry>,
+    /// For the middle of a range that was split, its axis.
+    axis: Vec<u8>,
+}
+
+/// A point and its index.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    pub(super) point: Vec3,
+    pub(super) id: u32,
+}
+
+/// A range of the tree while it is built.
+type Part<'a> = (&'a mut [Entry], &'a mut [u8]);
+
+impl Tree {
+    /// Of fewer than 2^32 finite points. Ranges of at most `leaf` points, at least 1, are not split:
+    /// their order has no meaning.
+    pub(super) fn new(points: &[Vec3], leaf: usize, exec: &Exec) -> Self {
+        let mut entries: Vec<_> =
+            points.iter().zip(0..).map(|(&point, id)| Entry { point, id }).collect();
+        let mut axis = vec![0; points.len()];
+        let mut parts: Vec<Part<'_>> = vec![(&mut entries, &mut axis)];
+        // The first is the longest: a low half is never shorter than its high half.
+        while parts[0].0.len() > JOB {
+            parts = exec.ordered(parts, halve).into_iter().flatten().collect();
+        }
+        exec.ordered(parts, |part| split(part, leaf));
+        Self { entries, axis }
+    }
+
+    /// All points, in the order of the tree.
+    pub(super) fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// The rank of the point that splits a range, and the axis along which it does.
+    #[inline(always)]
+    pub(super) fn node(&self, range: &std::ops::Range<usize>) -> (usize, usize) {
+        let middle = range.start + range.len() / 2;
+        (middle, usize::from(self.axis[middle]))
+    }
+}
+
+/// Splits a range down to its leaves.
+fn split(part: Part<'_>, leaf: usize) {
+    if part.0.len() > leaf {
+        let [low, high] = halve(part);
+        split(low, leaf);
+        split(high, leaf);
+    }
+}
+
+/// Splits a range that is not empty once.
+fn halve<'a>((entries, axes): Part<'a>) -> [Part<'a>; 2] {
+    let axis = widest(entries);
+    let middle = entries.len() / 2;
+    entries.select_nth_unstable_by(middle, |a, b| {
+        let by_coordinate = a.point[axis].partial_cmp(&b.point[axis]);
+        by_coordinate.unwrap_or(Ordering::Equal).then(a.id.cmp(&b.id))
+    });
+    axes[middle] = axis as u8;
+    let (low, high) = entries.split_at_mut(middle);
+    let (low_axes, high_axes) = axes.split_at_mut(middle);
+    [(low, low_axes), (&mut high[1..], &mut high_axes[1..])]
+}
+
+/// The axis of the largest extent.
+fn widest(entries: &[Entry]) -> usize {
+    let (mut low, mut high) = (entries[0].point, entries[0].point);
+    for entry in entries {
+        low = low.min(entry.point);
+        high = high.max(entry.point);
+    }
+    let extent = high.as_dvec3() - low.as_dvec3();
+    let mut axis = 0;
+    for other in 1..3 {
+        if extent[other] > extent[axis] {
+            axis = other;
+        }
+    }
+    axis
+}
+
+/// Points for property tests.
+#[cfg(test)]
+pub(super) mod given {
+    use glam::Vec3;
+    use proptest::prelude::*;
+
+    fn coordinate() -> impl Strategy<Value = f32> {
+        prop_oneof![
+            4 => (-3_i8..=3).prop_map(f32::from),
+            4 => -1.0_f32..1.0,
+            1 => prop::sample::select(vec![-0.0, f32::MIN_POSITIVE, 1e-45, -1e-40]),
+            1 => prop::sample::select(vec![f32::MAX, -f32::MAX, 1e30, 3e38, 16_777_216.0]),
+            2 => (0_u32..4).prop_map(|ulps| f32::from_bits(1.0_f32.to_bits() + ulps)),
+        ]
+    }
+
+    /// Points with ties, extremes, and runs on a line and at one place.
+    pub(in crate::scene) fn points() -> impl Strategy<Value = Vec<Vec3>> {
+        let point = prop_oneof![
+            6 => [coordinate(), coordinate(), coordinate()].prop_map(Vec3::from_array),
+            2 => coordinate().prop_map(|t| Vec3::new(t, 2.0, -1.0)),
+            1 => Just(Vec3::ONE),
+        ];
+        prop::collection::vec(point, 1..120)
+    }
+}
