@@ -12,7 +12,7 @@
 //! - A fragment that fails adds weight 0 instead of nothing.
 
 pub(super) mod lanes;
-mod resolve;
+pub(super) mod resolve;
 mod store;
 pub(super) mod tile;
 

@@ -39,7 +39,7 @@ fn limits(blocks: &mut [Block], shared: &Shared<f32>, epsilon: f32) {
 /// from a w on that is 1/(limit + ulp/2). That is less than an ulp below 1/limit, so the answer is
 /// the rounded 1/limit or one of its neighbours. `limit` is > 0; +inf gives 0.
 #[inline(always)]
-fn least_nearness(shared: &Shared<f32>, limit: f32) -> f32 {
+pub(in crate::method) fn least_nearness(shared: &Shared<f32>, limit: f32) -> f32 {
     if !shared.perspective {
         return -limit;
     }

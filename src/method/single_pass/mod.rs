@@ -51,11 +51,12 @@ mod picture;
 pub mod plain;
 
 pub(super) use picture::image_planes;
-pub use picture::{render, render_f32};
+pub use picture::{render, render_f32, render_f32_again};
 
 use super::ewa;
-use crate::composite::bins::{MAX_BINS, Range};
+use crate::composite::bins::{DepthBins, MAX_BINS, Range};
 use crate::error::{Error, Result};
+use crate::number::Real;
 use crate::scene::{Camera, Surfels};
 
 /// What is computed; everything here may change the picture.
@@ -125,6 +126,13 @@ impl Settings {
             DepthTest::Plain => Ok(()),
             DepthTest::Voronoi(bins) => bins.check(),
         }
+    }
+
+    /// The bins of the Voronoi depth test; none for the plain one.
+    fn bins<R: Real>(&self, surfels: &Surfels, camera: &Camera) -> Result<Option<DepthBins<R>>> {
+        let DepthTest::Voronoi(bins) = &self.depth else { return Ok(None) };
+        let epsilon = self.splats.epsilon.resolve(surfels);
+        Ok(Some(DepthBins::new(&bins.resolve(surfels, camera, epsilon)?)))
     }
 }
 

@@ -1,0 +1,63 @@
+//! The depth-images of the groups in one tile: only the blocks that a splat touches.
+
+use crate::method::fast::tile::{LANES, Lanes, Tile};
+use crate::scene::group::Groups;
+
+/// No splat, no image.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// What the image of a group keeps at the pixels of a block.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Image {
+    /// Nearness of the fragment.
+    pub(super) nearness: Lanes,
+    /// Its q.
+    pub(super) q: Lanes,
+    /// Its splat in the list of the tile, [`NONE`] where there is none.
+    pub(super) splat: [u32; LANES],
+    /// Its Voronoi-enhanced depth; not used under the plain depth test.
+    pub(super) z: Lanes,
+}
+
+/// The images of all groups in one tile.
+pub(super) struct Images {
+    /// The splats of the tile, by group and then ascending.
+    pub(super) order: Vec<u32>,
+    /// Each group that has splats: where it ends in `order`.
+    pub(super) ends: Vec<usize>,
+    /// For each of these groups and each block, which of `images`, or [`NONE`].
+    pub(super) slots: Vec<u32>,
+    /// What has been touched.
+    pub(super) images: Vec<Image>,
+}
+
+impl Images {
+    /// Sorts the splats of a tile by group; the images are empty.
+    pub(super) fn new(tile: &Tile, groups: &Groups) -> Self {
+        let own: Vec<u8> =
+            tile.splats.iter().map(|splat| groups.own()[splat.surfel as usize]).collect();
+        let mut next = vec![0; groups.len()];
+        for &group in &own {
+            next[usize::from(group)] += 1;
+        }
+        let mut ends = Vec::new();
+        let mut sum = 0;
+        for count in &mut next {
+            let start = sum;
+            sum += *count;
+            if *count > 0 {
+                ends.push(sum);
+            }
+            *count = start;
+        }
+        let mut order = vec![0; own.len()];
+        for (i, &group) in own.iter().enumerate() {
+            let place = &mut next[usize::from(group)];
+            order[*place] = i as u32;
+            *place += 1;
+        }
+        let pairs = ends.len() * tile.blocks.len();
+        Self { order, ends, slots: vec![NONE; pairs], images: Vec::with_capacity(pairs) }
+    }
+}
