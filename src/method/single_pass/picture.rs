@@ -101,14 +101,11 @@ fn render_into(
     let wanted = check(scene, groups, camera, settings, false)?;
     let mut target = framebuffer(camera, wanted, earlier);
     let (tally, times) = fast::render(&scene.surfels, groups, camera, settings, exec, &mut target)?;
-    let clock = Clock {
-        laps: vec![
-            ("projection", times.project),
-            ("geometry", times.geometry),
-            ("compositing", times.compositing),
-        ],
-        ..Clock::default()
-    };
+    let clock = Clock::of(vec![
+        ("projection", times.project),
+        ("geometry", times.geometry),
+        ("compositing", times.compositing),
+    ]);
     Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
 }
 
