@@ -3,21 +3,21 @@
 use crate::method::fast::tile::{LANES, Lanes, Tile};
 use crate::scene::group::Groups;
 
-/// No splat, no image.
+/// No image.
 pub(super) const NONE: u32 = u32::MAX;
 
+/// Colour, 1, normal and 0: what is summed is one vector.
+pub(super) type Attributes = [f32; 8];
+
 /// What the image of a group keeps at the pixels of a block.
-#[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct Image {
     /// Nearness of the fragment.
     pub(super) nearness: Lanes,
-    /// Its q.
-    pub(super) q: Lanes,
-    /// Its splat in the list of the tile, [`NONE`] where there is none.
+    /// Its weight.
+    pub(super) weight: Lanes,
+    /// Its splat in the list of the tile, the length of that list where there is none.
     pub(super) splat: [u32; LANES],
-    /// Its Voronoi-enhanced depth; not used under the plain depth test.
-    pub(super) z: Lanes,
 }
 
 /// The images of all groups in one tile.
@@ -28,6 +28,8 @@ pub(super) struct Images {
     pub(super) ends: Vec<usize>,
     /// For each of these groups and each block, which of `images`, or [`NONE`].
     pub(super) slots: Vec<u32>,
+    /// Of each splat of the tile, and zeros.
+    pub(super) attributes: Vec<Attributes>,
     /// What has been touched.
     pub(super) images: Vec<Image>,
 }
@@ -57,7 +59,14 @@ impl Images {
             order[*place] = i as u32;
             *place += 1;
         }
+        let mut attributes = Vec::with_capacity(own.len() + 1);
+        attributes.extend(tile.splats.iter().map(|splat| {
+            let ([r, g, b], [x, y, z]) = (splat.color, splat.normal);
+            [r, g, b, 1.0, x, y, z, 0.0]
+        }));
+        attributes.push([0.0; 8]);
         let pairs = ends.len() * tile.blocks.len();
-        Self { order, ends, slots: vec![NONE; pairs], images: Vec::with_capacity(pairs) }
+        let images = Vec::with_capacity(pairs);
+        Self { order, ends, slots: vec![NONE; pairs], attributes, images }
     }
 }

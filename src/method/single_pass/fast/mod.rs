@@ -58,7 +58,6 @@ pub fn render(
         let mut images = Images::new(tile, groups);
         images.draw(tile, shared, bins.as_ref());
         let drawn = Instant::now();
-        images.nearest(tile);
         tile.limits(shared, prepared.epsilon);
         images.composite(tile, shared);
         tile.normalize(shared);
