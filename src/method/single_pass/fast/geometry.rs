@@ -1,6 +1,6 @@
 //! The geometry pass over one tile, compiled for every vector width.
 
-use super::images::{Image, Images};
+use super::images::{Image, Images, Nearest};
 use crate::composite::bins::DepthBins;
 use crate::method::fast::lanes::{columns, fragments, inside};
 use crate::method::fast::tile::{LANES, Lanes, Record, SIDE, Tile};
@@ -24,7 +24,7 @@ impl Images {
     /// Draws every splat into the image of its group; the plain depth test if there are no bins.
     pub(super) fn draw(
         &mut self,
-        tile: &mut Tile,
+        tile: &Tile,
         shared: &Shared<f32>,
         bins: Option<&DepthBins<f32>>,
     ) {
@@ -40,7 +40,7 @@ impl Images {
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn geometry<const RAY_CAST: bool, const VORONOI: bool>(
     images: &mut Images,
-    tile: &mut Tile,
+    tile: &Tile,
     shared: &Shared<f32>,
     bins: Option<&DepthBins<f32>>,
 ) {
@@ -52,44 +52,52 @@ fn geometry<const RAY_CAST: bool, const VORONOI: bool>(
         amplitude: [0.0; LANES],
         splat: [tile.splats.len() as u32; LANES],
     };
-    let mut nearest = vec![empty; tile.blocks.len()];
     let mut layers = vec![empty; tile.blocks.len()];
     let mut start = 0;
-    for (slots, &end) in images.slots.chunks_mut(tile.blocks.len()).zip(&images.ends) {
+    for group in 0..images.ends.len() {
+        // A bit for each block: tiles have at most 16 x 16.
+        let mut touched = [0_u64; 4];
+        let end = images.ends[group];
         for &index in &images.order[start..end] {
-            let splat = &tile.splats[index as usize];
-            splat_into::<RAY_CAST, VORONOI>(&mut layers, tile, (index, splat), &shared, bins);
+            let splat = (index, &tile.splats[index as usize]);
+            draw::<RAY_CAST, VORONOI>(&mut layers, &mut touched, tile, splat, &shared, bins);
         }
         start = end;
-        for ((layer, slot), nearest) in layers.iter_mut().zip(slots).zip(&mut nearest) {
-            let Layer { nearness, q, amplitude, splat, .. } = *layer;
-            let mut kept = [0_u32; LANES];
-            for i in 0..LANES {
-                kept[i] = u32::from(splat[i] != empty.splat[i]);
+        for (word, mut bits) in touched.into_iter().enumerate() {
+            while bits != 0 {
+                let block = 64 * word + bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                finish(images, block, &layers[block]);
+                let layer = &mut layers[block];
+                if VORONOI {
+                    layer.z = empty.z;
+                }
+                (layer.nearness, layer.splat) = (empty.nearness, empty.splat);
             }
-            if kept.iter().all(|&k| k == 0) {
-                continue;
-            }
-            *layer = empty;
-            fold(nearest, &nearness, &splat);
-            let mut weight = [0.0; LANES];
-            for i in 0..LANES {
-                weight[i] = amplitude[i] * exp_f32_in_range(q[i] * -0.5);
-            }
-            *slot = images.images.len() as u32;
-            images.images.push(Image { nearness, weight, splat });
         }
     }
-    for (block, nearest) in tile.blocks.iter_mut().zip(&nearest) {
-        block.nearest = nearest.nearness;
-        block.id = nearest.splat;
+}
+
+/// Adds what a block of a group has become to the images.
+#[inline(always)]
+fn finish(images: &mut Images, block: usize, layer: &Layer) {
+    let Layer { nearness, q, amplitude, splat, .. } = *layer;
+    fold(&mut images.nearest[block], &nearness, &splat);
+    let mut weight = [0.0; LANES];
+    for i in 0..LANES {
+        weight[i] = amplitude[i] * exp_f32_in_range(q[i] * -0.5);
     }
+    let count = &mut images.counts[block];
+    images.lists[block * images.ends.len() + *count] = images.images.len() as u32;
+    *count += 1;
+    images.images.push(Image { nearness, weight, splat });
 }
 
 /// Draws one splat.
 #[inline(always)]
-fn splat_into<const RAY_CAST: bool, const VORONOI: bool>(
+fn draw<const RAY_CAST: bool, const VORONOI: bool>(
     layers: &mut [Layer],
+    touched: &mut [u64; 4],
     tile: &Tile,
     (index, splat): (u32, &Record),
     shared: &Shared<f32>,
@@ -103,7 +111,9 @@ fn splat_into<const RAY_CAST: bool, const VORONOI: bool>(
             let (x, y) = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
             let (q, w) = fragments::<RAY_CAST>(shared, &footprint, x, y);
             let inside = inside(&q, &w, shared.limit);
-            let layer = &mut layers[(row * tile.columns + column) as usize];
+            let block = (row * tile.columns + column) as usize;
+            touched[block / 64] |= 1 << (block % 64);
+            let layer = &mut layers[block];
             let mut wins = [0_u32; LANES];
             if VORONOI && let Some(bins) = bins {
                 let (before, mut z) = (layer.z, [0.0; LANES]);
@@ -147,7 +157,7 @@ fn keep(lanes: &mut Lanes, mask: &[u32; LANES], values: &Lanes) {
 
 /// The nearer of two fragments, ties to the lower surfel.
 #[inline(always)]
-fn fold(nearest: &mut Layer, nearness: &Lanes, splat: &[u32; LANES]) {
+fn fold(nearest: &mut Nearest, nearness: &Lanes, splat: &[u32; LANES]) {
     let (mut best, mut own) = (nearest.nearness, nearest.splat);
     for i in 0..LANES {
         let equal = u32::from(nearness[i] == best[i]) & u32::from(splat[i] < own[i]);

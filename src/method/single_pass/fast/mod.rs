@@ -55,9 +55,10 @@ pub fn render(
     let shared = &prepared.shared;
     let [geometry, compositing] = draw(&prepared, target, (exec, &grid), |tile| {
         let start = Instant::now();
-        let mut images = Images::new(tile, groups);
+        let mut images = Images::new(tile, groups, shared.empty());
         images.draw(tile, shared, bins.as_ref());
         let drawn = Instant::now();
+        images.nearest(tile);
         tile.limits(shared, prepared.epsilon);
         images.composite(tile, shared);
         tile.normalize(shared);
