@@ -96,6 +96,20 @@ scale = 0.035
 translate = [-0.02, 0.11, 0.0]
 ";
 
+/// Epsilon in median radii, groups, how they are extended, and what holes are.
+const VARIANTS: [(f32, usize, Extension, Holes); 9] = [
+    (1.0, 4, ADD, Holes::Skipped),
+    (2.0, 4, ADD, Holes::Skipped),
+    (4.0, 4, ADD, Holes::Skipped),
+    (2.0, 4, ADD, Holes::Background),
+    (2.0, 4, Extension::None, Holes::Skipped),
+    (2.0, 4, Extension::None, Holes::Background),
+    (2.0, 4, Extension::Enlarge, Holes::Skipped),
+    (2.0, 8, ADD, Holes::Skipped),
+    (2.0, 8, Extension::Enlarge, Holes::Skipped),
+];
+const ADD: Extension = Extension::Add { most: 0.5 };
+
 struct Bench {
     exec: Exec,
     pictures: Option<PathBuf>,
@@ -151,22 +165,9 @@ impl Bench {
             "| scene | epsilon | K | groups cover it by | holes | Algorithm 2: RMSE | SSIM | ms | Algorithm 3: RMSE | SSIM | ms | peeling: ms |"
         );
         println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
-        let add = Extension::Add { most: 0.5 };
-        let (skipped, background) = (Holes::Skipped, Holes::Background);
-        let variants = [
-            (1.0, Some(4), add, skipped),
-            (2.0, Some(4), add, skipped),
-            (4.0, Some(4), add, skipped),
-            (2.0, Some(4), add, background),
-            (2.0, Some(4), Extension::None, skipped),
-            (2.0, Some(4), Extension::None, background),
-            (2.0, Some(4), Extension::Enlarge, skipped),
-            (2.0, Some(8), add, skipped),
-            (2.0, Some(8), Extension::Enlarge, skipped),
-        ];
         for subject in subjects {
             let mut truth: Option<(f32, Shot)> = None;
-            for (radii, count, extension, holes) in variants {
+            for (radii, count, extension, holes) in VARIANTS {
                 let splats = ewa::Settings {
                     epsilon: Epsilon::MedianRadii(radii),
                     cull: false,
@@ -179,7 +180,7 @@ impl Bench {
                 }
                 let Some((_, peeled)) = &truth else { continue };
                 let rules = Rules { overlap: 1.0, opposite: true, coplanar: None };
-                let grouping = Grouping { rules, count, extension };
+                let grouping = Grouping { rules, count: Some(count), extension };
                 let mut cells = Vec::new();
                 let mut k = 0;
                 for nearest in [None, Some(DepthTest::Voronoi(BinCount::Epsilon))] {
@@ -193,7 +194,7 @@ impl Bench {
                     let name = format!(
                         "{}-{radii}-{}-{}-{holes:?}",
                         if nearest.is_none() { "algorithm2" } else { "algorithm3" },
-                        count.unwrap_or(0),
+                        count,
                         word(extension)
                     );
                     let shot = self.shoot(subject, &name, Some(&grouping), &method)?;

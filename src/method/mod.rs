@@ -7,6 +7,7 @@
 //! - [`mod@render`]: any of them, chosen by a value.
 
 pub mod ewa;
+mod fast;
 pub mod peeling;
 mod picture;
 mod prepare;

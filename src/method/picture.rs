@@ -1,7 +1,7 @@
 //! What every method leaves: named planes, counts and times.
 
 use crate::composite::over::Blend;
-use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Samples};
+use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Samples, Wanted};
 use crate::number::Real;
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
@@ -68,6 +68,42 @@ pub(super) fn before_environment<R: Real>(
         }
     });
     (color, alpha)
+}
+
+/// A framebuffer for a camera's picture: the memory of an earlier frame, if that had the same planes.
+pub(super) fn framebuffer(
+    camera: &Camera,
+    wanted: Wanted,
+    earlier: Option<Frame<f32>>,
+) -> Framebuffer<f32> {
+    let (width, height) = (camera.width, camera.height);
+    let whole = |w: u32, h: u32| (w, h) == (width, height);
+    let fits = |target: &Framebuffer<f32>| {
+        whole(target.depth.width(), target.depth.height())
+            && whole(target.id.width(), target.id.height())
+            && whole(target.weight.width(), target.weight.height())
+            && (target.normal.is_some(), target.color.is_some()) == (wanted.normal, wanted.color)
+    };
+    let earlier = earlier.map(recycle).filter(fits);
+    earlier.unwrap_or_else(|| Framebuffer::new(width, height, 0.0, wanted))
+}
+
+/// The planes of a frame as a framebuffer; what it lacks has no pixels.
+fn recycle(frame: Frame<f32>) -> Framebuffer<f32> {
+    let Frame { width, height, planes } = frame;
+    let none = Wanted { normal: false, color: false, observed: false };
+    let mut target = Framebuffer { width, height, ..Framebuffer::new(0, 0, 0.0, none) };
+    for NamedPlane { name, samples } in planes {
+        match (name.as_str(), samples) {
+            ("Z", Samples::Scalar(plane)) => target.depth = plane,
+            ("weight", Samples::Scalar(plane)) => target.weight = plane,
+            ("id", Samples::Index(plane)) => target.id = plane,
+            ("normal", Samples::Vector(plane)) => target.normal = Some(plane),
+            ("", Samples::Color(plane)) => target.color = Some(plane),
+            _ => {}
+        }
+    }
+    target
 }
 
 pub(super) fn named<R>(name: &str, samples: Samples<R>) -> NamedPlane<R> {

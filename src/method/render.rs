@@ -178,7 +178,10 @@ pub fn render_f32(
             ewa::render_f32_again(scene, camera, settings, exec, earlier)
         }
         (Method::Ewa(settings), _, None) => ewa::render_f32(scene, camera, settings, exec),
-        (Method::SinglePass(settings), Some(groups), _) => {
+        (Method::SinglePass(settings), Some(groups), Some(earlier)) => {
+            single_pass::render_f32_again(scene, groups, camera, settings, exec, earlier)
+        }
+        (Method::SinglePass(settings), Some(groups), None) => {
             single_pass::render_f32(scene, groups, camera, settings, exec)
         }
         _ => render(scene, preparation, camera, method, exec, false),

@@ -44,6 +44,7 @@
 
 use super::tree::Tree;
 use super::{Camera, Projection, Surfels};
+use crate::error::{Error, Result};
 use crate::frame::Exec;
 use std::ops::Range;
 
@@ -58,6 +59,19 @@ impl BackToFront {
     #[must_use]
     pub fn new(surfels: &Surfels, exec: &Exec) -> Self {
         Self { tree: Tree::new(surfels.position(), 1, exec) }
+    }
+
+    /// Whether this can be the order of these surfels: there must be as many.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there are not.
+    pub fn check(&self, surfels: &Surfels) -> Result<()> {
+        let (ordered, there) = (self.tree.entries().len(), surfels.len());
+        if ordered == there {
+            Ok(())
+        } else {
+            Err(Error::Invalid(format!("an order of {ordered} surfels for a scene of {there}")))
+        }
     }
 
     /// The indices of all surfels, each once, the farthest first.

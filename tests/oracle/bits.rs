@@ -4,9 +4,13 @@ use crate::scenes::{Case, KINDS, Kind, OUTLINES};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
+use splatref::composite::bins::MAX_BINS;
 use splatref::frame::{Exec, Frame, Samples};
 use splatref::method::ewa::{self, Epsilon, Settings};
+use splatref::method::single_pass::{self, BinCount, DepthTest};
 use splatref::number::Real;
+use splatref::number::random::unit;
+use splatref::scene::group::{Groups, MAX_GROUPS};
 use splatref::scene::{Camera, Cloud, Lens, Phong, Pose, Scene, Surfels};
 use splatref::splat::Kernel;
 
@@ -59,6 +63,21 @@ fn settings() -> impl Strategy<Value = Settings> {
     })
 }
 
+fn depth_test() -> impl Strategy<Value = DepthTest> {
+    let bins = prop_oneof![
+        Just(BinCount::Epsilon),
+        (1..=MAX_BINS).prop_map(BinCount::Count),
+        (1..40_u32).prop_map(BinCount::Count),
+    ];
+    prop_oneof![Just(DepthTest::Plain), bins.prop_map(DepthTest::Voronoi)]
+}
+
+/// Groups that know nothing of the surfels.
+fn groups(surfels: &Surfels, count: usize, seed: u64) -> Groups {
+    let own = (0..surfels.len()).map(|i| (unit(seed, i as u64) * count as f32) as u8).collect();
+    Groups::new(own, Vec::new(), vec![1.0; count]).expect("groups in range")
+}
+
 pub(crate) fn case() -> impl Strategy<Value = Case> {
     let which = (0..KINDS.len(), any::<u32>(), any::<bool>());
     let size = (1_u32..70, 1_u32..50);
@@ -88,6 +107,34 @@ proptest! {
         prop_assert_eq!(unclean(&plain.frame), None, "{}", case.name);
         let wide = ewa::render::<f64>(scene, camera, settings, &exec, true).expect("renders");
         prop_assert_eq!(unclean(&wide.frame), None, "{}", case.name);
+    }
+
+    #[test]
+    fn the_fast_path_of_the_single_pass_has_the_bits_of_the_plain_one(
+        (case, depth) in (case(), depth_test()),
+        tile in 0..4_usize,
+        (count, seed) in (prop_oneof![1..9_usize, 1..=MAX_GROUPS], any::<u64>()),
+    ) {
+        let Case { scene, camera, settings, .. } = &case;
+        let exec = Exec::new(1, 8 << tile).expect("a tile size");
+        let settings = single_pass::Settings { splats: *settings, depth };
+        let groups = groups(&scene.surfels, count, seed);
+        let other = Exec::sequential();
+        let fast = single_pass::render_f32(scene, &groups, camera, &settings, &exec);
+        match single_pass::render::<f32>(scene, &groups, camera, &settings, &other, false) {
+            Err(error) => prop_assert_eq!(error.to_string(), fast.expect_err("as plain").to_string()),
+            Ok(plain) => {
+                let fast = fast.expect("renders");
+                prop_assert_eq!(plain.tally, fast.tally);
+                prop_assert_eq!(plain.frame.planes.len(), fast.frame.planes.len());
+                for (plain, fast) in plain.frame.planes.iter().zip(&fast.frame.planes) {
+                    prop_assert_eq!(&plain.name, &fast.name);
+                    let same = bits(&plain.samples) == bits(&fast.samples);
+                    prop_assert!(same, "plane '{}' of {}", plain.name, case.name);
+                }
+                prop_assert_eq!(unclean(&fast.frame), None, "{}", case.name);
+            }
+        }
     }
 }
 

@@ -4,8 +4,8 @@ use super::Settings;
 use super::fast;
 use super::plain::Plain;
 use crate::error::Result;
-use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Samples, Wanted};
-use crate::method::picture::{Clock, Picture, finish, named};
+use crate::frame::{Exec, Frame, Samples, Wanted};
+use crate::method::picture::{Clock, Picture, finish, framebuffer, named};
 use crate::number::Real;
 use crate::scene::{Camera, Scene};
 
@@ -76,8 +76,7 @@ pub fn render_f32(
     settings: &Settings,
     exec: &Exec,
 ) -> Result<Picture<f32>> {
-    let target = Framebuffer::new(0, 0, 0.0, wanted(scene, false));
-    render_into(scene, camera, settings, exec, target)
+    render_into(scene, camera, settings, exec, None)
 }
 
 /// As [`render_f32`], in the memory of an earlier picture, which is much of the time of a small one.
@@ -91,7 +90,7 @@ pub fn render_f32_again(
     exec: &Exec,
     earlier: Picture<f32>,
 ) -> Result<Picture<f32>> {
-    render_into(scene, camera, settings, exec, recycle(earlier.frame))
+    render_into(scene, camera, settings, exec, Some(earlier.frame))
 }
 
 fn render_into(
@@ -99,19 +98,11 @@ fn render_into(
     camera: &Camera,
     settings: &Settings,
     exec: &Exec,
-    mut target: Framebuffer<f32>,
+    earlier: Option<Frame<f32>>,
 ) -> Result<Picture<f32>> {
     camera.check()?;
     settings.check()?;
-    let (size, wanted) = ((camera.width, camera.height), wanted(scene, false));
-    let whole = |width: u32, height: u32| (width, height) == size;
-    let fits = whole(target.depth.width(), target.depth.height())
-        && whole(target.id.width(), target.id.height())
-        && whole(target.weight.width(), target.weight.height())
-        && (target.normal.is_some(), target.color.is_some()) == (wanted.normal, wanted.color);
-    if !fits {
-        target = Framebuffer::new(size.0, size.1, 0.0, wanted);
-    }
+    let mut target = framebuffer(camera, wanted(scene, false), earlier);
     let (tally, times) = fast::render(&scene.surfels, camera, settings, exec, &mut target);
     let clock = Clock::of(vec![
         ("projection", times.project),
@@ -120,24 +111,6 @@ fn render_into(
         ("normalization", times.normalize),
     ]);
     Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
-}
-
-/// The planes of a frame as a framebuffer; what it lacks has no pixels.
-fn recycle(frame: Frame<f32>) -> Framebuffer<f32> {
-    let Frame { width, height, planes } = frame;
-    let none = Wanted { normal: false, color: false, observed: false };
-    let mut target = Framebuffer { width, height, ..Framebuffer::new(0, 0, 0.0, none) };
-    for NamedPlane { name, samples } in planes {
-        match (name.as_str(), samples) {
-            ("Z", Samples::Scalar(plane)) => target.depth = plane,
-            ("weight", Samples::Scalar(plane)) => target.weight = plane,
-            ("id", Samples::Index(plane)) => target.id = plane,
-            ("normal", Samples::Vector(plane)) => target.normal = Some(plane),
-            ("", Samples::Color(plane)) => target.color = Some(plane),
-            _ => {}
-        }
-    }
-    target
 }
 
 /// The planes that a scene needs.

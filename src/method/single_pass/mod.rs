@@ -52,11 +52,12 @@ mod picture;
 pub mod plain;
 
 pub(super) use picture::image_planes;
-pub use picture::{render, render_f32};
+pub use picture::{render, render_f32, render_f32_again};
 
 use super::ewa;
-use crate::composite::bins::{MAX_BINS, Range};
+use crate::composite::bins::{DepthBins, MAX_BINS, Range};
 use crate::error::{Error, Result};
+use crate::number::Real;
 use crate::scene::{Camera, Surfels};
 
 /// What is computed; everything here may change the picture.
@@ -127,6 +128,13 @@ impl Settings {
             DepthTest::Voronoi(bins) => bins.check(),
         }
     }
+
+    /// The bins of the Voronoi depth test; none for the plain one.
+    fn bins<R: Real>(&self, surfels: &Surfels, camera: &Camera) -> Result<Option<DepthBins<R>>> {
+        let DepthTest::Voronoi(bins) = &self.depth else { return Ok(None) };
+        let epsilon = self.splats.epsilon.resolve(surfels);
+        Ok(Some(DepthBins::new(&bins.resolve(surfels, camera, epsilon)?)))
+    }
 }
 
 /// `d_min` and `d_max` of \[ZP06, eq. 6\]: the depths of the scene's bounding sphere.
@@ -134,7 +142,8 @@ impl Settings {
 /// With the centre (x, y, z) and the radius r of [`Surfels::bounding_sphere`] and the third row m of
 /// the view matrix, in f64: `t = -(((m0 x + m1 y) + m2 z) + m3)`; `d_min` is t - r, at least the near
 /// plane, and `d_max` is t + r, each rounded once to `f32`. Where `d_max` would not be greater than `d_min`
-/// (nothing is in sight) it is 2 `d_min`, or 1 more under an orthographic camera.
+/// (nothing is in sight, or the scene is less deep than the spacing of `f32` there) it is the next
+/// `f32` after it.
 #[must_use]
 pub fn depth_range(surfels: &Surfels, camera: &Camera) -> (f32, f32) {
     let (center, radius) = surfels.bounding_sphere();
@@ -142,6 +151,5 @@ pub fn depth_range(surfels: &Surfels, camera: &Camera) -> (f32, f32) {
     let t = -(((m0 * center.x + m1 * center.y) + m2 * center.z) + m3);
     let (low, high) = ((t - radius) as f32, (t + radius) as f32);
     let low = if low > camera.near { low } else { camera.near };
-    let beyond = if low > 0.0 { 2.0 * low } else { low + 1.0 };
-    (low, if high > low { high } else { beyond })
+    (low, if high > low { high } else { low.next_up() })
 }

@@ -4,8 +4,8 @@ use super::plain::{Composite, Geometry, Images, store};
 use super::{Settings, fast};
 use crate::composite::groups::Sample;
 use crate::error::Result;
-use crate::frame::{Exec, Framebuffer, Grid, NO_ID, NamedPlane, Samples, Wanted};
-use crate::method::picture::{Clock, Picture, finish, named};
+use crate::frame::{Exec, Frame, Framebuffer, Grid, NO_ID, NamedPlane, Samples, Wanted};
+use crate::method::picture::{Clock, Picture, finish, framebuffer, named};
 use crate::number::Real;
 use crate::scene::group::Groups;
 use crate::scene::{Camera, Scene};
@@ -19,10 +19,8 @@ use crate::scene::{Camera, Scene};
 /// | normalization | `resolved.R G B` (if the scene has colours) |
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if the camera or the settings are out of range.
-///
-/// # Panics
-/// If the groups are not those of the scene's surfels.
+/// [`crate::Error::Invalid`] if the camera or the settings are out of range, or if there are not as
+/// many surfels in the groups as in the scene.
 pub fn render<R: Real>(
     scene: &Scene,
     groups: &Groups,
@@ -61,9 +59,6 @@ pub fn render<R: Real>(
 ///
 /// # Errors
 /// As [`render`].
-///
-/// # Panics
-/// As [`render`].
 pub fn render_f32(
     scene: &Scene,
     groups: &Groups,
@@ -71,10 +66,39 @@ pub fn render_f32(
     settings: &Settings,
     exec: &Exec,
 ) -> Result<Picture<f32>> {
+    render_into(scene, groups, (camera, settings, exec), None)
+}
+
+/// As [`render_f32`], in the memory of an earlier picture, which is much of the time of a small one.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_f32_again(
+    scene: &Scene,
+    groups: &Groups,
+    camera: &Camera,
+    settings: &Settings,
+    exec: &Exec,
+    earlier: Picture<f32>,
+) -> Result<Picture<f32>> {
+    render_into(scene, groups, (camera, settings, exec), Some(earlier.frame))
+}
+
+fn render_into(
+    scene: &Scene,
+    groups: &Groups,
+    (camera, settings, exec): (&Camera, &Settings, &Exec),
+    earlier: Option<Frame<f32>>,
+) -> Result<Picture<f32>> {
     let wanted = check(scene, groups, camera, settings, false)?;
-    let mut target = Framebuffer::new(camera.width, camera.height, 0.0, wanted);
+    let mut target = framebuffer(camera, wanted, earlier);
     let (tally, times) = fast::render(&scene.surfels, groups, camera, settings, exec, &mut target)?;
-    Ok(finish(target, Vec::new(), tally, Clock::of(times.to_vec()), (scene, camera, exec)))
+    let clock = Clock::of(vec![
+        ("projection", times.project),
+        ("geometry", times.geometry),
+        ("compositing", times.compositing),
+    ]);
+    Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
 }
 
 /// The planes that a picture needs.
@@ -87,7 +111,7 @@ fn check(
 ) -> Result<Wanted> {
     camera.check()?;
     settings.check()?;
-    assert_eq!(groups.own().len(), scene.surfels.len(), "groups of other surfels");
+    groups.check(&scene.surfels)?;
     Ok(Wanted {
         normal: stages || !scene.lights.is_empty(),
         color: scene.surfels.color().is_some(),

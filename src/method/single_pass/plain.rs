@@ -1,6 +1,6 @@
 //! The definition: every pass, one fragment at a time, over any number.
 
-use super::{DepthTest, Settings};
+use super::Settings;
 use crate::composite::bins::DepthBins;
 use crate::composite::groups::{Sample, compose};
 use crate::composite::sum;
@@ -71,13 +71,7 @@ impl<'a, R: Real> Geometry<'a, R> {
         settings: &Settings,
         exec: &Exec,
     ) -> Result<Self> {
-        let bins = match &settings.depth {
-            DepthTest::Plain => None,
-            DepthTest::Voronoi(bins) => {
-                let epsilon = settings.splats.epsilon.resolve(surfels);
-                Some(DepthBins::new(&bins.resolve(surfels, camera, epsilon)?))
-            }
-        };
+        let bins = settings.bins(surfels, camera)?;
         let grid = exec.grid(camera.width, camera.height);
         let prepared = Prepared::new(
             (surfels, surfels.len()),

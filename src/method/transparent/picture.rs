@@ -36,10 +36,8 @@ const MASK: Stencil = Stencil { reference: 1, pass: Operation::Replace, ..Stenci
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the camera or the settings are out of range, or if the low-precision
-/// depth takes too many bins.
-///
-/// # Panics
-/// If the groups or the order are not those of the scene's surfels.
+/// depth takes too many bins, or if there are not as many surfels in the groups or in the order as in
+/// the scene.
 pub fn render<R: Real>(
     scene: &Scene,
     (groups, order): (&Groups, &BackToFront),
@@ -54,7 +52,8 @@ pub fn render<R: Real>(
         let what = "refraction: there is nothing to be seen through it; give an environment";
         return Err(Error::Invalid(what.into()));
     }
-    assert_eq!(groups.own().len(), scene.surfels.len(), "groups of other surfels");
+    groups.check(&scene.surfels)?;
+    order.check(&scene.surfels)?;
     let mut clock = Clock::default();
     let mut planes = Vec::new();
     let grid = exec.grid(camera.width, camera.height);

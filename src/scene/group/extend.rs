@@ -83,11 +83,8 @@ pub fn extend(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<(Groups, Extended)> {
     extension.check()?;
+    groups.check(surfels)?;
     let (n, count) = (surfels.len(), groups.len());
-    if groups.own.len() != n {
-        let what = format!("groups of {} surfels for a scene of {n}", groups.own.len());
-        return Err(Error::Invalid(what));
-    }
     progress("sorting surfels", 0, 1);
     let tree = Tree::new(surfels, 0..n as u32);
     let show = |done, of| progress("measuring the surface", done, of);

@@ -114,6 +114,7 @@ mod tests;
 mod tree;
 
 use crate::error::{Error, Result};
+use crate::scene::Surfels;
 
 pub use color::{Report, check_count, group, group_into};
 pub use enlarge::{MAX_SCALE, MAX_STEPS, SMALL_STEP};
@@ -261,6 +262,19 @@ impl Groups {
         let own = self.own.iter().zip(keep).filter(|pair| *pair.1).map(|pair| *pair.0);
         let added = self.added.iter().filter_map(|&(i, group)| Some((index[i as usize]?, group)));
         Self { own: own.collect(), added: added.collect(), scale: self.scale }
+    }
+
+    /// Whether they can be groups of these surfels: there must be as many.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there are not.
+    pub fn check(&self, surfels: &Surfels) -> Result<()> {
+        let (grouped, there) = (self.own.len(), surfels.len());
+        if grouped == there {
+            Ok(())
+        } else {
+            Err(Error::Invalid(format!("groups of {grouped} surfels for a scene of {there}")))
+        }
     }
 
     /// The groups that a surfel is in: its own, then those it was added to.

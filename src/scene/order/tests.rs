@@ -43,7 +43,7 @@ fn check(
     mut node: Vec<usize>,
     ranks: &[usize],
     high_is_near: &dyn Fn(usize, f64) -> bool,
-) -> Result<(), TestCaseError> {
+) -> std::result::Result<(), TestCaseError> {
     if node.len() < 2 {
         return Ok(());
     }

@@ -1,6 +1,6 @@
 //! From the blocks of a tile to the rows of the framebuffer.
 
-use super::scratch::{Block, LANES, Lanes, ROW, Scratch};
+use super::tile::{Block, LANES, Lanes, ROW, Tile};
 use crate::frame::{FramebufferTile, NO_ID};
 
 /// Writes a tile without splats.
@@ -16,18 +16,18 @@ pub(super) fn clear(tile: &mut FramebufferTile<'_, f32>) {
 }
 
 /// Copies the blocks into the rows of the framebuffer.
-pub(super) fn store(scratch: &Scratch, tile: &mut FramebufferTile<'_, f32>) {
-    let columns = scratch.columns as usize;
-    for y in 0..(tile.rect.y1 - tile.rect.y0) as usize {
-        let blocks = &scratch.blocks[y / ROW * columns..][..columns];
+pub(super) fn store(tile: &Tile, pixels: &mut FramebufferTile<'_, f32>) {
+    let columns = tile.columns as usize;
+    for y in 0..(pixels.rect.y1 - pixels.rect.y0) as usize {
+        let blocks = &tile.blocks[y / ROW * columns..][..columns];
         let first = y % ROW * ROW;
-        store_row(blocks, tile.depth.row(y), |block| row(&block.nearest, first));
-        store_row(blocks, tile.id.row(y), |block| row(&block.id, first));
-        store_row(blocks, tile.weight.row(y), |block| row(&block.weight, first));
-        if let Some(normal) = &mut tile.normal {
+        store_row(blocks, pixels.depth.row(y), |block| row(&block.nearest, first));
+        store_row(blocks, pixels.id.row(y), |block| row(&block.id, first));
+        store_row(blocks, pixels.weight.row(y), |block| row(&block.weight, first));
+        if let Some(normal) = &mut pixels.normal {
             store_row(blocks, normal.row(y), |block| interleaved(&block.normal, first));
         }
-        if let Some(color) = &mut tile.color {
+        if let Some(color) = &mut pixels.color {
             store_row(blocks, color.row(y), |block| interleaved(&block.color, first));
         }
     }

@@ -1,51 +1,55 @@
-//! What the fast path works with: records of splats, and the blocks of a tile.
+//! What a fast path works with: records of splats, and the blocks of a tile.
 
-use super::super::plain::facing;
 use crate::frame::{FramebufferTile, NO_ID, Rect};
+use crate::method::ewa::plain::facing;
 use crate::method::prepare::Prepared;
 use crate::splat::{Footprint, Splat};
 use glam::Vec3;
 
 /// Side of a block in pixels.
-pub(super) const SIDE: u32 = 4;
+pub(in crate::method) const SIDE: u32 = 4;
 /// Pixels of a row of a block.
-pub(super) const ROW: usize = SIDE as usize;
+pub(in crate::method) const ROW: usize = SIDE as usize;
 /// Pixels of a block.
-pub(super) const LANES: usize = (SIDE * SIDE) as usize;
+pub(in crate::method) const LANES: usize = (SIDE * SIDE) as usize;
 
 /// One number for each pixel of a block, row by row.
-pub(super) type Lanes = [f32; LANES];
+pub(in crate::method) type Lanes = [f32; LANES];
 
 /// The pixels of a block.
 #[derive(Clone)]
 #[repr(align(64))]
-pub(super) struct Block {
+pub(in crate::method) struct Block {
     /// Nearness of the nearest fragment.
-    pub(super) nearest: Lanes,
+    pub(in crate::method) nearest: Lanes,
     /// Its surfel.
-    pub(super) id: [u32; LANES],
+    pub(in crate::method) id: [u32; LANES],
     /// The least nearness that passes the epsilon-z test.
-    pub(super) least: Lanes,
-    pub(super) weight: Lanes,
-    pub(super) normal: [Lanes; 3],
-    pub(super) color: [Lanes; 3],
+    pub(in crate::method) least: Lanes,
+    pub(in crate::method) weight: Lanes,
+    pub(in crate::method) normal: [Lanes; 3],
+    pub(in crate::method) color: [Lanes; 3],
 }
 
 /// A splat with its attributes: 80 bytes, so that a tile finds all it needs in one place.
 #[derive(Clone, Copy)]
-pub(super) struct Record {
-    pub(super) footprint: Footprint<f32>,
-    pub(super) surfel: u32,
+pub(in crate::method) struct Record {
+    pub(in crate::method) footprint: Footprint<f32>,
+    pub(in crate::method) surfel: u32,
     /// First and last column, first and last row.
-    pub(super) bounds: [u16; 4],
+    pub(in crate::method) bounds: [u16; 4],
     /// The normal of the side that is seen.
-    pub(super) normal: [f32; 3],
-    pub(super) color: [f32; 3],
+    pub(in crate::method) normal: [f32; 3],
+    pub(in crate::method) color: [f32; 3],
 }
 
 impl Record {
     #[inline(always)]
-    pub(super) fn new(splat: &Splat<f32>, normals: &[Vec3], colors: Option<&[Vec3]>) -> Self {
+    pub(in crate::method) fn new(
+        splat: &Splat<f32>,
+        normals: &[Vec3],
+        colors: Option<&[Vec3]>,
+    ) -> Self {
         let Rect { x0, y0, x1, y1 } = splat.bounds;
         let i = splat.surfel as usize;
         Self {
@@ -58,14 +62,14 @@ impl Record {
         }
     }
 
-    pub(super) fn bounds(&self) -> Rect {
+    pub(in crate::method) fn bounds(&self) -> Rect {
         let [x0, x1, y0, y1] = self.bounds.map(u32::from);
         Rect { x0, y0, x1: x1 + 1, y1: y1 + 1 }
     }
 
     /// The blocks of a tile that it may touch: columns and rows, the ends exclusive.
     #[inline(always)]
-    pub(super) fn blocks(&self, tile: &Rect) -> Rect {
+    pub(in crate::method) fn blocks(&self, tile: &Rect) -> Rect {
         let inside = self.bounds().intersection(tile);
         if inside.is_empty() {
             return Rect::default();
@@ -80,22 +84,22 @@ impl Record {
 }
 
 /// What one tile works with.
-pub(super) struct Scratch {
-    pub(super) splats: Vec<Record>,
-    pub(super) blocks: Vec<Block>,
+pub(in crate::method) struct Tile {
+    pub(in crate::method) splats: Vec<Record>,
+    pub(in crate::method) blocks: Vec<Block>,
     /// The pixels of the tile.
-    pub(super) rect: Rect,
+    pub(in crate::method) rect: Rect,
     /// Blocks in a row.
-    pub(super) columns: u32,
+    pub(in crate::method) columns: u32,
     /// Whether normals are wanted.
-    pub(super) normal: bool,
+    pub(in crate::method) normal: bool,
     /// Whether colours are wanted.
-    pub(super) color: bool,
+    pub(in crate::method) color: bool,
 }
 
-impl Scratch {
+impl Tile {
     /// The splats of a tile, and its empty blocks; no blocks if there are no splats.
-    pub(super) fn gather(
+    pub(in crate::method) fn gather(
         prepared: &Prepared<f32, Record>,
         index: usize,
         tile: &FramebufferTile<'_, f32>,

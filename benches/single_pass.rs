@@ -1,0 +1,127 @@
+//! Speed of single-pass rendering against the 2+1-pass method: the question of \[ZP06, Table 2\].
+//!
+//! `cargo bench --bench single_pass` prints Markdown; an argument is a pattern that the names of
+//! workloads must contain. Every round draws one frame of each row, so that all rows see the same
+//! machine. Times are the median over the rounds, the minimum in brackets, in milliseconds; the ratio
+//! is the median over the rounds of the time of the frame by that of the 2+1-pass method.
+//!
+//! The groups are random, a load and not a grouping: surfels of one group overlap.
+
+#[path = "common/sphere.rs"]
+mod sphere;
+
+use sphere::{LARGE, STANDARD, camera, cell, sphere};
+use splatref::frame::{Exec, Framebuffer, Wanted};
+use splatref::method::ewa;
+use splatref::method::single_pass::{BinCount, DepthTest, Settings, fast};
+use splatref::number::random::unit;
+use splatref::scene::group::Groups;
+use splatref::scene::{Camera, Surfels};
+use std::time::{Duration, Instant};
+
+/// What one row draws: the 2+1-pass method, or groups and a depth test.
+enum Method {
+    TwoPass,
+    SinglePass(Groups, DepthTest),
+}
+
+/// The time of a frame, and of projection, geometry and what comes after it.
+type Times = [Duration; 4];
+
+fn main() {
+    // cargo passes --bench.
+    let pattern = std::env::args().skip(1).find(|a| !a.starts_with('-')).unwrap_or_default();
+    println!(
+        "| workload | planes | threads | method | frame | ratio | projection | geometry | compositing |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for workload in STANDARD.iter().chain([&LARGE]).filter(|w| w.name.contains(&pattern)) {
+        let surfels = sphere(workload);
+        let mut methods = vec![("2+1 passes".to_owned(), Method::TwoPass)];
+        for k in [4, 8, 16] {
+            let name = format!("K = {k}");
+            methods.push((name.clone(), Method::SinglePass(groups(&surfels, k), DepthTest::Plain)));
+            let voronoi = DepthTest::Voronoi(BinCount::Epsilon);
+            methods.push((
+                format!("{name}, Voronoi"),
+                Method::SinglePass(groups(&surfels, k), voronoi),
+            ));
+        }
+        for (planes, normal) in [("colour", false), ("colour, normal", true)] {
+            for threads in [1, 2] {
+                let rows = measure(&surfels, &methods, normal, threads);
+                for (index, (name, _)) in methods.iter().enumerate() {
+                    let ratio = ratio(&rows[index], &rows[0]);
+                    let column =
+                        |i: usize| -> Vec<_> { rows[index].iter().map(|t| t[i]).collect() };
+                    let [frame, project, geometry, rest] =
+                        [0, 1, 2, 3].map(|i| cell(&mut column(i)));
+                    println!(
+                        "| {} | {planes} | {threads} | {name} | {frame} | {ratio:.2} | {project} | {geometry} | {rest} |",
+                        workload.name
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Groups that know nothing of the surfels.
+fn groups(surfels: &Surfels, count: usize) -> Groups {
+    let own = (0..surfels.len()).map(|i| (unit(2, i as u64) * count as f32) as u8).collect();
+    Groups::new(own, Vec::new(), vec![1.0; count]).expect("groups")
+}
+
+/// For each method the times of its frames.
+fn measure(
+    surfels: &Surfels,
+    methods: &[(String, Method)],
+    normal: bool,
+    threads: usize,
+) -> Vec<Vec<Times>> {
+    let camera = camera();
+    let exec = Exec::new(threads, 32).expect("threads");
+    let wanted = Wanted { normal, color: true, observed: false };
+    let mut target = Framebuffer::new(1024, 1024, 0.0, wanted);
+    let mut rows = vec![Vec::new(); methods.len()];
+    let start = Instant::now();
+    // At least 9 rounds, then up to 51 within four seconds.
+    while rows[0].len() < 9 || (rows[0].len() < 51 && start.elapsed().as_secs() < 4) {
+        for ((_, method), row) in methods.iter().zip(&mut rows) {
+            row.push(frame(surfels, method, &camera, &exec, &mut target));
+        }
+    }
+    rows
+}
+
+fn frame(
+    surfels: &Surfels,
+    method: &Method,
+    camera: &Camera,
+    exec: &Exec,
+    target: &mut Framebuffer<f32>,
+) -> Times {
+    let start = Instant::now();
+    match method {
+        Method::TwoPass => {
+            let settings = ewa::Settings::default();
+            let (_, times) = ewa::fast::render(surfels, camera, &settings, exec, target);
+            let geometry = times.visibility + times.attributes;
+            [start.elapsed(), times.project, geometry, times.normalize]
+        }
+        Method::SinglePass(groups, depth) => {
+            let settings = Settings { depth: *depth, ..Settings::default() };
+            let (_, times) = fast::render(surfels, groups, camera, &settings, exec, target)
+                .expect("few enough bins");
+            [start.elapsed(), times.project, times.geometry, times.compositing]
+        }
+    }
+}
+
+/// The median of the ratios of two rows, round by round.
+fn ratio(row: &[Times], base: &[Times]) -> f64 {
+    let mut ratios: Vec<_> =
+        row.iter().zip(base).map(|(a, b)| a[0].as_secs_f64() / b[0].as_secs_f64()).collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios[ratios.len() / 2]
+}

@@ -1,0 +1,86 @@
+//! What the fast paths for `f32` share: records of splats, the blocks of a tile, and what is done
+//! with a block whatever the method.
+//!
+//! A tile is done from beginning to end while it is in the cache: its splats are gathered into one
+//! list, and its pixels are kept in blocks of 4 x 4, one vector of 16 lanes a quantity. A lane is a
+//! pixel and never a partial sum, so every pixel sees the operations of the definition in their
+//! order. Three things differ, and none of them changes a bit:
+//!
+//! - A block is visited whole. The lanes outside a splat's bounds have q > k^2.
+//! - The epsilon-z test `1/w <= limit` becomes `w >= least`, with `least` the smallest `f32` that
+//!   passes: 1/w, correctly rounded, never grows with w.
+//! - A fragment that fails adds weight 0 instead of nothing.
+
+pub(super) mod lanes;
+pub(super) mod resolve;
+mod store;
+pub(super) mod tile;
+
+use super::ewa::Settings;
+use super::prepare::Prepared;
+use crate::frame::{Exec, Framebuffer, Grid};
+use crate::scene::{Camera, Surfels};
+use crate::splat::batch;
+use std::time::{Duration, Instant};
+use tile::{Record, Tile};
+
+/// Projection and binning.
+pub(super) fn prepare(
+    surfels: &Surfels,
+    camera: &Camera,
+    settings: &Settings,
+    (exec, grid): (&Exec, &Grid),
+) -> Prepared<f32, Record> {
+    let colors = surfels.color();
+    Prepared::new(
+        (surfels, surfels.len()),
+        camera,
+        settings,
+        (exec, grid),
+        |projector, range, records| {
+            batch::splats_f32(projector, surfels, range, |splat| {
+                records.push(Record::new(&splat, surfels.normal(), colors));
+            })
+        },
+        Record::bounds,
+    )
+}
+
+/// Draws every tile of a framebuffer, and gives the stages' shares of the wall time.
+///
+/// `stages` leaves depths, averages and directions in the blocks of a tile that has splats, and tells
+/// how long each stage took; the first includes gathering the splats, the last storing the pixels.
+pub(super) fn draw<const N: usize>(
+    prepared: &Prepared<f32, Record>,
+    target: &mut Framebuffer<f32>,
+    (exec, grid): (&Exec, &Grid),
+    stages: impl Fn(&mut Tile) -> [Duration; N] + Sync + Send,
+) -> [Duration; N] {
+    let start = Instant::now();
+    let jobs = target.tiles(grid, exec).into_iter().enumerate().collect();
+    let times = exec.ordered(jobs, |(index, mut pixels)| {
+        let start = Instant::now();
+        let mut tile = Tile::gather(prepared, index, &pixels);
+        let mut times = [Duration::ZERO; N];
+        if tile.splats.is_empty() {
+            store::clear(&mut pixels);
+            times[0] = start.elapsed();
+            return times;
+        }
+        let gathered = start.elapsed();
+        times = stages(&mut tile);
+        let start = Instant::now();
+        store::store(&tile, &mut pixels);
+        times[0] += gathered;
+        times[N - 1] += start.elapsed();
+        times
+    });
+    let wall = start.elapsed();
+    let zero = [Duration::ZERO; N];
+    let sums = times.iter().fold(zero, |a, b| std::array::from_fn(|i| a[i] + b[i]));
+    let total: Duration = sums.iter().sum();
+    sums.map(|part| match total.as_secs_f64() {
+        0.0 => Duration::ZERO,
+        total => wall.mul_f64(part.as_secs_f64() / total),
+    })
+}

@@ -1,0 +1,72 @@
+//! Passes over the blocks of a tile that every method has, each compiled for every vector width.
+
+use super::tile::{Block, LANES, Tile};
+use crate::composite::{epsilon, sum};
+use crate::splat::Shared;
+use multiversion::multiversion;
+
+impl Tile {
+    /// The least nearness of each pixel that passes the epsilon-z test.
+    pub(in crate::method) fn limits(&mut self, shared: &Shared<f32>, epsilon: f32) {
+        limits(&mut self.blocks, shared, epsilon);
+    }
+
+    /// Normalization, in place.
+    pub(in crate::method) fn normalize(&mut self, shared: &Shared<f32>) {
+        match (self.normal, self.color) {
+            (false, false) => normalize::<false, false>(&mut self.blocks, shared),
+            (false, true) => normalize::<false, true>(&mut self.blocks, shared),
+            (true, false) => normalize::<true, false>(&mut self.blocks, shared),
+            (true, true) => normalize::<true, true>(&mut self.blocks, shared),
+        }
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn limits(blocks: &mut [Block], shared: &Shared<f32>, epsilon: f32) {
+    let shared = *shared;
+    for block in blocks {
+        for i in 0..LANES {
+            let limit = epsilon::limit(shared.depth(block.nearest[i]), epsilon);
+            block.least[i] = least_nearness(&shared, limit);
+        }
+    }
+}
+
+/// The smallest nearness whose depth, rounded, is at most `limit`.
+///
+/// Under a perspective camera the correctly rounded 1/w never grows with w: it is at most `limit`
+/// from a w on that is 1/(limit + ulp/2). That is less than an ulp below 1/limit, so the answer is
+/// the rounded 1/limit or one of its neighbours. `limit` is > 0; +inf gives 0.
+#[inline(always)]
+pub(in crate::method) fn least_nearness(shared: &Shared<f32>, limit: f32) -> f32 {
+    if !shared.perspective {
+        return -limit;
+    }
+    let middle = 1.0 / limit;
+    let above = f32::from_bits(middle.to_bits().wrapping_add(1));
+    let below = f32::from_bits(middle.to_bits().saturating_sub(1));
+    let least = if 1.0 / middle <= limit { middle } else { above };
+    if 1.0 / below <= limit { below } else { least }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn normalize<const NORMAL: bool, const COLOR: bool>(blocks: &mut [Block], shared: &Shared<f32>) {
+    let shared = *shared;
+    for block in blocks {
+        let weight = block.weight;
+        let (mut depth, mut normal, mut color) = (block.nearest, block.normal, block.color);
+        for i in 0..LANES {
+            depth[i] = shared.depth(depth[i]);
+            if NORMAL {
+                let sums = [normal[0][i], normal[1][i], normal[2][i]];
+                [normal[0][i], normal[1][i], normal[2][i]] = sum::direction(sums, weight[i]);
+            }
+            if COLOR {
+                let sums = [color[0][i], color[1][i], color[2][i]];
+                [color[0][i], color[1][i], color[2][i]] = sum::average(sums, weight[i]);
+            }
+        }
+        (block.nearest, block.normal, block.color) = (depth, normal, color);
+    }
+}

@@ -1,0 +1,68 @@
+//! The fast path for `f32`: the bits of [`super::plain`], from another layout.
+//! See [`crate::method`] for the layout.
+
+mod compositing;
+mod geometry;
+mod images;
+
+use super::Settings;
+use crate::error::Result;
+use crate::frame::{Exec, Framebuffer};
+use crate::method::fast::{draw, prepare};
+use crate::scene::group::Groups;
+use crate::scene::{Camera, Surfels};
+use crate::splat::Tally;
+use images::Images;
+use std::time::{Duration, Instant};
+
+/// Wall time of the stages; those of the fused passes are shares of their common time.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timings {
+    /// Projection and binning.
+    pub project: Duration,
+    /// The geometry pass, with the gathering of each tile's splats.
+    pub geometry: Duration,
+    /// The compositing pass, with the normalization.
+    pub compositing: Duration,
+}
+
+/// Draws a scene into a framebuffer: the geometry pass, the compositing pass and the normalization.
+///
+/// Every pixel of `target` is overwritten, so a framebuffer can be used for many pictures. Its
+/// stencil and margin are not written; see [`super::plain`] for those.
+///
+/// # Errors
+/// [`crate::Error::Invalid`] if the Voronoi depth test takes too many bins, or if there are not as many
+/// surfels in the groups.
+///
+/// # Panics
+/// If the framebuffer has not the size of the camera's picture.
+pub fn render(
+    surfels: &Surfels,
+    groups: &Groups,
+    camera: &Camera,
+    settings: &Settings,
+    exec: &Exec,
+    target: &mut Framebuffer<f32>,
+) -> Result<(Tally, Timings)> {
+    assert_eq!((target.width, target.height), (camera.width, camera.height), "framebuffer size");
+    groups.check(surfels)?;
+    let start = Instant::now();
+    let bins = settings.bins(surfels, camera)?;
+    let grid = exec.grid(camera.width, camera.height);
+    let prepared = prepare(surfels, camera, &settings.splats, (exec, &grid));
+    let project = start.elapsed();
+    let shared = &prepared.shared;
+    let [geometry, compositing] = draw(&prepared, target, (exec, &grid), |tile| {
+        let start = Instant::now();
+        let mut images = Images::new(tile, groups, shared.empty());
+        images.draw(tile, shared, bins.as_ref());
+        let drawn = Instant::now();
+        images.nearest(tile);
+        tile.limits(shared, prepared.epsilon);
+        images.composite(tile, shared);
+        tile.normalize(shared);
+        [drawn - start, drawn.elapsed()]
+    });
+    Ok((prepared.tally, Timings { project, geometry, compositing }))
+}
