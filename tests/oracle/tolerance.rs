@@ -83,9 +83,11 @@ pub(crate) const EWA: &[Row] = &[
 ];
 
 /// Algorithm 1: `group` stands for the depth-image of any group.
-pub(crate) const SINGLE_PASS: &[Row] = &[
-    row("group.Z", F32, 4.0, "as visibility.Z: the same fragment"),
-];
+pub(crate) const SINGLE_PASS: &[Row] =
+    &[row("group.Z", F32, 4.0, "as visibility.Z: the same fragment")];
+
+/// Algorithms 2 and 3.
+pub(crate) const TRANSPARENT: &[Row] = &[];
 
 /// The worst deviation of each plane in each arithmetic so far.
 #[derive(Default)]

@@ -1,0 +1,397 @@
+//! Every stage of Algorithms 2 and 3 against the oracle, for groups, extensions and opacities drawn by
+//! lot.
+
+use crate::eye::V3;
+use crate::number::Num;
+use crate::pixel::Entry;
+use crate::scenes::{Case, Dice, Kind, OUTLINES};
+use crate::single_pass_stages::groups;
+use crate::stages::{at, index, measure, oracle};
+use crate::surroundings::{radiance, refracted, world_ray};
+use crate::tolerance::{Arithmetic, Measured, TRANSPARENT};
+use crate::transparent::{Image, Transparent, Truth, back_to_front, depths};
+use splatref::composite::bins::Range;
+use splatref::frame::{Exec, Frame, NO_ID, Plane, Samples};
+use splatref::method::ewa::{Epsilon, Settings as Splats};
+use splatref::method::single_pass::{self, BinCount, DepthTest};
+use splatref::method::transparent::{self, Holes, Settings};
+use splatref::number::Real;
+use splatref::scene::environment::Map;
+use splatref::scene::group::Groups;
+use splatref::scene::order::BackToFront;
+use splatref::scene::{Environment, Surfels};
+use splatref::shade::optics::{Layers, Refraction};
+use splatref::splat::{Kernel, Outline};
+
+/// A case with groups.
+struct Subject {
+    case: Case,
+    groups: Groups,
+    settings: Settings,
+}
+
+/// A picture of noise to look up.
+pub(crate) fn noise(dice: &mut Dice, height: u32) -> Environment {
+    let count = 2 * height * height;
+    let values = (0..count).map(|_| [(); 3].map(|()| dice.within(0.0, 4.0))).collect();
+    let plane = Plane::from_values(2 * height, height, values);
+    Environment::Map(Map::new(plane).expect("twice as wide as high"))
+}
+
+/// Opacities by lot, the extremes among them.
+pub(crate) fn with_opacities(surfels: &Surfels, dice: &mut Dice, kind: usize) -> Surfels {
+    let mut cloud = surfels.clone().into_cloud();
+    let few = [0.0, 0.125, 0.3, 0.5, 0.75, 0.9, 1.0];
+    cloud.opacity = match kind {
+        0 => None,
+        1 => Some(cloud.position.iter().map(|_| few[dice.below(few.len())]).collect()),
+        2 => Some(vec![0.5; cloud.position.len()]),
+        _ => Some(cloud.position.iter().map(|_| dice.within(0.0, 1.0)).collect()),
+    };
+    Surfels::new(cloud).expect("opacities in range").0
+}
+
+impl Subject {
+    fn new(number: usize) -> Self {
+        let mut dice = Dice(number as u64 * 1009 + 3);
+        dice.below(1);
+        let kinds = [
+            Kind::Discs,
+            Kind::Axes,
+            Kind::Ellipses,
+            Kind::Tilted,
+            Kind::Sizes,
+            Kind::Degenerate,
+            Kind::Shape(0),
+            Kind::Shape(1),
+        ];
+        let epsilon = [
+            Epsilon::MedianRadii(1.0),
+            Epsilon::World(0.25),
+            Epsilon::MedianRadii(0.125),
+            Epsilon::World(0.0),
+            Epsilon::World(f32::INFINITY),
+        ][dice.below(5)];
+        let outline = OUTLINES[number % 3];
+        let kind = kinds[(number / 3) % kinds.len()];
+        // An enlarged disc's exact outline has another centre: without a band, rounding alone would
+        // decide whether it lies behind itself.
+        let epsilon = match epsilon {
+            Epsilon::World(0.0) if outline == Outline::Perspective => Epsilon::World(0.0625),
+            epsilon => epsilon,
+        };
+        let kernel =
+            [Kernel::DEFAULT, Kernel::ZPVBG01, Kernel { low_pass: 0.0, ..Kernel::DEFAULT }];
+        let kernel = Kernel { outline, ..kernel[dice.below(3)] };
+        let splats = Splats { kernel, epsilon, cull: dice.below(4) == 0 };
+        let mut case = Case::new(kind, number as u64, splats, number % 2 == 1);
+        let opacities = dice.below(5);
+        case.scene.surfels = with_opacities(&case.scene.surfels, &mut dice, opacities);
+        case.scene.environment = match dice.below(3) {
+            0 => None,
+            1 => Some(Environment::Sky),
+            _ => Some(noise(&mut dice, 8)),
+        };
+        // Bins as deep as epsilon would be too many.
+        let none = epsilon == Epsilon::World(0.0) || kind == Kind::Sizes;
+        let bins =
+            [BinCount::Count(1), BinCount::Count(7), BinCount::Count(64), BinCount::Count(500)];
+        let lot = |dice: &mut Dice| {
+            if !none && dice.below(2) == 0 { BinCount::Epsilon } else { bins[dice.below(4)] }
+        };
+        let nearest = match dice.below(3) {
+            0 => None,
+            1 => Some(DepthTest::Plain),
+            _ => Some(DepthTest::Voronoi(lot(&mut dice))),
+        };
+        let layers = [Layers::Single, Layers::Multiple][dice.below(2)];
+        let ratio = [[0.625, 0.6875, 0.75], [1.25, 1.5, 0.96], [1.0, 0.5, 2.0]][dice.below(3)];
+        let bent = nearest.is_some() && case.scene.environment.is_some() && dice.below(3) > 0;
+        let settings = Settings {
+            splats,
+            bins: lot(&mut dice),
+            holes: [Holes::Skipped, Holes::Background][dice.below(2)],
+            nearest,
+            refraction: bent.then_some(Refraction { ratio, layers }),
+        };
+        let groups = extended(case.scene.surfels.len(), &mut dice);
+        case.name = format!("number {number}: {} {settings:?}", case.name);
+        Self { case, groups, settings }
+    }
+
+    /// The bins of a setting, by the oracle's own bounds of the scene.
+    fn range(&self, bins: BinCount) -> Range {
+        let Case { scene, camera, settings, .. } = &self.case;
+        let epsilon = settings.epsilon.resolve(&scene.surfels);
+        let range = bins.resolve(&scene.surfels, camera, epsilon).expect("few bins");
+        let [nearest, farthest] = depths(&scene.surfels, camera);
+        // Rounded once: the crate's sums in f64 may come from another order.
+        assert_eq!([range.nearest, range.farthest], [nearest as f32, farthest as f32]);
+        let extent = f64::from(range.farthest) - f64::from(range.nearest);
+        let count = match bins {
+            BinCount::Count(n) => f64::from(n),
+            BinCount::Epsilon => (extent / f64::from(epsilon)).ceil().max(1.0),
+        };
+        assert_eq!(f64::from(range.count), count, "{}", self.case.name);
+        range
+    }
+}
+
+/// Groups by lot, with additions and scales.
+pub(crate) fn extended(surfels: usize, dice: &mut Dice) -> Groups {
+    let count = [1, 2, 3, 5][dice.below(4)];
+    let own = (0..surfels).map(|_| dice.below(count) as u8).collect();
+    let further = if dice.below(2) == 0 { 0 } else { surfels / 3 };
+    let added =
+        (0..further).map(|_| (dice.below(surfels) as u32, dice.below(count) as u8)).collect();
+    let scales = [1.0, 1.0, 1.25, 1.6, 0.5];
+    let scale = (0..count).map(|_| scales[dice.below(scales.len())]).collect();
+    Groups::new(own, added, scale).expect("groups in range")
+}
+
+/// Compares one number, or three.
+struct Compare<'a, R> {
+    frame: &'a Frame<R>,
+    i: usize,
+    place: &'a str,
+    arithmetic: Arithmetic,
+    measured: &'a mut Measured,
+}
+
+impl<R: Real> Compare<'_, R> {
+    fn color(&mut self, name: &str, key: &'static str, numbers: [Num; 3]) {
+        let (step, _) = self.arithmetic.step();
+        let value: V3 = numbers.map(|n| n.value);
+        let condition = numbers.map(|n| n.condition + step * n.value.abs());
+        let entry = Entry { plane: key, value, condition };
+        let to = (self.arithmetic, self.place);
+        let there = measure(self.frame, (name, key), &entry, self.i, to, self.measured);
+        assert!(there, "no plane {name}: {}", self.place);
+    }
+
+    fn number(&mut self, name: &str, key: &'static str, number: Num) {
+        self.color(name, key, [number; 3]);
+    }
+
+    fn exact(&self, name: &str, value: f64) {
+        let found = self.frame.plane(name).unwrap_or_else(|| panic!("no plane {name}"));
+        assert_eq!(at(found, self.i), [value; 3], "plane {name}: {}", self.place);
+    }
+
+    fn image(&mut self, layer: &str, image: &Image) {
+        self.color(layer, "blended.group", image.color);
+        self.number(&format!("{layer}.A"), "blended.group.A", image.alpha);
+        self.number(&format!("{layer}.opacity"), "blended.group.opacity", image.opacity);
+        self.exact(&format!("{layer}.bin"), image.bin);
+        self.exact(&format!("{layer}.count"), image.layers.value);
+        self.exact(&format!("{layer}.id"), image.last.into());
+    }
+
+    fn stages(&mut self, truth: &Truth, nearest: bool) {
+        for (k, image) in truth.images.iter().enumerate() {
+            self.image(&format!("blended.group{k:02}"), image);
+        }
+        let mean = &truth.average;
+        self.color("blended", "blended", mean.color);
+        self.number("blended.A", "blended.A", mean.alpha);
+        self.number("blended.opacity", "blended.opacity", mean.opacity);
+        self.number("blended.hidden", "blended.hidden", mean.hidden);
+        self.number("blended.layers", "blended.layers", mean.layers);
+        if !nearest {
+            return;
+        }
+        self.number("l", "l", truth.count());
+        match &truth.near {
+            Some(near) => {
+                self.color("nearest", "nearest", near.color);
+                self.number("nearest.A", "nearest.A", near.alpha);
+                self.exact("nearest.mask", 1.0);
+            }
+            None => {
+                ["nearest", "nearest.A", "nearest.mask"].map(|name| self.exact(name, 0.0));
+            }
+        }
+    }
+}
+
+impl Subject {
+    /// The last step: colour, opacity, and whether rounding decides about total reflection.
+    fn light(
+        &self,
+        oracle: &Transparent<'_>,
+        truth: &Truth,
+        at: [f64; 2],
+    ) -> ([Num; 3], Num, bool) {
+        let environment = self.case.scene.environment.as_ref();
+        let (step, guard) = (oracle.one.oracle.step, oracle.one.oracle.guard);
+        let ray = world_ray(&oracle.one.oracle.optics.eye, at);
+        let one = Num::exact(1.0);
+        let (mut color, mut alpha) = (truth.average.color, truth.average.alpha);
+        if let Some(near) = &truth.near {
+            if let (Some(environment), Some(refraction)) = (environment, &self.settings.refraction)
+            {
+                let pair = (truth, near);
+                let (color, doubt) = refracted(pair, environment, refraction, ray, [step, guard]);
+                return (color, one, doubt);
+            }
+            // alpha C_F + (1 - alpha) C_O: one alpha, so its errors act on the difference.
+            let blend = |front: Num, behind: Num| {
+                let alpha = near.alpha;
+                let value = alpha.value * front.value + (1.0 - alpha.value) * behind.value;
+                let condition = alpha.value * front.condition
+                    + (1.0 - alpha.value) * behind.condition
+                    + (front.value - behind.value).abs() * alpha.condition
+                    + step * behind.value.abs();
+                Num { value, condition }
+            };
+            color = [0, 1, 2].map(|c| blend(near.color[c], color[c]));
+            alpha = blend(one, alpha);
+        }
+        if let Some(environment) = environment {
+            let sky = radiance(environment, ray, step);
+            color = [0, 1, 2].map(|c| color[c] + (one - alpha) * sky[c]);
+            for (sum, light) in color.iter_mut().zip(sky) {
+                sum.condition += step * light.value;
+            }
+            alpha = one;
+        }
+        (color, alpha, false)
+    }
+
+    /// Compares one picture; returns how many pixels were left out.
+    fn compare<R: Real>(
+        &self,
+        frame: &Frame<R>,
+        arithmetic: Arithmetic,
+        measured: &mut Measured,
+    ) -> usize {
+        let Case { camera, scene, .. } = &self.case;
+        let voronoi = match self.settings.nearest {
+            Some(DepthTest::Voronoi(bins)) => Some(self.range(bins)),
+            _ => None,
+        };
+        let ranges = [Some(self.range(self.settings.bins)), voronoi];
+        let rounding = oracle(&self.case, arithmetic);
+        let oracle = Transparent::new(rounding, camera, &self.groups, &self.settings, ranges);
+        let mut left_out = 0;
+        for i in 0..(camera.width * camera.height) {
+            let (x, y) = (i % camera.width, i / camera.width);
+            let center = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+            let truth = oracle.at(center);
+            let (color, alpha, doubt) = self.light(&oracle, &truth, center);
+            if truth.ambiguous || doubt {
+                left_out += 1;
+                continue;
+            }
+            let place = format!("{arithmetic:?} pixel ({x}, {y}) of {}", self.case.name);
+            let (place, i) = (place.as_str(), i as usize);
+            let mut compare = Compare { frame, i, place, arithmetic, measured: &mut *measured };
+            let nearest = self.settings.nearest.is_some();
+            compare.stages(&truth, nearest);
+            let key = match (&scene.environment, &self.settings.refraction) {
+                (None, _) => "",
+                (Some(Environment::Sky), None) => "before the sky",
+                (Some(Environment::Map(_)), None) => "before a map",
+                (Some(Environment::Sky), Some(_)) => "refracted sky",
+                (Some(Environment::Map(_)), Some(_)) => "refracted map",
+            };
+            compare.color("", key, color);
+            compare.number("A", "A", alpha);
+            let id = index(frame, "id", i).expect("a plane id");
+            if truth.nearest.is_empty() {
+                compare.exact("Z", f64::INFINITY);
+                assert_eq!(id, NO_ID, "{place}");
+            } else {
+                compare.number("Z", "Z", truth.depth);
+                assert!(truth.nearest.contains(&id), "{place}: {id} of {:?}", truth.nearest);
+            }
+            let layer = Num::exact(if truth.near.is_some() { 1.0 } else { 0.0 });
+            compare.number("layers", "layers", truth.average.layers + layer);
+            if let Some(near) = &truth.near {
+                compare.number("weight", "weight", near.weight);
+                if frame.plane("normal").is_some() {
+                    compare.color("normal", "normal", near.normal);
+                }
+            }
+        }
+        left_out
+    }
+}
+
+#[test]
+fn every_stage_of_transparency_equals_the_oracle() {
+    let exec = Exec::sequential();
+    let (mut measured, mut worst) = (Measured::default(), [0.0_f64; 2]);
+    let count: usize = std::env::var("ORACLE_CASES").map_or(96, |n| n.parse().expect("a number"));
+    for number in 0..count {
+        let subject = Subject::new(number);
+        let Case { scene, camera, exact, .. } = &subject.case;
+        let order = BackToFront::new(&scene.surfels, &exec);
+        assert_eq!(order.walk(camera), back_to_front(&scene.surfels, camera), "the order");
+        let (given, settings) = ((&subject.groups, &order), &subject.settings);
+        let narrow = transparent::render::<f32>(scene, given, camera, settings, &exec, true);
+        let wide = transparent::render::<f64>(scene, given, camera, settings, &exec, true);
+        let (narrow, wide) = (narrow.expect("renders").frame, wide.expect("renders").frame);
+        let rounded = if *exact { Arithmetic::F64 } else { Arithmetic::F64Rounded };
+        let pixels = f64::from(camera.width * camera.height);
+        let left = [
+            subject.compare(&narrow, Arithmetic::F32, &mut measured) as f64 / pixels,
+            subject.compare(&wide, rounded, &mut measured) as f64 / pixels,
+        ];
+        for (slot, left) in left.into_iter().enumerate() {
+            worst[slot] = worst[slot].max(left);
+            if left > 0.02 {
+                println!("{:.2} % left out, {slot}: {}", left * 100.0, subject.case.name);
+            }
+        }
+    }
+    println!("{count} scenes; most left out: f32 {:.4}, f64 {:.4}", worst[0], worst[1]);
+    for (key, (worst, place)) in &measured.0 {
+        println!("{key:?}: {worst:.3} {place}");
+    }
+    let complaints = measured.complaints(TRANSPARENT);
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+/// The nearest layer is Algorithm 1 of the groups without their extensions, to the last bit.
+#[test]
+fn the_images_of_the_nearest_layer_are_those_of_the_single_pass() {
+    fn check<R: Real>(subject: &Subject, depth: DepthTest) {
+        let exec = Exec::sequential();
+        let Case { scene, camera, .. } = &subject.case;
+        let order = BackToFront::new(&scene.surfels, &exec);
+        let given = (&subject.groups, &order);
+        let found = transparent::render::<R>(scene, given, camera, &subject.settings, &exec, true);
+        let plain = groups(subject.groups.own().to_vec(), subject.groups.len());
+        let settings = single_pass::Settings { splats: subject.settings.splats, depth };
+        let one = single_pass::render::<R>(scene, &plain, camera, &settings, &exec, true);
+        let (found, one) = (found.expect("renders").frame, one.expect("renders").frame);
+        let mut compared = 0;
+        for plane in one.planes.iter().filter(|plane| plane.name.starts_with("group")) {
+            let name = format!("nearest.{}", plane.name);
+            assert!(found.plane(&name) == Some(&plane.samples), "{name}: {}", subject.case.name);
+            compared += 1;
+        }
+        for name in ["Z", "id", "weight", "normal"] {
+            if let (Some(a), Some(b)) = (found.plane(name), one.plane(name)) {
+                assert!(a == b, "{name}: {}", subject.case.name);
+                compared += 1;
+            }
+        }
+        let color = match found.plane("nearest") {
+            Some(Samples::Color(plane)) => plane,
+            _ => panic!("no plane nearest"),
+        };
+        assert!(one.plane("") == Some(&Samples::Color(color.clone())), "{}", subject.case.name);
+        assert!(compared >= 4 * subject.groups.len() + 3);
+    }
+    let mut count = 0;
+    for subject in (0..48).map(Subject::new) {
+        if let Some(depth) = subject.settings.nearest {
+            check::<f32>(&subject, depth);
+            check::<f64>(&subject, depth);
+            count += 1;
+        }
+    }
+    assert!(count > 20);
+}
