@@ -86,8 +86,60 @@ pub(crate) const EWA: &[Row] = &[
 pub(crate) const SINGLE_PASS: &[Row] =
     &[row("group.Z", F32, 4.0, "as visibility.Z: the same fragment")];
 
-/// Algorithms 2 and 3.
-pub(crate) const TRANSPARENT: &[Row] = &[];
+/// Algorithms 2 and 3. Blended planes ask for no unit normals: in f64 they have one row.
+pub(crate) const TRANSPARENT: &[Row] = &[
+    row("blended.group", F32, 4.0, "Phong of a surfel, then three roundings a layer"),
+    row("blended.group", F64, 4.0, "as in f32"),
+    row("blended.group.A", F32, 4.0, "three roundings a layer"),
+    row("blended.group.A", F64, 0.0, "products of opacities of few digits, in the same order"),
+    row("blended.group.opacity", F32, 4.0, "one rounding a layer"),
+    row("blended.group.opacity", F64, 0.0, "sums of opacities of few digits"),
+    row("blended", F32, 4.0, "a sum over the groups and a quotient"),
+    row("blended", F64, 4.0, "as in f32"),
+    row("blended.A", F32, 4.0, "a sum over the groups and a quotient"),
+    row("blended.A", F64, 4.0, "as in f32"),
+    row("blended.opacity", F32, 4.0, "a sum over the groups and a quotient"),
+    row("blended.opacity", F64, 4.0, "as in f32"),
+    row("blended.hidden", F32, 1.0, "whole numbers, and a quotient"),
+    row("blended.hidden", F64, 2.0, "as in f32; the oracle multiplies by the inverse"),
+    row("blended.layers", F32, 1.0, "whole numbers, and a quotient"),
+    row("blended.layers", F64, 2.0, "as in f32; the oracle multiplies by the inverse"),
+    row("layers", F32, 2.0, "one addition more"),
+    row("layers", F64, 2.0, "as in f32"),
+    row("nearest", F32, 2.0, "as the picture of the single pass"),
+    row("nearest", F64, 2.0, "as in f32"),
+    row("nearest", F64Rounded, 0.25, "a common factor of the amplitudes cancels"),
+    row("nearest.A", F32, 2.0, "as an average colour"),
+    row("nearest.A", F64, 2.0, "as in f32"),
+    row("nearest.A", F64Rounded, 0.125, "a common factor of the amplitudes cancels"),
+    row("l", F32, 2.0, "a sum and a quotient"),
+    row("l", F64, 2.0, "as in f32"),
+    row("l", F64Rounded, 0.125, "as the opacity it is divided by"),
+    row("weight", F32, 4.0, "the same numbers as of the single pass"),
+    row("weight", F64, 4.0, "as in f32"),
+    row("weight", F64Rounded, 0.5, "area takes the normal for a unit, the covariance not"),
+    row("normal", F32, 2.0, "three components share one condition, the largest"),
+    row("normal", F64, 0.5, "as in f32"),
+    row("normal", F64Rounded, 0.25, "a common factor of the amplitudes cancels"),
+    row("Z", F32, 4.0, "as visibility.Z"),
+    row("Z", F64, 4.0, "as visibility.Z"),
+    row("Z", F64Rounded, 1.0, "as visibility.Z"),
+    row("A", F32, 4.0, "one layer over the average"),
+    row("A", F64, 4.0, "as in f32"),
+    row("A", F64Rounded, 0.125, "as the opacity of the nearest layer"),
+    row("", F32, 4.0, "one layer over the average"),
+    row("", F64, 4.0, "as in f32"),
+    row("", F64Rounded, 0.25, "as the nearest layer"),
+    row("before an environment", F32, 4.0, "directions and angles of few roundings"),
+    row("before an environment", F64, 4.0, "as in f32"),
+    row("before an environment", F64Rounded, 0.02, "few of the pixels have a nearest layer"),
+    row("refracted sky", F32, 4.0, "every input of the formula has its condition"),
+    row("refracted sky", F64, 4.0, "as in f32"),
+    row("refracted sky", F64Rounded, 0.03, "as the nearest layer, beside all other inputs"),
+    row("refracted map", F32, 4.0, "every input of the formula has its condition"),
+    row("refracted map", F64, 4.0, "as in f32"),
+    row("refracted map", F64Rounded, 0.03, "as the nearest layer, beside all other inputs"),
+];
 
 /// The worst deviation of each plane in each arithmetic so far.
 #[derive(Default)]

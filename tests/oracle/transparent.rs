@@ -196,7 +196,7 @@ impl Truth {
     pub(crate) fn count(&self) -> Num {
         match &self.near {
             None => Num::ZERO,
-            Some(near) if near.alpha.value == 0.0 => Num::exact(1.0),
+            Some(near) if near.alpha.value == 0.0 => Num::ZERO,
             Some(near) => Num::exact(1.0) + self.average.opacity / near.alpha,
         }
     }
