@@ -1,8 +1,11 @@
 //! `splatref explain`: every decision at one pixel.
 
 use super::options::{ExecOptions, SceneOptions};
-use super::{Finding, Outcome, progress, report, say};
+use super::ready::Ready;
+use super::{Finding, Outcome, report, say};
+use splatref::Error;
 use splatref::io::scene_file::Number;
+use splatref::method::Method;
 use splatref::method::ewa::explain::explain;
 use std::path::PathBuf;
 
@@ -27,14 +30,12 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args) -> Finding {
     let file = args.options.scene_file(&args.scene)?;
     let exec = args.exec.exec()?;
-    let settings = file.method.settings();
-    settings.check()?;
-    let loaded = {
-        let steps = progress::Steps::new();
-        file.load(&exec, &|what, done, of| steps.show(what, done, of))?
+    let Ready { loaded, camera, method, .. } = Ready::new(&file, &exec)?;
+    let Method::Ewa(settings) = method else {
+        let what = "explain replays the method ewa alone; its fragments are those of the others";
+        return Err(Error::Usage(what.into()));
     };
     let surfels = &loaded.scene.surfels;
-    let camera = file.camera(surfels)?;
     let pixel = (args.x, args.y);
     let text = match file.output.number {
         Number::F32 => explain::<f32>(surfels, &camera, &settings, &exec, pixel)?.to_string(),
@@ -42,7 +43,7 @@ pub(super) fn run(args: &Args) -> Finding {
     };
     report::camera(&camera);
     report::picture(&camera, file.output);
-    report::settings(&settings, surfels);
+    report::method(&method, surfels);
     say("");
     say(text.trim_end());
     Ok(Outcome::Good)

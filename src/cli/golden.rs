@@ -1,6 +1,7 @@
 //! `splatref golden`: the pictures under `golden/` are reproduced bit for bit, or blessed.
 
 use super::options::ExecOptions;
+use super::ready::Ready;
 use super::{Finding, Outcome, draw, say};
 use splatref::frame::{Exec, Frame, NamedPlane, Plane, Samples};
 use splatref::io::exr::{self, Image, Values};
@@ -112,11 +113,10 @@ fn check(args: &Args, exec: &Exec, name: &str) -> Result<(Image, bool)> {
 fn render(dir: &Path, exec: &Exec, name: &str) -> Result<Case> {
     let (scene, picture) = (dir.join(format!("{name}.toml")), dir.join(format!("{name}.exr")));
     let file = SceneFile::read(&scene)?;
-    let loaded = file.load(exec, &|_, _, _| ())?;
-    let camera = file.camera(&loaded.scene.surfels)?;
-    let settings = file.method.settings();
-    let drawing = draw::draw(&loaded.scene, &camera, &settings, exec, file.output, None)?;
-    let text = provenance::text(&loaded.scene, &camera, &settings, file.output.number);
+    let Ready { loaded, preparation, camera, method, .. } = Ready::new(&file, exec)?;
+    let drawn = (&loaded.scene, &preparation);
+    let drawing = draw::draw(drawn, &camera, &method, exec, file.output, None)?;
+    let text = provenance::text(&loaded.scene, &preparation, &camera, &method, file.output.number);
     Ok(Case { scene, picture, text, frame: drawing.frame })
 }
 

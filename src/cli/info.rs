@@ -96,7 +96,7 @@ fn scene(path: &Path) -> Result<()> {
     let camera = file.camera(surfels)?;
     report::camera(&camera);
     report::picture(&camera, file.output);
-    report::settings(&file.method.settings(), surfels);
+    report::method(&file.method.method()?, surfels);
     Ok(())
 }
 

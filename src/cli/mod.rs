@@ -10,6 +10,7 @@ mod golden;
 mod info;
 mod options;
 mod progress;
+mod ready;
 mod render;
 mod report;
 

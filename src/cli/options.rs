@@ -3,10 +3,13 @@
 use glam::DVec3;
 use splatref::frame::Exec;
 use splatref::io::scene_file::{
-    DEFAULT_COUNT, EnvironmentChoice, Number, SceneFile, Source, words,
+    DEFAULT_COUNT, EnvironmentChoice, ExtensionChoice, MethodName, Number, SceneFile, Source,
+    check_opacity, words,
 };
 use splatref::method::ewa::Epsilon;
+use splatref::method::transparent::Holes;
 use splatref::scene::{Lens, Shape};
+use splatref::shade::optics::Layers;
 use splatref::splat::{Kernel, Outline};
 use splatref::{Error, Result};
 use std::path::Path;
@@ -79,7 +82,10 @@ pub(super) struct SceneOptions {
         help_heading = "Environment")]
     environment: Option<EnvironmentChoice>,
 
-    /// Preset of outline, cut-off and low-pass filter: default or zpvbg01
+    /// The method: ewa, single-pass, transparent, transparent-hq, peeling [default: ewa]
+    #[arg(long, value_name = "NAME", value_parser = words::method, help_heading = "Method")]
+    method: Option<MethodName>,
+    /// Preset of outline, cut-off and low-pass filter: default, zpvbg01 or zp06
     #[arg(long, value_name = "NAME", value_parser = words::kernel, help_heading = "Method")]
     kernel: Option<Kernel>,
     /// Shape of a splat: affine, perspective or raycast
@@ -103,6 +109,39 @@ pub(super) struct SceneOptions {
     #[arg(long, value_name = "TYPE", value_parser = words::number, help_heading = "Method")]
     number: Option<Number>,
 
+    /// Most overlap c of the splats of a group, 0 to 1 [default: 0.4; of transparency by --groups]
+    #[arg(long, value_name = "C", allow_hyphen_values = true, help_heading = "Groups")]
+    overlap: Option<f32>,
+    /// Most groups; the overlap is the largest that gives so few [default of transparency: 4]
+    #[arg(long, value_name = "K", help_heading = "Groups")]
+    groups: Option<usize>,
+    /// What a group keeps of overlapping splats: plain or voronoi [default: voronoi]
+    #[arg(long, value_name = "NAME", value_parser = words::depth, help_heading = "Groups")]
+    depth: Option<bool>,
+    /// Depth bins, 1 to 65535 [default: as deep as epsilon]
+    #[arg(long, value_name = "N", help_heading = "Groups")]
+    bins: Option<u32>,
+    /// How groups are made to cover the surface: none, add or enlarge [default of transparency: add]
+    #[arg(long, value_name = "NAME", value_parser = words::extension, help_heading = "Groups")]
+    extend: Option<ExtensionChoice>,
+
+    /// Opacity of all surfels, 0 to 1
+    #[arg(long, value_name = "A", allow_hyphen_values = true, help_heading = "Transparency")]
+    opacity: Option<f32>,
+    /// What a group without fragments gives to the average: skipped or background
+    #[arg(long, value_name = "NAME", value_parser = words::holes, help_heading = "Transparency")]
+    holes: Option<Holes>,
+    /// Ratios of refraction for red, green and blue, or one for all: 0.6667 from air to glass
+    #[arg(long, value_name = "R,G,B", value_parser = ratios, allow_hyphen_values = true,
+        help_heading = "Transparency")]
+    refraction: Option<[f32; 3]>,
+    /// How many layers bend light: single or multiple [default: multiple]
+    #[arg(long, value_name = "NAME", value_parser = words::bends, help_heading = "Transparency")]
+    bends: Option<Layers>,
+    /// Most layers that are peeled, 1 to 256 [default: 64]
+    #[arg(long, value_name = "N", help_heading = "Transparency")]
+    peel: Option<u32>,
+
     /// Surfels of a procedural shape [default: 200000]
     #[arg(long, value_name = "N", help_heading = "Shapes")]
     count: Option<usize>,
@@ -124,7 +163,21 @@ impl SceneOptions {
         replace(&mut camera.lens, self.focal.map(Lens::Focal));
         replace(&mut camera.lens, self.ortho.map(Lens::Orthographic));
         replace(&mut file.environment, self.environment.clone());
+        if let Some(opacity) = self.opacity {
+            check_opacity(opacity)?;
+            file.models.iter_mut().for_each(|model| model.opacity = Some(opacity));
+        }
+        replace(&mut file.groups.overlap, self.overlap);
+        replace(&mut file.groups.count, self.groups);
+        replace(&mut file.groups.extension, self.extend);
         let method = &mut file.method;
+        replace(&mut method.name, self.method);
+        replace(&mut method.voronoi, self.depth);
+        replace(&mut method.bins, self.bins);
+        replace(&mut method.holes, self.holes);
+        replace(&mut method.refraction, self.refraction);
+        replace(&mut method.bends, self.bends);
+        replace(&mut method.peel, self.peel);
         if self.kernel.is_some() {
             // A preset replaces all that the file says of the kernel.
             (method.outline, method.cutoff, method.low_pass) = (None, None, None);
@@ -215,6 +268,16 @@ fn switch(text: &str) -> std::result::Result<bool, String> {
 /// `sky` or a file.
 fn environment(text: &str) -> std::result::Result<EnvironmentChoice, String> {
     Ok(words::environment(text))
+}
+
+/// `0.66,0.67,0.68`, or one number for all three.
+fn ratios(text: &str) -> std::result::Result<[f32; 3], String> {
+    let numbers: Option<Vec<f32>> = text.split(',').map(|v| v.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[all]) => Ok([all; 3]),
+        Some(&[r, g, b]) => Ok([r, g, b]),
+        _ => Err("give one number or three, such as 0.66,0.67,0.68".into()),
+    }
 }
 
 /// `1,-2.5,3`.

@@ -1,6 +1,7 @@
 //! `splatref render`: a scene into an EXR and a PNG.
 
 use super::options::{ExecOptions, Kind, SceneOptions, kind};
+use super::ready::Ready;
 use super::{Finding, Outcome, draw, progress, report};
 use splatref::io::{exr, provenance};
 use splatref::method::Picture;
@@ -44,17 +45,13 @@ pub(super) fn run(args: &Args) -> Finding {
     if let Some(path) = &args.output {
         check_place(path)?;
     }
-    let settings = file.method.settings();
-    settings.check()?;
-    let loaded = {
-        let steps = progress::Steps::new();
-        file.load(&exec, &|what, done, of| steps.show(what, done, of))?
-    };
+    let ready = Ready::new(&file, &exec)?;
     let loading = start.elapsed();
+    let Ready { loaded, preparation, camera, method, .. } = &ready;
     let scene = &loaded.scene;
-    let camera = file.camera(&scene.surfels)?;
 
-    let render = |earlier| draw::draw(scene, &camera, &settings, &exec, file.output, earlier);
+    let render =
+        |earlier| draw::draw((scene, preparation), camera, method, &exec, file.output, earlier);
     let mut times = Vec::new();
     let drawing = progress::during("rendering", || -> Result<_> {
         let mut drawing = timed(&mut times, || render(None))?;
@@ -75,16 +72,17 @@ pub(super) fn run(args: &Args) -> Finding {
     };
     let preview = picture.with_extension("png");
     progress::during("writing", || {
-        let text = provenance::text(scene, &camera, &settings, file.output.number);
+        let text = provenance::text(scene, preparation, camera, method, file.output.number);
         exr::write(&picture, &drawing.frame, &text)?;
         draw::write_png(&preview, &drawing.frame)
     })?;
     let writing = writing.elapsed();
 
-    report::scene(&loaded);
-    report::camera(&camera);
-    report::picture(&camera, file.output);
-    report::settings(&settings, &scene.surfels);
+    report::scene(loaded);
+    report::camera(camera);
+    report::picture(camera, file.output);
+    report::method(method, &scene.surfels);
+    ready.report_groups();
     report::tally(&drawing.tally);
     print_times(&exec, loading, times, writing);
     report::time("total", vec![start.elapsed()]);

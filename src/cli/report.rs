@@ -1,9 +1,12 @@
 //! Scenes, cameras, settings and times in words.
 
 use super::say;
+use splatref::io::provenance;
 use splatref::io::scene_file::{Loaded, ModelReport, Output, words};
-use splatref::method::ewa::{Epsilon, Settings};
+use splatref::method::Method;
+use splatref::method::ewa::Epsilon;
 use splatref::scene::derive::Origin;
+use splatref::scene::group::{Coverage, Extended, Groups, Report};
 use splatref::scene::{Camera, Dropped, Projection, Surfels};
 use splatref::splat::Tally;
 use std::time::Duration;
@@ -90,23 +93,55 @@ pub(super) fn camera(camera: &Camera) {
     line("camera", format!("{kind}, at {eye} looking along {towards}"));
 }
 
-pub(super) fn settings(settings: &Settings, surfels: &Surfels) {
-    let kernel = settings.kernel;
-    let depth = short(f64::from(settings.epsilon.resolve(surfels)));
-    let epsilon = match settings.epsilon {
+pub(super) fn method(method: &Method, surfels: &Surfels) {
+    let splats = method.splats();
+    let kernel = splats.kernel;
+    let depth = short(f64::from(splats.epsilon.resolve(surfels)));
+    let epsilon = match splats.epsilon {
         Epsilon::World(_) => depth,
         Epsilon::MedianRadii(count) => format!("{count} median radii = {depth}"),
     };
+    let text = format!(
+        "{}, {} outline, cut-off {}, low-pass {} px^2, epsilon {epsilon}, {}",
+        provenance::name(method),
+        words::of_outline(kernel.outline),
+        kernel.cutoff,
+        kernel.low_pass,
+        if splats.cull { "back faces culled" } else { "both sides" },
+    );
+    line("method", text);
+    let further = provenance::further(method);
+    if !further.is_empty() {
+        line("", further.trim().replace('\n', ", ").replace('"', ""));
+    }
+}
+
+/// The groups, and how they were made.
+pub(super) fn groups(groups: &Groups, made: Option<&(Report, Option<Extended>)>) {
+    let Some((report, extended)) = made else {
+        return line("groups", format!("{}, from the file", groups.len()));
+    };
     line(
-        "method",
+        "groups",
         format!(
-            "ewa, {} outline, cut-off {}, low-pass {} px^2, epsilon {epsilon}, {}",
-            words::of_outline(kernel.outline),
-            kernel.cutoff,
-            kernel.low_pass,
-            if settings.cull { "back faces culled" } else { "both sides" },
+            "{} at c = {}, degree {} at most and {:.1} on the average",
+            report.groups, report.overlap, report.max_degree, report.average_degree
         ),
     );
+    if let Some(extended) = extended {
+        let mean = |of: fn(&Coverage) -> f64| {
+            extended.groups.iter().map(of).sum::<f64>() / extended.groups.len() as f64
+        };
+        line(
+            "",
+            format!(
+                "each covers {:.0} % of the surface, extended {:.0} %; {:.0} % surfels added",
+                100.0 * mean(|group| group.before),
+                100.0 * mean(|group| group.after),
+                extended.percent
+            ),
+        );
+    }
 }
 
 pub(super) fn picture(camera: &Camera, output: Output) {

@@ -5,9 +5,11 @@
 //! - [`groups`]: the n-ary operator over the depth-images of groups.
 //! - [`over`]: alpha-blending of layers.
 //! - [`sum`]: weighted accumulation and normalization.
+//! - [`under`]: alpha-blending from front to back.
 
 pub mod bins;
 pub mod epsilon;
 pub mod groups;
 pub mod over;
 pub mod sum;
+pub mod under;

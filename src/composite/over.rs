@@ -26,6 +26,14 @@ impl<R: Real> Blend<R> {
         Self { color: sum::plus(self.color, other.color), alpha: self.alpha + other.alpha }
     }
 
+    /// The layers before something opaque: colour + (1 - A) `behind`, of opacity 1.
+    #[inline(always)]
+    #[must_use]
+    pub fn before(self, behind: [R; 3]) -> Self {
+        let through = R::ONE - self.alpha;
+        Self { color: sum::plus(self.color, behind.map(|c| through * c)), alpha: R::ONE }
+    }
+
     /// The next nearer layer, back to front: `alpha c + (1 - alpha) below`, of the colour and, with
     /// c = 1, of the opacity \[ZP06, section 3.3\].
     ///

@@ -1,17 +1,31 @@
 //! The text that a picture carries: what it is a picture of, and by which settings.
 
 use crate::io::scene_file::{Number, words};
-use crate::method::ewa::Settings;
+use crate::method::single_pass::{BinCount, DepthTest};
+use crate::method::transparent::{Holes, Settings};
+use crate::method::{Method, Preparation};
 use crate::scene::{Camera, Projection, Scene};
+use crate::shade::optics::{Layers, Refraction};
 
 /// The text as TOML, for the attribute [`super::exr::ATTRIBUTE`].
 ///
 /// Equal for equal pictures: nothing in it depends on the time, the machine, the directory or the
 /// way the picture was computed. Floats are the shortest decimals that give the same `f32`. The
-/// scene is identified by [`Scene::sha256`], the camera by all its numbers.
+/// scene is identified by [`Scene::sha256`], its groups by [`crate::scene::group::Groups::sha256`], the
+/// camera by all its numbers.
 #[must_use]
-pub fn text(scene: &Scene, camera: &Camera, settings: &Settings, number: Number) -> String {
-    let Settings { kernel, epsilon, cull } = settings;
+pub fn text(
+    scene: &Scene,
+    preparation: &Preparation,
+    camera: &Camera,
+    method: &Method,
+    number: Number,
+) -> String {
+    let splats = method.splats();
+    let (kernel, epsilon, cull) = (&splats.kernel, splats.epsilon, splats.cull);
+    let groups = preparation.groups().map_or(String::new(), |groups| {
+        format!("[groups]\ncount = {}\nsha256 = \"{}\"\n\n", groups.len(), groups.sha256())
+    });
     let projection = match camera.projection {
         Projection::Perspective => "perspective",
         Projection::Orthographic => "orthographic",
@@ -21,9 +35,9 @@ pub fn text(scene: &Scene, camera: &Camera, settings: &Settings, number: Number)
     format!(
         "splatref = \"{version}\"\nnumber = \"{number}\"\n\n\
          [scene]\nname = {name}\nsurfels = {surfels}\nsha256 = \"{hash}\"\n\n\
-         [method]\nname = \"ewa\"\noutline = \"{outline}\"\ncutoff = {cutoff:?}\n\
+         [method]\nname = \"{method}\"\noutline = \"{outline}\"\ncutoff = {cutoff:?}\n\
          low_pass = {low_pass:?}\nepsilon = \"{epsilon}\"\nepsilon_in_world_units = {depth:?}\n\
-         cull = {cull}\n\n\
+         cull = {cull}\n{further}\n{groups}\
          [camera]\nsize = [{width}, {height}]\nprojection = \"{projection}\"\n\
          f = [{fx:?}, {fy:?}]\nc = [{cx:?}, {cy:?}]\nnear = {near:?}\n\
          view_from_world = [\n{rows}]\n",
@@ -32,10 +46,12 @@ pub fn text(scene: &Scene, camera: &Camera, settings: &Settings, number: Number)
         name = toml::Value::String(scene.name.clone()),
         surfels = scene.surfels.len(),
         hash = scene.sha256(),
+        method = name(method),
+        further = further(method),
         outline = words::of_outline(kernel.outline),
         cutoff = kernel.cutoff,
         low_pass = kernel.low_pass,
-        epsilon = words::of_epsilon(*epsilon),
+        epsilon = words::of_epsilon(epsilon),
         depth = epsilon.resolve(&scene.surfels),
         width = camera.width,
         height = camera.height,
@@ -48,9 +64,60 @@ pub fn text(scene: &Scene, camera: &Camera, settings: &Settings, number: Number)
     )
 }
 
+/// What scene files call a method.
+#[must_use]
+pub fn name(method: &Method) -> &'static str {
+    match method {
+        Method::Ewa(_) => "ewa",
+        Method::SinglePass(_) => "single-pass",
+        Method::Transparent(Settings { nearest: None, .. }) => "transparent",
+        Method::Transparent(_) => "transparent-hq",
+        Method::Peeling(_) => "peeling",
+    }
+}
+
+/// The settings that only some methods have, as lines of TOML.
+#[must_use]
+pub fn further(method: &Method) -> String {
+    let bins = |bins: &BinCount| match bins {
+        BinCount::Epsilon => "bins = \"epsilon\"\n".to_owned(),
+        BinCount::Count(count) => format!("bins = {count}\n"),
+    };
+    let depth = |test: &DepthTest| match test {
+        DepthTest::Plain => "depth = \"plain\"\n",
+        DepthTest::Voronoi(_) => "depth = \"voronoi\"\n",
+    };
+    match method {
+        Method::Ewa(_) => String::new(),
+        Method::Peeling(settings) => format!("peel = {}\n", settings.layers),
+        Method::SinglePass(settings) => match &settings.depth {
+            DepthTest::Plain => depth(&settings.depth).to_owned(),
+            DepthTest::Voronoi(count) => format!("{}{}", depth(&settings.depth), bins(count)),
+        },
+        Method::Transparent(settings) => {
+            let holes = match settings.holes {
+                Holes::Skipped => "holes = \"skipped\"\n",
+                Holes::Background => "holes = \"background\"\n",
+            };
+            let nearest = settings.nearest.as_ref().map_or("", depth);
+            let refraction = settings.refraction.map_or(String::new(), |refraction| {
+                let Refraction { ratio, layers } = refraction;
+                let bends = match layers {
+                    Layers::Single => "single",
+                    Layers::Multiple => "multiple",
+                };
+                format!("refraction = {ratio:?}\nbends = \"{bends}\"\n")
+            });
+            format!("{}{holes}{nearest}{refraction}", bins(&settings.bins))
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::Exec;
+    use crate::method::ewa;
     use crate::scene::{Lens, Light, Phong, Pose, Shape};
     use glam::DVec3;
 
@@ -65,8 +132,11 @@ mod tests {
         let eye = DVec3::new(0.1, 1.0 / 3.0, 5.0);
         let pose = Pose { eye, target: DVec3::ZERO, up: DVec3::Y };
         let camera = Camera::new(61, 47, pose, Lens::FieldOfView(33.3)).unwrap();
-        let settings = Settings::default();
-        let text = text(&scene, &camera, &settings, Number::F64);
+        let settings = ewa::Settings::default();
+        let method = Method::Ewa(settings);
+        let exec = Exec::sequential();
+        let preparation = Preparation::new(&scene.surfels, None, &method, &exec);
+        let text = text(&scene, &preparation, &camera, &method, Number::F64);
 
         let table: toml::Table = text.parse().unwrap();
         assert_eq!(table["number"].as_str(), Some("f64"));

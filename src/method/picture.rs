@@ -1,5 +1,6 @@
 //! What every method leaves: named planes, counts and times.
 
+use crate::composite::over::Blend;
 use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Samples};
 use crate::number::Real;
 use crate::scene::{Camera, Scene};
@@ -10,7 +11,7 @@ use std::time::{Duration, Instant};
 /// A picture and how it came about.
 #[derive(Clone, Debug)]
 pub struct Picture<R> {
-    /// The planes: the shaded colour (`R G B`), `A` (1 where a surfel is seen, else 0), `Z`,
+    /// The planes: the shaded colour (`R G B`), `A` (1 where a surfel or the environment is seen, else 0), `Z`,
     /// `normal` (world space; not of an unlit scene), `weight`, `id`; before them those of the stages, if asked for.
     pub frame: Frame<R>,
     /// What became of the surfels.
@@ -33,6 +34,7 @@ pub(super) fn finish<R: Real>(
     let color = shader.shade(&depth, normal.as_ref(), color, exec);
     clock.lap("shading");
     let alpha: Plane<R> = weight.map(|&w| if w > R::ZERO { R::ONE } else { R::ZERO });
+    let (color, alpha) = before_environment(scene, camera, color, alpha, exec);
     planes.push(named("", Samples::Color(color)));
     planes.push(named("A", Samples::Scalar(alpha)));
     planes.push(named("Z", Samples::Scalar(depth)));
@@ -40,6 +42,32 @@ pub(super) fn finish<R: Real>(
     planes.push(named("weight", Samples::Scalar(weight)));
     planes.push(named("id", Samples::Index(id)));
     Picture { frame: Frame { width, height, planes }, tally, timings: clock.into_laps() }
+}
+
+/// Colours multiplied by their opacity before the environment of the scene, if it has one.
+pub(super) fn before_environment<R: Real>(
+    scene: &Scene,
+    camera: &Camera,
+    mut color: Plane<[R; 3]>,
+    mut alpha: Plane<R>,
+    exec: &Exec,
+) -> (Plane<[R; 3]>, Plane<R>) {
+    let Some(environment) = &scene.environment else { return (color, alpha) };
+    let view = View::new(camera);
+    let width = camera.width as usize;
+    let rows = color.values_mut().chunks_mut(width).zip(alpha.values_mut().chunks_mut(width));
+    exec.ordered((0..).zip(rows).collect(), |(y, (colors, alphas)): (u32, _)| {
+        let colors: &mut [[R; 3]] = colors;
+        let alphas: &mut [R] = alphas;
+        for (x, (color, alpha)) in (0..).zip(colors.iter_mut().zip(alphas)) {
+            if *alpha < R::ONE {
+                let layers = Blend { color: *color, alpha: *alpha };
+                let whole = layers.before(environment.radiance(view.ray(x, y)));
+                (*color, *alpha) = (whole.color, whole.alpha);
+            }
+        }
+    });
+    (color, alpha)
 }
 
 pub(super) fn named<R>(name: &str, samples: Samples<R>) -> NamedPlane<R> {

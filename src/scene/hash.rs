@@ -1,6 +1,7 @@
 //! The identity of a scene: one hash over everything a picture depends on but camera and settings.
 
 use super::{Environment, Light, Phong, Scene};
+use crate::scene::group::Groups;
 use glam::Vec3;
 use sha2::{Digest, Sha256};
 
@@ -54,6 +55,29 @@ impl Scene {
                 hash.count(pixels.height() as usize);
                 hash.floats(pixels.values().iter().flatten().copied());
             }
+        }
+        hash.finish()
+    }
+}
+
+impl Groups {
+    /// SHA-256 in lower-case hexadecimal.
+    ///
+    /// Of the bytes `"splatref groups 1\n"`, the u64 count of groups and the scale of each (f32), the
+    /// u64 count of surfels and the own group of each (a byte), the u64 count of additions, each a u32
+    /// surfel and a byte, ascending; numbers in little-endian order.
+    #[must_use]
+    pub fn sha256(&self) -> String {
+        let mut hash = Hasher(Sha256::new());
+        hash.0.update(b"splatref groups 1\n");
+        hash.count(self.len());
+        hash.floats(self.scale().iter().copied());
+        hash.count(self.own().len());
+        hash.0.update(self.own());
+        hash.count(self.added().len());
+        for (surfel, group) in self.added() {
+            hash.0.update(surfel.to_le_bytes());
+            hash.0.update([*group]);
         }
         hash.finish()
     }

@@ -91,6 +91,9 @@ fn load(
     if let Some(color) = model.color {
         cloud.color = Some(vec![color; cloud.position.len()]);
     }
+    if let Some(opacity) = model.opacity {
+        cloud.opacity = Some(vec![opacity; cloud.position.len()]);
+    }
     model.transform.apply(&mut cloud);
     Ok((cloud, report))
 }

@@ -13,18 +13,21 @@
 //! [`SceneFile`] is what such a file says. One PLY file or one shape alone makes a scene file too:
 //! [`SceneFile::of_model`].
 
+mod choice;
 mod load;
 mod parse;
 #[cfg(test)]
 mod tests;
 pub mod words;
 
+pub use choice::{
+    DEFAULT_MOST, DEFAULT_OVERLAP, DEFAULT_TRANSPARENT_GROUPS, ExtensionChoice, GroupChoice,
+    MethodChoice, MethodName,
+};
 pub use load::{Loaded, ModelReport};
 
 use crate::error::{Error, Result};
-use crate::method::ewa::{Epsilon, Settings};
 use crate::scene::{Camera, Lens, Light, Phong, Pose, Shape, Similarity, Surfels};
-use crate::splat::{Kernel, Outline};
 use glam::{DVec3, Vec3};
 use std::path::{Path, PathBuf};
 
@@ -54,6 +57,8 @@ pub struct SceneFile {
     pub environment: Option<EnvironmentChoice>,
     /// What is computed.
     pub method: MethodChoice,
+    /// The groups, for a method that draws them.
+    pub groups: GroupChoice,
     /// What is kept.
     pub output: Output,
 }
@@ -67,6 +72,8 @@ pub struct Model {
     pub transform: Similarity,
     /// Linear RGB for all of them, in place of their own.
     pub color: Option<Vec3>,
+    /// Opacity in [0, 1] for all of them, in place of their own.
+    pub opacity: Option<f32>,
 }
 
 /// Where the surfels of a model come from.
@@ -114,23 +121,6 @@ pub enum EnvironmentChoice {
     File(PathBuf),
 }
 
-/// Settings as far as they were chosen.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct MethodChoice {
-    /// A preset; the three that follow replace parts of it.
-    pub kernel: Option<Kernel>,
-    /// See [`Kernel`].
-    pub outline: Option<Outline>,
-    /// See [`Kernel`].
-    pub cutoff: Option<f32>,
-    /// See [`Kernel`].
-    pub low_pass: Option<f32>,
-    /// See [`Settings`].
-    pub epsilon: Option<Epsilon>,
-    /// See [`Settings`].
-    pub cull: Option<bool>,
-}
-
 /// The arithmetic of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Number {
@@ -176,7 +166,7 @@ impl SceneFile {
             Source::File { path, .. } => stem(path),
             Source::Shape { shape, .. } => shape.name().to_owned(),
         };
-        let model = Model { source, transform: Similarity::IDENTITY, color: None };
+        let model = Model { source, transform: Similarity::IDENTITY, color: None, opacity: None };
         Self {
             name,
             models: vec![model],
@@ -185,6 +175,7 @@ impl SceneFile {
             material: Phong::default(),
             environment: None,
             method: MethodChoice::default(),
+            groups: GroupChoice::default(),
             output: Output::default(),
         }
     }
@@ -241,21 +232,15 @@ impl SceneFile {
     }
 }
 
-impl MethodChoice {
-    /// The settings: what was chosen, and the defaults for the rest.
-    #[must_use]
-    pub fn settings(&self) -> Settings {
-        let preset = self.kernel.unwrap_or_default();
-        let default = Settings::default();
-        Settings {
-            kernel: Kernel {
-                outline: self.outline.unwrap_or(preset.outline),
-                cutoff: self.cutoff.unwrap_or(preset.cutoff),
-                low_pass: self.low_pass.unwrap_or(preset.low_pass),
-            },
-            epsilon: self.epsilon.unwrap_or(default.epsilon),
-            cull: self.cull.unwrap_or(default.cull),
-        }
+/// Whether an opacity for a whole model is in [0, 1].
+///
+/// # Errors
+/// [`Error::Invalid`] if it is not.
+pub fn check_opacity(opacity: f32) -> Result<()> {
+    if (0.0..=1.0).contains(&opacity) {
+        Ok(())
+    } else {
+        Err(Error::Invalid(format!("an opacity of {opacity}; give 0 to 1")))
     }
 }
 

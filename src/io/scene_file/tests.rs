@@ -1,8 +1,15 @@
 use super::*;
 use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples};
 use crate::io::exr;
+use crate::method::Method;
+use crate::method::ewa::{Epsilon, Settings};
+use crate::method::single_pass::{BinCount, DepthTest};
+use crate::method::transparent;
 use crate::scene::derive::Origin;
 use crate::scene::environment::{Environment, Map};
+use crate::scene::group::Extension;
+use crate::shade::optics::{Layers, Refraction};
+use crate::splat::{Kernel, Outline};
 use proptest::prelude::*;
 use std::fs;
 
@@ -56,7 +63,22 @@ fn the_example_says_what_it_says() {
     assert_eq!(file.environment, Some(EnvironmentChoice::File(map)));
     let kernel = Kernel { outline: Outline::Perspective, cutoff: 2.0, low_pass: 0.25 };
     let settings = Settings { kernel, epsilon: Epsilon::MedianRadii(1.5), cull: false };
-    assert_eq!(file.method.settings(), settings);
+    let method = file.method.method().unwrap();
+    let bins = BinCount::Count(256);
+    let refraction = Refraction { ratio: [0.66, 0.67, 0.68], layers: Layers::Multiple };
+    let expected = transparent::Settings {
+        splats: settings,
+        bins,
+        holes: transparent::Holes::Skipped,
+        nearest: Some(DepthTest::Voronoi(bins)),
+        refraction: Some(refraction),
+    };
+    assert_eq!(method, Method::Transparent(expected));
+    let grouping = file.groups.grouping(&method);
+    assert_eq!((grouping.rules.overlap, grouping.count), (1.0, Some(4)));
+    assert_eq!(grouping.rules.coplanar.unwrap().cosine, 0.99);
+    assert_eq!(grouping.extension, Extension::Add { most: 0.5 });
+    assert_eq!(bunny.opacity, Some(0.5));
     assert_eq!(file.output, Output { number: Number::F32, stages: true });
 }
 
@@ -65,7 +87,7 @@ fn what_is_absent_has_its_default() {
     let file = parse("[[model]]\nshape = \"staircase\"\n");
     let source = Source::Shape { shape: Shape::ALL[4], count: DEFAULT_COUNT, seed: 0 };
     assert_eq!(file, SceneFile { name: "scene".into(), ..SceneFile::of_model(source) });
-    assert_eq!(file.method.settings(), Settings::default());
+    assert_eq!(*file.method.method().unwrap().splats(), Settings::default());
     assert_eq!(parse(&format!("light = []\n{SHAPE}")).lights, []);
 }
 
@@ -132,7 +154,12 @@ fn errors_name_the_file_the_line_and_the_key() {
 #[test]
 fn epsilon_is_a_number_or_radii() {
     let epsilon = |text: &str| {
-        parse(&format!("{SHAPE}[method]\nepsilon = {text}\n")).method.settings().epsilon
+        parse(&format!("{SHAPE}[method]\nepsilon = {text}\n"))
+            .method
+            .method()
+            .unwrap()
+            .splats()
+            .epsilon
     };
     assert_eq!(epsilon("0.25"), Epsilon::World(0.25));
     assert_eq!(epsilon("2"), Epsilon::World(2.0));
@@ -275,6 +302,6 @@ fn what_the_camera_leaves_open_shows_the_scene() {
 #[test]
 fn a_preset_can_be_changed_in_part() {
     let settings = parse(&format!("{SHAPE}[method]\nkernel = \"zpvbg01\"\nlow_pass = 0\n"));
-    let kernel = settings.method.settings().kernel;
+    let kernel = settings.method.method().unwrap().splats().kernel;
     assert_eq!(kernel, Kernel { low_pass: 0.0, ..Kernel::ZPVBG01 });
 }

@@ -1,19 +1,25 @@
 //! Settings as words: what scene files, the command line and the text in a picture call them.
 
 use crate::method::ewa::Epsilon;
+use crate::method::transparent::Holes;
+use crate::shade::optics::Layers;
 use crate::splat::{Kernel, Outline};
 
-use super::{EnvironmentChoice, Number};
+use super::{EnvironmentChoice, ExtensionChoice, MethodName, Number};
 
 /// Something that a word stands for, or a line that says which words there are.
 type Found<T> = Result<T, String>;
 
-/// `default` or `zpvbg01`.
+/// `default`, `zpvbg01` or `zp06`.
 ///
 /// # Errors
 /// The words there are.
 pub fn kernel(word: &str) -> Found<Kernel> {
-    choose("kernel", word, &[("default", Kernel::DEFAULT), ("zpvbg01", Kernel::ZPVBG01)])
+    choose(
+        "kernel",
+        word,
+        &[("default", Kernel::DEFAULT), ("zpvbg01", Kernel::ZPVBG01), ("zp06", Kernel::ZP06)],
+    )
 }
 
 const OUTLINES: [(&str, Outline); 3] = [
@@ -38,6 +44,66 @@ pub fn of_outline(outline: Outline) -> &'static str {
         Outline::Perspective => "perspective",
         Outline::RayCast => "raycast",
     }
+}
+
+/// The methods.
+const METHODS: [(&str, MethodName); 5] = [
+    ("ewa", MethodName::Ewa),
+    ("single-pass", MethodName::SinglePass),
+    ("transparent", MethodName::Transparent),
+    ("transparent-hq", MethodName::TransparentHq),
+    ("peeling", MethodName::Peeling),
+];
+
+/// `ewa`, `single-pass`, `transparent`, `transparent-hq` or `peeling`.
+///
+/// # Errors
+/// The words there are.
+pub fn method(word: &str) -> Found<MethodName> {
+    choose("method", word, &METHODS)
+}
+
+/// The word for a method.
+#[must_use]
+pub fn of_method(name: MethodName) -> &'static str {
+    METHODS.iter().find(|(_, of)| *of == name).map_or("", |(word, _)| word)
+}
+
+/// `plain` (false) or `voronoi` (true), the depth test of groups.
+///
+/// # Errors
+/// The words there are.
+pub fn depth(word: &str) -> Found<bool> {
+    choose("depth", word, &[("plain", false), ("voronoi", true)])
+}
+
+/// `skipped` or `background`.
+///
+/// # Errors
+/// The words there are.
+pub fn holes(word: &str) -> Found<Holes> {
+    choose("holes", word, &[("skipped", Holes::Skipped), ("background", Holes::Background)])
+}
+
+/// `single` or `multiple`: how many layers bend light.
+///
+/// # Errors
+/// The words there are.
+pub fn bends(word: &str) -> Found<Layers> {
+    choose("bends", word, &[("single", Layers::Single), ("multiple", Layers::Multiple)])
+}
+
+/// `none`, `add` or `enlarge`.
+///
+/// # Errors
+/// The words there are.
+pub fn extension(word: &str) -> Found<ExtensionChoice> {
+    let words = [
+        ("none", ExtensionChoice::None),
+        ("add", ExtensionChoice::Add),
+        ("enlarge", ExtensionChoice::Enlarge),
+    ];
+    choose("extend", word, &words)
 }
 
 /// `f32` or `f64`.

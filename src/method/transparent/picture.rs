@@ -15,7 +15,7 @@ use crate::method::single_pass::plain::{Composite, Geometry, store};
 use crate::number::{Real, Vector3};
 use crate::scene::group::Groups;
 use crate::scene::order::BackToFront;
-use crate::scene::{Camera, Environment, Scene};
+use crate::scene::{Camera, Scene};
 use crate::shade::optics::{self, Behind, Nearest};
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
@@ -88,18 +88,31 @@ pub fn render<R: Real>(
     let (images, pixels): (Vec<_>, Vec<_>) = done.into_iter().unzip();
     let images: Vec<_> = images.into_iter().flatten().collect();
     planes.extend(image_planes(&grid, &images, groups.len()));
+    let tally = first.as_ref().map_or(blending.tally(), |first| first.tally);
+    planes.extend(picture_planes(&grid, &pixels, first, stages));
+    let frame = Frame { width: camera.width, height: camera.height, planes };
+    Ok(Picture { frame, tally, timings: clock.into_laps() })
+}
+
+/// The planes of the picture, with `stages` after those of the averages.
+fn picture_planes<R: Real>(
+    grid: &Grid,
+    pixels: &[Vec<(Average<R>, Blend<R>)>],
+    first: Option<First<R>>,
+    stages: bool,
+) -> Vec<NamedPlane<R>> {
     let average = |tile: usize, i: usize| -> &Average<R> { &pixels[tile][i].0 };
+    let blend = |tile: usize, i: usize| -> &Blend<R> { &pixels[tile][i].1 };
+    let mut planes = Vec::new();
     if stages {
-        planes.extend(average_planes(&grid, average));
+        planes.extend(average_planes(grid, average));
         planes.extend(first.as_ref().map(|first| {
             let l = grid.assemble(R::ZERO, |tile, i| first.layers((tile, i), average(tile, i)));
-            named("l", Samples::Scalar(l))
+            scalar("l", l)
         }));
     }
-    let blend = |tile: usize, i: usize| -> &Blend<R> { &pixels[tile][i].1 };
     planes.push(color("", grid.assemble([R::ZERO; 3], |t, i| blend(t, i).color)));
     planes.push(scalar("A", grid.assemble(R::ZERO, |t, i| blend(t, i).alpha)));
-    let tally = first.as_ref().map_or(blending.tally(), |first| first.tally);
     let counts = grid.assemble(R::ZERO, |t, i| average(t, i).layers);
     match first {
         None => {
@@ -110,8 +123,7 @@ pub fn render<R: Real>(
         }
         Some(first) => planes.extend(first.planes(&counts)),
     }
-    let frame = Frame { width: camera.width, height: camera.height, planes };
-    Ok(Picture { frame, tally, timings: clock.into_laps() })
+    planes
 }
 
 /// The nearest layer, composited and shaded: pass 1 of Algorithm 3.
@@ -244,16 +256,9 @@ impl<R: Real> Tail<'_, R> {
         };
         match environment {
             None => blend,
-            Some(environment) => before(blend, environment, self.view.ray(x, y)),
+            Some(environment) => blend.before(environment.radiance(self.view.ray(x, y))),
         }
     }
-}
-
-/// Layers before an environment: colour + (1 - A) env, of opacity 1.
-fn before<R: Real>(blend: Blend<R>, environment: &Environment, ray: Vector3<R>) -> Blend<R> {
-    let through = R::ONE - blend.alpha;
-    let behind = environment.radiance(ray).map(|c| through * c);
-    Blend { color: sum::plus(blend.color, behind), alpha: R::ONE }
 }
 
 /// The image of each group.

@@ -163,6 +163,18 @@ pub fn group(
     Ok((Groups::of_colors(&tree, &color, report.groups), report))
 }
 
+/// Whether there can be so many groups.
+///
+/// # Errors
+/// [`Error::Invalid`] if there cannot.
+pub fn check_count(groups: usize) -> Result<()> {
+    if (1..=MAX_GROUPS).contains(&groups) {
+        Ok(())
+    } else {
+        Err(Error::Invalid(format!("{groups} groups; give 1 to {MAX_GROUPS}")))
+    }
+}
+
 /// As [`group`], with the c of [`fitting`] that gives at most `count` groups.
 ///
 /// # Errors
@@ -175,9 +187,7 @@ pub fn group_into(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<(Groups, Report)> {
     rules.check()?;
-    if !(1..=MAX_GROUPS).contains(&count) {
-        return Err(Error::Invalid(format!("{count} groups; give 1 to {MAX_GROUPS}")));
-    }
+    check_count(count)?;
     progress("sorting surfels", 0, 1);
     let tree = Tree::new(surfels, 0..surfels.len() as u32);
     let colored = |c: f32| color(surfels, &tree, rules, c, exec, progress);
@@ -228,9 +238,7 @@ impl Groups {
     /// or if a surfel or a group does not exist.
     pub fn new(own: Vec<u8>, added: Vec<(u32, u8)>, scale: Vec<f32>) -> Result<Self> {
         let groups = scale.len();
-        if !(1..=MAX_GROUPS).contains(&groups) {
-            return Err(Error::Invalid(format!("{groups} groups; give 1 to {MAX_GROUPS}")));
-        }
+        check_count(groups)?;
         if let Some(wrong) = scale.iter().find(|scale| !(**scale > 0.0 && scale.is_finite())) {
             return Err(Error::Invalid(format!("groups: a scale of {wrong}; give a number > 0")));
         }

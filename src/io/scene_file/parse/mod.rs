@@ -3,17 +3,18 @@
 //! Each table is read into a struct that mirrors its keys and then converted; a conversion that
 //! fails is reported by serde at the table's place in the text.
 
+mod method;
+
 use super::{
-    CameraChoice, DEFAULT_COUNT, EnvironmentChoice, MethodChoice, Model, Number, Output, SceneFile,
-    Source, stem, words,
+    CameraChoice, DEFAULT_COUNT, EnvironmentChoice, GroupChoice, MethodChoice, Model, Number,
+    Output, SceneFile, Source, check_opacity, stem, words,
 };
 use crate::error::{Error, Result};
-use crate::method::ewa::Epsilon;
 use crate::scene::transform::{self, Similarity};
 use crate::scene::{Lens, Light, Phong, Shape};
 use glam::{DMat3, DVec3, Vec3};
-use serde::de::{self, Deserialize, Deserializer, Visitor};
-use std::fmt;
+use method::{RawGroups, RawMethod};
+use serde::de::{self, Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
 
 pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
@@ -49,6 +50,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
         material: file.material,
         environment,
         method: file.method,
+        groups: file.groups,
         output: file.output,
     })
 }
@@ -66,6 +68,8 @@ struct File {
     environment: Option<EnvironmentChoice>,
     #[serde(default)]
     method: MethodChoice,
+    #[serde(default)]
+    groups: GroupChoice,
     #[serde(default)]
     output: Output,
 }
@@ -89,6 +93,7 @@ through! {
     Phong: RawMaterial, RawMaterial::material;
     EnvironmentChoice: RawEnvironment, RawEnvironment::choice;
     MethodChoice: RawMethod, RawMethod::choice;
+    GroupChoice: RawGroups, RawGroups::choice;
     Output: RawOutput, RawOutput::output;
 }
 
@@ -105,6 +110,7 @@ struct RawModel {
     count: Option<usize>,
     seed: Option<u64>,
     color: Option<[f32; 3]>,
+    opacity: Option<f32>,
     #[serde(default)]
     transform: RawTransform,
 }
@@ -145,7 +151,11 @@ impl RawModel {
         if !color.is_none_or(|c| c.is_finite() && c.min_element() >= 0.0) {
             return Err("color must be three finite numbers >= 0".into());
         }
-        Ok(Model { source, transform: self.transform.similarity()?, color })
+        if let Some(opacity) = self.opacity {
+            check_opacity(opacity).map_err(|error| error.to_string())?;
+        }
+        let (transform, opacity) = (self.transform.similarity()?, self.opacity);
+        Ok(Model { source, transform, color, opacity })
     }
 
     /// The shape with the parameters that were given for it.
@@ -322,61 +332,6 @@ impl RawEnvironment {
             (None, Some(true)) => Ok(EnvironmentChoice::Sky),
             _ => Err("environment: give either a `file` or `sky = true`".into()),
         }
-    }
-}
-
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawMethod {
-    name: Option<String>,
-    kernel: Option<String>,
-    outline: Option<String>,
-    cutoff: Option<f32>,
-    low_pass: Option<f32>,
-    epsilon: Option<RawEpsilon>,
-    cull: Option<bool>,
-}
-
-impl RawMethod {
-    fn choice(self) -> std::result::Result<MethodChoice, String> {
-        if let Some(name) = self.name.filter(|name| name != "ewa") {
-            return Err(format!("method `{name}`; the one there is is `ewa`"));
-        }
-        let choice = MethodChoice {
-            kernel: self.kernel.map(|word| words::kernel(&word)).transpose()?,
-            outline: self.outline.map(|word| words::outline(&word)).transpose()?,
-            cutoff: self.cutoff,
-            low_pass: self.low_pass,
-            epsilon: self.epsilon.map(|epsilon| epsilon.0),
-            cull: self.cull,
-        };
-        choice.settings().check().map_err(|error| error.to_string())?;
-        Ok(choice)
-    }
-}
-
-/// A number of world units, or a text as [`words::epsilon`] reads it.
-struct RawEpsilon(Epsilon);
-
-impl<'de> Deserialize<'de> for RawEpsilon {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
-        struct Either;
-        impl Visitor<'_> for Either {
-            type Value = Epsilon;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number of world units or a text such as \"1.5r\"")
-            }
-            fn visit_f64<E>(self, value: f64) -> std::result::Result<Epsilon, E> {
-                Ok(Epsilon::World(value as f32))
-            }
-            fn visit_i64<E>(self, value: i64) -> std::result::Result<Epsilon, E> {
-                Ok(Epsilon::World(value as f32))
-            }
-            fn visit_str<E: de::Error>(self, text: &str) -> std::result::Result<Epsilon, E> {
-                words::epsilon(text).map_err(E::custom)
-            }
-        }
-        from.deserialize_any(Either).map(Self)
     }
 }
 

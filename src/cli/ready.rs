@@ -1,0 +1,48 @@
+//! A scene ready to be drawn: loaded, divided into groups, ordered, seen by a camera.
+
+use super::{progress, report};
+use splatref::Result;
+use splatref::frame::Exec;
+use splatref::io::scene_file::{Loaded, SceneFile};
+use splatref::method::{Method, Preparation};
+use splatref::scene::Camera;
+use splatref::scene::group::{Extended, Report};
+
+/// All that [`super::draw::draw`] needs.
+pub(super) struct Ready {
+    pub(super) loaded: Loaded,
+    pub(super) preparation: Preparation,
+    pub(super) camera: Camera,
+    pub(super) method: Method,
+    /// How the groups were made, if they were not read.
+    grouping: Option<(Report, Option<Extended>)>,
+}
+
+impl Ready {
+    /// Loads and prepares what a scene file says.
+    pub(super) fn new(file: &SceneFile, exec: &Exec) -> Result<Self> {
+        // What is wrong with the settings is said before much is read.
+        let method = file.method.method()?;
+        file.groups.check()?;
+        let steps = progress::Steps::new();
+        let show = |what: &str, done, of| steps.show(what, done, of);
+        let loaded = file.load(exec, &show)?;
+        let surfels = &loaded.scene.surfels;
+        let camera = file.camera(surfels)?;
+        let (mut groups, mut grouping) = (None, None);
+        if method.needs_groups() {
+            let (made, report, extended) =
+                file.groups.grouping(&method).groups(surfels, exec, &show)?;
+            (groups, grouping) = (Some(made), Some((report, extended)));
+        }
+        let preparation = Preparation::new(surfels, groups, &method, exec);
+        Ok(Self { loaded, preparation, camera, method, grouping })
+    }
+
+    /// Says how the groups came about.
+    pub(super) fn report_groups(&self) {
+        if let Some(groups) = self.preparation.groups() {
+            report::groups(groups, self.grouping.as_ref());
+        }
+    }
+}

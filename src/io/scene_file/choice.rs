@@ -1,0 +1,214 @@
+//! The method and its groups as far as they were chosen, and the defaults for the rest.
+
+use crate::error::{Error, Result};
+use crate::method::ewa::{self, Epsilon};
+use crate::method::single_pass::{self, BinCount, DepthTest};
+use crate::method::transparent::{self, Holes};
+use crate::method::{Grouping, Method, peeling};
+use crate::scene::group::{Coplanar, Extension, Rules};
+use crate::shade::optics::{Layers, Refraction};
+use crate::splat::{Kernel, Outline};
+
+/// A method by its name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MethodName {
+    /// `ewa`: 2+1 passes.
+    #[default]
+    Ewa,
+    /// `single-pass`: Algorithm 1 of \[ZP06\].
+    SinglePass,
+    /// `transparent`: Algorithm 2 of \[ZP06\].
+    Transparent,
+    /// `transparent-hq`: Algorithm 3 of \[ZP06\].
+    TransparentHq,
+    /// `peeling`: depth peeling.
+    Peeling,
+}
+
+/// Settings as far as they were chosen; one that its method does not have is refused.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MethodChoice {
+    /// Which method.
+    pub name: Option<MethodName>,
+    /// A preset; the three that follow replace parts of it.
+    pub kernel: Option<Kernel>,
+    /// See [`Kernel`].
+    pub outline: Option<Outline>,
+    /// See [`Kernel`].
+    pub cutoff: Option<f32>,
+    /// See [`Kernel`].
+    pub low_pass: Option<f32>,
+    /// See [`ewa::Settings`].
+    pub epsilon: Option<Epsilon>,
+    /// See [`ewa::Settings`].
+    pub cull: Option<bool>,
+    /// Whether groups keep what is nearest to its own centre, [`DepthTest::Voronoi`]; yes if absent.
+    pub voronoi: Option<bool>,
+    /// How many depth bins, see [`BinCount`]; as epsilon has it if absent.
+    pub bins: Option<u32>,
+    /// See [`transparent::Settings`].
+    pub holes: Option<Holes>,
+    /// Ratios of refraction, see [`Refraction`]; none are bent by if absent.
+    pub refraction: Option<[f32; 3]>,
+    /// How many layers bend; [`Layers::Multiple`] if absent.
+    pub bends: Option<Layers>,
+    /// The most layers that are peeled, see [`peeling::Settings`].
+    pub peel: Option<u32>,
+}
+
+/// How groups are extended, without its parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExtensionChoice {
+    /// See [`Extension::None`].
+    None,
+    /// See [`Extension::Add`].
+    Add,
+    /// See [`Extension::Enlarge`].
+    Enlarge,
+}
+
+/// Groups as far as they were chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GroupChoice {
+    /// See [`Rules::overlap`].
+    pub overlap: Option<f32>,
+    /// See [`Rules::opposite`]; true if absent.
+    pub opposite: Option<bool>,
+    /// See [`Rules::coplanar`]; none if absent.
+    pub coplanar: Option<Coplanar>,
+    /// The most groups; the overlap is then the largest that gives so few.
+    pub count: Option<usize>,
+    /// See [`Extension`].
+    pub extension: Option<ExtensionChoice>,
+    /// See [`Extension::Add`]; [`DEFAULT_MOST`] if absent.
+    pub most: Option<f32>,
+}
+
+/// c of single-pass rendering if nobody says: what \[ZP06, section 6.1\] finds acceptable.
+pub const DEFAULT_OVERLAP: f32 = 0.4;
+/// K of transparency if nobody says: what \[ZP06, section 6.2\] finds sufficient.
+pub const DEFAULT_TRANSPARENT_GROUPS: usize = 4;
+/// How far a surfel may be covered that is added to a group, if nobody says.
+pub const DEFAULT_MOST: f32 = 0.5;
+
+impl MethodChoice {
+    /// The method: what was chosen, and the defaults for the rest.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if something was chosen that the method does not have, or is out of range.
+    pub fn method(&self) -> Result<Method> {
+        use MethodName::{Ewa, Peeling, SinglePass, Transparent, TransparentHq};
+        let name = self.name.unwrap_or_default();
+        let keys: [(&str, bool, &[MethodName]); 6] = [
+            ("depth", self.voronoi.is_some(), &[SinglePass, TransparentHq]),
+            ("bins", self.bins.is_some(), &[SinglePass, Transparent, TransparentHq]),
+            ("holes", self.holes.is_some(), &[Transparent, TransparentHq]),
+            ("refraction", self.refraction.is_some(), &[TransparentHq]),
+            ("bends", self.bends.is_some(), &[TransparentHq]),
+            ("peel", self.peel.is_some(), &[Peeling]),
+        ];
+        if let Some((key, ..)) = keys.iter().find(|(_, given, of)| *given && !of.contains(&name)) {
+            let name = super::words::of_method(name);
+            return Err(Error::Invalid(format!("`{key}` means nothing to the method {name}")));
+        }
+        if self.bends.is_some() && self.refraction.is_none() {
+            return Err(Error::Invalid("`bends` means nothing without a `refraction`".into()));
+        }
+        let splats = self.splats(ewa::Settings::default());
+        let method = match name {
+            Ewa => Method::Ewa(splats),
+            SinglePass => Method::SinglePass(single_pass::Settings { splats, depth: self.depth() }),
+            Peeling => {
+                let default = peeling::Settings::default();
+                Method::Peeling(peeling::Settings {
+                    splats: self.splats(default.splats),
+                    layers: self.peel.unwrap_or(default.layers),
+                })
+            }
+            Transparent | TransparentHq => {
+                let default = transparent::Settings::default();
+                Method::Transparent(transparent::Settings {
+                    splats: self.splats(default.splats),
+                    bins: self.bin_count(),
+                    holes: self.holes.unwrap_or(default.holes),
+                    nearest: (name == TransparentHq).then(|| self.depth()),
+                    refraction: self.refraction.map(|ratio| Refraction {
+                        ratio,
+                        layers: self.bends.unwrap_or(Layers::Multiple),
+                    }),
+                })
+            }
+        };
+        method.check()?;
+        Ok(method)
+    }
+
+    fn splats(&self, default: ewa::Settings) -> ewa::Settings {
+        let preset = self.kernel.unwrap_or(default.kernel);
+        ewa::Settings {
+            kernel: Kernel {
+                outline: self.outline.unwrap_or(preset.outline),
+                cutoff: self.cutoff.unwrap_or(preset.cutoff),
+                low_pass: self.low_pass.unwrap_or(preset.low_pass),
+            },
+            epsilon: self.epsilon.unwrap_or(default.epsilon),
+            cull: self.cull.unwrap_or(default.cull),
+        }
+    }
+
+    fn bin_count(&self) -> BinCount {
+        self.bins.map_or(BinCount::Epsilon, BinCount::Count)
+    }
+
+    fn depth(&self) -> DepthTest {
+        match self.voronoi {
+            Some(false) => DepthTest::Plain,
+            _ => DepthTest::Voronoi(self.bin_count()),
+        }
+    }
+}
+
+impl GroupChoice {
+    /// The grouping for a method: what was chosen, and its defaults for the rest.
+    #[must_use]
+    pub fn grouping(&self, method: &Method) -> Grouping {
+        let blends = matches!(method, Method::Transparent(_));
+        let (overlap, count, extension) = if blends {
+            (1.0, Some(DEFAULT_TRANSPARENT_GROUPS), ExtensionChoice::Add)
+        } else {
+            (DEFAULT_OVERLAP, None, ExtensionChoice::None)
+        };
+        Grouping {
+            rules: Rules {
+                // With a count the overlap is its upper end.
+                overlap: self.overlap.unwrap_or(if self.count.is_some() { 1.0 } else { overlap }),
+                opposite: self.opposite.unwrap_or(true),
+                coplanar: self.coplanar,
+            },
+            count: self.count.or(if self.overlap.is_some() { None } else { count }),
+            extension: match self.extension.unwrap_or(extension) {
+                ExtensionChoice::None => Extension::None,
+                ExtensionChoice::Add => Extension::Add { most: self.most.unwrap_or(DEFAULT_MOST) },
+                ExtensionChoice::Enlarge => Extension::Enlarge,
+            },
+        }
+    }
+
+    /// Whether what was chosen is in range.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if it is not.
+    pub fn check(&self) -> Result<()> {
+        if self.most.is_some() && self.extension.is_some_and(|e| e != ExtensionChoice::Add) {
+            return Err(Error::Invalid("`most` means nothing unless splats are added".into()));
+        }
+        // The ranges are the same for every method.
+        self.grouping(&Method::Transparent(transparent::Settings::default())).check()
+    }
+
+    /// Whether nothing was chosen.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        *self == Self::default()
+    }
+}

@@ -1,0 +1,186 @@
+//! Any method, chosen by a value, with what it needs before the first view.
+
+use super::{Picture, ewa, peeling, single_pass, transparent};
+use crate::error::Result;
+use crate::frame::Exec;
+use crate::number::Real;
+use crate::scene::group::{self, Extended, Extension, Groups, Report, Rules};
+use crate::scene::order::BackToFront;
+use crate::scene::{Camera, Scene, Surfels};
+
+/// A method and what it computes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// EWA splatting in 2+1 passes.
+    Ewa(ewa::Settings),
+    /// Algorithm 1 of \[ZP06\].
+    SinglePass(single_pass::Settings),
+    /// Algorithms 2 and 3 of \[ZP06\].
+    Transparent(transparent::Settings),
+    /// Depth peeling.
+    Peeling(peeling::Settings),
+}
+
+impl Method {
+    /// Footprints, epsilon and culling, which every method has.
+    #[must_use]
+    pub fn splats(&self) -> &ewa::Settings {
+        match self {
+            Self::Ewa(settings) => settings,
+            Self::SinglePass(settings) => &settings.splats,
+            Self::Transparent(settings) => &settings.splats,
+            Self::Peeling(settings) => &settings.splats,
+        }
+    }
+
+    /// Whether the numbers are in range.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] if one is not.
+    pub fn check(&self) -> Result<()> {
+        match self {
+            Self::Ewa(settings) => settings.check(),
+            Self::SinglePass(settings) => settings.check(),
+            Self::Transparent(settings) => settings.check(),
+            Self::Peeling(settings) => settings.check(),
+        }
+    }
+
+    /// Whether it draws groups.
+    #[must_use]
+    pub fn needs_groups(&self) -> bool {
+        matches!(self, Self::SinglePass(_) | Self::Transparent(_))
+    }
+}
+
+/// How surfels are divided into groups.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grouping {
+    /// Which surfels may not share a group.
+    pub rules: Rules,
+    /// The most groups, see [`group::group_into`]; none: as many as the rules take.
+    pub count: Option<usize>,
+    /// How groups are made to cover the surface.
+    pub extension: Extension,
+}
+
+impl Grouping {
+    /// Whether the numbers are in range.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] if one is not.
+    pub fn check(&self) -> Result<()> {
+        self.rules.check()?;
+        self.extension.check()?;
+        self.count.map_or(Ok(()), group::check_count)
+    }
+
+    /// Makes the groups, and tells what was found and what the extension did.
+    ///
+    /// `progress` is told the name of a step, how much of it is done, and of how much.
+    ///
+    /// # Errors
+    /// As [`group::group`], [`group::group_into`] and [`group::extend`].
+    pub fn groups(
+        &self,
+        surfels: &Surfels,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<(Groups, Report, Option<Extended>)> {
+        let (groups, report) = match self.count {
+            None => group::group(surfels, &self.rules, exec, progress)?,
+            Some(count) => group::group_into(surfels, &self.rules, count, exec, progress)?,
+        };
+        if self.extension == Extension::None {
+            return Ok((groups, report, None));
+        }
+        let (groups, extended) = group::extend(surfels, &groups, &self.extension, exec, progress)?;
+        Ok((groups, report, Some(extended)))
+    }
+}
+
+/// What a method needs of a scene before any view; made once.
+#[derive(Debug)]
+pub struct Preparation {
+    /// For methods that draw groups.
+    groups: Option<Groups>,
+    /// For methods that blend from back to front.
+    order: Option<BackToFront>,
+}
+
+impl Preparation {
+    /// For a method; `groups` are not used by one that does without.
+    ///
+    /// # Panics
+    /// If there are no groups and the method draws groups.
+    #[must_use]
+    pub fn new(surfels: &Surfels, groups: Option<Groups>, method: &Method, exec: &Exec) -> Self {
+        assert!(groups.is_some() || !method.needs_groups(), "a method that draws groups");
+        let blends = matches!(method, Method::Transparent(_));
+        let groups = groups.filter(|_| method.needs_groups());
+        Self { groups, order: blends.then(|| BackToFront::new(surfels, exec)) }
+    }
+
+    /// The groups, if the method draws them.
+    #[must_use]
+    pub fn groups(&self) -> Option<&Groups> {
+        self.groups.as_ref()
+    }
+}
+
+/// Renders with the definition, in any number; see the `render` of each method.
+///
+/// # Errors
+/// As the method.
+///
+/// # Panics
+/// If the preparation is not that of the scene and the method.
+pub fn render<R: Real>(
+    scene: &Scene,
+    preparation: &Preparation,
+    camera: &Camera,
+    method: &Method,
+    exec: &Exec,
+    stages: bool,
+) -> Result<Picture<R>> {
+    match (method, preparation) {
+        (Method::Ewa(settings), _) => ewa::render(scene, camera, settings, exec, stages),
+        (Method::Peeling(settings), _) => peeling::render(scene, camera, settings, exec, stages),
+        (Method::SinglePass(settings), Preparation { groups: Some(groups), .. }) => {
+            single_pass::render(scene, groups, camera, settings, exec, stages)
+        }
+        (
+            Method::Transparent(settings),
+            Preparation { groups: Some(groups), order: Some(order) },
+        ) => transparent::render(scene, (groups, order), camera, settings, exec, stages),
+        _ => panic!("the preparation of another method"),
+    }
+}
+
+/// Renders in `f32` without the planes of stages, by the fast path where there is one; `earlier` is a
+/// picture whose memory may be used again.
+///
+/// # Errors
+/// As the method.
+///
+/// # Panics
+/// As [`render`].
+pub fn render_f32(
+    scene: &Scene,
+    preparation: &Preparation,
+    camera: &Camera,
+    method: &Method,
+    exec: &Exec,
+    earlier: Option<Picture<f32>>,
+) -> Result<Picture<f32>> {
+    match (method, &preparation.groups, earlier) {
+        (Method::Ewa(settings), _, Some(earlier)) => {
+            ewa::render_f32_again(scene, camera, settings, exec, earlier)
+        }
+        (Method::Ewa(settings), _, None) => ewa::render_f32(scene, camera, settings, exec),
+        (Method::SinglePass(settings), Some(groups), _) => {
+            single_pass::render_f32(scene, groups, camera, settings, exec)
+        }
+        _ => render(scene, preparation, camera, method, exec, false),
+    }
+}
