@@ -141,6 +141,9 @@ pub(crate) const TRANSPARENT: &[Row] = &[
     row("refracted map", F64Rounded, 0.03, "as the nearest layer, beside all other inputs"),
 ];
 
+/// Depth peeling.
+pub(crate) const PEELING: &[Row] = &[];
+
 /// The worst deviation of each plane in each arithmetic so far.
 #[derive(Default)]
 pub(crate) struct Measured(pub(crate) BTreeMap<(&'static str, Arithmetic), (f64, String)>);

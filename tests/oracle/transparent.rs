@@ -333,17 +333,22 @@ impl<'a> Transparent<'a> {
         let slack = oracle.slack(&first.1);
         truth.nearest = oracle.nearest(&kept);
         truth.depth = depth;
-        let opacity = oracle.scene.surfels.opacity();
-        let terms = seen.iter().map(|(splat, f)| {
-            let condition = f.spread.weight + oracle.step * f.value.weight;
-            let alpha = opacity.map_or(1.0, |all| all[splat.index].into());
-            Num { value: f.value.weight, condition } * Num::exact(alpha)
-        });
-        let alpha = terms.fold(Num::ZERO, |sum, term| sum + term) / weight;
+        let alpha = opacity(oracle, &seen, weight);
         let (color, normal) = (find(""), find("normal"));
         let (depth, surfels) = (depth.value, truth.nearest.clone());
         truth.near = Some(Near { depth, slack, color, alpha, normal, weight, surfels });
     }
+}
+
+/// The weighted average of the opacities of fragments, of their sum of weights.
+pub(crate) fn opacity(oracle: &Oracle<'_>, seen: &[Seen<'_>], weight: Num) -> Num {
+    let opacity = oracle.scene.surfels.opacity();
+    let terms = seen.iter().map(|(splat, f)| {
+        let condition = f.spread.weight + oracle.step * f.value.weight;
+        let alpha = opacity.map_or(1.0, |all| all[splat.index].into());
+        Num { value: f.value.weight, condition } * Num::exact(alpha)
+    });
+    terms.fold(Num::ZERO, |sum, term| sum + term) / weight
 }
 
 /// The colour of a surfel, shaded at its centre, and its change with every input.
