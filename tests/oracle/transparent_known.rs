@@ -49,8 +49,9 @@ fn sheets(layers: &[Sheet], count: usize) -> (Scene, Groups) {
     let mut own = Vec::new();
     for layer in layers {
         for k in 0..count {
-            // Within the plane of the layer.
-            let aside = layer.normal.cross(Vec3::Y) * (0.25 * k as f32);
+            // Within the plane of the layer, and closer to each other than layers: centres are sorted
+            // along the axis of their largest extent.
+            let aside = layer.normal.cross(Vec3::Y) * (0.0625 * k as f32);
             cloud.position.push(Vec3::new(0.0, 0.0, -layer.depth) + aside);
             cloud.normal.as_mut().into_iter().for_each(|all| all.push(layer.normal));
             cloud.radius.as_mut().into_iter().for_each(|all| all.push(8.0));

@@ -32,11 +32,11 @@ const MASK: Stencil = Stencil { reference: 1, pass: Operation::Replace, ..Stenci
 /// |---|---|
 /// | nearest layer | `nearest.groupK.*` as in [`single_pass::render`]; `nearest.R G B`: `C_F`; `nearest.A`: alpha; `nearest.mask`: the stencil |
 /// | blending | for each group k `blended.groupK.R G B`, `.A`, `.opacity` (the sum of opacities), `.bin` (+inf: empty), `.count`, `.id` |
-/// | average | `blended.R G B`, `.A`, `.opacity`, `.hidden`, `.layers`; of Algorithm 3 `l`: the layer count of eq. 11 and 12, 0 where there is no layer |
+/// | average | `blended.R G B`, `.A`, `.opacity`, `.hidden`, `.layers`; of Algorithm 3 `l`: the layer count of eq. 11 and 12, 0 where there is no layer or where its opacity is 0 |
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if the camera or the settings are out of range, or if the low-precision
-/// depth takes too many bins.
+/// [`crate::Error::Invalid`] if the camera or the settings are out of range, if the low-precision
+/// depth takes too many bins, or if refraction is wanted without an environment.
 ///
 /// # Panics
 /// If the groups or the order are not those of the scene's surfels.
