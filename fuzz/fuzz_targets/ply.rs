@@ -16,6 +16,7 @@ fuzz_target!(|bytes: &[u8]| {
     let n = cloud.position.len() as u64;
     if let Ok((surfels, derived)) = surfels(cloud, &Derive::default(), &Exec::sequential(), &|_, _, _| ()) {
         assert_eq!(surfels.len() as u64 + derived.dropped.total(), n, "each is kept or counted");
+        assert!(surfels.groups().is_none_or(|groups| groups.own().len() == surfels.len()));
         assert!(surfels.radius().iter().all(|r| *r > 0.0 && r.is_finite()));
         assert!(surfels.normal().iter().all(|n| (n.length() - 1.0).abs() < 1e-5));
     }

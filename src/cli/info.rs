@@ -41,6 +41,7 @@ fn points(path: &Path) -> Result<()> {
         ("colours", cloud.color.is_some()),
         ("opacities", cloud.opacity.is_some()),
         ("tangents", cloud.tangents.is_some()),
+        ("groups", cloud.groups.is_some()),
     ];
     let there: Vec<&str> = arrays.iter().filter(|(_, is)| *is).map(|(name, _)| *name).collect();
     line("has", if there.is_empty() { "positions only".into() } else { there.join(", ") });

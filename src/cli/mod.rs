@@ -7,6 +7,7 @@ mod compare;
 mod draw;
 mod explain;
 mod golden;
+mod group;
 mod info;
 mod options;
 mod progress;
@@ -48,6 +49,8 @@ enum Command {
     Compare(compare::Args),
     /// Print every decision at one pixel
     Explain(explain::Args),
+    /// Divide a scene into groups that do not overlap, into a PLY
+    Group(group::Args),
     /// Describe a PLY, a scene file or an EXR
     Info(info::Args),
 }
@@ -63,6 +66,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Golden(args) => golden::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Explain(args) => explain::run(&args),
+        Command::Group(args) => group::run(&args),
         Command::Info(args) => info::run(&args),
     };
     match outcome {

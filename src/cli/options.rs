@@ -153,7 +153,7 @@ pub(super) struct SceneOptions {
 impl SceneOptions {
     /// The scene that `name` stands for, a shape or a file, with these options on top.
     pub(super) fn scene_file(&self, name: &Path) -> Result<SceneFile> {
-        let mut file = self.named(name)?;
+        let mut file = named(name, self.count, self.seed)?;
         let camera = &mut file.camera;
         replace(&mut camera.size, self.size);
         replace(&mut camera.eye, self.eye);
@@ -171,7 +171,10 @@ impl SceneOptions {
         replace(&mut file.groups.count, self.groups);
         replace(&mut file.groups.extension, self.extend);
         let method = &mut file.method;
-        replace(&mut method.name, self.method);
+        if let Some(name) = self.method {
+            // What the file says of its own method does not hold for another.
+            *method = method.of_method(name);
+        }
         replace(&mut method.voronoi, self.depth);
         replace(&mut method.bins, self.bins);
         replace(&mut method.holes, self.holes);
@@ -188,33 +191,33 @@ impl SceneOptions {
         replace(&mut method.low_pass, self.low_pass);
         replace(&mut method.epsilon, self.epsilon);
         replace(&mut method.cull, self.cull);
+        let grouped = self.overlap.is_some() || self.groups.is_some() || self.extend.is_some();
+        if grouped && !file.method.method()?.needs_groups() {
+            let what = "--overlap, --groups and --extend are for methods that draw groups; give a --method";
+            return Err(Error::Usage(what.into()));
+        }
         file.output.number = self.number.unwrap_or(file.output.number);
         Ok(file)
     }
+}
 
-    fn named(&self, name: &Path) -> Result<SceneFile> {
-        if let Some(shape) = name.to_str().and_then(Shape::by_name) {
-            let count = self.count.unwrap_or(DEFAULT_COUNT);
-            return Ok(SceneFile::of_model(Source::Shape {
-                shape,
-                count,
-                seed: self.seed.unwrap_or(0),
-            }));
-        }
-        if self.count.is_some() || self.seed.is_some() {
-            let what = "--count and --seed are for procedural shapes; this scene is a file";
-            return Err(Error::Usage(what.into()));
-        }
-        match kind(name)? {
-            Kind::Ply => {
-                Ok(SceneFile::of_model(Source::File { path: name.to_owned(), radius: None }))
-            }
-            Kind::Toml => SceneFile::read(name),
-            Kind::Exr => Err(Error::Usage(format!(
-                "{}: an EXR is a picture, not a scene; `splatref info` describes it",
-                name.display()
-            ))),
-        }
+/// The scene that `name` stands for; count and seed are for shapes alone.
+pub(super) fn named(name: &Path, count: Option<usize>, seed: Option<u64>) -> Result<SceneFile> {
+    if let Some(shape) = name.to_str().and_then(Shape::by_name) {
+        let count = count.unwrap_or(DEFAULT_COUNT);
+        return Ok(SceneFile::of_model(Source::Shape { shape, count, seed: seed.unwrap_or(0) }));
+    }
+    if count.is_some() || seed.is_some() {
+        let what = "--count and --seed are for procedural shapes; this scene is a file";
+        return Err(Error::Usage(what.into()));
+    }
+    match kind(name)? {
+        Kind::Ply => Ok(SceneFile::of_model(Source::File { path: name.to_owned(), radius: None })),
+        Kind::Toml => SceneFile::read(name),
+        Kind::Exr => Err(Error::Usage(format!(
+            "{}: an EXR is a picture, not a scene; `splatref info` describes it",
+            name.display()
+        ))),
     }
 }
 

@@ -19,7 +19,8 @@ pub(super) struct Ready {
 }
 
 impl Ready {
-    /// Loads and prepares what a scene file says.
+    /// Loads and prepares what a scene file says; groups that the scene brings along are taken unless
+    /// something was chosen for them.
     pub(super) fn new(file: &SceneFile, exec: &Exec) -> Result<Self> {
         // What is wrong with the settings is said before much is read.
         let method = file.method.method()?;
@@ -31,6 +32,9 @@ impl Ready {
         let camera = file.camera(surfels)?;
         let (mut groups, mut grouping) = (None, None);
         if method.needs_groups() {
+            groups = surfels.groups().filter(|_| file.groups.is_open()).cloned();
+        }
+        if method.needs_groups() && groups.is_none() {
             let (made, report, extended) =
                 file.groups.grouping(&method).groups(surfels, exec, &show)?;
             (groups, grouping) = (Some(made), Some((report, extended)));

@@ -97,6 +97,11 @@ fn check_place(path: &Path) -> Result<()> {
         let path = path.display();
         return Err(Error::Usage(format!("{path}: the picture is an EXR; give a name in .exr")));
     }
+    check_folder(path)
+}
+
+/// Whether there is a directory for a file.
+pub(super) fn check_folder(path: &Path) -> Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     match folder.map(fs::metadata) {
         Some(Ok(found)) if !found.is_dir() => {

@@ -1,5 +1,6 @@
 //! Points as a file holds them: nothing derived, nothing checked but the lengths of the arrays.
 
+use super::group::Groups;
 use glam::Vec3;
 
 /// Points, with whatever else their file gave.
@@ -20,6 +21,8 @@ pub struct Cloud {
     pub opacity: Option<Vec<f32>>,
     /// Half axes of elliptical surfels, in world units.
     pub tangents: Option<Vec<[Vec3; 2]>>,
+    /// Groups of the points.
+    pub groups: Option<Groups>,
     /// Triangles as indices into `position`; polygons of files have been cut into fans.
     pub triangles: Vec<[u32; 3]>,
 }

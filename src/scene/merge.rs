@@ -3,7 +3,8 @@
 use super::Cloud;
 use glam::{DVec3, Vec3};
 
-/// Joins complete clouds, with normals and radii, in their order; triangles are left out.
+/// Joins complete clouds, with normals and radii, in their order; triangles are left out, and so are
+/// the groups of several, which know nothing of each other.
 ///
 /// What only some of them have is filled in for the others: colour by `color`, opacity by 1, the
 /// half axes of a disc by two perpendicular ones of the length of its radius.

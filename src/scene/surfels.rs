@@ -1,6 +1,7 @@
 //! Surfels: the checked structure of arrays that every method takes.
 
 use super::Cloud;
+use super::group::Groups;
 use crate::error::{Error, Result};
 use glam::{DVec3, Vec3};
 
@@ -19,6 +20,7 @@ pub struct Surfels {
     color: Option<Vec<Vec3>>,
     opacity: Option<Vec<f32>>,
     tangents: Option<Vec<[Vec3; 2]>>,
+    groups: Option<Groups>,
     median_radius: f32,
     bounding_sphere: (DVec3, f64),
 }
@@ -55,11 +57,11 @@ impl Surfels {
     /// the wrong length, if nothing is left, or if there are more than 2^32 - 2 surfels.
     pub fn new(cloud: Cloud) -> Result<(Self, Dropped)> {
         let n = cloud.position.len();
-        let Cloud { position, normal, radius, color, opacity, tangents, .. } = cloud;
+        let Cloud { position, normal, radius, color, opacity, tangents, groups, .. } = cloud;
         let mut normal =
             normal.ok_or_else(|| Error::Invalid("the points have no normals".into()))?;
         let radius = radius.ok_or_else(|| Error::Invalid("the points have no radii".into()))?;
-        check_lengths(n, normal.len(), radius.len(), &color, &opacity, &tangents)?;
+        check_lengths(n, normal.len(), radius.len(), &color, &opacity, &tangents, &groups)?;
         if n as u64 >= u64::from(u32::MAX) {
             return Err(Error::Invalid(format!(
                 "{n} surfels, but ids have 32 bits: split the scene"
@@ -101,6 +103,7 @@ impl Surfels {
             color: color.map(|c| retain(c, &keep)),
             opacity: opacity.map(|o| retain(o, &keep)),
             tangents: tangents.map(|t| retain(t, &keep)),
+            groups: groups.map(|g| g.retain(&keep)),
         };
         surfels.bounding_sphere = surfels.sphere();
         Ok((surfels, dropped))
@@ -147,6 +150,12 @@ impl Surfels {
     #[must_use]
     pub fn tangents(&self) -> Option<&[[Vec3; 2]]> {
         self.tangents.as_deref()
+    }
+
+    /// Groups, if the scene brought them along.
+    #[must_use]
+    pub fn groups(&self) -> Option<&Groups> {
+        self.groups.as_ref()
     }
 
     /// The lower median of the radii: the element of rank (n - 1) / 2 in ascending order.
@@ -197,6 +206,7 @@ impl Surfels {
             color: self.color,
             opacity: self.opacity,
             tangents: self.tangents,
+            groups: self.groups,
             triangles: Vec::new(),
         }
     }
@@ -216,6 +226,7 @@ fn check_lengths(
     color: &Option<Vec<Vec3>>,
     opacity: &Option<Vec<f32>>,
     tangents: &Option<Vec<[Vec3; 2]>>,
+    groups: &Option<Groups>,
 ) -> Result<()> {
     let others = [
         ("normals", normals),
@@ -223,6 +234,7 @@ fn check_lengths(
         ("colours", color.as_ref().map_or(n, Vec::len)),
         ("opacities", opacity.as_ref().map_or(n, Vec::len)),
         ("tangents", tangents.as_ref().map_or(n, Vec::len)),
+        ("groups", groups.as_ref().map_or(n, |g| g.own().len())),
     ];
     for (what, length) in others {
         if length != n {
@@ -276,6 +288,22 @@ mod tests {
         assert_eq!(dropped, Dropped { position: 1, normal: 1, radius: 2, attribute: 0 });
         assert_eq!(surfels.position(), [Vec3::X]);
         assert_eq!(surfels.normal(), [Vec3::Z], "made a unit vector");
+    }
+
+    #[test]
+    fn groups_lose_the_surfels_that_are_dropped() {
+        let p = vec![Vec3::ZERO, Vec3::NAN, Vec3::X, Vec3::Y];
+        let added = vec![(0, 2), (1, 0), (3, 1), (3, 4)];
+        let groups = Groups::new(vec![0, 1, 2, 3], added, vec![1.0, 2.0, 3.0, 4.0, 5.0]).unwrap();
+        let all = Cloud { groups: Some(groups), ..cloud(p, vec![Vec3::Z; 4], vec![1.0; 4]) };
+        let (surfels, _) = Surfels::new(all.clone()).unwrap();
+        let kept = vec![(0, 2), (2, 1), (2, 4)];
+        let kept = Groups::new(vec![0, 2, 3], kept, vec![1.0, 2.0, 3.0, 4.0, 5.0]).unwrap();
+        assert_eq!(surfels.groups(), Some(&kept));
+        assert_eq!(surfels.into_cloud().groups, Some(kept));
+        let few = Groups::new(vec![0; 3], vec![], vec![1.0]).unwrap();
+        let error = Surfels::new(Cloud { groups: Some(few), ..all }).unwrap_err();
+        assert_eq!(error.to_string(), "4 positions, but 3 groups");
     }
 
     #[test]

@@ -86,3 +86,43 @@ fn options_replace_what_a_scene_file_says() {
     }
     assert_eq!(names(&at.path().join("out")), ["s.exr", "s.png"]);
 }
+
+#[test]
+fn every_method_draws_and_leaves_its_planes() {
+    let at = TempDir::new().unwrap();
+    for (method, planes) in [
+        ("ewa", &["visibility.Z", "margin"] as &[&str]),
+        ("single-pass", &["group00.Z", "group00.voronoi", "sums.count"]),
+        ("transparent", &["blended.group00.bin", "blended.A", "layers"]),
+        ("transparent-hq", &["nearest.mask", "nearest.group00.weight", "blended.A", "l"]),
+        ("peeling", &["layer1.Z", "layer2.A", "layers"]),
+    ] {
+        let more = ["--method", method, "--opacity", "0.5", "--stages", "-o", "a.exr"];
+        let said = succeeds(at.path(), &small(&more));
+        assert!(said.contains(&format!("method     {method},")), "{said}");
+        let image = exr::read(&at.path().join("a.exr")).unwrap();
+        for plane in planes {
+            assert!(image.channel(plane).is_some(), "{method} has no {plane}");
+        }
+        let text = image.text.unwrap();
+        assert!(text.contains(&format!("name = \"{method}\"")), "{text}");
+        assert_eq!(text.contains("[groups]"), said.contains("groups  "), "{text}");
+    }
+}
+
+#[test]
+fn another_method_forgets_what_the_file_says_of_its_own() {
+    let at = TempDir::new().unwrap();
+    let scene = "[[model]]\nshape = \"sphere\"\ncount = 100\nopacity = 0.5\n\
+                 [camera]\nsize = [20, 10]\n[environment]\nsky = true\n\
+                 [method]\nname = \"transparent-hq\"\nbins = 32\nrefraction = [0.7, 0.7, 0.7]\n\
+                 [groups]\ncount = 2\n";
+    fs::write(at.path().join("s.toml"), scene).unwrap();
+    let said = succeeds(at.path(), &["render", "s.toml"]);
+    assert!(said.contains("bins = 32") && said.contains("groups     2 "), "{said}");
+    let said = succeeds(at.path(), &["render", "s.toml", "--method", "transparent"]);
+    assert!(said.contains("bins = 32") && !said.contains("refraction"), "{said}");
+    succeeds(at.path(), &["render", "s.toml", "--method", "ewa"]);
+    let image = exr::read(&at.path().join("out/s.exr")).unwrap();
+    assert!(floats(&image, "A").iter().all(|&a| a == 1.0), "the sky is behind every method");
+}

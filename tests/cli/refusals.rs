@@ -30,6 +30,11 @@ fn wrong_usage_is_exit_code_2() {
         &["--number", "f16"],
         &["--epsilon", "1.5x"],
         &["-o", "picture.png"],
+        &["--overlap", "0.5"],
+        &["--method", "peeling", "--groups", "3"],
+        &["--method", "voronoi"],
+        &["--depth", "deep"],
+        &["--refraction", "0.7,0.8"],
     ] {
         fails(at.path(), &small(more), 2);
     }
@@ -54,6 +59,23 @@ fn pictures_that_cannot_be_are_refused() {
         (&["--cutoff", "9"], "cut-off of 9"),
         (&["--low-pass", "-1"], "low-pass"),
         (&["--environment", "none.exr"], "none.exr"),
+        (&["--opacity", "1.5"], "opacity of 1.5"),
+        (&["--bins", "5"], "`bins` means nothing to the method ewa"),
+        (&["--method", "single-pass", "--overlap", "-0.5"], "c = -0.5"),
+        (&["--method", "single-pass", "--overlap", "nan"], "c = NaN"),
+        (&["--method", "single-pass", "--groups", "0"], "0 groups"),
+        (&["--method", "transparent", "--groups", "65"], "1 to 64"),
+        (&["--method", "transparent", "--bins", "0"], "n = 0"),
+        (&["--method", "transparent", "--bins", "65536"], "n = 65536"),
+        (&["--method", "transparent", "--epsilon", "1e-9"], "at most 65535 bins"),
+        (&["--method", "single-pass", "--epsilon", "0"], "at most 65535 bins"),
+        (&["--method", "transparent", "--refraction", "0.7"], "`refraction` means nothing"),
+        (&["--method", "transparent-hq", "--refraction", "0.7"], "give an environment"),
+        (
+            &["--method", "transparent-hq", "--environment", "sky", "--refraction", "5"],
+            "a ratio of 5",
+        ),
+        (&["--method", "peeling", "--peel", "0"], "layers: 0"),
     ] {
         let line = fails(at.path(), &small(more), 1);
         assert!(line.contains(what), "{line}");

@@ -11,7 +11,7 @@ use splatref::scene::{Camera, Cloud, Lens, Phong, Pose, Scene, Surfels};
 use splatref::splat::Kernel;
 
 /// The bits of a plane; through f64, which keeps those of f32 apart.
-fn bits<R: Real>(samples: &Samples<R>) -> Vec<u64> {
+pub(crate) fn bits<R: Real>(samples: &Samples<R>) -> Vec<u64> {
     let number = |v: R| v.to_f64().to_bits();
     match samples {
         Samples::Scalar(plane) => plane.values().iter().map(|v| number(*v)).collect(),
@@ -24,7 +24,7 @@ fn bits<R: Real>(samples: &Samples<R>) -> Vec<u64> {
 }
 
 /// One hash of all planes and their names.
-fn digest<R: Real>(frame: &Frame<R>) -> Vec<u8> {
+pub(crate) fn digest<R: Real>(frame: &Frame<R>) -> Vec<u8> {
     let mut hash = Sha256::new();
     for plane in &frame.planes {
         hash.update(plane.name.as_bytes());
@@ -36,7 +36,7 @@ fn digest<R: Real>(frame: &Frame<R>) -> Vec<u8> {
 }
 
 /// A -0 or a NaN, which no plane may hold.
-fn unclean<R: Real>(frame: &Frame<R>) -> Option<&str> {
+pub(crate) fn unclean<R: Real>(frame: &Frame<R>) -> Option<&str> {
     let negative_zero = (-0.0_f64).to_bits();
     let bad = |v: &u64| *v == negative_zero || f64::from_bits(*v).is_nan();
     let floats = |s: &Samples<R>| !matches!(s, Samples::Index(_) | Samples::Count(_));
@@ -59,7 +59,7 @@ fn settings() -> impl Strategy<Value = Settings> {
     })
 }
 
-fn case() -> impl Strategy<Value = Case> {
+pub(crate) fn case() -> impl Strategy<Value = Case> {
     let which = (0..KINDS.len(), any::<u32>(), any::<bool>());
     let size = (1_u32..70, 1_u32..50);
     (which, settings(), size).prop_map(|((kind, seed, orthographic), settings, (width, height))| {

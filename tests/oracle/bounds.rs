@@ -205,6 +205,7 @@ fn extent(given: &Given, kernel: Kernel, camera: &Camera) -> ([[f64; 2]; 2], f64
         color: None,
         opacity: None,
         tangents: None,
+        groups: None,
         triangles: Vec::new(),
     };
     let surfels = Surfels::new(cloud).expect("one surfel").0;

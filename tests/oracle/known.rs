@@ -18,6 +18,7 @@ fn scene(discs: &[(Vec3, Vec3)], radius: f32, color: Option<Vec3>) -> Scene {
         color: color.map(|c| vec![c; discs.len()]),
         opacity: None,
         tangents: None,
+        groups: None,
         triangles: Vec::new(),
     };
     let surfels = Surfels::new(cloud).expect("good discs").0;

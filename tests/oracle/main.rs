@@ -9,23 +9,33 @@
 //! - [`counter`]: a third number runs every formula and counts its operations.
 //! - [`bits`]: fast and plain, threads and tiles, to the last bit.
 //! - [`laws`]: what compositing must keep.
+//! - [`transparent`], [`surroundings`], [`number`]: Algorithms 2 and 3, environments and refraction by
+//!   other means; `transparent_stages` compares, `transparent_known`, `transparent_laws` and
+//!   `transparent_refused` are known answers, laws and refusals.
+//! - [`peeling`]: depth peeling by other means, and every layer against it.
 #![expect(
     clippy::disallowed_methods,
     reason = "std's functions, so that the oracle shares no code with the crate; its bits are free"
 )]
 
+mod bins_laws;
 mod bits;
 mod bounds;
 mod counter;
+mod depth_range;
 mod eye;
+mod groups_laws;
 mod known;
 mod laws;
 mod naive;
 mod number;
+mod over_laws;
 mod peeling;
 mod pixel;
 mod scenes;
 mod single_pass;
+mod single_pass_identity;
+mod single_pass_laws;
 mod single_pass_stages;
 mod stages;
 mod surroundings;
@@ -36,3 +46,4 @@ mod transparent_known;
 mod transparent_laws;
 mod transparent_refused;
 mod transparent_stages;
+mod transparent_tolerance;

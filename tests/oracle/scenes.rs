@@ -46,7 +46,7 @@ impl Dice {
         (self.bits() % count as u64) as usize
     }
 
-    fn vector(&mut self, low: Vec3, high: Vec3) -> Vec3 {
+    pub(crate) fn vector(&mut self, low: Vec3, high: Vec3) -> Vec3 {
         Vec3::new(
             self.within(low.x, high.x),
             self.within(low.y, high.y),
@@ -55,7 +55,7 @@ impl Dice {
     }
 
     /// A direction, not one of the axes.
-    fn direction(&mut self) -> Vec3 {
+    pub(crate) fn direction(&mut self) -> Vec3 {
         loop {
             let v = self.vector(Vec3::splat(-1.0), Vec3::ONE);
             if v.length() > 0.25 && v.length() < 1.0 {
@@ -125,6 +125,7 @@ impl Kind {
             color: (dice.below(4) > 0).then(Vec::new),
             opacity: None,
             tangents: matches!(self, Self::Ellipses | Self::Tilted).then(Vec::new),
+            groups: None,
             triangles: Vec::new(),
         };
         for _ in 0..count {
@@ -183,7 +184,7 @@ impl Kind {
 }
 
 /// A camera at the origin that looks along -z: its view matrix is the identity.
-fn straight(orthographic: bool, [width, height]: [u32; 2]) -> Camera {
+pub(crate) fn straight(orthographic: bool, [width, height]: [u32; 2]) -> Camera {
     let lens = if orthographic { Lens::Orthographic(6.0) } else { Lens::Focal(28.0) };
     let pose = Pose { eye: DVec3::ZERO, target: DVec3::NEG_Z, up: DVec3::Y };
     let mut camera = Camera::new(width, height, pose, lens).expect("a plain camera");
@@ -196,7 +197,7 @@ fn straight(orthographic: bool, [width, height]: [u32; 2]) -> Camera {
 }
 
 /// The camera of a shape, orthographic on demand.
-fn framed(shape: &Shape, orthographic: bool, [width, height]: [u32; 2]) -> Camera {
+pub(crate) fn framed(shape: &Shape, orthographic: bool, [width, height]: [u32; 2]) -> Camera {
     let lens = if orthographic { Lens::Orthographic(2.5) } else { shape.default_lens() };
     Camera::new(width, height, shape.default_pose(), lens).expect("the camera of a shape")
 }

@@ -1,28 +1,44 @@
 //! Every stage of Algorithm 1 against the oracle, for groups drawn by lot.
 
-use crate::pixel::{Entry, Seen};
+use crate::pixel::Seen;
 use crate::scenes::{self, Case, Dice};
 use crate::single_pass::Algorithm1;
 use crate::stages::{at, index, measure, oracle};
 use crate::tolerance::{self, Arithmetic, Measured};
-use splatref::frame::{Exec, Frame, NO_ID};
+use splatref::frame::{Exec, Frame, NO_ID, Samples};
 use splatref::method::ewa::Epsilon;
 use splatref::method::single_pass::{self, BinCount, DepthTest, Settings};
 use splatref::number::Real;
 use splatref::scene::group::Groups;
 
-/// The names of a depth-image's planes and the rows of the table that hold for all groups.
-const PLANES: [(&str, &str); 5] = [
-    (".Z", "group.Z"),
-    (".weight", "group.weight"),
-    (".normal", "group.normal"),
-    ("", "group"),
-    (".voronoi", "group.voronoi"),
+/// The planes of a depth-image: the end of the name, the row of the table that holds for all groups,
+/// and what the plane holds where the image is empty.
+const PLANES: [(&str, &str, f64); 5] = [
+    (".Z", "group.Z", f64::INFINITY),
+    (".weight", "group.weight", 0.0),
+    (".normal", "group.normal", 0.0),
+    ("", "group", 0.0),
+    (".voronoi", "group.voronoi", f64::INFINITY),
 ];
+
+/// A depth-image: its surfels, and those of [`PLANES`] that are there.
+struct Layer<'a, R> {
+    id: &'a Samples<R>,
+    planes: Vec<(&'a Samples<R>, (&'static str, &'static str, f64))>,
+}
+
+impl<'a, R: Real> Layer<'a, R> {
+    fn new(frame: &'a Frame<R>, group: usize) -> Self {
+        let named = |end: &str| frame.plane(&format!("group{group:02}{end}"));
+        let planes = PLANES.into_iter().filter_map(|p| named(p.0).map(|samples| (samples, p)));
+        Self { id: named(".id").expect("an id of each group"), planes: planes.collect() }
+    }
+}
 
 /// What was left open, in pixels.
 #[derive(Clone, Copy, Debug, Default)]
 struct Open {
+    pixels: usize,
     /// Rounding decides what some group keeps: the crate's choice among the candidates was taken.
     undecided: usize,
     /// Rounding decides the epsilon-z test: left out.
@@ -60,50 +76,47 @@ fn variant(case: &Case, number: usize) -> (Groups, DepthTest) {
     (groups(own, count), depth)
 }
 
-/// What an image without a fragment holds.
-fn check_empty<R: Real>(frame: &Frame<R>, layer: &str, i: usize, place: &str) {
-    for plane in &frame.planes {
-        let Some(end) = plane.name.strip_prefix(layer) else { continue };
-        let expected = match end {
-            ".Z" | ".voronoi" => f64::INFINITY,
-            ".id" => f64::from(NO_ID),
-            _ => 0.0,
-        };
-        assert_eq!(at(&plane.samples, i), [expected; 3], "{place}: empty, plane '{}'", plane.name);
+/// What the stages hold where no image has a fragment.
+fn check_empty<R: Real>(frame: &Frame<R>, i: usize, place: &str) {
+    let stages = ["sums", "sums.normal", "sums.weight", "sums.count", "resolved", "weight", ""];
+    for name in stages {
+        let Some(samples) = frame.plane(name) else { continue };
+        assert_eq!(at(samples, i), [0.0; 3], "{place}: empty, plane '{name}'");
     }
+    assert_eq!(at(frame.plane("Z").expect("a plane Z"), i), [f64::INFINITY; 3], "{place}: Z");
+    assert_eq!(index(frame, "id", i), Some(NO_ID), "{place}: id");
 }
 
 impl Subject<'_> {
     /// What every group keeps at a pixel, each checked against the candidates.
     fn kept<R: Real>(
         &self,
-        frame: &Frame<R>,
+        layers: &[Layer<'_, R>],
         (i, center): (usize, [f64; 2]),
         place: &str,
         measured: &mut Measured,
     ) -> (Vec<Seen<'_>>, bool) {
         let (mut kept, mut undecided) = (Vec::new(), false);
-        for (k, image) in self.algorithm.images(center).into_iter().enumerate() {
-            let layer = format!("group{k:02}");
-            let id = index(frame, &format!("{layer}.id"), i).expect("an id of each group");
+        for (k, (image, layer)) in self.algorithm.images(center).iter().zip(layers).enumerate() {
+            let id = at(layer.id, i)[0] as u32;
             undecided |= image.undecided();
             if id == NO_ID {
-                assert!(image.may_be_empty, "{place}: {layer} is empty");
-                check_empty(frame, &layer, i, place);
+                assert!(image.may_be_empty, "{place}: group {k} is empty");
+                for (samples, (end, _, empty)) in &layer.planes {
+                    assert_eq!(at(samples, i), [*empty; 3], "{place}: empty group {k}{end}");
+                }
                 continue;
             }
             let found = image.candidates.iter().find(|c| c.seen.0.index as u32 == id);
-            let seen = match found {
-                Some(candidate) => candidate.seen,
-                None => panic!("{place}: {layer} keeps {id}, which cannot be"),
+            let Some(candidate) = found else {
+                panic!("{place}: group {k} keeps {id}, which cannot be")
             };
-            for entry in self.algorithm.planes(center, seen) {
-                let (end, key) = PLANES.into_iter().find(|p| p.0 == entry.plane).expect("named");
-                let names = (&*format!("{layer}{end}"), key);
-                let there = measure(frame, names, &entry, i, (self.arithmetic, place), measured);
-                assert!(there, "{place}: no plane {layer}{end}");
+            for entry in self.algorithm.planes(center, candidate.seen) {
+                let plane = layer.planes.iter().find(|(_, p)| p.0 == entry.plane);
+                let (samples, (_, key, _)) = *plane.expect("a plane of each entry");
+                measure((samples, key), &entry, i, (self.arithmetic, place), measured);
             }
-            kept.push(seen);
+            kept.push(candidate.seen);
         }
         (kept, undecided)
     }
@@ -127,12 +140,7 @@ impl Subject<'_> {
         let covered = if kept.is_empty() { 0.0 } else { 1.0 };
         assert_eq!(at(frame.plane("A").expect("a plane A"), i), [covered; 3], "{place}: A");
         if kept.is_empty() {
-            check_empty(frame, "sums", i, place);
-            check_empty(frame, "resolved", i, place);
-            let (depth, weight) = (frame.plane("Z"), frame.plane("weight"));
-            assert_eq!(at(depth.expect("a plane Z"), i), [f64::INFINITY; 3], "{place}: Z");
-            assert_eq!(at(weight.expect("a plane weight"), i), [0.0; 3], "{place}: weight");
-            assert_eq!(id, NO_ID, "{place}: id");
+            check_empty(frame, i, place);
         }
         for entry in oracle.entries(center, kept, &seen) {
             let plane = match entry.plane {
@@ -141,20 +149,23 @@ impl Subject<'_> {
                 "attributes" => "sums",
                 plane => plane,
             };
-            let entry = Entry { plane, ..entry };
-            measure(frame, (plane, plane), &entry, i, (self.arithmetic, place), measured);
+            let Some(samples) = frame.plane(plane) else { continue };
+            measure((samples, plane), &entry, i, (self.arithmetic, place), measured);
         }
     }
 
     /// Compares pictures of one arithmetic, the first with its stages.
     fn compare<R: Real>(&self, frames: &[&Frame<R>], measured: &mut Measured) -> Open {
         let (mut open, camera) = (Open::default(), &self.case.camera);
+        let groups = 0..self.algorithm.count;
+        let layers: Vec<_> = groups.map(|k| Layer::new(frames[0], k)).collect();
         for (i, (y, x)) in
             (0..camera.height).flat_map(|y| (0..camera.width).map(move |x| (y, x))).enumerate()
         {
             let place = format!("{:?} pixel ({x}, {y}) of {}", self.arithmetic, self.case.name);
             let pixel = (i, [f64::from(x) + 0.5, f64::from(y) + 0.5]);
-            let (kept, undecided) = self.kept(frames[0], pixel, &place, measured);
+            let (kept, undecided) = self.kept(&layers, pixel, &place, measured);
+            open.pixels += 1;
             open.undecided += usize::from(undecided);
             if self.algorithm.oracle.grazes(&kept) {
                 open.ambiguous += 1;
@@ -171,7 +182,7 @@ impl Subject<'_> {
 #[test]
 fn every_stage_of_the_single_pass_equals_the_oracle() {
     let exec = Exec::sequential();
-    let (mut measured, mut worst) = (Measured::default(), [Open::default(); 2]);
+    let (mut measured, mut all) = (Measured::default(), [Open::default(); 2]);
     let mut cases = scenes::all();
     cases.extend(scenes::goldens());
     for (number, case) in cases.iter().enumerate() {
@@ -181,9 +192,14 @@ fn every_stage_of_the_single_pass_equals_the_oracle() {
         let epsilon = case.settings.epsilon.resolve(&scene.surfels);
         let range = match depth {
             DepthTest::Plain => None,
-            DepthTest::Voronoi(bins) => {
-                Some(bins.resolve(&scene.surfels, camera, epsilon).expect("few bins"))
-            }
+            DepthTest::Voronoi(bins) => match bins.resolve(&scene.surfels, camera, epsilon) {
+                Ok(range) => Some(range),
+                Err(error) => {
+                    let refused = single_pass::render_f32(scene, &groups, camera, &settings, &exec);
+                    assert_eq!(refused.err().map(|e| e.to_string()), Some(error.to_string()));
+                    continue;
+                }
+            },
         };
         let plain = single_pass::render::<f32>(scene, &groups, camera, &settings, &exec, true);
         let fast = single_pass::render_f32(scene, &groups, camera, &settings, &exec);
@@ -198,17 +214,17 @@ fn every_stage_of_the_single_pass_equals_the_oracle() {
         let narrow = subject(Arithmetic::F32).compare(&[&plain.frame, &fast.frame], &mut measured);
         let wide = if case.exact { Arithmetic::F64 } else { Arithmetic::F64Rounded };
         let wide = subject(wide).compare(&[&truth.frame], &mut measured);
-        let pixels = (camera.width * camera.height) as usize;
         for (slot, open) in [narrow, wide].into_iter().enumerate() {
-            let most = &mut worst[slot];
-            most.undecided = most.undecided.max(open.undecided * 10_000 / pixels);
-            most.ambiguous = most.ambiguous.max(open.ambiguous * 10_000 / pixels);
-            if open.undecided * 50 > pixels {
-                println!("{open:?} of {pixels}: {settings:?} {}", case.name);
-            }
+            let Open { pixels, ambiguous, .. } = open;
+            assert!(ambiguous * 200 <= pixels, "{open:?} in {}", case.name);
+            all[slot].pixels += pixels;
+            all[slot].undecided += open.undecided;
+            all[slot].ambiguous += ambiguous;
         }
     }
-    println!("{} scenes; most open, in 1/10000 of the pixels, f32 and f64: {worst:?}", cases.len());
+    println!("{} scenes; f32 and f64: {all:?}", cases.len());
+    // Sheets and plates, where depths of one plane differ by rounding alone, are most of them.
+    assert!(all.iter().all(|open| open.undecided * 20 <= open.pixels), "{all:?}");
     for (key, (worst, place)) in &measured.0 {
         println!("{key:?}: {worst:.3} {place}");
     }

@@ -72,26 +72,22 @@ fn check<R: Real>(frame: &Frame<R>, truth: &Pixel, i: usize, place: &str) {
 }
 
 /// Measures the deviation of a plane at one pixel, in conditions, for the row `key` of the table.
-/// Whether there is such a plane.
 pub(crate) fn measure<R: Real>(
-    frame: &Frame<R>,
-    (name, key): (&str, &'static str),
+    (samples, key): (&Samples<R>, &'static str),
     entry: &Entry,
     i: usize,
     (arithmetic, place): (Arithmetic, &str),
     measured: &mut Measured,
-) -> bool {
-    let Some(samples) = frame.plane(name) else { return false };
+) {
     let value = at(samples, i);
     for (c, found) in value.into_iter().enumerate() {
         let error = (found - entry.value[c]).abs();
         let unit = entry.condition[c] * arithmetic.step().1;
         let deviation = if error == 0.0 { 0.0 } else { error / unit };
         measured.add(key, arithmetic, deviation, || {
-            format!("{place}: {name} {found} for {} (unit {unit:e})", entry.value[c])
+            format!("{place}: {found} for {} (unit {unit:e})", entry.value[c])
         });
     }
-    true
 }
 
 /// Compares pictures of one arithmetic with the oracle; returns how many pixels were left out.
@@ -121,9 +117,10 @@ fn compare<R: Real>(
                 check(frame, &truth, i, &place());
                 let mut planes = 0;
                 for entry in &truth.entries {
-                    let name = (entry.plane, entry.plane);
-                    let there = measure(frame, name, entry, i, (arithmetic, &place()), measured);
-                    planes += usize::from(there);
+                    let Some(samples) = frame.plane(entry.plane) else { continue };
+                    let (plane, place) = ((samples, entry.plane), (arithmetic, &*place()));
+                    measure(plane, entry, i, place, measured);
+                    planes += 1;
                 }
                 assert!(planes > 0 || truth.entries.is_empty(), "{}: no planes", place());
             }

@@ -13,10 +13,16 @@
 //! | | `opacity` or `alpha` | `uchar`, `ushort` | divided by 255 or 65535 |
 //! | | | `float`, `double` | kept |
 //! | | `tux tuy tuz tvx tvy tvz` | any | half axes of an ellipse, world units |
+//! | | `group` | an integer | the surfel's own [group](crate::scene::group), 0 to 63 |
+//! | | `also` | list of integers | further groups that it was added to, none twice; skipped without `group` |
+//! | `group` | `scale` | any | what radii are multiplied by, finite and > 0, for each group; skipped without `group` |
 //! | `face` | `vertex_indices` or `vertex_index` | list of integers | a polygon is the fan of its first corner; with fewer than 3 corners it is nothing |
 //!
+//! Without an element `group` there are as many groups as the largest number tells, of scale 1; with
+//! one there are as many as it has, 64 at most. It may come before or after the vertices.
+//!
 //! All of a vector is declared or nothing of it. Values are not judged: NaN and infinite ones go
-//! into the cloud, and are dropped and counted when surfels are made of it. Structure is: every
+//! into the cloud, and are dropped and counted when surfels are made of it. Structure and groups are: every
 //! count is held against the bytes that are left before anything is allocated, and must use up the
 //! file exactly.
 //!
@@ -26,6 +32,7 @@
 //! not tell 8-bit colours from float ones without a deserializer of about this size.
 
 mod faces;
+mod groups;
 mod header;
 #[cfg(test)]
 mod tests;
@@ -58,20 +65,24 @@ pub fn read(path: &Path) -> Result<Cloud> {
 pub fn parse(bytes: &[u8]) -> std::result::Result<Cloud, String> {
     let header = header::parse(bytes)?;
     let vertices = header.elements.iter().find(|element| element.name == "vertex");
-    let vertices = vertices.ok_or("there is no element vertex: the file holds no points")?.count;
+    let vertex = vertices.ok_or("there is no element vertex: the file holds no points")?;
+    let vertices = vertex.count;
     if vertices == 0 {
         return Err("element vertex has count 0: the file holds no points".into());
     }
 
     let mut values = Values::new(bytes, &header);
     let mut cloud = Cloud::default();
+    let mut groups = groups::Reader::new(vertex);
     for element in &header.elements {
         match element.name.as_str() {
-            "vertex" => vertices::read(element, &mut values, &mut cloud)?,
+            "vertex" => vertices::read(element, &mut values, &mut cloud, &mut groups)?,
             "face" => faces::read(element, &mut values, vertices, &mut cloud.triangles)?,
+            "group" => groups.scales(element, &mut values)?,
             _ => values.walk(element, |_| Ok(()))?,
         }
     }
     values.finish()?;
+    cloud.groups = groups.finish()?;
     Ok(cloud)
 }

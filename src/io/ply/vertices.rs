@@ -1,5 +1,6 @@
 //! The element `vertex`: which property goes where, and how it is decoded.
 
+use super::groups;
 use super::header::{Element, Kind, Scalar, quote};
 use super::values::{Event, Values};
 use crate::io::srgb;
@@ -44,19 +45,30 @@ impl Decode {
     }
 }
 
-/// Where a property goes and how it is decoded; none if it is skipped.
-type Slot = Option<(usize, Decode)>;
+/// What becomes of a property.
+#[derive(Clone, Copy)]
+enum Slot {
+    Skip,
+    /// A number goes to a place of the row.
+    Number(usize, Decode),
+    Group(groups::Part),
+}
 
 /// Reads all vertices into the empty arrays of `cloud`.
 pub(super) fn read(
     element: &Element,
     values: &mut Values<'_>,
     cloud: &mut Cloud,
+    groups: &mut groups::Reader,
 ) -> Result<(), String> {
-    let slots = element.properties.iter().map(|p| slot(&p.name, p.kind));
+    let slots = element.properties.iter().map(|p| slot(&p.name, p.kind, groups));
     let slots: Vec<Slot> = slots.collect::<Result<_, _>>()?;
     let mut given = [false; NAMES.len()];
-    for &(place, _) in slots.iter().flatten() {
+    let numbers = slots.iter().filter_map(|slot| match slot {
+        Slot::Number(place, _) => Some(*place),
+        Slot::Skip | Slot::Group(_) => None,
+    });
+    for place in numbers {
         if std::mem::replace(&mut given[place], true) {
             return Err("element vertex has both opacity and alpha; keep one".into());
         }
@@ -73,12 +85,15 @@ pub(super) fn read(
     let mut row = [0.0; NAMES.len()];
     values.walk(element, |event| {
         match event {
-            Event::Value(property, value) => {
-                if let Some((place, decode)) = slots[property] {
-                    row[place] = decode.apply(value);
-                }
+            Event::Value(property, value) => match slots[property] {
+                Slot::Skip => {}
+                Slot::Number(place, decode) => row[place] = decode.apply(value),
+                Slot::Group(part) => groups.put(part, value)?,
+            },
+            Event::End => {
+                push(cloud, &row);
+                groups.end();
             }
-            Event::End => push(cloud, &row),
         }
         Ok(())
     })
@@ -100,15 +115,20 @@ fn has(given: &[bool], group: Range<usize>) -> Result<bool, String> {
 }
 
 /// What becomes of a property of this name and kind.
-fn slot(name: &str, kind: Kind) -> Result<Slot, String> {
+fn slot(name: &str, kind: Kind, groups: &groups::Reader) -> Result<Slot, String> {
+    if let Some(part) = groups.part(name, kind)? {
+        return Ok(Slot::Group(part));
+    }
     let name = if name == "alpha" { "opacity" } else { name };
-    let Some(place) = NAMES.iter().position(|&known| known == name) else { return Ok(None) };
+    let Some(place) = NAMES.iter().position(|&known| known == name) else {
+        return Ok(Slot::Skip);
+    };
     let Kind::One(scalar) = kind else {
         let what = format!("property {} is a list, but must be one number", quote(name));
         return Err(format!("element vertex: {what}"));
     };
     if !COLOR.contains(&place) && !OPACITY.contains(&place) {
-        return Ok(Some((place, Decode::Keep)));
+        return Ok(Slot::Number(place, Decode::Keep));
     }
     let color = COLOR.contains(&place);
     let decode = match scalar {
@@ -126,7 +146,7 @@ fn slot(name: &str, kind: Kind) -> Result<Slot, String> {
             ));
         }
     };
-    Ok(Some((place, decode)))
+    Ok(Slot::Number(place, decode))
 }
 
 /// Adds one vertex.

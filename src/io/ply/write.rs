@@ -3,14 +3,18 @@
 use crate::error::Result;
 use crate::io::replace::write_atomically;
 use crate::scene::Cloud;
+use crate::scene::group::Groups;
 use std::io::{self, Write};
 use std::path::Path;
 
 /// Writes a cloud as binary little-endian PLY, whole or not at all.
 ///
 /// Vertices are floats: `x y z`, then what there is of `nx ny nz`, `radius`, `red green blue`
-/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`; triangles follow as `face` with
-/// `list uchar uint vertex_indices`. [`super::read`] gives the same cloud back, bit for bit.
+/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`; then, if there are groups, `uchar group` and, if
+/// surfels were added to some, `list uchar uchar also`. Triangles follow as `face` with
+/// `list uchar uint vertex_indices`, and last, if they do not tell by themselves how many groups
+/// there are or if radii are scaled, the element `group` with `float scale`. [`super::read`] gives
+/// the same cloud back, bit for bit.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the arrays of the cloud differ in length; [`crate::Error::Io`] as
@@ -35,9 +39,21 @@ pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
     for name in names.iter().filter(|n| n.0).flat_map(|n| n.1.split(' ')) {
         writeln!(out, "property float {name}")?;
     }
+    let groups = cloud.groups.as_ref();
+    let added = groups.filter(|groups| !groups.added().is_empty());
+    let scaled = groups.filter(|groups| !tell(groups));
+    if groups.is_some() {
+        writeln!(out, "property uchar group")?;
+    }
+    if added.is_some() {
+        writeln!(out, "property list uchar uchar also")?;
+    }
     if !cloud.triangles.is_empty() {
         writeln!(out, "element face {}", cloud.triangles.len())?;
         writeln!(out, "property list uchar uint vertex_indices")?;
+    }
+    if let Some(groups) = scaled {
+        writeln!(out, "element group {}\nproperty float scale", groups.len())?;
     }
     writeln!(out, "end_header")?;
     for i in 0..cloud.position.len() {
@@ -53,10 +69,26 @@ pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
             put(&tangents[i][0].to_array())?;
             put(&tangents[i][1].to_array())?;
         }
+        if let Some(groups) = groups {
+            out.write_all(&groups.own()[i..=i])?;
+        }
+        if let Some(groups) = added {
+            let also: Vec<u8> = groups.of(i as u32).skip(1).collect();
+            out.write_all(&[also.len() as u8])?;
+            out.write_all(&also)?;
+        }
     }
     for triangle in &cloud.triangles {
         out.write_all(&[3])?;
         triangle.iter().try_for_each(|index| out.write_all(&index.to_le_bytes()))?;
     }
-    Ok(())
+    let mut scales = scaled.into_iter().flat_map(Groups::scale);
+    scales.try_for_each(|scale| out.write_all(&scale.to_le_bytes()))
+}
+
+/// Whether the vertices tell all: the last group has a surfel, and no radius is scaled.
+fn tell(groups: &Groups) -> bool {
+    let numbers = groups.own().iter().chain(groups.added().iter().map(|pair| &pair.1));
+    let last = numbers.fold(0, |last, &group| last.max(group));
+    usize::from(last) + 1 == groups.len() && groups.scale().iter().all(|&scale| scale == 1.0)
 }

@@ -99,15 +99,16 @@ impl MethodChoice {
     pub fn method(&self) -> Result<Method> {
         use MethodName::{Ewa, Peeling, SinglePass, Transparent, TransparentHq};
         let name = self.name.unwrap_or_default();
-        let keys: [(&str, bool, &[MethodName]); 6] = [
-            ("depth", self.voronoi.is_some(), &[SinglePass, TransparentHq]),
-            ("bins", self.bins.is_some(), &[SinglePass, Transparent, TransparentHq]),
-            ("holes", self.holes.is_some(), &[Transparent, TransparentHq]),
-            ("refraction", self.refraction.is_some(), &[TransparentHq]),
-            ("bends", self.bends.is_some(), &[TransparentHq]),
-            ("peel", self.peel.is_some(), &[Peeling]),
+        let kept = self.of_method(name);
+        let keys = [
+            ("depth", self.voronoi.is_some() && kept.voronoi.is_none()),
+            ("bins", self.bins.is_some() && kept.bins.is_none()),
+            ("holes", self.holes.is_some() && kept.holes.is_none()),
+            ("refraction", self.refraction.is_some() && kept.refraction.is_none()),
+            ("bends", self.bends.is_some() && kept.bends.is_none()),
+            ("peel", self.peel.is_some() && kept.peel.is_none()),
         ];
-        if let Some((key, ..)) = keys.iter().find(|(_, given, of)| *given && !of.contains(&name)) {
+        if let Some((key, _)) = keys.iter().find(|(_, lost)| *lost) {
             let name = super::words::of_method(name);
             return Err(Error::Invalid(format!("`{key}` means nothing to the method {name}")));
         }
@@ -141,6 +142,25 @@ impl MethodChoice {
         };
         method.check()?;
         Ok(method)
+    }
+
+    /// What was chosen that means something to a method, with this method.
+    #[must_use]
+    pub fn of_method(&self, name: MethodName) -> Self {
+        use MethodName::{Peeling, SinglePass, Transparent, TransparentHq};
+        let groups = matches!(name, SinglePass | Transparent | TransparentHq);
+        let blends = matches!(name, Transparent | TransparentHq);
+        let nearest = name == TransparentHq;
+        Self {
+            name: Some(name),
+            voronoi: self.voronoi.filter(|_| nearest || name == SinglePass),
+            bins: self.bins.filter(|_| groups),
+            holes: self.holes.filter(|_| blends),
+            refraction: self.refraction.filter(|_| nearest),
+            bends: self.bends.filter(|_| nearest),
+            peel: self.peel.filter(|_| name == Peeling),
+            ..*self
+        }
     }
 
     fn splats(&self, default: ewa::Settings) -> ewa::Settings {

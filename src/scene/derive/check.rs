@@ -21,6 +21,7 @@ impl Cloud {
             ("colours", self.color.as_ref().map(Vec::len)),
             ("opacities", self.opacity.as_ref().map(Vec::len)),
             ("tangents", self.tangents.as_ref().map(Vec::len)),
+            ("groups", self.groups.as_ref().map(|g| g.own().len())),
         ];
         for (what, length) in lengths {
             if let Some(length) = length.filter(|&length| length != n) {

@@ -193,6 +193,10 @@ fn drop_nowhere(cloud: &mut Cloud) -> Result<u64> {
     retain(&mut cloud.color, &index);
     retain(&mut cloud.opacity, &index);
     retain(&mut cloud.tangents, &index);
+    if let Some(groups) = cloud.groups.take() {
+        let keep: Vec<bool> = index.iter().map(Option::is_some).collect();
+        cloud.groups = Some(groups.retain(&keep));
+    }
     let triangles = cloud.triangles.iter().filter_map(|triangle| {
         let [a, b, c] = triangle.map(|i| index[i as usize]);
         Some([a?, b?, c?])

@@ -1,6 +1,7 @@
 //! Derived normals and radii against shapes whose truth is known.
 
 use super::*;
+use crate::scene::group::Groups;
 use proptest::prelude::*;
 
 fn derive(cloud: Cloud) -> Result<(Surfels, Derived)> {
@@ -113,11 +114,14 @@ fn a_mesh_uses_its_triangles() {
     position.insert(1, Vec3::new(f32::NAN, 0.0, 0.0));
     position.push(Vec3::ZERO);
     let triangles = vec![[0, 2, 3], [0, 1, 2], [3, 2, 1]];
-    let (surfels, derived) = derive(Cloud { triangles, ..points(position) }).unwrap();
+    let groups = Groups::new(vec![0, 1, 2, 3, 4], vec![(1, 0), (2, 1)], vec![1.0; 5]).ok();
+    let (surfels, derived) = derive(Cloud { triangles, groups, ..points(position) }).unwrap();
     assert_eq!((derived.normals, derived.radii), (Origin::Triangles, Origin::Triangles));
     assert_eq!(derived.dropped, Dropped { position: 1, normal: 1, ..Dropped::default() });
     assert_eq!(surfels.normal(), [Vec3::Z; 3], "the triangles at the lost point went with it");
     assert_eq!(surfels.radius(), [90.0_f32.sqrt(); 3]);
+    let groups = Groups::new(vec![0, 2, 3], vec![(1, 1)], vec![1.0; 5]).unwrap();
+    assert_eq!(surfels.groups(), Some(&groups), "the lost point and the last without a triangle");
 }
 
 #[test]

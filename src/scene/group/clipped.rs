@@ -1,6 +1,6 @@
 //! Clipped(p, r, k): how much of a disc others cover \[ZP06, section 4.2.2\].
 
-use super::graph::{Budget, ranges};
+use super::graph::Budget;
 use super::tree::{LANES, Tree};
 use crate::error::Result;
 use crate::frame::Exec;
@@ -8,6 +8,7 @@ use crate::number::elementary::{cos, sin};
 use crate::number::random;
 use glam::DVec3;
 use std::f64::consts::TAU;
+use std::ops::Range;
 use std::sync::LazyLock;
 
 /// How many points of a disc are asked whether they are covered.
@@ -108,10 +109,8 @@ pub(super) fn by_lower(
     exec: &Exec,
     progress: &dyn Fn(u64, u64),
 ) -> Result<Vec<u64>> {
-    const JOB: usize = 128;
-    const BATCH: usize = 128;
     let budget = Budget::new(tree.surfel.len(), scale);
-    let job = |blocks: std::ops::Range<usize>| {
+    let job = |blocks: Range<usize>| {
         let first = tree.places(blocks.start).start;
         let disc = |place: usize| {
             let disc = tree.disc(place);
@@ -133,16 +132,8 @@ pub(super) fn by_lower(
         }
         Ok(covered)
     };
-    let n = tree.surfel.len();
-    let mut covered = Vec::with_capacity(n);
-    let jobs: Vec<_> = ranges(tree.blocks(), JOB).collect();
-    for batch in jobs.chunks(BATCH) {
-        progress(covered.len() as u64, n as u64);
-        for part in exec.ordered(batch.to_vec(), job) {
-            covered.extend(part?);
-        }
-    }
-    progress(n as u64, n as u64);
+    let mut covered = Vec::with_capacity(tree.surfel.len());
+    tree.parts(exec, progress, job, |part: Vec<u64>| covered.extend(part))?;
     Ok(covered)
 }
 

@@ -9,9 +9,9 @@ use crate::frame::Exec;
 /// The most that radii are multiplied by.
 pub const MAX_SCALE: f32 = 8.0;
 /// The most steps of the iteration.
-pub const MAX_STEPS: u32 = 32;
-/// The iteration ends when a step changes the scale by at most this part of it: 2^-10.
-pub const SMALL_STEP: f32 = 1.0 / 1024.0;
+pub const MAX_STEPS: u32 = 64;
+/// The iteration ends when a step changes the scale by at most this part of it: 2^-9.
+pub const SMALL_STEP: f32 = 1.0 / 512.0;
 
 /// What the iteration came to.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,11 +6,8 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::scene::Surfels;
 use glam::Vec3;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
-
-/// Blocks of one parallel job, and jobs between two reports of progress.
-const JOB: usize = 128;
-const BATCH: usize = 128;
 
 /// How many pairs of near surfels are looked at, at most.
 ///
@@ -68,7 +65,7 @@ impl Graph {
     ) -> Result<Self> {
         let n = tree.surfel.len();
         let budget = Budget::new(n, factor);
-        let job = |blocks: std::ops::Range<usize>| {
+        let job = |blocks: Range<usize>| {
             let first = tree.places(blocks.start).start;
             let mut degree = vec![0_u32; tree.places(blocks.end - 1).end - first];
             let mut neighbour = Vec::new();
@@ -88,18 +85,15 @@ impl Graph {
         };
         let mut graph = Self { start: Vec::with_capacity(n + 1), neighbour: Vec::new() };
         graph.start.push(0);
-        let ranges: Vec<_> = ranges(tree.blocks(), JOB).collect();
-        for batch in ranges.chunks(BATCH) {
-            progress("finding overlaps", graph.start.len() as u64 - 1, n as u64);
-            for part in exec.ordered(batch.to_vec(), job) {
-                let (degrees, neighbours) = part?;
-                for degree in degrees {
-                    graph.start.push(graph.start[graph.start.len() - 1] + degree as usize);
-                }
-                graph.neighbour.extend(neighbours);
-            }
-        }
-        progress("finding overlaps", n as u64, n as u64);
+        let mut end = 0;
+        let show = |done, of| progress("finding overlaps", done, of);
+        tree.parts(exec, &show, job, |(degrees, neighbours): (Vec<u32>, Vec<u32>)| {
+            graph.start.extend(degrees.into_iter().map(|degree| {
+                end += degree as usize;
+                end
+            }));
+            graph.neighbour.extend(neighbours);
+        })?;
         Ok(graph)
     }
 
@@ -117,11 +111,6 @@ impl Graph {
     pub(super) fn edges(&self) -> u64 {
         self.neighbour.len() as u64 / 2
     }
-}
-
-/// 0..n in ranges of a length.
-pub(super) fn ranges(n: usize, length: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
-    (0..n).step_by(length).map(move |start| start..n.min(start + length))
 }
 
 /// The graph of some rules, at their c or another.

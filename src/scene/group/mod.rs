@@ -1,4 +1,104 @@
 //! Minimal independent groups: surfels that do not overlap share one depth-image \[ZP06, section 4\].
+//!
+//! [`group`] divides the surfels of a scene so that no two of a group overlap; [`extend`] then lets
+//! each group cover the surface. All numbers are f64 made of the f32 of the scene; i and j are
+//! indices of surfels, a dot product is `(x x' + y y') + z z'`.
+//!
+//! # The graph (4.1)
+//!
+//! Nodes are surfels. With `d = p_i - p_j`, surfels i and j are *near by a factor c* if
+//!
+//! ```text
+//!   (d.x d.x + d.y d.y) + d.z d.z  <  m m       where  m = c (r_i + r_j)
+//! ```
+//!
+//! which is eq. 5 for c = 1 and modification 3 for c < 1. `Decided:` r is the radius of a surfel, and
+//! of an ellipse the length of its longer half axis, `sqrt((x x + y y) + z z)`: what lies in its disc
+//! covers it. Surfels that are near by the c of the [`Rules`] have an edge, unless
+//!
+//! - `opposite` is set and `n_i . n_j < 0` (modification 2), or
+//! - they are [`Coplanar`] (modification 1). `Decided:` that is `n_i . n_j >= cosine`, and for n of
+//!   either `|d . n| <= offset (r_i + r_j)`, and, if surfels have colours,
+//!   no component of the two differs by more than `color`.
+//!
+//! # The colouring (4.1)
+//!
+//! Largest First \[Lei79\]: surfels in the order of their number of edges, the largest first, of
+//! equal ones the lower index first; each gets the smallest colour, from 0 on, that none of its
+//! neighbours has yet. The colour is the group. K is one more than the largest colour, and at most
+//! one more than the largest number of edges. (The paper bounds the chromatic number by the largest
+//! degree alone, which fails for complete graphs.)
+//!
+//! [`group_into`] looks for the largest c that gives at most a number of groups. `Decided:` it is
+//! bisection that defines the result, as K need not fall with c from one step to the next: of the
+//! multiples of 1/64 up to the c of the rules, c = 0 has no edge and one group, and fits; the first
+//! multiple above the rules' c does not; the middle of the two, rounded down, is tried and takes the
+//! place of one of them until they are neighbours. A graph with too many edges does not fit.
+//!
+//! # The part of a disc that others cover (4.2.2)
+//!
+//! `Clipped(p_i, r, k)` is the area of disc i that discs of group k overlap. `Decided:` it is measured
+//! on 64 samples of disc i, so that it has one of 65 values and step 2b below can ask for equality.
+//! With `q_m = (m + 1/2)/64` and the golden angle g = 2.399963229728653, sample m of the unit disc is
+//! `sqrt(q_m) (cos(m g), sin(m g))`: each stands for the same area. The samples of disc i lie on axes u
+//! and v of its plane, turned by a random multiple of 1/64 of a turn, as errors would add up where
+//! surfels are regular: with n that of i,
+//!
+//! ```text
+//!   s  = 1, or -1 if n.z < 0        a = -1 / (s + n.z)          b = n.x n.y a
+//!   u0 = (1 + s n.x n.x a, s b, -s n.x)        v0 = (b, s + n.y n.y a, -n.y)
+//!   t  = (the upper 6 bits of random::bits(0, i)) (2 pi / 64)
+//!   u  = cos(t) u0 + sin(t) v0                 v  = cos(t) v0 - sin(t) u0
+//! ```
+//!
+//! (Duff et al., *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017; products from left to
+//! right, functions from [`crate::number::elementary`], bits from [`crate::number::random`].)
+//!
+//! `Decided:` disc j covers a sample if it is no farther from the centre of j than its radius, in
+//! space as in eq. 5, and `n_i . n_j >= 0`, so that the other side of a thin wall does not count:
+//!
+//! ```text
+//!   (A x_m + B y_m) + r_i r_i q_m  <=  r_j r_j - d . d
+//!   where  A = 2 r_i (d . u),  B = 2 r_i (d . v),  (x_m, y_m) = sample m of the unit disc
+//! ```
+//!
+//! Two walls that face the same way and are less than r apart are taken for one.
+//!
+//! `Departs:` eq. 7 subtracts from the discs of a group what the others of the group cover of each,
+//! which takes every overlap away twice, once from either side. Here the covered area is
+//!
+//! ```text
+//!   sum over the group, in ascending index, of  pi r_i r_i (samples that no j < i of it covers) / 64
+//! ```
+//!
+//! which is the area of the union, up to sampling; and A of eq. 8 is that of all surfels. Both, and
+//! so the ratio of a group to the whole, are off by a few parts in a thousand.
+//!
+//! # Adding surfels (4.2.2, extension 1)
+//!
+//! For each group k by itself, [`Extension::Add`] goes through the paper's steps 1, 2, 2a and 2b;
+//! "too big" is more than `most` of the area, and of equal priorities the lower index comes first.
+//! `Departs:` no queue is kept, as none is needed. A surfel that is taken out at priority p and has
+//! grown goes back with a larger one, while all others are at p or below: it is taken out again at
+//! once, nothing has changed, and step 2b adds it. So this is what the steps come to: surfels of
+//! other groups in descending order of what the group covered of them at the beginning; each is
+//! added if the group, with what has been added to it, covers at most `most` of it.
+//!
+//! # Enlarging radii (4.2.2, extension 2)
+//!
+//! For each group by itself, [`Extension::Enlarge`] iterates eq. 9 from scale 1. `Decided:` radii may
+//! differ, all of a group are multiplied by one scale s, and n pi r^2 is the sum of `pi r_i^2`:
+//!
+//! ```text
+//!   s' = sqrt((A / pi + s s (R - U)) / R)
+//!   where  R = sum of r_i r_i,  U = covered area at radii s r_i, divided by pi s s
+//! ```
+//!
+//! s' < 1 becomes 1. It ends when |s' - s| <= [`SMALL_STEP`] s': the group has converged. `Decided:`
+//! it has not if s' reaches [`MAX_SCALE`], which then is its scale, or after [`MAX_STEPS`] steps. As a
+//! group covers all, clipping grows as fast as the area, and each step gains a part of what is still
+//! open: the iteration ends at about 99 % of A. It fails for the last groups of a colouring, which
+//! may be a handful of surfels. The scale is rounded to f32 once.
 
 mod add;
 mod clipped;
@@ -11,10 +111,8 @@ mod tests;
 mod tree;
 
 use crate::error::{Error, Result};
-use crate::frame::Exec;
-use crate::scene::Surfels;
-use tree::Tree;
 
+pub use color::{Report, check_count, group, group_into};
 pub use enlarge::{MAX_SCALE, MAX_STEPS, SMALL_STEP};
 pub use extend::{Coverage, Extended, Extension, extend};
 
@@ -24,9 +122,9 @@ pub const MAX_GROUPS: usize = 64;
 /// Which surfels may not share a group \[ZP06, section 4.1\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
-    /// c: surfels conflict if |p_i - p_j| < c (r_i + r_j). In [0, 1].
+    /// c: surfels conflict if `|p_i - p_j| < c (r_i + r_j)`. In [0, 1].
     pub overlap: f32,
-    /// Whether surfels with n_i . n_j < 0 never conflict (the paper's modification 2).
+    /// Whether surfels with `n_i . n_j < 0` never conflict (the paper's modification 2).
     pub opposite: bool,
     /// Which surfels are virtually co-planar and so never conflict (modification 1); none: all may.
     pub coplanar: Option<Coplanar>,
@@ -35,9 +133,9 @@ pub struct Rules {
 /// When two surfels are virtually co-planar and of one colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coplanar {
-    /// The least n_i . n_j. In [0, 1].
+    /// The least `n_i . n_j`. In [0, 1].
     pub cosine: f32,
-    /// The most that either centre is off the other's plane, as a part of r_i + r_j. In [0, 1].
+    /// The most that either centre is off the other's plane, as a part of `r_i + r_j`. In [0, 1].
     pub offset: f32,
     /// The most that any component of the colours differs. In [0, inf].
     pub color: f32,
@@ -87,15 +185,6 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// Of the colour of every place of a tree.
-    fn of_colors(tree: &Tree, color: &[u32], groups: usize) -> Self {
-        let mut own = vec![0; color.len()];
-        for (&surfel, &color) in tree.surfel.iter().zip(color) {
-            own[surfel as usize] = color as u8;
-        }
-        Self { own, added: Vec::new(), scale: vec![1.0; groups] }
-    }
-
     /// How many groups there are: 1 to [`MAX_GROUPS`].
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "never empty")]
@@ -120,113 +209,6 @@ impl Groups {
     pub fn scale(&self) -> &[f32] {
         &self.scale
     }
-}
-
-/// What [`group`] found: a row of Table 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Report {
-    /// Surfels of the scene.
-    pub surfels: u64,
-    /// c.
-    pub overlap: f32,
-    /// K.
-    pub groups: usize,
-    /// Edges of the graph.
-    pub edges: u64,
-    /// The most edges at one surfel.
-    pub max_degree: u32,
-    /// Edges at a surfel, on the average.
-    pub average_degree: f64,
-}
-
-/// Divides surfels into groups by the rules, see the module.
-///
-/// # Errors
-/// [`Error::Invalid`] as [`Rules::check`]; if there would be more than [`MAX_GROUPS`]; if more than
-/// 64 pairs a surfel, and a million, overlap.
-pub fn group(
-    surfels: &Surfels,
-    rules: &Rules,
-    exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
-) -> Result<(Groups, Report)> {
-    rules.check()?;
-    progress("sorting surfels", 0, 1);
-    let tree = Tree::new(surfels, 0..surfels.len() as u32);
-    let (color, report) = color(surfels, &tree, rules, rules.overlap, exec, progress)?;
-    if report.groups > MAX_GROUPS {
-        return Err(Error::Invalid(format!(
-            "c = {} needs {} groups, and at most {MAX_GROUPS} can be: give a lower c or smaller radii",
-            rules.overlap, report.groups
-        )));
-    }
-    Ok((Groups::of_colors(&tree, &color, report.groups), report))
-}
-
-/// Whether there can be so many groups.
-///
-/// # Errors
-/// [`Error::Invalid`] if there cannot.
-pub fn check_count(groups: usize) -> Result<()> {
-    if (1..=MAX_GROUPS).contains(&groups) {
-        Ok(())
-    } else {
-        Err(Error::Invalid(format!("{groups} groups; give 1 to {MAX_GROUPS}")))
-    }
-}
-
-/// As [`group`], with the c of [`fitting`] that gives at most `count` groups.
-///
-/// # Errors
-/// [`Error::Invalid`] as [`Rules::check`], and if `count` is not in 1 to [`MAX_GROUPS`].
-pub fn group_into(
-    surfels: &Surfels,
-    rules: &Rules,
-    count: usize,
-    exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
-) -> Result<(Groups, Report)> {
-    rules.check()?;
-    check_count(count)?;
-    progress("sorting surfels", 0, 1);
-    let tree = Tree::new(surfels, 0..surfels.len() as u32);
-    let colored = |c: f32| color(surfels, &tree, rules, c, exec, progress);
-    // c = 0 has no edges, and so fits; what is above the c of the rules does not.
-    let mut best = colored(0.0)?;
-    let (mut fits, mut fails) = (0, (64.0 * rules.overlap) as u16 + 1);
-    while fails - fits > 1 {
-        let middle = u16::midpoint(fits, fails);
-        match colored(f32::from(middle) / 64.0) {
-            Ok(found) if found.1.groups <= count => (fits, best) = (middle, found),
-            _ => fails = middle,
-        }
-    }
-    let (color, report) = best;
-    Ok((Groups::of_colors(&tree, &color, report.groups), report))
-}
-
-/// The colour of every place, by the rules with another c.
-fn color(
-    surfels: &Surfels,
-    tree: &Tree,
-    rules: &Rules,
-    overlap: f32,
-    exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
-) -> Result<(Vec<u32>, Report)> {
-    let graph = graph::conflicts(surfels, tree, rules, overlap, exec, progress)?;
-    progress("colouring", 0, 1);
-    let color = color::largest_first(&graph, &tree.surfel);
-    let n = surfels.len();
-    let report = Report {
-        surfels: n as u64,
-        overlap,
-        groups: color.iter().fold(0, |most, &color| most.max(color)) as usize + 1,
-        edges: graph.edges(),
-        max_degree: (0..n).map(|place| graph.degree(place)).fold(0, u32::max),
-        average_degree: 2.0 * graph.edges() as f64 / n as f64,
-    };
-    Ok((color, report))
 }
 
 impl Groups {
@@ -258,6 +240,24 @@ impl Groups {
         added.sort_unstable();
         added.dedup();
         Ok(Self { own, added, scale })
+    }
+
+    /// The groups of the surfels that are marked, in order; a group may be left without any.
+    pub(super) fn retain(self, keep: &[bool]) -> Self {
+        if keep.iter().all(|&keep| keep) {
+            return self;
+        }
+        let mut kept = 0;
+        let index: Vec<Option<u32>> = keep
+            .iter()
+            .map(|&keep| {
+                kept += u32::from(keep);
+                keep.then(|| kept - 1)
+            })
+            .collect();
+        let own = self.own.iter().zip(keep).filter(|pair| *pair.1).map(|pair| *pair.0);
+        let added = self.added.iter().filter_map(|&(i, group)| Some((index[i as usize]?, group)));
+        Self { own: own.collect(), added: added.collect(), scale: self.scale }
     }
 
     /// The groups that a surfel is in: its own, then those it was added to.

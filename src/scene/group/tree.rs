@@ -6,8 +6,11 @@
 //! the discs alone; the tree leaves no trace but the order in which it is found.
 
 use super::clipped::Disc;
+use crate::error::Result;
+use crate::frame::Exec;
 use crate::scene::Surfels;
 use glam::{DVec3, Vec3};
+use std::ops::Range;
 
 /// Discs of one block.
 pub(super) const LANES: usize = 8;
@@ -68,12 +71,8 @@ impl Tree {
         Self { surfel: entries.into_iter().map(|(_, id)| id).collect(), normal, blocks, levels }
     }
 
-    pub(super) fn blocks(&self) -> usize {
-        self.blocks.len()
-    }
-
     /// The places of a block.
-    pub(super) fn places(&self, block: usize) -> std::ops::Range<usize> {
+    pub(super) fn places(&self, block: usize) -> Range<usize> {
         let first = block * LANES;
         first..self.surfel.len().min(first + LANES)
     }
@@ -91,7 +90,7 @@ impl Tree {
     }
 
     /// Visits the pairs of places (i, j), i of the block and j any other, that are near:
-    /// |p_i - p_j| < factor (r_i + r_j), as the [module](super) evaluates it.
+    /// `|p_i - p_j| < factor (r_i + r_j)`, as the [module](super) evaluates it.
     ///
     /// Ascending by i, for one i by j. If a visit returns false, the rest of its i is skipped.
     pub(super) fn near(
@@ -117,6 +116,31 @@ impl Tree {
                 }
             }
         }
+    }
+
+    /// Runs a job for ranges of blocks, in parallel, and hands on the results in their order.
+    ///
+    /// `progress` gets how many places are done, and of how many.
+    pub(super) fn parts<T: Send>(
+        &self,
+        exec: &Exec,
+        progress: &dyn Fn(u64, u64),
+        job: impl Fn(Range<usize>) -> Result<T> + Sync + Send,
+        mut take: impl FnMut(T),
+    ) -> Result<()> {
+        const JOB: usize = 128;
+        const BATCH: usize = 128 * JOB;
+        let (blocks, places) = (self.blocks.len(), self.surfel.len() as u64);
+        for batch in (0..blocks).step_by(BATCH) {
+            progress((batch * LANES) as u64, places);
+            let starts = (batch..blocks.min(batch + BATCH)).step_by(JOB);
+            let ranges = starts.map(|start| start..blocks.min(start + JOB)).collect();
+            for result in exec.ordered(ranges, &job) {
+                take(result?);
+            }
+        }
+        progress(places, places);
+        Ok(())
     }
 
     /// The blocks that may hold a disc near one of a block, ascending.

@@ -3,6 +3,7 @@
 mod refused;
 
 use super::*;
+use crate::scene::group::Groups;
 use glam::Vec3;
 
 /// An ascii file: header lines, then body lines.
@@ -187,9 +188,22 @@ fn what_is_written_is_read_back_bit_for_bit() {
         triangles: (0..n as u32 - 2).map(|i| [i, i + 2, i + 1]).collect(),
         ..plain.clone()
     };
+    let groups = |added: Vec<(u32, u8)>, scale: &[f32]| {
+        let own = (0..n).map(|i| (i % 3) as u8).collect();
+        Some(Groups::new(own, added, scale.to_vec()).unwrap())
+    };
+    let grouped = |groups| Cloud { groups, ..plain.clone() };
+    let clouds = [
+        grouped(groups(vec![], &[1.0; 3])),
+        grouped(groups(vec![], &[1.0; 5])),
+        grouped(groups(vec![(7, 2), (7, 3), (299, 1)], &[1.0; 4])),
+        Cloud { groups: groups(vec![(0, 63)], &[1.5; 64]), ..full.clone() },
+        plain.clone(),
+        full,
+    ];
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("cloud.ply");
-    for cloud in [plain, full] {
+    for cloud in clouds {
         write(&path, &cloud).unwrap();
         let again = read(&path).unwrap();
         // Equality of floats would take -0 for +0, so bits are compared too.
@@ -202,6 +216,27 @@ fn what_is_written_is_read_back_bit_for_bit() {
                 .map(f32::to_bits))
         );
     }
+}
+
+#[test]
+fn groups_come_in_any_order_and_are_skipped_without_their_property() {
+    let text = |group: &str| {
+        let header = [
+            "element group 3",
+            "property uchar more",
+            "property double scale",
+            "element vertex 2",
+            XYZ[0],
+            XYZ[1],
+            XYZ[2],
+            "property list int int also",
+            group,
+        ];
+        ascii(&header, "9 1\n9 2\n9 0.5\n0 0 0 2 2 1 0\n0 0 0 0 1\n")
+    };
+    let groups = Groups::new(vec![0, 1], vec![(0, 1), (0, 2)], vec![1.0, 2.0, 0.5]).unwrap();
+    assert_eq!(parse(&text("property int group")).unwrap().groups, Some(groups));
+    assert_eq!(parse(&text("property int cluster")).unwrap().groups, None);
 }
 
 #[test]
@@ -233,7 +268,15 @@ impl SplitMix {
 
 #[test]
 fn no_mutation_of_a_file_panics_or_is_read_wrongly() {
-    let seeds = [binary(false), binary(true), text(), faces(&[INDICES], "3 0 1 2")];
+    let grouped = [
+        "property uchar group",
+        "property list uchar uchar also",
+        "element group 2",
+        "property float scale",
+    ];
+    let grouped = vertices("2", &grouped, "0 0 0 1 1 0\n0 0 0 0 0\n1\n2\n");
+    let faces = faces(&[INDICES], "3 0 1 2");
+    let seeds = [binary(false), binary(true), text(), faces, grouped];
     let words: [&[u8]; 10] = [
         b"-1",
         b"4294967295",
@@ -276,6 +319,9 @@ fn no_mutation_of_a_file_panics_or_is_read_wrongly() {
             // No more than the bytes could hold: a position takes at least three.
             assert!(cloud.position.len() * 3 <= bytes.len());
             assert!(cloud.triangles.len() <= bytes.len());
+            if let Some(groups) = cloud.groups {
+                assert!(groups.added().len() <= bytes.len());
+            }
         }
     }
     assert!(read > 1000, "only {read} mutants are files: the mutations are too coarse");

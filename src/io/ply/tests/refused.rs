@@ -134,3 +134,49 @@ fn corners_of_faces() {
     list("property int vertex_index", "3", "property `vertex_index` must be a list of integers");
     list("property int flags", "3", "element face has no property list vertex_indices");
 }
+
+const GROUP: &str = "property int group";
+const ALSO: &str = "property list uchar int also";
+
+/// Two vertices with groups, the first in group 0, and what else is declared and follows.
+fn grouped(more: &[&str], value: &str, rest: &str, expected: &str) {
+    let rows = format!("0 0 0 0 0\n0 0 0 {value}\n{rest}");
+    refused(vertices("2", &[&[GROUP], more].concat(), &rows), expected);
+}
+
+#[test]
+fn groups_of_vertices() {
+    let own = |property: &str, value: &str, expected: &str| {
+        let rows = format!("0 0 0 0\n0 0 0 {value}\n");
+        refused(vertices("2", &[property], &rows), expected);
+    };
+    own(GROUP, "64", "vertex 1 (line 10), property `group`: there is no group 64, groups are 0 to");
+    own(GROUP, "-1", "property `group`: there is no group -1, groups are 0 to 63");
+    own("property float group", "0", "property `group` must be one integer");
+    own("property list uchar uchar group", "0", "property `group` must be one integer");
+    let also = |property: &str, value: &str, expected: &str| {
+        grouped(&[property], value, "", expected);
+    };
+    also("property int also", "0 0", "property `also` must be a list of integers");
+    also("property list uchar float also", "0 0", "`also` must be a list of integers");
+    also(ALSO, "3 2 4 3", "vertex 1 (line 11), property `also`: the vertex is in group 3 twice");
+    also(ALSO, "3 3 1 2 1", "property `also`: the vertex is in group 1 twice; keep one");
+    also(ALSO, "3 1 64", "property `also`: there is no group 64, groups are 0 to 63");
+}
+
+#[test]
+fn scales_of_groups() {
+    let scales = |[element, scale]: [&str; 2], value: &str, rest: &str, expected: &str| {
+        grouped(&[ALSO, element, scale], value, rest, expected);
+    };
+    let one = ["element group 1", "property float scale"];
+    scales(one, "1 0", "1\n", "surfel 1 in group 1: there are 2 surfels and 1 groups");
+    scales(one, "0 1 2", "1\n", "surfel 1 in group 2: there are 2 surfels and 1 groups");
+    scales(one, "0 0", "0\n", "group 0 (line 14), property `scale`: a scale of 0; it must be");
+    scales(one, "0 0", "nan\n", "a scale of NaN; it must be finite and > 0");
+    scales([one[0], "property float size"], "0 0", "1\n", "element group has no property scale");
+    let list = "element group: property `scale` is a list, but must be one number";
+    scales([one[0], "property list uchar float scale"], "0 0", "1 1\n", list);
+    scales(["element group 65", one[1]], "0 0", "", "element group has count 65; groups are 1");
+    scales(["element group 0", one[1]], "0 0", "", "element group has count 0; groups are 1 to 64");
+}

@@ -1,0 +1,271 @@
+//! Accuracy of \[ZP06\]: its figures 8, 9, 12 and 13 as numbers, with the time that each picture took.
+//!
+//! `cargo bench --bench accuracy` prints Markdown tables; an argument is a pattern that the names of
+//! scenes must contain. Scenes are the scans in the folder that `SPLATREF_MODELS` names (`../shared/models`
+//! if it is not set), those that are missing are skipped, and procedural ones. Pictures have 800 x 600
+//! pixels, `f32`, lit by a headlight. RMSE and SSIM are of R, G and B against the picture named in the
+//! title; where both are background counts too. With `--pictures DIR` every picture is kept there.
+
+use splatref::Result;
+use splatref::frame::Exec;
+use splatref::io::exr::Image;
+use splatref::io::scene_file::SceneFile;
+use splatref::io::{exr, provenance};
+use splatref::method::ewa::{self, Epsilon};
+use splatref::method::single_pass::{self, BinCount, DepthTest};
+use splatref::method::transparent::{self, Holes};
+use splatref::method::{Grouping, Method, Preparation, peeling, render_f32};
+use splatref::scene::group::{Extension, Rules};
+use splatref::scene::{Camera, Scene};
+use splatref::verify::metrics::summary;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// A scene before a camera.
+struct Subject {
+    name: String,
+    scene: Scene,
+    camera: Camera,
+}
+
+/// A picture, how long it took, and in how many groups.
+struct Shot {
+    image: Image,
+    milliseconds: f64,
+    groups: Option<usize>,
+}
+
+fn main() -> Result<()> {
+    let mut arguments = std::env::args().skip(1);
+    let (mut pattern, mut pictures) = (String::new(), None);
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--pictures" => pictures = arguments.next().map(PathBuf::from),
+            // cargo passes --bench.
+            option if option.starts_with('-') => {}
+            other => pattern = other.to_owned(),
+        }
+    }
+    let exec = Exec::new(0, 32)?;
+    let opaque = subjects(&OPAQUE, &pattern, &exec)?;
+    let glass = subjects(&TRANSPARENT, &pattern, &exec)?;
+    let bench = Bench { exec, pictures };
+    bench.figure_8_and_9(&opaque)?;
+    bench.figure_12_and_13(&glass)
+}
+
+const OPAQUE: [&str; 4] = ["bunny", "dragon", "igea", "cluster"];
+const TRANSPARENT: [&str; 5] = ["bunny", "dragon", "igea", "cluster", "balls"];
+
+/// The scenes whose names contain a pattern, loaded; scans that are missing are skipped.
+fn subjects(names: &[&str], pattern: &str, exec: &Exec) -> Result<Vec<Subject>> {
+    let models = std::env::var("SPLATREF_MODELS").unwrap_or_else(|_| "../shared/models".into());
+    let mut subjects = Vec::new();
+    for name in names.iter().filter(|name| name.contains(pattern)) {
+        let model = Path::new(&models).join(format!("{name}.ply"));
+        let text = match *name {
+            "cluster" => "[[model]]\nshape = \"cluster\"\nopacity = 0.4\n".to_owned(),
+            "balls" => BALLS.replace("MODELS", &models),
+            _ => format!("[[model]]\nfile = \"{}\"\nopacity = 0.4\n", model.display()),
+        };
+        let needed = if *name == "balls" { Path::new(&models).join("bunny.ply") } else { model };
+        if *name != "cluster" && !needed.exists() {
+            println!("{name}: skipped, there is no {}\n", needed.display());
+            continue;
+        }
+        let text = format!("{text}[camera]\nsize = [800, 600]\n");
+        let file = SceneFile::parse(&text, Path::new("bench.toml"))?;
+        let scene = file.load(exec, &|_, _, _| ())?.scene;
+        let camera = file.camera(&scene.surfels)?;
+        subjects.push(Subject { name: (*name).to_owned(), scene, camera });
+    }
+    Ok(subjects)
+}
+
+/// Fig. 13: opaque balls inside and around a transparent scan.
+const BALLS: &str = "
+[[model]]
+file = \"MODELS/bunny.ply\"
+opacity = 0.4
+color = [0.4, 0.6, 0.8]
+[[model]]
+shape = \"cluster\"
+count = 60000
+[model.transform]
+scale = 0.035
+translate = [-0.02, 0.11, 0.0]
+";
+
+struct Bench {
+    exec: Exec,
+    pictures: Option<PathBuf>,
+}
+
+impl Bench {
+    /// Opaque: the single pass against 2+1 passes as c falls, with and without Voronoi depth.
+    fn figure_8_and_9(&self, subjects: &[Subject]) -> Result<()> {
+        println!("Fig. 8 and 9: the single pass against the picture of the 2+1 passes\n");
+        println!(
+            "| scene | surfels | c | K | plain: RMSE | SSIM | ms | Voronoi: RMSE | SSIM | ms | 2+1: ms |"
+        );
+        println!("|---|---|---|---|---|---|---|---|---|---|---|");
+        let splats = ewa::Settings::default();
+        for subject in subjects {
+            let truth = self.shoot(subject, "ewa", None, &Method::Ewa(splats))?;
+            for c in [1.0, 0.8, 0.6, 0.4, 0.2] {
+                let rules = Rules { overlap: c, opposite: true, coplanar: None };
+                let grouping = Grouping { rules, count: None, extension: Extension::None };
+                let mut cells = Vec::new();
+                let mut k = None;
+                for depth in [DepthTest::Plain, DepthTest::Voronoi(BinCount::Epsilon)] {
+                    let method = Method::SinglePass(single_pass::Settings { splats, depth });
+                    let kind = if depth == DepthTest::Plain { "plain" } else { "voronoi" };
+                    match self.shoot(subject, &format!("{kind}-{c}"), Some(&grouping), &method) {
+                        Ok(shot) => {
+                            k = shot.groups;
+                            cells.push(against(&shot, &truth));
+                        }
+                        Err(error) => cells.push(format!("{error} | | ")),
+                    }
+                }
+                println!(
+                    "| {} | {} | {c} | {} | {} | {:.1} |",
+                    subject.name,
+                    subject.scene.surfels.len(),
+                    k.map_or_else(|| "-".into(), |k| k.to_string()),
+                    cells.join(" | "),
+                    truth.milliseconds
+                );
+            }
+        }
+        println!();
+        Ok(())
+    }
+
+    /// Transparent: Algorithms 2 and 3 against depth peeling with the same epsilon.
+    fn figure_12_and_13(&self, subjects: &[Subject]) -> Result<()> {
+        println!(
+            "Fig. 12 and 13 (`balls`): Algorithms 2 and 3 against the picture of depth peeling\n"
+        );
+        println!(
+            "| scene | epsilon | K | groups cover it by | holes | Algorithm 2: RMSE | SSIM | ms | Algorithm 3: RMSE | SSIM | ms | peeling: ms |"
+        );
+        println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
+        let add = Extension::Add { most: 0.5 };
+        let (skipped, background) = (Holes::Skipped, Holes::Background);
+        let variants = [
+            (1.0, Some(4), add, skipped),
+            (2.0, Some(4), add, skipped),
+            (4.0, Some(4), add, skipped),
+            (2.0, Some(4), add, background),
+            (2.0, Some(4), Extension::None, skipped),
+            (2.0, Some(4), Extension::None, background),
+            (2.0, Some(4), Extension::Enlarge, skipped),
+            (2.0, Some(8), add, skipped),
+            (2.0, Some(8), Extension::Enlarge, skipped),
+        ];
+        for subject in subjects {
+            let mut truth: Option<(f32, Shot)> = None;
+            for (radii, count, extension, holes) in variants {
+                let splats = ewa::Settings {
+                    epsilon: Epsilon::MedianRadii(radii),
+                    cull: false,
+                    ..ewa::Settings::default()
+                };
+                if truth.as_ref().is_none_or(|(of, _)| *of != radii) {
+                    let method = Method::Peeling(peeling::Settings { splats, layers: 64 });
+                    let shot = self.shoot(subject, &format!("peeling-{radii}"), None, &method)?;
+                    truth = Some((radii, shot));
+                }
+                let Some((_, peeled)) = &truth else { continue };
+                let rules = Rules { overlap: 1.0, opposite: true, coplanar: None };
+                let grouping = Grouping { rules, count, extension };
+                let mut cells = Vec::new();
+                let mut k = 0;
+                for nearest in [None, Some(DepthTest::Voronoi(BinCount::Epsilon))] {
+                    let default = transparent::Settings::default();
+                    let method = Method::Transparent(transparent::Settings {
+                        splats,
+                        holes,
+                        nearest,
+                        ..default
+                    });
+                    let name = format!(
+                        "{}-{radii}-{}-{}-{holes:?}",
+                        if nearest.is_none() { "algorithm2" } else { "algorithm3" },
+                        count.unwrap_or(0),
+                        word(extension)
+                    );
+                    let shot = self.shoot(subject, &name, Some(&grouping), &method)?;
+                    k = shot.groups.unwrap_or(0);
+                    cells.push(against(&shot, peeled));
+                }
+                println!(
+                    "| {} | {radii} r | {k} | {} | {} | {} | {:.0} |",
+                    subject.name,
+                    word(extension),
+                    format!("{holes:?}").to_lowercase(),
+                    cells.join(" | "),
+                    peeled.milliseconds
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// Draws a picture, and again five times for the median of the time.
+    fn shoot(
+        &self,
+        subject: &Subject,
+        name: &str,
+        grouping: Option<&Grouping>,
+        method: &Method,
+    ) -> Result<Shot> {
+        let Subject { scene, camera, .. } = subject;
+        let groups = grouping
+            .map(|grouping| grouping.groups(&scene.surfels, &self.exec, &|_, _, _| ()))
+            .transpose()?;
+        let groups = groups.map(|(groups, ..)| groups);
+        let preparation = Preparation::new(&scene.surfels, groups, method, &self.exec);
+        let draw = || render_f32(scene, &preparation, camera, method, &self.exec, None);
+        let picture = draw()?;
+        let mut times = Vec::new();
+        for _ in 0..5 {
+            let start = Instant::now();
+            draw()?;
+            times.push(start.elapsed().as_secs_f64() * 1e3);
+        }
+        times.sort_by(f64::total_cmp);
+        if let Some(folder) = &self.pictures {
+            let text = provenance::text(scene, &preparation, camera, method, Default::default());
+            let file = folder.join(format!("{}-{name}.exr", subject.name));
+            exr::write(&file, &picture.frame, &text)?;
+        }
+        Ok(Shot {
+            image: Image::from(&picture.frame),
+            milliseconds: times[times.len() / 2],
+            groups: preparation.groups().map(splatref::scene::group::Groups::len),
+        })
+    }
+}
+
+/// RMSE, SSIM and time of a picture against another.
+fn against(shot: &Shot, truth: &Shot) -> String {
+    match summary(&shot.image, &truth.image) {
+        Some(found) => format!(
+            "{:.4} | {} | {:.1}",
+            found.rmse,
+            found.ssim.map_or_else(|| "-".into(), |ssim| format!("{ssim:.4}")),
+            shot.milliseconds
+        ),
+        None => "- | - | -".into(),
+    }
+}
+
+fn word(extension: Extension) -> &'static str {
+    match extension {
+        Extension::None => "none",
+        Extension::Add { .. } => "add",
+        Extension::Enlarge => "enlarge",
+    }
+}

@@ -1,0 +1,137 @@
+//! `splatref group`: a scene divided into groups, into a PLY.
+
+use super::options::{Kind, kind, named};
+use super::{Finding, Outcome, progress, report};
+use splatref::frame::Exec;
+use splatref::io::ply;
+use splatref::io::scene_file::{DEFAULT_MOST, ExtensionChoice, words};
+use splatref::method::Grouping;
+use splatref::scene::group::{Coplanar, Extended, Extension, Groups, Report, Rules};
+use splatref::{Error, Result};
+use std::path::PathBuf;
+use std::time::Instant;
+
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  splatref group dragon.ply -o grouped.ply
+  splatref group dragon.ply --overlap 0.4 --opposite on -o grouped.ply
+  splatref group sphere --groups 4 --extend add -o grouped.ply
+  splatref render grouped.ply --method transparent")]
+pub(super) struct Args {
+    /// A .ply, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster
+    scene: PathBuf,
+    /// Where the surfels go with their groups
+    #[arg(short, long, value_name = "FILE.ply")]
+    output: PathBuf,
+    /// c: splats nearer than c times their radii may not share a group, 0 to 1
+    #[arg(long, value_name = "C", default_value_t = 1.0, allow_hyphen_values = true)]
+    overlap: f32,
+    /// Most groups, 1 to 64; c is the largest up to --overlap that gives so few
+    #[arg(long, value_name = "K")]
+    groups: Option<usize>,
+    /// Splats whose normals are opposite may share a group
+    #[arg(long)]
+    opposite: bool,
+    /// So may those in one plane: least cosine of the normals, most distance from each other's plane
+    /// in sums of their radii, most difference of colours
+    #[arg(long, value_name = "COSINE,OFFSET,COLOR", value_parser = coplanar,
+        allow_hyphen_values = true)]
+    coplanar: Option<Coplanar>,
+    /// How groups are made to cover the surface: none, add or enlarge
+    #[arg(long, value_name = "NAME", value_parser = words::extension, default_value = "none")]
+    extend: ExtensionChoice,
+    /// The most of a splat that is covered already if it is added, as a part of its area, 0 to 1
+    /// [default: 0.5]
+    #[arg(long, value_name = "PART", allow_hyphen_values = true)]
+    most: Option<f32>,
+    /// Surfels of a procedural shape [default: 200000]
+    #[arg(long, value_name = "N")]
+    count: Option<usize>,
+    /// Seed of a procedural shape [default: 0]
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Threads; 0 takes every core
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
+}
+
+pub(super) fn run(args: &Args) -> Finding {
+    let grouping = args.grouping()?;
+    if !matches!(kind(&args.output), Ok(Kind::Ply)) {
+        let path = args.output.display();
+        return Err(Error::Usage(format!("{path}: groups go into a PLY; give a name in .ply")));
+    }
+    super::render::check_folder(&args.output)?;
+    let exec = Exec::new(args.threads, 32)?;
+    let steps = progress::Steps::new();
+    let show = |what: &str, done, of| steps.show(what, done, of);
+    let loaded = named(&args.scene, args.count, args.seed)?.load(&exec, &show)?;
+    let start = Instant::now();
+    let (groups, found, extended) = grouping.groups(&loaded.scene.surfels, &exec, &show)?;
+    let time = start.elapsed();
+    drop(steps);
+
+    report::scene(&loaded);
+    table(&found, &groups, extended.as_ref());
+    report::line("time", format!("{:.2} s", time.as_secs_f64()));
+    let mut cloud = loaded.scene.surfels.into_cloud();
+    cloud.groups = Some(groups);
+    progress::during("writing", || ply::write(&args.output, &cloud))?;
+    report::line("file", args.output.display());
+    Ok(Outcome::Good)
+}
+
+impl Args {
+    fn grouping(&self) -> Result<Grouping> {
+        if self.most.is_some() && self.extend != ExtensionChoice::Add {
+            return Err(Error::Usage("--most is of --extend add".into()));
+        }
+        let rules =
+            Rules { overlap: self.overlap, opposite: self.opposite, coplanar: self.coplanar };
+        let extension = match self.extend {
+            ExtensionChoice::None => Extension::None,
+            ExtensionChoice::Add => Extension::Add { most: self.most.unwrap_or(DEFAULT_MOST) },
+            ExtensionChoice::Enlarge => Extension::Enlarge,
+        };
+        let grouping = Grouping { rules, count: self.groups, extension };
+        grouping.check()?;
+        Ok(grouping)
+    }
+}
+
+/// The row of Table 1, and the groups one by one.
+fn table(found: &Report, groups: &Groups, extended: Option<&Extended>) {
+    let Report { groups: k, overlap, edges, max_degree, average_degree, .. } = found;
+    report::line("groups", format!("{k} at c = {overlap}"));
+    let degree = format!("{max_degree} at most, {average_degree:.1} on the average, {edges} edges");
+    report::line("  degree", degree);
+    let mut sizes = vec![0_u64; groups.len()];
+    groups.own().iter().for_each(|&group| sizes[usize::from(group)] += 1);
+    let Some(extended) = extended else {
+        let sizes: Vec<String> = sizes.iter().map(u64::to_string).collect();
+        return report::line("  surfels", sizes.join(" "));
+    };
+    report::line("  area", report::short(extended.area));
+    report::line("  added", format!("{} surfels, {:.1} %", extended.added, extended.percent));
+    for (k, (group, own)) in extended.groups.iter().zip(sizes).enumerate() {
+        let change = if group.scale == 1.0 && group.converged {
+            format!("{} more", group.surfels - own)
+        } else {
+            let end = if group.converged { "" } else { ", not converged" };
+            format!("radii times {}{end}", report::short(group.scale.into()))
+        };
+        let [before, after] = [group.before, group.after].map(|part| 100.0 * part);
+        let covered = format!("covers {before:.2} %, then {after:.2} %");
+        report::line(&format!("  group {k}"), format!("{own} surfels, {change}; {covered}"));
+    }
+}
+
+/// `0.9,0.1,0.01`.
+fn coplanar(text: &str) -> std::result::Result<Coplanar, String> {
+    let numbers: Option<Vec<f32>> = text.split(',').map(|v| v.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[cosine, offset, color]) => Ok(Coplanar { cosine, offset, color }),
+        _ => Err("give three numbers, such as 0.98,0.05,0.01".into()),
+    }
+}
