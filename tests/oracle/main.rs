@@ -10,8 +10,8 @@
 //! - [`bits`]: fast and plain, threads and tiles, to the last bit.
 //! - [`laws`]: what compositing must keep.
 //! - [`transparent`], [`surroundings`], [`number`]: Algorithms 2 and 3, environments and refraction by
-//!   other means; `transparent_stages` compares, `transparent_known`, `transparent_laws` and
-//!   `transparent_refused` are known answers, laws and refusals.
+//!   other means; `transparent_stages` compares, `transparent_known` and `transparent_glass` are known
+//!   answers, `transparent_laws` laws, `transparent_refused` refusals.
 //! - [`peeling`]: depth peeling by other means, and every layer against it.
 #![expect(
     clippy::disallowed_methods,
@@ -42,6 +42,7 @@ mod surroundings;
 mod tolerance;
 mod transparent;
 mod transparent_cases;
+mod transparent_glass;
 mod transparent_known;
 mod transparent_laws;
 mod transparent_refused;

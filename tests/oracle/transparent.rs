@@ -3,7 +3,7 @@
 //! The order comes from a tree of its own; the nearest layer is that of [`crate::single_pass`]. A
 //! pixel where rounding decides what is inside, in which bin, or in which layer is left out.
 
-use crate::eye::{Eye, V3, dot, scaled, sub, wide};
+use crate::eye::{Eye, V3, cross, dot, scaled, wide};
 use crate::naive::{Fragment, Splat};
 use crate::number::Num;
 use crate::pixel::{Oracle, Seen};
@@ -32,7 +32,7 @@ pub(crate) fn back_to_front(surfels: &Surfels, camera: &Camera) -> Vec<u32> {
 
 /// The x of a x[0] + b x[1] + c x[2] = right.
 fn solve([a, b, c]: [V3; 3], right: V3) -> V3 {
-    let volume = |a, b, c| dot(a, crate::eye::cross(b, c));
+    let volume = |a, b, c| dot(a, cross(b, c));
     let whole = volume(a, b, c);
     [volume(right, b, c) / whole, volume(a, right, c) / whole, volume(a, b, right) / whole]
 }
@@ -63,36 +63,6 @@ fn visit(surfels: &Surfels, mut set: Vec<u32>, eye: V3, order: &mut Vec<u32>) {
     visit(surfels, far, eye, order);
     order.push(own);
     visit(surfels, near, eye, order);
-}
-
-/// What eq. 6 divides: the depths of the scene's bounding sphere.
-pub(crate) fn depths(surfels: &Surfels, camera: &Camera) -> [f64; 2] {
-    let eye = Eye::new(camera);
-    let at = |i: usize| wide(surfels.position()[i]);
-    let (mut low, mut high) = (at(0), at(0));
-    for i in 0..surfels.len() {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(at(i)[axis]);
-            high[axis] = high[axis].max(at(i)[axis]);
-        }
-    }
-    let middle: V3 = std::array::from_fn(|axis| (low[axis] + high[axis]) / 2.0);
-    let mut radius = 0.0_f64;
-    for i in 0..surfels.len() {
-        let reach = match surfels.tangents() {
-            None => f64::from(surfels.radius()[i]),
-            Some(all) => {
-                let [u, v] = all[i].map(|axis| dot(wide(axis), wide(axis)));
-                (u + v).sqrt()
-            }
-        };
-        let away = sub(at(i), middle);
-        radius = radius.max(dot(away, away).sqrt() + reach);
-    }
-    let t = -eye.point(middle)[2];
-    let (nearest, farthest) = ((t - radius).max(eye.near), t + radius);
-    let beyond = if eye.perspective { 2.0 * nearest } else { nearest + 1.0 };
-    [nearest, if farthest > nearest { farthest } else { beyond }]
 }
 
 /// One surfel in one of its groups.

@@ -1,7 +1,7 @@
 //! Scenes with opacities and an environment, their groups, and settings, all drawn by lot.
 
+use crate::depth_range::by_definition;
 use crate::scenes::{Case, Dice, Kind, OUTLINES};
-use crate::transparent::depths;
 use splatref::composite::bins::Range;
 use splatref::frame::Plane;
 use splatref::method::ewa::{Epsilon, Settings as Splats};
@@ -41,21 +41,23 @@ fn with_opacities(surfels: &Surfels, dice: &mut Dice, kind: usize) -> Surfels {
     Surfels::new(cloud).expect("opacities in range").0
 }
 
+/// What fills the scenes. No layers a few ulp apart: rounding alone would order them.
+const FILLED: [Kind; 8] = [
+    Kind::Discs,
+    Kind::Axes,
+    Kind::Ellipses,
+    Kind::Tilted,
+    Kind::Sizes,
+    Kind::Degenerate,
+    Kind::Shape(0),
+    Kind::Shape(1),
+];
+
 impl Subject {
     /// The case of a number.
     pub(crate) fn new(number: usize) -> Self {
         let mut dice = Dice(number as u64 * 1009 + 3);
         dice.below(1);
-        let kinds = [
-            Kind::Discs,
-            Kind::Axes,
-            Kind::Ellipses,
-            Kind::Tilted,
-            Kind::Sizes,
-            Kind::Degenerate,
-            Kind::Shape(0),
-            Kind::Shape(1),
-        ];
         let epsilon = [
             Epsilon::MedianRadii(1.0),
             Epsilon::World(0.25),
@@ -64,7 +66,7 @@ impl Subject {
             Epsilon::World(f32::INFINITY),
         ][dice.below(5)];
         let outline = OUTLINES[number % 3];
-        let kind = kinds[(number / 3) % kinds.len()];
+        let kind = FILLED[(number / 3) % FILLED.len()];
         // An enlarged disc's exact outline has another centre: without a band, rounding alone would
         // decide whether it lies behind itself.
         let epsilon = match epsilon {
@@ -115,9 +117,9 @@ impl Subject {
         let Case { scene, camera, settings, .. } = &self.case;
         let epsilon = settings.epsilon.resolve(&scene.surfels);
         let range = bins.resolve(&scene.surfels, camera, epsilon).expect("few bins");
-        let [nearest, farthest] = depths(&scene.surfels, camera);
-        // Rounded once: the crate's sums in f64 may come from another order.
-        assert_eq!([range.nearest, range.farthest], [nearest as f32, farthest as f32]);
+        let [nearest, farthest] = by_definition(&scene.surfels, camera);
+        let (nearest, farthest) = (nearest.max(camera.near.into()) as f32, farthest as f32);
+        assert_eq!([range.nearest, range.farthest], [nearest, farthest], "{}", self.case.name);
         let extent = f64::from(range.farthest) - f64::from(range.nearest);
         let count = match bins {
             BinCount::Count(n) => f64::from(n),

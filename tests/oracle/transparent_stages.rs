@@ -35,24 +35,22 @@ impl<R: Real> Compare<'_, R> {
         let condition = numbers.map(|n| n.condition + step * n.value.abs());
         let entry = Entry { plane: key, value, condition };
         let to = (self.arithmetic, self.place);
-        let there = measure(self.frame, (name, key), &entry, self.i, to, self.measured);
-        assert!(there, "no plane {name}: {}", self.place);
+        let found = self.frame.plane(name).unwrap_or_else(|| panic!("no plane {name}"));
+        measure((found, key), &entry, self.i, to, self.measured);
     }
 
     /// As [`Self::color`], of a plane that does not ask whether normals are unit vectors: in f64 it
     /// owes the digits of f64 whatever the scene.
     fn sharp(&mut self, name: &str, key: &'static str, numbers: [Num; 3]) {
-        let rounded = self.arithmetic == Arithmetic::F64Rounded;
-        if rounded {
-            let (step, _) = Arithmetic::F64.step();
-            let finer = step / self.arithmetic.step().0;
-            let numbers = numbers.map(|n| Num { condition: n.condition * finer, ..n });
+        let own = self.arithmetic;
+        let mut numbers = numbers;
+        if own == Arithmetic::F64Rounded {
+            let finer = Arithmetic::F64.step().0 / own.step().0;
+            numbers = numbers.map(|n| Num { condition: n.condition * finer, ..n });
             self.arithmetic = Arithmetic::F64;
-            self.color(name, key, numbers);
-            self.arithmetic = Arithmetic::F64Rounded;
-        } else {
-            self.color(name, key, numbers);
         }
+        self.color(name, key, numbers);
+        self.arithmetic = own;
     }
 
     pub(crate) fn number(&mut self, name: &str, key: &'static str, number: Num) {

@@ -43,6 +43,8 @@
 //! - A group that does not cover a layer leaves holes in it, see [`crate::scene::group`] for the
 //!   extensions that close them, and [`Holes`].
 //! - Overlapping surfels are ordered by their centres, see [`crate::scene::order`].
+//! - Algorithm 3 with an epsilon of 0, or below the rounding of depths: a surfel that its group enlarges
+//!   can be drawn behind itself, as its depths round otherwise than in the nearest layer.
 //!
 //! [`Groups`]: crate::scene::group::Groups
 
