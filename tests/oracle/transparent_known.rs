@@ -283,8 +283,9 @@ fn one_surfel_is_itself() {
     }
 }
 
-/// In the nearest layer a surfel has its own radius, in the others that of its group: with a band it
-/// is not drawn behind itself. (Without one it is: the depths of an enlarged disc round otherwise.)
+/// In the nearest layer a surfel has its own radius, in the others that of its group: with a band of
+/// (scale - 1) r it is not drawn behind itself. (Without one it is: depths are clamped to the radius,
+/// and round otherwise.)
 #[test]
 fn an_enlarged_disc_is_not_behind_itself() {
     for (outline, orthographic) in [(0, false), (1, false), (2, false), (0, true), (1, true)] {
@@ -296,7 +297,9 @@ fn an_enlarged_disc_is_not_behind_itself() {
         let camera = camera(orthographic);
         let mut pictures = [1.0, 1.25].into_iter().map(|scale| {
             given.1 = Groups::new(vec![0], vec![], vec![scale]).expect("a group");
-            render::<f32>(&given, &camera, &settings(outline, Some(DepthTest::Plain)))
+            let mut settings = settings(outline, Some(DepthTest::Plain));
+            settings.splats.epsilon = Epsilon::World(0.375);
+            render::<f32>(&given, &camera, &settings)
         });
         let [own, enlarged] = [pictures.next(), pictures.next()].map(|p| p.expect("two pictures"));
         for name in ["", "A", "Z", "id", "layers", "weight"] {
