@@ -216,7 +216,7 @@ fn extent(given: &Given, kernel: Kernel, camera: &Camera) -> ([[f64; 2]; 2], f64
         kernel
     };
     let optics = Optics::new(camera, &Settings { kernel: shape, ..Settings::default() });
-    let body = Body::new(&optics.eye, &surfels, 0);
+    let body = Body::new(&optics.eye, &surfels, (0, 1.0));
     let figure = Figure::new(&optics, body);
     let (c, [xx, _, yy]) = (figure.center, figure.covariance);
     let reach = [optics.k * xx.sqrt(), optics.k * yy.sqrt()];

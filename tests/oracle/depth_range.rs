@@ -29,7 +29,7 @@ fn depths(scene: &Scene, camera: &Camera, splats: ewa::Settings, own: Vec<u8>) -
 
 /// By definition: the middle of the box around all positions, the greatest distance from there with
 /// the reach of the surfel; its depth under the camera, plus and minus that distance.
-fn by_definition(surfels: &Surfels, camera: &Camera) -> [f64; 2] {
+pub(crate) fn by_definition(surfels: &Surfels, camera: &Camera) -> [f64; 2] {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for p in surfels.position() {
         for (i, v) in wide(*p).into_iter().enumerate() {

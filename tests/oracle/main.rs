@@ -13,6 +13,10 @@
 //! - [`bits`]: fast and plain, threads and tiles, to the last bit.
 //! - [`laws`]: what compositing must keep; [`groups_laws`], [`bins_laws`], [`over_laws`]: the laws of
 //!   the operator over depth-images, of depth bins and of alpha-blending.
+//! - [`transparent`], [`surroundings`], [`number`]: Algorithms 2 and 3, environments and refraction by
+//!   other means; `transparent_stages` compares, `transparent_known` and `transparent_glass` are known
+//!   answers, `transparent_laws` laws, `transparent_refused` refusals.
+//! - [`peeling`]: depth peeling by other means, and every layer against it.
 #![expect(
     clippy::disallowed_methods,
     reason = "std's functions, so that the oracle shares no code with the crate; its bits are free"
@@ -28,7 +32,9 @@ mod groups_laws;
 mod known;
 mod laws;
 mod naive;
+mod number;
 mod over_laws;
+mod peeling;
 mod pixel;
 mod scenes;
 mod single_pass;
@@ -36,4 +42,13 @@ mod single_pass_identity;
 mod single_pass_laws;
 mod single_pass_stages;
 mod stages;
+mod surroundings;
 mod tolerance;
+mod transparent;
+mod transparent_cases;
+mod transparent_glass;
+mod transparent_known;
+mod transparent_laws;
+mod transparent_refused;
+mod transparent_stages;
+mod transparent_tolerance;

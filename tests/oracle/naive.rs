@@ -26,10 +26,11 @@ enum Span {
 }
 
 impl Body {
-    pub(crate) fn new(eye: &Eye, surfels: &Surfels, i: usize) -> Self {
+    /// A surfel, enlarged.
+    pub(crate) fn new(eye: &Eye, surfels: &Surfels, (i, scale): (usize, f64)) -> Self {
         let span = match surfels.tangents() {
-            Some(pairs) => Span::Ellipse(pairs[i].map(|v| eye.direction(wide(v)))),
-            None => Span::Disc(surfels.radius()[i].into()),
+            Some(pairs) => Span::Ellipse(pairs[i].map(|v| scaled(eye.direction(wide(v)), scale))),
+            None => Span::Disc(f64::from(surfels.radius()[i]) * scale),
         };
         let (p, n) = (wide(surfels.position()[i]), wide(surfels.normal()[i]));
         Self { p: eye.point(p), n: eye.direction(n), span }
@@ -241,17 +242,17 @@ pub(crate) struct Splat {
 }
 
 impl Splat {
-    /// The splat of a surfel; none if it is behind, degenerate or culled. `guard`: how many
+    /// The splat of a surfel whose radius or tangents are multiplied by `scale`; none if it is behind, degenerate or culled. `guard`: how many
     /// conditions count as rounding.
     pub(crate) fn new(
         optics: &Optics,
         surfels: &Surfels,
-        index: usize,
+        (index, scale): (usize, f64),
         cull: bool,
         [step, guard]: [f64; 2],
     ) -> Option<Self> {
         let eye = &optics.eye;
-        let body = Body::new(eye, surfels, index);
+        let body = Body::new(eye, surfels, (index, scale));
         let magnitude = eye.magnitude(wide(surfels.position()[index]));
         let reach = guard * magnitude[2] * step;
         if -body.p[2] <= eye.near - reach {
@@ -285,7 +286,7 @@ impl Splat {
                 (squared[0] + squared[1]).sqrt()
             }
         };
-        let [excess, terms] = eye.beyond(body.p, radius, optics.k * optics.h.sqrt());
+        let [excess, terms] = eye.beyond(body.p, radius * scale, optics.k * optics.h.sqrt());
         let parting = excess.abs() <= guard * step * terms;
         let back = figure.facing > 0.0;
         let doubtful = turning || grazing || leaving || parting;

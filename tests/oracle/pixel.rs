@@ -28,7 +28,7 @@ pub(crate) type Seen<'a> = (&'a Splat, Fragment);
 
 /// A scene before a camera.
 pub(crate) struct Oracle<'a> {
-    scene: &'a Scene,
+    pub(crate) scene: &'a Scene,
     pub(crate) optics: Optics,
     pub(crate) epsilon: f64,
     splats: Vec<Splat>,
@@ -47,7 +47,9 @@ impl<'a> Oracle<'a> {
     ) -> Self {
         let optics = Optics::new(camera, settings);
         let splats = (0..scene.surfels.len())
-            .filter_map(|i| Splat::new(&optics, &scene.surfels, i, settings.cull, [step, guard]))
+            .filter_map(|i| {
+                Splat::new(&optics, &scene.surfels, (i, 1.0), settings.cull, [step, guard])
+            })
             .collect();
         let epsilon = settings.epsilon.resolve(&scene.surfels).into();
         Self { scene, optics, epsilon, splats, step, guard }
@@ -86,7 +88,7 @@ impl<'a> Oracle<'a> {
     }
 
     /// The rounding error that epsilon adds to a comparison with one that is epsilon away.
-    fn band(&self) -> f64 {
+    pub(crate) fn band(&self) -> f64 {
         if self.epsilon.is_finite() { 2.0 * self.guard * self.step * self.epsilon } else { 0.0 }
     }
 
@@ -234,7 +236,7 @@ impl<'a> Oracle<'a> {
     }
 
     /// The colour of a surface with a world-space normal at depth t.
-    fn phong(&self, [x, y]: [f64; 2], t: f64, normal: V3, surface: V3) -> V3 {
+    pub(crate) fn phong(&self, [x, y]: [f64; 2], t: f64, normal: V3, surface: V3) -> V3 {
         let eye: &Eye = &self.optics.eye;
         if self.scene.lights.is_empty() {
             return surface;

@@ -77,7 +77,7 @@ impl Algorithm1<'_> {
     }
 
     /// The bins that a fragment may fall into, eq. 6.
-    fn bins(&self, range: &Range, f: &Fragment) -> [f64; 2] {
+    pub(crate) fn bins(&self, range: &Range, f: &Fragment) -> [f64; 2] {
         let (nearest, farthest) = (f64::from(range.nearest), f64::from(range.farthest));
         let (extent, n) = (farthest - nearest, f64::from(range.count));
         let position = (f.value.t - nearest) / extent * n;

@@ -40,7 +40,12 @@ pub(crate) struct Row {
     pub(crate) reason: &'static str,
 }
 
-const fn row(plane: &'static str, arithmetic: Arithmetic, bound: f64, reason: &'static str) -> Row {
+pub(crate) const fn row(
+    plane: &'static str,
+    arithmetic: Arithmetic,
+    bound: f64,
+    reason: &'static str,
+) -> Row {
     Row { plane, arithmetic, bound, reason }
 }
 

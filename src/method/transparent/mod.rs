@@ -43,6 +43,9 @@
 //! - A group that does not cover a layer leaves holes in it, see [`crate::scene::group`] for the
 //!   extensions that close them, and [`Holes`].
 //! - Overlapping surfels are ordered by their centres, see [`crate::scene::order`].
+//! - Algorithm 3 can draw a surfel that its group enlarges behind itself: where the nearest layer clamps
+//!   its depth to its own radius (see [`mod@crate::splat::project`]) and epsilon < (scale - 1) r, and, as
+//!   depths of another radius round otherwise, anywhere with an epsilon of 0.
 //!
 //! [`Groups`]: crate::scene::group::Groups
 

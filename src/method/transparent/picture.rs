@@ -25,19 +25,20 @@ const MASK: Stencil = Stencil { reference: 1, pass: Operation::Replace, ..Stenci
 
 /// Renders by Algorithm 2 or 3 \[ZP06\], in any number.
 ///
-/// The planes of the picture: `R G B` and `A`; `Z` and `id` of the nearest fragment; `layers`, the mean
-/// count of layers, and of Algorithm 3 `normal` and `weight` of the nearest layer. With `stages`:
+/// The planes of the picture: `R G B` and `A`; `Z` and `id` of the nearest fragment that passed its depth
+/// test; `layers`, the mean count of layers, and of Algorithm 3 `normal` and `weight` of the nearest
+/// layer. With `stages`:
 ///
 /// | stage | planes |
 /// |---|---|
 /// | nearest layer | `nearest.groupK.*` as in [`single_pass::render`]; `nearest.R G B`: `C_F`; `nearest.A`: alpha; `nearest.mask`: the stencil |
-/// | blending | for each group k `blended.groupK.R G B`, `.A`, `.opacity` (the sum of opacities), `.bin` (+inf: empty), `.count`, `.id` |
-/// | average | `blended.R G B`, `.A`, `.opacity`, `.hidden`, `.layers`; of Algorithm 3 `l`: the layer count of eq. 11 and 12, 0 where there is no layer |
+/// | blending | for each group k `blended.groupK.R G B`, `.A`, `.opacity` (the sum of opacities), `.bin` (+inf: empty), `.count`, `.id` (of the surfel blended last) |
+/// | average | `blended.R G B`, `.A`, `.opacity`, `.hidden`, `.layers`; of Algorithm 3 `l`: the layer count of eq. 11 and 12, 0 where there is no layer or where its opacity is 0 |
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if the camera or the settings are out of range, or if the low-precision
-/// depth takes too many bins, or if there are not as many surfels in the groups or in the order as in
-/// the scene.
+/// [`crate::Error::Invalid`] if the camera or the settings are out of range, if the low-precision
+/// depth takes too many bins, if refraction is wanted without an environment, or if there are not as
+/// many surfels in the groups or in the order as in the scene.
 pub fn render<R: Real>(
     scene: &Scene,
     (groups, order): (&Groups, &BackToFront),
