@@ -15,7 +15,7 @@ use std::time::Instant;
 #[command(after_help = "\
 Examples:
   splatref group dragon.ply -o grouped.ply
-  splatref group dragon.ply --overlap 0.4 --opposite on -o grouped.ply
+  splatref group dragon.ply --overlap 0.4 --opposite -o grouped.ply
   splatref group sphere --groups 4 --extend add -o grouped.ply
   splatref render grouped.ply --method transparent")]
 pub(super) struct Args {

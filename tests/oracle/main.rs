@@ -28,6 +28,7 @@ mod bounds;
 mod counter;
 mod depth_range;
 mod eye;
+mod goldens;
 mod groups_laws;
 mod known;
 mod laws;

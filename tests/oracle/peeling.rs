@@ -1,5 +1,6 @@
 //! Depth peeling by brute force: all fragments of a pixel, one band of depth after the other.
 
+use crate::goldens;
 use crate::number::Num;
 use crate::pixel::{Oracle, Seen};
 use crate::scenes::Case;
@@ -12,7 +13,9 @@ use crate::transparent_stages::Compare;
 use crate::transparent_tolerance::PEELING;
 use splatref::frame::{Exec, Frame, NO_ID};
 use splatref::method::peeling::{self, STAGES, Settings};
+use splatref::method::{Method, transparent};
 use splatref::number::Real;
+use splatref::scene::group::Groups;
 
 /// One layer of a pixel.
 struct Layer {
@@ -137,10 +140,18 @@ fn compare<R: Real>(
 fn every_stage_of_peeling_equals_the_oracle() {
     let exec = Exec::sequential();
     let (mut measured, mut worst) = (Measured::default(), [0.0_f64; 2]);
-    for number in 0..96 {
-        let subject = Subject::new(number);
+    let by_lot = (0..96).map(|number| (Subject::new(number), [64, 2, 1, 9, 256][number % 5]));
+    let goldens = goldens::all().into_iter().filter_map(|golden| match golden.method {
+        Method::Peeling(settings) => {
+            let groups = Groups::new(vec![0; golden.case.scene.surfels.len()], vec![], vec![1.0]);
+            let transparent = transparent::Settings::default();
+            let groups = groups.expect("one group");
+            Some((Subject { case: golden.case, groups, settings: transparent }, settings.layers))
+        }
+        _ => None,
+    });
+    for (subject, layers) in by_lot.chain(goldens::at_least(1, goldens.collect())) {
         let Case { scene, camera, exact, settings: splats, .. } = &subject.case;
-        let layers = [64, 2, 1, 9, 256][number % 5];
         let settings = Settings { splats: *splats, layers };
         let narrow = peeling::render::<f32>(scene, camera, &settings, &exec, true);
         let wide = peeling::render::<f64>(scene, camera, &settings, &exec, true);

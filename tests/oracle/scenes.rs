@@ -1,9 +1,6 @@
 //! Small scenes that are hard on purpose.
 
 use glam::{DVec3, Mat4, Vec3};
-use splatref::frame::Exec;
-use splatref::io::scene_file::SceneFile;
-use splatref::method::Method;
 use splatref::method::ewa::{Epsilon, Settings};
 use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Pose, Scene, Shape, Surfels};
 use splatref::splat::{Kernel, Outline};
@@ -260,22 +257,4 @@ pub(crate) fn all() -> Vec<Case> {
         }
     }
     cases
-}
-
-/// The scenes under `golden/` that EWA splatting draws, so that no golden stands without an oracle behind it.
-pub(crate) fn goldens() -> Vec<Case> {
-    let folder = std::fs::read_dir("golden").expect("golden/ beside the tests");
-    let mut paths: Vec<_> = folder.map(|entry| entry.expect("an entry").path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|kind| kind == "toml"));
-    paths.sort();
-    assert!(paths.len() >= 10, "the goldens are gone");
-    let case = |path: &std::path::PathBuf| {
-        let file = SceneFile::read(path).expect("a scene file");
-        let Method::Ewa(settings) = file.method.method().expect("a method") else { return None };
-        let scene = file.load(&Exec::sequential(), &|_, _, _| ()).expect("loads").scene;
-        let camera = file.camera(&scene.surfels).expect("a camera");
-        let name = path.display().to_string();
-        Some(Case { name, camera, settings, scene, exact: false })
-    };
-    paths.iter().filter_map(case).collect()
 }

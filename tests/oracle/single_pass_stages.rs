@@ -1,11 +1,13 @@
 //! Every stage of Algorithm 1 against the oracle, for groups drawn by lot.
 
+use crate::goldens;
 use crate::pixel::Seen;
 use crate::scenes::{self, Case, Dice};
 use crate::single_pass::Algorithm1;
 use crate::stages::{at, index, measure, oracle};
 use crate::tolerance::{self, Arithmetic, Measured};
 use splatref::frame::{Exec, Frame, NO_ID, Samples};
+use splatref::method::Method;
 use splatref::method::ewa::Epsilon;
 use splatref::method::single_pass::{self, BinCount, DepthTest, Settings};
 use splatref::number::Real;
@@ -185,11 +187,21 @@ impl Subject<'_> {
 fn every_stage_of_the_single_pass_equals_the_oracle() {
     let exec = Exec::sequential();
     let (mut measured, mut all) = (Measured::default(), [Open::default(); 2]);
-    let mut cases = scenes::all();
-    cases.extend(scenes::goldens());
-    for (number, case) in cases.iter().enumerate() {
-        let (scene, camera) = (&case.scene, &case.camera);
-        let (groups, depth) = variant(case, number);
+    let mut cases: Vec<_> = scenes::all()
+        .into_iter()
+        .enumerate()
+        .map(|(number, case)| {
+            let (groups, depth) = variant(&case, number);
+            (case, groups, depth)
+        })
+        .collect();
+    let goldens = goldens::all().into_iter().filter_map(|golden| match golden.method {
+        Method::SinglePass(settings) => Some((golden.case, golden.groups?, settings.depth)),
+        _ => None,
+    });
+    cases.extend(goldens::at_least(2, goldens.collect()));
+    for (case, groups, depth) in &cases {
+        let (scene, camera, depth) = (&case.scene, &case.camera, *depth);
         let settings = Settings { splats: case.settings, depth };
         let epsilon = case.settings.epsilon.resolve(&scene.surfels);
         let range = match depth {
@@ -197,15 +209,15 @@ fn every_stage_of_the_single_pass_equals_the_oracle() {
             DepthTest::Voronoi(bins) => match bins.resolve(&scene.surfels, camera, epsilon) {
                 Ok(range) => Some(range),
                 Err(error) => {
-                    let refused = single_pass::render_f32(scene, &groups, camera, &settings, &exec);
+                    let refused = single_pass::render_f32(scene, groups, camera, &settings, &exec);
                     assert_eq!(refused.err().map(|e| e.to_string()), Some(error.to_string()));
                     continue;
                 }
             },
         };
-        let plain = single_pass::render::<f32>(scene, &groups, camera, &settings, &exec, true);
-        let fast = single_pass::render_f32(scene, &groups, camera, &settings, &exec);
-        let truth = single_pass::render::<f64>(scene, &groups, camera, &settings, &exec, true);
+        let plain = single_pass::render::<f32>(scene, groups, camera, &settings, &exec, true);
+        let fast = single_pass::render_f32(scene, groups, camera, &settings, &exec);
+        let truth = single_pass::render::<f64>(scene, groups, camera, &settings, &exec, true);
         let (plain, fast, truth) =
             (plain.expect("renders"), fast.expect("renders"), truth.expect("renders"));
         let subject = |arithmetic| {

@@ -2,6 +2,7 @@
 //! lot.
 
 use crate::eye::V3;
+use crate::goldens;
 use crate::number::Num;
 use crate::pixel::Entry;
 use crate::scenes::Case;
@@ -13,6 +14,7 @@ use crate::transparent::{Image, Transparent, Truth, back_to_front};
 use crate::transparent_cases::Subject;
 use crate::transparent_tolerance::TRANSPARENT;
 use splatref::frame::{Exec, Frame, NO_ID, Samples};
+use splatref::method::Method;
 use splatref::method::single_pass::{self, DepthTest};
 use splatref::method::transparent;
 use splatref::number::Real;
@@ -213,8 +215,14 @@ fn every_stage_of_transparency_equals_the_oracle() {
     let exec = Exec::sequential();
     let (mut measured, mut worst) = (Measured::default(), [0.0_f64; 2]);
     let count: usize = std::env::var("ORACLE_CASES").map_or(96, |n| n.parse().expect("a number"));
-    for number in 0..count {
-        let subject = Subject::new(number);
+    let goldens = goldens::all().into_iter().filter_map(|golden| match golden.method {
+        Method::Transparent(settings) => {
+            Some(Subject { case: golden.case, groups: golden.groups?, settings })
+        }
+        _ => None,
+    });
+    let goldens = goldens::at_least(4, goldens.collect());
+    for subject in (0..count).map(Subject::new).chain(goldens) {
         let Case { scene, camera, exact, .. } = &subject.case;
         let order = BackToFront::new(&scene.surfels, &exec);
         assert_eq!(order.walk(camera), back_to_front(&scene.surfels, camera), "the order");
