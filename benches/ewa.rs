@@ -8,16 +8,17 @@
 #[path = "common/sphere.rs"]
 mod sphere;
 
-use sphere::{LARGE, STANDARD, Workload, camera, cell, sphere};
+use sphere::{STANDARD, Workload, camera, cell, sphere};
 use splatref::frame::{Exec, Framebuffer, Wanted};
 use splatref::method::ewa::{Settings, fast};
 use splatref::scene::Surfels;
 use splatref::splat::Kernel;
 use std::time::{Duration, Instant};
 
-/// A series of about five layers of discs a pixel, with the large one, and extremes of size.
-const MORE: [Workload; 3] = [
+/// With the tight and the 1 M one, a series of about five layers of discs a pixel; extremes of size.
+const MORE: [Workload; 4] = [
     Workload { name: "10 k", count: 10_000, radius: 0.045 },
+    Workload { name: "10 M", count: 10_000_000, radius: 0.00142 },
     Workload { name: "1 k of 300 px", count: 2_000, radius: 0.6 },
     Workload { name: "1 M of 1 px", count: 1_000_000, radius: 0.0015 },
 ];
@@ -29,7 +30,7 @@ fn main() {
         "| workload | kernel | planes | threads | frame | projection | visibility | attributes | normalization |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
-    let workloads = STANDARD.iter().chain(&MORE).chain([&LARGE]);
+    let workloads = STANDARD.iter().chain(&MORE);
     for workload in workloads.filter(|w| w.name.contains(&pattern)) {
         let surfels = sphere(workload);
         for (name, kernel, normal) in VARIANTS {

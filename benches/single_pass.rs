@@ -5,24 +5,23 @@
 //! machine. Times are the median over the rounds, the minimum in brackets, in milliseconds; the ratio
 //! is the median over the rounds of the time of the frame by that of the 2+1-pass method.
 //!
-//! The groups are random, a load and not a grouping: surfels of one group overlap.
+//! The rows are groupings of this crate without relaxations, by c, and the c that gives 8 groups.
 
 #[path = "common/sphere.rs"]
 mod sphere;
 
-use sphere::{LARGE, STANDARD, camera, cell, sphere};
+use sphere::{STANDARD, camera, cell, sphere};
 use splatref::frame::{Exec, Framebuffer, Wanted};
 use splatref::method::ewa;
 use splatref::method::single_pass::{BinCount, DepthTest, Settings, fast};
-use splatref::number::random::unit;
-use splatref::scene::group::Groups;
+use splatref::scene::group::{Groups, Report, Rules, group, group_into};
 use splatref::scene::{Camera, Surfels};
 use std::time::{Duration, Instant};
 
 /// What one row draws: the 2+1-pass method, or groups and a depth test.
-enum Method {
+enum Method<'a> {
     TwoPass,
-    SinglePass(Groups, DepthTest),
+    SinglePass(&'a Groups, DepthTest),
 }
 
 /// The time of a frame, and of projection, geometry and what comes after it.
@@ -35,17 +34,14 @@ fn main() {
         "| workload | planes | threads | method | frame | ratio | projection | geometry | compositing |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
-    for workload in STANDARD.iter().chain([&LARGE]).filter(|w| w.name.contains(&pattern)) {
+    for workload in STANDARD.iter().filter(|w| w.name.contains(&pattern)) {
         let surfels = sphere(workload);
+        let groupings = groupings(&surfels);
         let mut methods = vec![("2+1 passes".to_owned(), Method::TwoPass)];
-        for k in [4, 8, 16] {
-            let name = format!("K = {k}");
-            methods.push((name.clone(), Method::SinglePass(groups(&surfels, k), DepthTest::Plain)));
+        for (name, groups) in &groupings {
+            methods.push((name.clone(), Method::SinglePass(groups, DepthTest::Plain)));
             let voronoi = DepthTest::Voronoi(BinCount::Epsilon);
-            methods.push((
-                format!("{name}, Voronoi"),
-                Method::SinglePass(groups(&surfels, k), voronoi),
-            ));
+            methods.push((format!("{name}, Voronoi"), Method::SinglePass(groups, voronoi)));
         }
         for (planes, normal) in [("colour", false), ("colour, normal", true)] {
             for threads in [1, 2] {
@@ -66,16 +62,23 @@ fn main() {
     }
 }
 
-/// Groups that know nothing of the surfels.
-fn groups(surfels: &Surfels, count: usize) -> Groups {
-    let own = (0..surfels.len()).map(|i| (unit(2, i as u64) * count as f32) as u8).collect();
-    Groups::new(own, Vec::new(), vec![1.0; count]).expect("groups")
+/// Groups that do not overlap, that do more and more, and 8 of them.
+fn groupings(surfels: &Surfels) -> Vec<(String, Groups)> {
+    let (exec, silent) = (Exec::new(0, 32).expect("threads"), |_: &str, _, _| ());
+    let by_c = |overlap| group(surfels, &Rules { overlap, ..Rules::default() }, &exec, &silent);
+    let eight = group_into(surfels, &Rules::default(), 8, &exec, &silent);
+    let all = [1.0, 0.8, 0.6, 0.4].map(by_c).into_iter().chain([eight]);
+    let named = |result: splatref::Result<(Groups, Report)>| {
+        let (groups, report) = result.expect("groups");
+        (format!("K = {}, c = {:.3}", report.groups, report.overlap), groups)
+    };
+    all.map(named).collect()
 }
 
 /// For each method the times of its frames.
 fn measure(
     surfels: &Surfels,
-    methods: &[(String, Method)],
+    methods: &[(String, Method<'_>)],
     normal: bool,
     threads: usize,
 ) -> Vec<Vec<Times>> {
@@ -96,7 +99,7 @@ fn measure(
 
 fn frame(
     surfels: &Surfels,
-    method: &Method,
+    method: &Method<'_>,
     camera: &Camera,
     exec: &Exec,
     target: &mut Framebuffer<f32>,

@@ -20,9 +20,6 @@ pub(crate) const STANDARD: [Workload; 3] = [
     Workload { name: "1 M", count: 1_000_000, radius: 0.0045 },
 ];
 
-/// A tenfold load with as many layers of discs a pixel as the tight ones.
-pub(crate) const LARGE: Workload = Workload { name: "10 M", count: 10_000_000, radius: 0.00142 };
-
 /// The camera of all workloads, 1024 x 1024.
 pub(crate) fn camera() -> Camera {
     let pose = Pose { eye: DVec3::new(0.0, 0.0, 4.0), target: DVec3::ZERO, up: DVec3::Y };

@@ -5,6 +5,19 @@
 //! - [`single_pass`]: one geometry pass into the depth-images of groups, then compositing \[ZP06\].
 //! - [`transparent`]: layers blended from back to front within groups \[ZP06\].
 //! - [`mod@render`]: any of them, chosen by a value.
+//!
+//! # Fast paths
+//!
+//! [`ewa::fast`] and [`single_pass::fast`] give the bits of the definitions for `f32`, from another
+//! layout. A tile is done from beginning to end while it is in the cache: its splats are gathered into
+//! one list, and its pixels are kept in blocks of 4 x 4, one vector of 16 lanes a quantity. A lane is a
+//! pixel and never a partial sum, so every pixel sees the operations of the definition in their
+//! order. Three things differ, and none of them changes a bit:
+//!
+//! - A block is visited whole. The lanes outside a splat's bounds have q > k^2.
+//! - The epsilon-z test `1/w <= limit` becomes `w >= least`, with `least` the smallest `f32` that
+//!   passes: 1/w, correctly rounded, never grows with w.
+//! - A fragment that fails adds weight 0 instead of nothing.
 
 pub mod ewa;
 mod fast;

@@ -163,7 +163,13 @@ fn threads_and_tiles_leave_no_trace() {
             for name in ["attributes.count", "margin"] {
                 assert!(plain.frame.plane(name).is_some(), "no plane {name}");
             }
-            let all = [digest(&fast.frame), digest(&plain.frame), digest(&wide.frame)];
+            let groups = groups(&scene.surfels, 7, number as u64);
+            let depth = [DepthTest::Plain, DepthTest::Voronoi(BinCount::Count(64))][number / 2 % 2];
+            let single = single_pass::Settings { splats: *settings, depth };
+            let single = single_pass::render_f32(scene, &groups, camera, &single, exec);
+            let single = single.expect("renders");
+            let frames = [&fast.frame, &plain.frame, &single.frame];
+            let all = (frames.map(digest), digest(&wide.frame));
             let first = seen.get_or_insert_with(|| all.clone());
             assert!(*first == all, "{} threads, {exec:?}: {}", exec.threads(), case.name);
         }

@@ -1,15 +1,5 @@
 //! What the fast paths for `f32` share: records of splats, the blocks of a tile, and what is done
-//! with a block whatever the method.
-//!
-//! A tile is done from beginning to end while it is in the cache: its splats are gathered into one
-//! list, and its pixels are kept in blocks of 4 x 4, one vector of 16 lanes a quantity. A lane is a
-//! pixel and never a partial sum, so every pixel sees the operations of the definition in their
-//! order. Three things differ, and none of them changes a bit:
-//!
-//! - A block is visited whole. The lanes outside a splat's bounds have q > k^2.
-//! - The epsilon-z test `1/w <= limit` becomes `w >= least`, with `least` the smallest `f32` that
-//!   passes: 1/w, correctly rounded, never grows with w.
-//! - A fragment that fails adds weight 0 instead of nothing.
+//! with a block whatever the method. The layout: [`crate::method`].
 
 pub(super) mod lanes;
 pub(super) mod resolve;

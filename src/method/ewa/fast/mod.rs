@@ -1,5 +1,4 @@
-//! The fast path for `f32`: the bits of [`super::plain`], from another layout.
-//! See [`crate::method`] for the layout.
+//! The fast path for `f32`: the bits of [`super::plain`], from another layout, see [`crate::method`].
 
 mod kernels;
 

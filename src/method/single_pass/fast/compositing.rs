@@ -12,13 +12,13 @@ impl Images {
     pub(super) fn nearest(&self, tile: &mut Tile) {
         for (block, nearest) in tile.blocks.iter_mut().zip(&self.nearest) {
             block.nearest = nearest.nearness;
-            for i in 0..LANES {
-                block.id[i] = self.surfels[nearest.splat[i] as usize];
+            for (id, &splat) in block.id.iter_mut().zip(&nearest.splat) {
+                *id = self.surfels[splat as usize];
             }
         }
     }
 
-    /// Sums up what passes the epsilon-z test.
+    /// The sums over what passes the epsilon-z test; fragments that do not pass lose their weight.
     pub(super) fn composite(&mut self, tile: &mut Tile, shared: &Shared<f32>) {
         composite(self, tile, shared);
     }
@@ -26,31 +26,30 @@ impl Images {
 
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn composite(images: &mut Images, tile: &mut Tile, shared: &Shared<f32>) {
-    let shared = *shared;
-    let Images { ends, images, counts, lists, attributes, .. } = images;
-    let lists = counts.iter().zip(lists.chunks(ends.len())).map(|(&count, list)| &list[..count]);
-    // An empty pixel is no fragment, whatever epsilon.
-    let finite = least_nearness(&shared, f32::MAX);
-    for (block, list) in tile.blocks.iter_mut().zip(lists) {
+    // An empty pixel is no fragment, whatever epsilon is.
+    let finite = least_nearness(shared, f32::MAX);
+    let places = images.ends.len();
+    for (index, block) in tile.blocks.iter_mut().enumerate() {
+        let list = &images.lists[index * places..][..images.counts[index]];
         let mut least = block.least;
-        for i in 0..LANES {
-            least[i] = least[i].at_least(finite);
+        for lane in &mut least {
+            *lane = lane.at_least(finite);
         }
-        for &slot in list {
-            pass(&mut images[slot as usize], &least);
+        // A loop of its own, in lanes; the next one reads single numbers.
+        for &image in list {
+            hide(&mut images.images[image as usize], &least);
         }
         let mut sums = [[0.0; 8]; LANES];
-        for &slot in list {
-            let image = &images[slot as usize];
-            for i in 0..LANES {
-                let (weight, attributes) = (image.weight[i], &attributes[image.splat[i] as usize]);
-                for (sum, attribute) in sums[i].iter_mut().zip(attributes) {
-                    *sum += weight * attribute;
+        for &image in list {
+            let image = &images.images[image as usize];
+            for (i, sums) in sums.iter_mut().enumerate() {
+                let attributes = &images.attributes[image.splat[i] as usize];
+                for (sum, attribute) in sums.iter_mut().zip(attributes) {
+                    *sum += image.weight[i] * attribute;
                 }
             }
         }
-        for i in 0..LANES {
-            let [r, g, b, weight, x, y, z, _] = sums[i];
+        for (i, [r, g, b, weight, x, y, z, _]) in sums.into_iter().enumerate() {
             block.weight[i] = weight;
             (block.color[0][i], block.color[1][i], block.color[2][i]) = (r, g, b);
             (block.normal[0][i], block.normal[1][i], block.normal[2][i]) = (x, y, z);
@@ -58,9 +57,9 @@ fn composite(images: &mut Images, tile: &mut Tile, shared: &Shared<f32>) {
     }
 }
 
-/// Takes the weight of the fragments that do not pass.
+/// Takes the weight of the fragments that are less near.
 #[inline(always)]
-fn pass(image: &mut Image, least: &Lanes) {
+fn hide(image: &mut Image, least: &Lanes) {
     let (nearness, mut weight) = (image.nearness, image.weight);
     for i in 0..LANES {
         let mask = u32::from(nearness[i] >= least[i]).wrapping_neg();

@@ -17,11 +17,12 @@ struct Layer {
     nearness: Lanes,
     q: Lanes,
     amplitude: Lanes,
+    /// As in [`Image`].
     splat: [u32; LANES],
 }
 
 impl Images {
-    /// Draws every splat into the image of its group; the plain depth test if there are no bins.
+    /// Draws every splat into the image of its group, with the plain depth test if there are no bins.
     pub(super) fn draw(
         &mut self,
         tile: &Tile,
@@ -37,6 +38,7 @@ impl Images {
     }
 }
 
+/// One group after the other in the same blocks, which stay in the nearest cache.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn geometry<const RAY_CAST: bool, const VORONOI: bool>(
     images: &mut Images,
@@ -55,9 +57,9 @@ fn geometry<const RAY_CAST: bool, const VORONOI: bool>(
     let mut layers = vec![empty; tile.blocks.len()];
     let mut start = 0;
     for group in 0..images.ends.len() {
-        // A bit for each block: tiles have at most 16 x 16.
-        let mut touched = [0_u64; 4];
         let end = images.ends[group];
+        // A bit for each block: a tile has at most 16 x 16.
+        let mut touched = [0_u64; 4];
         for &index in &images.order[start..end] {
             let splat = (index, &tile.splats[index as usize]);
             draw::<RAY_CAST, VORONOI>(&mut layers, &mut touched, tile, splat, &shared, bins);
@@ -67,8 +69,8 @@ fn geometry<const RAY_CAST: bool, const VORONOI: bool>(
             while bits != 0 {
                 let block = 64 * word + bits.trailing_zeros() as usize;
                 bits &= bits - 1;
-                finish(images, block, &layers[block]);
                 let layer = &mut layers[block];
+                finish(images, block, layer);
                 if VORONOI {
                     layer.z = empty.z;
                 }
@@ -78,22 +80,7 @@ fn geometry<const RAY_CAST: bool, const VORONOI: bool>(
     }
 }
 
-/// Adds what a block of a group has become to the images.
-#[inline(always)]
-fn finish(images: &mut Images, block: usize, layer: &Layer) {
-    let Layer { nearness, q, amplitude, splat, .. } = *layer;
-    fold(&mut images.nearest[block], &nearness, &splat);
-    let mut weight = [0.0; LANES];
-    for i in 0..LANES {
-        weight[i] = amplitude[i] * exp_f32_in_range(q[i] * -0.5);
-    }
-    let count = &mut images.counts[block];
-    images.lists[block * images.ends.len() + *count] = images.images.len() as u32;
-    *count += 1;
-    images.images.push(Image { nearness, weight, splat });
-}
-
-/// Draws one splat.
+/// Draws a splat, given with its place in the list of the tile.
 #[inline(always)]
 fn draw<const RAY_CAST: bool, const VORONOI: bool>(
     layers: &mut [Layer],
@@ -148,14 +135,29 @@ fn draw<const RAY_CAST: bool, const VORONOI: bool>(
 fn keep(lanes: &mut Lanes, mask: &[u32; LANES], values: &Lanes) {
     let mut kept = *lanes;
     for i in 0..LANES {
-        // A select by a mask of integers: by a condition it would not become a vector.
+        // A select by a mask of integers: by a condition it would not always become a vector.
         let bits = (values[i].to_bits() & mask[i]) | (kept[i].to_bits() & !mask[i]);
         kept[i] = f32::from_bits(bits);
     }
     *lanes = kept;
 }
 
-/// The nearer of two fragments, ties to the lower surfel.
+/// Adds what a block has become to the images: a weight is computed once, for the fragment that is kept.
+#[inline(always)]
+fn finish(images: &mut Images, block: usize, layer: &Layer) {
+    let Layer { nearness, q, amplitude, splat, .. } = *layer;
+    fold(&mut images.nearest[block], &nearness, &splat);
+    let mut weight = [0.0; LANES];
+    for i in 0..LANES {
+        weight[i] = amplitude[i] * exp_f32_in_range(q[i] * -0.5);
+    }
+    let count = &mut images.counts[block];
+    images.lists[block * images.ends.len() + *count] = images.images.len() as u32;
+    *count += 1;
+    images.images.push(Image { nearness, weight, splat });
+}
+
+/// The nearer of two fragments, ties to the lower splat.
 #[inline(always)]
 fn fold(nearest: &mut Nearest, nearness: &Lanes, splat: &[u32; LANES]) {
     let (mut best, mut own) = (nearest.nearness, nearest.splat);

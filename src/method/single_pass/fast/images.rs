@@ -4,7 +4,8 @@ use crate::frame::NO_ID;
 use crate::method::fast::tile::{LANES, Lanes, Tile};
 use crate::scene::group::Groups;
 
-/// Colour, 1, normal and 0: what is summed is one vector.
+/// Colour, 1 and normal of a splat, so that all sums of a pixel are those of one vector; the last
+/// number means nothing.
 pub(super) type Attributes = [f32; 8];
 
 /// What the image of a group keeps at the pixels of a block.
@@ -12,7 +13,7 @@ pub(super) type Attributes = [f32; 8];
 pub(super) struct Image {
     /// Nearness of the fragment.
     pub(super) nearness: Lanes,
-    /// Its weight.
+    /// Its weight; where there is no fragment, any number.
     pub(super) weight: Lanes,
     /// Its splat in the list of the tile, the length of that list where there is none.
     pub(super) splat: [u32; LANES],
@@ -34,65 +35,75 @@ pub(super) struct Images {
     pub(super) order: Vec<u32>,
     /// Each group that has splats: where it ends in `order`.
     pub(super) ends: Vec<usize>,
-    /// Of each splat of the tile its surfel, and [`NO_ID`].
+    /// Of each splat of the tile its surfel; then [`NO_ID`].
     pub(super) surfels: Vec<u32>,
-    /// Of each splat of the tile, and zeros.
+    /// Of each splat of the tile; then zeros.
     pub(super) attributes: Vec<Attributes>,
-    /// What has been touched.
+    /// The blocks that are touched, group by group.
     pub(super) images: Vec<Image>,
-    /// How many images each block has.
-    pub(super) counts: Vec<usize>,
-    /// Which those are, by group: of each block as many places as there are `ends`.
+    /// Which of the images each block has, by group: of each block as many places as there are `ends`.
     pub(super) lists: Vec<u32>,
-    /// For each block.
+    /// How many of those places are in use.
+    pub(super) counts: Vec<usize>,
+    /// Of each block.
     pub(super) nearest: Vec<Nearest>,
 }
 
 impl Images {
-    /// Sorts the splats of a tile by group; the images are empty.
+    /// Sorts the splats of a tile by group; nothing is touched yet. `empty` is the nearness of an empty
+    /// pixel.
     pub(super) fn new(tile: &Tile, groups: &Groups, empty: f32) -> Self {
         let (splats, blocks) = (tile.splats.len(), tile.blocks.len());
-        // Loops of their own: what they wait for is far away, and short loops wait for much at once.
+        // A loop of its own: the groups are far away, and a short loop waits for many at once.
         let own: Vec<u8> = tile.splats.iter().map(|s| groups.own()[s.surfel as usize]).collect();
-        let mut surfels: Vec<_> = tile.splats.iter().map(|splat| splat.surfel).collect();
+        let (order, ends) = sorted(&own, groups.len());
+        let mut surfels = Vec::with_capacity(splats + 1);
         let mut attributes = Vec::with_capacity(splats + 1);
         for splat in &tile.splats {
             let ([r, g, b], [x, y, z]) = (splat.color, splat.normal);
+            surfels.push(splat.surfel);
             attributes.push([r, g, b, 1.0, x, y, z, 0.0]);
-        }
-        let mut next = vec![0; groups.len()];
-        for &group in &own {
-            next[usize::from(group)] += 1;
-        }
-        let mut ends = Vec::new();
-        let mut sum = 0;
-        for count in &mut next {
-            let start = sum;
-            sum += *count;
-            if *count > 0 {
-                ends.push(sum);
-            }
-            *count = start;
-        }
-        let mut order = vec![0; splats];
-        for (i, &group) in own.iter().enumerate() {
-            let place = &mut next[usize::from(group)];
-            order[*place] = i as u32;
-            *place += 1;
         }
         surfels.push(NO_ID);
         attributes.push([0.0; 8]);
         let none = Nearest { nearness: [empty; LANES], splat: [splats as u32; LANES] };
-        let pairs = ends.len() * blocks;
+        let most = ends.len() * blocks;
         Self {
             order,
             ends,
             surfels,
             attributes,
-            images: Vec::with_capacity(pairs),
+            // Memory that is not written takes no room.
+            images: Vec::with_capacity(most),
+            lists: vec![0; most],
             counts: vec![0; blocks],
-            lists: vec![0; pairs],
             nearest: vec![none; blocks],
         }
     }
+}
+
+/// The indices of a list of groups, sorted by group and then ascending, and where each group that
+/// occurs ends.
+fn sorted(groups: &[u8], count: usize) -> (Vec<u32>, Vec<usize>) {
+    let mut next = vec![0; count];
+    for &group in groups {
+        next[usize::from(group)] += 1;
+    }
+    let mut ends = Vec::new();
+    let mut sum = 0;
+    for count in &mut next {
+        let start = sum;
+        sum += *count;
+        if *count > 0 {
+            ends.push(sum);
+        }
+        *count = start;
+    }
+    let mut order = vec![0; groups.len()];
+    for (i, &group) in groups.iter().enumerate() {
+        let place = &mut next[usize::from(group)];
+        order[*place] = i as u32;
+        *place += 1;
+    }
+    (order, ends)
 }

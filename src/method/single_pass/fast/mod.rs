@@ -1,5 +1,13 @@
-//! The fast path for `f32`: the bits of [`super::plain`], from another layout.
-//! See [`crate::method`] for the layout.
+//! The fast path for `f32`: the bits of [`super::plain`], from another layout, see [`crate::method`].
+//!
+//! In a tile the splats are sorted by group, and the groups are drawn one after the other into the
+//! same blocks. What a group has left in a block is then put aside: nearness, weight and splat of each
+//! pixel. So the images exist for one tile at a time, and there only where something was drawn.
+//!
+//! Geometry is visited once, and a weight (an exponential) is computed once a pixel and group, not
+//! once a fragment; in exchange each block of an image has to be composited. So this method is the
+//! faster one where a block sees many splats of each group, and the slower one where it sees few:
+//! where splats are small and groups are many. `cargo bench --bench single_pass` shows both.
 
 mod compositing;
 mod geometry;
