@@ -167,10 +167,10 @@ fn inside_the_scene_the_range_starts_at_the_near_plane() {
 fn behind_the_camera_there_is_still_a_range() {
     let scene = discs(&[(Vec3::new(0.0, 0.0, 4.0), Vec3::Z, 0.5)]);
     let mut camera = straight(false, [8, 8]);
-    assert_eq!(range_in_use(&scene, &camera), (0.0625, 0.125));
+    assert_eq!(range_in_use(&scene, &camera), (0.0625, 0.0625_f32.next_up()));
     camera = straight(true, [8, 8]);
     camera.near = 0.0;
-    assert_eq!(depth_range(&scene.surfels, &camera), (0.0, 1.0));
+    assert_eq!(depth_range(&scene.surfels, &camera), (0.0, 0.0_f32.next_up()));
 }
 
 /// The ends are rounded to the nearest `f32`, and so a fragment may be outside by half an ulp; its
