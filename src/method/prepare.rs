@@ -4,7 +4,7 @@ use super::ewa::Settings;
 use crate::frame::{Bins, Exec, Grid, Rect};
 use crate::number::Real;
 use crate::scene::{Camera, Surfels};
-use crate::splat::{Projector, Shared, Tally, View};
+use crate::splat::{Projector, Shared, Splat, Tally, View, batch};
 use std::ops::Range;
 
 /// The visible splats of a picture, as records `S`, in batches of ascending items with their bins.
@@ -62,5 +62,26 @@ impl<R: Real, S: Send> Prepared<R, S> {
         for (splats, bins) in &self.batches {
             bins.for_each(tile, |i| visit(&splats[i as usize]));
         }
+    }
+}
+
+impl<R: Real> Prepared<R, Splat<R>> {
+    /// Every surfel as the splat it is, in ascending index.
+    pub(super) fn splats(
+        surfels: &Surfels,
+        camera: &Camera,
+        settings: &Settings,
+        how: (&Exec, &Grid),
+    ) -> Self {
+        Self::new(
+            (surfels, surfels.len()),
+            camera,
+            settings,
+            how,
+            |projector, range, splats| {
+                batch::splats(projector, surfels, range, |splat| splats.push(splat))
+            },
+            |splat| splat.bounds,
+        )
     }
 }

@@ -7,7 +7,7 @@ use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, Plane, Rect, Wanted
 use crate::method::prepare::Prepared;
 use crate::number::{Real, Vector2};
 use crate::scene::{Camera, Surfels};
-use crate::splat::{Shared, Splat, Tally, batch};
+use crate::splat::{Shared, Splat, Tally};
 
 /// A picture between its passes.
 #[derive(Debug)]
@@ -31,16 +31,7 @@ impl<'a, R: Real> Plain<'a, R> {
         wanted: Wanted,
     ) -> Self {
         let grid = exec.grid(camera.width, camera.height);
-        let prepared = Prepared::new(
-            (surfels, surfels.len()),
-            camera,
-            settings,
-            (exec, &grid),
-            |projector, range, splats| {
-                batch::splats(projector, surfels, range, |splat| splats.push(splat))
-            },
-            |splat: &Splat<R>| splat.bounds,
-        );
+        let prepared = Prepared::splats(surfels, camera, settings, (exec, &grid));
         let target = Framebuffer::new(camera.width, camera.height, prepared.shared.empty(), wanted);
         Self { surfels, exec, grid, prepared, target }
     }

@@ -10,7 +10,7 @@ use crate::method::prepare::Prepared;
 use crate::number::{Real, Vector3};
 use crate::scene::{Camera, Scene, Surfels};
 use crate::shade::phong::Shader;
-use crate::splat::{Splat, Tally, View, batch};
+use crate::splat::{Splat, Tally, View};
 
 /// A picture whose splats are projected and sorted into tiles.
 #[derive(Debug)]
@@ -71,16 +71,7 @@ impl<'a, R: Real> Peeling<'a, R> {
     pub fn project(scene: &'a Scene, camera: &Camera, settings: &Settings, exec: &Exec) -> Self {
         let grid = exec.grid(camera.width, camera.height);
         let surfels = &scene.surfels;
-        let prepared = Prepared::new(
-            (surfels, surfels.len()),
-            camera,
-            &settings.splats,
-            (exec, &grid),
-            |projector, range, splats| {
-                batch::splats(projector, surfels, range, |splat| splats.push(splat))
-            },
-            |splat: &Splat<R>| splat.bounds,
-        );
+        let prepared = Prepared::splats(surfels, camera, &settings.splats, (exec, &grid));
         let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
         let own = scene.material.color.to_array().map(R::from_f32);
         Self { surfels, grid, prepared, shader, own }

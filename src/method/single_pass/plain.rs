@@ -11,7 +11,7 @@ use crate::method::prepare::Prepared;
 use crate::number::Real;
 use crate::scene::group::Groups;
 use crate::scene::{Camera, Surfels};
-use crate::splat::{Shared, Splat, Tally, batch};
+use crate::splat::{Shared, Splat, Tally};
 
 /// The geometry pass of a picture: its splats, projected and sorted into tiles.
 #[derive(Debug)]
@@ -73,16 +73,7 @@ impl<'a, R: Real> Geometry<'a, R> {
     ) -> Result<Self> {
         let bins = settings.bins(surfels, camera)?;
         let grid = exec.grid(camera.width, camera.height);
-        let prepared = Prepared::new(
-            (surfels, surfels.len()),
-            camera,
-            &settings.splats,
-            (exec, &grid),
-            |projector, range, splats| {
-                batch::splats(projector, surfels, range, |splat| splats.push(splat))
-            },
-            |splat: &Splat<R>| splat.bounds,
-        );
+        let prepared = Prepared::splats(surfels, camera, &settings.splats, (exec, &grid));
         Ok(Self { surfels, groups, grid, prepared, bins })
     }
 

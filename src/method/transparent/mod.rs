@@ -50,6 +50,7 @@
 //! [`Groups`]: crate::scene::group::Groups
 
 mod blend;
+mod nearest;
 mod picture;
 
 pub use picture::render;
