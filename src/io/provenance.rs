@@ -1,5 +1,6 @@
 //! The text that a picture carries: what it is a picture of, and by which settings.
 
+use crate::composite::bins::Range;
 use crate::io::scene_file::{Number, words};
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::transparent::{Holes, Settings};
@@ -12,7 +13,7 @@ use crate::shade::optics::{Layers, Refraction};
 /// Equal for equal pictures: nothing in it depends on the time, the machine, the directory or the
 /// way the picture was computed. Floats are the shortest decimals that give the same `f32`. The
 /// scene is identified by [`Scene::sha256`], its groups by [`crate::scene::group::Groups::sha256`], the
-/// camera by all its numbers.
+/// camera by all its numbers. `bins_in_world_units` are `d_min`, `d_max` and n of \[ZP06, eq. 6\].
 #[must_use]
 pub fn text(
     scene: &Scene,
@@ -25,6 +26,11 @@ pub fn text(
     let (kernel, epsilon, cull) = (&splats.kernel, splats.epsilon, splats.cull);
     let groups = preparation.groups().map_or(String::new(), |groups| {
         format!("[groups]\ncount = {}\nsha256 = \"{}\"\n\n", groups.len(), groups.sha256())
+    });
+    // The picture has been drawn, so that its bins can be counted.
+    let bins = method.depth_bins(&scene.surfels, camera).ok().flatten();
+    let bins = bins.map_or(String::new(), |Range { nearest, farthest, count }| {
+        format!("bins_in_world_units = [{nearest:?}, {farthest:?}, {count}]\n")
     });
     let projection = match camera.projection {
         Projection::Perspective => "perspective",
@@ -47,7 +53,7 @@ pub fn text(
         surfels = scene.surfels.len(),
         hash = scene.sha256(),
         method = name(method),
-        further = further(method),
+        further = further(method) + &bins,
         outline = words::of_outline(kernel.outline),
         cutoff = kernel.cutoff,
         low_pass = kernel.low_pass,

@@ -1,6 +1,8 @@
 //! Any method, chosen by a value, with what it needs before the first view.
 
+use super::single_pass::{BinCount, DepthTest};
 use super::{Picture, ewa, peeling, single_pass, transparent};
+use crate::composite::bins::Range;
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::Real;
@@ -44,6 +46,19 @@ impl Method {
             Self::Transparent(settings) => settings.check(),
             Self::Peeling(settings) => settings.check(),
         }
+    }
+
+    /// The depth bins that it sorts fragments into, if it does; those of its blending, if it blends.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] as [`BinCount::resolve`].
+    pub fn depth_bins(&self, surfels: &Surfels, camera: &Camera) -> Result<Option<Range>> {
+        let bins: &BinCount = match self {
+            Self::SinglePass(single_pass::Settings { depth: DepthTest::Voronoi(bins), .. }) => bins,
+            Self::Transparent(settings) => &settings.bins,
+            Self::Ewa(_) | Self::SinglePass(_) | Self::Peeling(_) => return Ok(None),
+        };
+        bins.resolve(surfels, camera, self.splats().epsilon.resolve(surfels)).map(Some)
     }
 
     /// Whether it draws groups.

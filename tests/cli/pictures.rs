@@ -106,6 +106,8 @@ fn every_method_draws_and_leaves_its_planes() {
         }
         let text = image.text.unwrap();
         assert!(text.contains(&format!("name = \"{method}\"")), "{text}");
+        let bins = text.contains("bins_in_world_units = [");
+        assert_eq!(bins, said.contains("bins = "), "{text}");
         assert_eq!(text.contains("[groups]"), said.contains("groups  "), "{text}");
     }
 }

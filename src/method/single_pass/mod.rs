@@ -42,11 +42,13 @@
 //! There the group keeps the nearer fragment alone.
 //!
 //! [`plain`] is the definition, over any [`Real`]; [`fast`] gives the same bits for `f32`.
+//! [`explain`] lists every decision at one pixel.
 //!
 //! [`Splat`]: crate::splat::Splat
 //! [`Real`]: crate::number::Real
 //! [`Groups`]: crate::scene::group::Groups
 
+pub mod explain;
 pub mod fast;
 mod picture;
 pub mod plain;

@@ -104,10 +104,7 @@ impl<'a, R: Real> Geometry<'a, R> {
     /// The geometry pass over one tile, counted row by row.
     #[must_use]
     pub fn images(&self, tile: usize, rect: Rect) -> Images<R> {
-        let shared = &self.prepared.shared;
-        let z = if self.bins.is_some() { R::INFINITY } else { R::ZERO };
-        let (nearness, weight) = (shared.empty(), R::ZERO);
-        let empty = Kept { z, nearness, weight, surfel: NO_ID, back: false };
+        let (shared, empty) = (&self.prepared.shared, self.empty());
         let columns = rect.x1 - rect.x0;
         let pixels = (columns * (rect.y1 - rect.y0)) as usize;
         let mut groups = vec![vec![empty; pixels]; self.groups.len()];
@@ -127,8 +124,26 @@ impl<'a, R: Real> Geometry<'a, R> {
         Images { rect, groups }
     }
 
-    /// The depth test: replaces what a pixel keeps by a fragment that is inside, if it passes.
-    fn offer(&self, splat: &Splat<R>, q: R, nearness: R, kept: &mut Kept<R>) {
+    /// What a pixel keeps before anything is drawn.
+    pub(super) fn empty(&self) -> Kept<R> {
+        let z = if self.voronoi() { R::INFINITY } else { R::ZERO };
+        let (nearness, weight) = (self.prepared.shared.empty(), R::ZERO);
+        Kept { z, nearness, weight, surfel: NO_ID, back: false }
+    }
+
+    /// Whether the depth test is the Voronoi one.
+    pub(super) fn voronoi(&self) -> bool {
+        self.bins.is_some()
+    }
+
+    /// Calls `visit` for each splat that may touch a tile, in ascending surfel index.
+    pub(super) fn each_splat(&self, tile: usize, visit: impl FnMut(&Splat<R>)) {
+        self.prepared.for_each(tile, visit);
+    }
+
+    /// The depth test: replaces what a pixel keeps by a fragment that is inside, if it passes. Gives
+    /// the fragment's Voronoi-enhanced depth, 0 under the plain depth test.
+    pub(super) fn offer(&self, splat: &Splat<R>, q: R, nearness: R, kept: &mut Kept<R>) -> R {
         let shared = &self.prepared.shared;
         let (z, passes) = match &self.bins {
             None => (R::ZERO, nearness > kept.nearness),
@@ -141,6 +156,7 @@ impl<'a, R: Real> Geometry<'a, R> {
             let weight = splat.footprint.weight(q);
             *kept = Kept { z, nearness, weight, surfel: splat.surfel, back: splat.back };
         }
+        z
     }
 
     /// What a kept fragment gives to the compositing pass: its weighted attributes.
