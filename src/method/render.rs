@@ -3,7 +3,7 @@
 use super::single_pass::{BinCount, DepthTest};
 use super::{Picture, ewa, peeling, single_pass, transparent};
 use crate::composite::bins::Range;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::number::Real;
 use crate::scene::group::{self, Extended, Extension, Groups, Report, Rules};
@@ -124,13 +124,10 @@ pub struct Preparation {
 }
 
 impl Preparation {
-    /// For a method; `groups` are not used by one that does without.
-    ///
-    /// # Panics
-    /// If there are no groups and the method draws groups.
+    /// For a method; `groups` are not used by one that does without, and missed by [`render`] if there
+    /// are none for one that draws them.
     #[must_use]
     pub fn new(surfels: &Surfels, groups: Option<Groups>, method: &Method, exec: &Exec) -> Self {
-        assert!(groups.is_some() || !method.needs_groups(), "a method that draws groups");
         let blends = matches!(method, Method::Transparent(_));
         let groups = groups.filter(|_| method.needs_groups());
         Self { groups, order: blends.then(|| BackToFront::new(surfels, exec)) }
@@ -146,10 +143,7 @@ impl Preparation {
 /// Renders with the definition, in any number; see the `render` of each method.
 ///
 /// # Errors
-/// As the method.
-///
-/// # Panics
-/// If the preparation is not that of the scene and the method.
+/// As the method; [`Error::Invalid`] if the preparation is not that of the scene and the method.
 pub fn render<R: Real>(
     scene: &Scene,
     preparation: &Preparation,
@@ -168,7 +162,9 @@ pub fn render<R: Real>(
             Method::Transparent(settings),
             Preparation { groups: Some(groups), order: Some(order) },
         ) => transparent::render(scene, (groups, order), camera, settings, exec, stages),
-        _ => panic!("the preparation of another method"),
+        _ => Err(Error::Invalid(
+            "the scene was prepared for another method, or without groups".into(),
+        )),
     }
 }
 
@@ -176,9 +172,6 @@ pub fn render<R: Real>(
 /// picture whose memory may be used again.
 ///
 /// # Errors
-/// As the method.
-///
-/// # Panics
 /// As [`render`].
 pub fn render_f32(
     scene: &Scene,
@@ -200,5 +193,33 @@ pub fn render_f32(
             single_pass::render_f32(scene, groups, camera, settings, exec)
         }
         _ => render(scene, preparation, camera, method, exec, false),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Lens, Light, Phong, Shape};
+
+    #[test]
+    fn a_preparation_for_another_method_is_refused() {
+        let shape = Shape::Sphere;
+        let surfels = shape.surfels(40, 0).unwrap();
+        let (lights, material) = (vec![Light::DEFAULT], Phong::default());
+        let name = "sphere".to_owned();
+        let scene = Scene { name, surfels, lights, material, environment: None };
+        let camera = Camera::new(8, 8, shape.default_pose(), Lens::FieldOfView(40.0)).unwrap();
+        let exec = Exec::sequential();
+        let ewa = Method::Ewa(ewa::Settings::default());
+        let prepared = Preparation::new(&scene.surfels, None, &ewa, &exec);
+        assert!(render_f32(&scene, &prepared, &camera, &ewa, &exec, None).is_ok());
+        let single_pass = Method::SinglePass(single_pass::Settings::default());
+        let transparent = Method::Transparent(transparent::Settings::default());
+        for method in [single_pass, transparent] {
+            for prepared in [&prepared, &Preparation::new(&scene.surfels, None, &method, &exec)] {
+                let error = render_f32(&scene, prepared, &camera, &method, &exec, None);
+                assert!(error.unwrap_err().to_string().contains("prepared"));
+            }
+        }
     }
 }
