@@ -2,7 +2,7 @@
 
 use super::say;
 use splatref::io::provenance;
-use splatref::io::scene_file::{Loaded, ModelReport, Output, words};
+use splatref::io::scene_file::{Loaded, MethodName, ModelReport, Output, words};
 use splatref::method::Method;
 use splatref::method::ewa::Epsilon;
 use splatref::scene::derive::Origin;
@@ -103,7 +103,7 @@ pub(super) fn method(method: &Method, surfels: &Surfels) {
     };
     let text = format!(
         "{}, {} outline, cut-off {}, low-pass {} px^2, epsilon {epsilon}, {}",
-        provenance::name(method),
+        words::of_method(MethodName::of(method)),
         words::of_outline(kernel.outline),
         kernel.cutoff,
         kernel.low_pass,

@@ -1,12 +1,12 @@
 //! The text that a picture carries: what it is a picture of, and by which settings.
 
 use crate::composite::bins::Range;
-use crate::io::scene_file::{Number, words};
+use crate::io::scene_file::{MethodName, Number, words};
 use crate::method::single_pass::{BinCount, DepthTest};
-use crate::method::transparent::{Holes, Settings};
+use crate::method::transparent::Settings;
 use crate::method::{Method, Preparation};
 use crate::scene::{Camera, Projection, Scene};
-use crate::shade::optics::{Layers, Refraction};
+use crate::shade::optics::Refraction;
 
 /// The text as TOML, for the attribute [`super::exr::ATTRIBUTE`].
 ///
@@ -52,7 +52,7 @@ pub fn text(
         name = toml::Value::String(scene.name.clone()),
         surfels = scene.surfels.len(),
         hash = scene.sha256(),
-        method = name(method),
+        method = words::of_method(MethodName::of(method)),
         further = further(method) + &bins,
         outline = words::of_outline(kernel.outline),
         cutoff = kernel.cutoff,
@@ -70,18 +70,6 @@ pub fn text(
     )
 }
 
-/// What scene files call a method.
-#[must_use]
-pub fn name(method: &Method) -> &'static str {
-    match method {
-        Method::Ewa(_) => "ewa",
-        Method::SinglePass(_) => "single-pass",
-        Method::Transparent(Settings { nearest: None, .. }) => "transparent",
-        Method::Transparent(_) => "transparent-hq",
-        Method::Peeling(_) => "peeling",
-    }
-}
-
 /// The settings that only some methods have, as lines of TOML.
 #[must_use]
 pub fn further(method: &Method) -> String {
@@ -89,31 +77,21 @@ pub fn further(method: &Method) -> String {
         BinCount::Epsilon => "bins = \"epsilon\"\n".to_owned(),
         BinCount::Count(count) => format!("bins = {count}\n"),
     };
-    let depth = |test: &DepthTest| match test {
-        DepthTest::Plain => "depth = \"plain\"\n",
-        DepthTest::Voronoi(_) => "depth = \"voronoi\"\n",
-    };
+    let depth = |test: DepthTest| format!("depth = \"{}\"\n", words::of_depth(test));
     match method {
         Method::Ewa(_) => String::new(),
         Method::Peeling(settings) => format!("peel = {}\n", settings.layers),
         Method::SinglePass(settings) => match &settings.depth {
-            DepthTest::Plain => depth(&settings.depth).to_owned(),
-            DepthTest::Voronoi(count) => format!("{}{}", depth(&settings.depth), bins(count)),
+            DepthTest::Plain => depth(settings.depth),
+            DepthTest::Voronoi(count) => depth(settings.depth) + &bins(count),
         },
         Method::Transparent(settings) => {
-            let holes = match settings.holes {
-                Holes::Skipped => "holes = \"skipped\"\n",
-                Holes::Background => "holes = \"background\"\n",
-            };
-            let nearest = settings.nearest.as_ref().map_or("", depth);
-            let refraction = settings.refraction.map_or(String::new(), |refraction| {
-                let Refraction { ratio, layers } = refraction;
-                let bends = match layers {
-                    Layers::Single => "single",
-                    Layers::Multiple => "multiple",
-                };
-                format!("refraction = {ratio:?}\nbends = \"{bends}\"\n")
+            let Settings { holes, nearest, refraction, .. } = *settings;
+            let nearest = nearest.map_or(String::new(), depth);
+            let refraction = refraction.map_or(String::new(), |Refraction { ratio, layers }| {
+                format!("refraction = {ratio:?}\nbends = \"{}\"\n", words::of_bends(layers))
             });
+            let holes = format!("holes = \"{}\"\n", words::of_holes(holes));
             format!("{}{holes}{nearest}{refraction}", bins(&settings.bins))
         }
     }

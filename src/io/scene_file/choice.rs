@@ -25,6 +25,20 @@ pub enum MethodName {
     Peeling,
 }
 
+impl MethodName {
+    /// The name of a method.
+    #[must_use]
+    pub fn of(method: &Method) -> Self {
+        match method {
+            Method::Ewa(_) => Self::Ewa,
+            Method::SinglePass(_) => Self::SinglePass,
+            Method::Transparent(transparent::Settings { nearest: None, .. }) => Self::Transparent,
+            Method::Transparent(_) => Self::TransparentHq,
+            Method::Peeling(_) => Self::Peeling,
+        }
+    }
+}
+
 /// Settings as far as they were chosen; one that its method does not have is refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MethodChoice {

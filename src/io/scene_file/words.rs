@@ -1,6 +1,7 @@
 //! Settings as words: what scene files, the command line and the text in a picture call them.
 
 use crate::method::ewa::Epsilon;
+use crate::method::single_pass::DepthTest;
 use crate::method::transparent::Holes;
 use crate::shade::optics::Layers;
 use crate::splat::{Kernel, Outline};
@@ -39,11 +40,7 @@ pub fn outline(word: &str) -> Found<Outline> {
 /// The word for an outline.
 #[must_use]
 pub fn of_outline(outline: Outline) -> &'static str {
-    match outline {
-        Outline::Affine => "affine",
-        Outline::Perspective => "perspective",
-        Outline::RayCast => "raycast",
-    }
+    word_of(&OUTLINES, outline)
 }
 
 /// The methods.
@@ -66,31 +63,55 @@ pub fn method(word: &str) -> Found<MethodName> {
 /// The word for a method.
 #[must_use]
 pub fn of_method(name: MethodName) -> &'static str {
-    METHODS.iter().find(|(_, of)| *of == name).map_or("", |(word, _)| word)
+    word_of(&METHODS, name)
 }
+
+const DEPTHS: [(&str, bool); 2] = [("plain", false), ("voronoi", true)];
 
 /// `plain` (false) or `voronoi` (true), the depth test of groups.
 ///
 /// # Errors
 /// The words there are.
 pub fn depth(word: &str) -> Found<bool> {
-    choose("depth", word, &[("plain", false), ("voronoi", true)])
+    choose("depth", word, &DEPTHS)
 }
+
+/// The word for a depth test.
+#[must_use]
+pub fn of_depth(test: DepthTest) -> &'static str {
+    word_of(&DEPTHS, test != DepthTest::Plain)
+}
+
+const HOLES: [(&str, Holes); 2] = [("skipped", Holes::Skipped), ("background", Holes::Background)];
 
 /// `skipped` or `background`.
 ///
 /// # Errors
 /// The words there are.
 pub fn holes(word: &str) -> Found<Holes> {
-    choose("holes", word, &[("skipped", Holes::Skipped), ("background", Holes::Background)])
+    choose("holes", word, &HOLES)
 }
+
+/// The word for what holes are.
+#[must_use]
+pub fn of_holes(holes: Holes) -> &'static str {
+    word_of(&HOLES, holes)
+}
+
+const BENDS: [(&str, Layers); 2] = [("single", Layers::Single), ("multiple", Layers::Multiple)];
 
 /// `single` or `multiple`: how many layers bend light.
 ///
 /// # Errors
 /// The words there are.
 pub fn bends(word: &str) -> Found<Layers> {
-    choose("bends", word, &[("single", Layers::Single), ("multiple", Layers::Multiple)])
+    choose("bends", word, &BENDS)
+}
+
+/// The word for how many layers bend light.
+#[must_use]
+pub fn of_bends(layers: Layers) -> &'static str {
+    word_of(&BENDS, layers)
 }
 
 /// `none`, `add` or `enlarge`.
@@ -156,6 +177,11 @@ pub fn of_epsilon(epsilon: Epsilon) -> String {
         Epsilon::World(value) => format!("{value:?}"),
         Epsilon::MedianRadii(value) => format!("{value:?}r"),
     }
+}
+
+/// The word of a value; every value has one.
+fn word_of<T: Copy + PartialEq>(words: &[(&'static str, T)], value: T) -> &'static str {
+    words.iter().find(|(_, of)| *of == value).map_or("", |(word, _)| word)
 }
 
 /// The value of a word.
