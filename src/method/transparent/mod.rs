@@ -14,18 +14,18 @@
 //!    section 3.3), with its bin of low-precision depth (eq. 6, [`crate::composite::bins`]): it passes if
 //!    `bin < bin of the pixel`, at first +inf. Then the pixel takes its bin, and blends
 //!    ([`crate::composite::over`]) its shaded colour by alpha; alpha is added to the pixel's sum of
-//!    opacities (section 5.2.3), and one to its count of layers. `Departs:` an opaque fragment sets that sum to 0 and marks
-//!    the pixel as hiding what is behind: eq. 11 is made for one opacity everywhere.
+//!    opacities (section 5.2.3), and one to its count of layers. `Departs:` an opaque fragment sets
+//!    that sum to 0 and marks the pixel as hiding what is behind: eq. 11 is made for one opacity
+//!    everywhere.
 //! 4. **Compositing pass.** The average of the images, see [`Holes`]: colour, opacity, sum of
-//!    opacities, hidden part; each is a sum in the order of the groups, divided once by their
-//!    count.
+//!    opacities, hidden part; each is a sum in the order of the groups, divided once by their count.
 //!
 //! # Algorithm 3
 //!
 //! 1. **Nearest layer.** The geometry and the compositing pass of [`super::single_pass`], with opacity
-//!    as one more weighted attribute. `Decided:` each surfel in its own group alone and with its own radius: a surfel
-//!    that an extension added elsewhere would count twice in a weighted sum. Deferred shading gives
-//!    `C_F`, the average opacity is alpha. The stencil is 1 where the layer is.
+//!    as one more weighted attribute. `Decided:` each surfel in its own group alone and with its own
+//!    radius: a surfel that an extension added elsewhere would count twice in a weighted sum. Deferred
+//!    shading gives `C_F`, the average opacity is alpha. The stencil is 1 where the layer is.
 //! 2. **Other layers.** Algorithm 2 without the fragments of the nearest layer and what is before it:
 //!    those with t <= Z + epsilon, Z the depth of pass 1. Where pass 1 left nothing, Z is +inf and
 //!    all are dropped: enlarged surfels do not stick out of the silhouette. Its average is `C_O`.
@@ -39,13 +39,15 @@
 //!
 //! - Two fragments of one layer and one group that fall on either side of a bin's edge are blended as
 //!   two layers: darker arcs, the more of them the more bins there are.
-//! - Two layers in one bin are one layer.
+//! - Two layers in one bin are one layer: the one that is drawn first, the farther, is seen.
 //! - A group that does not cover a layer leaves holes in it, see [`crate::scene::group`] for the
 //!   extensions that close them, and [`Holes`].
 //! - Overlapping surfels are ordered by their centres, see [`crate::scene::order`].
 //! - Algorithm 3 can draw a surfel that its group enlarges behind itself: where the nearest layer clamps
 //!   its depth to its own radius (see [`mod@crate::splat::project`]) and epsilon < (scale - 1) r, and, as
 //!   depths of another radius round otherwise, anywhere with an epsilon of 0.
+//!
+//! The truth that it is held against is [`super::peeling`].
 //!
 //! [`Groups`]: crate::scene::group::Groups
 
