@@ -4,9 +4,9 @@ use super::options::{Kind, kind, named};
 use super::{Finding, Outcome, progress, report};
 use splatref::frame::Exec;
 use splatref::io::ply;
-use splatref::io::scene_file::{DEFAULT_MOST, ExtensionChoice, words};
+use splatref::io::scene_file::{ExtensionChoice, words};
 use splatref::method::Grouping;
-use splatref::scene::group::{Coplanar, Extended, Extension, Groups, Report, Rules};
+use splatref::scene::group::{Coplanar, Extended, Groups, Report, Rules};
 use splatref::{Error, Result};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -89,11 +89,7 @@ impl Args {
         }
         let rules =
             Rules { overlap: self.overlap, opposite: self.opposite, coplanar: self.coplanar };
-        let extension = match self.extend {
-            ExtensionChoice::None => Extension::None,
-            ExtensionChoice::Add => Extension::Add { most: self.most.unwrap_or(DEFAULT_MOST) },
-            ExtensionChoice::Enlarge => Extension::Enlarge,
-        };
+        let extension = self.extend.extension(self.most);
         let grouping = Grouping { rules, count: self.groups, extension };
         grouping.check()?;
         Ok(grouping)

@@ -19,8 +19,7 @@ pub(super) struct Ready {
 }
 
 impl Ready {
-    /// Loads and prepares what a scene file says; groups that the scene brings along are taken unless
-    /// something was chosen for them.
+    /// Loads and prepares what a scene file says.
     pub(super) fn new(file: &SceneFile, exec: &Exec) -> Result<Self> {
         // What is wrong with the settings is said before much is read.
         let method = file.method.method()?;
@@ -30,17 +29,10 @@ impl Ready {
         let loaded = file.load(exec, &show)?;
         let surfels = &loaded.scene.surfels;
         let camera = file.camera(surfels)?;
-        let (mut groups, mut grouping) = (None, None);
-        if method.needs_groups() {
-            groups = surfels.groups().filter(|_| file.groups.is_open()).cloned();
-        }
-        if method.needs_groups() && groups.is_none() {
-            let (made, report, extended) =
-                file.groups.grouping(&method).groups(surfels, exec, &show)?;
-            (groups, grouping) = (Some(made), Some((report, extended)));
-        }
+        let made = file.groups(surfels, &method, exec, &show)?;
+        let (groups, grouping) = made.unzip();
         let preparation = Preparation::new(surfels, groups, &method, exec);
-        Ok(Self { loaded, preparation, camera, method, grouping })
+        Ok(Self { loaded, preparation, camera, method, grouping: grouping.flatten() })
     }
 
     /// Says how the groups came about.

@@ -159,6 +159,19 @@ impl Camera {
         Self::new(width, height, Pose { eye, target: center, up }, lens)
     }
 
+    /// Whether a pixel is in the picture.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if it is not.
+    pub fn check_pixel(&self, x: u32, y: u32) -> Result<()> {
+        let (w, h) = (self.width, self.height);
+        if x < w && y < h {
+            Ok(())
+        } else {
+            Err(Error::Usage(format!("pixel {x} {y} is outside the picture of {w} x {h}")))
+        }
+    }
+
     /// Whether a picture can be made with these numbers; for cameras that were filled in by hand.
     ///
     /// # Errors

@@ -75,7 +75,7 @@ fn split(part: Part<'_>, leaf: usize) {
 
 /// Splits a range that is not empty once.
 fn halve<'a>((entries, axes): Part<'a>) -> [Part<'a>; 2] {
-    let axis = widest(entries);
+    let axis = widest(entries.iter().map(|entry| entry.point));
     let middle = entries.len() / 2;
     entries.select_nth_unstable_by(middle, |a, b| {
         let by_coordinate = a.point[axis].partial_cmp(&b.point[axis]);
@@ -87,12 +87,12 @@ fn halve<'a>((entries, axes): Part<'a>) -> [Part<'a>; 2] {
     [(low, low_axes), (&mut high[1..], &mut high_axes[1..])]
 }
 
-/// The axis of the largest extent.
-fn widest(entries: &[Entry]) -> usize {
-    let (mut low, mut high) = (entries[0].point, entries[0].point);
-    for entry in entries {
-        low = low.min(entry.point);
-        high = high.max(entry.point);
+/// The axis of the largest extent of some points, the first of equal ones.
+pub(super) fn widest(points: impl Iterator<Item = Vec3>) -> usize {
+    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for point in points {
+        low = low.min(point);
+        high = high.max(point);
     }
     let extent = high.as_dvec3() - low.as_dvec3();
     let mut axis = 0;

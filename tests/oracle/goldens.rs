@@ -31,13 +31,8 @@ fn golden(path: &Path) -> Golden {
     let file = SceneFile::read(path).expect("a scene file");
     let method = file.method.method().expect("a method");
     let scene = file.load(&exec, &|_, _, _| ()).expect("loads").scene;
-    let groups = method.needs_groups().then(|| {
-        let read = scene.surfels.groups().filter(|_| file.groups.is_open()).cloned();
-        read.unwrap_or_else(|| {
-            let grouping = file.groups.grouping(&method);
-            grouping.groups(&scene.surfels, &exec, &|_, _, _| ()).expect("groups").0
-        })
-    });
+    let groups = file.groups(&scene.surfels, &method, &exec, &|_, _, _| ()).expect("groups");
+    let groups = groups.map(|(groups, _)| groups);
     let camera = file.camera(&scene.surfels).expect("a camera");
     let (name, settings) = (path.display().to_string(), *method.splats());
     Golden { case: Case { name, camera, settings, scene, exact: false }, method, groups }

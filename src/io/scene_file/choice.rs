@@ -81,6 +81,18 @@ pub enum ExtensionChoice {
     Enlarge,
 }
 
+impl ExtensionChoice {
+    /// With its parameter, [`DEFAULT_MOST`] if there is none.
+    #[must_use]
+    pub fn extension(self, most: Option<f32>) -> Extension {
+        match self {
+            Self::None => Extension::None,
+            Self::Add => Extension::Add { most: most.unwrap_or(DEFAULT_MOST) },
+            Self::Enlarge => Extension::Enlarge,
+        }
+    }
+}
+
 /// Groups as far as they were chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GroupChoice {
@@ -220,11 +232,7 @@ impl GroupChoice {
                 coplanar: self.coplanar,
             },
             count: self.count.or(if self.overlap.is_some() { None } else { count }),
-            extension: match self.extension.unwrap_or(extension) {
-                ExtensionChoice::None => Extension::None,
-                ExtensionChoice::Add => Extension::Add { most: self.most.unwrap_or(DEFAULT_MOST) },
-                ExtensionChoice::Enlarge => Extension::Enlarge,
-            },
+            extension: self.extension.unwrap_or(extension).extension(self.most),
         }
     }
 

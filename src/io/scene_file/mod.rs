@@ -27,6 +27,9 @@ pub use choice::{
 pub use load::{Loaded, ModelReport};
 
 use crate::error::{Error, Result};
+use crate::frame::Exec;
+use crate::method::Method;
+use crate::scene::group::{Extended, Groups, Report};
 use crate::scene::{Camera, Lens, Light, Phong, Pose, Shape, Similarity, Surfels};
 use glam::{DVec3, Vec3};
 use std::path::{Path, PathBuf};
@@ -229,6 +232,34 @@ impl SceneFile {
             up: up.unwrap_or(pose.up),
         };
         Camera::new(width, height, pose, lens)
+    }
+}
+
+/// The groups of a scene, and how they were made; nothing if they were read.
+pub type Made = (Groups, Option<(Report, Option<Extended>)>);
+
+impl SceneFile {
+    /// The groups for a method, none for one that draws none: those that the surfels of this scene
+    /// brought along, unless something was chosen for them; else they are made.
+    ///
+    /// # Errors
+    /// As [`crate::method::Grouping::groups`].
+    pub fn groups(
+        &self,
+        surfels: &Surfels,
+        method: &Method,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Option<Made>> {
+        if !method.needs_groups() {
+            return Ok(None);
+        }
+        if let Some(read) = surfels.groups().filter(|_| self.groups.is_open()) {
+            return Ok(Some((read.clone(), None)));
+        }
+        let grouping = self.groups.grouping(method);
+        let (groups, report, extended) = grouping.groups(surfels, exec, progress)?;
+        Ok(Some((groups, Some((report, extended)))))
     }
 }
 

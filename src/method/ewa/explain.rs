@@ -3,7 +3,7 @@
 use super::Settings;
 use super::plain::fragment;
 use crate::composite::epsilon;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::Real;
 use crate::scene::{Camera, Surfels};
@@ -48,7 +48,7 @@ pub struct Touch<R> {
 /// Replays both passes at one pixel.
 ///
 /// # Errors
-/// [`Error::Usage`] if the pixel is outside the picture.
+/// [`crate::Error::Usage`] if the pixel is outside the picture.
 pub fn explain<R: Real>(
     surfels: &Surfels,
     camera: &Camera,
@@ -56,10 +56,7 @@ pub fn explain<R: Real>(
     exec: &Exec,
     (x, y): (u32, u32),
 ) -> Result<Explanation<R>> {
-    if x >= camera.width || y >= camera.height {
-        let (w, h) = (camera.width, camera.height);
-        return Err(Error::Usage(format!("pixel {x} {y} is outside the picture of {w} x {h}")));
-    }
+    camera.check_pixel(x, y)?;
     let view = View::new(camera);
     let projector = Projector::<R>::new(view, &settings.kernel, settings.cull);
     let shared = Shared::new(&view, &settings.kernel);

@@ -164,6 +164,27 @@ pub(in crate::method) fn fragment<R: Real>(
     splat.footprint.fragment(shared, dx, dy)
 }
 
+/// Runs `draw` for every fragment of a splat that is inside, in some pixels: the pixel, counted row by
+/// row in `rect`, q and nearness.
+#[inline(always)]
+pub(in crate::method) fn each_inside<R: Real>(
+    shared: &Shared<R>,
+    splat: &Splat<R>,
+    rect: &Rect,
+    mut draw: impl FnMut(usize, R, R),
+) {
+    let columns = rect.x1 - rect.x0;
+    let Rect { x0, y0, x1, y1 } = splat.bounds.intersection(rect);
+    for y in y0..y1 {
+        for x in x0..x1 {
+            let (q, w) = fragment(shared, splat, x, y);
+            if q <= shared.limit {
+                draw(((y - rect.y0) * columns + (x - rect.x0)) as usize, q, w);
+            }
+        }
+    }
+}
+
 /// The normal, reversed if the back is seen.
 #[inline(always)]
 pub(in crate::method) fn facing<R: Real>(normal: [R; 3], back: bool) -> [R; 3] {

@@ -5,7 +5,7 @@ use crate::composite::under::Under;
 use crate::composite::{epsilon, sum};
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::frame::{Exec, Grid, NO_ID, Rect};
-use crate::method::ewa::plain::{facing, fragment};
+use crate::method::ewa::plain::{each_inside, facing};
 use crate::method::prepare::Prepared;
 use crate::number::{Real, Vector3};
 use crate::scene::{Camera, Scene, Surfels};
@@ -180,17 +180,8 @@ impl<'a, R: Real> Peeling<'a, R> {
         mut draw: impl FnMut(&Splat<R>, (R, R), usize),
     ) {
         let shared = &self.prepared.shared;
-        let columns = rect.x1 - rect.x0;
         self.prepared.for_each(index, |splat| {
-            let Rect { x0, y0, x1, y1 } = splat.bounds.intersection(&rect);
-            for y in y0..y1 {
-                for x in x0..x1 {
-                    let (q, w) = fragment(shared, splat, x, y);
-                    if q <= shared.limit {
-                        draw(splat, (q, w), ((y - rect.y0) * columns + (x - rect.x0)) as usize);
-                    }
-                }
-            }
+            each_inside(shared, splat, &rect, |pixel, q, w| draw(splat, (q, w), pixel));
         });
     }
 }

@@ -3,8 +3,8 @@
 use super::Settings;
 use super::plain::{Geometry, Kept};
 use crate::composite::epsilon;
-use crate::error::{Error, Result};
-use crate::frame::{Exec, NO_ID, Rect};
+use crate::error::Result;
+use crate::frame::{Exec, NO_ID};
 use crate::method::ewa::plain::fragment;
 use crate::number::Real;
 use crate::scene::group::Groups;
@@ -61,7 +61,7 @@ pub struct Touch<R> {
 /// Replays both passes at one pixel.
 ///
 /// # Errors
-/// [`Error::Usage`] if the pixel is outside the picture; [`Error::Invalid`] as [`super::render`].
+/// [`crate::Error::Usage`] if the pixel is outside the picture; [`crate::Error::Invalid`] as [`super::render`].
 pub fn explain<R: Real>(
     surfels: &Surfels,
     groups: &Groups,
@@ -70,20 +70,16 @@ pub fn explain<R: Real>(
     exec: &Exec,
     (x, y): (u32, u32),
 ) -> Result<Explanation<R>> {
-    if x >= camera.width || y >= camera.height {
-        let (w, h) = (camera.width, camera.height);
-        return Err(Error::Usage(format!("pixel {x} {y} is outside the picture of {w} x {h}")));
-    }
+    camera.check_pixel(x, y)?;
     groups.check(surfels)?;
     let geometry = Geometry::<R>::project(surfels, groups, camera, settings, exec)?;
     let (shared, grid) = (geometry.shared(), geometry.grid());
     let tile = (y / grid.tile * grid.columns + x / grid.tile) as usize;
-    let pixel = Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 };
 
     // Geometry pass.
     let mut found: Vec<GroupAt<R>> = Vec::new();
     geometry.each_splat(tile, |splat| {
-        if splat.bounds.intersection(&pixel).is_empty() {
+        if !splat.bounds.contains(x, y) {
             return;
         }
         let group = groups.own()[splat.surfel as usize];

@@ -6,7 +6,7 @@ use crate::composite::groups::{Sample, compose};
 use crate::composite::sum;
 use crate::error::Result;
 use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, NO_ID, Rect};
-use crate::method::ewa::plain::{facing, fragment};
+use crate::method::ewa::plain::{each_inside, facing};
 use crate::method::prepare::Prepared;
 use crate::number::Real;
 use crate::scene::group::Groups;
@@ -105,21 +105,12 @@ impl<'a, R: Real> Geometry<'a, R> {
     #[must_use]
     pub fn images(&self, tile: usize, rect: Rect) -> Images<R> {
         let (shared, empty) = (&self.prepared.shared, self.empty());
-        let columns = rect.x1 - rect.x0;
-        let pixels = (columns * (rect.y1 - rect.y0)) as usize;
-        let mut groups = vec![vec![empty; pixels]; self.groups.len()];
+        let mut groups = vec![vec![empty; rect.pixels()]; self.groups.len()];
         self.prepared.for_each(tile, |splat| {
             let image = &mut groups[usize::from(self.groups.own()[splat.surfel as usize])];
-            let Rect { x0, y0, x1, y1 } = splat.bounds.intersection(&rect);
-            for y in y0..y1 {
-                for x in x0..x1 {
-                    let (q, nearness) = fragment(shared, splat, x, y);
-                    if q <= shared.limit {
-                        let kept = &mut image[((y - rect.y0) * columns + (x - rect.x0)) as usize];
-                        self.offer(splat, q, nearness, kept);
-                    }
-                }
-            }
+            each_inside(shared, splat, &rect, |pixel, q, nearness| {
+                self.offer(splat, q, nearness, &mut image[pixel]);
+            });
         });
         Images { rect, groups }
     }

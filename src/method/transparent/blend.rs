@@ -6,7 +6,7 @@ use crate::composite::epsilon;
 use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::{Exec, NO_ID, Rect};
-use crate::method::ewa::plain::{facing, fragment};
+use crate::method::ewa::plain::{each_inside, facing};
 use crate::method::prepare::Prepared;
 use crate::number::{Real, Vector3};
 use crate::scene::group::Groups;
@@ -137,26 +137,19 @@ impl<R: Real> Blending<R> {
         mask: Option<&[R]>,
     ) -> Vec<Vec<Layers<R>>> {
         let (shared, band) = (&self.prepared.shared, self.prepared.epsilon);
-        let columns = rect.x1 - rect.x0;
-        let pixels = (columns * (rect.y1 - rect.y0)) as usize;
-        let mut images = vec![vec![Layers::EMPTY; pixels]; self.groups];
+        let mut images = vec![vec![Layers::EMPTY; rect.pixels()]; self.groups];
         self.prepared.for_each(tile, |drawn| {
             let image = &mut images[usize::from(drawn.group)];
-            let Rect { x0, y0, x1, y1 } = drawn.splat.bounds.intersection(&rect);
-            for y in y0..y1 {
-                for x in x0..x1 {
-                    let (q, nearness) = fragment(shared, &drawn.splat, x, y);
-                    let depth = shared.depth(nearness);
-                    let i = ((y - rect.y0) * columns + (x - rect.x0)) as usize;
-                    let masked = mask.is_some_and(|mask| epsilon::visible(depth, mask[i], band));
-                    if q <= shared.limit && !masked {
-                        let bin = self.bins.bin(depth);
-                        if bin < image[i].bin {
-                            image[i].add(drawn, bin, depth);
-                        }
-                    }
+            each_inside(shared, &drawn.splat, &rect, |i, _, nearness| {
+                let depth = shared.depth(nearness);
+                if mask.is_some_and(|mask| epsilon::visible(depth, mask[i], band)) {
+                    return;
                 }
-            }
+                let bin = self.bins.bin(depth);
+                if bin < image[i].bin {
+                    image[i].add(drawn, bin, depth);
+                }
+            });
         });
         images
     }

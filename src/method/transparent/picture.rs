@@ -6,7 +6,7 @@ use super::nearest::First;
 use crate::composite::over::Blend;
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Frame, Grid, NO_ID, NamedPlane, Rect, Samples};
-use crate::method::picture::{Clock, Picture, color, named, scalar};
+use crate::method::picture::{Clock, Picture, before_environment, color, named, scalar};
 use crate::method::single_pass;
 use crate::number::{Real, Vector3};
 use crate::scene::group::Groups;
@@ -81,13 +81,14 @@ pub fn render<R: Real>(
     let images: Vec<_> = images.into_iter().flatten().collect();
     planes.extend(image_planes(&grid, &images, groups.len()));
     let tally = first.as_ref().map_or(blending.tally(), |first| first.tally);
-    planes.extend(picture_planes(&grid, &pixels, first, stages));
+    planes.extend(picture_planes((scene, camera, exec), &grid, &pixels, first, stages));
     let frame = Frame { width: camera.width, height: camera.height, planes };
     Ok(Picture { frame, tally, timings: clock.into_laps() })
 }
 
 /// The planes of the picture, with `stages` after those of the averages.
 fn picture_planes<R: Real>(
+    (scene, camera, exec): (&Scene, &Camera, &Exec),
     grid: &Grid,
     pixels: &[Vec<(Average<R>, Blend<R>)>],
     first: Option<First<R>>,
@@ -103,8 +104,11 @@ fn picture_planes<R: Real>(
             scalar("l", l)
         }));
     }
-    planes.push(color("", grid.assemble([R::ZERO; 3], |t, i| blend(t, i).color)));
-    planes.push(scalar("A", grid.assemble(R::ZERO, |t, i| blend(t, i).alpha)));
+    let colors = grid.assemble([R::ZERO; 3], |t, i| blend(t, i).color);
+    let alphas = grid.assemble(R::ZERO, |t, i| blend(t, i).alpha);
+    let (colors, alphas) = before_environment(scene, camera, colors, alphas, exec);
+    planes.push(color("", colors));
+    planes.push(scalar("A", alphas));
     let counts = grid.assemble(R::ZERO, |t, i| average(t, i).layers);
     match first {
         None => {
@@ -118,7 +122,7 @@ fn picture_planes<R: Real>(
     planes
 }
 
-/// The last step: what the layers of a pixel make together, and what is behind them.
+/// The last step: what the layers of a pixel make together, and what is refracted through them.
 struct Tail<'a, R> {
     scene: &'a Scene,
     settings: &'a Settings,
@@ -131,33 +135,23 @@ impl<R: Real> Tail<'_, R> {
     fn pixel(&self, (tile, i): (usize, usize), rect: Rect, others: &Average<R>) -> Blend<R> {
         let columns = (rect.x1 - rect.x0) as usize;
         let (x, y) = (rect.x0 + (i % columns) as u32, rect.y0 + (i / columns) as u32);
-        let environment = self.scene.environment.as_ref();
-        let blend = match self.first {
-            None => others.blend,
-            Some(first) if !first.target.depth.at(x, y).is_finite() => others.blend,
-            Some(first) => {
-                let alpha = first.alpha[tile][i];
-                let near = *first.color.at(x, y);
-                match (&self.settings.refraction, environment) {
-                    (Some(refraction), Some(environment)) => {
-                        let normal = first.target.normal.as_ref().map(|plane| *plane.at(x, y));
-                        let [nx, ny, nz] = normal.unwrap_or([R::ZERO; 3]);
-                        let normal = Vector3::new(nx, ny, nz);
-                        let nearest = Nearest { color: near, opacity: alpha, normal };
-                        let Average { blend, opacity, hidden, .. } = *others;
-                        let behind = Behind { color: blend.color, opacity, hidden };
-                        let view = -self.view.ray(x, y).normalized();
-                        let color = optics::shade(environment, refraction, view, &nearest, &behind);
-                        return Blend { color, alpha: R::ONE };
-                    }
-                    _ => others.blend.over(alpha, near),
-                }
-            }
+        let Some(first) = self.first.filter(|first| first.target.depth.at(x, y).is_finite()) else {
+            return others.blend;
         };
-        match environment {
-            None => blend,
-            Some(environment) => blend.before(environment.radiance(self.view.ray(x, y))),
-        }
+        let (alpha, near) = (first.alpha[tile][i], *first.color.at(x, y));
+        let (Some(refraction), Some(environment)) =
+            (&self.settings.refraction, &self.scene.environment)
+        else {
+            return others.blend.over(alpha, near);
+        };
+        let normal = first.target.normal.as_ref().map(|plane| *plane.at(x, y));
+        let [nx, ny, nz] = normal.unwrap_or([R::ZERO; 3]);
+        let nearest = Nearest { color: near, opacity: alpha, normal: Vector3::new(nx, ny, nz) };
+        let Average { blend, opacity, hidden, .. } = *others;
+        let behind = Behind { color: blend.color, opacity, hidden };
+        let view = -self.view.ray(x, y).normalized();
+        let color = optics::shade(environment, refraction, view, &nearest, &behind);
+        Blend { color, alpha: R::ONE }
     }
 }
 

@@ -93,7 +93,7 @@ fn axes(n: DVec3) -> (DVec3, DVec3) {
 }
 
 /// `(x x' + y y') + z z'`.
-fn dot(a: DVec3, b: DVec3) -> f64 {
+pub(super) fn dot(a: DVec3, b: DVec3) -> f64 {
     (a.x * b.x + a.y * b.y) + a.z * b.z
 }
 

@@ -1,11 +1,11 @@
 //! The graph of section 4.1: which surfels may not share a group.
 
+use super::clipped::dot;
 use super::tree::Tree;
 use super::{Coplanar, Rules};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::scene::Surfels;
-use glam::Vec3;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -136,7 +136,8 @@ pub(super) fn conflicts(
 
 /// Whether modification 1 or 2 takes the edge of two surfels away.
 pub(super) fn relaxed(surfels: &Surfels, rules: &Rules, i: usize, j: usize) -> bool {
-    let cosine = dot(surfels.normal()[i], surfels.normal()[j]);
+    let [a, b] = [i, j].map(|i| surfels.normal()[i].as_dvec3());
+    let cosine = dot(a, b);
     if rules.opposite && cosine < 0.0 {
         return true;
     }
@@ -152,10 +153,7 @@ fn within_planes(surfels: &Surfels, rule: &Coplanar, i: usize, j: usize) -> bool
     let d = p - q;
     let radius = super::tree::radii(surfels);
     let most = f64::from(rule.offset) * (radius(i as u32) + radius(j as u32));
-    [i, j].into_iter().all(|i| {
-        let n = surfels.normal()[i].as_dvec3();
-        ((d.x * n.x + d.y * n.y) + d.z * n.z).abs() <= most
-    })
+    [i, j].into_iter().all(|i| dot(d, surfels.normal()[i].as_dvec3()).abs() <= most)
 }
 
 fn of_one_color(surfels: &Surfels, rule: &Coplanar, i: usize, j: usize) -> bool {
@@ -163,10 +161,4 @@ fn of_one_color(surfels: &Surfels, rule: &Coplanar, i: usize, j: usize) -> bool 
         let [a, b] = [i, j].map(|i| color[i].as_dvec3().to_array());
         a.into_iter().zip(b).all(|(a, b)| (a - b).abs() <= f64::from(rule.color))
     })
-}
-
-/// `(x x' + y y') + z z'` in f64.
-fn dot(a: Vec3, b: Vec3) -> f64 {
-    let (a, b) = (a.as_dvec3(), b.as_dvec3());
-    (a.x * b.x + a.y * b.y) + a.z * b.z
 }

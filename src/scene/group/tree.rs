@@ -9,6 +9,7 @@ use super::clipped::Disc;
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::scene::Surfels;
+use crate::scene::tree::widest;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
@@ -187,18 +188,7 @@ fn split(entries: &mut [(Vec3, u32)]) {
     if entries.len() <= LANES {
         return;
     }
-    let (mut low, mut high) = (entries[0].0, entries[0].0);
-    for (point, _) in entries.iter() {
-        low = low.min(*point);
-        high = high.max(*point);
-    }
-    let extent = high.as_dvec3() - low.as_dvec3();
-    let mut axis = 0;
-    for other in 1..3 {
-        if extent[other] > extent[axis] {
-            axis = other;
-        }
-    }
+    let axis = widest(entries.iter().map(|(point, _)| *point));
     let middle = LANES * (entries.len().div_ceil(LANES).next_power_of_two() / 2);
     entries.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]));
     let (below, above) = entries.split_at_mut(middle);
