@@ -107,6 +107,7 @@
 //!     surfels: shape.surfels(5_000, 0)?,
 //!     lights: vec![Light::Headlight { towards: glam::Vec3::Z, color: glam::Vec3::ONE }],
 //!     material: Phong::default(),
+//!     primitives: Default::default(),
 //!     environment: None,
 //! };
 //! let camera = Camera::new(64, 64, shape.default_pose(), shape.default_lens())?;

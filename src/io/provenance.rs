@@ -112,7 +112,14 @@ mod tests {
         let surfels = shape.surfels(100, 0).unwrap();
         let lights = vec![Light::DEFAULT];
         let material = Phong::default();
-        let scene = Scene { name: name.clone(), surfels, lights, material, environment: None };
+        let scene = Scene {
+            name: name.clone(),
+            surfels,
+            lights,
+            material,
+            primitives: Default::default(),
+            environment: None,
+        };
         let eye = DVec3::new(0.1, 1.0 / 3.0, 5.0);
         let pose = Pose { eye, target: DVec3::ZERO, up: DVec3::Y };
         let camera = Camera::new(61, 47, pose, Lens::FieldOfView(33.3)).unwrap();

@@ -207,7 +207,14 @@ mod tests {
         let surfels = shape.surfels(40, 0).unwrap();
         let (lights, material) = (vec![Light::DEFAULT], Phong::default());
         let name = "sphere".to_owned();
-        let scene = Scene { name, surfels, lights, material, environment: None };
+        let scene = Scene {
+            name,
+            surfels,
+            lights,
+            material,
+            primitives: Default::default(),
+            environment: None,
+        };
         let camera = Camera::new(8, 8, shape.default_pose(), Lens::FieldOfView(40.0)).unwrap();
         let exec = Exec::sequential();
         let ewa = Method::Ewa(ewa::Settings::default());

@@ -116,7 +116,14 @@ mod tests {
         let lights = vec![Light::Point { position: Vec3::X, color: Vec3::ONE }];
         let surfels = Surfels::new(cloud).unwrap().0;
         let material = Phong::default();
-        Scene { name: "a".into(), surfels, lights, material, environment: None }
+        Scene {
+            name: "a".into(),
+            surfels,
+            lights,
+            material,
+            primitives: Default::default(),
+            environment: None,
+        }
     }
 
     fn cloud() -> Cloud {

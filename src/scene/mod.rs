@@ -7,6 +7,7 @@
 //! - [`environment`]: the light that surrounds a scene.
 //! - [`group`]: groups of surfels that do not overlap.
 //! - [`hash`]: the identity of a scene.
+//! - [`indexed`]: triangles, ribbons and tubes.
 //! - [`light`]: lights and the Phong material.
 //! - [`merge`]: several models as one cloud.
 //! - [`order`]: surfels from back to front, for every view.
@@ -19,6 +20,7 @@ pub mod derive;
 pub mod environment;
 pub mod group;
 pub mod hash;
+pub mod indexed;
 pub mod light;
 pub mod merge;
 pub mod order;
@@ -30,6 +32,7 @@ mod tree;
 pub use camera::{Camera, Lens, Pose, Projection};
 pub use cloud::Cloud;
 pub use environment::Environment;
+pub use indexed::{Polylines, Primitives, Triangles, Vertices};
 pub use light::{Light, Phong};
 pub use procedural::Shape;
 pub use surfels::{Dropped, Surfels};
@@ -44,6 +47,8 @@ pub struct Scene {
     pub name: String,
     /// The surfels, in the order that every sum and every tie follows.
     pub surfels: Surfels,
+    /// What there is beside them.
+    pub primitives: Primitives,
     /// The lights; with none the resolved colour is shown unlit.
     pub lights: Vec<Light>,
     /// How the surface answers the lights.

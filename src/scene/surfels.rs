@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 
 /// Surfels as a structure of arrays, each of one length.
 ///
-/// Guarantees, kept by construction: at least one surfel; positions finite; normals of length 1
+/// Guarantees, kept by construction: at least one surfel, but for [`Surfels::none`]; positions finite; normals of length 1
 /// within 2^-20; radii finite and > 0; colours finite and >= 0; opacities in [0, 1]; tangents
 /// finite and not parallel. (Whether they are perpendicular to each other and to the normal is the
 /// business of whoever gives them.) An array that the
@@ -109,11 +109,33 @@ impl Surfels {
         Ok((surfels, dropped))
     }
 
-    /// How many there are: at least 1, less than 2^32 - 1.
+    /// No surfels at all, for a scene that consists of other primitives. Their median radius is 0,
+    /// and what bounds them is the origin.
     #[must_use]
-    #[expect(clippy::len_without_is_empty, reason = "never empty")]
+    pub fn none() -> Self {
+        Self {
+            position: Vec::new(),
+            normal: Vec::new(),
+            radius: Vec::new(),
+            color: None,
+            opacity: None,
+            tangents: None,
+            groups: None,
+            median_radius: 0.0,
+            bounding_sphere: (DVec3::ZERO, 0.0),
+        }
+    }
+
+    /// How many there are: less than 2^32 - 1.
+    #[must_use]
     pub fn len(&self) -> usize {
         self.position.len()
+    }
+
+    /// Whether these are [`Surfels::none`].
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.position.is_empty()
     }
 
     /// Positions in world units.
@@ -167,7 +189,7 @@ impl Surfels {
     /// The corners of the smallest axis-parallel box around all positions.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        let first = self.position[0];
+        let first = self.position.first().copied().unwrap_or_default();
         self.position.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)))
     }
 
@@ -245,7 +267,7 @@ fn check_lengths(
 }
 
 /// Makes a normal a unit vector; false if it has no direction.
-fn unit(normal: &mut Vec3) -> bool {
+pub(super) fn unit(normal: &mut Vec3) -> bool {
     let n = normal.as_dvec3();
     let length = n.length();
     // 2^-80: what is shorter is the rounding error of a sum that cancelled.

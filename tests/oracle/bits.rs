@@ -192,7 +192,14 @@ fn the_tip_of_a_wide_ellipse_has_the_bits_of_the_plain_path() {
         };
         let surfels = Surfels::new(cloud).expect("a surfel").0;
         let (lights, material) = (Vec::new(), Phong::default());
-        let scene = Scene { name: String::new(), surfels, lights, material, environment: None };
+        let scene = Scene {
+            name: String::new(),
+            surfels,
+            lights,
+            material,
+            primitives: Default::default(),
+            environment: None,
+        };
         let kernel = Kernel { low_pass: 0.0, ..Kernel::DEFAULT };
         let settings = Settings { kernel, ..Settings::default() };
         let exec = Exec::sequential();

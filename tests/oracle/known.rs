@@ -27,6 +27,7 @@ fn scene(discs: &[(Vec3, Vec3)], radius: f32, color: Option<Vec3>) -> Scene {
         surfels,
         lights: Vec::new(),
         material: Phong::default(),
+        primitives: Default::default(),
         environment: None,
     }
 }
@@ -213,6 +214,7 @@ fn the_depth_of_a_sphere_is_within_the_sagitta_of_its_discs() {
         surfels: shape.surfels(2000, 1).expect("surfels"),
         lights: Vec::new(),
         material: Phong::default(),
+        primitives: Default::default(),
         environment: None,
     };
     let radius = f64::from(scene.surfels.radius()[0]);

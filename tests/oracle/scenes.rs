@@ -229,7 +229,14 @@ impl Case {
         }
         let name = format!("{kind:?} seed {seed} orthographic {orthographic} {settings:?}");
         let (lights, material) = (lights(&mut dice), Phong::default());
-        let scene = Scene { name: String::new(), surfels, lights, material, environment: None };
+        let scene = Scene {
+            name: String::new(),
+            surfels,
+            lights,
+            material,
+            primitives: Default::default(),
+            environment: None,
+        };
         Self { name, scene, camera, settings, exact: kind.exact() }
     }
 }

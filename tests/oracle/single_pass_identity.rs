@@ -46,6 +46,7 @@ pub(crate) fn scene(cloud: Cloud) -> Scene {
         surfels,
         lights: vec![light],
         material: Phong::default(),
+        primitives: Default::default(),
         environment: None,
     }
 }

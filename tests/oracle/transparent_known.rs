@@ -57,7 +57,14 @@ pub(crate) fn sheets(layers: &[Sheet], count: usize) -> (Scene, Groups) {
     }
     let surfels = Surfels::new(cloud).expect("good discs").0;
     let (lights, material) = (Vec::new(), Phong::default());
-    let scene = Scene { name: String::new(), surfels, lights, material, environment: None };
+    let scene = Scene {
+        name: String::new(),
+        surfels,
+        lights,
+        material,
+        primitives: Default::default(),
+        environment: None,
+    };
     (scene, groups(own, count))
 }
 

@@ -6,7 +6,7 @@ use crate::frame::Exec;
 use crate::io::{environment, ply};
 use crate::scene::derive::{self, Derive, Derived};
 use crate::scene::merge::merge;
-use crate::scene::{Cloud, Dropped, Environment, Scene, Surfels};
+use crate::scene::{Cloud, Dropped, Environment, Primitives, Scene, Surfels};
 
 /// A scene and how it came about.
 #[derive(Clone, Debug)]
@@ -61,7 +61,9 @@ impl SceneFile {
             dropped.attribute += one.attribute;
         }
         let (name, lights) = (self.name.clone(), self.lights.clone());
-        let scene = Scene { name, surfels, lights, material: self.material, environment };
+        let primitives = Primitives::default();
+        let scene =
+            Scene { name, surfels, primitives, lights, material: self.material, environment };
         Ok(Loaded { scene, models, dropped })
     }
 }

@@ -14,7 +14,7 @@ use proptest::prelude::*;
 fn scene(cloud: Cloud, lights: Vec<Light>) -> Scene {
     let surfels = Surfels::new(cloud).unwrap().0;
     let (name, material) = ("test".into(), Phong::default());
-    Scene { name, surfels, lights, material, environment: None }
+    Scene { name, surfels, lights, material, primitives: Default::default(), environment: None }
 }
 
 /// Looks from the origin along -z.

@@ -188,7 +188,14 @@ mod tests {
         let own = (0..surfels.len()).map(|i| (i % 3) as u8).collect();
         let groups = Groups::new(own, Vec::new(), vec![1.0; 3]).unwrap();
         let (lights, material) = (vec![Light::DEFAULT], Phong::default());
-        let scene = Scene { name: "sphere".into(), surfels, lights, material, environment: None };
+        let scene = Scene {
+            name: "sphere".into(),
+            surfels,
+            lights,
+            material,
+            primitives: Default::default(),
+            environment: None,
+        };
         let camera = Camera::new(19, 17, shape.default_pose(), Lens::FieldOfView(40.0)).unwrap();
         let exec = Exec::new(1, 8).unwrap();
         for depth in [DepthTest::Plain, DepthTest::Voronoi(BinCount::Count(40))] {

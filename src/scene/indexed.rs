@@ -1,0 +1,194 @@
+//! Triangles and polylines: vertices with attributes, and what joins them.
+
+use super::surfels::unit;
+use crate::error::{Error, Result};
+use glam::Vec3;
+
+/// Vertices as a structure of arrays, unchecked: what [`Indexed::new`] takes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Vertices {
+    /// Positions in world units.
+    pub position: Vec<Vec3>,
+    /// The normal of a triangle's or a ribbon's surface, the tangent of a tube; of any length.
+    pub direction: Vec<Vec3>,
+    /// Half the width of a ribbon, the radius of a tube, or how far the surface of a triangle's vertex
+    /// reaches, each in world units and at least 0.
+    pub radius: Vec<f32>,
+    /// Linear RGB, not premultiplied.
+    pub color: Option<Vec<Vec3>>,
+}
+
+/// Primitives of `N` corners over checked vertices; there may be none.
+///
+/// Guarantees, kept by construction: arrays of one length, and for every vertex that a primitive
+/// uses: position finite; direction of length 1 within 2^-20; radius finite and >= 0; colour finite
+/// and >= 0. Corners may coincide: such a segment is a point, such a triangle covers nothing. Edges may
+/// have any number of triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Indexed<const N: usize> {
+    vertices: Vertices,
+    corners: Vec<[u32; N]>,
+}
+
+/// Line segments between vertices, one pixel wide until they are reconstructed \[MKC08, section 4\].
+pub type Polylines = Indexed<2>;
+/// Triangles between vertices; counter-clockwise corners are seen from the front.
+pub type Triangles = Indexed<3>;
+
+impl<const N: usize> Default for Indexed<N> {
+    fn default() -> Self {
+        Self { vertices: Vertices::default(), corners: Vec::new() }
+    }
+}
+
+impl<const N: usize> Indexed<N> {
+    /// Checks vertices and corners; primitives with a vertex that is degenerate are dropped, and their
+    /// number is returned.
+    ///
+    /// A direction is made a unit vector as the normal of a surfel is, see [`super::Surfels::new`].
+    /// Vertices are kept, even those that no primitive uses.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if an array has the wrong length, if a corner is no vertex, or if there are
+    /// more than 2^32 - 2 vertices or primitives.
+    pub fn new(mut vertices: Vertices, mut corners: Vec<[u32; N]>) -> Result<(Self, u64)> {
+        let n = vertices.position.len();
+        let lengths = [
+            ("directions", vertices.direction.len()),
+            ("radii", vertices.radius.len()),
+            ("colours", vertices.color.as_ref().map_or(n, Vec::len)),
+        ];
+        for (what, length) in lengths {
+            if length != n {
+                return Err(Error::Invalid(format!("{n} vertices, but {length} {what}")));
+            }
+        }
+        if n.max(corners.len()) as u64 >= u64::from(u32::MAX) {
+            return Err(Error::Invalid(format!(
+                "{n} vertices and {} primitives, but ids have 32 bits: split the scene",
+                corners.len()
+            )));
+        }
+        if let Some(corner) = corners.iter().flatten().find(|&&corner| corner as usize >= n) {
+            return Err(Error::Invalid(format!("there is no vertex {corner}, only {n}")));
+        }
+        let sound: Vec<bool> = (0..n)
+            .map(|i| {
+                vertices.position[i].is_finite()
+                    && unit(&mut vertices.direction[i])
+                    && vertices.radius[i] >= 0.0
+                    && vertices.radius[i].is_finite()
+                    && vertices
+                        .color
+                        .as_ref()
+                        .is_none_or(|color| color[i].is_finite() && color[i].min_element() >= 0.0)
+            })
+            .collect();
+        let before = corners.len();
+        corners.retain(|corners| corners.iter().all(|&corner| sound[corner as usize]));
+        let dropped = (before - corners.len()) as u64;
+        Ok((Self { vertices, corners }, dropped))
+    }
+
+    /// How many primitives there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.corners.is_empty()
+    }
+
+    /// The vertices; one that no primitive uses may hold anything.
+    #[must_use]
+    pub fn vertices(&self) -> &Vertices {
+        &self.vertices
+    }
+
+    /// The vertices of each primitive.
+    #[must_use]
+    pub fn corners(&self) -> &[[u32; N]] {
+        &self.corners
+    }
+
+    /// The parts again, to be changed or joined.
+    #[must_use]
+    pub fn into_parts(self) -> (Vertices, Vec<[u32; N]>) {
+        (self.vertices, self.corners)
+    }
+}
+
+/// What a scene has beside surfels \[MKC08, sections 4 and 5\].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Primitives {
+    /// Polygons.
+    pub triangles: Triangles,
+    /// Flat strips: direction is the normal, radius half the width.
+    pub ribbons: Polylines,
+    /// Bent cylinders: direction is the tangent.
+    pub tubes: Polylines,
+}
+
+impl Primitives {
+    /// How many there are in all.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.triangles.len() + self.ribbons.len() + self.tubes.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Whether vertices of a kind that is there have colours.
+    #[must_use]
+    pub fn colored(&self) -> bool {
+        fn colored<const N: usize>(of: &Indexed<N>) -> bool {
+            !of.is_empty() && of.vertices.color.is_some()
+        }
+        colored(&self.triangles) || colored(&self.ribbons) || colored(&self.tubes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn vertices(n: usize) -> Vertices {
+        Vertices {
+            position: (0..n).map(|i| Vec3::X * i as f32).collect(),
+            direction: vec![3.0 * Vec3::Z; n],
+            radius: vec![0.0; n],
+            color: None,
+        }
+    }
+
+    #[test]
+    fn primitives_with_a_bad_vertex_are_dropped_and_counted() {
+        let mut bad = vertices(6);
+        bad.position[1].y = f32::NAN;
+        bad.direction[2] = Vec3::ZERO;
+        bad.radius[3] = -1.0;
+        bad.radius[4] = f32::INFINITY;
+        let corners = vec![[0, 1], [0, 5], [2, 5], [0, 0], [3, 0], [4, 4]];
+        let (lines, dropped) = Polylines::new(bad, corners).unwrap();
+        assert_eq!((lines.corners(), dropped), ([[0, 5], [0, 0]].as_slice(), 4));
+        assert_eq!(lines.vertices().direction[0], Vec3::Z, "made a unit vector");
+    }
+
+    #[test]
+    fn what_does_not_fit_together_is_refused() {
+        let error = Triangles::new(vertices(3), vec![[0, 1, 3]]).unwrap_err();
+        assert_eq!(error.to_string(), "there is no vertex 3, only 3");
+        let few = Vertices { radius: vec![1.0; 2], ..vertices(3) };
+        let error = Triangles::new(few, vec![]).unwrap_err();
+        assert_eq!(error.to_string(), "3 vertices, but 2 radii");
+        let few = Vertices { color: Some(vec![]), ..vertices(3) };
+        assert!(Triangles::new(few, vec![]).is_err());
+    }
+}
