@@ -2,6 +2,7 @@
 //!
 //! - [`plane`], [`rect`], [`named`]: pixels, rectangles of them, and the names they have in files.
 //! - [`framebuffer`]: depth, stencil and floating accumulation.
+//! - [`raster`]: the pixels of triangles and of lines, exactly.
 //! - [`stencil`]: the 8-bit stencil of GPU APIs.
 //! - [`bin`]: from screen bounds to tiles.
 //! - [`tile`]: tiles and the one parallel loop of the crate.
@@ -10,6 +11,7 @@ pub mod bin;
 pub mod framebuffer;
 pub mod named;
 pub mod plane;
+pub mod raster;
 pub mod rect;
 pub mod stencil;
 pub mod tile;
