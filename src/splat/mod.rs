@@ -15,6 +15,7 @@
 
 pub mod batch;
 pub mod bounds;
+pub mod clip;
 mod crossing;
 pub mod frustum;
 pub mod project;
