@@ -1,6 +1,6 @@
 //! The number that every formula is generic over.
 
-use super::elementary;
+use super::elementary::{self, LANES};
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -52,6 +52,12 @@ pub trait Real:
     fn exp(self) -> Self;
     /// This number to the power of `exponent`, see [`elementary`]; `self` is not negative.
     fn pow(self, exponent: Self) -> Self;
+    /// [`Real::pow`] of several numbers.
+    #[inline(always)]
+    #[must_use]
+    fn powers(bases: &[Self; LANES], exponent: Self) -> [Self; LANES] {
+        bases.map(|base| base.pow(exponent))
+    }
     /// The angle of the point (x, `self`) from the x axis, in radians, see [`elementary::atan2`].
     fn atan2(self, x: Self) -> Self;
     /// Whether this number is neither infinite nor NaN.
@@ -128,7 +134,11 @@ impl Real for f32 {
     }
     #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
-        elementary::pow(f64::from(self), f64::from(exponent)) as Self
+        elementary::pow_f32(self, exponent)
+    }
+    #[inline(always)]
+    fn powers(bases: &[Self; LANES], exponent: Self) -> [Self; LANES] {
+        elementary::powers_f32(bases, exponent)
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
