@@ -158,7 +158,7 @@ fn finish<R: Real>(
     let (width, height) = (depth.width(), depth.height());
     clock.restart();
     let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
-    let color = shader.shade(&depth, normal.as_ref(), color, exec);
+    let color = shader.shade(&depth, normal.as_ref(), tangent.as_ref(), color, exec);
     clock.lap("shading");
     let alpha = depth.map(|t| if t.is_finite() { R::ONE } else { R::ZERO });
     let (color, alpha) = before_environment(scene, camera, color, alpha, exec);
