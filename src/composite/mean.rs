@@ -4,7 +4,7 @@
 //! neighbour's term and weight being 0:
 //!
 //! ```text
-//!   average = ((w_0 a_0 + w_1 a_1) + (w_2 a_2 + w_3 a_3)) / ((w_0 + w_1) + (w_2 + w_3))
+//!   average = ((w_0 a_0 + w_1 a_1) + (w_2 a_2 + w_3 a_3)) (1 / ((w_0 + w_1) + (w_2 + w_3)))
 //!   not less than the least a_j and not more than the greatest of those that take part, plus 0
 //! ```
 //!
@@ -20,7 +20,8 @@ use crate::number::Real;
 pub struct Mean<R> {
     takes: [bool; 4],
     weights: [R; 4],
-    total: R,
+    /// 1 divided by the sum of the weights.
+    scale: R,
 }
 
 impl<R: Real> Mean<R> {
@@ -29,7 +30,7 @@ impl<R: Real> Mean<R> {
     #[must_use]
     pub fn new(takes: [bool; 4], weights: [R; 4]) -> Self {
         let w = [0, 1, 2, 3].map(|j| if takes[j] { weights[j] } else { R::ZERO });
-        Self { takes, weights: w, total: (w[0] + w[1]) + (w[2] + w[3]) }
+        Self { takes, weights: w, scale: R::ONE / ((w[0] + w[1]) + (w[2] + w[3])) }
     }
 
     /// Each with the weight 1.
@@ -44,7 +45,7 @@ impl<R: Real> Mean<R> {
     #[must_use]
     pub fn of(&self, a: [R; 4]) -> R {
         let term = |j: usize| if self.takes[j] { self.weights[j] * a[j] } else { R::ZERO };
-        let mean = ((term(0) + term(1)) + (term(2) + term(3))) / self.total;
+        let mean = ((term(0) + term(1)) + (term(2) + term(3))) * self.scale;
         mean.at_least(self.least(a)).at_most(self.greatest(a)) + R::ZERO
     }
 
@@ -113,8 +114,8 @@ mod tests {
             prop_assert!(taken().any(|j| a[j] <= found) && taken().any(|j| a[j] >= found));
             let total: f64 = taken().map(|j| f64::from(w[j])).sum();
             let sum: f64 = taken().map(|j| f64::from(w[j]) * f64::from(a[j])).sum();
-            // Eight roundings of numbers up to 8: products, sums, total, quotient.
-            prop_assert!((f64::from(found) - sum / total).abs() <= 8.0 * 8.0 * 2_f64.powi(-24));
+            // Nine roundings of numbers up to 8: products, sums, total, its inverse, the product.
+            prop_assert!((f64::from(found) - sum / total).abs() <= 9.0 * 8.0 * 2_f64.powi(-24));
         }
 
         #[test]

@@ -37,7 +37,13 @@ impl<R: Real> Ellipse<R> {
     #[inline(always)]
     #[must_use]
     pub fn new(normal: Vector3<R>, radius: R) -> Self {
-        let tilt = Vector2::new(normal.x / normal.z, normal.y / normal.z);
+        Self::tilted(Vector2::new(normal.x / normal.z, normal.y / normal.z), radius)
+    }
+
+    /// The same from the tilt.
+    #[inline(always)]
+    #[must_use]
+    pub fn tilted(tilt: Vector2<R>, radius: R) -> Self {
         Self { tilt, square: radius * radius }
     }
 

@@ -24,6 +24,8 @@ pub(in crate::method) type Lanes = [f32; LANES];
 
 /// Surfels of a chunk.
 const CHUNK: usize = 16_384;
+/// Chunks of a job.
+const CHUNKS: usize = 4;
 /// Pixels of a band, about: with depth and id they fit a second-level cache.
 const BAND: usize = 32_768;
 
@@ -39,6 +41,7 @@ struct Point {
 /// The points of a chunk of surfels, by bands, ascending in each.
 #[derive(Debug, Default)]
 struct Chunk {
+    /// Longer than what it holds, so that it need not be cleared for every picture.
     points: Vec<Point>,
     /// Where each band starts, and where the last ends.
     starts: Vec<u32>,
@@ -52,11 +55,8 @@ pub(in crate::method) struct Points {
     rows: usize,
 }
 
-/// The nearest points of a row of pixels.
-pub(in crate::method) struct Nearest<'a> {
-    depth: &'a [f32],
-    id: &'a [u32],
-}
+/// The nearest points of a row of pixels: depth and id, +inf and [`NO_ID`] where there is none.
+pub(in crate::method) struct Nearest<'a>(&'a [(f32, u32)]);
 
 impl Points {
     /// Finds and sorts the points of a scene's surfels.
@@ -72,10 +72,16 @@ impl Points {
         let band = self.rows * width;
         let n = surfels.len();
         self.chunks.resize_with(n.div_ceil(CHUNK), Chunk::default);
-        let ranges = (0..n).step_by(CHUNK).map(|first| first..n.min(first + CHUNK));
-        let jobs = self.chunks.iter_mut().zip(ranges).collect();
-        let tallies = exec.ordered(jobs, |(chunk, range): (&mut Chunk, Range<usize>)| {
-            chunk.fill(surfels, lens, range, (band, bands))
+        let jobs = self.chunks.chunks_mut(CHUNKS).enumerate().collect();
+        let tallies = exec.ordered(jobs, |(job, chunks): (usize, &mut [Chunk])| {
+            let mut found = vec![Point::default(); CHUNK + LANES];
+            let chunks = (job * CHUNKS..).zip(chunks);
+            chunks.fold(Tally::default(), |tally, (index, chunk)| {
+                let range = index * CHUNK..n.min((index + 1) * CHUNK);
+                let (count, own) = points(surfels, lens, range, &mut found);
+                chunk.sort(&found[..count], (band, bands));
+                tally.plus(&own)
+            })
         });
         tallies.iter().fold(Tally::default(), |sum, tally| sum.plus(tally))
     }
@@ -95,38 +101,28 @@ impl Points {
         });
         exec.ordered(bands.enumerate().collect(), |(band, rows): (usize, Vec<(usize, T)>)| {
             let pixels = rows.len() * width;
-            let mut nearest = (vec![f32::INFINITY; pixels], vec![NO_ID; pixels]);
+            let mut nearest = vec![(f32::INFINITY, NO_ID); pixels];
             let first = band * self.rows * width;
             for Chunk { points, starts } in &self.chunks {
                 let own = starts[band] as usize..starts[band + 1] as usize;
                 for point in &points[own] {
-                    let pixel = point.pixel as usize - first;
-                    if point.depth < nearest.0[pixel] {
-                        (nearest.0[pixel], nearest.1[pixel]) = (point.depth, point.id);
-                    }
+                    let kept = &mut nearest[point.pixel as usize - first];
+                    // A choice, not a branch, which would be mispredicted.
+                    let nearer = point.depth < kept.0;
+                    *kept = if nearer { (point.depth, point.id) } else { *kept };
                 }
             }
             for (row, (y, target)) in rows.into_iter().enumerate() {
                 let pixels = row * width..(row + 1) * width;
-                let (depth, id) = (&nearest.0[pixels.clone()], &nearest.1[pixels]);
-                draw(y, &Nearest { depth, id }, target);
+                draw(y, &Nearest(&nearest[pixels]), target);
             }
         });
     }
 }
 
 impl Chunk {
-    /// The points of a range of surfels, sorted into bands of `band` pixels.
-    fn fill(
-        &mut self,
-        surfels: &Surfels,
-        lens: &Lens<f32>,
-        range: Range<usize>,
-        (band, bands): (usize, usize),
-    ) -> Tally {
-        let mut found = vec![Point::default(); CHUNK + LANES];
-        let (count, tally) = points(surfels, lens, range, &mut found);
-        let found = &found[..count];
+    /// Sorts points into bands of `band` pixels.
+    fn sort(&mut self, found: &[Point], (band, bands): (usize, usize)) {
         // Counting sort: count, one place late, so that the sums become starts.
         self.starts.clear();
         self.starts.resize(bands + 1, 0);
@@ -137,17 +133,22 @@ impl Chunk {
         for band in 1..=bands {
             self.starts[band] += self.starts[band - 1];
         }
-        self.points.clear();
-        self.points.resize(count, Point::default());
+        if self.points.len() < found.len() {
+            self.points.resize(CHUNK, Point::default());
+        }
         let mut next = self.starts.clone();
         for point in found {
             let next = &mut next[of(point)];
             self.points[*next as usize] = *point;
             *next += 1;
         }
-        tally
     }
 }
+
+/// What a fate adds to the counts of a chunk: nothing for `Visible` and [`NO_FATE`].
+const ADDED: [u64; 8] = [0, 1, 1 << 16, 1 << 32, 1 << 48, 0, 0, 0];
+/// The fate of a lane without a surfel.
+const NO_FATE: u32 = 7;
 
 /// The points of a range of surfels, ascending, at the start of `found`, and how many.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
@@ -159,8 +160,8 @@ fn points(
 ) -> (usize, Tally) {
     let lens = *lens;
     let width = lens.view.width.to_pixel();
-    let mut counts = [[0_u32; LANES]; 5];
-    let mut count = 0;
+    // Of each fate but `Visible`, 16 bits, which a chunk does not exceed.
+    let (mut count, mut fated) = (0, 0_u64);
     for first in range.clone().step_by(LANES) {
         // The last lanes of a range may lie beyond it: they are the last surfel again, and not counted.
         let lanes = LANES.min(range.end - first);
@@ -185,15 +186,10 @@ fn points(
         for i in 0..LANES {
             let n = lens.view.direction(Vector3::new(n[0][i], n[1][i], n[2][i]));
             let (placed, _, fate) = lens.fate(Vector3::new(p[0][i], p[1][i], p[2][i]), n);
-            fates[i] = if i < lanes { fate as u32 } else { u32::MAX };
+            fates[i] = if i < lanes { fate as u32 } else { NO_FATE };
             // Pictures have at most 2^28 pixels.
             pixels[i] = placed.centre.y.to_pixel() * width + placed.centre.x.to_pixel();
             depths[i] = placed.t + 0.0;
-        }
-        for (fate, counts) in counts.iter_mut().enumerate() {
-            for i in 0..LANES {
-                counts[i] += u32::from(fates[i] == fate as u32);
-            }
         }
         // Written whether it is seen or not, and kept only if it is: no branch to mispredict.
         let place = &mut found[count..count + LANES];
@@ -201,16 +197,17 @@ fn points(
         for i in 0..LANES {
             place[kept] = Point { pixel: pixels[i], depth: depths[i], id: (first + i) as u32 };
             kept += usize::from(fates[i] == Fate::Visible as u32);
+            fated += ADDED[fates[i] as usize % 8];
         }
         count += kept;
     }
-    let sum = |fate: Fate| counts[fate as usize].iter().map(|&n| u64::from(n)).sum();
+    let of = |fate: Fate| (fated >> (16 * (fate as u32 - 1))) & 0xFFFF;
     let tally = Tally {
-        visible: sum(Fate::Visible),
-        behind: sum(Fate::Behind),
-        degenerate: sum(Fate::Degenerate),
-        back_facing: sum(Fate::BackFacing),
-        outside: sum(Fate::Outside),
+        visible: count as u64,
+        behind: of(Fate::Behind),
+        degenerate: of(Fate::Degenerate),
+        back_facing: of(Fate::BackFacing),
+        outside: of(Fate::Outside),
     };
     (count, tally)
 }
@@ -250,11 +247,12 @@ impl<'a> Sampling<'a> {
     /// The samples of pixels from column x of a row on; none if there is no point.
     #[inline(always)]
     pub(in crate::method) fn take(&self, nearest: &Nearest<'_>, x: usize) -> Option<SampleLanes> {
-        let count = LANES.min(nearest.id.len() - x);
+        let count = LANES.min(nearest.0.len() - x);
         let mut id = [NO_ID; LANES];
         let mut depth = [f32::INFINITY; LANES];
-        id[..count].copy_from_slice(&nearest.id[x..x + count]);
-        depth[..count].copy_from_slice(&nearest.depth[x..x + count]);
+        for (i, &(t, point)) in nearest.0[x..x + count].iter().enumerate() {
+            (depth[i], id[i]) = (t, point);
+        }
         if id.iter().all(|&id| id == NO_ID) {
             return None;
         }
@@ -262,20 +260,27 @@ impl<'a> Sampling<'a> {
         let placed = self.place || !self.lens.cull;
         let (mut p, mut n, mut color) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [[0.0; LANES]; 3]);
         let mut radius = [0.0; LANES];
+        // A pixel without a point reads surfel 0, which means nothing: loops of loads without a branch
+        // wait for memory together.
+        let at = id.map(|id| if id == NO_ID { 0 } else { id as usize });
         for i in 0..LANES {
-            if id[i] == NO_ID {
-                continue;
+            [n[0][i], n[1][i], n[2][i]] = surfels.normal()[at[i]].to_array();
+        }
+        for i in 0..LANES {
+            radius[i] = surfels.radius()[at[i]];
+        }
+        if placed {
+            for i in 0..LANES {
+                [p[0][i], p[1][i], p[2][i]] = surfels.position()[at[i]].to_array();
             }
-            let at = id[i] as usize;
-            if placed {
-                [p[0][i], p[1][i], p[2][i]] = surfels.position()[at].to_array();
+        }
+        if let Some(colors) = surfels.color().filter(|_| self.has.color) {
+            for i in 0..LANES {
+                [color[0][i], color[1][i], color[2][i]] = colors[at[i]].to_array();
             }
-            radius[i] = surfels.radius()[at];
-            [n[0][i], n[1][i], n[2][i]] = surfels.normal()[at].to_array();
-            if self.has.color {
-                let own = surfels.color().map_or(self.scene.material.color, |color| color[at]);
-                [color[0][i], color[1][i], color[2][i]] = own.to_array();
-            }
+        } else if self.has.color {
+            let [r, g, b] = self.scene.material.color.to_array();
+            color = [[r; LANES], [g; LANES], [b; LANES]];
         }
         let mut extent = [0.0; LANES];
         let mut centre = [[0.0; LANES]; 2];
@@ -308,4 +313,14 @@ pub(in crate::method) fn halves<T: Copy + Default>(row: &[T], at: usize) -> [[T;
         odd[i] = pairs[2 * i + 1];
     }
     [even, odd]
+}
+
+/// Copies [`LANES`] values, or as many as there is room for: a whole copy is one instruction.
+#[inline(always)]
+pub(in crate::method) fn put<T: Copy>(to: &mut [T], from: &[T; LANES]) {
+    if to.len() == LANES {
+        to.copy_from_slice(from);
+    } else {
+        to.copy_from_slice(&from[..to.len()]);
+    }
 }

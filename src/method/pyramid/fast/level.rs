@@ -12,10 +12,13 @@ pub(super) const BACK: usize = 2;
 pub(super) const RADIUS: usize = 3;
 /// The displacement: two numbers.
 pub(super) const PLACE: usize = 4;
-/// The normal: three numbers. After it the colour, three, and the tangent, three, if the scene has them.
+/// The normal: three numbers.
 pub(super) const NORMAL: usize = 6;
+/// The tilt of the ellipse: two numbers; not of level 0, of which each is needed once. After it the colour,
+/// three, and the tangent, three, if the scene has them.
+pub(super) const TILT: usize = 9;
 /// The first number that not every scene has.
-pub(super) const FURTHER: usize = 9;
+pub(super) const FURTHER: usize = 11;
 
 /// [`Kind::Tube`] as a number.
 pub(super) const TUBE: f32 = Kind::Tube as u8 as f32;

@@ -1,9 +1,8 @@
 //! Which of four cells take part, and their averages, in lanes: the formulas of the definition.
 
 use super::level::TUBE;
-use crate::composite::mean::Mean;
 use crate::method::projection::fast::{LANES, Lanes};
-use crate::number::Vector3;
+use crate::number::{Real, Vector2, Vector3};
 use crate::splat::Ellipse;
 
 /// The numbers of four cells for [`LANES`] new ones that decide who takes part.
@@ -14,12 +13,15 @@ pub(super) struct Four {
     pub(super) radius: [Lanes; 4],
     /// From the new cell's centre to that of the ellipse.
     pub(super) place: [[Lanes; 2]; 4],
-    pub(super) normal: [[Lanes; 3]; 4],
+    /// The tilts of the ellipses.
+    pub(super) tilt: [[Lanes; 2]; 4],
 }
 
 /// The weights of four cells, 0 for one that takes no part, and the kind of the new one.
 pub(super) struct Mix {
-    pub(super) weights: [Lanes; 4],
+    weights: [Lanes; 4],
+    /// 1 divided by the sum of the weights.
+    scale: Lanes,
     pub(super) kind: Lanes,
 }
 
@@ -28,17 +30,17 @@ impl Four {
     #[inline(always)]
     pub(super) fn mix<const GAUSSIAN: bool, const TUBES: bool>(&self) -> Mix {
         let mut front = [[0.0; LANES]; 4];
-        let mut distance = [[0.0; LANES]; 4];
+        let (mut form_of, mut square) = ([[0.0; LANES]; 4], [[0.0; LANES]; 4]);
         for j in 0..4 {
             for i in 0..LANES {
-                let n = &self.normal[j];
-                let normal = Vector3::new(n[0][i], n[1][i], n[2][i]);
-                let ellipse = Ellipse::new(normal, self.radius[j][i]);
+                let tilt = Vector2::new(self.tilt[j][0][i], self.tilt[j][1][i]);
+                let ellipse = Ellipse::tilted(tilt, self.radius[j][i]);
                 let form = ellipse.form(self.place[j][0][i], self.place[j][1][i]);
                 let candidate = ellipse.holds(form) & (self.kind[j][i] > 0.0);
                 // NaN fails every comparison.
                 front[j][i] = if candidate { self.front[j][i] } else { f32::NAN };
-                distance[j][i] = form / ellipse.square;
+                form_of[j][i] = form;
+                square[j][i] = ellipse.square;
             }
         }
         let mut nearest = [f32::INFINITY; LANES];
@@ -61,13 +63,29 @@ impl Four {
             }
             if GAUSSIAN && weights[j].iter().any(|&weight| weight > 0.0) {
                 for i in 0..LANES {
-                    let weight = gaussian(distance[j][i]);
+                    let weight = gaussian(form_of[j][i] / square[j][i]);
                     weights[j][i] = if weights[j][i] > 0.0 { weight } else { 0.0 };
                 }
             }
         }
-        Mix { weights, kind }
+        let mut scale = [0.0; LANES];
+        for i in 0..LANES {
+            scale[i] = 1.0 / ((weights[0][i] + weights[1][i]) + (weights[2][i] + weights[3][i]));
+        }
+        Mix { weights, scale, kind }
     }
+}
+
+/// The tilts of ellipses from their normals.
+#[inline(always)]
+pub(super) fn tilts(normal: &[Lanes; 3]) -> [Lanes; 2] {
+    let mut tilts = [[0.0; LANES]; 2];
+    for i in 0..LANES {
+        let normal = Vector3::new(normal[0][i], normal[1][i], normal[2][i]);
+        let ellipse = Ellipse::new(normal, 0.0);
+        (tilts[0][i], tilts[1][i]) = (ellipse.tilt.x, ellipse.tilt.y);
+    }
+    tilts
 }
 
 /// exp(-2 d^2), as the definition has it for d <= 1; any number for other d.
@@ -77,32 +95,46 @@ fn gaussian(square: f32) -> f32 {
 }
 
 impl Mix {
-    /// The average of a number.
+    /// The average of a number: [`Mean::of`] in lanes, a step at a time, which is what becomes vectors.
+    ///
+    /// [`Mean::of`]: crate::composite::mean::Mean::of
     #[inline(always)]
     pub(super) fn of(&self, a: &[Lanes; 4]) -> Lanes {
+        let mut terms = [[0.0; LANES]; 4];
+        for j in 0..4 {
+            let weights = self.weights[j];
+            for i in 0..LANES {
+                terms[j][i] = if weights[i] > 0.0 { weights[i] * a[j][i] } else { 0.0 };
+            }
+        }
+        let [least, greatest] = self.hull(a, a);
         let mut average = [0.0; LANES];
         for i in 0..LANES {
-            average[i] = self.mean(i).of([a[0][i], a[1][i], a[2][i], a[3][i]]);
+            let sum = (terms[0][i] + terms[1][i]) + (terms[2][i] + terms[3][i]);
+            average[i] = (sum * self.scale[i]).at_least(least[i]).at_most(greatest[i]) + 0.0;
         }
         average
     }
 
-    /// The least and the greatest.
+    /// The least of one number and the greatest of another.
     #[inline(always)]
-    pub(super) fn hull(&self, least: &[Lanes; 4], greatest: &[Lanes; 4]) -> [Lanes; 2] {
+    pub(super) fn hull(&self, low: &[Lanes; 4], high: &[Lanes; 4]) -> [Lanes; 2] {
+        let mut lows = [[f32::INFINITY; LANES]; 4];
+        let mut highs = [[f32::NEG_INFINITY; LANES]; 4];
+        for j in 0..4 {
+            let weights = self.weights[j];
+            for i in 0..LANES {
+                lows[j][i] = if weights[i] > 0.0 { low[j][i] } else { f32::INFINITY };
+                highs[j][i] = if weights[i] > 0.0 { high[j][i] } else { f32::NEG_INFINITY };
+            }
+        }
         let mut hull = [[0.0; LANES]; 2];
         for i in 0..LANES {
-            let mean = self.mean(i);
-            hull[0][i] = mean.least([least[0][i], least[1][i], least[2][i], least[3][i]]);
-            let a = greatest;
-            hull[1][i] = mean.greatest([a[0][i], a[1][i], a[2][i], a[3][i]]);
+            let (a, b) = (lows[0][i].at_most(lows[1][i]), lows[2][i].at_most(lows[3][i]));
+            hull[0][i] = a.at_most(b);
+            let (a, b) = (highs[0][i].at_least(highs[1][i]), highs[2][i].at_least(highs[3][i]));
+            hull[1][i] = a.at_least(b);
         }
         hull
-    }
-
-    #[inline(always)]
-    fn mean(&self, i: usize) -> Mean<f32> {
-        let w = [0, 1, 2, 3].map(|j| self.weights[j][i]);
-        Mean::new(w.map(|w| w > 0.0), w)
     }
 }

@@ -1,7 +1,7 @@
 //! Level 0 as a picture wants it, in lanes.
 
 use super::level::{FRONT, FURTHER, KIND, NORMAL, PAD, Shape, lanes};
-use crate::method::projection::fast::LANES;
+use crate::method::projection::fast::{LANES, put};
 use crate::method::projection::world;
 use crate::number::Vector3;
 use crate::splat::View;
@@ -70,6 +70,6 @@ fn vectors(
                 block[i] = if kind[i] > 0.0 { turned } else { [0.0; 3] };
             }
         }
-        output.copy_from_slice(&block[..output.len()]);
+        put(output, &block);
     }
 }

@@ -1,7 +1,7 @@
 //! The pull phase in lanes; see [`super::super::pull`].
 
-use super::level::{BACK, FRONT, FURTHER, KIND, Level, NORMAL, PAD, PLACE, RADIUS, Shape};
-use super::mix::Four;
+use super::level::{BACK, FRONT, FURTHER, KIND, Level, NORMAL, PAD, PLACE, RADIUS, Shape, TILT};
+use super::mix::{Four, tilts};
 use crate::frame::Exec;
 use crate::method::projection::fast::{LANES, Lanes, halves};
 use multiversion::multiversion;
@@ -11,6 +11,13 @@ const ROWS: usize = 4;
 
 /// A coarser level from the finer one, of which `side` is the side of a cell in pixels.
 pub(super) fn pull(fine: &Level, coarse: &mut Level, side: f32, tubes: bool, exec: &Exec) {
+    let finest = side == 1.0;
+    let run = match (finest, tubes) {
+        (false, false) => pull_row::<false, false>,
+        (false, true) => pull_row::<false, true>,
+        (true, false) => pull_row::<true, false>,
+        (true, true) => pull_row::<true, true>,
+    };
     let shapes = [fine.shape, coarse.shape];
     let rows: Vec<_> = coarse.rows_mut().enumerate().collect();
     let mut rows = rows.into_iter();
@@ -21,11 +28,7 @@ pub(super) fn pull(fine: &Level, coarse: &mut Level, side: f32, tubes: bool, exe
     exec.ordered(jobs.collect(), |job: Vec<(usize, &mut [f32])>| {
         for (y, row) in job {
             let finer = [fine.row(2 * y as isize), fine.row(2 * y as isize + 1)];
-            if tubes {
-                pull_row::<true>(finer, row, &shapes, side);
-            } else {
-                pull_row::<false>(finer, row, &shapes, side);
-            }
+            run(finer, row, &shapes, side);
         }
     });
 }
@@ -40,7 +43,7 @@ fn four(finer: [&[f32]; 2], shape: &Shape, attribute: usize, x: usize) -> [Lanes
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn pull_row<const TUBES: bool>(
+fn pull_row<const FINEST: bool, const TUBES: bool>(
     finer: [&[f32]; 2],
     coarse: &mut [f32],
     [fine, shape]: &[Shape; 2],
@@ -65,10 +68,16 @@ fn pull_row<const TUBES: bool>(
                 place[j][1][i] = upper[j][i] + dy;
             }
         }
-        let [nx, ny, nz] = [0, 1, 2].map(|axis| number(NORMAL + axis));
-        let normal = [0, 1, 2, 3].map(|j| [nx[j], ny[j], nz[j]]);
+        let [nx, ny, nz] = [number(NORMAL), number(NORMAL + 1), number(NORMAL + 2)];
+        let tilt = if FINEST {
+            let of = |j: usize| tilts(&[nx[j], ny[j], nz[j]]);
+            [of(0), of(1), of(2), of(3)]
+        } else {
+            let (x, y) = (number(TILT), number(TILT + 1));
+            [[x[0], y[0]], [x[1], y[1]], [x[2], y[2]], [x[3], y[3]]]
+        };
         let (front, back, radius) = (number(FRONT), number(BACK), number(RADIUS));
-        let four = Four { kind, front, back, radius, place, normal };
+        let four = Four { kind, front, back, radius, place, tilt };
         let mix = four.mix::<false, TUBES>();
         let mut put = |attribute: usize, lanes: &Lanes| {
             let at = attribute * shape.stride + at;
@@ -83,11 +92,14 @@ fn pull_row<const TUBES: bool>(
         put(BACK, &back);
         put(RADIUS, &mix.of(&four.radius));
         for axis in 0..2 {
-            put(PLACE + axis, &mix.of(&four.place.map(|place| place[axis])));
+            let place = &four.place;
+            let place = [place[0][axis], place[1][axis], place[2][axis], place[3][axis]];
+            put(PLACE + axis, &mix.of(&place));
         }
-        for axis in 0..3 {
-            put(NORMAL + axis, &mix.of(&four.normal.map(|normal| normal[axis])));
-        }
+        let turned = [mix.of(&nx), mix.of(&ny), mix.of(&nz)];
+        (0..3).for_each(|axis| put(NORMAL + axis, &turned[axis]));
+        let tilt = tilts(&turned);
+        (0..2).for_each(|axis| put(TILT + axis, &tilt[axis]));
         for attribute in FURTHER..shape.attributes {
             put(attribute, &mix.of(&number(attribute)));
         }

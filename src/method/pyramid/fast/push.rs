@@ -1,7 +1,9 @@
 //! The push phase in lanes; see [`super::super::push`]. A level is changed in place, where it must be.
 
-use super::level::{BACK, FRONT, FURTHER, KIND, Level, NORMAL, PAD, PLACE, RADIUS, Shape, lanes};
-use super::mix::{Four, Mix};
+use super::level::{
+    BACK, FRONT, FURTHER, KIND, Level, NORMAL, PAD, PLACE, RADIUS, Shape, TILT, lanes,
+};
+use super::mix::{Four, Mix, tilts};
 use crate::frame::Exec;
 use crate::method::projection::fast::{LANES, Lanes, halves};
 use crate::method::pyramid::{Occlusion, Settings, Weights};
@@ -82,6 +84,7 @@ fn push_row<const GAUSSIAN: bool, const TUBES: bool>(
     (side, even_y): (f32, bool),
     outside: bool,
 ) {
+    let finest = side == 1.0;
     for x in (0..shape.width).step_by(LANES) {
         // An empty neighbourhood changes nothing: 2 rows of cells from x - 1 to x + LANES.
         let around = PAD + x - 1..PAD + x + LANES + 1;
@@ -92,57 +95,112 @@ fn push_row<const GAUSSIAN: bool, const TUBES: bool>(
         let (kinds, fronts) = (halves(fine, at(KIND)), halves(fine, at(FRONT)));
         let own = |attribute: usize| lanes(coarser[0], attribute * shape.stride + PAD + x);
         let (kind, front, back) = (own(KIND), own(FRONT), own(BACK));
+        let number = |attribute: usize, odd: usize| four(coarser, shape, attribute, x, odd);
+        let mut found = [None, None];
         for odd in 0..2 {
             // Columns 2x + odd, 2x + odd + 2 ... of the width.
             let left = (fine_shape.width + 1 - odd).saturating_sub(2 * x) / 2;
             let parent = [&kind, &front, &back];
             let needed = needed(&kinds[odd], &fronts[odd], parent, (left, outside));
-            if needed.iter().all(|&needed| needed == 0.0) {
-                continue;
+            if needed.iter().any(|&needed| needed > 0.0) {
+                let number = |attribute: usize| number(attribute, odd);
+                found[odd] = find::<GAUSSIAN, TUBES>(number, needed, side, (odd == 0, even_y));
             }
-            let number = |attribute: usize| four(coarser, shape, attribute, x, odd);
-            let four = Four {
-                kind: number(KIND),
-                front: number(FRONT),
-                back: number(BACK),
-                radius: number(RADIUS),
-                place: places(number(PLACE), number(PLACE + 1), side, (odd == 0, even_y)),
-                normal: {
-                    let [nx, ny, nz] = [0, 1, 2].map(|axis| number(NORMAL + axis));
-                    [0, 1, 2, 3].map(|j| [nx[j], ny[j], nz[j]])
-                },
+        }
+        if found[0].is_none() && found[1].is_none() {
+            continue;
+        }
+        put(fine, at(KIND), &found, |_, found| found.mix.kind);
+        for attribute in [FRONT, BACK, RADIUS].into_iter().chain(FURTHER..shape.attributes) {
+            let new = |odd: usize, found: &Found| found.mix.of(&number(attribute, odd));
+            put(fine, at(attribute), &found, new);
+        }
+        for axis in 0..2 {
+            let new = |_, found: &Found| {
+                let place = &found.place;
+                found.mix.of(&[place[0][axis], place[1][axis], place[2][axis], place[3][axis]])
             };
-            let Mix { weights, kind } = four.mix::<GAUSSIAN, TUBES>();
-            let mut found = [0.0; LANES];
-            for i in 0..LANES {
-                found[i] = if kind[i] > 0.0 { needed[i] } else { 0.0 };
-            }
-            if found.iter().all(|&found| found == 0.0) {
-                continue;
-            }
-            let mix = Mix { weights, kind };
-            let mut put = |attribute: usize, new: &Lanes| {
-                let cells = &mut fine[at(attribute) + odd..at(attribute) + 2 * LANES];
-                for i in 0..LANES {
-                    let old = cells[2 * i];
-                    cells[2 * i] = if found[i] > 0.0 { new[i] } else { old };
-                }
-            };
-            put(KIND, &mix.kind);
-            put(FRONT, &mix.of(&four.front));
-            put(BACK, &mix.of(&four.back));
-            put(RADIUS, &mix.of(&four.radius));
+            put(fine, at(PLACE + axis), &found, new);
+        }
+        let mut normal = [[[0.0; LANES]; 3]; 2];
+        for axis in 0..3 {
+            let new = |odd: usize, found: &Found| found.mix.of(&number(NORMAL + axis, odd));
+            let [even, odd] = put(fine, at(NORMAL + axis), &found, new);
+            (normal[0][axis], normal[1][axis]) = (even, odd);
+        }
+        if !finest {
+            let tilt = [tilts(&normal[0]), tilts(&normal[1])];
             for axis in 0..2 {
-                put(PLACE + axis, &mix.of(&four.place.map(|place| place[axis])));
-            }
-            for axis in 0..3 {
-                put(NORMAL + axis, &mix.of(&four.normal.map(|normal| normal[axis])));
-            }
-            for attribute in FURTHER..shape.attributes {
-                put(attribute, &mix.of(&number(attribute)));
+                put(fine, at(TILT + axis), &found, |odd, _| tilt[odd][axis]);
             }
         }
     }
+}
+
+/// Replaces a number of the cells of both parities where they were found, and returns it for all cells.
+#[inline(always)]
+fn put(
+    fine: &mut [f32],
+    at: usize,
+    found: &[Option<Found>; 2],
+    new: impl Fn(usize, &Found) -> Lanes,
+) -> [Lanes; 2] {
+    let mut cells = halves(fine, at);
+    for odd in 0..2 {
+        if let Some(found) = &found[odd] {
+            let new = new(odd, found);
+            for i in 0..LANES {
+                let old = cells[odd][i];
+                cells[odd][i] = if found.here[i] > 0.0 { new[i] } else { old };
+            }
+        }
+    }
+    interleave(&cells, &mut fine[at..at + 2 * LANES]);
+    cells
+}
+
+/// What was found for the cells of one parity.
+struct Found {
+    mix: Mix,
+    place: [[Lanes; 2]; 4],
+    /// Where it is wanted and something was found: 1, else 0.
+    here: Lanes,
+}
+
+/// Who takes part in the cells of one parity that are needed.
+#[inline(always)]
+fn find<const GAUSSIAN: bool, const TUBES: bool>(
+    number: impl Fn(usize) -> [Lanes; 4],
+    needed: Lanes,
+    side: f32,
+    even: (bool, bool),
+) -> Option<Found> {
+    let (x, y) = (number(TILT), number(TILT + 1));
+    let four = Four {
+        kind: number(KIND),
+        front: number(FRONT),
+        back: number(BACK),
+        radius: number(RADIUS),
+        place: places(number(PLACE), number(PLACE + 1), side, even),
+        tilt: [[x[0], y[0]], [x[1], y[1]], [x[2], y[2]], [x[3], y[3]]],
+    };
+    let mix = four.mix::<GAUSSIAN, TUBES>();
+    let mut here = [0.0; LANES];
+    for i in 0..LANES {
+        here[i] = if mix.kind[i] > 0.0 { needed[i] } else { 0.0 };
+    }
+    here.iter().any(|&here| here > 0.0).then_some(Found { mix, place: four.place, here })
+}
+
+/// The even and the odd numbers of a row, one after the other.
+#[inline(always)]
+fn interleave([even, odd]: &[Lanes; 2], row: &mut [f32]) {
+    let mut pairs = [0.0; 2 * LANES];
+    for i in 0..LANES {
+        pairs[2 * i] = even[i];
+        pairs[2 * i + 1] = odd[i];
+    }
+    row.copy_from_slice(&pairs);
 }
 
 /// From the centres of the finer cells to those of the four ellipses.

@@ -8,7 +8,7 @@
 use super::level::{COLOR, DEPTH, Level, NORMAL, PAD, PLACE, RADIUS, Row, SQUARE, TILT};
 use crate::composite::sum;
 use crate::frame::NO_ID;
-use crate::method::projection::fast::{LANES, Lanes};
+use crate::method::projection::fast::{LANES, Lanes, put};
 use crate::method::projection::world;
 use crate::method::template::gather::weight;
 use crate::number::{Vector2, Vector3};
@@ -236,9 +236,9 @@ fn normalize<const COLORED: bool>(
         let seen = block.weight[i] > 0.0;
         depth[i] = if seen { block.depths[i] / block.weight[i] } else { f32::INFINITY };
     }
-    target.depth[x..x + count].copy_from_slice(&depth[..count]);
-    target.id[x..x + count].copy_from_slice(&block.id[..count]);
-    target.weight[x..x + count].copy_from_slice(&block.weight[..count]);
+    put(&mut target.depth[x..x + count], &depth);
+    put(&mut target.id[x..x + count], &block.id);
+    put(&mut target.weight[x..x + count], &block.weight);
     let empty = block.id.iter().all(|&id| id == NO_ID);
     if let Some(normals) = &mut target.normal {
         let mut turned = [[0.0; 3]; LANES];
@@ -249,7 +249,7 @@ fn normalize<const COLORED: bool>(
                 turned[i] = world(view, Vector3::new(x, y, z));
             }
         }
-        normals[x..x + count].copy_from_slice(&turned[..count]);
+        put(&mut normals[x..x + count], &turned);
     }
     if let Some(colors) = target.color.as_mut().filter(|_| COLORED) {
         for (i, color) in colors[x..x + count].iter_mut().enumerate() {

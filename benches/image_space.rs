@@ -1,0 +1,173 @@
+//! Speed of the image-space methods: the timing tables of \[MKC08\] and \[MOC08\], measured again.
+//!
+//! `cargo bench --bench image_space` prints Markdown; an argument is a pattern that the names of rows must contain.
+//! The papers' models are stood for by samplings of the dragon with as many points (`SPLATREF_MODELS` names the
+//! folder of the scan; without it the sphere is sampled), each with the spacing as its radius, in a picture
+//! that it fills. One headlight, back faces culled, `f32`, as many threads as cores. Each number is the median over
+//! the pictures of one run in milliseconds, the minimum in brackets; `frame` is the whole call, from the
+//! scene to shaded planes in the memory of the picture before.
+
+#[path = "common/mod.rs"]
+mod common;
+
+use splatref::Result;
+use splatref::frame::Exec;
+use splatref::method::pyramid::{self, Weights};
+use splatref::method::{Method, Preparation, render_f32, template};
+use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Scene, Shape, Surfels};
+use std::time::{Duration, Instant};
+
+/// A row of a paper's table: model, points, and the frame time in ms on a GPU of 2008.
+struct Row {
+    model: &'static str,
+    count: usize,
+    paper: f64,
+}
+
+const fn row(model: &'static str, count: usize, paper: f64) -> Row {
+    Row { model, count, paper }
+}
+
+/// \[MKC08, Table 1\], without colours, 1024 x 1024.
+const PYRAMID: [Row; 5] = [
+    row("Armadillo", 173_000, 11.0),
+    row("Dragon", 437_000, 13.0),
+    row("Happy Buddha", 544_000, 13.0),
+    row("Asian Dragon", 3_610_000, 28.0),
+    row("Thai Statue", 5_000_000, 35.0),
+];
+
+/// The same with colours.
+const COLORED: [Row; 5] = [
+    row("Armadillo", 173_000, 22.0),
+    row("Dragon", 437_000, 23.0),
+    row("Happy Buddha", 544_000, 24.0),
+    row("Asian Dragon", 3_610_000, 45.0),
+    row("Thai Statue", 5_000_000, 55.0),
+];
+
+/// \[MOC08, Table 1\], 768 x 768, from frames a second: 3 x 3.
+const TEMPLATE_3: [Row; 5] = [
+    row("Armadillo", 173_000, 1000.0 / 43.0),
+    row("Happy Buddha", 544_000, 1000.0 / 40.0),
+    row("Neptune", 2_004_000, 1000.0 / 28.5),
+    row("Asian Dragon", 3_610_000, 1000.0 / 20.5),
+    row("Statuette", 5_000_000, 1000.0 / 15.5),
+];
+
+/// The same, 5 x 5.
+const TEMPLATE_5: [Row; 5] = [
+    row("Armadillo", 173_000, 1000.0 / 24.0),
+    row("Happy Buddha", 544_000, 1000.0 / 23.0),
+    row("Neptune", 2_004_000, 1000.0 / 19.0),
+    row("Asian Dragon", 3_610_000, 1000.0 / 15.0),
+    row("Statuette", 5_000_000, 1000.0 / 12.5),
+];
+
+fn main() -> Result<()> {
+    // cargo passes --bench.
+    let pattern = std::env::args().skip(1).find(|a| !a.starts_with('-')).unwrap_or_default();
+    let dragon = common::models("dragon").pop();
+    let scans = dragon.map(|(_, cloud)| cloud);
+    let pyramid = Method::Pyramid(pyramid::Settings::default());
+    let boxed = pyramid::Settings { weights: Weights::Box, ..pyramid::Settings::default() };
+    let of = |size| Method::Template(template::Settings { size, ..template::Settings::default() });
+    let tables: [(&str, Method, &[Row], u32, bool); 5] = [
+        ("pyramid", pyramid, &PYRAMID, 1024, false),
+        ("pyramid, box", Method::Pyramid(boxed), &PYRAMID[..1], 1024, false),
+        ("pyramid, colours", pyramid, &COLORED, 1024, true),
+        ("template 3 x 3", of(3), &TEMPLATE_3, 768, false),
+        ("template 5 x 5", of(5), &TEMPLATE_5, 768, false),
+    ];
+    println!("| method | model of the paper | points | paper | frame | ratio | stages |");
+    println!("|---|---|---|---|---|---|---|");
+    for (name, method, rows, side, colored) in tables {
+        for row in rows.iter().filter(|_| name.contains(&pattern)) {
+            let scene = scene(scans.as_ref(), row.count, colored)?;
+            let (center, radius) = scene.surfels.bounding_sphere();
+            let side_on = glam::DVec3::new(0.25, 0.25, 1.0);
+            let lens = Lens::FieldOfView(34.0);
+            let camera = Camera::framing(side, side, (center, radius * 0.8), side_on, lens)?;
+            let (mut frames, stages) = measure(&scene, &camera, &method)?;
+            let frame = median(&mut frames);
+            let stages: Vec<String> =
+                stages.into_iter().map(|(n, mut t)| format!("{n} {}", cell(&mut t))).collect();
+            println!(
+                "| {name} | {} | {} k | {:.1} | {} | {:.2} | {} |",
+                row.model,
+                row.count / 1000,
+                row.paper,
+                cell(&mut frames),
+                frame / row.paper,
+                stages.join(", ")
+            );
+        }
+    }
+    Ok(())
+}
+
+/// A sampling of the dragon, or of the sphere; the radius is the spacing.
+fn scene(scan: Option<&Cloud>, count: usize, colored: bool) -> Result<Scene> {
+    let mut cloud = match scan {
+        None => Shape::Sphere.surfels(count, 0)?.into_cloud(),
+        Some(mesh) => {
+            let area: f64 = (mesh.triangles.iter())
+                .map(|t| t.map(|i| mesh.position[i as usize].as_dvec3()))
+                .map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0)
+                .sum();
+            let radius = (area / count as f64).sqrt() as f32;
+            Cloud { radius: Some(vec![radius; count]), ..common::resample(mesh, count, 1) }
+        }
+    };
+    let paint =
+        |cloud: &Cloud| cloud.position.iter().map(|p| p.abs().min(glam::Vec3::ONE)).collect();
+    cloud.color = colored.then(|| paint(&cloud));
+    let surfels = Surfels::new(cloud)?.0;
+    Ok(Scene {
+        name: "sampling".into(),
+        surfels,
+        primitives: Default::default(),
+        lights: vec![Light::DEFAULT],
+        material: Phong::default(),
+        environment: None,
+    })
+}
+
+/// The times of whole pictures, and of each stage.
+type Times = (Vec<Duration>, Vec<(&'static str, Vec<Duration>)>);
+
+fn measure(scene: &Scene, camera: &Camera, method: &Method) -> Result<Times> {
+    let exec = Exec::new(0, 32)?;
+    let preparation = Preparation::new(&scene.surfels, None, method, &exec);
+    let (mut frames, mut stages) = (Vec::new(), Vec::<(&str, Vec<Duration>)>::new());
+    let mut earlier = None;
+    let begin = Instant::now();
+    // At least 9 pictures, then up to 101 within two seconds; the first fills the memory.
+    while frames.len() < 9 || (frames.len() < 101 && begin.elapsed().as_secs() < 2) {
+        let start = Instant::now();
+        let picture = render_f32(scene, &preparation, camera, method, &exec, earlier.take())?;
+        let time = start.elapsed();
+        if !frames.is_empty() || !stages.is_empty() {
+            frames.push(time);
+        }
+        if stages.is_empty() {
+            stages = picture.timings.iter().map(|&(name, _)| (name, Vec::new())).collect();
+        } else {
+            let laps = stages.iter_mut().zip(&picture.timings);
+            laps.for_each(|((_, all), &(_, lap))| all.push(lap));
+        }
+        earlier = Some(picture);
+    }
+    Ok((frames, stages))
+}
+
+fn median(times: &mut [Duration]) -> f64 {
+    times.sort();
+    times[times.len() / 2].as_secs_f64() * 1e3
+}
+
+/// Median and minimum in milliseconds, the minimum in brackets.
+fn cell(times: &mut [Duration]) -> String {
+    let median = median(times);
+    format!("{median:.1} ({:.1})", times[0].as_secs_f64() * 1e3)
+}
