@@ -3,8 +3,9 @@
 use super::Cloud;
 use glam::{DVec3, Vec3};
 
-/// Joins complete clouds, with normals and radii, in their order; triangles are left out, and so are
-/// the groups of several, which know nothing of each other.
+/// Joins complete clouds, with normals and radii, in their order; triangles, edges and the
+/// tangents of tubes are left out, and so are the groups of several, which know nothing of each
+/// other.
 ///
 /// What only some of them have is filled in for the others: colour by `color`, opacity by 1, the
 /// half axes of a disc by two perpendicular ones of the length of its radius.
@@ -15,7 +16,8 @@ pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
     let elliptic = clouds.iter().any(|c| c.tangents.is_some());
     if clouds.len() == 1 {
         // The usual case, without a copy.
-        return Cloud { triangles: Vec::new(), ..clouds.remove(0) };
+        let one = clouds.remove(0);
+        return Cloud { tangent: None, triangles: Vec::new(), edges: Vec::new(), ..one };
     }
     let mut all = Cloud {
         normal: Some(Vec::new()),

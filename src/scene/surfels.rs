@@ -229,7 +229,7 @@ impl Surfels {
             opacity: self.opacity,
             tangents: self.tangents,
             groups: self.groups,
-            triangles: Vec::new(),
+            ..Cloud::default()
         }
     }
 }
@@ -255,7 +255,7 @@ fn check_lengths(
         ("radii", radii),
         ("colours", color.as_ref().map_or(n, Vec::len)),
         ("opacities", opacity.as_ref().map_or(n, Vec::len)),
-        ("tangents", tangents.as_ref().map_or(n, Vec::len)),
+        ("half axes", tangents.as_ref().map_or(n, Vec::len)),
         ("groups", groups.as_ref().map_or(n, |g| g.own().len())),
     ];
     for (what, length) in others {

@@ -60,6 +60,7 @@ impl Similarity {
             *p = (self.rotation * (p.as_dvec3() * self.scale) + self.translation).as_vec3();
         }
         cloud.normal.iter_mut().flatten().for_each(turn);
+        cloud.tangent.iter_mut().flatten().for_each(turn);
         for radius in cloud.radius.iter_mut().flatten() {
             *radius = (f64::from(*radius) * self.scale) as f32;
         }

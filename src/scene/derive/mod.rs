@@ -165,50 +165,17 @@ fn longer([u, v]: &[Vec3; 2]) -> f32 {
     (if v > u { v } else { u }) as f32
 }
 
-/// Drops points that are not finite, and triangles at them; how many points.
+/// Drops points that are not finite, with triangles and edges at them; how many points.
 fn drop_nowhere(cloud: &mut Cloud) -> Result<u64> {
     let n = cloud.position.len();
-    // The new index of each point that stays.
-    let mut kept = 0;
-    let index: Vec<Option<u32>> = cloud
-        .position
-        .iter()
-        .map(|p| {
-            p.is_finite().then(|| {
-                kept += 1;
-                kept - 1
-            })
-        })
-        .collect();
+    let keep: Vec<bool> = cloud.position.iter().map(|p| p.is_finite()).collect();
+    let kept = keep.iter().filter(|&&keep| keep).count();
     if kept == 0 {
         let what = format!("the scene is empty: none of its {n} points has a finite position");
         return Err(Error::Invalid(what));
     }
-    if kept as usize == n {
-        return Ok(0);
+    if kept < n {
+        cloud.retain(&keep);
     }
-    retain([&mut cloud.position], &index);
-    retain(&mut cloud.normal, &index);
-    retain(&mut cloud.radius, &index);
-    retain(&mut cloud.color, &index);
-    retain(&mut cloud.opacity, &index);
-    retain(&mut cloud.tangents, &index);
-    if let Some(groups) = cloud.groups.take() {
-        let keep: Vec<bool> = index.iter().map(Option::is_some).collect();
-        cloud.groups = Some(groups.retain(&keep));
-    }
-    let triangles = cloud.triangles.iter().filter_map(|triangle| {
-        let [a, b, c] = triangle.map(|i| index[i as usize]);
-        Some([a?, b?, c?])
-    });
-    cloud.triangles = triangles.collect();
-    Ok((n - kept as usize) as u64)
-}
-
-/// Keeps the values that have a new index, if there are values.
-fn retain<'a, T: 'a>(values: impl IntoIterator<Item = &'a mut Vec<T>>, index: &[Option<u32>]) {
-    for values in values {
-        let mut index = index.iter();
-        values.retain(|_| index.next().is_some_and(Option::is_some));
-    }
+    Ok((n - kept) as u64)
 }
