@@ -6,6 +6,7 @@
 //! - [`mod@derive`]: from what a file gives to complete surfels.
 //! - [`environment`]: the light that surrounds a scene.
 //! - [`group`]: groups of surfels that do not overlap.
+//! - [`hybrid`]: a mesh as polygons here and surfels there.
 //! - [`hash`]: the identity of a scene.
 //! - [`indexed`]: triangles, ribbons and tubes.
 //! - [`light`]: lights and the Phong material.
@@ -20,6 +21,7 @@ pub mod derive;
 pub mod environment;
 pub mod group;
 pub mod hash;
+pub mod hybrid;
 pub mod indexed;
 pub mod light;
 pub mod merge;

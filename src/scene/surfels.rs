@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3};
 
 /// Surfels as a structure of arrays, each of one length.
 ///
-/// Guarantees, kept by construction: at least one surfel, but for [`Surfels::none`]; positions finite; normals of length 1
-/// within 2^-20; radii finite and > 0; colours finite and >= 0; opacities in [0, 1]; tangents
+/// Guarantees, kept by construction: at least one surfel, but for [`Surfels::none`]; positions
+/// finite; normals of length 1 within 2^-20; radii finite and > 0; colours finite and >= 0; opacities in [0, 1]; tangents
 /// finite and not parallel. (Whether they are perpendicular to each other and to the normal is the
 /// business of whoever gives them.) An array that the
 /// scene does not need is not allocated.
@@ -46,16 +46,41 @@ impl Dropped {
     }
 }
 
+impl std::ops::AddAssign for Dropped {
+    fn add_assign(&mut self, more: Self) {
+        self.position += more.position;
+        self.normal += more.normal;
+        self.radius += more.radius;
+        self.attribute += more.attribute;
+    }
+}
+
 impl Surfels {
     /// Checks a complete cloud, drops what is degenerate, and counts it.
     ///
     /// A normal whose length is within 2^-20 of 1 is kept as it is; any other is divided by its
-    /// length in f64 and rounded once. Triangles are ignored.
+    /// length in f64 and rounded once. Triangles, edges and the tangents of tubes are ignored.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if normals or radii are missing , if an array has
-    /// the wrong length, if nothing is left, or if there are more than 2^32 - 2 surfels.
+    /// [`Error::Invalid`] if normals or radii are missing, if an array has the wrong length, if nothing
+    /// is left, or if there are more than 2^32 - 2 surfels.
     pub fn new(cloud: Cloud) -> Result<(Self, Dropped)> {
+        let n = cloud.position.len();
+        let (surfels, dropped) = Self::new_or_none(cloud)?;
+        if surfels.is_empty() {
+            return Err(Error::Invalid(format!(
+                "the scene is empty: none of its {n} points can be a surfel"
+            )));
+        }
+        Ok((surfels, dropped))
+    }
+
+    /// As [`Surfels::new`], for a part of a scene that has other primitives too: [`Surfels::none`] if
+    /// nothing is left.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Surfels::new`], but for that.
+    pub fn new_or_none(cloud: Cloud) -> Result<(Self, Dropped)> {
         let n = cloud.position.len();
         let Cloud { position, normal, radius, color, opacity, tangents, groups, .. } = cloud;
         let mut normal =
@@ -89,9 +114,7 @@ impl Surfels {
             *keep = false;
         }
         if dropped.total() == n as u64 {
-            return Err(Error::Invalid(format!(
-                "the scene is empty: none of its {n} points can be a surfel"
-            )));
+            return Ok((Self::none(), dropped));
         }
         let radius = retain(radius, &keep);
         let mut surfels = Self {

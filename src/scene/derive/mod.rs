@@ -1,6 +1,6 @@
-//! From what a file gives to complete surfels.
+//! From what a file gives to complete surfels, polygons, ribbons and tubes.
 //!
-//! In this order, each step for what is still missing:
+//! For surfels, in this order, each step for what is still missing:
 //!
 //! 1. Points whose position is not finite are dropped and counted, with the triangles at them.
 //! 2. **Normals**: across the tangents, if the file has them; else from the triangles, weighted by
@@ -10,6 +10,8 @@
 //!    edge of the triangles around the vertex; else the distance to the [`RADIUS_NEIGHBOURS`]th
 //!    nearest neighbour.
 //! 4. [`Surfels::new`] checks the rest.
+//!
+//! [`polygons`], [`hybrid`], [`ribbons`] and [`tubes`] begin with step 1 too.
 //!
 //! `Decided:` neighbours are other *places*: points at one place count once, and share what is
 //! derived. If there are fewer places than asked for, all are taken.
@@ -32,8 +34,11 @@ mod neighbours;
 mod orient;
 mod places;
 mod plane;
+mod primitives;
 #[cfg(test)]
 mod tests;
+
+pub use primitives::{hybrid, polygons, ribbons, tubes};
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
@@ -68,17 +73,24 @@ pub enum Origin {
     Triangles,
     /// Derived from the nearest neighbours.
     Neighbours,
+    /// Derived from the edges, as tangents are.
+    Edges,
+    /// They are 0: radii of polygons.
+    Zero,
 }
 
-/// What [`surfels`] did.
+/// What [`surfels`], [`polygons`], [`hybrid`], [`ribbons`] or [`tubes`] did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Derived {
-    /// Where the normals come from.
+    /// Where the normals come from, or the tangents of tubes.
     pub normals: Origin,
     /// Where the radii come from.
     pub radii: Origin,
     /// Points that became no surfel, each counted once, under the first reason that held.
     pub dropped: Dropped,
+    /// Triangles that became no polygon, or edges that became no ribbon or tube, because a corner is
+    /// degenerate.
+    pub dropped_primitives: u64,
 }
 
 /// Makes complete surfels of a cloud, see the module.
@@ -90,11 +102,24 @@ pub struct Derived {
 /// [`Error::Invalid`] if [`Cloud::check`] fails, if the radius asked for is not finite and > 0, if no
 /// point is left, if normals are to be derived from fewer than 3 places, or radii from fewer than 2.
 pub fn surfels(
-    mut cloud: Cloud,
+    cloud: Cloud,
     options: &Derive,
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<(Surfels, Derived)> {
+    let (cloud, mut derived) = complete(cloud, options, exec, progress)?;
+    let (surfels, dropped) = Surfels::new(cloud)?;
+    derived.dropped += dropped;
+    Ok((surfels, derived))
+}
+
+/// Steps 1 to 3: a cloud of finite points with normals and radii.
+fn complete(
+    mut cloud: Cloud,
+    options: &Derive,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<(Cloud, Derived)> {
     cloud.check()?;
     let nowhere = drop_nowhere(&mut cloud)?;
     let places = OnceCell::new();
@@ -106,10 +131,9 @@ pub fn surfels(
         Some(radius) => (radius, Origin::File),
         None => missing_radii(&cloud, options, &places, exec, progress)?,
     };
-    let (surfels, mut dropped) =
-        Surfels::new(Cloud { normal: Some(normal), radius: Some(radius), ..cloud })?;
-    dropped.position += nowhere;
-    Ok((surfels, Derived { normals, radii, dropped }))
+    let dropped = Dropped { position: nowhere, ..Dropped::default() };
+    let cloud = Cloud { normal: Some(normal), radius: Some(radius), ..cloud };
+    Ok((cloud, Derived { normals, radii, dropped, dropped_primitives: 0 }))
 }
 
 fn missing_normals(
@@ -138,11 +162,7 @@ fn missing_radii(
 ) -> Result<(Vec<f32>, Origin)> {
     let points = &cloud.position;
     if let Some(radius) = options.radius {
-        if !(radius > 0.0 && radius.is_finite()) {
-            let what = format!("a radius of {radius} was asked for; it must be finite and > 0");
-            return Err(Error::Invalid(what));
-        }
-        return Ok((vec![radius; points.len()], Origin::Given));
+        return Ok((given(radius, points.len())?, Origin::Given));
     }
     if let Some(tangents) = &cloud.tangents {
         return Ok((tangents.iter().map(longer).collect(), Origin::Tangents));
@@ -152,6 +172,15 @@ fn missing_radii(
     }
     let places = places.get_or_init(|| Places::new(points, exec, progress));
     Ok((places.radii(exec, progress)?, Origin::Neighbours))
+}
+
+/// The radius that was asked for, `n` times.
+fn given(radius: f32, n: usize) -> Result<Vec<f32>> {
+    if !(radius > 0.0 && radius.is_finite()) {
+        let what = format!("a radius of {radius} was asked for; it must be finite and > 0");
+        return Err(Error::Invalid(what));
+    }
+    Ok(vec![radius; n])
 }
 
 /// The direction of `u x v`, in f64 and rounded once; null if they span no plane.
