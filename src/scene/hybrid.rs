@@ -19,7 +19,8 @@ impl HalfSpace {
     pub fn new([a, b, c, d]: [f64; 4]) -> Result<Self> {
         let normal = DVec3::new(a, b, c);
         if !(normal.is_finite() && d.is_finite() && normal != DVec3::ZERO) {
-            let what = format!("a half space of {a}, {b}, {c}, {d}; give finite numbers, not 0, 0, 0");
+            let what =
+                format!("a half space of {a}, {b}, {c}, {d}; give finite numbers, not 0, 0, 0");
             return Err(Error::Invalid(what));
         }
         Ok(Self { normal, offset: d })
@@ -48,9 +49,9 @@ impl HalfSpace {
 /// So every triangle is a polygon or has a surfel at each of its corners. Both parts keep the order of
 /// the vertices; the surfels have no triangles, and neither has edges.
 ///
-/// `Decided:` a boundary vertex is a surfel too. The polygon alone would do at its own side, but the
-/// triangle beyond would lack the half of its corner's disc that polygons do not cover where the
-/// surface bends away from them.
+/// `Decided:` a boundary vertex is a surfel too. Which pixels a polygon gives depends on the view: seen
+/// from where it covers no pixel's centre, or its back, the surfel is all that closes the surface
+/// beyond the boundary.
 ///
 /// # Errors
 /// [`Error::Invalid`] as [`Cloud::check`].
@@ -118,17 +119,20 @@ mod tests {
     #[test]
     fn a_half_space_may_hold_all_or_nothing() {
         let cloud = octahedron();
-        let (surfels, mesh) = split(&cloud, &HalfSpace::new([0.0, 0.0, 1.0, 1.5]).unwrap()).unwrap();
+        let (surfels, mesh) =
+            split(&cloud, &HalfSpace::new([0.0, 0.0, 1.0, 1.5]).unwrap()).unwrap();
         assert_eq!((surfels.position, mesh.position.len()), (cloud.position.clone(), 0));
         // -1 is in: the plane belongs to the half space.
-        let (surfels, mesh) = split(&cloud, &HalfSpace::new([0.0, 0.0, 1.0, -1.0]).unwrap()).unwrap();
+        let (surfels, mesh) =
+            split(&cloud, &HalfSpace::new([0.0, 0.0, 1.0, -1.0]).unwrap()).unwrap();
         assert_eq!((surfels.position.len(), mesh.triangles), (0, cloud.triangles));
         assert_eq!(mesh.radius, Some(vec![0.0; 6]));
     }
 
     #[test]
     fn what_is_no_half_space_is_refused() {
-        for bad in [[0.0, 0.0, 0.0, 1.0], [f64::NAN, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, f64::INFINITY]] {
+        for bad in [[0.0, 0.0, 0.0, 1.0], [f64::NAN, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, f64::INFINITY]]
+        {
             assert!(HalfSpace::new(bad).unwrap_err().to_string().contains("half space"));
         }
         assert!(!HalfSpace::new([1.0, 0.0, 0.0, 0.0]).unwrap().contains(Vec3::NAN));

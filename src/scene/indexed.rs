@@ -114,11 +114,39 @@ impl<const N: usize> Indexed<N> {
         &self.corners
     }
 
+    /// Changes the vertices, not how many there are, and checks them again as [`Indexed::new`] does.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Indexed::new`].
+    pub fn map(self, change: impl FnOnce(&mut Vertices)) -> Result<(Self, u64)> {
+        let (mut vertices, corners) = self.into_parts();
+        change(&mut vertices);
+        Self::new(vertices, corners)
+    }
+
+    /// Positions and radii of vertices that a primitive uses, one for each corner.
+    fn used(&self) -> impl Iterator<Item = (Vec3, f32)> + '_ {
+        let vertices = &self.vertices;
+        let corners = self.corners.iter().flatten();
+        corners.map(|&i| (vertices.position[i as usize], vertices.radius[i as usize]))
+    }
+
     /// The parts again, to be changed or joined.
     #[must_use]
     pub fn into_parts(self) -> (Vertices, Vec<[u32; N]>) {
         (self.vertices, self.corners)
     }
+}
+
+/// How many primitives there are of each kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Polygons, cut into triangles.
+    pub triangles: usize,
+    /// Segments of ribbons.
+    pub ribbons: usize,
+    /// Segments of tubes.
+    pub tubes: usize,
 }
 
 /// What a scene has beside surfels \[MKC08, sections 4 and 5\].
@@ -136,13 +164,37 @@ impl Primitives {
     /// How many there are in all.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.triangles.len() + self.ribbons.len() + self.tubes.len()
+        let Counts { triangles, ribbons, tubes } = self.counts();
+        triangles + ribbons + tubes
     }
 
     /// Whether there is none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// How many there are of each kind.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        let Self { triangles, ribbons, tubes } = self;
+        Counts { triangles: triangles.len(), ribbons: ribbons.len(), tubes: tubes.len() }
+    }
+
+    /// [`Indexed::map`] of each kind; how many were dropped in all.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Indexed::new`].
+    pub fn map(self, change: impl Fn(&mut Vertices)) -> Result<(Self, u64)> {
+        let (triangles, a) = self.triangles.map(&change)?;
+        let (ribbons, b) = self.ribbons.map(&change)?;
+        let (tubes, c) = self.tubes.map(&change)?;
+        Ok((Self { triangles, ribbons, tubes }, a + b + c))
+    }
+
+    /// Positions and radii of vertices that a primitive uses, one for each corner.
+    pub(super) fn used(&self) -> impl Iterator<Item = (Vec3, f32)> + '_ {
+        self.triangles.used().chain(self.ribbons.used()).chain(self.tubes.used())
     }
 
     /// Whether vertices of a kind that is there have colours.

@@ -1,5 +1,6 @@
 //! What is rendered: surfels, camera, lights, and procedural scenes whose true picture is known.
 //!
+//! - [`bounds`]: what bounds a scene.
 //! - [`cloud`]: points as a file holds them, nothing derived, nothing checked.
 //! - [`surfels`]: the checked structure of arrays that every method takes.
 //! - [`camera`]: perspective and orthographic cameras.
@@ -10,11 +11,12 @@
 //! - [`hash`]: the identity of a scene.
 //! - [`indexed`]: triangles, ribbons and tubes.
 //! - [`light`]: lights and the Phong material.
-//! - [`merge`]: several models as one cloud.
+//! - [`merge`]: several models as one.
 //! - [`order`]: surfels from back to front, for every view.
 //! - [`procedural`]: shapes whose true picture is known.
 //! - [`transform`]: moving, turning and scaling a model.
 
+pub mod bounds;
 pub mod camera;
 pub mod cloud;
 pub mod derive;
@@ -34,7 +36,7 @@ mod tree;
 pub use camera::{Camera, Lens, Pose, Projection};
 pub use cloud::Cloud;
 pub use environment::Environment;
-pub use indexed::{Polylines, Primitives, Triangles, Vertices};
+pub use indexed::{Counts, Polylines, Primitives, Triangles, Vertices};
 pub use light::{Light, Phong};
 pub use procedural::Shape;
 pub use surfels::{Dropped, Surfels};

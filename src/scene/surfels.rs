@@ -226,6 +226,11 @@ impl Surfels {
     fn sphere(&self) -> (DVec3, f64) {
         let (low, high) = self.bounds();
         let center = (low.as_dvec3() + high.as_dvec3()) / 2.0;
+        (center, self.reach(center))
+    }
+
+    /// The largest distance from a point to a surfel plus its reach; 0 if there is none.
+    pub(super) fn reach(&self, center: DVec3) -> f64 {
         let mut most = 0.0;
         for (i, position) in self.position.iter().enumerate() {
             let reach = match &self.tangents {
@@ -238,7 +243,7 @@ impl Surfels {
             let far = (position.as_dvec3() - center).length() + reach;
             most = if far > most { far } else { most };
         }
-        (center, most)
+        most
     }
 
     /// The surfels back as a cloud, to be written to a file.

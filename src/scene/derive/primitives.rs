@@ -108,7 +108,8 @@ pub fn tubes(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived)>
 
 fn some_triangles(cloud: &Cloud) -> Result<()> {
     if cloud.triangles.is_empty() {
-        let what = "there are no triangles to draw as polygons; give an element face, or draw points";
+        let what =
+            "there are no triangles to draw as polygons; give an element face, or draw points";
         return Err(Error::Invalid(what.into()));
     }
     Ok(())
@@ -239,7 +240,8 @@ mod tests {
         let vertices = tubes.vertices();
         assert_eq!(vertices.radius, [0.5; 4]);
         // The edges are +x and (3/5, -4/5), which is stored against the line; its dot with +x is > 0.
-        let (second, both) = (Vec3::new(0.6, -0.8, 0.0), Vec3::new(1.6, -0.8, 0.0) / 3.2_f32.sqrt());
+        let (second, both) =
+            (Vec3::new(0.6, -0.8, 0.0), Vec3::new(1.6, -0.8, 0.0) / 3.2_f32.sqrt());
         let expected = [Vec3::X, both, second, Vec3::ZERO];
         for (found, expected) in vertices.direction.iter().zip(expected) {
             assert!(found.distance(expected) < 1e-6, "{found} instead of {expected}");
@@ -271,7 +273,9 @@ mod tests {
         let none = Derive::default();
         let line = |error: Error| error.to_string();
         let points = Cloud { triangles: vec![], edges: vec![], ..mesh() };
-        assert!(line(drawn(points.clone()).unwrap_err()).contains("there are no triangles to draw"));
+        assert!(
+            line(drawn(points.clone()).unwrap_err()).contains("there are no triangles to draw")
+        );
         let half = HalfSpace::new([1.0, 0.0, 0.0, 0.0]).unwrap();
         let exec = Exec::sequential();
         let error = hybrid(points.clone(), &half, &none, &exec, &|_, _, _| ()).unwrap_err();
