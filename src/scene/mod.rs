@@ -7,8 +7,8 @@
 //! - [`mod@derive`]: from what a file gives to complete surfels.
 //! - [`environment`]: the light that surrounds a scene.
 //! - [`group`]: groups of surfels that do not overlap.
-//! - [`hybrid`]: a mesh as polygons here and surfels there.
 //! - [`hash`]: the identity of a scene.
+//! - [`hybrid`]: a mesh as polygons here and surfels there.
 //! - [`indexed`]: triangles, ribbons and tubes.
 //! - [`light`]: lights and the Phong material.
 //! - [`merge`]: several models as one.
