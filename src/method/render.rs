@@ -49,7 +49,8 @@ impl Method {
         }
     }
 
-    /// The depth bins that it sorts fragments into, if it does; those of its blending, if it blends.
+    /// The depth bins that it sorts fragments into, if it does; those of its blending, if it
+    /// blends.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] as [`BinCount::resolve`].
@@ -80,7 +81,8 @@ impl Method {
         }
         let word = words::of_method(MethodName::of(self));
         Err(Error::Invalid(format!(
-            "{} has triangles or lines, which the method {word} does not draw; use --method pyramid",
+            "{} has triangles or lines, which the method {word} does not draw; \
+             use --method pyramid",
             scene.name
         )))
     }
@@ -148,8 +150,8 @@ pub struct Preparation {
 }
 
 impl Preparation {
-    /// For a method; `groups` are not used by one that does without, and missed by [`render`] if there
-    /// are none for one that draws them.
+    /// For a method; `groups` are not used by one that does without, and missed by [`render`] if
+    /// there are none for one that draws them.
     #[must_use]
     pub fn new(surfels: &Surfels, groups: Option<Groups>, method: &Method, exec: &Exec) -> Self {
         let blends = matches!(method, Method::Transparent(_));
@@ -167,8 +169,8 @@ impl Preparation {
 /// Renders with the definition, in any number; see the `render` of each method.
 ///
 /// # Errors
-/// As the method and [`Method::check_scene`]; [`Error::Invalid`] if the preparation is not that of the
-/// scene and the method.
+/// As the method and [`Method::check_scene`]; [`Error::Invalid`] if the preparation is not that of
+/// the scene and the method.
 pub fn render<R: Real>(
     scene: &Scene,
     preparation: &Preparation,
@@ -194,8 +196,8 @@ pub fn render<R: Real>(
     }
 }
 
-/// Renders in `f32` without the planes of stages, by the fast path where there is one; `earlier` is a
-/// picture whose memory may be used again.
+/// Renders in `f32` without the planes of stages, by the fast path where there is one; `earlier` is
+/// a picture whose memory may be used again.
 ///
 /// # Errors
 /// As [`render`].

@@ -4,8 +4,8 @@ use super::Scene;
 use glam::{DVec3, Vec3};
 
 impl Scene {
-    /// The corners of the smallest axis-parallel box around all positions: of surfels, and of vertices
-    /// that a primitive uses. Both are the origin if the scene is empty.
+    /// The corners of the smallest axis-parallel box around all positions: of surfels, and of
+    /// vertices that a primitive uses. Both are the origin if the scene is empty.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let surfels = (!self.surfels.is_empty()).then(|| self.surfels.bounds());
@@ -14,9 +14,9 @@ impl Scene {
         all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
     }
 
-    /// A sphere around everything: that of the surfels, see [`super::Surfels::bounding_sphere`], if there is
-    /// nothing else. Otherwise the middle of [`Scene::bounds`], and the largest distance from there to
-    /// a surfel plus its reach or to a used vertex plus its radius; in f64.
+    /// A sphere around everything: that of the surfels, see [`super::Surfels::bounding_sphere`], if
+    /// there is nothing else. Otherwise the middle of [`Scene::bounds`], and the largest distance
+    /// from there to a surfel plus its reach or to a used vertex plus its radius; in f64.
     #[must_use]
     pub fn bounding_sphere(&self) -> (DVec3, f64) {
         if self.primitives.is_empty() {

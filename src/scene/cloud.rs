@@ -32,8 +32,8 @@ pub struct Cloud {
 }
 
 impl Cloud {
-    /// Keeps the points marked in `keep`, one for each, in their order, with the triangles and edges
-    /// all of whose corners are kept.
+    /// Keeps the points marked in `keep`, one for each, in their order, with the triangles and
+    /// edges all of whose corners are kept.
     pub(super) fn retain(&mut self, keep: &[bool]) {
         // The new index of each point that stays.
         let mut kept = 0;

@@ -21,9 +21,10 @@ impl Scene {
     ///   material: ambient, diffuse, specular, shininess (f32), colour (3 f32)
     ///   environment: nothing if there is none; a byte 1 for the sky; or a byte 2, then width and
     ///     height (u64), and the pixels (3 f32 each) row by row from the top left
-    ///   primitives: nothing if there is none; else a byte 3, then triangles, ribbons and tubes, each:
-    ///     u64 count of vertices; position (3 f32), direction (3 f32), radius (f32); colour (3 f32)
-    ///     after a byte 1, or a byte 0 alone; u64 count of primitives; the vertices of each (u32)
+    ///   primitives: nothing if there is none; else a byte 3, then triangles, ribbons and tubes,
+    ///     each: u64 count of vertices; position (3 f32), direction (3 f32), radius (f32); colour
+    ///     (3 f32) after a byte 1, or a byte 0 alone; u64 count of primitives; the vertices of
+    ///     each (u32)
     /// ```
     #[must_use]
     pub fn sha256(&self) -> String {

@@ -46,12 +46,12 @@ impl HalfSpace {
 ///   rasterized pixels of the boundary edges blend smoothly": with that radius a pixel of the
 ///   boundary edge is a surfel as its neighbours beyond are.
 ///
-/// So every triangle is a polygon or has a surfel at each of its corners. Both parts keep the order of
-/// the vertices; the surfels have no triangles, and neither has edges.
+/// So every triangle is a polygon or has a surfel at each of its corners. Both parts keep the order
+/// of the vertices; the surfels have no triangles, and neither has edges.
 ///
-/// `Decided:` a boundary vertex is a surfel too. Which pixels a polygon gives depends on the view: seen
-/// from where it covers no pixel's centre, or its back, the surfel is all that closes the surface
-/// beyond the boundary.
+/// `Decided:` a boundary vertex is a surfel too. Which pixels a polygon gives depends on the view:
+/// seen from where it covers no pixel's centre, or its back, the surfel is all that closes the
+/// surface beyond the boundary.
 ///
 /// # Errors
 /// [`Error::Invalid`] as [`Cloud::check`].
@@ -105,8 +105,8 @@ mod tests {
     fn the_upper_half_of_an_octahedron_is_polygons() {
         let half = HalfSpace::new([0.0, 2.0, 0.0, 0.0]).unwrap();
         let (surfels, mesh) = split(&octahedron(), &half).unwrap();
-        // All but -y are in the half space, so that the four triangles at +y are polygons and the four
-        // corners around are the boundary.
+        // All but -y are in the half space, so that the four triangles at +y are polygons and the
+        // four corners around are the boundary.
         assert_eq!(surfels.position, [Vec3::X, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z]);
         assert_eq!(surfels.radius, Some(vec![1.0, 3.0, 4.0, 5.0, 6.0]));
         assert_eq!(mesh.position, [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Z]);

@@ -11,8 +11,8 @@ pub struct Vertices {
     pub position: Vec<Vec3>,
     /// The normal of a triangle's or a ribbon's surface, the tangent of a tube; of any length.
     pub direction: Vec<Vec3>,
-    /// Half the width of a ribbon, the radius of a tube, or how far the surface of a triangle's vertex
-    /// reaches, each in world units and at least 0.
+    /// Half the width of a ribbon, the radius of a tube, or how far the surface of a triangle's
+    /// vertex reaches, each in world units and at least 0.
     pub radius: Vec<f32>,
     /// Linear RGB, not premultiplied.
     pub color: Option<Vec<Vec3>>,
@@ -22,15 +22,16 @@ pub struct Vertices {
 ///
 /// Guarantees, kept by construction: arrays of one length, and for every vertex that a primitive
 /// uses: position finite; direction of length 1 within 2^-20; radius finite and >= 0; colour finite
-/// and >= 0. Corners may coincide: such a segment is a point, such a triangle covers nothing. Edges may
-/// have any number of triangles.
+/// and >= 0. Corners may coincide: such a segment is a point, such a triangle covers nothing. Edges
+/// may have any number of triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Indexed<const N: usize> {
     vertices: Vertices,
     corners: Vec<[u32; N]>,
 }
 
-/// Line segments between vertices, one pixel wide until they are reconstructed \[MKC08, section 4\].
+/// Line segments between vertices, one pixel wide until they are reconstructed \[MKC08, section
+/// 4\].
 pub type Polylines = Indexed<2>;
 /// Triangles between vertices; counter-clockwise corners are seen from the front.
 pub type Triangles = Indexed<3>;
@@ -42,15 +43,15 @@ impl<const N: usize> Default for Indexed<N> {
 }
 
 impl<const N: usize> Indexed<N> {
-    /// Checks vertices and corners; primitives with a vertex that is degenerate are dropped, and their
-    /// number is returned.
+    /// Checks vertices and corners; primitives with a vertex that is degenerate are dropped, and
+    /// their number is returned.
     ///
     /// A direction is made a unit vector as the normal of a surfel is, see [`super::Surfels::new`].
     /// Vertices are kept, even those that no primitive uses.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if an array has the wrong length, if a corner is no vertex, or if there are
-    /// more than 2^32 - 2 vertices or primitives.
+    /// [`Error::Invalid`] if an array has the wrong length, if a corner is no vertex, or if there
+    /// are more than 2^32 - 2 vertices or primitives.
     pub fn new(mut vertices: Vertices, mut corners: Vec<[u32; N]>) -> Result<(Self, u64)> {
         let n = vertices.position.len();
         let lengths = [
@@ -114,7 +115,8 @@ impl<const N: usize> Indexed<N> {
         &self.corners
     }
 
-    /// Changes the vertices, not how many there are, and checks them again as [`Indexed::new`] does.
+    /// Changes the vertices, not how many there are, and checks them again as [`Indexed::new`]
+    /// does.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Indexed::new`].

@@ -46,8 +46,8 @@ pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
     all
 }
 
-/// Joins primitives kind by kind, in their order. Where only some of a kind have colours, the others
-/// get `color`.
+/// Joins primitives kind by kind, in their order. Where only some of a kind have colours, the
+/// others get `color`.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] as [`Indexed::new`], if there are too many.

@@ -8,10 +8,10 @@ use glam::{DVec3, Vec3};
 /// Surfels as a structure of arrays, each of one length.
 ///
 /// Guarantees, kept by construction: at least one surfel, but for [`Surfels::none`]; positions
-/// finite; normals of length 1 within 2^-20; radii finite and > 0; colours finite and >= 0; opacities in [0, 1]; tangents
-/// finite and not parallel. (Whether they are perpendicular to each other and to the normal is the
-/// business of whoever gives them.) An array that the
-/// scene does not need is not allocated.
+/// finite; normals of length 1 within 2^-20; radii finite and > 0; colours finite and >= 0;
+/// opacities in [0, 1]; tangents finite and not parallel. (Whether they are perpendicular to each
+/// other and to the normal is the business of whoever gives them.) An array that the scene does not
+/// need is not allocated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surfels {
     position: Vec<Vec3>,
@@ -62,8 +62,8 @@ impl Surfels {
     /// length in f64 and rounded once. Triangles, edges and the tangents of tubes are ignored.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if normals or radii are missing, if an array has the wrong length, if nothing
-    /// is left, or if there are more than 2^32 - 2 surfels.
+    /// [`Error::Invalid`] if normals or radii are missing, if an array has the wrong length, if
+    /// nothing is left, or if there are more than 2^32 - 2 surfels.
     pub fn new(cloud: Cloud) -> Result<(Self, Dropped)> {
         let n = cloud.position.len();
         let (surfels, dropped) = Self::new_or_none(cloud)?;
@@ -75,8 +75,8 @@ impl Surfels {
         Ok((surfels, dropped))
     }
 
-    /// As [`Surfels::new`], for a part of a scene that has other primitives too: [`Surfels::none`] if
-    /// nothing is left.
+    /// As [`Surfels::new`], for a part of a scene that has other primitives too: [`Surfels::none`]
+    /// if nothing is left.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Surfels::new`], but for that.
@@ -173,7 +173,8 @@ impl Surfels {
         &self.normal
     }
 
-    /// Radii in world units. An ellipse is drawn by its tangents; its radius enters the median only.
+    /// Radii in world units. An ellipse is drawn by its tangents; its radius enters the median
+    /// only.
     #[must_use]
     pub fn radius(&self) -> &[f32] {
         &self.radius

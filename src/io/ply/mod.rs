@@ -20,16 +20,16 @@
 //! | `face` | `vertex_indices` or `vertex_index` | list of integers | a polygon is the fan of its first corner; with fewer than 3 corners it is nothing |
 //! | `edge` | `vertex1` and `vertex2` | integers | a segment of a ribbon or of a tube |
 //!
-//! Without an element `group` there are as many groups as the largest number tells, of scale 1; with
-//! one there are as many as it has, 64 at most. It may come before or after the vertices.
+//! Without an element `group` there are as many groups as the largest number tells, of scale 1;
+//! with one there are as many as it has, 64 at most. It may come before or after the vertices.
 //!
-//! Tangents of tubes and half axes of ellipses are not the same: `t` alone is the direction in which a
-//! tube runs, `tu` and `tv` span a disc.
+//! Tangents of tubes and half axes of ellipses are not the same: `t` alone is the direction in
+//! which a tube runs, `tu` and `tv` span a disc.
 //!
 //! All of a vector is declared or nothing of it. Values are not judged: NaN and infinite ones go
-//! into the cloud, and are dropped and counted when surfels are made of it. Structure and groups are: every
-//! count is held against the bytes that are left before anything is allocated, and must use up the
-//! file exactly.
+//! into the cloud, and are dropped and counted when surfels are made of it. Structure and groups
+//! are: every count is held against the bytes that are left before anything is allocated, and must
+//! use up the file exactly.
 //!
 //! The reader is our own because the one well-kept crate that refuses hostile headers, serde-ply
 //! 0.2.2, says neither which vertex nor which line or byte is wrong, accepts a property declared
@@ -66,8 +66,8 @@ pub fn read(path: &Path) -> Result<Cloud> {
 ///
 /// # Errors
 /// One line if they are no PLY file, truncated, or hold other than their header says: the element,
-/// the index of the vertex, face or edge, the property, the line (ascii) or byte (binary), what is wrong
-/// and what to do.
+/// the index of the vertex, face or edge, the property, the line (ascii) or byte (binary), what is
+/// wrong and what to do.
 pub fn parse(bytes: &[u8]) -> std::result::Result<Cloud, String> {
     let header = header::parse(bytes)?;
     let vertices = header.elements.iter().find(|element| element.name == "vertex");

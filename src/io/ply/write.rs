@@ -10,11 +10,11 @@ use std::path::Path;
 /// Writes a cloud as binary little-endian PLY, whole or not at all.
 ///
 /// Vertices are floats: `x y z`, then what there is of `nx ny nz`, `radius`, `red green blue`
-/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`, `tx ty tz`; then, if there are groups, `uchar group` and, if
-/// surfels were added to some, `list uchar uchar also`. Triangles follow as `face` with
-/// `list uchar uint vertex_indices`, edges as `edge` with `uint vertex1 vertex2`, and last, if they do not tell by themselves how many groups
-/// there are or if radii are scaled, the element `group` with `float scale`. [`super::read`] gives
-/// the same cloud back, bit for bit.
+/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`, `tx ty tz`; then, if there are groups,
+/// `uchar group` and, if surfels were added to some, `list uchar uchar also`. Triangles follow as
+/// `face` with `list uchar uint vertex_indices`, edges as `edge` with `uint vertex1 vertex2`, and
+/// last, if they do not tell by themselves how many groups there are or if radii are scaled, the
+/// element `group` with `float scale`. [`super::read`] gives the same cloud back, bit for bit.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the arrays of the cloud differ in length; [`crate::Error::Io`] as

@@ -10,8 +10,8 @@ pub enum Draw {
     Points,
     /// Its triangles as polygons.
     Polygons,
-    /// Triangles in this half space, in the model's own coordinates, as polygons, the rest as surfels:
-    /// [`crate::scene::hybrid::split`].
+    /// Triangles in this half space, in the model's own coordinates, as polygons, the rest as
+    /// surfels: [`crate::scene::hybrid::split`].
     Hybrid(HalfSpace),
     /// Its edges as ribbons.
     Ribbons,

@@ -42,9 +42,9 @@ impl SceneFile {
     ///
     /// # Errors
     /// Those of [`environment::read`], [`ply::read`], [`crate::scene::Shape::surfels`], and of
-    /// [`derive::surfels`] and its like for polygons and lines, the file named; [`Error::Invalid`] if
-    /// neither a surfel nor a primitive is left or there are too many, or if a model that is not drawn
-    /// as points was given an opacity.
+    /// [`derive::surfels`] and its like for polygons and lines, the file named; [`Error::Invalid`]
+    /// if neither a surfel nor a primitive is left or there are too many, or if a model that is not
+    /// drawn as points was given an opacity.
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
         self.models.iter().try_for_each(check_opaque)?;
         let environment = match &self.environment {

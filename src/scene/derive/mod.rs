@@ -16,16 +16,17 @@
 //! `Decided:` neighbours are other *places*: points at one place count once, and share what is
 //! derived. If there are fewer places than asked for, all are taken.
 //!
-//! `Decided:` a cloud with triangles is a mesh, and its vertices in no triangle are no surface: what
-//! is missing for them is not derived, and they are dropped and counted.
+//! `Decided:` a cloud with triangles is a mesh, and its vertices in no triangle are no surface:
+//! what is missing for them is not derived, and they are dropped and counted.
 //!
 //! `Decided:` the radii. Every point of a triangle lies within 1/sqrt(3) of its longest edge from
 //! its nearest corner, so that discs with that edge as radius cover it with a margin for tilted
 //! normals. In six scans and models of 6 k to 134 k vertices the discs overlap 6.5 to 11 times, and
-//! those of a triangle's own corners leave at most 4e-5 of the area open, in triangles that a normal
-//! of a corner is all but parallel to. The distance to the n-th neighbour makes discs overlap n
-//! times whatever the density. Of a randomly sampled sphere n = 6 leaves about 3e-4 open, 8 about
-//! 3e-6, and 10 none of 400,000 probes; on the vertices of the same models 10 leaves at most 2e-4.
+//! those of a triangle's own corners leave at most 4e-5 of the area open, in triangles that a
+//! normal of a corner is all but parallel to. The distance to the n-th neighbour makes discs
+//! overlap n times whatever the density. Of a randomly sampled sphere n = 6 leaves about 3e-4 open,
+//! 8 about 3e-6, and 10 none of 400,000 probes; on the vertices of the same models 10 leaves at
+//! most 2e-4.
 
 mod check;
 mod distinct;
@@ -88,8 +89,8 @@ pub struct Derived {
     pub radii: Origin,
     /// Points that became no surfel, each counted once, under the first reason that held.
     pub dropped: Dropped,
-    /// Triangles that became no polygon, or edges that became no ribbon or tube, because a corner is
-    /// degenerate.
+    /// Triangles that became no polygon, or edges that became no ribbon or tube, because a corner
+    /// is degenerate.
     pub dropped_primitives: u64,
 }
 
@@ -99,8 +100,9 @@ pub struct Derived {
 /// that may take over a second report. The result is a function of the cloud and the options alone.
 ///
 /// # Errors
-/// [`Error::Invalid`] if [`Cloud::check`] fails, if the radius asked for is not finite and > 0, if no
-/// point is left, if normals are to be derived from fewer than 3 places, or radii from fewer than 2.
+/// [`Error::Invalid`] if [`Cloud::check`] fails, if the radius asked for is not finite and > 0, if
+/// no point is left, if normals are to be derived from fewer than 3 places, or radii from fewer
+/// than 2.
 pub fn surfels(
     cloud: Cloud,
     options: &Derive,

@@ -14,8 +14,8 @@ use std::cell::OnceCell;
 /// Normals that are missing are derived as those of surfels, see the module.
 ///
 /// # Errors
-/// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if each has a corner that
-/// is degenerate.
+/// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if each has a corner
+/// that is degenerate.
 pub fn polygons(
     mut cloud: Cloud,
     exec: &Exec,
@@ -34,9 +34,9 @@ pub fn polygons(
     finish(before, cloud, (normal, normals), (radius, Origin::Zero), triangles)
 }
 
-/// The triangles in a half space as polygons and the rest of a mesh as surfels, [`split`] after normals
-/// and radii have been derived as in [`super::surfels`] of all of the mesh. One of both parts may be
-/// empty.
+/// The triangles in a half space as polygons and the rest of a mesh as surfels, [`split`] after
+/// normals and radii have been derived as in [`super::surfels`] of all of the mesh. One of both
+/// parts may be empty.
 ///
 /// # Errors
 /// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if nothing is left of
@@ -67,11 +67,12 @@ pub fn hybrid(
     Ok((surfels, triangles, derived))
 }
 
-/// The edges of a cloud as ribbons. Normals must be given; radii, half the widths, too, or be asked for.
+/// The edges of a cloud as ribbons. Normals must be given; radii, half the widths, too, or be asked
+/// for.
 ///
 /// # Errors
-/// [`Error::Invalid`] if [`Cloud::check`] fails, if there are no edges, normals or radii, or if each
-/// edge has an end that is degenerate.
+/// [`Error::Invalid`] if [`Cloud::check`] fails, if there are no edges, normals or radii, or if
+/// each edge has an end that is degenerate.
 pub fn ribbons(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived)> {
     let before = cloud.edges.len();
     let radius = radii(&mut cloud, options, "ribbons")?;
@@ -93,8 +94,8 @@ pub fn ribbons(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived
 /// the edges of the line follow each other.
 ///
 /// # Errors
-/// [`Error::Invalid`] if [`Cloud::check`] fails, if there are no edges or radii, or if each edge has
-/// an end that is degenerate.
+/// [`Error::Invalid`] if [`Cloud::check`] fails, if there are no edges or radii, or if each edge
+/// has an end that is degenerate.
 pub fn tubes(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived)> {
     let before = cloud.edges.len();
     let radius = radii(&mut cloud, options, "tubes")?;
@@ -239,7 +240,7 @@ mod tests {
         assert_eq!((tubes.corners(), derived.dropped_primitives), ([[0, 1], [2, 1]].as_slice(), 1));
         let vertices = tubes.vertices();
         assert_eq!(vertices.radius, [0.5; 4]);
-        // The edges are +x and (3/5, -4/5), which is stored against the line; its dot with +x is > 0.
+        // The edges are +x and (3/5, -4/5), which is stored against the line but turns by < 90.
         let (second, both) =
             (Vec3::new(0.6, -0.8, 0.0), Vec3::new(1.6, -0.8, 0.0) / 3.2_f32.sqrt());
         let expected = [Vec3::X, both, second, Vec3::ZERO];

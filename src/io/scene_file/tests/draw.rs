@@ -3,8 +3,8 @@
 use super::*;
 use crate::scene::{Counts, Primitives};
 
-/// A pyramid of four triangles without a bottom, whose apex is up, and two edges; what more a vertex
-/// has is `properties` and `values`.
+/// A pyramid of four triangles without a bottom, whose apex is up, and two edges; what more a
+/// vertex has is `properties` and `values`.
 fn ply(properties: &[&str], values: &str) -> String {
     let properties: String = properties.iter().map(|p| format!("property float {p}\n")).collect();
     let corner = ["-1 0 -1", "1 0 -1", "1 0 1", "-1 0 1", "0 3 0"];
