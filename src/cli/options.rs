@@ -7,6 +7,8 @@ use splatref::io::scene_file::{
     check_opacity, words,
 };
 use splatref::method::ewa::Epsilon;
+use splatref::method::pyramid::{Occlusion, Weights};
+use splatref::method::template::LevelRule;
 use splatref::method::transparent::Holes;
 use splatref::scene::{Lens, Shape};
 use splatref::shade::optics::Layers;
@@ -82,7 +84,8 @@ pub(super) struct SceneOptions {
         help_heading = "Environment")]
     environment: Option<EnvironmentChoice>,
 
-    /// The method: ewa, single-pass, transparent, transparent-hq, peeling [default: ewa]
+    /// The method: ewa, single-pass, transparent, transparent-hq, peeling, pyramid, template
+    /// [default: ewa]
     #[arg(long, value_name = "NAME", value_parser = words::method, help_heading = "Method")]
     method: Option<MethodName>,
     /// Preset of outline, cut-off and low-pass filter: default, zpvbg01 or zp06
@@ -142,6 +145,25 @@ pub(super) struct SceneOptions {
     #[arg(long, value_name = "N", help_heading = "Transparency")]
     peel: Option<u32>,
 
+    /// Weights of the pull-push interpolation: box or gaussian [default: gaussian]
+    #[arg(long, value_name = "NAME", value_parser = words::weights,
+        help_heading = "Image space (pyramid, template)")]
+    weights: Option<Weights>,
+    /// What of the pyramid is occluded: behind or outside the parent's depth [default: behind]
+    #[arg(long, value_name = "NAME", value_parser = words::occluded,
+        help_heading = "Image space (pyramid, template)")]
+    occluded: Option<Occlusion>,
+    /// Binary digits after the point of the corners of triangles and lines, 0 to 12 [default: 8]
+    #[arg(long, value_name = "N", help_heading = "Image space (pyramid, template)")]
+    subpixel_bits: Option<u32>,
+    /// Width of the template in cells: 3, 5 or 7 [default: 5]
+    #[arg(long, value_name = "K", help_heading = "Image space (pyramid, template)")]
+    template: Option<u32>,
+    /// The level of an ellipse: covering or published [default: covering]
+    #[arg(long, value_name = "NAME", value_parser = words::levels,
+        help_heading = "Image space (pyramid, template)")]
+    levels: Option<LevelRule>,
+
     /// Surfels of a procedural shape [default: 200000]
     #[arg(long, value_name = "N", help_heading = "Shapes")]
     count: Option<usize>,
@@ -181,6 +203,11 @@ impl SceneOptions {
         replace(&mut method.refraction, self.refraction);
         replace(&mut method.bends, self.bends);
         replace(&mut method.peel, self.peel);
+        replace(&mut method.weights, self.weights);
+        replace(&mut method.occluded, self.occluded);
+        replace(&mut method.subpixel_bits, self.subpixel_bits);
+        replace(&mut method.template, self.template);
+        replace(&mut method.levels, self.levels);
         if self.kernel.is_some() {
             // A preset replaces all that the file says of the kernel.
             (method.outline, method.cutoff, method.low_pass) = (None, None, None);

@@ -132,22 +132,22 @@ pub(super) fn camera(camera: &Camera) {
 }
 
 pub(super) fn method(method: &Method, surfels: &Surfels) {
-    let splats = method.splats();
-    let kernel = splats.kernel;
-    let depth = short(f64::from(splats.epsilon.resolve(surfels)));
-    let epsilon = match splats.epsilon {
-        Epsilon::World(_) => depth,
-        Epsilon::MedianRadii(count) => format!("{count} median radii = {depth}"),
-    };
-    let text = format!(
-        "{}, {} outline, cut-off {}, low-pass {} px^2, epsilon {epsilon}, {}",
-        words::of_method(MethodName::of(method)),
-        words::of_outline(kernel.outline),
-        kernel.cutoff,
-        kernel.low_pass,
-        if splats.cull { "back faces culled" } else { "both sides" },
-    );
-    line("method", text);
+    let splats = method.splats().map_or(String::new(), |splats| {
+        let kernel = splats.kernel;
+        let depth = short(f64::from(splats.epsilon.resolve(surfels)));
+        let epsilon = match splats.epsilon {
+            Epsilon::World(_) => depth,
+            Epsilon::MedianRadii(count) => format!("{count} median radii = {depth}"),
+        };
+        let outline = words::of_outline(kernel.outline);
+        let (cutoff, low_pass) = (kernel.cutoff, kernel.low_pass);
+        format!(
+            ", {outline} outline, cut-off {cutoff}, low-pass {low_pass} px^2, epsilon {epsilon}"
+        )
+    });
+    let name = words::of_method(MethodName::of(method));
+    let sides = if method.culls() { "back faces culled" } else { "both sides" };
+    line("method", format!("{name}{splats}, {sides}"));
     let further = provenance::further(method);
     if !further.is_empty() {
         line("", further.trim().replace('\n', ", ").replace('"', ""));

@@ -3,6 +3,7 @@
 //! - [`bins`]: low-precision and Voronoi-enhanced depth.
 //! - [`epsilon`]: which fragments belong to the visible surface.
 //! - [`groups`]: the n-ary operator over the depth-images of groups.
+//! - [`mod@mean`]: the average of neighbours in a pyramid.
 //! - [`over`]: alpha-blending of layers.
 //! - [`sum`]: weighted accumulation and normalization.
 //! - [`under`]: alpha-blending from front to back.
@@ -10,6 +11,7 @@
 pub mod bins;
 pub mod epsilon;
 pub mod groups;
+pub mod mean;
 pub mod over;
 pub mod sum;
 pub mod under;

@@ -2,6 +2,8 @@
 //!
 //! - [`plane`], [`rect`], [`named`]: pixels, rectangles of them, and the names they have in files.
 //! - [`framebuffer`]: depth, stencil and floating accumulation.
+//! - [`raster`]: the pixels of triangles and of lines, exactly.
+//! - [`mod@pyramid`]: the sizes of an image pyramid.
 //! - [`stencil`]: the 8-bit stencil of GPU APIs.
 //! - [`bin`]: from screen bounds to tiles.
 //! - [`tile`]: tiles and the one parallel loop of the crate.
@@ -10,6 +12,8 @@ pub mod bin;
 pub mod framebuffer;
 pub mod named;
 pub mod plane;
+pub mod pyramid;
+pub mod raster;
 pub mod rect;
 pub mod stencil;
 pub mod tile;

@@ -4,9 +4,10 @@ use crate::composite::bins::Range;
 use crate::io::scene_file::{MethodName, Number, words};
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::transparent::Settings;
-use crate::method::{Method, Preparation};
+use crate::method::{Method, Preparation, ewa};
 use crate::scene::{Camera, Counts, Projection, Scene};
 use crate::shade::optics::Refraction;
+use crate::splat::Kernel;
 
 /// The text as TOML, for the attribute [`super::exr::ATTRIBUTE`].
 ///
@@ -22,8 +23,6 @@ pub fn text(
     method: &Method,
     number: Number,
 ) -> String {
-    let splats = method.splats();
-    let (kernel, epsilon, cull) = (&splats.kernel, splats.epsilon, splats.cull);
     let groups = preparation.groups().map_or(String::new(), |groups| {
         format!("[groups]\ncount = {}\nsha256 = \"{}\"\n\n", groups.len(), groups.sha256())
     });
@@ -47,9 +46,7 @@ pub fn text(
     format!(
         "splatref = \"{version}\"\nnumber = \"{number}\"\n\n\
          [scene]\nname = {name}\nsurfels = {surfels}\n{primitives}sha256 = \"{hash}\"\n\n\
-         [method]\nname = \"{method}\"\noutline = \"{outline}\"\ncutoff = {cutoff:?}\n\
-         low_pass = {low_pass:?}\nepsilon = \"{epsilon}\"\nepsilon_in_world_units = {depth:?}\n\
-         cull = {cull}\n{further}\n{groups}\
+         [method]\nname = \"{method}\"\n{splats}cull = {cull}\n{further}\n{groups}\
          [camera]\nsize = [{width}, {height}]\nprojection = \"{projection}\"\n\
          f = [{fx:?}, {fy:?}]\nc = [{cx:?}, {cy:?}]\nnear = {near:?}\n\
          view_from_world = [\n{rows}]\n",
@@ -60,11 +57,8 @@ pub fn text(
         hash = scene.sha256(),
         method = words::of_method(MethodName::of(method)),
         further = further(method) + &bins,
-        outline = words::of_outline(kernel.outline),
-        cutoff = kernel.cutoff,
-        low_pass = kernel.low_pass,
-        epsilon = words::of_epsilon(epsilon),
-        depth = epsilon.resolve(&scene.surfels),
+        splats = method.splats().map_or(String::new(), |splats| footprints(splats, scene)),
+        cull = method.culls(),
         width = camera.width,
         height = camera.height,
         fx = camera.fx,
@@ -73,6 +67,18 @@ pub fn text(
         cy = camera.cy,
         near = camera.near,
         rows = rows.concat(),
+    )
+}
+
+/// Kernel and epsilon, as lines of TOML.
+fn footprints(splats: &ewa::Settings, scene: &Scene) -> String {
+    let Kernel { outline, cutoff, low_pass } = splats.kernel;
+    format!(
+        "outline = \"{}\"\ncutoff = {cutoff:?}\nlow_pass = {low_pass:?}\nepsilon = \"{}\"\n\
+         epsilon_in_world_units = {:?}\n",
+        words::of_outline(outline),
+        words::of_epsilon(splats.epsilon),
+        splats.epsilon.resolve(&scene.surfels),
     )
 }
 
@@ -87,6 +93,16 @@ pub fn further(method: &Method) -> String {
     match method {
         Method::Ewa(_) => String::new(),
         Method::Peeling(settings) => format!("peel = {}\n", settings.layers),
+        Method::Pyramid(settings) => format!(
+            "weights = \"{}\"\noccluded = \"{}\"\nsubpixel_bits = {}\n",
+            words::of_weights(settings.weights),
+            words::of_occluded(settings.occlusion),
+            settings.subpixel_bits
+        ),
+        Method::Template(settings) => {
+            let levels = words::of_levels(settings.levels);
+            format!("template = {}\nlevels = \"{levels}\"\n", settings.size)
+        }
         Method::SinglePass(settings) => match &settings.depth {
             DepthTest::Plain => depth(settings.depth),
             DepthTest::Voronoi(count) => depth(settings.depth) + &bins(count),
@@ -107,7 +123,6 @@ pub fn further(method: &Method) -> String {
 mod tests {
     use super::*;
     use crate::frame::Exec;
-    use crate::method::ewa;
     use crate::scene::{Lens, Light, Phong, Pose, Shape};
     use glam::DVec3;
 

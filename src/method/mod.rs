@@ -24,8 +24,13 @@ mod fast;
 pub mod peeling;
 mod picture;
 mod prepare;
+pub mod projection;
+pub mod pyramid;
 pub mod render;
 pub mod single_pass;
+pub mod template;
+#[cfg(test)]
+mod tests;
 pub mod transparent;
 
 pub use picture::Picture;

@@ -31,7 +31,7 @@ pub(super) fn finish<R: Real>(
     let Framebuffer { width, height, depth, id, weight, normal, color, .. } = target;
     clock.restart();
     let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
-    let color = shader.shade(&depth, normal.as_ref(), color, exec);
+    let color = shader.shade(&depth, normal.as_ref(), None, color, exec);
     clock.lap("shading");
     let alpha: Plane<R> = weight.map(|&w| if w > R::ZERO { R::ONE } else { R::ZERO });
     let (color, alpha) = before_environment(scene, camera, color, alpha, exec);

@@ -1,7 +1,7 @@
 //! Any method, chosen by a value, with what it needs before the first view.
 
 use super::single_pass::{BinCount, DepthTest};
-use super::{Picture, ewa, peeling, single_pass, transparent};
+use super::{Picture, ewa, peeling, pyramid, single_pass, template, transparent};
 use crate::composite::bins::Range;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
@@ -10,6 +10,7 @@ use crate::number::Real;
 use crate::scene::group::{self, Extended, Extension, Groups, Report, Rules};
 use crate::scene::order::BackToFront;
 use crate::scene::{Camera, Scene, Surfels};
+use std::sync::Mutex;
 
 /// A method and what it computes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,17 +23,33 @@ pub enum Method {
     Transparent(transparent::Settings),
     /// Depth peeling.
     Peeling(peeling::Settings),
+    /// Pull-push interpolation \[MKC08\].
+    Pyramid(pyramid::Settings),
+    /// Reconstruction with templates \[MOC08\].
+    Template(template::Settings),
 }
 
 impl Method {
-    /// Footprints, epsilon and culling, which every method has.
+    /// Footprints, epsilon and culling of a method that draws splats; none of one that reconstructs in
+    /// image space.
     #[must_use]
-    pub fn splats(&self) -> &ewa::Settings {
+    pub fn splats(&self) -> Option<&ewa::Settings> {
         match self {
-            Self::Ewa(settings) => settings,
-            Self::SinglePass(settings) => &settings.splats,
-            Self::Transparent(settings) => &settings.splats,
-            Self::Peeling(settings) => &settings.splats,
+            Self::Ewa(settings) => Some(settings),
+            Self::SinglePass(settings) => Some(&settings.splats),
+            Self::Transparent(settings) => Some(&settings.splats),
+            Self::Peeling(settings) => Some(&settings.splats),
+            Self::Pyramid(_) | Self::Template(_) => None,
+        }
+    }
+
+    /// Whether what is seen from behind is dropped.
+    #[must_use]
+    pub fn culls(&self) -> bool {
+        match self {
+            Self::Pyramid(settings) => settings.cull,
+            Self::Template(settings) => settings.cull,
+            _ => self.splats().is_some_and(|splats| splats.cull),
         }
     }
 
@@ -46,6 +63,8 @@ impl Method {
             Self::SinglePass(settings) => settings.check(),
             Self::Transparent(settings) => settings.check(),
             Self::Peeling(settings) => settings.check(),
+            Self::Pyramid(settings) => settings.check(),
+            Self::Template(settings) => settings.check(),
         }
     }
 
@@ -55,19 +74,26 @@ impl Method {
     /// # Errors
     /// [`crate::Error::Invalid`] as [`BinCount::resolve`].
     pub fn depth_bins(&self, surfels: &Surfels, camera: &Camera) -> Result<Option<Range>> {
-        let bins: &BinCount = match self {
-            Self::SinglePass(single_pass::Settings { depth: DepthTest::Voronoi(bins), .. }) => bins,
-            Self::Transparent(settings) => &settings.bins,
-            Self::Ewa(_) | Self::SinglePass(_) | Self::Peeling(_) => return Ok(None),
+        let (bins, splats): (&BinCount, _) = match self {
+            Self::SinglePass(single_pass::Settings { depth: DepthTest::Voronoi(bins), splats }) => {
+                (bins, splats)
+            }
+            Self::Transparent(settings) => (&settings.bins, &settings.splats),
+            _ => return Ok(None),
         };
-        bins.resolve(surfels, camera, self.splats().epsilon.resolve(surfels)).map(Some)
+        bins.resolve(surfels, camera, splats.epsilon.resolve(surfels)).map(Some)
     }
 
     /// Whether it draws triangles, ribbons and tubes beside surfels.
     #[must_use]
     pub fn draws_primitives(&self) -> bool {
         match self {
-            Self::Ewa(_) | Self::SinglePass(_) | Self::Transparent(_) | Self::Peeling(_) => false,
+            Self::Pyramid(_) => true,
+            Self::Ewa(_)
+            | Self::SinglePass(_)
+            | Self::Transparent(_)
+            | Self::Peeling(_)
+            | Self::Template(_) => false,
         }
     }
 
@@ -147,6 +173,23 @@ pub struct Preparation {
     groups: Option<Groups>,
     /// For methods that blend from back to front.
     order: Option<BackToFront>,
+    memory: Memory,
+}
+
+/// What the fast paths of the image-space methods work in, kept from picture to picture; a picture that is drawn
+/// while another one is has its own.
+#[derive(Debug, Default)]
+struct Memory {
+    pyramid: Mutex<pyramid::fast::Levels>,
+    template: Mutex<template::fast::Levels>,
+}
+
+/// Runs `draw` with what a mutex holds, or with new memory if another thread has it.
+fn with<T: Default, U>(memory: &Mutex<T>, draw: impl FnOnce(&mut T) -> U) -> U {
+    match memory.try_lock() {
+        Ok(mut memory) => draw(&mut memory),
+        Err(_) => draw(&mut T::default()),
+    }
 }
 
 impl Preparation {
@@ -156,7 +199,8 @@ impl Preparation {
     pub fn new(surfels: &Surfels, groups: Option<Groups>, method: &Method, exec: &Exec) -> Self {
         let blends = matches!(method, Method::Transparent(_));
         let groups = groups.filter(|_| method.needs_groups());
-        Self { groups, order: blends.then(|| BackToFront::new(surfels, exec)) }
+        let order = blends.then(|| BackToFront::new(surfels, exec));
+        Self { groups, order, memory: Memory::default() }
     }
 
     /// The groups, if the method draws them.
@@ -183,12 +227,14 @@ pub fn render<R: Real>(
     match (method, preparation) {
         (Method::Ewa(settings), _) => ewa::render(scene, camera, settings, exec, stages),
         (Method::Peeling(settings), _) => peeling::render(scene, camera, settings, exec, stages),
+        (Method::Pyramid(settings), _) => pyramid::render(scene, camera, settings, exec, stages),
+        (Method::Template(settings), _) => template::render(scene, camera, settings, exec, stages),
         (Method::SinglePass(settings), Preparation { groups: Some(groups), .. }) => {
             single_pass::render(scene, groups, camera, settings, exec, stages)
         }
         (
             Method::Transparent(settings),
-            Preparation { groups: Some(groups), order: Some(order) },
+            Preparation { groups: Some(groups), order: Some(order), .. },
         ) => transparent::render(scene, (groups, order), camera, settings, exec, stages),
         _ => Err(Error::Invalid(
             "the scene was prepared for another method, or without groups".into(),
@@ -221,6 +267,12 @@ pub fn render_f32(
         (Method::SinglePass(settings), Some(groups), None) => {
             single_pass::render_f32(scene, groups, camera, settings, exec)
         }
+        (Method::Pyramid(settings), _, earlier) => with(&preparation.memory.pyramid, |levels| {
+            pyramid::render_f32(scene, camera, settings, exec, levels, earlier)
+        }),
+        (Method::Template(settings), _, earlier) => with(&preparation.memory.template, |levels| {
+            template::render_f32(scene, camera, settings, exec, levels, earlier)
+        }),
         _ => render(scene, preparation, camera, method, exec, false),
     }
 }
@@ -231,12 +283,13 @@ mod tests {
     use crate::scene::{Lens, Light, Phong, Shape, Triangles, Vertices};
     use glam::Vec3;
 
-    fn surfel_methods() -> [Method; 4] {
+    fn surfel_methods() -> [Method; 5] {
         [
             Method::Ewa(ewa::Settings::default()),
             Method::SinglePass(single_pass::Settings::default()),
             Method::Transparent(transparent::Settings::default()),
             Method::Peeling(peeling::Settings::default()),
+            Method::Template(template::Settings::default()),
         ]
     }
 
@@ -287,7 +340,8 @@ mod tests {
         let (mut scene, camera) = sphere();
         scene.surfels = Surfels::none();
         let exec = Exec::sequential();
-        for method in surfel_methods() {
+        let pyramid = Method::Pyramid(pyramid::Settings::default());
+        for method in surfel_methods().into_iter().chain([pyramid]) {
             let groups = Groups::new(vec![], vec![], vec![1.0]).unwrap();
             let prepared = Preparation::new(&scene.surfels, Some(groups), &method, &exec);
             match render_f32(&scene, &prepared, &camera, &method, &exec, None) {

@@ -6,7 +6,8 @@
 //! - **f64**: the functions of `libm` (pinned), which give the same bits on every target.
 //! - **f32**: the definition is *the correctly rounded value*. It is computed in f64 and rounded
 //!   once: [`exp_f32`] by the polynomial below, which is checked over every `f32` in its range by an
-//!   ignored test against a correctly rounded oracle; the others through `libm`.
+//!   ignored test against a correctly rounded oracle; the others through `libm`, or to the bits of
+//!   `libm` by another way ([`powers_f32`]).
 
 /// e^x in f64.
 #[must_use]
@@ -24,6 +25,85 @@ pub fn ln(x: f64) -> f64 {
 #[must_use]
 pub fn pow(x: f64, y: f64) -> f64 {
     libm::pow(x, y)
+}
+
+/// How many numbers are raised to a power side by side.
+pub const LANES: usize = 16;
+
+/// The bits of [`pow`], rounded to `f32` once, of numbers that are not negative (nor -0).
+///
+/// `y` is written in base 2, and x^y is the product, in f64, of the powers x^(2^j) whose bit is 1:
+/// squares of x, and square roots down to x^(2^-24). Let u be 2^-53, w the integer part of y. Where
+/// nothing underflows, the product is off by a relative error of (w + 72) u to first order: the
+/// squares and their products are rounded fewer than w times, counted with what a square doubles;
+/// each of at most 24 roots is off by 2 u or less, and its multiplication adds u. [`pow`] is off by
+/// less than an ulp, 2 u. So its value is in the interval of (w + 128) 2 u about the product, and if
+/// both ends round to one `f32`, so does that value. Where they do not, [`pow`] is called: for w = 32
+/// that is about one number in a million.
+///
+/// An underflow of a factor means that x < 1 and that x^y, the product and the value of [`pow`] are all
+/// beyond 2^-1000: they round to 0. An overflow likewise means that they round to infinity. A NaN
+/// differs from itself, and is left to [`pow`]; so is every `y` not in [0, 65536] and every `y` below 1
+/// that needs more than 24 roots.
+#[inline(always)]
+#[must_use]
+pub fn powers_f32(x: &[f32; LANES], y: f32) -> [f32; LANES] {
+    let whole = y.floor();
+    let parts = (y - whole) * 16_777_216.0;
+    if !(0.0..=65_536.0).contains(&whole) || parts.floor() != parts {
+        return x.map(|x| pow_f32(x, y));
+    }
+    let product = product(x, whole as u32, parts as u32);
+    let error = (f64::from(whole) + 128.0) * f64::EPSILON;
+    let (mut low, mut high) = ([0.0; LANES], [0.0; LANES]);
+    for i in 0..LANES {
+        low[i] = (product[i] * (1.0 - error)) as f32;
+        high[i] = (product[i] * (1.0 + error)) as f32;
+    }
+    let mut apart = false;
+    for i in 0..LANES {
+        apart |= low[i] != high[i];
+    }
+    if apart {
+        for i in 0..LANES {
+            if low[i] != high[i] {
+                low[i] = pow_f32(x[i], y);
+            }
+        }
+    }
+    low
+}
+
+/// x^(whole + parts/2^24), nearly.
+#[inline(always)]
+fn product(x: &[f32; LANES], mut whole: u32, mut parts: u32) -> [f64; LANES] {
+    let mut product = [1.0; LANES];
+    let (mut square, mut root) = ([0.0_f64; LANES], [0.0_f64; LANES]);
+    for i in 0..LANES {
+        (square[i], root[i]) = (x[i].into(), x[i].into());
+    }
+    while whole != 0 {
+        for i in 0..LANES {
+            product[i] = if whole & 1 == 1 { product[i] * square[i] } else { product[i] };
+            square[i] = square[i] * square[i];
+        }
+        whole >>= 1;
+    }
+    while parts != 0 {
+        parts <<= 1;
+        for i in 0..LANES {
+            root[i] = root[i].sqrt();
+            product[i] = if parts >> 24 & 1 == 1 { product[i] * root[i] } else { product[i] };
+        }
+        parts &= 0x00FF_FFFF;
+    }
+    product
+}
+
+/// [`pow`] of `f32`, rounded once.
+#[must_use]
+pub fn pow_f32(x: f32, y: f32) -> f32 {
+    pow(f64::from(x), f64::from(y)) as f32
 }
 
 /// The sine of `x` radians in f64.
@@ -111,6 +191,8 @@ pub fn exp_f32_in_range(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Real;
+    use crate::number::random::unit;
 
     /// Every `step`-th float of [-110, 100], and how many of them are not correctly rounded.
     fn misrounded(step: usize) -> usize {
@@ -138,5 +220,103 @@ mod tests {
         assert_eq!(exp_f32(f32::INFINITY), f32::INFINITY);
         assert!(exp_f32(f32::NAN).is_nan());
         assert_eq!(exp_f32(0.0), 1.0);
+    }
+
+    /// Bases that a power may meet: all of (0, 1), near 1 on both sides, tiny, and any float at all.
+    fn bases(seed: u64) -> [f32; LANES] {
+        std::array::from_fn(|lane| {
+            let (i, lane) = (seed * LANES as u64, lane as u64);
+            let some = unit(1, i + lane);
+            match lane {
+                0..8 => some,
+                8 => 1.0 - some / 256.0,
+                9 => 1.0 - some / 1_048_576.0,
+                10 => 1.0 + some / 65_536.0,
+                11 => f32::from_bits((some * 255.0) as u32),
+                12 => some * some * some * some,
+                13 => 1.0 + 1.0 / (1 + seed % 4096) as f32,
+                _ => f32::from_bits((unit(2, i + lane) * 2_139_095_040.0) as u32),
+            }
+        })
+    }
+
+    /// Whole, halves, many digits, more roots than there are, more than there may be, none.
+    const EXPONENTS: [f32; 18] = [
+        1.0, 2.0, 3.0, 5.0, 10.0, 32.0, 100.0, 1_000.5, 64.5, 0.0, 65_536.0, 0.5, 10.1, 0.25, 0.1,
+        1.0e-3, 1.0e-40, 70_000.0,
+    ];
+
+    #[test]
+    fn powers_have_the_bits_of_pow() {
+        for y in EXPONENTS {
+            for seed in 0..12_000 {
+                let x = bases(seed);
+                let expected = x.map(|x| pow_f32(x, y).to_bits());
+                let found = powers_f32(&x, y).map(f32::to_bits);
+                assert_eq!(found, expected, "{x:?} to the power of {y}");
+            }
+            let edges = [0.0, f32::INFINITY, f32::NAN, 1.0, f32::MAX, f32::MIN_POSITIVE];
+            let mut x = [f32::from_bits(1); LANES];
+            x[..6].copy_from_slice(&edges);
+            let found = powers_f32(&x, y);
+            for (x, found) in x.into_iter().zip(found) {
+                let expected = pow_f32(x, y);
+                let same = found.to_bits() == expected.to_bits();
+                assert!(same || found.is_nan() && expected.is_nan(), "{x} to the power of {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_power_between_two_floats_is_left_to_pow() {
+        // (1 + 2^-12)^2 = 1 + 2^-11 + 2^-24 lies halfway between two floats.
+        let x = [1.0 + 1.0 / 4096.0; LANES];
+        assert_eq!(product(&x, 2, 0), [1.0 + 1.0 / 2048.0 + 1.0 / 16_777_216.0; LANES]);
+        assert_eq!(powers_f32(&x, 2.0), [1.0 + 1.0 / 2048.0; LANES], "ties to even");
+    }
+
+    #[test]
+    fn a_power_that_the_product_cannot_tell_is_left_to_pow() {
+        // Large exponents multiply the error: all floats near 1, whose powers are not 0 or infinite.
+        let mut misled = 0;
+        for y in (0_u16..40).map(|i| 65_536.0 - 0.25 * f32::from(i * i)) {
+            let whole = (y as u32, ((y - y.floor()) * 16_777_216.0) as u32);
+            for first in (0.999_f32.to_bits()..1.0005_f32.to_bits()).step_by(LANES) {
+                let x = std::array::from_fn(|i| f32::from_bits(first + i as u32));
+                let expected = x.map(|x| pow_f32(x, y));
+                assert_eq!(powers_f32(&x, y), expected, "{x:?} to the power of {y}");
+                let near = product(&x, whole.0, whole.1).map(|p| p as f32);
+                misled += near.iter().zip(&expected).filter(|(a, b)| a != b).count();
+            }
+        }
+        assert!(misled > 0, "the interval is never needed");
+    }
+
+    /// The proof of [`powers_f32`] in numbers: against the correctly rounded power.
+    #[test]
+    fn powers_and_pow_are_as_close_as_they_claim() {
+        for y in EXPONENTS {
+            let (whole, parts) = (y.floor(), (y - y.floor()) * 16_777_216.0);
+            if whole > 65_536.0 || parts.floor() != parts {
+                continue;
+            }
+            let claimed = (f64::from(whole) + 72.0) * 0.5 * f64::EPSILON;
+            for seed in 0..500 {
+                let x = bases(seed);
+                for (x, found) in x.into_iter().zip(product(&x, whole as u32, parts as u32)) {
+                    let exact = core_math::pow(x.into(), y.into());
+                    if exact.is_normal() {
+                        // Half an ulp is lost in `exact`, less in the difference of close numbers.
+                        let error = (found / exact - 1.0).abs();
+                        assert!(error <= claimed + 2.0 * f64::EPSILON, "{x} ^ {y}: {error}");
+                        let ulps = pow(x.into(), y.into()).ulps_to(exact);
+                        assert!(ulps <= 1.0, "{x} ^ {y}: {ulps} ulps");
+                    } else {
+                        let lost = exact < 1.0e-300 && found < 1.0e-300;
+                        assert!(lost || found == exact, "{x} ^ {y}");
+                    }
+                }
+            }
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! The number that every formula is generic over.
 
-use super::elementary;
+use super::elementary::{self, LANES};
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -32,12 +32,16 @@ pub trait Real:
 
     /// Exact: every input and every constant of the crate is an `f32`.
     fn from_f32(value: f32) -> Self;
+    /// The number nearest to an integer, ties to even: exact up to 2^24 in `f32`, 2^53 in `f64`.
+    fn from_i64(value: i64) -> Self;
     /// The `f32` nearest to this number, rounded once.
     fn to_f32(self) -> f32;
     /// The `f64` nearest to this number; exact for `f32` and `f64`.
     fn to_f64(self) -> f64;
     /// The integer part of a number in [0, 2^22].
     fn to_pixel(self) -> u32;
+    /// The integer part, towards 0; the nearest `i64` if out of range, 0 for NaN.
+    fn to_i64(self) -> i64;
     /// The largest integer that is not greater, exactly.
     fn floor(self) -> Self;
     /// The square root, correctly rounded.
@@ -48,6 +52,12 @@ pub trait Real:
     fn exp(self) -> Self;
     /// This number to the power of `exponent`, see [`elementary`]; `self` is not negative.
     fn pow(self, exponent: Self) -> Self;
+    /// [`Real::pow`] of several numbers.
+    #[inline(always)]
+    #[must_use]
+    fn powers(bases: &[Self; LANES], exponent: Self) -> [Self; LANES] {
+        bases.map(|base| base.pow(exponent))
+    }
     /// The angle of the point (x, `self`) from the x axis, in radians, see [`elementary::atan2`].
     fn atan2(self, x: Self) -> Self;
     /// Whether this number is neither infinite nor NaN.
@@ -82,6 +92,10 @@ impl Real for f32 {
         value
     }
     #[inline(always)]
+    fn from_i64(value: i64) -> Self {
+        value as Self
+    }
+    #[inline(always)]
     fn to_f32(self) -> f32 {
         self
     }
@@ -97,6 +111,10 @@ impl Real for f32 {
         let above = shifted - 8_388_608.0 > self;
         let shifted = if above { shifted - 1.0 } else { shifted };
         shifted.to_bits() & 0x007F_FFFF
+    }
+    #[inline(always)]
+    fn to_i64(self) -> i64 {
+        self as i64
     }
     #[inline(always)]
     fn floor(self) -> Self {
@@ -116,7 +134,11 @@ impl Real for f32 {
     }
     #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
-        elementary::pow(f64::from(self), f64::from(exponent)) as Self
+        elementary::pow_f32(self, exponent)
+    }
+    #[inline(always)]
+    fn powers(bases: &[Self; LANES], exponent: Self) -> [Self; LANES] {
+        elementary::powers_f32(bases, exponent)
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
@@ -145,6 +167,10 @@ impl Real for f64 {
         Self::from(value)
     }
     #[inline(always)]
+    fn from_i64(value: i64) -> Self {
+        value as Self
+    }
+    #[inline(always)]
     fn to_f32(self) -> f32 {
         self as f32
     }
@@ -155,6 +181,10 @@ impl Real for f64 {
     #[inline(always)]
     fn to_pixel(self) -> u32 {
         self as u32
+    }
+    #[inline(always)]
+    fn to_i64(self) -> i64 {
+        self as i64
     }
     #[inline(always)]
     fn floor(self) -> Self {
@@ -231,6 +261,31 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn an_integer_becomes_the_nearest_number_and_ties_go_to_even() {
+        // 2^24 and 2^53 are where the spacing of the two types becomes 2.
+        for (sign, odd) in [(1, 16_777_217_i64), (-1, 16_777_217), (1, 33_554_434 + 1)] {
+            let single = <f32 as Real>::from_i64(sign * odd);
+            let neighbours = [f32::next_down(single), f32::next_up(single)];
+            let error = |v: f32| (v as i64 - sign * odd).abs();
+            assert!(neighbours.into_iter().all(|n| error(n) >= error(single)), "{single}");
+            assert_eq!(f64::from_i64(sign * odd) as i64, sign * odd, "exact");
+        }
+        assert_eq!(<f32 as Real>::from_i64(16_777_217), 16_777_216.0, "down to even");
+        assert_eq!(<f32 as Real>::from_i64(16_777_219), 16_777_220.0, "up to even");
+        assert_eq!(<f32 as Real>::from_i64(-16_777_217), -16_777_216.0);
+        let wide = 1_i64 << 53;
+        assert_eq!(f64::from_i64(wide + 1), wide as f64, "down to even");
+        assert_eq!(f64::from_i64(wide + 3), (wide + 4) as f64, "up to even");
+        // Once, not by way of f64: 2^60 + 2^36 + 1 is above the tie that f64 would make of it.
+        assert_eq!(
+            <f32 as Real>::from_i64((1 << 60) + (1 << 36) + 1),
+            f32::next_up((1_i64 << 60) as f32)
+        );
+        assert_eq!([-2.75_f32, 2.75, f32::NAN].map(Real::to_i64), [-2, 2, 0]);
+        assert_eq!([-2.75, 2.75, f64::INFINITY].map(Real::to_i64), [-2, 2, i64::MAX]);
     }
 
     #[test]

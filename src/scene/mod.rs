@@ -13,6 +13,7 @@
 //! - [`light`]: lights and the Phong material.
 //! - [`merge`]: several models as one.
 //! - [`order`]: surfels from back to front, for every view.
+//! - [`plant`]: a tree of triangles, and the ribbons and tubes that stand for it.
 //! - [`procedural`]: shapes whose true picture is known.
 //! - [`transform`]: moving, turning and scaling a model.
 
@@ -28,6 +29,7 @@ pub mod indexed;
 pub mod light;
 pub mod merge;
 pub mod order;
+pub mod plant;
 pub mod procedural;
 pub mod surfels;
 pub mod transform;

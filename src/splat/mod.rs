@@ -15,13 +15,16 @@
 
 pub mod batch;
 pub mod bounds;
+pub mod clip;
 mod crossing;
+pub mod ellipse;
 pub mod frustum;
 pub mod project;
 mod shape;
 pub mod view;
 
 pub use batch::Tally;
+pub use ellipse::Ellipse;
 pub use project::{Disc, Fate, Projector, project};
 pub use view::View;
 

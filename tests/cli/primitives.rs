@@ -64,10 +64,10 @@ fn info_counts_what_there_is() {
 }
 
 #[test]
-fn methods_that_draw_surfels_alone_refuse_them() {
+fn only_the_pyramid_draws_them() {
     let at = scenes();
     let before = names(at.path());
-    for method in ["ewa", "single-pass", "transparent", "transparent-hq", "peeling"] {
+    for method in ["ewa", "single-pass", "transparent", "transparent-hq", "peeling", "template"] {
         for scene in ["polygons", "all"] {
             let file = format!("{scene}.toml");
             let line = fails(at.path(), &["render", &file, "--method", method], 1);
@@ -78,6 +78,15 @@ fn methods_that_draw_surfels_alone_refuse_them() {
             assert_eq!(line, expected);
         }
     }
+    let size = ["--size", "32x24", "--method", "pyramid", "-o", "a.exr"];
+    for scene in ["polygons", "hybrid", "all"] {
+        let scene = format!("{scene}.toml");
+        let said = succeeds(at.path(), &[&["render", &scene], &size[..]].concat());
+        assert!(said.contains(" triangles"), "{said}");
+        let text = exr::read(&at.path().join("a.exr")).unwrap().text.unwrap();
+        assert!(text.contains("\ntriangles = "), "{text}");
+    }
+    ["a.exr", "a.png"].iter().for_each(|name| fs::remove_file(at.path().join(name)).unwrap());
     let line = fails(at.path(), &["explain", "all.toml", "3", "4"], 1);
     assert!(line.contains("which the method ewa does not draw"), "{line}");
     let line = fails(at.path(), &["group", "all.toml", "-o", "b.ply"], 1);

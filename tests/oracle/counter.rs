@@ -95,6 +95,9 @@ impl Real for Counted {
     fn from_f32(value: f32) -> Self {
         Self(value.into())
     }
+    fn from_i64(value: i64) -> Self {
+        Self(Real::from_i64(value))
+    }
     fn to_f32(self) -> f32 {
         self.0 as f32
     }
@@ -103,6 +106,9 @@ impl Real for Counted {
     }
     fn to_pixel(self) -> u32 {
         Real::to_pixel(self.0)
+    }
+    fn to_i64(self) -> i64 {
+        Real::to_i64(self.0)
     }
     fn floor(self) -> Self {
         Self(self.0.floor())

@@ -34,7 +34,8 @@ fn golden(path: &Path) -> Golden {
     let groups = file.groups(&scene.surfels, &method, &exec, &|_, _, _| ()).expect("groups");
     let groups = groups.map(|(groups, _)| groups);
     let camera = file.camera(&scene).expect("a camera");
-    let (name, settings) = (path.display().to_string(), *method.splats());
+    let (name, settings) =
+        (path.display().to_string(), method.splats().copied().unwrap_or_default());
     Golden { case: Case { name, camera, settings, scene, exact: false }, method, groups }
 }
 

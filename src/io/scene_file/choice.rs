@@ -2,7 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::method::ewa::{self, Epsilon};
+use crate::method::pyramid::{self, Occlusion, Weights};
 use crate::method::single_pass::{self, BinCount, DepthTest};
+use crate::method::template::{self, LevelRule};
 use crate::method::transparent::{self, Holes};
 use crate::method::{Grouping, Method, peeling};
 use crate::scene::group::{Coplanar, Extension, Rules};
@@ -23,6 +25,10 @@ pub enum MethodName {
     TransparentHq,
     /// `peeling`: depth peeling.
     Peeling,
+    /// `pyramid`: pull-push interpolation \[MKC08\].
+    Pyramid,
+    /// `template`: reconstruction with templates \[MOC08\].
+    Template,
 }
 
 impl MethodName {
@@ -35,6 +41,8 @@ impl MethodName {
             Method::Transparent(transparent::Settings { nearest: None, .. }) => Self::Transparent,
             Method::Transparent(_) => Self::TransparentHq,
             Method::Peeling(_) => Self::Peeling,
+            Method::Pyramid(_) => Self::Pyramid,
+            Method::Template(_) => Self::Template,
         }
     }
 }
@@ -68,6 +76,16 @@ pub struct MethodChoice {
     pub bends: Option<Layers>,
     /// The most layers that are peeled, see [`peeling::Settings`].
     pub peel: Option<u32>,
+    /// See [`pyramid::Settings`].
+    pub weights: Option<Weights>,
+    /// See [`pyramid::Settings`].
+    pub occluded: Option<Occlusion>,
+    /// See [`pyramid::Settings`].
+    pub subpixel_bits: Option<u32>,
+    /// How wide the template is, see [`template::Settings`].
+    pub template: Option<u32>,
+    /// See [`template::Settings`].
+    pub levels: Option<LevelRule>,
 }
 
 /// How groups are extended, without its parameter.
@@ -123,7 +141,7 @@ impl MethodChoice {
     /// # Errors
     /// [`Error::Invalid`] if something was chosen that the method does not have, or is out of range.
     pub fn method(&self) -> Result<Method> {
-        use MethodName::{Ewa, Peeling, SinglePass, Transparent, TransparentHq};
+        use MethodName::{Ewa, Peeling, Pyramid, SinglePass, Template, Transparent, TransparentHq};
         let name = self.name.unwrap_or_default();
         let kept = self.of_method(name);
         let keys = [
@@ -133,6 +151,16 @@ impl MethodChoice {
             ("refraction", self.refraction.is_some() && kept.refraction.is_none()),
             ("bends", self.bends.is_some() && kept.bends.is_none()),
             ("peel", self.peel.is_some() && kept.peel.is_none()),
+            ("kernel", self.kernel.is_some() && kept.kernel.is_none()),
+            ("outline", self.outline.is_some() && kept.outline.is_none()),
+            ("cutoff", self.cutoff.is_some() && kept.cutoff.is_none()),
+            ("low_pass", self.low_pass.is_some() && kept.low_pass.is_none()),
+            ("epsilon", self.epsilon.is_some() && kept.epsilon.is_none()),
+            ("weights", self.weights.is_some() && kept.weights.is_none()),
+            ("occluded", self.occluded.is_some() && kept.occluded.is_none()),
+            ("subpixel_bits", self.subpixel_bits.is_some() && kept.subpixel_bits.is_none()),
+            ("template", self.template.is_some() && kept.template.is_none()),
+            ("levels", self.levels.is_some() && kept.levels.is_none()),
         ];
         if let Some((key, _)) = keys.iter().find(|(_, lost)| *lost) {
             let name = super::words::of_method(name);
@@ -143,6 +171,23 @@ impl MethodChoice {
         }
         let splats = self.splats(ewa::Settings::default());
         let method = match name {
+            Pyramid => {
+                let default = pyramid::Settings::default();
+                Method::Pyramid(pyramid::Settings {
+                    weights: self.weights.unwrap_or(default.weights),
+                    occlusion: self.occluded.unwrap_or(default.occlusion),
+                    cull: self.cull.unwrap_or(default.cull),
+                    subpixel_bits: self.subpixel_bits.unwrap_or(default.subpixel_bits),
+                })
+            }
+            Template => {
+                let default = template::Settings::default();
+                Method::Template(template::Settings {
+                    size: self.template.unwrap_or(default.size),
+                    levels: self.levels.unwrap_or(default.levels),
+                    cull: self.cull.unwrap_or(default.cull),
+                })
+            }
             Ewa => Method::Ewa(splats),
             SinglePass => Method::SinglePass(single_pass::Settings { splats, depth: self.depth() }),
             Peeling => {
@@ -173,19 +218,31 @@ impl MethodChoice {
     /// What was chosen that means something to a method, with this method.
     #[must_use]
     pub fn of_method(&self, name: MethodName) -> Self {
-        use MethodName::{Peeling, SinglePass, Transparent, TransparentHq};
+        use MethodName::{Peeling, Pyramid, SinglePass, Template, Transparent, TransparentHq};
         let groups = matches!(name, SinglePass | Transparent | TransparentHq);
         let blends = matches!(name, Transparent | TransparentHq);
         let nearest = name == TransparentHq;
+        let (pyramid, template) = (name == Pyramid, name == Template);
+        let splats = !(pyramid || template);
         Self {
             name: Some(name),
+            kernel: self.kernel.filter(|_| splats),
+            outline: self.outline.filter(|_| splats),
+            cutoff: self.cutoff.filter(|_| splats),
+            low_pass: self.low_pass.filter(|_| splats),
+            epsilon: self.epsilon.filter(|_| splats),
+            cull: self.cull,
             voronoi: self.voronoi.filter(|_| nearest || name == SinglePass),
             bins: self.bins.filter(|_| groups),
             holes: self.holes.filter(|_| blends),
             refraction: self.refraction.filter(|_| nearest),
             bends: self.bends.filter(|_| nearest),
             peel: self.peel.filter(|_| name == Peeling),
-            ..*self
+            weights: self.weights.filter(|_| pyramid),
+            occluded: self.occluded.filter(|_| pyramid),
+            subpixel_bits: self.subpixel_bits.filter(|_| pyramid),
+            template: self.template.filter(|_| template),
+            levels: self.levels.filter(|_| template),
         }
     }
 

@@ -90,7 +90,7 @@ fn what_is_absent_has_its_default() {
     let file = parse("[[model]]\nshape = \"staircase\"\n");
     let source = Source::Shape { shape: Shape::ALL[4], count: DEFAULT_COUNT, seed: 0 };
     assert_eq!(file, SceneFile { name: "scene".into(), ..SceneFile::of_model(source) });
-    assert_eq!(*file.method.method().unwrap().splats(), Settings::default());
+    assert_eq!(file.method.method().unwrap().splats(), Some(&Settings::default()));
     assert_eq!(parse(&format!("light = []\n{SHAPE}")).lights, []);
 }
 
@@ -162,6 +162,7 @@ fn epsilon_is_a_number_or_radii() {
             .method()
             .unwrap()
             .splats()
+            .unwrap()
             .epsilon
     };
     assert_eq!(epsilon("0.25"), Epsilon::World(0.25));
@@ -305,6 +306,6 @@ fn what_the_camera_leaves_open_shows_the_scene() {
 #[test]
 fn a_preset_can_be_changed_in_part() {
     let settings = parse(&format!("{SHAPE}[method]\nkernel = \"zpvbg01\"\nlow_pass = 0\n"));
-    let kernel = settings.method.method().unwrap().splats().kernel;
+    let kernel = settings.method.method().unwrap().splats().unwrap().kernel;
     assert_eq!(kernel, Kernel { low_pass: 0.0, ..Kernel::ZPVBG01 });
 }

@@ -1,7 +1,9 @@
 //! Settings as words: what scene files, the command line and the text in a picture call them.
 
 use crate::method::ewa::Epsilon;
+use crate::method::pyramid::{Occlusion, Weights};
 use crate::method::single_pass::DepthTest;
+use crate::method::template::LevelRule;
 use crate::method::transparent::Holes;
 use crate::shade::optics::Layers;
 use crate::splat::{Kernel, Outline};
@@ -44,15 +46,17 @@ pub fn of_outline(outline: Outline) -> &'static str {
 }
 
 /// The methods.
-const METHODS: [(&str, MethodName); 5] = [
+const METHODS: [(&str, MethodName); 7] = [
     ("ewa", MethodName::Ewa),
     ("single-pass", MethodName::SinglePass),
     ("transparent", MethodName::Transparent),
     ("transparent-hq", MethodName::TransparentHq),
     ("peeling", MethodName::Peeling),
+    ("pyramid", MethodName::Pyramid),
+    ("template", MethodName::Template),
 ];
 
-/// `ewa`, `single-pass`, `transparent`, `transparent-hq` or `peeling`.
+/// `ewa`, `single-pass`, `transparent`, `transparent-hq`, `peeling`, `pyramid` or `template`.
 ///
 /// # Errors
 /// The words there are.
@@ -112,6 +116,56 @@ pub fn bends(word: &str) -> Found<Layers> {
 #[must_use]
 pub fn of_bends(layers: Layers) -> &'static str {
     word_of(&BENDS, layers)
+}
+
+const WEIGHTS: [(&str, Weights); 2] = [("box", Weights::Box), ("gaussian", Weights::Gaussian)];
+
+/// `box` or `gaussian`: the weights of the pull-push interpolation.
+///
+/// # Errors
+/// The words there are.
+pub fn weights(word: &str) -> Found<Weights> {
+    choose("weights", word, &WEIGHTS)
+}
+
+/// The word for weights.
+#[must_use]
+pub fn of_weights(weights: Weights) -> &'static str {
+    word_of(&WEIGHTS, weights)
+}
+
+const OCCLUSIONS: [(&str, Occlusion); 2] =
+    [("behind", Occlusion::Behind), ("outside", Occlusion::Outside)];
+
+/// `behind` or `outside` the interval of the parent: what is occluded.
+///
+/// # Errors
+/// The words there are.
+pub fn occluded(word: &str) -> Found<Occlusion> {
+    choose("occluded", word, &OCCLUSIONS)
+}
+
+/// The word for what is occluded.
+#[must_use]
+pub fn of_occluded(occlusion: Occlusion) -> &'static str {
+    word_of(&OCCLUSIONS, occlusion)
+}
+
+const LEVELS: [(&str, LevelRule); 2] =
+    [("covering", LevelRule::Covering), ("published", LevelRule::Published)];
+
+/// `covering` or `published`: the level at which a centre stays.
+///
+/// # Errors
+/// The words there are.
+pub fn levels(word: &str) -> Found<LevelRule> {
+    choose("levels", word, &LEVELS)
+}
+
+/// The word for a rule of levels.
+#[must_use]
+pub fn of_levels(rule: LevelRule) -> &'static str {
+    word_of(&LEVELS, rule)
 }
 
 /// `none`, `add` or `enlarge`.

@@ -168,7 +168,7 @@ impl<'a, R: Real> Peeling<'a, R> {
             None => self.own,
         };
         let [alpha, ..] = sum::average([sums.opacity; 3], sums.weight);
-        let color = self.shader.pixel(at, depth, Vector3::new(x, y, z), surface);
+        let color = self.shader.pixel(at, depth, (Vector3::new(x, y, z), Vector3::ZERO), surface);
         Layer { depth, id: sums.id, count: sums.count, alpha, color }
     }
 

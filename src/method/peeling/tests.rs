@@ -153,7 +153,7 @@ fn by_the_page<R: Real>(scene: &Scene, camera: &Camera, settings: &Settings) -> 
                 (depths[pixel], ids[pixel]) = (t, id);
             }
         }
-        let shaded = shader.shade(&depth, Some(&normal), Some(surface), &Exec::sequential());
+        let shaded = shader.shade(&depth, Some(&normal), None, Some(surface), &Exec::sequential());
         for pixel in 0..n {
             let factor = through[pixel] * opacity[pixel];
             colors[pixel] = sum::add(colors[pixel], factor, shaded.values()[pixel]);

@@ -60,7 +60,10 @@ impl<R: Real> First<R> {
         let (images, alpha): (Vec<_>, Vec<Vec<R>>) = done.into_iter().unzip();
         let images: Vec<_> = images.into_iter().flatten().collect();
         let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
-        let shaded = shader.shade(&target.depth, target.normal.as_ref(), target.color.take(), exec);
+        let shaded = {
+            let color = target.color.take();
+            shader.shade(&target.depth, target.normal.as_ref(), None, color, exec)
+        };
         if stages {
             let voronoi = settings.depth != single_pass::DepthTest::Plain;
             let kinds = (wanted.color, voronoi);

@@ -22,6 +22,11 @@ pub(super) struct RawMethod {
     refraction: Option<[f32; 3]>,
     bends: Option<String>,
     peel: Option<u32>,
+    weights: Option<String>,
+    occluded: Option<String>,
+    subpixel_bits: Option<u32>,
+    template: Option<u32>,
+    levels: Option<String>,
 }
 
 impl RawMethod {
@@ -40,6 +45,11 @@ impl RawMethod {
             refraction: self.refraction,
             bends: self.bends.map(|word| words::bends(&word)).transpose()?,
             peel: self.peel,
+            weights: self.weights.map(|word| words::weights(&word)).transpose()?,
+            occluded: self.occluded.map(|word| words::occluded(&word)).transpose()?,
+            subpixel_bits: self.subpixel_bits,
+            template: self.template,
+            levels: self.levels.map(|word| words::levels(&word)).transpose()?,
         };
         choice.method().map_err(|error| error.to_string())?;
         Ok(choice)

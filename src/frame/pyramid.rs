@@ -1,0 +1,41 @@
+//! The sizes of an image pyramid.
+
+/// The width and height of every level, from the picture to the level of one pixel.
+///
+/// `Decided:` a level is half as wide and half as high as the finer one, rounded up: pixel (X, Y) stands
+/// for the finer pixels (2X, 2Y), (2X + 1, 2Y), (2X, 2Y + 1), (2X + 1, 2Y + 1), of which those beyond the right or
+/// lower edge of an odd level do not exist. (\[MKC08\] and \[MOC08\] show powers of two.) So a pixel of level l
+/// is a square of side 2^l pixels whose centre is (2^l (X + 1/2), 2^l (Y + 1/2)); only for a width that is a
+/// power of two do the squares end where the picture ends.
+#[must_use]
+pub fn sizes(width: u32, height: u32) -> Vec<[u32; 2]> {
+    let mut levels = vec![[width, height]];
+    let (mut w, mut h) = (width, height);
+    while w > 1 || h > 1 {
+        (w, h) = (w.div_ceil(2), h.div_ceil(2));
+        levels.push([w, h]);
+    }
+    levels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_level_covers_the_finer_one_and_the_last_is_a_pixel() {
+        assert_eq!(sizes(1, 1), [[1, 1]]);
+        assert_eq!(sizes(8, 4), [[8, 4], [4, 2], [2, 1], [1, 1]]);
+        assert_eq!(sizes(1, 5), [[1, 5], [1, 3], [1, 2], [1, 1]]);
+        for (w, h) in [(13, 9), (65_535, 3), (1023, 1025)] {
+            let levels = sizes(w, h);
+            for pair in levels.windows(2) {
+                for side in 0..2 {
+                    let (fine, coarse) = (pair[0][side], pair[1][side]);
+                    assert!(2 * coarse >= fine && 2 * (coarse - 1) < fine, "{fine} {coarse}");
+                }
+            }
+            assert_eq!(levels.last(), Some(&[1, 1]));
+        }
+    }
+}

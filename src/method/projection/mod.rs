@@ -1,0 +1,169 @@
+//! Projection to single pixels: the one pass over the scene of image-space reconstruction.
+//!
+//! Source: \[MKC08, sections 3.1, 4.1, 4.2, 5\], \[MOC08, section 3.1\]. Every surfel becomes at most one pixel,
+//! ribbons and tubes become lines one pixel wide, triangles the pixels they cover. What a pixel keeps
+//! is one [`Sample`], the nearest; ties: the lower [id](self#ids).
+//!
+//! **Surfels.** With p the centre and n the normal in view space, t = -p.z, m = 1/t and (a, b) = (p.x m, p.y m)
+//! (orthographic: m = 1 and (a, b) = (p.x, p.y)):
+//!
+//! ```text
+//!   centre  X = cx + fx a      Y = cy - fy b      drawn into pixel (floor X, floor Y)
+//!   g       = (n.x a + n.y b) - n.z               orthographic: -n.z;   < 0: the front is seen
+//!   depth   t                  interval [t, t + r]
+//!   extent  rho = r (f m)      f = sqrt(fx fy), at most 2^48
+//! ```
+//!
+//! Fates, in this order: `Behind` unless t > near; `Degenerate` if X, Y, t or g is not finite; with culling
+//! `BackFacing` if g >= 0; `Outside` unless 0 <= X < width and 0 <= Y < height; else it is a sample. Where the back is
+//! seen (g > 0) the normal is reversed. `Decided:` an elliptical surfel counts as the disc of its radius,
+//! and opacity is ignored: both papers know discs and opaque surfaces only. A disc whose centre is
+//! outside the picture is lost even where it reaches into it: that is the papers' algorithm, and one of
+//! its errors.
+//!
+//! **Ribbons, tubes and triangles**: see [`primitives`].
+//!
+//! # Ids
+//!
+//! Surfels by index, then triangles, ribbons and tubes, each in its order, counted on.
+//!
+//! # Planes
+//!
+//! With stages: `projection.id`, `projection.kind` (the [`Kind`] as a stencil), `projection.Z`, `projection.normal`
+//! (view space), `projection.extent` (rho), `projection.radius` (r), `projection.centre.X`, `.Y`, and if the scene has them
+//! `projection.R G B` and `projection.tangent` (view space).
+
+pub(in crate::method) mod fast;
+mod plain;
+mod planes;
+pub mod primitives;
+pub mod surfel;
+
+pub(in crate::method) use plain::project;
+pub(in crate::method) use planes::planes;
+
+use crate::frame::raster::Snap;
+use crate::frame::{NO_ID, Plane};
+use crate::number::{Real, Vector2, Vector3};
+use crate::scene::{Camera, Scene};
+use crate::splat::clip::Clip;
+use crate::splat::{Tally, View};
+
+/// What a pixel shows; the stencil of \[MKC08, section 4.1\].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[repr(u8)]
+pub enum Kind {
+    /// Nothing.
+    #[default]
+    Empty = 0,
+    /// A surfel.
+    Surface = 1,
+    /// A ribbon.
+    Ribbon = 2,
+    /// A tube.
+    Tube = 3,
+    /// A triangle.
+    Polygon = 4,
+}
+
+/// What one pixel knows of the scene; view space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<R> {
+    /// What it is.
+    pub kind: Kind,
+    /// Which, see the [module](self#ids).
+    pub id: u32,
+    /// Depth t in world units.
+    pub depth: R,
+    /// Radius r in world units.
+    pub radius: R,
+    /// Radius rho in pixels.
+    pub extent: R,
+    /// Where the centre is in the picture, in pixels. `Decided:` \[MOC08\] stores the coordinates of the
+    /// projection, so they are not rounded; \[MKC08\] has displacement (0, 0), so its centre is the pixel's.
+    pub centre: Vector2<R>,
+    /// Normal, towards the viewer.
+    pub normal: Vector3<R>,
+    /// Tangent of a tube; else the null vector.
+    pub tangent: Vector3<R>,
+    /// Linear RGB; 0 if the scene has no colours.
+    pub color: [R; 3],
+}
+
+impl<R: Real> Sample<R> {
+    /// No sample.
+    #[must_use]
+    pub fn empty() -> Self {
+        Self {
+            kind: Kind::Empty,
+            id: NO_ID,
+            depth: R::INFINITY,
+            radius: R::ZERO,
+            extent: R::ZERO,
+            centre: Vector2::new(R::ZERO, R::ZERO),
+            normal: Vector3::ZERO,
+            tangent: Vector3::ZERO,
+            color: [R::ZERO; 3],
+        }
+    }
+}
+
+/// A scene as one sample a pixel.
+#[derive(Clone, Debug)]
+pub struct Projected<R> {
+    /// The nearest sample of each pixel.
+    pub samples: Plane<Sample<R>>,
+    /// What became of the surfels.
+    pub tally: Tally,
+}
+
+/// What the projection of a scene's primitives shares.
+struct Stage<'a, R> {
+    scene: &'a Scene,
+    has: Has,
+    lens: surfel::Lens<R>,
+    clip: Clip<R>,
+    snap: Snap,
+    /// Width and height of the picture.
+    size: [u32; 2],
+}
+
+impl<'a, R: Real> Stage<'a, R> {
+    fn new(scene: &'a Scene, camera: &Camera, cull: bool, snap: Snap) -> Self {
+        let view = View::new(camera);
+        Self {
+            scene,
+            has: Has::of(scene),
+            lens: surfel::Lens::new(view, cull),
+            clip: Clip::new(&view),
+            snap,
+            size: [camera.width, camera.height],
+        }
+    }
+}
+
+/// A vector of view space in world space, divided by its length, plus 0: each component
+/// `(m0 x + m1 y) + m2 z` down a column of the view matrix; the null vector stays.
+#[inline(always)]
+pub(in crate::method) fn world<R: Real>(view: &View<R>, v: Vector3<R>) -> [R; 3] {
+    let m = &view.rows;
+    let column = |i: usize| (m[0][i] * v.x + m[1][i] * v.y) + m[2][i] * v.z;
+    let n = Vector3::new(column(0), column(1), column(2)).normalized();
+    [n.x + R::ZERO, n.y + R::ZERO, n.z + R::ZERO]
+}
+
+/// Which attributes a scene has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::method) struct Has {
+    pub(in crate::method) color: bool,
+    pub(in crate::method) tangent: bool,
+}
+
+impl Has {
+    pub(in crate::method) fn of(scene: &Scene) -> Self {
+        Self {
+            color: scene.surfels.color().is_some() || scene.primitives.colored(),
+            tangent: !scene.primitives.tubes.is_empty(),
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! Triangles, ribbons and tubes as pixels \[MKC08, sections 4.1, 4.2 and 5.1\].
+//!
+//! A primitive has two or three corners; those of a piece of it are clipped, see [`crate::splat::clip`],
+//! placed as the centre of a surfel is, see [`super`], and snapped to fixed point, see
+//! [`crate::frame::raster`], which says exactly what pixels a piece covers. A clipped triangle is drawn as
+//! the fan of its first corner. `Decided:` with culling a triangle whose corners run clockwise on the
+//! screen is dropped; without, its normals are reversed.
+//!
+//! **Perspective-correct weights.** At a pixel the corners i of a piece have exact barycentric weights
+//! w_i >= 0 out of w (of a line: den - num and num out of den); each is rounded to the arithmetic. With
+//! W_ik the weight of corner k of the primitive at corner i of the piece, and m_i as for surfels:
+//!
+//! ```text
+//!   q_i = (w_i / w) m_i        b_i = q_i / ((q_0 + q_1) + q_2)
+//!   c_k = (b_0 W_0k + b_1 W_1k) + b_2 W_2k
+//!   attribute = (c_0 a_0 + c_1 a_1) + c_2 a_2                       two corners: without the third
+//! ```
+//!
+//! for the position p in view space, the radius, the colour, and the direction in view space, which is
+//! then divided by its length. The depth is t = -p.z, rho as for surfels; the centre is that of the pixel.
+//!
+//! **Triangles** have the radius of their vertices, 0 if nobody gave them one, so that they are not
+//! expanded; where a mesh becomes points its boundary has radii (section 5.2).
+//! **Ribbons** have two sides: where the back is seen (g > 0 at p) the normal is reversed.
+//! **Tubes** have the direction to the camera as normal, -p / |p| (orthographic: (0, 0, 1)), and keep
+//! their tangent.
+
+use super::surfel::{Lens, Placed};
+use super::{Kind, Sample, Stage};
+use crate::frame::Rect;
+use crate::frame::raster::{Line, Triangle};
+use crate::number::{Real, Vector2, Vector3};
+use crate::scene::Vertices;
+use crate::scene::indexed::Indexed;
+use crate::splat::clip::Clipped;
+use crate::splat::ellipse;
+
+/// A piece of a primitive on the screen.
+#[derive(Debug)]
+pub(super) struct Piece<R> {
+    pub(super) bounds: Rect,
+    kind: Kind,
+    id: u32,
+    /// The primitive in its list.
+    index: usize,
+    back: bool,
+    raster: Raster,
+    /// m of each corner of the piece.
+    m: [R; 3],
+    /// W: for each corner of the piece the weights of the corners of the primitive.
+    weights: [[R; 3]; 3],
+    /// The corners of the primitive in view space.
+    p: [Vector3<R>; 3],
+}
+
+#[derive(Debug)]
+enum Raster {
+    Triangle(Triangle),
+    Line(Line),
+}
+
+/// A pixel of a piece: c and the position there.
+pub(super) struct Fragment<R> {
+    pub(super) x: u32,
+    pub(super) y: u32,
+    pub(super) c: [R; 3],
+    pub(super) p: Vector3<R>,
+}
+
+/// Calls `draw` for each piece of a primitive that may be seen.
+pub(super) fn pieces<R: Real>(stage: &Stage<'_, R>, id: usize, draw: impl FnMut(Piece<R>)) {
+    let of = &stage.scene.primitives;
+    let index = id - stage.scene.surfels.len();
+    if index < of.triangles.len() {
+        return triangle(&of.triangles, stage, (id as u32, index), draw);
+    }
+    let index = index - of.triangles.len();
+    if index < of.ribbons.len() {
+        return line((&of.ribbons, Kind::Ribbon), stage, (id as u32, index), draw);
+    }
+    let index = index - of.ribbons.len();
+    line((&of.tubes, Kind::Tube), stage, (id as u32, index), draw);
+}
+
+/// The corners of a primitive in view space.
+fn corners<R: Real, const N: usize>(
+    of: &Indexed<N>,
+    lens: &Lens<R>,
+    index: usize,
+) -> [Vector3<R>; N] {
+    let position = &of.vertices().position;
+    of.corners()[index].map(|i| lens.view.point(Vector3::from_glam(position[i as usize])))
+}
+
+/// A corner of a piece: its place in fixed point, and m.
+fn placed<R: Real>(stage: &Stage<'_, R>, p: Vector3<R>) -> ([i64; 2], R) {
+    let Placed { m, centre, .. } = stage.lens.place(p);
+    ([stage.snap.fixed(centre.x), stage.snap.fixed(centre.y)], m)
+}
+
+fn triangle<R: Real>(
+    of: &Indexed<3>,
+    stage: &Stage<'_, R>,
+    (id, index): (u32, usize),
+    mut draw: impl FnMut(Piece<R>),
+) {
+    let p = corners(of, &stage.lens, index);
+    let polygon: Vec<Clipped<R, 3>> = stage.clip.triangle(p);
+    let [width, height] = stage.size;
+    for i in 2..polygon.len() {
+        let fan = [&polygon[0], &polygon[i - 1], &polygon[i]];
+        let ends = fan.map(|corner| placed(stage, corner.position));
+        let Some(raster) = Triangle::new(&stage.snap, ends.map(|(place, _)| place)) else {
+            continue;
+        };
+        let bounds = raster.bounds(width, height);
+        let back = !raster.front();
+        if bounds.is_empty() || (stage.lens.cull && back) {
+            continue;
+        }
+        let (m, weights) = (ends.map(|(_, m)| m), fan.map(|corner| corner.weights));
+        let raster = Raster::Triangle(raster);
+        draw(Piece { bounds, kind: Kind::Polygon, id, index, back, raster, m, weights, p });
+    }
+}
+
+fn line<R: Real>(
+    (of, kind): (&Indexed<2>, Kind),
+    stage: &Stage<'_, R>,
+    (id, index): (u32, usize),
+    mut draw: impl FnMut(Piece<R>),
+) {
+    let p = corners(of, &stage.lens, index);
+    let Some([a, b]) = stage.clip.segment(p) else { return };
+    let ((from, from_m), (to, to_m)) = (placed(stage, a.position), placed(stage, b.position));
+    let raster = Line::new(&stage.snap, from, to);
+    let [width, height] = stage.size;
+    let bounds = raster.bounds(width, height);
+    if bounds.is_empty() {
+        return;
+    }
+    let weights = [a.weights, b.weights].map(|[a, b]| [a, b, R::ZERO]);
+    draw(Piece {
+        bounds,
+        kind,
+        id,
+        index,
+        back: false,
+        raster: Raster::Line(raster),
+        m: [from_m, to_m, R::ZERO],
+        weights: [weights[0], weights[1], [R::ZERO; 3]],
+        p: [p[0], p[1], Vector3::ZERO],
+    });
+}
+
+impl<R: Real> Piece<R> {
+    /// Calls `visit` for every pixel of a rectangle that the piece covers.
+    pub(super) fn for_each(&self, rect: &Rect, mut visit: impl FnMut(Fragment<R>)) {
+        let rect = rect.intersection(&self.bounds);
+        match &self.raster {
+            Raster::Triangle(triangle) => {
+                let area = R::from_i64(triangle.area());
+                triangle.for_each(&rect, |x, y, w| {
+                    visit(self.at(x, y, w.map(|w| R::from_i64(w) / area)));
+                });
+            }
+            Raster::Line(line) => line.for_each(&rect, |x, y, num, den| {
+                let w = [den - num, num, 0].map(|w| R::from_i64(w) / R::from_i64(den));
+                visit(self.at(x, y, w));
+            }),
+        }
+    }
+
+    /// Perspective-correct weights and position, see the module page.
+    fn at(&self, x: u32, y: u32, w: [R; 3]) -> Fragment<R> {
+        let q = [w[0] * self.m[0], w[1] * self.m[1], w[2] * self.m[2]];
+        let whole = (q[0] + q[1]) + q[2];
+        let b = q.map(|q| q / whole);
+        let of = &self.weights;
+        let c = [0, 1, 2].map(|k| (b[0] * of[0][k] + b[1] * of[1][k]) + b[2] * of[2][k]);
+        let p = (self.p[0] * c[0] + self.p[1] * c[1]) + self.p[2] * c[2];
+        Fragment { x, y, c, p }
+    }
+
+    /// What a pixel keeps of the piece.
+    pub(super) fn sample(&self, stage: &Stage<'_, R>, fragment: &Fragment<R>) -> Sample<R> {
+        let Fragment { x, y, c, p } = *fragment;
+        let (scene, lens) = (stage.scene, &stage.lens);
+        let of = &scene.primitives;
+        let (direction, radius, color) = match self.kind {
+            Kind::Ribbon => attributes(&of.ribbons, self.index, c),
+            Kind::Tube => attributes(&of.tubes, self.index, c),
+            _ => attributes(&of.triangles, self.index, c),
+        };
+        let direction = lens.view.direction(direction).normalized();
+        let placed = lens.place(p);
+        let (normal, tangent) = match self.kind {
+            Kind::Tube if lens.view.perspective => ((-p).normalized(), direction),
+            Kind::Tube => (Vector3::new(R::ZERO, R::ZERO, R::ONE), direction),
+            Kind::Ribbon if lens.facing(&placed, direction) > R::ZERO => {
+                (-direction, Vector3::ZERO)
+            }
+            _ if self.back => (-direction, Vector3::ZERO),
+            _ => (direction, Vector3::ZERO),
+        };
+        let zero = |v: Vector3<R>| v + Vector3::ZERO;
+        let own = || scene.material.color.to_array().map(R::from_f32);
+        Sample {
+            kind: self.kind,
+            id: self.id,
+            depth: placed.t,
+            radius,
+            extent: ellipse::radius_in_pixels(radius, lens.focal, placed.m),
+            centre: Vector2::new(R::from_f32(x as f32 + 0.5), R::from_f32(y as f32 + 0.5)),
+            normal: zero(normal),
+            tangent: zero(tangent),
+            color: if stage.has.color { color.unwrap_or_else(own) } else { [R::ZERO; 3] },
+        }
+    }
+}
+
+/// Direction, radius and colour of a primitive where its corners have the weights c.
+fn attributes<R: Real, const N: usize>(
+    of: &Indexed<N>,
+    index: usize,
+    c: [R; 3],
+) -> (Vector3<R>, R, Option<[R; 3]>) {
+    let Vertices { direction, radius, color, .. } = of.vertices();
+    let corners = of.corners()[index];
+    // The third weight of a line is 0, and its third corner any of the others.
+    let corner = |k: usize| corners[k.min(N - 1)] as usize;
+    let sum =
+        |a: &dyn Fn(usize) -> R| (c[0] * a(corner(0)) + c[1] * a(corner(1))) + c[2] * a(corner(2));
+    let vector = |of: &[glam::Vec3]| [0, 1, 2].map(|axis| sum(&|i| R::from_f32(of[i][axis])));
+    let [x, y, z] = vector(direction);
+    let radius = sum(&|i| R::from_f32(radius[i])).at_least(R::ZERO);
+    (Vector3::new(x, y, z), radius, color.as_deref().map(vector))
+}

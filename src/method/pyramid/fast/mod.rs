@@ -1,0 +1,217 @@
+//! The fast path for `f32`: the bits of [`super::plain`], from another layout.
+//!
+//! A level is rows of numbers, one number of all cells of a row after the other, so that [`LANES`] cells of a row
+//! are [`LANES`] neighbours in memory. The pull phase computes [`LANES`] coarser cells at a time, the push phase [`LANES`] finer
+//! ones of every second column, which have [`LANES`] consecutive parents. What is empty is passed over; the push
+//! phase changes a level in place and touches only cells that are empty or occluded.
+
+mod level;
+mod mix;
+mod output;
+mod pull;
+mod push;
+
+use super::picture::Surface;
+use super::plain::side;
+use super::{Cell, Settings};
+use crate::error::Result;
+use crate::frame::raster::Snap;
+use crate::frame::{Exec, NO_ID, Plane, pyramid};
+use crate::method::projection::fast::{LANES, Lanes, Nearest, Points, Sampling};
+use crate::method::projection::{self, Has, Kind, Projected};
+use crate::scene::{Camera, Scene};
+use crate::splat::{Tally, View};
+use level::{BACK, FRONT, FURTHER, KIND, Level, NORMAL, PAD, PLACE, RADIUS, Shape};
+use multiversion::multiversion;
+use output::Output;
+use std::time::{Duration, Instant};
+
+/// Wall times of the stages.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timings {
+    /// Projection to single pixels.
+    pub project: Duration,
+    /// The pull phase.
+    pub pull: Duration,
+    /// The push phase.
+    pub push: Duration,
+}
+
+/// The levels of a picture, which can be used for many pictures.
+#[derive(Debug, Default)]
+pub struct Levels {
+    points: Points,
+    levels: Vec<Level>,
+    has: Has,
+}
+
+impl Levels {
+    /// Projects a scene, pulls and pushes.
+    ///
+    /// # Errors
+    /// As [`super::render`]; camera and settings must have been checked.
+    pub fn draw(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        settings: &Settings,
+        exec: &Exec,
+    ) -> Result<(Tally, Timings)> {
+        let start = Instant::now();
+        self.reshape(camera, Has::of(scene));
+        let tally = self.project(scene, camera, settings, exec)?;
+        let projected = Instant::now();
+        let tubes = self.has.tangent;
+        for level in 1..self.levels.len() {
+            let (finer, coarser) = self.levels.split_at_mut(level);
+            pull::pull(&finer[level - 1], &mut coarser[0], side(level - 1), tubes, exec);
+        }
+        let pulled = Instant::now();
+        for level in (1..self.levels.len()).rev() {
+            let (finer, coarser) = self.levels.split_at_mut(level);
+            let how = (side(level - 1), tubes);
+            push::push(&mut finer[level - 1], &coarser[0], how, settings, exec);
+        }
+        let times = Timings {
+            project: projected - start,
+            pull: pulled - projected,
+            push: pulled.elapsed(),
+        };
+        Ok((tally, times))
+    }
+
+    /// The memory for a picture.
+    fn reshape(&mut self, camera: &Camera, has: Has) {
+        let sizes = pyramid::sizes(camera.width, camera.height);
+        let shapes = sizes.into_iter().map(|size| Shape::new(size, has));
+        if !shapes.clone().eq(self.levels.iter().map(|level| level.shape)) {
+            self.levels = shapes.map(Level::new).collect();
+        }
+        self.has = has;
+    }
+
+    /// Level 0.
+    fn project(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        settings: &Settings,
+        exec: &Exec,
+    ) -> Result<Tally> {
+        let level = &mut self.levels[0];
+        if !scene.primitives.is_empty() {
+            let how = (settings.cull, Snap::new(settings.subpixel_bits)?);
+            let projected = projection::project(scene, camera, how, exec)?;
+            store(&projected, self.has, level, exec);
+            return Ok(projected.tally);
+        }
+        let how = (settings.cull, false);
+        let sampling = Sampling::new(scene, View::new(camera), how);
+        let tally = self.points.find(&scene.surfels, &sampling.lens, exec);
+        let shape = level.shape;
+        self.points.each_row(shape.width, level.rows_mut(), exec, |_, nearest, row| {
+            samples(&sampling, nearest, row, &shape);
+        });
+        Ok(tally)
+    }
+
+    /// Level 0 as a picture wants it.
+    pub(super) fn surface(&self, view: &View<f32>, exec: &Exec, surface: &mut Surface<f32>) {
+        let level = &self.levels[0];
+        let (width, shape) = (level.shape.width, level.shape);
+        let mut normal = rows(&mut surface.normal, width);
+        let mut tangent = rows(&mut surface.tangent, width);
+        let mut color = rows(&mut surface.color, width);
+        let kinds = surface.kind.values_mut().chunks_mut(width);
+        let numbered = kinds.zip(surface.depth.values_mut().chunks_mut(width)).enumerate();
+        let jobs = numbered.map(|(y, (kind, depth))| Output {
+            row: level.row(y as isize),
+            kind,
+            depth,
+            normal: normal.as_mut().and_then(Iterator::next),
+            tangent: tangent.as_mut().and_then(Iterator::next),
+            color: color.as_mut().and_then(Iterator::next),
+        });
+        exec.ordered(jobs.collect(), |mut output: Output<'_>| output.write(&shape, view));
+    }
+
+    /// The cells of level 0.
+    #[must_use]
+    pub fn cells(&self) -> Plane<Cell<f32>> {
+        let level = &self.levels[0];
+        let Shape { width, height, .. } = level.shape;
+        let cells = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let cells = cells.map(|(x, y)| level.cell(x, y, self.has)).collect();
+        Plane::from_values(width as u32, height as u32, cells)
+    }
+}
+
+/// The rows of a plane that may not be there.
+fn rows(
+    plane: &mut Option<Plane<[f32; 3]>>,
+    width: usize,
+) -> Option<std::slice::ChunksMut<'_, [f32; 3]>> {
+    plane.as_mut().map(|plane| plane.values_mut().chunks_mut(width))
+}
+
+/// A row of level 0 from the nearest points of its pixels.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn samples(sampling: &Sampling<'_>, nearest: &Nearest<'_>, row: &mut [f32], shape: &Shape) {
+    for x in (0..shape.width).step_by(LANES) {
+        let mut put = |attribute: usize, lanes: &Lanes| {
+            let at = attribute * shape.stride + PAD + x;
+            row[at..at + LANES].copy_from_slice(lanes);
+        };
+        let Some(s) = sampling.take(nearest, x) else {
+            put(KIND, &[0.0; LANES]);
+            continue;
+        };
+        let (mut kind, mut back) = ([0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            kind[i] = if s.id[i] == NO_ID { 0.0 } else { SURFACE };
+            back[i] = s.depth[i] + s.radius[i];
+        }
+        put(KIND, &kind);
+        put(FRONT, &s.depth);
+        put(BACK, &back);
+        put(RADIUS, &s.extent);
+        put(PLACE, &[0.0; LANES]);
+        put(PLACE + 1, &[0.0; LANES]);
+        (0..3).for_each(|axis| put(NORMAL + axis, &s.normal[axis]));
+        if sampling.has.color {
+            (0..3).for_each(|channel| put(FURTHER + channel, &s.color[channel]));
+        }
+    }
+}
+
+/// [`Kind::Surface`] as a number.
+const SURFACE: f32 = Kind::Surface as u8 as f32;
+
+/// The samples of a projected scene as level 0.
+fn store(projected: &Projected<f32>, has: Has, level: &mut Level, exec: &Exec) {
+    let shape = level.shape;
+    let samples = projected.samples.values().chunks(shape.width);
+    let jobs = level.rows_mut().zip(samples).collect();
+    exec.ordered(jobs, |(row, samples): (&mut [f32], &[_])| {
+        for (x, sample) in samples.iter().enumerate() {
+            let cell = Cell::new(sample);
+            let mut put = |at: usize, values: &[f32]| {
+                for (k, value) in values.iter().enumerate() {
+                    row[(at + k) * shape.stride + PAD + x] = *value;
+                }
+            };
+            let (d, n, t) = (cell.displacement, cell.normal, cell.tangent);
+            put(KIND, &[f32::from(cell.kind as u8), cell.front, cell.back, cell.radius]);
+            put(PLACE, &[d.x, d.y, n.x, n.y, n.z]);
+            if has.color {
+                put(FURTHER, &cell.color);
+            }
+            if has.tangent {
+                put(shape.attributes - 3, &[t.x, t.y, t.z]);
+            }
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests;

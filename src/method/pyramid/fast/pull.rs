@@ -1,0 +1,95 @@
+//! The pull phase in lanes; see [`super::super::pull`].
+
+use super::level::{BACK, FRONT, FURTHER, KIND, Level, NORMAL, PAD, PLACE, RADIUS, Shape};
+use super::mix::Four;
+use crate::frame::Exec;
+use crate::method::projection::fast::{LANES, Lanes, halves};
+use multiversion::multiversion;
+
+/// Rows of a job.
+const ROWS: usize = 4;
+
+/// A coarser level from the finer one, of which `side` is the side of a cell in pixels.
+pub(super) fn pull(fine: &Level, coarse: &mut Level, side: f32, tubes: bool, exec: &Exec) {
+    let shapes = [fine.shape, coarse.shape];
+    let rows: Vec<_> = coarse.rows_mut().enumerate().collect();
+    let mut rows = rows.into_iter();
+    let jobs = std::iter::from_fn(|| {
+        let job: Vec<_> = rows.by_ref().take(ROWS).collect();
+        (!job.is_empty()).then_some(job)
+    });
+    exec.ordered(jobs.collect(), |job: Vec<(usize, &mut [f32])>| {
+        for (y, row) in job {
+            let finer = [fine.row(2 * y as isize), fine.row(2 * y as isize + 1)];
+            if tubes {
+                pull_row::<true>(finer, row, &shapes, side);
+            } else {
+                pull_row::<false>(finer, row, &shapes, side);
+            }
+        }
+    });
+}
+
+/// A number of the four finer cells of [`LANES`] coarser ones from column x on.
+#[inline(always)]
+fn four(finer: [&[f32]; 2], shape: &Shape, attribute: usize, x: usize) -> [Lanes; 4] {
+    let at = attribute * shape.stride + PAD + 2 * x;
+    let [a, b] = halves(finer[0], at);
+    let [c, d] = halves(finer[1], at);
+    [a, b, c, d]
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn pull_row<const TUBES: bool>(
+    finer: [&[f32]; 2],
+    coarse: &mut [f32],
+    [fine, shape]: &[Shape; 2],
+    side: f32,
+) {
+    let half = side * 0.5;
+    for x in (0..shape.width).step_by(LANES) {
+        let kind = four(finer, fine, KIND, x);
+        let at = PAD + x;
+        if kind.as_flattened().iter().all(|&kind| kind == 0.0) {
+            coarse[at..at + LANES].fill(0.0);
+            continue;
+        }
+        let number = |attribute: usize| four(finer, fine, attribute, x);
+        let (left, upper) = (number(PLACE), number(PLACE + 1));
+        let mut place = [[[0.0; LANES]; 2]; 4];
+        for j in 0..4 {
+            let dx = if j % 2 == 0 { -half } else { half };
+            let dy = if j / 2 == 0 { -half } else { half };
+            for i in 0..LANES {
+                place[j][0][i] = left[j][i] + dx;
+                place[j][1][i] = upper[j][i] + dy;
+            }
+        }
+        let [nx, ny, nz] = [0, 1, 2].map(|axis| number(NORMAL + axis));
+        let normal = [0, 1, 2, 3].map(|j| [nx[j], ny[j], nz[j]]);
+        let (front, back, radius) = (number(FRONT), number(BACK), number(RADIUS));
+        let four = Four { kind, front, back, radius, place, normal };
+        let mix = four.mix::<false, TUBES>();
+        let mut put = |attribute: usize, lanes: &Lanes| {
+            let at = attribute * shape.stride + at;
+            coarse[at..at + LANES].copy_from_slice(lanes);
+        };
+        put(KIND, &mix.kind);
+        if mix.kind.iter().all(|&kind| kind == 0.0) {
+            continue;
+        }
+        let [front, back] = mix.hull(&four.front, &four.back);
+        put(FRONT, &front);
+        put(BACK, &back);
+        put(RADIUS, &mix.of(&four.radius));
+        for axis in 0..2 {
+            put(PLACE + axis, &mix.of(&four.place.map(|place| place[axis])));
+        }
+        for axis in 0..3 {
+            put(NORMAL + axis, &mix.of(&four.normal.map(|normal| normal[axis])));
+        }
+        for attribute in FURTHER..shape.attributes {
+            put(attribute, &mix.of(&number(attribute)));
+        }
+    }
+}

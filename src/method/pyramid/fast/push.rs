@@ -1,0 +1,169 @@
+//! The push phase in lanes; see [`super::super::push`]. A level is changed in place, where it must be.
+
+use super::level::{BACK, FRONT, FURTHER, KIND, Level, NORMAL, PAD, PLACE, RADIUS, Shape, lanes};
+use super::mix::{Four, Mix};
+use crate::frame::Exec;
+use crate::method::projection::fast::{LANES, Lanes, halves};
+use crate::method::pyramid::{Occlusion, Settings, Weights};
+use multiversion::multiversion;
+
+/// Rows of a job.
+const ROWS: usize = 8;
+
+/// The cells of a level that are empty or occluded, from the coarser level; `side` is that of a cell in pixels.
+pub(super) fn push(
+    fine: &mut Level,
+    coarse: &Level,
+    (side, tubes): (f32, bool),
+    settings: &Settings,
+    exec: &Exec,
+) {
+    let shapes = [fine.shape, coarse.shape];
+    let outside = settings.occlusion == Occlusion::Outside;
+    let run = match (settings.weights, tubes) {
+        (Weights::Box, false) => push_row::<false, false>,
+        (Weights::Box, true) => push_row::<false, true>,
+        (Weights::Gaussian, false) => push_row::<true, false>,
+        (Weights::Gaussian, true) => push_row::<true, true>,
+    };
+    let rows: Vec<_> = fine.rows_mut().enumerate().collect();
+    let mut rows = rows.into_iter();
+    let jobs = std::iter::from_fn(|| {
+        let job: Vec<_> = rows.by_ref().take(ROWS).collect();
+        (!job.is_empty()).then_some(job)
+    });
+    exec.ordered(jobs.collect(), |job: Vec<(usize, &mut [f32])>| {
+        for (y, row) in job {
+            let parent = (y / 2) as isize;
+            let even = y % 2 == 0;
+            let beside = if even { parent - 1 } else { parent + 1 };
+            run([coarse.row(parent), coarse.row(beside)], row, &shapes, (side, even), outside);
+        }
+    });
+}
+
+/// A number of the parents and their three neighbours, for the columns of one parity.
+#[inline(always)]
+fn four(coarser: [&[f32]; 2], shape: &Shape, attribute: usize, x: usize, odd: usize) -> [Lanes; 4] {
+    let own = attribute * shape.stride + PAD + x;
+    let beside = own - 1 + 2 * odd;
+    [
+        lanes(coarser[0], own),
+        lanes(coarser[0], beside),
+        lanes(coarser[1], own),
+        lanes(coarser[1], beside),
+    ]
+}
+
+/// Where cells must be computed: 1, else 0. Cells beyond the level's width never are.
+#[inline(always)]
+fn needed(
+    kind: &Lanes,
+    front: &Lanes,
+    parent: [&Lanes; 3],
+    (left, outside): (usize, bool),
+) -> Lanes {
+    let [parent_kind, parent_front, parent_back] = parent;
+    let mut needed = [0.0; LANES];
+    for i in 0..LANES {
+        let before = outside & (front[i] < parent_front[i]);
+        let occluded = (parent_kind[i] > 0.0) & ((front[i] > parent_back[i]) | before);
+        let must = !(kind[i] > 0.0) | occluded;
+        needed[i] = if must & (i < left) { 1.0 } else { 0.0 };
+    }
+    needed
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn push_row<const GAUSSIAN: bool, const TUBES: bool>(
+    coarser: [&[f32]; 2],
+    fine: &mut [f32],
+    [fine_shape, shape]: &[Shape; 2],
+    (side, even_y): (f32, bool),
+    outside: bool,
+) {
+    for x in (0..shape.width).step_by(LANES) {
+        // An empty neighbourhood changes nothing: 2 rows of cells from x - 1 to x + LANES.
+        let around = PAD + x - 1..PAD + x + LANES + 1;
+        if coarser.iter().all(|row| row[around.clone()].iter().all(|&kind| kind == 0.0)) {
+            continue;
+        }
+        let at = |attribute: usize| attribute * fine_shape.stride + PAD + 2 * x;
+        let (kinds, fronts) = (halves(fine, at(KIND)), halves(fine, at(FRONT)));
+        let own = |attribute: usize| lanes(coarser[0], attribute * shape.stride + PAD + x);
+        let (kind, front, back) = (own(KIND), own(FRONT), own(BACK));
+        for odd in 0..2 {
+            // Columns 2x + odd, 2x + odd + 2 ... of the width.
+            let left = (fine_shape.width + 1 - odd).saturating_sub(2 * x) / 2;
+            let parent = [&kind, &front, &back];
+            let needed = needed(&kinds[odd], &fronts[odd], parent, (left, outside));
+            if needed.iter().all(|&needed| needed == 0.0) {
+                continue;
+            }
+            let number = |attribute: usize| four(coarser, shape, attribute, x, odd);
+            let four = Four {
+                kind: number(KIND),
+                front: number(FRONT),
+                back: number(BACK),
+                radius: number(RADIUS),
+                place: places(number(PLACE), number(PLACE + 1), side, (odd == 0, even_y)),
+                normal: {
+                    let [nx, ny, nz] = [0, 1, 2].map(|axis| number(NORMAL + axis));
+                    [0, 1, 2, 3].map(|j| [nx[j], ny[j], nz[j]])
+                },
+            };
+            let Mix { weights, kind } = four.mix::<GAUSSIAN, TUBES>();
+            let mut found = [0.0; LANES];
+            for i in 0..LANES {
+                found[i] = if kind[i] > 0.0 { needed[i] } else { 0.0 };
+            }
+            if found.iter().all(|&found| found == 0.0) {
+                continue;
+            }
+            let mix = Mix { weights, kind };
+            let mut put = |attribute: usize, new: &Lanes| {
+                let cells = &mut fine[at(attribute) + odd..at(attribute) + 2 * LANES];
+                for i in 0..LANES {
+                    let old = cells[2 * i];
+                    cells[2 * i] = if found[i] > 0.0 { new[i] } else { old };
+                }
+            };
+            put(KIND, &mix.kind);
+            put(FRONT, &mix.of(&four.front));
+            put(BACK, &mix.of(&four.back));
+            put(RADIUS, &mix.of(&four.radius));
+            for axis in 0..2 {
+                put(PLACE + axis, &mix.of(&four.place.map(|place| place[axis])));
+            }
+            for axis in 0..3 {
+                put(NORMAL + axis, &mix.of(&four.normal.map(|normal| normal[axis])));
+            }
+            for attribute in FURTHER..shape.attributes {
+                put(attribute, &mix.of(&number(attribute)));
+            }
+        }
+    }
+}
+
+/// From the centres of the finer cells to those of the four ellipses.
+#[inline(always)]
+fn places(
+    x: [Lanes; 4],
+    y: [Lanes; 4],
+    side: f32,
+    (even_x, even_y): (bool, bool),
+) -> [[Lanes; 2]; 4] {
+    let shift = |neighbour: bool, even: bool| {
+        let far = side * if neighbour { 1.5 } else { 0.5 };
+        if neighbour == even { -far } else { far }
+    };
+    let mut place = [[[0.0; LANES]; 2]; 4];
+    for j in 0..4 {
+        let (dx, dy) = (shift(j % 2 == 1, even_x), shift(j / 2 == 1, even_y));
+        for i in 0..LANES {
+            place[j][0][i] = x[j][i] + dx;
+            place[j][1][i] = y[j][i] + dy;
+        }
+    }
+    place
+}

@@ -1,0 +1,71 @@
+//! Fast is plain, bit for bit.
+
+use super::super::plain::{pull_all, push_all};
+use super::super::{Occlusion, Weights};
+use super::*;
+use crate::method::tests::{cameras, scene, surfels};
+use crate::scene::Primitives;
+use crate::scene::indexed::{Indexed, Vertices};
+use glam::Vec3;
+
+fn assert_same(scene: &Scene, camera: &Camera, settings: &Settings, levels: &mut Levels) {
+    let exec = Exec::new(3, 16).unwrap();
+    let how = (settings.cull, Snap::new(settings.subpixel_bits).unwrap());
+    let projected = projection::project::<f32>(scene, camera, how, &exec).unwrap();
+    let expected = &push_all(&pull_all(&projected, &exec), settings, &exec)[0];
+    let (tally, _) = levels.draw(scene, camera, settings, &exec).unwrap();
+    assert_eq!(tally, projected.tally);
+    let found = levels.cells();
+    let pairs = found.values().iter().zip(expected.values());
+    for (i, (found, expected)) in pairs.enumerate() {
+        // Their shortest decimals tell floats apart to the last bit, and the signs of zeros.
+        assert_eq!(format!("{found:?}"), format!("{expected:?}"), "pixel {i}, {settings:?}");
+    }
+}
+
+#[test]
+fn every_cell_has_the_bits_of_the_definition() {
+    // Used again and again, for other sizes too.
+    let mut levels = Levels::default();
+    for (i, camera) in cameras().into_iter().enumerate() {
+        for (count, radius) in [(1, 1e30), (37, 0.4), (3000, 0.05), (50_000, 0.01)] {
+            let scene = scene(surfels(count, radius, count % 2 == 1, i as u64));
+            for occlusion in [Occlusion::Behind, Occlusion::Outside] {
+                let weights = if count == 37 { Weights::Box } else { Weights::Gaussian };
+                let cull = count != 3000;
+                let settings = Settings { weights, occlusion, cull, ..Settings::default() };
+                assert_same(&scene, &camera, &settings, &mut levels);
+            }
+        }
+    }
+}
+
+/// Primitives between random points; their vertices are the surfels of another seed.
+fn indexed<const N: usize>(count: u32, seed: u64) -> Indexed<N> {
+    let points = surfels(u64::from(count), 0.05, true, seed);
+    let vertices = Vertices {
+        position: points.position().iter().map(|p| *p * 0.75).collect(),
+        direction: points.normal().to_vec(),
+        radius: points.radius().to_vec(),
+        color: points.color().map(<[Vec3]>::to_vec),
+    };
+    let corners = (0..count).map(|i| std::array::from_fn(|k| (i + k as u32) % count)).collect();
+    Indexed::new(vertices, corners).unwrap().0
+}
+
+#[test]
+fn triangles_and_lines_too() {
+    let mut levels = Levels::default();
+    for (i, camera) in cameras().into_iter().enumerate() {
+        let primitives = Primitives {
+            triangles: indexed(9, 100),
+            ribbons: indexed(40, 200),
+            tubes: indexed(40, 300),
+        };
+        let scene = Scene { primitives, ..scene(surfels(500, 0.05, i % 2 == 0, 7)) };
+        for cull in [true, false] {
+            let settings = Settings { cull, ..Settings::default() };
+            assert_same(&scene, &camera, &settings, &mut levels);
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! All stages in one call: from a scene to named planes.
+
+use super::fast::Levels;
+use super::plain::{pull_all, push_all};
+use super::{Cell, Settings};
+use crate::error::Result;
+use crate::frame::raster::Snap;
+use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples};
+use crate::method::picture::{Clock, Picture, before_environment, color, named, scalar};
+use crate::method::projection::{self, Has, world};
+use crate::number::Real;
+use crate::scene::{Camera, Scene};
+use crate::shade::phong::Shader;
+use crate::splat::{Tally, View};
+
+/// Renders with the definition, in any number. Beside the usual planes the picture has `kind`, and `tangent` if
+/// the scene has tubes. With `stages`, every stage leaves its planes:
+///
+/// | stage | planes |
+/// |---|---|
+/// | projection | see [`mod@crate::method::projection`] |
+/// | pull | for each level from 1 on, `pull01` ...: `.kind`, `.front`, `.back`, `.radius`, `.displacement.X`, `.Y`, `.normal`, and if the scene has them `.R G B`, `.tangent` |
+/// | push | the same for each level but the coarsest, from `push00` on |
+///
+/// A level lies in the upper left corner of its planes; the rest is as in an empty cell.
+///
+/// # Errors
+/// [`crate::Error::Invalid`] if the camera or the settings are out of range.
+pub fn render<R: Real>(
+    scene: &Scene,
+    camera: &Camera,
+    settings: &Settings,
+    exec: &Exec,
+    stages: bool,
+) -> Result<Picture<R>> {
+    camera.check()?;
+    settings.check()?;
+    let snap = Snap::new(settings.subpixel_bits)?;
+    let has = Has::of(scene);
+    let mut clock = Clock::default();
+    let projected = projection::project::<R>(scene, camera, (settings.cull, snap), exec)?;
+    clock.lap("projection");
+    let pulled = pull_all(&projected, exec);
+    clock.lap("pull");
+    let pushed = push_all(&pulled, settings, exec);
+    clock.lap("push");
+    let mut planes = Vec::new();
+    if stages {
+        planes = projection::planes(&projected, has);
+        for (level, cells) in pulled.iter().enumerate().skip(1) {
+            planes.extend(level_planes(&format!("pull{level:02}"), cells, camera, has));
+        }
+        let last = pushed.len() - 1;
+        for (level, cells) in pushed.iter().enumerate().take(last) {
+            planes.extend(level_planes(&format!("push{level:02}"), cells, camera, has));
+        }
+    }
+    let (cells, view) = (&pushed[0], View::new(camera));
+    let normals = stages || !scene.lights.is_empty();
+    let surface = Surface {
+        kind: cells.map(|cell| cell.kind as u8),
+        depth: cells.map(|cell| cell.front),
+        normal: normals.then(|| cells.map(|cell| world(&view, cell.normal))),
+        tangent: has.tangent.then(|| cells.map(|cell| world(&view, cell.tangent))),
+        color: has.color.then(|| cells.map(|cell| cell.color)),
+    };
+    Ok(finish(surface, planes, projected.tally, clock, (scene, camera, exec)))
+}
+
+/// Renders in `f32` by the fast path: the bits of [`render`], without the planes of the stages, in the memory of
+/// `levels` and of an earlier picture.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_f32(
+    scene: &Scene,
+    camera: &Camera,
+    settings: &Settings,
+    exec: &Exec,
+    levels: &mut Levels,
+    earlier: Option<Picture<f32>>,
+) -> Result<Picture<f32>> {
+    camera.check()?;
+    settings.check()?;
+    let (tally, times) = levels.draw(scene, camera, settings, exec)?;
+    let mut clock =
+        Clock::of(vec![("projection", times.project), ("pull", times.pull), ("push", times.push)]);
+    let mut surface = Surface::new(scene, camera, earlier.map(|picture| picture.frame));
+    clock.restart();
+    levels.surface(&View::new(camera), exec, &mut surface);
+    clock.lap("normalization");
+    Ok(finish(surface, Vec::new(), tally, clock, (scene, camera, exec)))
+}
+
+/// What is seen, pixel by pixel; vectors in world space.
+pub(super) struct Surface<R> {
+    /// See [`crate::method::projection::Kind`].
+    pub(super) kind: Plane<u8>,
+    /// Depth t; +inf where nothing is seen.
+    pub(super) depth: Plane<R>,
+    /// Unit normals, if there is light or they were asked for.
+    pub(super) normal: Option<Plane<[R; 3]>>,
+    /// Unit tangents of tubes, the null vector elsewhere; if the scene has tubes.
+    pub(super) tangent: Option<Plane<[R; 3]>>,
+    /// Colours, if the scene has them.
+    pub(super) color: Option<Plane<[R; 3]>>,
+}
+
+impl Surface<f32> {
+    /// What a scene needs, in the memory of an earlier frame of the same size; the values are any.
+    fn new(scene: &Scene, camera: &Camera, earlier: Option<Frame<f32>>) -> Self {
+        let (width, height) = (camera.width, camera.height);
+        let has = Has::of(scene);
+        let mut surface = Self {
+            kind: Plane::filled(0, 0, 0),
+            depth: Plane::filled(0, 0, 0.0),
+            normal: None,
+            tangent: None,
+            color: None,
+        };
+        let earlier = earlier.filter(|frame| (frame.width, frame.height) == (width, height));
+        for NamedPlane { name, samples } in earlier.into_iter().flat_map(|frame| frame.planes) {
+            match (name.as_str(), samples) {
+                ("kind", Samples::Count(plane)) => surface.kind = plane,
+                ("Z", Samples::Scalar(plane)) => surface.depth = plane,
+                ("normal", Samples::Vector(plane)) => surface.normal = Some(plane),
+                ("tangent", Samples::Vector(plane)) => surface.tangent = Some(plane),
+                ("", Samples::Color(plane)) => surface.color = Some(plane),
+                _ => {}
+            }
+        }
+        let vectors = |plane: Option<Plane<[f32; 3]>>, wanted: bool| {
+            let plane = plane.filter(|_| wanted);
+            wanted.then(|| plane.unwrap_or_else(|| Plane::filled(width, height, [0.0; 3])))
+        };
+        if surface.kind.width() != width {
+            surface.kind = Plane::filled(width, height, 0);
+        }
+        if surface.depth.width() != width {
+            surface.depth = Plane::filled(width, height, 0.0);
+        }
+        surface.normal = vectors(surface.normal, !scene.lights.is_empty());
+        surface.tangent = vectors(surface.tangent, has.tangent);
+        surface.color = vectors(surface.color, has.color);
+        surface
+    }
+}
+
+/// Deferred shading, and the planes of the picture.
+fn finish<R: Real>(
+    surface: Surface<R>,
+    mut planes: Vec<NamedPlane<R>>,
+    tally: Tally,
+    mut clock: Clock,
+    (scene, camera, exec): (&Scene, &Camera, &Exec),
+) -> Picture<R> {
+    let Surface { kind, depth, normal, tangent, color } = surface;
+    let (width, height) = (depth.width(), depth.height());
+    clock.restart();
+    let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
+    let color = shader.shade(&depth, normal.as_ref(), tangent.as_ref(), color, exec);
+    clock.lap("shading");
+    let alpha = depth.map(|t| if t.is_finite() { R::ONE } else { R::ZERO });
+    let (color, alpha) = before_environment(scene, camera, color, alpha, exec);
+    planes.push(named("", Samples::Color(color)));
+    planes.push(named("A", Samples::Scalar(alpha)));
+    planes.push(named("Z", Samples::Scalar(depth)));
+    planes.extend(normal.map(|p| named("normal", Samples::Vector(p))));
+    planes.extend(tangent.map(|p| named("tangent", Samples::Vector(p))));
+    planes.push(named("kind", Samples::Count(kind)));
+    Picture { frame: Frame { width, height, planes }, tally, timings: clock.into_laps() }
+}
+
+/// The planes of a level, of the size of the picture.
+fn level_planes<R: Real>(
+    name: &str,
+    cells: &Plane<Cell<R>>,
+    camera: &Camera,
+    has: Has,
+) -> Vec<NamedPlane<R>> {
+    let mut whole = Plane::filled(camera.width, camera.height, Cell::empty());
+    let (from, to) = (cells.width() as usize, camera.width as usize);
+    for (row, cells) in whole.values_mut().chunks_mut(to).zip(cells.values().chunks(from)) {
+        row[..from].copy_from_slice(cells);
+    }
+    let name = |of: &str| format!("{name}.{of}");
+    let mut planes = vec![
+        named(&name("kind"), Samples::Count(whole.map(|cell| cell.kind as u8))),
+        scalar(&name("front"), whole.map(|cell| cell.front)),
+        scalar(&name("back"), whole.map(|cell| cell.back)),
+        scalar(&name("radius"), whole.map(|cell| cell.radius)),
+        scalar(&name("displacement.X"), whole.map(|cell| cell.displacement.x)),
+        scalar(&name("displacement.Y"), whole.map(|cell| cell.displacement.y)),
+    ];
+    let normals = whole.map(|cell| [cell.normal.x, cell.normal.y, cell.normal.z]);
+    planes.push(named(&name("normal"), Samples::Vector(normals)));
+    if has.color {
+        let name = name("").trim_end_matches('.').to_owned();
+        planes.push(color(&name, whole.map(|cell| cell.color)));
+    }
+    if has.tangent {
+        let tangents = whole.map(|cell| [cell.tangent.x, cell.tangent.y, cell.tangent.z]);
+        planes.push(named(&name("tangent"), Samples::Vector(tangents)));
+    }
+    planes
+}

@@ -1,0 +1,174 @@
+//! The fast path for `f32`: the bits of [`super::gather`], from another layout.
+//!
+//! A level is rows of numbers, one number of all cells of a row after the other. Ellipses are found once a
+//! centre, not once a visit. [`LANES`] pixels of a row search together: at level 0 for centres that lie beside one
+//! another in memory, at coarser levels for one centre after the other; rows and levels where no
+//! centre stays are passed over. Each pixel meets its centres in the order of the definition.
+
+mod level;
+mod merge;
+mod search;
+#[cfg(test)]
+mod tests;
+
+use super::{Settings, levels};
+use crate::frame::{Exec, Framebuffer, pyramid};
+use crate::method::projection::Has;
+use crate::method::projection::fast::{LANES, Lanes, Nearest, Points, Sampling};
+use crate::scene::{Camera, Scene};
+use crate::splat::{Tally, View};
+use level::{COLOR, DEPTH, EXTENT, Level, NORMAL, PAD, PLACE, RADIUS, RowMut, Shape};
+use multiversion::multiversion;
+use search::Target;
+use std::time::{Duration, Instant};
+
+/// Wall times of the stages.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timings {
+    /// Projection to single pixels.
+    pub project: Duration,
+    /// Propagation and merging.
+    pub propagate: Duration,
+    /// Reconstruction and normalization.
+    pub search: Duration,
+}
+
+/// The levels of a picture, which can be used for many pictures.
+#[derive(Debug, Default)]
+pub struct Levels {
+    points: Points,
+    levels: Vec<Level>,
+}
+
+impl Levels {
+    /// Projects a scene, propagates and reconstructs; every pixel of `target` is overwritten but for stencil
+    /// and margin.
+    ///
+    /// # Panics
+    /// If the framebuffer has not the size of the camera's picture.
+    pub fn draw(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        settings: &Settings,
+        exec: &Exec,
+        target: &mut Framebuffer<f32>,
+    ) -> (Tally, Timings) {
+        assert_eq!((target.width, target.height), (camera.width, camera.height), "its size");
+        let start = Instant::now();
+        let has = Has::of(scene);
+        let sizes = pyramid::sizes(camera.width, camera.height);
+        let top = levels::top(settings, &sizes);
+        let shapes = sizes[..=top].iter().map(|&size| Shape::new(size, has.color));
+        if !shapes.clone().eq(self.levels.iter().map(|level| level.shape)) {
+            self.levels = shapes.map(Level::new).collect();
+        }
+        let reach = |level: usize| {
+            if level == top { f32::INFINITY } else { settings.reach(level) }
+        };
+        let tally = self.project(scene, camera, settings.cull, reach(0), exec);
+        let projected = Instant::now();
+        for level in 1..=top {
+            let (finer, coarser) = self.levels.split_at_mut(level);
+            let reach = [reach(level - 1), reach(level)];
+            merge::merge(&finer[level - 1], &mut coarser[0], reach, exec);
+        }
+        let propagated = Instant::now();
+        self.search(camera, settings, has.color, exec, target);
+        let times = Timings {
+            project: projected - start,
+            propagate: propagated - projected,
+            search: propagated.elapsed(),
+        };
+        (tally, times)
+    }
+
+    /// Level 0.
+    fn project(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        cull: bool,
+        reach: f32,
+        exec: &Exec,
+    ) -> Tally {
+        let sampling = Sampling::new(scene, View::new(camera), (cull, true));
+        let tally = self.points.find(&scene.surfels, &sampling.lens, exec);
+        let level = &mut self.levels[0];
+        let shape = level.shape;
+        self.points.each_row(shape.width, level.rows_mut(), exec, |_, nearest, mut row| {
+            samples(&sampling, nearest, &mut row, &shape, reach);
+        });
+        tally
+    }
+
+    /// The picture.
+    fn search(
+        &self,
+        camera: &Camera,
+        settings: &Settings,
+        colored: bool,
+        exec: &Exec,
+        target: &mut Framebuffer<f32>,
+    ) {
+        let searched = self.levels.iter().enumerate().filter(|(_, level)| level.is_searched());
+        let (which, levels): (Vec<usize>, Vec<&Level>) = searched.unzip();
+        let (view, half) = (View::new(camera), settings.half() as usize);
+        exec.ordered(rows(target).enumerate().collect(), |(y, mut row): (usize, Target<'_>)| {
+            if colored {
+                search::search_row::<true>(&levels, &which, half, y, &view, &mut row);
+            } else {
+                search::search_row::<false>(&levels, &which, half, y, &view, &mut row);
+            }
+        });
+    }
+}
+
+/// A row of level 0 from the nearest points of its pixels.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn samples(
+    sampling: &Sampling<'_>,
+    nearest: &Nearest<'_>,
+    row: &mut RowMut<'_>,
+    shape: &Shape,
+    reach: f32,
+) {
+    *row.has = [false; 2];
+    for x in (0..shape.width).step_by(LANES) {
+        let Some(s) = sampling.take(nearest, x) else {
+            row.clear(shape, x);
+            continue;
+        };
+        let mut put = |attribute: usize, lanes: &Lanes| {
+            let at = attribute * shape.stride + PAD + x;
+            row.numbers[at..at + LANES].copy_from_slice(lanes);
+        };
+        put(DEPTH, &s.depth);
+        put(RADIUS, &s.radius);
+        put(EXTENT, &s.extent);
+        (0..2).for_each(|axis| put(PLACE + axis, &s.centre[axis]));
+        (0..3).for_each(|axis| put(NORMAL + axis, &s.normal[axis]));
+        if sampling.has.color {
+            (0..3).for_each(|channel| put(COLOR + channel, &s.color[channel]));
+        }
+        row.ids[PAD + x..PAD + x + LANES].copy_from_slice(&s.id);
+        row.settle(shape, x, reach);
+    }
+}
+
+/// The rows of a framebuffer.
+fn rows(target: &mut Framebuffer<f32>) -> impl Iterator<Item = Target<'_>> {
+    let width = target.width as usize;
+    let planes = target.depth.values_mut().chunks_mut(width);
+    let planes = planes.zip(target.id.values_mut().chunks_mut(width));
+    let planes = planes.zip(target.weight.values_mut().chunks_mut(width));
+    let mut normal = target.normal.as_mut().map(|plane| plane.values_mut().chunks_mut(width));
+    let mut color = target.color.as_mut().map(|plane| plane.values_mut().chunks_mut(width));
+    planes.map(move |((depth, id), weight)| Target {
+        depth,
+        id,
+        weight,
+        normal: normal.as_mut().and_then(Iterator::next),
+        color: color.as_mut().and_then(Iterator::next),
+    })
+}

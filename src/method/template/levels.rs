@@ -1,0 +1,101 @@
+//! Propagation and merging \[MOC08, section 3.1\].
+//!
+//! A centre **stays** at level l if rho <= [`Settings::reach`] of l, or if l is the top level; else it moves on. Cell (X, Y)
+//! of the next level gets the moving ones of the finer cells j = 0 .. 3 at (2X + j mod 2, 2Y + j div 2). One alone is
+//! copied. Of several the foremost is the one of the least depth, ties to the lower j, and with it all
+//! for which
+//!
+//! ```text
+//!   t_j - t_front <= r_j + r_front
+//! ```
+//!
+//! are averaged ([`crate::composite::mean`], weights 1): place, normal, rho, r, t and colour; the id is that of the foremost. The
+//! others are lost. `Departs:` section 3.1 says "its depth is less than the foremost depth minus the sum of their
+//! radii", which no depth behind the foremost can be; meant is the distance.
+//!
+//! An average of radii that all are greater than the reach of a level is greater too, so that a centre never
+//! stays at a level that it should have left.
+
+use super::{Centre, Settings};
+use crate::composite::mean::Mean;
+use crate::frame::{Exec, Plane};
+use crate::method::projection::Projected;
+use crate::number::{Real, Vector2, Vector3};
+
+/// The level from which every cell is found: the first whose sides are at most h + 1.
+#[must_use]
+pub fn top(settings: &Settings, sizes: &[[u32; 2]]) -> usize {
+    let most = settings.half() + 1;
+    let found = sizes.iter().position(|[w, h]| *w <= most && *h <= most);
+    // The last level is one pixel.
+    found.unwrap_or(sizes.len() - 1)
+}
+
+/// All levels up to the top; a level holds what arrived there, both what stays and what moves on.
+#[must_use]
+pub fn propagate<R: Real>(
+    projected: &Projected<R>,
+    settings: &Settings,
+    exec: &Exec,
+) -> Vec<Plane<Centre<R>>> {
+    let samples = &projected.samples;
+    let sizes = crate::frame::pyramid::sizes(samples.width(), samples.height());
+    let mut levels = vec![samples.map(Centre::new)];
+    for level in 0..top(settings, &sizes) {
+        let reach = R::from_f32(settings.reach(level));
+        levels.push(coarser(&levels[level], reach, exec));
+    }
+    levels
+}
+
+/// Whether a centre of a level that is not the top moves on.
+pub(super) fn moves<R: Real>(centre: &Centre<R>, reach: R) -> bool {
+    centre.is_valid() && !(centre.extent <= reach)
+}
+
+/// The next level, from what does not stay within `reach`.
+fn coarser<R: Real>(fine: &Plane<Centre<R>>, reach: R, exec: &Exec) -> Plane<Centre<R>> {
+    let (width, height) = (fine.width().div_ceil(2), fine.height().div_ceil(2));
+    let mut coarse = Plane::filled(width, height, Centre::empty());
+    let rows = coarse.values_mut().chunks_mut(width as usize);
+    exec.ordered((0..).zip(rows).collect(), |(y, row): (u32, &mut [Centre<R>])| {
+        for (x, centre) in (0..).zip(row) {
+            let finer = [0, 1, 2, 3].map(|j| {
+                let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
+                let exists = x < fine.width() && y < fine.height();
+                if exists { *fine.at(x, y) } else { Centre::empty() }
+            });
+            *centre = merged(&finer, finer.map(|centre| moves(&centre, reach)));
+        }
+    });
+    coarse
+}
+
+/// One centre from those that move, see the module page.
+fn merged<R: Real>(finer: &[Centre<R>; 4], moving: [bool; 4]) -> Centre<R> {
+    let mut front = Centre::empty();
+    for j in 0..4 {
+        if moving[j] && finer[j].depth < front.depth {
+            front = finer[j];
+        }
+    }
+    if !front.is_valid() {
+        return front;
+    }
+    let near = |c: &Centre<R>| c.depth - front.depth <= c.radius + front.radius;
+    let mean = Mean::plain([0, 1, 2, 3].map(|j| moving[j] && near(&finer[j])));
+    let number = |of: fn(&Centre<R>) -> R| mean.of([0, 1, 2, 3].map(|j| of(&finer[j])));
+    Centre {
+        id: front.id,
+        depth: number(|c| c.depth),
+        radius: number(|c| c.radius),
+        extent: number(|c| c.extent),
+        place: Vector2::new(number(|c| c.place.x), number(|c| c.place.y)),
+        normal: Vector3::new(
+            number(|c| c.normal.x),
+            number(|c| c.normal.y),
+            number(|c| c.normal.z),
+        ),
+        color: [number(|c| c.color[0]), number(|c| c.color[1]), number(|c| c.color[2])],
+    }
+}

@@ -1,0 +1,254 @@
+//! Deferred Phong shading.
+//!
+//! In view space, for a pixel at depth t with normal n (turned from world to view space) and surface
+//! colour s (that of the pixel, or the material's where the scene has none):
+//!
+//! ```text
+//!   p = (x, y, -t)      perspective: x = ((X - cx)/fx) t, y = -((Y - cy)/fy) t; else without t
+//!   v = -p / |p|        orthographic: (0, 0, 1)
+//!   colour = ambient s + sum over the lights, in order, of light colour times
+//!              ((diffuse (n . l)) s + specular (r . v)^shininess)     r = n (2 (n . l)) - l
+//! ```
+//!
+//! A light with n . l <= 0 adds nothing; a highlight needs r . v > 0. Without any light the colour is
+//! s. An empty pixel is black.
+//!
+//! # Tubes
+//!
+//! A tube is shown where a pixel has a tangent: T is that tangent, turned from world to view space and
+//! then divided by its length. The pixel's own normal is not used; each light has its own, the
+//! direction l towards it projected onto the plane orthogonal to the tangent \[MKC08, section 4.2\]:
+//!
+//! ```text
+//!   m     = l - T (l . T)
+//!   n     = m / |m|
+//!   n . l = |m|                  = sqrt(1 - (l . T)^2)
+//! ```
+//!
+//! Where |m| is 0, because l is parallel to T or null, the light adds nothing. Where T is the null
+//! vector, because the tangent is, or because its length is 0 or not finite, the pixel shows a surface.
+//!
+//! - `Decided:` the highlight takes the same n; the paper leaves it open.
+//! - `Decided:` n . l is the length of m, which it is equal to. Where l is nearly parallel to T, n is
+//!   the direction of a rounding error, and its dot product with l anything up to 1.
+//! - As in the paper, n always turns towards the light: one that is behind the tube lights it too.
+
+mod lanes;
+#[cfg(test)]
+mod tests;
+
+use crate::frame::{Exec, Plane};
+use crate::number::{Real, Vector3};
+use crate::scene::{Light, Phong};
+use crate::splat::View;
+
+/// A light in view space.
+#[derive(Clone, Copy, Debug)]
+enum Placed<R> {
+    /// The unit direction towards it.
+    Towards(Vector3<R>),
+    /// Its position.
+    At(Vector3<R>),
+}
+
+impl<R: Real> Placed<R> {
+    /// l: the direction towards the light from p.
+    #[inline(always)]
+    fn from(&self, p: Vector3<R>) -> Vector3<R> {
+        match *self {
+            Self::Towards(l) => l,
+            Self::At(position) => (position - p).normalized(),
+        }
+    }
+}
+
+/// Everything that the pixels share.
+#[derive(Clone, Debug)]
+pub struct Shader<R> {
+    view: View<R>,
+    lights: Vec<(Placed<R>, [R; 3])>,
+    material: Phong,
+}
+
+impl<R: Real> Shader<R> {
+    /// Places the lights before a camera.
+    #[must_use]
+    pub fn new(view: View<R>, lights: &[Light], material: Phong) -> Self {
+        let place = |light: &Light| match *light {
+            Light::Directional { towards, color } => {
+                let towards = view.direction(Vector3::from_glam(towards)).normalized();
+                (Placed::Towards(towards), color.to_array().map(R::from_f32))
+            }
+            Light::Headlight { towards, color } => {
+                let towards = Vector3::from_glam(towards).normalized();
+                (Placed::Towards(towards), color.to_array().map(R::from_f32))
+            }
+            Light::Point { position, color } => {
+                let position = view.point(Vector3::from_glam(position));
+                (Placed::At(position), color.to_array().map(R::from_f32))
+            }
+        };
+        Self { view, lights: lights.iter().map(place).collect(), material }
+    }
+
+    /// Shades every pixel; `color` may be reused as the result.
+    ///
+    /// `depth` is +inf where a pixel is empty; only an unlit scene can do without normals. `tangent`
+    /// is the null vector where a pixel shows no tube.
+    #[must_use]
+    pub fn shade(
+        &self,
+        depth: &Plane<R>,
+        normal: Option<&Plane<[R; 3]>>,
+        tangent: Option<&Plane<[R; 3]>>,
+        color: Option<Plane<[R; 3]>>,
+        exec: &Exec,
+    ) -> Plane<[R; 3]> {
+        let (width, height) = (depth.width(), depth.height());
+        let own = color.is_none().then(|| self.material.color.to_array().map(R::from_f32));
+        let mut shaded = color.unwrap_or_else(|| Plane::filled(width, height, [R::ZERO; 3]));
+        let row = width as usize;
+        let rows = shaded.values_mut().chunks_mut(row.max(1)).enumerate().collect();
+        exec.ordered(rows, |(y, pixels): (usize, &mut [[R; 3]])| {
+            let depth = &depth.values()[y * row..][..row];
+            let normal = normal.map(|plane| &plane.values()[y * row..][..row]);
+            let tangent = tangent.map(|plane| &plane.values()[y * row..][..row]);
+            lanes::shade(self, &lanes::Row { y, depth, normal, tangent, own }, pixels);
+        });
+        shaded
+    }
+
+    /// The colour of one pixel at depth t, +inf if it is empty; see the module page. `normal` and
+    /// `tangent` are in world space, `surface` is s.
+    pub(crate) fn pixel(
+        &self,
+        (x, y): (usize, usize),
+        t: R,
+        (normal, tangent): (Vector3<R>, Vector3<R>),
+        surface: [R; 3],
+    ) -> [R; 3] {
+        if !t.is_finite() {
+            return [R::ZERO; 3];
+        }
+        self.lit(self.position(x, y, t), self.form(normal, tangent), surface)
+    }
+
+    /// The colour of a surfel, shaded once at its centre: p is its position, n its normal, turned
+    /// towards the side that is seen, both in world space.
+    pub(crate) fn surfel(&self, p: Vector3<R>, n: Vector3<R>, surface: [R; 3]) -> [R; 3] {
+        self.lit(self.view.point(p), self.form(n, Vector3::ZERO), surface)
+    }
+
+    /// The colour of a point p in view space.
+    fn lit(&self, p: Vector3<R>, form: Form<R>, surface: [R; 3]) -> [R; 3] {
+        if self.lights.is_empty() {
+            return surface;
+        }
+        let v = self.towards_eye(p);
+        let answer = Answer::new(&self.material);
+        let mut color = surface.map(|s| answer.ambient * s);
+        for (place, light) in &self.lights {
+            let l = place.from(p);
+            let (n, cosine) = form.towards(l);
+            if cosine > R::ZERO {
+                let mirrored = mirrored(n, cosine, l, v);
+                let highlight = if mirrored > R::ZERO && answer.specular > R::ZERO {
+                    answer.specular * mirrored.pow(answer.shininess)
+                } else {
+                    R::ZERO
+                };
+                color = answer.add(color, *light, cosine, surface, highlight);
+            }
+        }
+        color
+    }
+
+    /// p: the point at depth t of a pixel.
+    #[inline(always)]
+    fn position(&self, x: usize, y: usize, t: R) -> Vector3<R> {
+        let view = &self.view;
+        let px = (R::from_f32(x as f32 + 0.5) - view.cx) / view.fx;
+        let py = -((R::from_f32(y as f32 + 0.5) - view.cy) / view.fy);
+        if view.perspective { Vector3::new(px * t, py * t, -t) } else { Vector3::new(px, py, -t) }
+    }
+
+    /// v: the direction from p towards the eye.
+    #[inline(always)]
+    fn towards_eye(&self, p: Vector3<R>) -> Vector3<R> {
+        if self.view.perspective {
+            (-p).normalized()
+        } else {
+            Vector3::new(R::ZERO, R::ZERO, R::ONE)
+        }
+    }
+
+    /// What has this normal and tangent in world space.
+    #[inline(always)]
+    fn form(&self, normal: Vector3<R>, tangent: Vector3<R>) -> Form<R> {
+        let tangent = self.view.direction(tangent).normalized();
+        Form { normal: self.view.direction(normal), tangent }
+    }
+}
+
+/// What the light falls on, in view space.
+#[derive(Clone, Copy)]
+struct Form<R> {
+    /// n, of a surface.
+    normal: Vector3<R>,
+    /// T, of a tube; the null vector of a surface.
+    tangent: Vector3<R>,
+}
+
+impl<R: Real> Form<R> {
+    /// n and n . l for the direction l towards a light.
+    #[inline(always)]
+    fn towards(&self, l: Vector3<R>) -> (Vector3<R>, R) {
+        let Self { normal, tangent } = *self;
+        if tangent == Vector3::ZERO {
+            (normal, normal.dot(l))
+        } else {
+            let across = l - tangent * l.dot(tangent);
+            (across.normalized(), across.length())
+        }
+    }
+}
+
+/// r . v: how far the mirrored light goes towards the eye.
+#[inline(always)]
+fn mirrored<R: Real>(n: Vector3<R>, cosine: R, l: Vector3<R>, v: Vector3<R>) -> R {
+    (n * (cosine + cosine) - l).dot(v)
+}
+
+/// The material in the numbers of the arithmetic.
+#[derive(Clone, Copy)]
+struct Answer<R> {
+    ambient: R,
+    diffuse: R,
+    specular: R,
+    shininess: R,
+}
+
+impl<R: Real> Answer<R> {
+    fn new(material: &Phong) -> Self {
+        Self {
+            ambient: R::from_f32(material.ambient),
+            diffuse: R::from_f32(material.diffuse),
+            specular: R::from_f32(material.specular),
+            shininess: R::from_f32(material.shininess),
+        }
+    }
+
+    /// A colour and what one light adds to it.
+    #[inline(always)]
+    fn add(
+        &self,
+        color: [R; 3],
+        light: [R; 3],
+        cosine: R,
+        surface: [R; 3],
+        highlight: R,
+    ) -> [R; 3] {
+        let body = self.diffuse * cosine;
+        std::array::from_fn(|c| color[c] + light[c] * (body * surface[c] + highlight))
+    }
+}

@@ -1,0 +1,216 @@
+//! Clipping of triangles and segments in view space, so that they can be projected and snapped.
+//!
+//! What is kept is in front of the near plane and within the guard band of the screen, |X| and |Y|
+//! at most G = [`GUARD_BAND`] = 2^17 px. These conditions are linear in view space: with t = -z,
+//! and s = t under a perspective camera, s = 1 under an orthographic one, a point is inside if none
+//! of its five distances is negative:
+//!
+//! ```text
+//!   near     -z - near                   t >= near
+//!   left     fx x + (G + cx) s           X = cx + fx x/s >= -G
+//!   right   -fx x + (G - cx) s           X <= G
+//!   top     -fy y + (G + cy) s           Y = cy - fy y/s >= -G
+//!   bottom   fy y + (G - cy) s           Y <= G
+//! ```
+//!
+//! A point at t = near is kept, unlike the centre of a surfel: it is where edges are cut. Under a
+//! perspective camera near > 0, so that all that is kept has t > 0.
+//!
+//! **Cutting**, if any corner is outside: by one plane after the other in this order, as Sutherland
+//! and Hodgman do. A polygon keeps its order; where its outline crosses a plane, between a vertex
+//! inside with the distance d and one outside with the distance e < 0, it gets
+//!
+//! ```text
+//!   f = -e / (d - e)     g = d / (d - e)     inside f + outside g
+//! ```
+//!
+//! for the weights and, component by component, for the position. Both factors are at least 0: no
+//! digits are lost where one end is much farther than the other. A t that rounding made less than
+//! near is set to near. Then the coordinate that the plane bounds is put on the plane:
+//!
+//! ```text
+//!   near   z = -near     left    x = -((G + cx) s) / fx     top      y = (G + cy) s / fy
+//!                        right   x = (G - cx) s / fx        bottom   y = -((G - cy) s) / fy
+//! ```
+//!
+//! So a vertex on the guard band misses it by some roundings of 2^17 px, less than 1/16 px in
+//! `f32`, however far away the ends are, and [`crate::frame::raster::Snap::fixed`] holds it there.
+//!
+//! The result depends on the two ends and not on the direction: triangles that share an edge get
+//! the same vertices on it, and so does a segment.
+//!
+//! The **weights** of a vertex say how much of each original corner is in it: any quantity that is
+//! linear in space is the sum of weights times corners. A corner that is inside keeps its position
+//! and its weight 1, exactly.
+//!
+//! A primitive with a corner that is not finite, or so far away that a distance overflows where it
+//! is cut, gives nothing.
+
+#[cfg(test)]
+mod tests;
+
+use super::View;
+use crate::frame::raster::GUARD_BAND;
+use crate::number::{Real, Vector3};
+
+/// What a view keeps of a triangle or a segment.
+#[derive(Clone, Debug)]
+pub struct Clip<R> {
+    /// In the order of the cuts.
+    planes: [Plane<R>; 5],
+    near: R,
+}
+
+/// The distance `(scale c + past t) + one`, in units of its own, with c the coordinate it bounds.
+#[derive(Clone, Copy, Debug)]
+struct Plane<R> {
+    axis: Axis,
+    scale: R,
+    past: R,
+    one: R,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// A vertex of what is left of a primitive of `N` corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clipped<R, const N: usize> {
+    /// Its position in view space.
+    pub position: Vector3<R>,
+    /// How much of each original corner is in it: at least 0, their sum 1 but for rounding.
+    pub weights: [R; N],
+}
+
+impl<R: Real> Plane<R> {
+    fn distance(&self, p: &Vector3<R>) -> R {
+        let coordinate = match self.axis {
+            Axis::X => p.x,
+            Axis::Y => p.y,
+            Axis::Z => p.z,
+        };
+        (self.scale * coordinate + self.past * -p.z) + self.one
+    }
+
+    /// Puts the coordinate on the plane: `-(past t + one) / scale`.
+    fn put(&self, p: &mut Vector3<R>) {
+        let border = -(self.past * -p.z + self.one) / self.scale;
+        match self.axis {
+            Axis::X => p.x = border,
+            Axis::Y => p.y = border,
+            Axis::Z => p.z = border,
+        }
+    }
+}
+
+impl<R: Real> Clip<R> {
+    /// The planes of a camera.
+    #[must_use]
+    pub fn new(view: &View<R>) -> Self {
+        let guard = R::from_f32(GUARD_BAND as f32);
+        let side = |axis: Axis, scale: R, reach: R| {
+            let (past, one) = if view.perspective { (reach, R::ZERO) } else { (R::ZERO, reach) };
+            Plane { axis, scale, past, one }
+        };
+        let planes = [
+            Plane { axis: Axis::Z, scale: -R::ONE, past: R::ZERO, one: -view.near },
+            side(Axis::X, view.fx, guard + view.cx),
+            side(Axis::X, -view.fx, guard - view.cx),
+            side(Axis::Y, -view.fy, guard + view.cy),
+            side(Axis::Y, view.fy, guard - view.cy),
+        ];
+        Self { planes, near: view.near }
+    }
+
+    /// What is left of a triangle: the corners of a convex polygon in the order of the triangle, to
+    /// be drawn as a fan around the first; none, or 3 to 8.
+    ///
+    /// Vertices may coincide. Where an edge lies within a rounding of a plane there can be more.
+    #[must_use]
+    pub fn triangle(&self, corners: [Vector3<R>; 3]) -> Vec<Clipped<R, 3>> {
+        if !corners.iter().all(is_finite) {
+            return Vec::new();
+        }
+        let polygon = whole(corners).to_vec();
+        if self.keeps(&corners) { polygon } else { self.polygon(polygon).unwrap_or_default() }
+    }
+
+    /// What is left of a segment: its ends, in order.
+    #[must_use]
+    pub fn segment(&self, corners: [Vector3<R>; 2]) -> Option<[Clipped<R, 2>; 2]> {
+        if !corners.iter().all(is_finite) {
+            return None;
+        }
+        let mut ends = whole(corners);
+        if self.keeps(&corners) {
+            return Some(ends);
+        }
+        for plane in &self.planes {
+            let [a, b] = [0, 1].map(|i| (ends[i], plane.distance(&ends[i].position)));
+            match [a, b].map(|(_, distance)| distance >= R::ZERO) {
+                [true, true] => {}
+                [true, false] => ends[1] = self.cut(plane, a, b)?,
+                [false, true] => ends[0] = self.cut(plane, b, a)?,
+                [false, false] => return None,
+            }
+        }
+        Some(ends)
+    }
+
+    /// What the planes leave of a polygon; `None` also if a distance overflows.
+    fn polygon(&self, mut polygon: Vec<Clipped<R, 3>>) -> Option<Vec<Clipped<R, 3>>> {
+        for plane in &self.planes {
+            let measured = |v: &Clipped<R, 3>| (*v, plane.distance(&v.position));
+            let mut before = measured(polygon.last()?);
+            let mut kept = Vec::with_capacity(polygon.len() + 1);
+            for here in polygon.iter().map(measured) {
+                match [before, here].map(|(_, distance)| distance >= R::ZERO) {
+                    [true, true] => kept.push(here.0),
+                    [true, false] => kept.push(self.cut(plane, before, here)?),
+                    [false, true] => kept.extend([self.cut(plane, here, before)?, here.0]),
+                    [false, false] => {}
+                }
+                before = here;
+            }
+            polygon = kept;
+        }
+        Some(polygon)
+    }
+
+    /// Whether all corners are inside.
+    fn keeps(&self, corners: &[Vector3<R>]) -> bool {
+        corners.iter().all(|p| self.planes.iter().all(|plane| plane.distance(p) >= R::ZERO))
+    }
+
+    /// Where a plane cuts between a vertex inside and one outside, each with its distance; `None`
+    /// if that is not finite.
+    fn cut<const N: usize>(
+        &self,
+        plane: &Plane<R>,
+        (inside, d): (Clipped<R, N>, R),
+        (outside, e): (Clipped<R, N>, R),
+    ) -> Option<Clipped<R, N>> {
+        let (f, g) = (-e / (d - e), d / (d - e));
+        let mut position = inside.position * f + outside.position * g;
+        position.z = position.z.at_most(-self.near);
+        plane.put(&mut position);
+        let weights = std::array::from_fn(|i| inside.weights[i] * f + outside.weights[i] * g);
+        ((d - e).is_finite() && is_finite(&position)).then_some(Clipped { position, weights })
+    }
+}
+
+/// The corners as they are.
+fn whole<R: Real, const N: usize>(corners: [Vector3<R>; N]) -> [Clipped<R, N>; N] {
+    std::array::from_fn(|i| {
+        let weights = std::array::from_fn(|k| if k == i { R::ONE } else { R::ZERO });
+        Clipped { position: corners[i], weights }
+    })
+}
+
+fn is_finite<R: Real>(p: &Vector3<R>) -> bool {
+    p.x.is_finite() && p.y.is_finite() && p.z.is_finite()
+}
