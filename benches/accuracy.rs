@@ -76,7 +76,7 @@ fn subjects(names: &[&str], pattern: &str, exec: &Exec) -> Result<Vec<Subject>> 
         let text = format!("{text}[camera]\nsize = [800, 600]\n");
         let file = SceneFile::parse(&text, Path::new("bench.toml"))?;
         let scene = file.load(exec, &|_, _, _| ())?.scene;
-        let camera = file.camera(&scene.surfels)?;
+        let camera = file.camera(&scene)?;
         subjects.push(Subject { name: (*name).to_owned(), scene, camera });
     }
     Ok(subjects)

@@ -4,7 +4,7 @@
 use libfuzzer_sys::fuzz_target;
 use splatref::frame::Exec;
 use splatref::io::ply;
-use splatref::scene::derive::{Derive, surfels};
+use splatref::scene::derive::{Derive, polygons, ribbons, surfels, tubes};
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(cloud) = ply::parse(bytes) else { return };
@@ -12,6 +12,15 @@ fuzz_target!(|bytes: &[u8]| {
     assert!(cloud.position.len() * 3 <= bytes.len(), "three numbers take three bytes");
     if cloud.position.len() > 2000 {
         return;
+    }
+    let asked = Derive { radius: Some(1.0) };
+    if let Ok((triangles, derived)) = polygons(cloud.clone(), &Exec::sequential(), &|_, _, _| ()) {
+        let all = cloud.triangles.len() as u64;
+        assert_eq!(triangles.len() as u64 + derived.dropped_primitives, all);
+    }
+    for lines in [ribbons(cloud.clone(), &asked), tubes(cloud.clone(), &asked)] {
+        let Ok((lines, derived)) = lines else { continue };
+        assert_eq!(lines.len() as u64 + derived.dropped_primitives, cloud.edges.len() as u64);
     }
     let n = cloud.position.len() as u64;
     if let Ok((surfels, derived)) = surfels(cloud, &Derive::default(), &Exec::sequential(), &|_, _, _| ()) {

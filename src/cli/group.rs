@@ -6,6 +6,7 @@ use splatref::frame::Exec;
 use splatref::io::ply;
 use splatref::io::scene_file::{ExtensionChoice, words};
 use splatref::method::Grouping;
+use splatref::scene::Scene;
 use splatref::scene::group::{Coplanar, Extended, Groups, Report, Rules};
 use splatref::{Error, Result};
 use std::path::PathBuf;
@@ -67,6 +68,11 @@ pub(super) fn run(args: &Args) -> Finding {
     let steps = progress::Steps::new();
     let show = |what: &str, done, of| steps.show(what, done, of);
     let loaded = named(&args.scene, args.count, args.seed)?.load(&exec, &show)?;
+    let Scene { name, primitives, .. } = &loaded.scene;
+    if !primitives.is_empty() {
+        let what = format!("{name} has triangles or lines; only surfels are divided into groups");
+        return Err(Error::Invalid(what));
+    }
     let start = Instant::now();
     let (groups, found, extended) = grouping.groups(&loaded.scene.surfels, &exec, &show)?;
     let time = start.elapsed();

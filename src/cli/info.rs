@@ -6,7 +6,7 @@ use super::{Finding, Outcome, progress, say};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
-use splatref::io::scene_file::{EnvironmentChoice, SceneFile, Source};
+use splatref::io::scene_file::{Draw, EnvironmentChoice, SceneFile, Source};
 use splatref::io::{ply, scene_file::Loaded};
 use splatref::scene::Light;
 use splatref::scene::derive::{self, Derive};
@@ -35,12 +35,17 @@ fn points(path: &Path) -> Result<()> {
     let cloud = ply::read(path)?;
     line("points", cloud.position.len());
     line("triangles", cloud.triangles.len());
+    let edges = cloud.edges.len();
+    if edges > 0 {
+        line("edges", edges);
+    }
     let arrays = [
         ("normals", cloud.normal.is_some()),
         ("radii", cloud.radius.is_some()),
         ("colours", cloud.color.is_some()),
         ("opacities", cloud.opacity.is_some()),
-        ("tangents", cloud.tangents.is_some()),
+        ("half axes", cloud.tangents.is_some()),
+        ("tangents", cloud.tangent.is_some()),
         ("groups", cloud.groups.is_some()),
     ];
     let there: Vec<&str> = arrays.iter().filter(|(_, is)| *is).map(|(name, _)| *name).collect();
@@ -48,14 +53,23 @@ fn points(path: &Path) -> Result<()> {
 
     let steps = progress::Steps::new();
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let (surfels, derived) = derive::surfels(cloud, &Derive::default(), &Exec::new(0, 32)?, &show)
-        .map_err(|error| splatref::Error::format(path, error.to_string()))?;
+    let found = derive::surfels(cloud, &Derive::default(), &Exec::new(0, 32)?, &show);
     drop(steps);
+    let (surfels, derived) = match found {
+        Ok(found) => found,
+        // What lines are drawn of need not do for surfels.
+        Err(error) if edges > 0 => {
+            line("surfels", format!("none: {error}"));
+            return Ok(());
+        }
+        Err(error) => return Err(splatref::Error::format(path, error.to_string())),
+    };
     line("surfels", surfels.len());
     line("  normals", report::normals(derived.normals));
     line("  radii", report::radii(derived.radii));
-    line("  dropped", report::dropped(&derived.dropped));
-    report::bounds(&surfels);
+    line("  dropped", report::dropped(&derived.dropped, 0));
+    report::bounds(surfels.bounds());
+    report::radius(&surfels);
     Ok(())
 }
 
@@ -65,7 +79,10 @@ fn scene(path: &Path) -> Result<()> {
         line(
             "source",
             match &model.source {
-                Source::File { path, .. } => path.display().to_string(),
+                Source::File { path, .. } => match model.draw {
+                    Draw::Points => path.display().to_string(),
+                    draw => format!("{}, drawn as {}", path.display(), draw.word()),
+                },
                 Source::Shape { shape, count, seed } => {
                     format!("{shape:?}, about {count} surfels, seed {seed}")
                 }
@@ -76,7 +93,6 @@ fn scene(path: &Path) -> Result<()> {
     let loaded: Loaded =
         file.load(&Exec::new(0, 32)?, &|what, done, of| steps.show(what, done, of))?;
     drop(steps);
-    let surfels = &loaded.scene.surfels;
     report::scene(&loaded);
     line("  sha256", loaded.scene.sha256());
     for light in &file.lights {
@@ -94,10 +110,10 @@ fn scene(path: &Path) -> Result<()> {
         Some(EnvironmentChoice::Sky) => line("around", "the procedural sky"),
         Some(EnvironmentChoice::File(path)) => line("around", path.display()),
     }
-    let camera = file.camera(surfels)?;
+    let camera = file.camera(&loaded.scene)?;
     report::camera(&camera);
     report::picture(&camera, file.output);
-    report::method(&file.method.method()?, surfels);
+    report::method(&file.method.method()?, &loaded.scene.surfels);
     Ok(())
 }
 

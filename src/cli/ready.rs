@@ -27,8 +27,9 @@ impl Ready {
         let steps = progress::Steps::new();
         let show = |what: &str, done, of| steps.show(what, done, of);
         let loaded = file.load(exec, &show)?;
+        method.check_scene(&loaded.scene)?;
         let surfels = &loaded.scene.surfels;
-        let camera = file.camera(surfels)?;
+        let camera = file.camera(&loaded.scene)?;
         let made = file.groups(surfels, &method, exec, &show)?;
         let (groups, grouping) = made.unzip();
         let preparation = Preparation::new(surfels, groups, &method, exec);

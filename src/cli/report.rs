@@ -1,13 +1,14 @@
 //! Scenes, cameras, settings and times in words.
 
 use super::say;
+use glam::Vec3;
 use splatref::io::provenance;
 use splatref::io::scene_file::{Loaded, MethodName, ModelReport, Output, words};
 use splatref::method::Method;
 use splatref::method::ewa::Epsilon;
 use splatref::scene::derive::Origin;
 use splatref::scene::group::{Coverage, Extended, Groups, Report};
-use splatref::scene::{Camera, Dropped, Projection, Surfels};
+use splatref::scene::{Camera, Counts, Dropped, Projection, Surfels};
 use splatref::splat::Tally;
 use std::time::Duration;
 
@@ -18,32 +19,59 @@ pub(super) fn line(label: &str, text: impl std::fmt::Display) {
 
 /// The models, what was derived for them, and what was dropped.
 pub(super) fn scene(loaded: &Loaded) {
-    let surfels = &loaded.scene.surfels;
-    let origin = |model: &ModelReport| match &model.derived {
-        None => "procedural".into(),
-        Some(d) => format!("normals {}, radii {}", normals(d.normals), radii(d.radii)),
-    };
-    let name = &loaded.scene.name;
+    let scene = &loaded.scene;
+    let (name, all) = (&scene.name, content(scene.surfels.len(), scene.primitives.counts()));
     match loaded.models.as_slice() {
-        [one] => line("scene", format!("{name}: {} surfels, {}", surfels.len(), origin(one))),
+        [one] => line("scene", format!("{name}: {all}, {}", origin(one))),
         several => {
-            line("scene", format!("{name}: {} surfels", surfels.len()));
+            line("scene", format!("{name}: {all}"));
             for model in several {
-                let origin = origin(model);
-                line("  model", format!("{}: {} surfels, {origin}", model.name, model.surfels));
+                let all = content(model.surfels, model.primitives);
+                line("  model", format!("{}: {all}, {}", model.name, origin(model)));
             }
         }
     }
-    line("  dropped", dropped(&loaded.dropped));
-    bounds(surfels);
+    line("  dropped", dropped(&loaded.dropped, loaded.dropped_primitives));
+    bounds(scene.bounds());
+    radius(&scene.surfels);
 }
 
-/// Where surfels are and how large.
-pub(super) fn bounds(surfels: &Surfels) {
-    let (low, high) = surfels.bounds();
+/// What a scene or a model has, in words.
+fn content(surfels: usize, primitives: Counts) -> String {
+    let Counts { triangles, ribbons, tubes } = primitives;
+    let parts = [
+        (surfels, "surfels"),
+        (triangles, "triangles"),
+        (ribbons, "segments of ribbons"),
+        (tubes, "segments of tubes"),
+    ];
+    let parts = parts.iter().filter(|(count, _)| *count > 0);
+    let parts: Vec<String> = parts.map(|(count, what)| format!("{count} {what}")).collect();
+    parts.join(", ")
+}
+
+/// Where a model's normals or tangents and its radii come from.
+fn origin(model: &ModelReport) -> String {
+    let Some(derived) = &model.derived else { return "procedural".into() };
+    let direction = if model.primitives.tubes > 0 { "tangents" } else { "normals" };
+    let normals = format!("{direction} {}", normals(derived.normals));
+    match derived.radii {
+        Origin::Zero => normals,
+        other => format!("{normals}, radii {}", radii(other)),
+    }
+}
+
+/// Where everything is.
+pub(super) fn bounds((low, high): (Vec3, Vec3)) {
     let [low, high] = [low, high].map(|corner| point(corner.to_array().map(f64::from)));
     line("  bounds", format!("{low} to {high}"));
-    line("  radius", format!("{} in the median", short(f64::from(surfels.median_radius()))));
+}
+
+/// How large surfels are, if there are any.
+pub(super) fn radius(surfels: &Surfels) {
+    if !surfels.is_empty() {
+        line("  radius", format!("{} in the median", short(f64::from(surfels.median_radius()))));
+    }
 }
 
 pub(super) fn normals(origin: Origin) -> &'static str {
@@ -52,6 +80,8 @@ pub(super) fn normals(origin: Origin) -> &'static str {
         Origin::Tangents => "derived from the tangents",
         Origin::Triangles => "derived from the triangles",
         Origin::Neighbours => "derived from the nearest neighbours",
+        Origin::Edges => "derived from the edges",
+        Origin::Zero => "0",
     }
 }
 
@@ -60,13 +90,14 @@ pub(super) fn radii(origin: Origin) -> &'static str {
         Origin::File => "from the file",
         Origin::Given => "as the scene says",
         Origin::Tangents => "derived from the tangents",
-        Origin::Triangles => "derived from the edges",
+        Origin::Triangles | Origin::Edges => "derived from the edges",
+        Origin::Zero => "0",
         Origin::Neighbours => "derived from the nearest neighbours",
     }
 }
 
-/// How many points were dropped, and why.
-pub(super) fn dropped(dropped: &Dropped) -> String {
+/// How many points were dropped, and why, and how many primitives.
+pub(super) fn dropped(dropped: &Dropped, primitives: u64) -> String {
     let reasons = [
         (dropped.position, "not finite"),
         (dropped.normal, "without a normal"),
@@ -75,9 +106,16 @@ pub(super) fn dropped(dropped: &Dropped) -> String {
     ];
     let reasons = reasons.iter().filter(|(count, _)| *count > 0);
     let reasons: Vec<String> = reasons.map(|(count, why)| format!("{count} {why}")).collect();
-    match reasons.as_slice() {
-        [] => "none".into(),
-        _ => format!("{} points: {}", dropped.total(), reasons.join(", ")),
+    let points = match reasons.as_slice() {
+        [] => None,
+        _ => Some(format!("{} points: {}", dropped.total(), reasons.join(", "))),
+    };
+    let lost = format!("{primitives} triangles or lines with a degenerate corner");
+    match (points, primitives) {
+        (None, 0) => "none".into(),
+        (Some(points), 0) => points,
+        (None, _) => lost,
+        (Some(points), _) => format!("{points}; {lost}"),
     }
 }
 

@@ -5,7 +5,7 @@ use crate::io::scene_file::{MethodName, Number, words};
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::transparent::Settings;
 use crate::method::{Method, Preparation, ewa};
-use crate::scene::{Camera, Projection, Scene};
+use crate::scene::{Camera, Counts, Projection, Scene};
 use crate::shade::optics::Refraction;
 use crate::splat::Kernel;
 
@@ -31,6 +31,12 @@ pub fn text(
     let bins = bins.map_or(String::new(), |Range { nearest, farthest, count }| {
         format!("bins_in_world_units = [{nearest:?}, {farthest:?}, {count}]\n")
     });
+    let primitives = if scene.primitives.is_empty() {
+        String::new()
+    } else {
+        let Counts { triangles, ribbons, tubes } = scene.primitives.counts();
+        format!("triangles = {triangles}\nribbons = {ribbons}\ntubes = {tubes}\n")
+    };
     let projection = match camera.projection {
         Projection::Perspective => "perspective",
         Projection::Orthographic => "orthographic",
@@ -39,7 +45,7 @@ pub fn text(
         (0..4).map(|i| format!("  {:?},\n", camera.view_from_world.row(i).to_array())).collect();
     format!(
         "splatref = \"{version}\"\nnumber = \"{number}\"\n\n\
-         [scene]\nname = {name}\nsurfels = {surfels}\nsha256 = \"{hash}\"\n\n\
+         [scene]\nname = {name}\nsurfels = {surfels}\n{primitives}sha256 = \"{hash}\"\n\n\
          [method]\nname = \"{method}\"\n{splats}cull = {cull}\n{further}\n{groups}\
          [camera]\nsize = [{width}, {height}]\nprojection = \"{projection}\"\n\
          f = [{fx:?}, {fy:?}]\nc = [{cx:?}, {cy:?}]\nnear = {near:?}\n\

@@ -5,6 +5,7 @@ use super::{Picture, ewa, peeling, pyramid, single_pass, template, transparent};
 use crate::composite::bins::Range;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::io::scene_file::{MethodName, words};
 use crate::number::Real;
 use crate::scene::group::{self, Extended, Extension, Groups, Report, Rules};
 use crate::scene::order::BackToFront;
@@ -67,7 +68,8 @@ impl Method {
         }
     }
 
-    /// The depth bins that it sorts fragments into, if it does; those of its blending, if it blends.
+    /// The depth bins that it sorts fragments into, if it does; those of its blending, if it
+    /// blends.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] as [`BinCount::resolve`].
@@ -80,6 +82,35 @@ impl Method {
             _ => return Ok(None),
         };
         bins.resolve(surfels, camera, splats.epsilon.resolve(surfels)).map(Some)
+    }
+
+    /// Whether it draws triangles, ribbons and tubes beside surfels.
+    #[must_use]
+    pub fn draws_primitives(&self) -> bool {
+        match self {
+            Self::Pyramid(_) => true,
+            Self::Ewa(_)
+            | Self::SinglePass(_)
+            | Self::Transparent(_)
+            | Self::Peeling(_)
+            | Self::Template(_) => false,
+        }
+    }
+
+    /// Whether it can draw all of a scene.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the scene has primitives and the method draws surfels alone.
+    pub fn check_scene(&self, scene: &Scene) -> Result<()> {
+        if scene.primitives.is_empty() || self.draws_primitives() {
+            return Ok(());
+        }
+        let word = words::of_method(MethodName::of(self));
+        Err(Error::Invalid(format!(
+            "{} has triangles or lines, which the method {word} does not draw; \
+             use --method pyramid",
+            scene.name
+        )))
     }
 
     /// Whether it draws groups.
@@ -162,8 +193,8 @@ fn with<T: Default, U>(memory: &Mutex<T>, draw: impl FnOnce(&mut T) -> U) -> U {
 }
 
 impl Preparation {
-    /// For a method; `groups` are not used by one that does without, and missed by [`render`] if there
-    /// are none for one that draws them.
+    /// For a method; `groups` are not used by one that does without, and missed by [`render`] if
+    /// there are none for one that draws them.
     #[must_use]
     pub fn new(surfels: &Surfels, groups: Option<Groups>, method: &Method, exec: &Exec) -> Self {
         let blends = matches!(method, Method::Transparent(_));
@@ -182,7 +213,8 @@ impl Preparation {
 /// Renders with the definition, in any number; see the `render` of each method.
 ///
 /// # Errors
-/// As the method; [`Error::Invalid`] if the preparation is not that of the scene and the method.
+/// As the method and [`Method::check_scene`]; [`Error::Invalid`] if the preparation is not that of
+/// the scene and the method.
 pub fn render<R: Real>(
     scene: &Scene,
     preparation: &Preparation,
@@ -191,6 +223,7 @@ pub fn render<R: Real>(
     exec: &Exec,
     stages: bool,
 ) -> Result<Picture<R>> {
+    method.check_scene(scene)?;
     match (method, preparation) {
         (Method::Ewa(settings), _) => ewa::render(scene, camera, settings, exec, stages),
         (Method::Peeling(settings), _) => peeling::render(scene, camera, settings, exec, stages),
@@ -209,8 +242,8 @@ pub fn render<R: Real>(
     }
 }
 
-/// Renders in `f32` without the planes of stages, by the fast path where there is one; `earlier` is a
-/// picture whose memory may be used again.
+/// Renders in `f32` without the planes of stages, by the fast path where there is one; `earlier` is
+/// a picture whose memory may be used again.
 ///
 /// # Errors
 /// As [`render`].
@@ -222,6 +255,7 @@ pub fn render_f32(
     exec: &Exec,
     earlier: Option<Picture<f32>>,
 ) -> Result<Picture<f32>> {
+    method.check_scene(scene)?;
     match (method, &preparation.groups, earlier) {
         (Method::Ewa(settings), _, Some(earlier)) => {
             ewa::render_f32_again(scene, camera, settings, exec, earlier)
@@ -246,10 +280,21 @@ pub fn render_f32(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Lens, Light, Phong, Shape};
+    use crate::scene::{Lens, Light, Phong, Shape, Triangles, Vertices};
+    use glam::Vec3;
 
-    #[test]
-    fn a_preparation_for_another_method_is_refused() {
+    fn surfel_methods() -> [Method; 5] {
+        [
+            Method::Ewa(ewa::Settings::default()),
+            Method::SinglePass(single_pass::Settings::default()),
+            Method::Transparent(transparent::Settings::default()),
+            Method::Peeling(peeling::Settings::default()),
+            Method::Template(template::Settings::default()),
+        ]
+    }
+
+    /// A few surfels of a sphere, and a camera.
+    fn sphere() -> (Scene, Camera) {
         let shape = Shape::Sphere;
         let surfels = shape.surfels(40, 0).unwrap();
         let (lights, material) = (vec![Light::DEFAULT], Phong::default());
@@ -263,6 +308,59 @@ mod tests {
             environment: None,
         };
         let camera = Camera::new(8, 8, shape.default_pose(), Lens::FieldOfView(40.0)).unwrap();
+        (scene, camera)
+    }
+
+    #[test]
+    fn primitives_are_refused_by_methods_that_draw_surfels_alone() {
+        let (mut scene, camera) = sphere();
+        let exec = Exec::sequential();
+        let vertices = Vertices {
+            position: vec![Vec3::X, Vec3::Y, Vec3::Z],
+            direction: vec![Vec3::ONE; 3],
+            radius: vec![0.0; 3],
+            color: None,
+        };
+        scene.primitives.triangles = Triangles::new(vertices, vec![[0, 1, 2]]).unwrap().0;
+        for method in surfel_methods() {
+            assert!(!method.draws_primitives());
+            let prepared = Preparation::new(&scene.surfels, None, &method, &exec);
+            let plain = render::<f32>(&scene, &prepared, &camera, &method, &exec, true);
+            let fast = render_f32(&scene, &prepared, &camera, &method, &exec, None);
+            for error in [plain.unwrap_err(), fast.unwrap_err()] {
+                let line = error.to_string();
+                assert!(line.starts_with("sphere has triangles or lines, which the method "));
+                assert!(line.ends_with(" does not draw; use --method pyramid"), "{line}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_scene_of_nothing_is_an_empty_picture_or_refused() {
+        let (mut scene, camera) = sphere();
+        scene.surfels = Surfels::none();
+        let exec = Exec::sequential();
+        let pyramid = Method::Pyramid(pyramid::Settings::default());
+        for method in surfel_methods().into_iter().chain([pyramid]) {
+            let groups = Groups::new(vec![], vec![], vec![1.0]).unwrap();
+            let prepared = Preparation::new(&scene.surfels, Some(groups), &method, &exec);
+            match render_f32(&scene, &prepared, &camera, &method, &exec, None) {
+                Ok(picture) => assert_eq!(picture.tally.visible, 0),
+                Err(error) => assert!(error.to_string().contains("an epsilon of 0"), "{error}"),
+            }
+        }
+        for extension in [Extension::None, Extension::Add { most: 0.5 }, Extension::Enlarge] {
+            for count in [None, Some(2)] {
+                let grouping = Grouping { rules: Rules::default(), count, extension };
+                let found = grouping.groups(&scene.surfels, &exec, &|_, _, _| ());
+                assert!(found.is_ok_and(|(groups, ..)| groups.own().is_empty()));
+            }
+        }
+    }
+
+    #[test]
+    fn a_preparation_for_another_method_is_refused() {
+        let (scene, camera) = sphere();
         let exec = Exec::sequential();
         let ewa = Method::Ewa(ewa::Settings::default());
         let prepared = Preparation::new(&scene.surfels, None, &ewa, &exec);

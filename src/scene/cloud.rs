@@ -21,8 +21,60 @@ pub struct Cloud {
     pub opacity: Option<Vec<f32>>,
     /// Half axes of elliptical surfels, in world units.
     pub tangents: Option<Vec<[Vec3; 2]>>,
+    /// Tangents of tubes, of any length.
+    pub tangent: Option<Vec<Vec3>>,
     /// Groups of the points.
     pub groups: Option<Groups>,
     /// Triangles as indices into `position`; polygons of files have been cut into fans.
     pub triangles: Vec<[u32; 3]>,
+    /// Segments of ribbons and tubes as indices into `position`.
+    pub edges: Vec<[u32; 2]>,
+}
+
+impl Cloud {
+    /// Keeps the points marked in `keep`, one for each, in their order, with the triangles and
+    /// edges all of whose corners are kept.
+    pub(super) fn retain(&mut self, keep: &[bool]) {
+        // The new index of each point that stays.
+        let mut kept = 0;
+        let index: Vec<Option<u32>> = keep
+            .iter()
+            .map(|&keep| {
+                kept += u32::from(keep);
+                keep.then(|| kept - 1)
+            })
+            .collect();
+        marked([&mut self.position], keep);
+        marked(&mut self.normal, keep);
+        marked(&mut self.radius, keep);
+        marked(&mut self.color, keep);
+        marked(&mut self.opacity, keep);
+        marked(&mut self.tangents, keep);
+        marked(&mut self.tangent, keep);
+        self.groups = self.groups.take().map(|groups| groups.retain(keep));
+        corners(&mut self.triangles, &index);
+        corners(&mut self.edges, &index);
+    }
+}
+
+/// Keeps the values marked in `keep`, if there are values.
+fn marked<'a, T: 'a>(values: impl IntoIterator<Item = &'a mut Vec<T>>, keep: &[bool]) {
+    for values in values {
+        let mut keep = keep.iter();
+        values.retain(|_| keep.next().is_some_and(|&keep| keep));
+    }
+}
+
+/// Gives corners their new index; what lost one is dropped.
+fn corners<const N: usize>(all: &mut Vec<[u32; N]>, index: &[Option<u32>]) {
+    all.retain_mut(|corners| {
+        let mut found = true;
+        for corner in corners {
+            match index[*corner as usize] {
+                Some(new) => *corner = new,
+                None => found = false,
+            }
+        }
+        found
+    });
 }

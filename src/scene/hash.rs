@@ -1,5 +1,6 @@
 //! The identity of a scene: one hash over everything a picture depends on but camera and settings.
 
+use super::indexed::Indexed;
 use super::{Environment, Light, Phong, Scene};
 use crate::scene::group::Groups;
 use glam::Vec3;
@@ -20,6 +21,10 @@ impl Scene {
     ///   material: ambient, diffuse, specular, shininess (f32), colour (3 f32)
     ///   environment: nothing if there is none; a byte 1 for the sky; or a byte 2, then width and
     ///     height (u64), and the pixels (3 f32 each) row by row from the top left
+    ///   primitives: nothing if there is none; else a byte 3, then triangles, ribbons and tubes,
+    ///     each: u64 count of vertices; position (3 f32), direction (3 f32), radius (f32); colour
+    ///     (3 f32) after a byte 1, or a byte 0 alone; u64 count of primitives; the vertices of
+    ///     each (u32)
     /// ```
     #[must_use]
     pub fn sha256(&self) -> String {
@@ -55,6 +60,13 @@ impl Scene {
                 hash.count(pixels.height() as usize);
                 hash.floats(pixels.values().iter().flatten().copied());
             }
+        }
+        let primitives = &self.primitives;
+        if !primitives.is_empty() {
+            hash.0.update([3]);
+            hash.indexed(&primitives.triangles);
+            hash.indexed(&primitives.ribbons);
+            hash.indexed(&primitives.tubes);
         }
         hash.finish()
     }
@@ -100,6 +112,18 @@ impl Hasher {
         self.floats(values.unwrap_or_default().iter().flat_map(of));
     }
 
+    fn indexed<const N: usize>(&mut self, primitives: &Indexed<N>) {
+        let vertices = primitives.vertices();
+        self.count(vertices.position.len());
+        self.floats(vertices.position.iter().flat_map(Vec3::to_array));
+        self.floats(vertices.direction.iter().flat_map(Vec3::to_array));
+        self.floats(vertices.radius.iter().copied());
+        self.optional(vertices.color.as_deref(), |c| c.to_array());
+        self.count(primitives.len());
+        let corners = primitives.corners().iter().flatten();
+        corners.for_each(|corner| self.0.update(corner.to_le_bytes()));
+    }
+
     fn finish(self) -> String {
         self.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
@@ -110,7 +134,7 @@ mod tests {
     use super::*;
     use crate::frame::Plane;
     use crate::scene::environment::Map;
-    use crate::scene::{Cloud, Surfels};
+    use crate::scene::{Cloud, Polylines, Primitives, Surfels, Vertices};
 
     fn scene(cloud: Cloud) -> Scene {
         let lights = vec![Light::Point { position: Vec3::X, color: Vec3::ONE }];
@@ -135,9 +159,8 @@ mod tests {
         }
     }
 
-    /// The documented bytes, written out by hand and hashed here by the crate that `sha256sum` checks.
-    #[test]
-    fn the_bytes_are_those_documented() {
+    /// The documented bytes, written out by hand.
+    fn documented() -> Vec<u8> {
         let mut bytes = b"splatref scene 1\n".to_vec();
         bytes.extend(1_u64.to_le_bytes());
         for value in [1.0_f32, 2.0, 3.0, 0.0, 0.0, 1.0, 0.5] {
@@ -152,9 +175,17 @@ mod tests {
         for value in [0.125_f32, 0.75, 0.25, 32.0, 0.75, 0.75, 0.75] {
             bytes.extend(value.to_le_bytes());
         }
-        let hash = |bytes: &[u8]| -> String {
-            Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
-        };
+        bytes
+    }
+
+    /// By the crate that `sha256sum` checks.
+    fn hash(bytes: &[u8]) -> String {
+        Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
+    }
+
+    #[test]
+    fn the_bytes_are_those_documented() {
+        let mut bytes = documented();
         assert_eq!(scene(cloud()).sha256(), hash(&bytes));
 
         let surrounded = |environment| Scene { environment: Some(environment), ..scene(cloud()) };
@@ -166,6 +197,54 @@ mod tests {
         let pixels = vec![[0.5, 0.25, 0.0], [1.0, 2.0, 3.0]];
         let map = Map::new(Plane::from_values(2, 1, pixels)).unwrap();
         assert_eq!(surrounded(Environment::Map(map)).sha256(), hash(&bytes));
+    }
+
+    #[test]
+    fn the_bytes_of_primitives_are_those_documented() {
+        let (bare, mut with) = (scene(cloud()), scene(cloud()));
+        let vertices = Vertices {
+            position: vec![Vec3::X, Vec3::Y],
+            direction: vec![Vec3::Z; 2],
+            radius: vec![0.5, 0.25],
+            color: None,
+        };
+        // Vertices without a primitive are none, so that nothing is hashed for them.
+        with.primitives.tubes = Polylines::new(vertices.clone(), vec![]).unwrap().0;
+        assert_eq!(with.sha256(), bare.sha256());
+        let mut all = vec![bare.sha256()];
+        let color = Some(vec![Vec3::ONE, Vec3::ZERO]);
+        for vertices in [vertices.clone(), Vertices { color, ..vertices }] {
+            let (line, _) = Polylines::new(vertices, vec![[1, 0]]).unwrap();
+            let none = Primitives::default;
+            with.primitives = Primitives { tubes: line.clone(), ..none() };
+            all.push(with.sha256());
+            with.primitives = Primitives { ribbons: line, ..none() };
+            all.push(with.sha256());
+        }
+        let count = all.len();
+        let ribbon = all[2].clone();
+        all.sort();
+        all.dedup();
+        assert_eq!(all.len(), count, "all different");
+
+        // The bytes of the scene so far, then those of the ribbon.
+        let mut bytes = documented();
+        bytes.push(3);
+        let counts = |bytes: &mut Vec<u8>, count: u64| bytes.extend(count.to_le_bytes());
+        counts(&mut bytes, 0);
+        bytes.push(0);
+        counts(&mut bytes, 0);
+        counts(&mut bytes, 2);
+        for value in [1.0_f32, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.5, 0.25] {
+            bytes.extend(value.to_le_bytes());
+        }
+        bytes.push(0);
+        counts(&mut bytes, 1);
+        bytes.extend([1_u32, 0].into_iter().flat_map(u32::to_le_bytes));
+        counts(&mut bytes, 0);
+        bytes.push(0);
+        counts(&mut bytes, 0);
+        assert_eq!(ribbon, hash(&bytes));
     }
 
     #[test]

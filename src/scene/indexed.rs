@@ -11,8 +11,8 @@ pub struct Vertices {
     pub position: Vec<Vec3>,
     /// The normal of a triangle's or a ribbon's surface, the tangent of a tube; of any length.
     pub direction: Vec<Vec3>,
-    /// Half the width of a ribbon, the radius of a tube, or how far the surface of a triangle's vertex
-    /// reaches, each in world units and at least 0.
+    /// Half the width of a ribbon, the radius of a tube, or how far the surface of a triangle's
+    /// vertex reaches, each in world units and at least 0.
     pub radius: Vec<f32>,
     /// Linear RGB, not premultiplied.
     pub color: Option<Vec<Vec3>>,
@@ -22,15 +22,16 @@ pub struct Vertices {
 ///
 /// Guarantees, kept by construction: arrays of one length, and for every vertex that a primitive
 /// uses: position finite; direction of length 1 within 2^-20; radius finite and >= 0; colour finite
-/// and >= 0. Corners may coincide: such a segment is a point, such a triangle covers nothing. Edges may
-/// have any number of triangles.
+/// and >= 0. Corners may coincide: such a segment is a point, such a triangle covers nothing. Edges
+/// may have any number of triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Indexed<const N: usize> {
     vertices: Vertices,
     corners: Vec<[u32; N]>,
 }
 
-/// Line segments between vertices, one pixel wide until they are reconstructed \[MKC08, section 4\].
+/// Line segments between vertices, one pixel wide until they are reconstructed \[MKC08, section
+/// 4\].
 pub type Polylines = Indexed<2>;
 /// Triangles between vertices; counter-clockwise corners are seen from the front.
 pub type Triangles = Indexed<3>;
@@ -42,15 +43,15 @@ impl<const N: usize> Default for Indexed<N> {
 }
 
 impl<const N: usize> Indexed<N> {
-    /// Checks vertices and corners; primitives with a vertex that is degenerate are dropped, and their
-    /// number is returned.
+    /// Checks vertices and corners; primitives with a vertex that is degenerate are dropped, and
+    /// their number is returned.
     ///
     /// A direction is made a unit vector as the normal of a surfel is, see [`super::Surfels::new`].
     /// Vertices are kept, even those that no primitive uses.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if an array has the wrong length, if a corner is no vertex, or if there are
-    /// more than 2^32 - 2 vertices or primitives.
+    /// [`Error::Invalid`] if an array has the wrong length, if a corner is no vertex, or if there
+    /// are more than 2^32 - 2 vertices or primitives.
     pub fn new(mut vertices: Vertices, mut corners: Vec<[u32; N]>) -> Result<(Self, u64)> {
         let n = vertices.position.len();
         let lengths = [
@@ -114,11 +115,40 @@ impl<const N: usize> Indexed<N> {
         &self.corners
     }
 
+    /// Changes the vertices, not how many there are, and checks them again as [`Indexed::new`]
+    /// does.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Indexed::new`].
+    pub fn map(self, change: impl FnOnce(&mut Vertices)) -> Result<(Self, u64)> {
+        let (mut vertices, corners) = self.into_parts();
+        change(&mut vertices);
+        Self::new(vertices, corners)
+    }
+
+    /// Positions and radii of vertices that a primitive uses, one for each corner.
+    fn used(&self) -> impl Iterator<Item = (Vec3, f32)> + '_ {
+        let vertices = &self.vertices;
+        let corners = self.corners.iter().flatten();
+        corners.map(|&i| (vertices.position[i as usize], vertices.radius[i as usize]))
+    }
+
     /// The parts again, to be changed or joined.
     #[must_use]
     pub fn into_parts(self) -> (Vertices, Vec<[u32; N]>) {
         (self.vertices, self.corners)
     }
+}
+
+/// How many primitives there are of each kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Polygons, cut into triangles.
+    pub triangles: usize,
+    /// Segments of ribbons.
+    pub ribbons: usize,
+    /// Segments of tubes.
+    pub tubes: usize,
 }
 
 /// What a scene has beside surfels \[MKC08, sections 4 and 5\].
@@ -136,13 +166,37 @@ impl Primitives {
     /// How many there are in all.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.triangles.len() + self.ribbons.len() + self.tubes.len()
+        let Counts { triangles, ribbons, tubes } = self.counts();
+        triangles + ribbons + tubes
     }
 
     /// Whether there is none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// How many there are of each kind.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        let Self { triangles, ribbons, tubes } = self;
+        Counts { triangles: triangles.len(), ribbons: ribbons.len(), tubes: tubes.len() }
+    }
+
+    /// [`Indexed::map`] of each kind; how many were dropped in all.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Indexed::new`].
+    pub fn map(self, change: impl Fn(&mut Vertices)) -> Result<(Self, u64)> {
+        let (triangles, a) = self.triangles.map(&change)?;
+        let (ribbons, b) = self.ribbons.map(&change)?;
+        let (tubes, c) = self.tubes.map(&change)?;
+        Ok((Self { triangles, ribbons, tubes }, a + b + c))
+    }
+
+    /// Positions and radii of vertices that a primitive uses, one for each corner.
+    pub(super) fn used(&self) -> impl Iterator<Item = (Vec3, f32)> + '_ {
+        self.triangles.used().chain(self.ribbons.used()).chain(self.tubes.used())
     }
 
     /// Whether vertices of a kind that is there have colours.

@@ -1,10 +1,13 @@
-//! Several models as one cloud.
+//! Several models as one: their clouds, and their primitives.
 
-use super::Cloud;
+use super::indexed::Indexed;
+use super::{Cloud, Primitives, Vertices};
+use crate::error::Result;
 use glam::{DVec3, Vec3};
 
-/// Joins complete clouds, with normals and radii, in their order; triangles are left out, and so are
-/// the groups of several, which know nothing of each other.
+/// Joins complete clouds, with normals and radii, in their order; triangles, edges and the
+/// tangents of tubes are left out, and so are the groups of several, which know nothing of each
+/// other.
 ///
 /// What only some of them have is filled in for the others: colour by `color`, opacity by 1, the
 /// half axes of a disc by two perpendicular ones of the length of its radius.
@@ -15,7 +18,8 @@ pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
     let elliptic = clouds.iter().any(|c| c.tangents.is_some());
     if clouds.len() == 1 {
         // The usual case, without a copy.
-        return Cloud { triangles: Vec::new(), ..clouds.remove(0) };
+        let one = clouds.remove(0);
+        return Cloud { tangent: None, triangles: Vec::new(), edges: Vec::new(), ..one };
     }
     let mut all = Cloud {
         normal: Some(Vec::new()),
@@ -40,6 +44,45 @@ pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
         append(&mut all.radius, Some(radius), n, 0.0);
     }
     all
+}
+
+/// Joins primitives kind by kind, in their order. Where only some of a kind have colours, the
+/// others get `color`.
+///
+/// # Errors
+/// [`crate::Error::Invalid`] as [`Indexed::new`], if there are too many.
+pub fn join(models: Vec<Primitives>, color: Vec3) -> Result<Primitives> {
+    let (mut triangles, mut ribbons, mut tubes) = (Vec::new(), Vec::new(), Vec::new());
+    for model in models {
+        triangles.push(model.triangles);
+        ribbons.push(model.ribbons);
+        tubes.push(model.tubes);
+    }
+    let (triangles, ribbons) = (join_kind(triangles, color)?, join_kind(ribbons, color)?);
+    Ok(Primitives { triangles, ribbons, tubes: join_kind(tubes, color)? })
+}
+
+fn join_kind<const N: usize>(mut parts: Vec<Indexed<N>>, color: Vec3) -> Result<Indexed<N>> {
+    parts.retain(|part| !part.is_empty());
+    if parts.len() == 1 {
+        // The usual case, without a copy.
+        return Ok(parts.remove(0));
+    }
+    let colored = parts.iter().any(|part| part.vertices().color.is_some());
+    let mut all = Vertices { color: colored.then(Vec::new), ..Vertices::default() };
+    let mut joined = Vec::new();
+    for part in parts {
+        let (vertices, corners) = part.into_parts();
+        // What does not fit is refused below, by the count of the vertices.
+        let first = all.position.len() as u32;
+        joined.extend(corners.into_iter().map(|corners| corners.map(|i| first.wrapping_add(i))));
+        append(&mut all.color, vertices.color, vertices.position.len(), color);
+        all.position.extend(vertices.position);
+        all.direction.extend(vertices.direction);
+        all.radius.extend(vertices.radius);
+    }
+    // Nothing is dropped: each part has been checked.
+    Ok(Indexed::new(all, joined)?.0)
 }
 
 /// Appends the values, or `n` times the one that stands for them, if there is anything to fill.
@@ -100,6 +143,37 @@ mod tests {
         let normal = DVec3::new(0.6, 0.0, 0.8);
         assert!((u.length() - 2.0).abs() < 1e-6 && (v.length() - 2.0).abs() < 1e-6);
         assert!((u.cross(v) - 4.0 * normal).length() < 1e-6, "right-handed with the normal");
+    }
+
+    #[test]
+    fn primitives_are_joined_kind_by_kind() {
+        let line = |x: f32, color: Option<Vec3>| {
+            let vertices = Vertices {
+                position: vec![Vec3::X * x, Vec3::Y],
+                direction: vec![Vec3::Z; 2],
+                radius: vec![x; 2],
+                color: color.map(|color| vec![color; 2]),
+            };
+            Indexed::new(vertices, vec![[0, 1]]).unwrap().0
+        };
+        let ribbons = Primitives { ribbons: line(1.0, None), ..Primitives::default() };
+        let both = Primitives {
+            ribbons: line(2.0, Some(Vec3::X)),
+            tubes: line(3.0, None),
+            ..ribbons.clone()
+        };
+        let all = join(vec![ribbons.clone(), Primitives::default(), both], Vec3::Y).unwrap();
+        assert_eq!(all.ribbons.corners(), [[0, 1], [2, 3]]);
+        let vertices = all.ribbons.vertices();
+        assert_eq!(vertices.position, [Vec3::X, Vec3::Y, 2.0 * Vec3::X, Vec3::Y]);
+        assert_eq!(vertices.radius, [1.0, 1.0, 2.0, 2.0]);
+        assert_eq!(
+            vertices.color.as_deref(),
+            Some([Vec3::Y, Vec3::Y, Vec3::X, Vec3::X].as_slice())
+        );
+        assert_eq!((all.tubes, all.triangles.len()), (line(3.0, None), 0));
+        assert_eq!(join(vec![ribbons.clone()], Vec3::Y).unwrap(), ribbons, "one stays as it is");
+        assert_eq!(join(vec![], Vec3::Y).unwrap(), Primitives::default());
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What is rendered: surfels, camera, lights, and procedural scenes whose true picture is known.
 //!
+//! - [`bounds`]: what bounds a scene.
 //! - [`cloud`]: points as a file holds them, nothing derived, nothing checked.
 //! - [`surfels`]: the checked structure of arrays that every method takes.
 //! - [`camera`]: perspective and orthographic cameras.
@@ -7,20 +8,23 @@
 //! - [`environment`]: the light that surrounds a scene.
 //! - [`group`]: groups of surfels that do not overlap.
 //! - [`hash`]: the identity of a scene.
+//! - [`hybrid`]: a mesh as polygons here and surfels there.
 //! - [`indexed`]: triangles, ribbons and tubes.
 //! - [`light`]: lights and the Phong material.
-//! - [`merge`]: several models as one cloud.
+//! - [`merge`]: several models as one.
 //! - [`order`]: surfels from back to front, for every view.
 //! - [`plant`]: a tree of triangles, and the ribbons and tubes that stand for it.
 //! - [`procedural`]: shapes whose true picture is known.
 //! - [`transform`]: moving, turning and scaling a model.
 
+pub mod bounds;
 pub mod camera;
 pub mod cloud;
 pub mod derive;
 pub mod environment;
 pub mod group;
 pub mod hash;
+pub mod hybrid;
 pub mod indexed;
 pub mod light;
 pub mod merge;
@@ -34,7 +38,7 @@ mod tree;
 pub use camera::{Camera, Lens, Pose, Projection};
 pub use cloud::Cloud;
 pub use environment::Environment;
-pub use indexed::{Polylines, Primitives, Triangles, Vertices};
+pub use indexed::{Counts, Polylines, Primitives, Triangles, Vertices};
 pub use light::{Light, Phong};
 pub use procedural::Shape;
 pub use surfels::{Dropped, Surfels};

@@ -7,11 +7,11 @@ use glam::{DVec3, Vec3};
 
 /// Surfels as a structure of arrays, each of one length.
 ///
-/// Guarantees, kept by construction: at least one surfel, but for [`Surfels::none`]; positions finite; normals of length 1
-/// within 2^-20; radii finite and > 0; colours finite and >= 0; opacities in [0, 1]; tangents
-/// finite and not parallel. (Whether they are perpendicular to each other and to the normal is the
-/// business of whoever gives them.) An array that the
-/// scene does not need is not allocated.
+/// Guarantees, kept by construction: at least one surfel, but for [`Surfels::none`]; positions
+/// finite; normals of length 1 within 2^-20; radii finite and > 0; colours finite and >= 0;
+/// opacities in [0, 1]; tangents finite and not parallel. (Whether they are perpendicular to each
+/// other and to the normal is the business of whoever gives them.) An array that the scene does not
+/// need is not allocated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surfels {
     position: Vec<Vec3>,
@@ -46,16 +46,41 @@ impl Dropped {
     }
 }
 
+impl std::ops::AddAssign for Dropped {
+    fn add_assign(&mut self, more: Self) {
+        self.position += more.position;
+        self.normal += more.normal;
+        self.radius += more.radius;
+        self.attribute += more.attribute;
+    }
+}
+
 impl Surfels {
     /// Checks a complete cloud, drops what is degenerate, and counts it.
     ///
     /// A normal whose length is within 2^-20 of 1 is kept as it is; any other is divided by its
-    /// length in f64 and rounded once. Triangles are ignored.
+    /// length in f64 and rounded once. Triangles, edges and the tangents of tubes are ignored.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if normals or radii are missing , if an array has
-    /// the wrong length, if nothing is left, or if there are more than 2^32 - 2 surfels.
+    /// [`Error::Invalid`] if normals or radii are missing, if an array has the wrong length, if
+    /// nothing is left, or if there are more than 2^32 - 2 surfels.
     pub fn new(cloud: Cloud) -> Result<(Self, Dropped)> {
+        let n = cloud.position.len();
+        let (surfels, dropped) = Self::new_or_none(cloud)?;
+        if surfels.is_empty() {
+            return Err(Error::Invalid(format!(
+                "the scene is empty: none of its {n} points can be a surfel"
+            )));
+        }
+        Ok((surfels, dropped))
+    }
+
+    /// As [`Surfels::new`], for a part of a scene that has other primitives too: [`Surfels::none`]
+    /// if nothing is left.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Surfels::new`], but for that.
+    pub fn new_or_none(cloud: Cloud) -> Result<(Self, Dropped)> {
         let n = cloud.position.len();
         let Cloud { position, normal, radius, color, opacity, tangents, groups, .. } = cloud;
         let mut normal =
@@ -89,9 +114,7 @@ impl Surfels {
             *keep = false;
         }
         if dropped.total() == n as u64 {
-            return Err(Error::Invalid(format!(
-                "the scene is empty: none of its {n} points can be a surfel"
-            )));
+            return Ok((Self::none(), dropped));
         }
         let radius = retain(radius, &keep);
         let mut surfels = Self {
@@ -150,7 +173,8 @@ impl Surfels {
         &self.normal
     }
 
-    /// Radii in world units. An ellipse is drawn by its tangents; its radius enters the median only.
+    /// Radii in world units. An ellipse is drawn by its tangents; its radius enters the median
+    /// only.
     #[must_use]
     pub fn radius(&self) -> &[f32] {
         &self.radius
@@ -203,6 +227,11 @@ impl Surfels {
     fn sphere(&self) -> (DVec3, f64) {
         let (low, high) = self.bounds();
         let center = (low.as_dvec3() + high.as_dvec3()) / 2.0;
+        (center, self.reach(center))
+    }
+
+    /// The largest distance from a point to a surfel plus its reach; 0 if there is none.
+    pub(super) fn reach(&self, center: DVec3) -> f64 {
         let mut most = 0.0;
         for (i, position) in self.position.iter().enumerate() {
             let reach = match &self.tangents {
@@ -215,7 +244,7 @@ impl Surfels {
             let far = (position.as_dvec3() - center).length() + reach;
             most = if far > most { far } else { most };
         }
-        (center, most)
+        most
     }
 
     /// The surfels back as a cloud, to be written to a file.
@@ -229,7 +258,7 @@ impl Surfels {
             opacity: self.opacity,
             tangents: self.tangents,
             groups: self.groups,
-            triangles: Vec::new(),
+            ..Cloud::default()
         }
     }
 }
@@ -255,7 +284,7 @@ fn check_lengths(
         ("radii", radii),
         ("colours", color.as_ref().map_or(n, Vec::len)),
         ("opacities", opacity.as_ref().map_or(n, Vec::len)),
-        ("tangents", tangents.as_ref().map_or(n, Vec::len)),
+        ("half axes", tangents.as_ref().map_or(n, Vec::len)),
         ("groups", groups.as_ref().map_or(n, |g| g.own().len())),
     ];
     for (what, length) in others {

@@ -1,14 +1,14 @@
 //! Moving, turning and scaling a model.
 
-use super::Cloud;
+use super::{Cloud, Vertices};
 use crate::error::{Error, Result};
 use crate::number::elementary;
 use glam::{DMat3, DVec3, Vec3};
 
 /// A similarity: a point p goes to `rotation (p scale) + translation`.
 ///
-/// Everything is computed in f64 and rounded to f32 once. Normals are turned, radii scaled, half
-/// axes both.
+/// Everything is computed in f64 and rounded to f32 once. Normals and tangents are turned, radii
+/// scaled, half axes both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Similarity {
     /// A rotation matrix, see [`Similarity::check`].
@@ -54,16 +54,35 @@ impl Similarity {
         if *self == Self::IDENTITY {
             return;
         }
-        let turn = |v: &mut Vec3| *v = (self.rotation * v.as_dvec3()).as_vec3();
-        let extend = |v: &mut Vec3| *v = (self.rotation * (v.as_dvec3() * self.scale)).as_vec3();
-        for p in &mut cloud.position {
-            *p = (self.rotation * (p.as_dvec3() * self.scale) + self.translation).as_vec3();
+        cloud.position.iter_mut().for_each(|p| self.place(p));
+        cloud.normal.iter_mut().flatten().for_each(|v| self.turn(v));
+        cloud.tangent.iter_mut().flatten().for_each(|v| self.turn(v));
+        cloud.radius.iter_mut().flatten().for_each(|radius| self.enlarge(radius));
+        for half in cloud.tangents.iter_mut().flatten().flatten() {
+            *half = (self.rotation * (half.as_dvec3() * self.scale)).as_vec3();
         }
-        cloud.normal.iter_mut().flatten().for_each(turn);
-        for radius in cloud.radius.iter_mut().flatten() {
-            *radius = (f64::from(*radius) * self.scale) as f32;
+    }
+
+    /// Applies it to vertices of primitives.
+    pub fn apply_to_vertices(&self, vertices: &mut Vertices) {
+        if *self == Self::IDENTITY {
+            return;
         }
-        cloud.tangents.iter_mut().flatten().flatten().for_each(extend);
+        vertices.position.iter_mut().for_each(|p| self.place(p));
+        vertices.direction.iter_mut().for_each(|v| self.turn(v));
+        vertices.radius.iter_mut().for_each(|radius| self.enlarge(radius));
+    }
+
+    fn place(&self, p: &mut Vec3) {
+        *p = (self.rotation * (p.as_dvec3() * self.scale) + self.translation).as_vec3();
+    }
+
+    fn turn(&self, v: &mut Vec3) {
+        *v = (self.rotation * v.as_dvec3()).as_vec3();
+    }
+
+    fn enlarge(&self, radius: &mut f32) {
+        *radius = (f64::from(*radius) * self.scale) as f32;
     }
 }
 
@@ -90,6 +109,7 @@ mod tests {
             normal: Some(vec![Vec3::X]),
             radius: Some(vec![0.5]),
             tangents: Some(vec![[Vec3::Y, Vec3::Z]]),
+            tangent: Some(vec![Vec3::Y]),
             ..Cloud::default()
         };
         // x to y, y to z, z to x: exact, so that the answer is known to the bit.
@@ -101,6 +121,16 @@ mod tests {
         assert_eq!(cloud.normal, Some(vec![Vec3::Y]));
         assert_eq!(cloud.radius, Some(vec![1.0]));
         assert_eq!(cloud.tangents, Some(vec![[2.0 * Vec3::Z, 2.0 * Vec3::X]]));
+        assert_eq!(cloud.tangent, Some(vec![Vec3::Z]));
+        let mut vertices = Vertices {
+            position: vec![Vec3::new(1.0, 2.0, 3.0)],
+            direction: vec![Vec3::X],
+            radius: vec![0.5],
+            color: None,
+        };
+        moved.apply_to_vertices(&mut vertices);
+        assert_eq!(vertices.position, cloud.position);
+        assert_eq!((vertices.direction[0], vertices.radius[0]), (Vec3::Y, 1.0));
     }
 
     #[test]

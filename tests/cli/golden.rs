@@ -109,7 +109,7 @@ fn committed_golden_cases_are_tiny() {
         if name.ends_with(".toml") {
             let file = splatref::io::scene_file::SceneFile::read(&path).unwrap();
             let loaded = file.load(&splatref::frame::Exec::sequential(), &|_, _, _| ()).unwrap();
-            let camera = file.camera(&loaded.scene.surfels).unwrap();
+            let camera = file.camera(&loaded.scene).unwrap();
             assert!(camera.width <= 64 && camera.height <= 64, "{name}");
             assert!(loaded.scene.surfels.len() <= 1000, "{name}");
         }

@@ -5,6 +5,7 @@
 mod golden;
 mod groups;
 mod pictures;
+mod primitives;
 mod refusals;
 mod reports;
 

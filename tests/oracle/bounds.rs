@@ -206,7 +206,7 @@ fn extent(given: &Given, kernel: Kernel, camera: &Camera) -> ([[f64; 2]; 2], f64
         opacity: None,
         tangents: None,
         groups: None,
-        triangles: Vec::new(),
+        ..Cloud::default()
     };
     let surfels = Surfels::new(cloud).expect("one surfel").0;
     let cast = kernel.outline == Outline::RayCast;

@@ -33,7 +33,7 @@ fn golden(path: &Path) -> Golden {
     let scene = file.load(&exec, &|_, _, _| ()).expect("loads").scene;
     let groups = file.groups(&scene.surfels, &method, &exec, &|_, _, _| ()).expect("groups");
     let groups = groups.map(|(groups, _)| groups);
-    let camera = file.camera(&scene.surfels).expect("a camera");
+    let camera = file.camera(&scene).expect("a camera");
     let (name, settings) =
         (path.display().to_string(), method.splats().copied().unwrap_or_default());
     Golden { case: Case { name, camera, settings, scene, exact: false }, method, groups }

@@ -19,7 +19,7 @@ fn scene(discs: &[(Vec3, Vec3)], radius: f32, color: Option<Vec3>) -> Scene {
         opacity: None,
         tangents: None,
         groups: None,
-        triangles: Vec::new(),
+        ..Cloud::default()
     };
     let surfels = Surfels::new(cloud).expect("good discs").0;
     Scene {

@@ -123,7 +123,7 @@ impl Kind {
             opacity: None,
             tangents: matches!(self, Self::Ellipses | Self::Tilted).then(Vec::new),
             groups: None,
-            triangles: Vec::new(),
+            ..Cloud::default()
         };
         for _ in 0..count {
             let (position, normal, radius) = self.surfel(dice);

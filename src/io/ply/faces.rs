@@ -19,11 +19,7 @@ pub(super) fn read(
     values.walk(element, |event| {
         match event {
             Event::Value(property, value) if property == indices => {
-                if !(value >= 0.0 && value < vertices as f64) {
-                    let last = vertices - 1;
-                    return Err(format!("vertex {value} does not exist, they are 0 to {last}"));
-                }
-                let corner = value as u32;
+                let corner = corner(value, vertices)?;
                 match corners {
                     0 => first = corner,
                     1 => {}
@@ -37,6 +33,15 @@ pub(super) fn read(
         }
         Ok(())
     })
+}
+
+/// The vertex that a number names.
+pub(super) fn corner(value: f64, vertices: u64) -> Result<u32, String> {
+    if value >= 0.0 && value < vertices as f64 {
+        Ok(value as u32)
+    } else {
+        Err(format!("vertex {value} does not exist, they are 0 to {}", vertices - 1))
+    }
 }
 
 /// Which property lists the corners.

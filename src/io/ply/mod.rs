@@ -13,24 +13,30 @@
 //! | | `opacity` or `alpha` | `uchar`, `ushort` | divided by 255 or 65535 |
 //! | | | `float`, `double` | kept |
 //! | | `tux tuy tuz tvx tvy tvz` | any | half axes of an ellipse, world units |
+//! | | `tx ty tz` | any | tangent of a tube, of any length |
 //! | | `group` | an integer | the surfel's own [group](crate::scene::group), 0 to 63 |
 //! | | `also` | list of integers | further groups that it was added to, none twice; skipped without `group` |
 //! | `group` | `scale` | any | what radii are multiplied by, finite and > 0, for each group; skipped without `group` |
 //! | `face` | `vertex_indices` or `vertex_index` | list of integers | a polygon is the fan of its first corner; with fewer than 3 corners it is nothing |
+//! | `edge` | `vertex1` and `vertex2` | integers | a segment of a ribbon or of a tube |
 //!
-//! Without an element `group` there are as many groups as the largest number tells, of scale 1; with
-//! one there are as many as it has, 64 at most. It may come before or after the vertices.
+//! Without an element `group` there are as many groups as the largest number tells, of scale 1;
+//! with one there are as many as it has, 64 at most. It may come before or after the vertices.
+//!
+//! Tangents of tubes and half axes of ellipses are not the same: `t` alone is the direction in
+//! which a tube runs, `tu` and `tv` span a disc.
 //!
 //! All of a vector is declared or nothing of it. Values are not judged: NaN and infinite ones go
-//! into the cloud, and are dropped and counted when surfels are made of it. Structure and groups are: every
-//! count is held against the bytes that are left before anything is allocated, and must use up the
-//! file exactly.
+//! into the cloud, and are dropped and counted when surfels are made of it. Structure and groups
+//! are: every count is held against the bytes that are left before anything is allocated, and must
+//! use up the file exactly.
 //!
 //! The reader is our own because the one well-kept crate that refuses hostile headers, serde-ply
 //! 0.2.2, says neither which vertex nor which line or byte is wrong, accepts a property declared
 //! twice, ignores what is left over, loops 2^64 times over an element without properties, and does
 //! not tell 8-bit colours from float ones without a deserializer of about this size.
 
+mod edges;
 mod faces;
 mod groups;
 mod header;
@@ -60,8 +66,8 @@ pub fn read(path: &Path) -> Result<Cloud> {
 ///
 /// # Errors
 /// One line if they are no PLY file, truncated, or hold other than their header says: the element,
-/// the index of the vertex or face, the property, the line (ascii) or byte (binary), what is wrong
-/// and what to do.
+/// the index of the vertex, face or edge, the property, the line (ascii) or byte (binary), what is
+/// wrong and what to do.
 pub fn parse(bytes: &[u8]) -> std::result::Result<Cloud, String> {
     let header = header::parse(bytes)?;
     let vertices = header.elements.iter().find(|element| element.name == "vertex");
@@ -77,6 +83,7 @@ pub fn parse(bytes: &[u8]) -> std::result::Result<Cloud, String> {
     for element in &header.elements {
         match element.name.as_str() {
             "vertex" => vertices::read(element, &mut values, &mut cloud, &mut groups)?,
+            "edge" => edges::read(element, &mut values, vertices, &mut cloud.edges)?,
             "face" => faces::read(element, &mut values, vertices, &mut cloud.triangles)?,
             "group" => groups.scales(element, &mut values)?,
             _ => values.walk(element, |_| Ok(()))?,

@@ -10,9 +10,9 @@ use std::ops::Range;
 use std::sync::LazyLock;
 
 /// The properties that are read, each with its place in a row.
-const NAMES: [&str; 17] = [
+const NAMES: [&str; 20] = [
     "x", "y", "z", "nx", "ny", "nz", "radius", "red", "green", "blue", "opacity", "tux", "tuy",
-    "tuz", "tvx", "tvy", "tvz",
+    "tuz", "tvx", "tvy", "tvz", "tx", "ty", "tz",
 ];
 const POSITION: Range<usize> = 0..3;
 const NORMAL: Range<usize> = 3..6;
@@ -20,6 +20,7 @@ const RADIUS: Range<usize> = 6..7;
 const COLOR: Range<usize> = 7..10;
 const OPACITY: Range<usize> = 10..11;
 const TANGENTS: Range<usize> = 11..17;
+const TANGENT: Range<usize> = 17..20;
 
 static SRGB_8: LazyLock<Vec<f32>> = LazyLock::new(|| srgb::table(u8::MAX.into()));
 static SRGB_16: LazyLock<Vec<f32>> = LazyLock::new(|| srgb::table(u16::MAX));
@@ -81,6 +82,7 @@ pub(super) fn read(
     cloud.color = has(&given, COLOR)?.then(Vec::new);
     cloud.opacity = has(&given, OPACITY)?.then(Vec::new);
     cloud.tangents = has(&given, TANGENTS)?.then(Vec::new);
+    cloud.tangent = has(&given, TANGENT)?.then(Vec::new);
 
     let mut row = [0.0; NAMES.len()];
     values.walk(element, |event| {
@@ -168,5 +170,8 @@ fn push(cloud: &mut Cloud, row: &[f32; NAMES.len()]) {
     if let Some(tangents) = &mut cloud.tangents {
         let middle = TANGENTS.start + 3;
         tangents.push([vector(TANGENTS.start..middle), vector(middle..TANGENTS.end)]);
+    }
+    if let Some(tangents) = &mut cloud.tangent {
+        tangents.push(vector(TANGENT));
     }
 }

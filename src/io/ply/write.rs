@@ -10,11 +10,11 @@ use std::path::Path;
 /// Writes a cloud as binary little-endian PLY, whole or not at all.
 ///
 /// Vertices are floats: `x y z`, then what there is of `nx ny nz`, `radius`, `red green blue`
-/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`; then, if there are groups, `uchar group` and, if
-/// surfels were added to some, `list uchar uchar also`. Triangles follow as `face` with
-/// `list uchar uint vertex_indices`, and last, if they do not tell by themselves how many groups
-/// there are or if radii are scaled, the element `group` with `float scale`. [`super::read`] gives
-/// the same cloud back, bit for bit.
+/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`, `tx ty tz`; then, if there are groups,
+/// `uchar group` and, if surfels were added to some, `list uchar uchar also`. Triangles follow as
+/// `face` with `list uchar uint vertex_indices`, edges as `edge` with `uint vertex1 vertex2`, and
+/// last, if they do not tell by themselves how many groups there are or if radii are scaled, the
+/// element `group` with `float scale`. [`super::read`] gives the same cloud back, bit for bit.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the arrays of the cloud differ in length; [`crate::Error::Io`] as
@@ -26,36 +26,9 @@ pub fn write(path: &Path, cloud: &Cloud) -> Result<()> {
 
 /// The bytes of a checked cloud.
 pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
-    let names = [
-        (true, "x y z"),
-        (cloud.normal.is_some(), "nx ny nz"),
-        (cloud.radius.is_some(), "radius"),
-        (cloud.color.is_some(), "red green blue"),
-        (cloud.opacity.is_some(), "opacity"),
-        (cloud.tangents.is_some(), "tux tuy tuz tvx tvy tvz"),
-    ];
-    writeln!(out, "ply\nformat binary_little_endian 1.0")?;
-    writeln!(out, "element vertex {}", cloud.position.len())?;
-    for name in names.iter().filter(|n| n.0).flat_map(|n| n.1.split(' ')) {
-        writeln!(out, "property float {name}")?;
-    }
+    header(cloud, out)?;
     let groups = cloud.groups.as_ref();
-    let added = groups.filter(|groups| !groups.added().is_empty());
-    let scaled = groups.filter(|groups| !tell(groups));
-    if groups.is_some() {
-        writeln!(out, "property uchar group")?;
-    }
-    if added.is_some() {
-        writeln!(out, "property list uchar uchar also")?;
-    }
-    if !cloud.triangles.is_empty() {
-        writeln!(out, "element face {}", cloud.triangles.len())?;
-        writeln!(out, "property list uchar uint vertex_indices")?;
-    }
-    if let Some(groups) = scaled {
-        writeln!(out, "element group {}\nproperty float scale", groups.len())?;
-    }
-    writeln!(out, "end_header")?;
+    let added = added(cloud);
     for i in 0..cloud.position.len() {
         let mut put = |values: &[f32]| {
             values.iter().try_for_each(|value| out.write_all(&value.to_le_bytes()))
@@ -69,6 +42,7 @@ pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
             put(&tangents[i][0].to_array())?;
             put(&tangents[i][1].to_array())?;
         }
+        cloud.tangent.as_ref().map_or(Ok(()), |tangent| put(&tangent[i].to_array()))?;
         if let Some(groups) = groups {
             out.write_all(&groups.own()[i..=i])?;
         }
@@ -82,8 +56,56 @@ pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
         out.write_all(&[3])?;
         triangle.iter().try_for_each(|index| out.write_all(&index.to_le_bytes()))?;
     }
-    let mut scales = scaled.into_iter().flat_map(Groups::scale);
+    let mut ends = cloud.edges.iter().flatten();
+    ends.try_for_each(|index| out.write_all(&index.to_le_bytes()))?;
+    let mut scales = scaled(cloud).into_iter().flat_map(Groups::scale);
     scales.try_for_each(|scale| out.write_all(&scale.to_le_bytes()))
+}
+
+/// Elements, their counts and properties.
+fn header(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
+    let names = [
+        (true, "x y z"),
+        (cloud.normal.is_some(), "nx ny nz"),
+        (cloud.radius.is_some(), "radius"),
+        (cloud.color.is_some(), "red green blue"),
+        (cloud.opacity.is_some(), "opacity"),
+        (cloud.tangents.is_some(), "tux tuy tuz tvx tvy tvz"),
+        (cloud.tangent.is_some(), "tx ty tz"),
+    ];
+    writeln!(out, "ply\nformat binary_little_endian 1.0")?;
+    writeln!(out, "element vertex {}", cloud.position.len())?;
+    for name in names.iter().filter(|n| n.0).flat_map(|n| n.1.split(' ')) {
+        writeln!(out, "property float {name}")?;
+    }
+    if cloud.groups.is_some() {
+        writeln!(out, "property uchar group")?;
+    }
+    if added(cloud).is_some() {
+        writeln!(out, "property list uchar uchar also")?;
+    }
+    if !cloud.triangles.is_empty() {
+        writeln!(out, "element face {}", cloud.triangles.len())?;
+        writeln!(out, "property list uchar uint vertex_indices")?;
+    }
+    if !cloud.edges.is_empty() {
+        writeln!(out, "element edge {}", cloud.edges.len())?;
+        writeln!(out, "property uint vertex1\nproperty uint vertex2")?;
+    }
+    if let Some(groups) = scaled(cloud) {
+        writeln!(out, "element group {}\nproperty float scale", groups.len())?;
+    }
+    writeln!(out, "end_header")
+}
+
+/// The groups, if surfels were added to some.
+fn added(cloud: &Cloud) -> Option<&Groups> {
+    cloud.groups.as_ref().filter(|groups| !groups.added().is_empty())
+}
+
+/// The groups, if vertices do not tell all about them.
+fn scaled(cloud: &Cloud) -> Option<&Groups> {
+    cloud.groups.as_ref().filter(|groups| !tell(groups))
 }
 
 /// Whether the vertices tell all: the last group has a surfel, and no radius is scaled.

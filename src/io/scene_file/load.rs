@@ -1,12 +1,12 @@
-//! From a [`SceneFile`] to surfels.
+//! From a [`SceneFile`] to surfels and primitives.
 
-use super::{EnvironmentChoice, Model, SceneFile, Source, stem};
+use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, stem};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::{environment, ply};
 use crate::scene::derive::{self, Derive, Derived};
-use crate::scene::merge::merge;
-use crate::scene::{Cloud, Dropped, Environment, Primitives, Scene, Surfels};
+use crate::scene::merge::{join, merge};
+use crate::scene::{Cloud, Counts, Dropped, Environment, Primitives, Scene, Surfels};
 
 /// A scene and how it came about.
 #[derive(Clone, Debug)]
@@ -15,8 +15,10 @@ pub struct Loaded {
     pub scene: Scene,
     /// Its models, in order.
     pub models: Vec<ModelReport>,
-    /// Points of all models that became no surfel.
+    /// Points of all models that became no surfel, where they should have.
     pub dropped: Dropped,
+    /// Triangles and edges of all models that became no primitive, where they should have.
+    pub dropped_primitives: u64,
 }
 
 /// What became of a model.
@@ -26,6 +28,8 @@ pub struct ModelReport {
     pub name: String,
     /// How many surfels it gave.
     pub surfels: usize,
+    /// How many primitives it gave.
+    pub primitives: Counts,
     /// What its file did not give; none for shapes.
     pub derived: Option<Derived>,
 }
@@ -37,58 +41,128 @@ impl SceneFile {
     /// `progress` as in [`derive::surfels`].
     ///
     /// # Errors
-    /// Those of [`environment::read`], [`ply::read`], [`derive::surfels`] and [`crate::scene::Shape::surfels`], the file
-    /// named; [`Error::Invalid`] if no surfel is left or there are too many.
+    /// Those of [`environment::read`], [`ply::read`], [`crate::scene::Shape::surfels`], and of
+    /// [`derive::surfels`] and its like for polygons and lines, the file named; [`Error::Invalid`]
+    /// if neither a surfel nor a primitive is left or there are too many, or if a model that is not
+    /// drawn as points was given an opacity.
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
+        self.models.iter().try_for_each(check_opaque)?;
         let environment = match &self.environment {
             None => None,
             Some(EnvironmentChoice::Sky) => Some(Environment::Sky),
             Some(EnvironmentChoice::File(path)) => Some(environment::read(path)?),
         };
-        let mut models = Vec::new();
-        let mut clouds = Vec::new();
+        let (mut models, mut clouds, mut primitives) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut dropped, mut dropped_primitives) = (Dropped::default(), 0);
         for model in &self.models {
-            let (cloud, report) = load(model, exec, progress)?;
-            models.push(report);
-            clouds.push(cloud);
+            let Parts { surfels, primitives: more, derived } = parts(model, exec, progress)?;
+            let counts = more.counts();
+            let name = model.source.name();
+            models.push(ModelReport { name, surfels: surfels.len(), primitives: counts, derived });
+            // What a transform took out of the range of f32 is dropped here, or of surfels below.
+            let (more, lost) = more.map(|vertices| {
+                if let Some(color) = model.color {
+                    vertices.color = Some(vec![color; vertices.position.len()]);
+                }
+                model.transform.apply_to_vertices(vertices);
+            })?;
+            clouds.push(placed(model, surfels));
+            primitives.push(more);
+            dropped_primitives += lost;
+            if let Some(derived) = derived {
+                dropped += derived.dropped;
+                dropped_primitives += derived.dropped_primitives;
+            }
         }
-        // What a transform took out of the range of f32 is dropped here.
-        let (surfels, mut dropped) = Surfels::new(merge(clouds, self.material.color))?;
-        for one in models.iter().filter_map(|model| Some(model.derived?.dropped)) {
-            dropped.position += one.position;
-            dropped.normal += one.normal;
-            dropped.radius += one.radius;
-            dropped.attribute += one.attribute;
-        }
+        let primitives = join(primitives, self.material.color)?;
+        clouds.retain(|cloud| !cloud.position.is_empty());
+        let all = merge(clouds, self.material.color);
+        let (surfels, lost) =
+            if primitives.is_empty() { Surfels::new(all) } else { Surfels::new_or_none(all) }?;
+        dropped += lost;
         let (name, lights) = (self.name.clone(), self.lights.clone());
-        let primitives = Primitives::default();
         let scene =
             Scene { name, surfels, primitives, lights, material: self.material, environment };
-        Ok(Loaded { scene, models, dropped })
+        Ok(Loaded { scene, models, dropped, dropped_primitives })
     }
 }
 
-/// One model as a complete cloud in its place.
-fn load(
-    model: &Model,
-    exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
-) -> Result<(Cloud, ModelReport)> {
-    let (surfels, name, derived) = match &model.source {
+/// A model where its file has it.
+struct Parts {
+    surfels: Surfels,
+    primitives: Primitives,
+    derived: Option<Derived>,
+}
+
+impl Parts {
+    fn new(surfels: Surfels, primitives: Primitives, derived: Derived) -> Self {
+        Self { surfels, primitives, derived: Some(derived) }
+    }
+}
+
+/// Whether a model may have its opacity.
+fn check_opaque(model: &Model) -> Result<()> {
+    if model.opacity.is_some() && model.draw != Draw::Points {
+        let (name, word) = (model.source.name(), model.draw.word());
+        let what = format!("{name}: what is drawn as {word} is opaque; remove the opacity");
+        return Err(Error::Invalid(what));
+    }
+    Ok(())
+}
+
+fn parts(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Parts> {
+    match &model.source {
         Source::File { path, radius } => {
             let cloud = ply::read(path)?;
-            let derived = derive::surfels(cloud, &Derive { radius: *radius }, exec, progress);
-            let (surfels, derived) = derived.map_err(|error| match error {
+            let options = Derive { radius: *radius };
+            of_file(cloud, &model.draw, &options, exec, progress).map_err(|error| match error {
                 Error::Invalid(what) => Error::format(path, what),
                 other => other,
-            })?;
-            (surfels, stem(path), Some(derived))
+            })
         }
-        Source::Shape { shape, count, seed } => {
-            (shape.surfels(*count, *seed)?, shape.name().to_owned(), None)
+        Source::Shape { shape, count, seed } => Ok(Parts {
+            surfels: shape.surfels(*count, *seed)?,
+            primitives: Primitives::default(),
+            derived: None,
+        }),
+    }
+}
+
+fn of_file(
+    cloud: Cloud,
+    draw: &Draw,
+    options: &Derive,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<Parts> {
+    let none = Primitives::default();
+    Ok(match draw {
+        Draw::Points => {
+            let (surfels, derived) = derive::surfels(cloud, options, exec, progress)?;
+            Parts::new(surfels, none, derived)
         }
-    };
-    let report = ModelReport { name, surfels: surfels.len(), derived };
+        Draw::Polygons => {
+            let (triangles, derived) = derive::polygons(cloud, exec, progress)?;
+            Parts::new(Surfels::none(), Primitives { triangles, ..none }, derived)
+        }
+        Draw::Hybrid(half) => {
+            let (surfels, triangles, derived) =
+                derive::hybrid(cloud, half, options, exec, progress)?;
+            Parts::new(surfels, Primitives { triangles, ..none }, derived)
+        }
+        Draw::Ribbons => {
+            let (ribbons, derived) = derive::ribbons(cloud, options)?;
+            Parts::new(Surfels::none(), Primitives { ribbons, ..none }, derived)
+        }
+        Draw::Tubes => {
+            let (tubes, derived) = derive::tubes(cloud, options)?;
+            Parts::new(Surfels::none(), Primitives { tubes, ..none }, derived)
+        }
+    })
+}
+
+/// The surfels of a model in its place and colour.
+fn placed(model: &Model, surfels: Surfels) -> Cloud {
     let mut cloud = surfels.into_cloud();
     if let Some(color) = model.color {
         cloud.color = Some(vec![color; cloud.position.len()]);
@@ -97,5 +171,15 @@ fn load(
         cloud.opacity = Some(vec![opacity; cloud.position.len()]);
     }
     model.transform.apply(&mut cloud);
-    Ok((cloud, report))
+    cloud
+}
+
+impl Source {
+    /// The name of the file without its extension, or of the shape.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::File { path, .. } => stem(path),
+            Self::Shape { shape, .. } => shape.name().to_owned(),
+        }
+    }
 }

@@ -14,6 +14,7 @@
 //! [`SceneFile::of_model`].
 
 mod choice;
+mod draw;
 mod load;
 mod parse;
 #[cfg(test)]
@@ -24,13 +25,14 @@ pub use choice::{
     DEFAULT_MOST, DEFAULT_OVERLAP, DEFAULT_TRANSPARENT_GROUPS, ExtensionChoice, GroupChoice,
     MethodChoice, MethodName,
 };
+pub use draw::Draw;
 pub use load::{Loaded, ModelReport};
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::method::Method;
 use crate::scene::group::{Extended, Groups, Report};
-use crate::scene::{Camera, Lens, Light, Phong, Pose, Shape, Similarity, Surfels};
+use crate::scene::{Camera, Lens, Light, Phong, Pose, Scene, Shape, Similarity, Surfels};
 use glam::{DVec3, Vec3};
 use std::path::{Path, PathBuf};
 
@@ -66,20 +68,22 @@ pub struct SceneFile {
     pub output: Output,
 }
 
-/// Surfels from one place.
+/// Surfels, polygons or lines from one place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     /// Where they come from.
     pub source: Source,
+    /// As what they are drawn; shapes as points.
+    pub draw: Draw,
     /// Where they are put.
     pub transform: Similarity,
     /// Linear RGB for all of them, in place of their own.
     pub color: Option<Vec3>,
-    /// Opacity in [0, 1] for all of them, in place of their own.
+    /// Opacity in [0, 1] for all of them, in place of their own; for points alone.
     pub opacity: Option<f32>,
 }
 
-/// Where the surfels of a model come from.
+/// Where a model comes from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     /// A PLY file.
@@ -165,14 +169,11 @@ impl SceneFile {
     /// The scene of one model, everything else left open.
     #[must_use]
     pub fn of_model(source: Source) -> Self {
-        let name = match &source {
-            Source::File { path, .. } => stem(path),
-            Source::Shape { shape, .. } => shape.name().to_owned(),
-        };
-        let model = Model { source, transform: Similarity::IDENTITY, color: None, opacity: None };
+        let transform = Similarity::IDENTITY;
+        let draw = Draw::default();
         Self {
-            name,
-            models: vec![model],
+            name: source.name(),
+            models: vec![Model { source, draw, transform, color: None, opacity: None }],
             camera: CameraChoice::default(),
             lights: vec![Light::DEFAULT],
             material: Phong::default(),
@@ -183,16 +184,16 @@ impl SceneFile {
         }
     }
 
-    /// The camera: what was chosen, and for the rest what shows `surfels`, those of this scene.
+    /// The camera: what was chosen, and for the rest what shows `scene`, this one when loaded.
     ///
     /// A scene of one shape that is not transformed has the shape's own pose and lens. Any other is
     /// framed from [`DEFAULT_SIDE`], see [`Camera::framing`]; where only the eye was chosen it looks
-    /// at the middle of [`Surfels::bounding_sphere`], where only the target was chosen it looks from
+    /// at the middle of [`Scene::bounding_sphere`], where only the target was chosen it looks from
     /// [`DEFAULT_SIDE`] at a sphere of that radius around it.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Camera::new`].
-    pub fn camera(&self, surfels: &Surfels) -> Result<Camera> {
+    pub fn camera(&self, scene: &Scene) -> Result<Camera> {
         let CameraChoice { size, eye, target, up, lens } = self.camera;
         let [width, height] = size.unwrap_or(DEFAULT_SIZE);
         let shape = match self.models.as_slice() {
@@ -217,7 +218,7 @@ impl SceneFile {
         let pose = match shape {
             Some(shape) => shape.default_pose(),
             None => {
-                let (middle, radius) = surfels.bounding_sphere();
+                let (middle, radius) = scene.bounding_sphere();
                 let target = target.unwrap_or(middle);
                 let framed = Camera::framing(width, height, (target, radius), DEFAULT_SIDE, lens)?;
                 if eye.is_none() && up.is_none() {

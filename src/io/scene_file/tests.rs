@@ -1,3 +1,5 @@
+mod draw;
+
 use super::*;
 use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples};
 use crate::io::exr;
@@ -41,6 +43,7 @@ fn the_example_says_what_it_says() {
     let path = Path::new("a").join("bunny.ply");
     assert_eq!(bunny.source, Source::File { path, radius: Some(0.002) });
     assert_eq!(bunny.color, Some(Vec3::new(0.75, 0.5, 0.25)));
+    assert_eq!(bunny.draw, Draw::Points);
     assert_eq!((bunny.transform.scale, bunny.transform.translation), (10.0, -DVec3::Y));
     let shape = Shape::Sheets { gap: 0.25 };
     assert_eq!(sheets.source, Source::Shape { shape, count: 20_000, seed: 1 });
@@ -268,17 +271,17 @@ fn what_the_camera_leaves_open_shows_the_scene() {
     let shape = Shape::Sphere;
     let mut file = SceneFile::of_model(Source::Shape { shape, count: 400, seed: 0 });
     file.camera.size = Some([40, 30]);
-    let surfels = load(&file).scene.surfels;
+    let scene = load(&file).scene;
     let own = Camera::new(40, 30, shape.default_pose(), shape.default_lens()).unwrap();
-    assert_eq!(file.camera(&surfels).unwrap(), own, "a shape has a pose of its own");
+    assert_eq!(file.camera(&scene).unwrap(), own, "a shape has a pose of its own");
 
     // A shape that was moved is framed like any other model.
     file.models[0].transform.translation = DVec3::new(100.0, 0.0, 0.0);
-    let surfels = load(&file).scene.surfels;
-    let (middle, radius) = surfels.bounding_sphere();
+    let scene = load(&file).scene;
+    let (middle, radius) = scene.surfels.bounding_sphere();
     let lens = Lens::FieldOfView(DEFAULT_FIELD_OF_VIEW);
     let framed = Camera::framing(40, 30, (middle, radius), DEFAULT_SIDE, lens).unwrap();
-    assert_eq!(file.camera(&surfels).unwrap(), framed);
+    assert_eq!(file.camera(&scene).unwrap(), framed);
 
     // The rest follows from what was chosen: the middle of the picture is the target.
     let looks_at = |camera: &Camera, target: DVec3| {
@@ -287,14 +290,14 @@ fn what_the_camera_leaves_open_shows_the_scene() {
     };
     let eye = DVec3::new(100.0, 9.0, 3.0);
     file.camera.eye = Some(eye);
-    let camera = file.camera(&surfels).unwrap();
+    let camera = file.camera(&scene).unwrap();
     looks_at(&camera, middle);
     assert!((camera.eye() - eye).length() < 1e-4);
     file.camera.eye = None;
     file.camera.target = Some(DVec3::new(100.5, 0.0, 0.0));
-    looks_at(&file.camera(&surfels).unwrap(), DVec3::new(100.5, 0.0, 0.0));
+    looks_at(&file.camera(&scene).unwrap(), DVec3::new(100.5, 0.0, 0.0));
     file.camera.up = Some(DVec3::X);
-    let camera = file.camera(&surfels).unwrap();
+    let camera = file.camera(&scene).unwrap();
     looks_at(&camera, DVec3::new(100.5, 0.0, 0.0));
     let right = camera.view_from_world.row(0).truncate();
     assert!(right.x.abs() < 1e-6, "up is x, so right is not: {right}");

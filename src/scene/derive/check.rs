@@ -4,8 +4,8 @@ use crate::error::{Error, Result};
 use crate::scene::Cloud;
 
 impl Cloud {
-    /// Checks what [`Cloud`] promises: one length for all arrays, triangles of existing points,
-    /// and fewer than 2^32 - 1 points.
+    /// Checks what [`Cloud`] promises: one length for all arrays, triangles and edges of existing
+    /// points, and fewer than 2^32 - 1 points.
     ///
     /// # Errors
     /// [`Error::Invalid`] that names the array.
@@ -20,7 +20,8 @@ impl Cloud {
             ("radii", self.radius.as_ref().map(Vec::len)),
             ("colours", self.color.as_ref().map(Vec::len)),
             ("opacities", self.opacity.as_ref().map(Vec::len)),
-            ("tangents", self.tangents.as_ref().map(Vec::len)),
+            ("half axes", self.tangents.as_ref().map(Vec::len)),
+            ("tangents", self.tangent.as_ref().map(Vec::len)),
             ("groups", self.groups.as_ref().map(|g| g.own().len())),
         ];
         for (what, length) in lengths {
@@ -31,6 +32,11 @@ impl Cloud {
         let outside = |triangle: &[u32; 3]| triangle.iter().any(|&i| i as usize >= n);
         if let Some(at) = self.triangles.iter().position(outside) {
             let what = format!("triangle {at} has a corner that is none of the {n} points");
+            return Err(Error::Invalid(what));
+        }
+        let outside = |edge: &[u32; 2]| edge.iter().any(|&i| i as usize >= n);
+        if let Some(at) = self.edges.iter().position(outside) {
+            let what = format!("edge {at} has an end that is none of the {n} points");
             return Err(Error::Invalid(what));
         }
         Ok(())

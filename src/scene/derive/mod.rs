@@ -1,6 +1,6 @@
-//! From what a file gives to complete surfels.
+//! From what a file gives to complete surfels, polygons, ribbons and tubes.
 //!
-//! In this order, each step for what is still missing:
+//! For surfels, in this order, each step for what is still missing:
 //!
 //! 1. Points whose position is not finite are dropped and counted, with the triangles at them.
 //! 2. **Normals**: across the tangents, if the file has them; else from the triangles, weighted by
@@ -11,19 +11,22 @@
 //!    nearest neighbour.
 //! 4. [`Surfels::new`] checks the rest.
 //!
+//! [`polygons`], [`hybrid`], [`ribbons`] and [`tubes`] begin with step 1 too.
+//!
 //! `Decided:` neighbours are other *places*: points at one place count once, and share what is
 //! derived. If there are fewer places than asked for, all are taken.
 //!
-//! `Decided:` a cloud with triangles is a mesh, and its vertices in no triangle are no surface: what
-//! is missing for them is not derived, and they are dropped and counted.
+//! `Decided:` a cloud with triangles is a mesh, and its vertices in no triangle are no surface:
+//! what is missing for them is not derived, and they are dropped and counted.
 //!
 //! `Decided:` the radii. Every point of a triangle lies within 1/sqrt(3) of its longest edge from
 //! its nearest corner, so that discs with that edge as radius cover it with a margin for tilted
 //! normals. In six scans and models of 6 k to 134 k vertices the discs overlap 6.5 to 11 times, and
-//! those of a triangle's own corners leave at most 4e-5 of the area open, in triangles that a normal
-//! of a corner is all but parallel to. The distance to the n-th neighbour makes discs overlap n
-//! times whatever the density. Of a randomly sampled sphere n = 6 leaves about 3e-4 open, 8 about
-//! 3e-6, and 10 none of 400,000 probes; on the vertices of the same models 10 leaves at most 2e-4.
+//! those of a triangle's own corners leave at most 4e-5 of the area open, in triangles that a
+//! normal of a corner is all but parallel to. The distance to the n-th neighbour makes discs
+//! overlap n times whatever the density. Of a randomly sampled sphere n = 6 leaves about 3e-4 open,
+//! 8 about 3e-6, and 10 none of 400,000 probes; on the vertices of the same models 10 leaves at
+//! most 2e-4.
 
 mod check;
 mod distinct;
@@ -32,8 +35,11 @@ mod neighbours;
 mod orient;
 mod places;
 mod plane;
+mod primitives;
 #[cfg(test)]
 mod tests;
+
+pub use primitives::{hybrid, polygons, ribbons, tubes};
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
@@ -68,17 +74,24 @@ pub enum Origin {
     Triangles,
     /// Derived from the nearest neighbours.
     Neighbours,
+    /// Derived from the edges, as tangents are.
+    Edges,
+    /// They are 0: radii of polygons.
+    Zero,
 }
 
-/// What [`surfels`] did.
+/// What [`surfels`], [`polygons`], [`hybrid`], [`ribbons`] or [`tubes`] did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Derived {
-    /// Where the normals come from.
+    /// Where the normals come from, or the tangents of tubes.
     pub normals: Origin,
     /// Where the radii come from.
     pub radii: Origin,
     /// Points that became no surfel, each counted once, under the first reason that held.
     pub dropped: Dropped,
+    /// Triangles that became no polygon, or edges that became no ribbon or tube, because a corner
+    /// is degenerate.
+    pub dropped_primitives: u64,
 }
 
 /// Makes complete surfels of a cloud, see the module.
@@ -87,14 +100,28 @@ pub struct Derived {
 /// that may take over a second report. The result is a function of the cloud and the options alone.
 ///
 /// # Errors
-/// [`Error::Invalid`] if [`Cloud::check`] fails, if the radius asked for is not finite and > 0, if no
-/// point is left, if normals are to be derived from fewer than 3 places, or radii from fewer than 2.
+/// [`Error::Invalid`] if [`Cloud::check`] fails, if the radius asked for is not finite and > 0, if
+/// no point is left, if normals are to be derived from fewer than 3 places, or radii from fewer
+/// than 2.
 pub fn surfels(
-    mut cloud: Cloud,
+    cloud: Cloud,
     options: &Derive,
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<(Surfels, Derived)> {
+    let (cloud, mut derived) = complete(cloud, options, exec, progress)?;
+    let (surfels, dropped) = Surfels::new(cloud)?;
+    derived.dropped += dropped;
+    Ok((surfels, derived))
+}
+
+/// Steps 1 to 3: a cloud of finite points with normals and radii.
+fn complete(
+    mut cloud: Cloud,
+    options: &Derive,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<(Cloud, Derived)> {
     cloud.check()?;
     let nowhere = drop_nowhere(&mut cloud)?;
     let places = OnceCell::new();
@@ -106,10 +133,9 @@ pub fn surfels(
         Some(radius) => (radius, Origin::File),
         None => missing_radii(&cloud, options, &places, exec, progress)?,
     };
-    let (surfels, mut dropped) =
-        Surfels::new(Cloud { normal: Some(normal), radius: Some(radius), ..cloud })?;
-    dropped.position += nowhere;
-    Ok((surfels, Derived { normals, radii, dropped }))
+    let dropped = Dropped { position: nowhere, ..Dropped::default() };
+    let cloud = Cloud { normal: Some(normal), radius: Some(radius), ..cloud };
+    Ok((cloud, Derived { normals, radii, dropped, dropped_primitives: 0 }))
 }
 
 fn missing_normals(
@@ -138,11 +164,7 @@ fn missing_radii(
 ) -> Result<(Vec<f32>, Origin)> {
     let points = &cloud.position;
     if let Some(radius) = options.radius {
-        if !(radius > 0.0 && radius.is_finite()) {
-            let what = format!("a radius of {radius} was asked for; it must be finite and > 0");
-            return Err(Error::Invalid(what));
-        }
-        return Ok((vec![radius; points.len()], Origin::Given));
+        return Ok((given(radius, points.len())?, Origin::Given));
     }
     if let Some(tangents) = &cloud.tangents {
         return Ok((tangents.iter().map(longer).collect(), Origin::Tangents));
@@ -152,6 +174,15 @@ fn missing_radii(
     }
     let places = places.get_or_init(|| Places::new(points, exec, progress));
     Ok((places.radii(exec, progress)?, Origin::Neighbours))
+}
+
+/// The radius that was asked for, `n` times.
+fn given(radius: f32, n: usize) -> Result<Vec<f32>> {
+    if !(radius > 0.0 && radius.is_finite()) {
+        let what = format!("a radius of {radius} was asked for; it must be finite and > 0");
+        return Err(Error::Invalid(what));
+    }
+    Ok(vec![radius; n])
 }
 
 /// The direction of `u x v`, in f64 and rounded once; null if they span no plane.
@@ -165,50 +196,17 @@ fn longer([u, v]: &[Vec3; 2]) -> f32 {
     (if v > u { v } else { u }) as f32
 }
 
-/// Drops points that are not finite, and triangles at them; how many points.
+/// Drops points that are not finite, with triangles and edges at them; how many points.
 fn drop_nowhere(cloud: &mut Cloud) -> Result<u64> {
     let n = cloud.position.len();
-    // The new index of each point that stays.
-    let mut kept = 0;
-    let index: Vec<Option<u32>> = cloud
-        .position
-        .iter()
-        .map(|p| {
-            p.is_finite().then(|| {
-                kept += 1;
-                kept - 1
-            })
-        })
-        .collect();
+    let keep: Vec<bool> = cloud.position.iter().map(|p| p.is_finite()).collect();
+    let kept = keep.iter().filter(|&&keep| keep).count();
     if kept == 0 {
         let what = format!("the scene is empty: none of its {n} points has a finite position");
         return Err(Error::Invalid(what));
     }
-    if kept as usize == n {
-        return Ok(0);
+    if kept < n {
+        cloud.retain(&keep);
     }
-    retain([&mut cloud.position], &index);
-    retain(&mut cloud.normal, &index);
-    retain(&mut cloud.radius, &index);
-    retain(&mut cloud.color, &index);
-    retain(&mut cloud.opacity, &index);
-    retain(&mut cloud.tangents, &index);
-    if let Some(groups) = cloud.groups.take() {
-        let keep: Vec<bool> = index.iter().map(Option::is_some).collect();
-        cloud.groups = Some(groups.retain(&keep));
-    }
-    let triangles = cloud.triangles.iter().filter_map(|triangle| {
-        let [a, b, c] = triangle.map(|i| index[i as usize]);
-        Some([a?, b?, c?])
-    });
-    cloud.triangles = triangles.collect();
-    Ok((n - kept as usize) as u64)
-}
-
-/// Keeps the values that have a new index, if there are values.
-fn retain<'a, T: 'a>(values: impl IntoIterator<Item = &'a mut Vec<T>>, index: &[Option<u32>]) {
-    for values in values {
-        let mut index = index.iter();
-        values.retain(|_| index.next().is_some_and(Option::is_some));
-    }
+    Ok((n - kept) as u64)
 }

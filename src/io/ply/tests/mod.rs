@@ -30,13 +30,22 @@ fn faces(more: &[&str], face: &str) -> Vec<u8> {
 
 const INDICES: &str = "property list uchar int vertex_indices";
 
+/// Three points with tangents and two edges.
+fn edges(more: &[&str], edges: &str) -> Vec<u8> {
+    let tangent = ["property float tx", "property double ty", "property char tz"];
+    let more = [&tangent[..], &["element edge 2"], more].concat();
+    vertices("3", &more, &format!("0 0 0 1 0 0\n1 0 0 0 2 0\n0 1 0 0 0 -1\n{edges}\n"))
+}
+
+const ENDS: [&str; 2] = ["property int vertex1", "property ushort vertex2"];
+
 /// One vertex of all types and a face with a list before the indices, in binary.
 fn binary(big: bool) -> Vec<u8> {
     let header = "ply\nformat binary_FORMAT 1.0\ncomment \u{e4}\nelement vertex 3\n\
         property double x\nproperty int y\nproperty float z\nproperty char skipped\n\
         property uchar red\nproperty ushort green\nproperty float blue\n\
         property list ushort short more\nproperty uchar alpha\n\
-        element edge 1\nproperty uint a\n\
+        element other 1\nproperty uint a\n\
         element face 1\nproperty list int double uv\nproperty list uint ushort vertex_index\n\
         end_header\n";
     let header = header.replace("FORMAT", if big { "big_endian" } else { "little_endian" });
@@ -125,6 +134,17 @@ fn polygons_are_fans_and_short_ones_nothing() {
 }
 
 #[test]
+fn edges_join_two_vertices() {
+    let more = ["property list uchar float uv", ENDS[1], "property uchar red", ENDS[0]];
+    let cloud = parse(&edges(&more, "0 1 255 0\n1 9.5 2 0 2")).unwrap();
+    assert_eq!(cloud.edges, [[0, 1], [2, 2]], "whatever the order of the properties");
+    assert_eq!(cloud.tangent.unwrap(), [Vec3::X, 2.0 * Vec3::Y, Vec3::NEG_Z]);
+    assert!(cloud.tangents.is_none(), "the half axes of an ellipse are something else");
+    let none = vertices("1", &["element edge 0", "property float length"], "0 0 0\n");
+    assert!(parse(&none).unwrap().edges.is_empty());
+}
+
+#[test]
 fn values_that_are_no_numbers_go_into_the_cloud() {
     let cloud = parse(&vertices("2", &[], "nan inf -inf\n1e999 -1e-999 NaN\n")).unwrap();
     assert!(cloud.position[0].x.is_nan() && cloud.position[0].y == f32::INFINITY);
@@ -185,7 +205,9 @@ fn what_is_written_is_read_back_bit_for_bit() {
         color: Some(vectors(2000)),
         opacity: Some((n..2 * n).map(value).collect()),
         tangents: Some(vectors(3000).into_iter().zip(vectors(4000)).map(|(u, v)| [u, v]).collect()),
+        tangent: Some(vectors(5000)),
         triangles: (0..n as u32 - 2).map(|i| [i, i + 2, i + 1]).collect(),
+        edges: (1..n as u32).map(|i| [i, i / 2]).collect(),
         ..plain.clone()
     };
     let groups = |added: Vec<(u32, u8)>, scale: &[f32]| {
@@ -198,6 +220,7 @@ fn what_is_written_is_read_back_bit_for_bit() {
         grouped(groups(vec![], &[1.0; 5])),
         grouped(groups(vec![(7, 2), (7, 3), (299, 1)], &[1.0; 4])),
         Cloud { groups: groups(vec![(0, 63)], &[1.5; 64]), ..full.clone() },
+        Cloud { edges: vec![[299, 0]], ..plain.clone() },
         plain.clone(),
         full,
     ];
@@ -276,7 +299,8 @@ fn no_mutation_of_a_file_panics_or_is_read_wrongly() {
     ];
     let grouped = vertices("2", &grouped, "0 0 0 1 1 0\n0 0 0 0 0\n1\n2\n");
     let faces = faces(&[INDICES], "3 0 1 2");
-    let seeds = [binary(false), binary(true), text(), faces, grouped];
+    let lines = edges(&[ENDS[0], ENDS[1]], "0 1\n2 1");
+    let seeds = [binary(false), binary(true), text(), faces, grouped, lines];
     let words: [&[u8]; 10] = [
         b"-1",
         b"4294967295",
@@ -318,7 +342,7 @@ fn no_mutation_of_a_file_panics_or_is_read_wrongly() {
             assert!(!cloud.position.is_empty());
             // No more than the bytes could hold: a position takes at least three.
             assert!(cloud.position.len() * 3 <= bytes.len());
-            assert!(cloud.triangles.len() <= bytes.len());
+            assert!(cloud.triangles.len().max(cloud.edges.len()) <= bytes.len());
             if let Some(groups) = cloud.groups {
                 assert!(groups.added().len() <= bytes.len());
             }

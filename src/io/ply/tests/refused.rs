@@ -1,7 +1,7 @@
 //! Bad files and what their refusal says.
 
 use super::super::parse;
-use super::{INDICES, XYZ, ascii, faces, vertices};
+use super::{ENDS, INDICES, XYZ, ascii, edges, faces, vertices};
 
 /// Holds the one line of a refusal against what it must say.
 fn refused(bytes: Vec<u8>, expected: &str) {
@@ -46,6 +46,7 @@ fn elements_and_properties() {
     more(&[XYZ[1]], "line 7: property `y` of element `vertex` is declared twice");
     more(&["property float ny"], "element vertex has property ny but no nx");
     more(&["property float tvz"], "element vertex has property tvz but no tux");
+    more(&["property float ty"], "element vertex has property ty but no tx");
     more(
         &["property uchar alpha", "property float opacity"],
         "element vertex has both opacity and alpha; keep one",
@@ -133,6 +134,27 @@ fn corners_of_faces() {
     );
     list("property int vertex_index", "3", "property `vertex_index` must be a list of integers");
     list("property int flags", "3", "element face has no property list vertex_indices");
+}
+
+#[test]
+fn ends_of_edges() {
+    let ends = |rows, expected| refused(edges(&ENDS, rows), expected);
+    ends(
+        "0 1\n3 1",
+        "edge 1 (line 18), property `vertex1`: vertex 3 does not exist, they are 0 to 2",
+    );
+    ends("0 1\n1 -1", "edge 1 (line 18), property `vertex2`: `-1` is no number of type ushort");
+    ends("-1 1\n1 1", "edge 0 (line 17), property `vertex1`: vertex -1 does not exist");
+    ends("0 1\n1", "edge 1 (line 19), property `vertex2`: the file ends here");
+    ends("0 1\n1 1 1", "edge 1 (line 18): the line goes on");
+    let declared = |more: &[&str], expected| refused(edges(more, "0 1\n1 2"), expected);
+    declared(&["property int a", ENDS[1]], "element edge has no property vertex1; declare it");
+    declared(&ENDS[..1], "element edge has no property vertex2; declare it");
+    declared(&["property float vertex1", ENDS[1]], "property `vertex1` must be one integer");
+    let list = "property list uchar int vertex2";
+    declared(&[ENDS[0], list], "element edge: property `vertex2` must be one integer");
+    let many = edges(&ENDS, "");
+    refused(many, "element `edge`: the header declares 2, but the");
 }
 
 const GROUP: &str = "property int group";

@@ -6,7 +6,7 @@
 mod method;
 
 use super::{
-    CameraChoice, DEFAULT_COUNT, EnvironmentChoice, GroupChoice, MethodChoice, Model, Number,
+    CameraChoice, DEFAULT_COUNT, Draw, EnvironmentChoice, GroupChoice, MethodChoice, Model, Number,
     Output, SceneFile, Source, check_opacity, stem, words,
 };
 use crate::error::{Error, Result};
@@ -102,6 +102,8 @@ through! {
 struct RawModel {
     file: Option<PathBuf>,
     radius: Option<f32>,
+    draw: Option<String>,
+    split: Option<[f64; 4]>,
     shape: Option<String>,
     square: Option<f32>,
     gap: Option<f32>,
@@ -117,8 +119,16 @@ struct RawModel {
 
 impl RawModel {
     fn model(mut self) -> std::result::Result<Model, String> {
+        let draw = Draw::choose(self.draw.as_deref(), self.split)?;
         let source = match (self.file.take(), self.shape.take()) {
+            (Some(_), None) if draw == Draw::Polygons && self.radius.is_some() => {
+                return Err("`radius` means nothing to polygons: remove it".into());
+            }
             (Some(path), None) => Source::File { path, radius: self.radius.take() },
+            (None, Some(name)) if draw != Draw::Points => {
+                let word = draw.word();
+                return Err(format!("{name} is drawn as points, not as {word}: remove `draw`"));
+            }
             (None, Some(name)) => {
                 let shape = Shape::by_name(&name).ok_or_else(|| {
                     let known: Vec<&str> = Shape::ALL.iter().map(Shape::name).collect();
@@ -155,7 +165,7 @@ impl RawModel {
             check_opacity(opacity).map_err(|error| error.to_string())?;
         }
         let (transform, opacity) = (self.transform.similarity()?, self.opacity);
-        Ok(Model { source, transform, color, opacity })
+        Ok(Model { source, draw, transform, color, opacity })
     }
 
     /// The shape with the parameters that were given for it.

@@ -1,0 +1,40 @@
+//! The element `edge`: segments between two vertices.
+
+use super::faces::corner;
+use super::header::{Element, Kind};
+use super::values::{Event, Values};
+
+/// Reads all edges; each end is held against `vertices`.
+pub(super) fn read(
+    element: &Element,
+    values: &mut Values<'_>,
+    vertices: u64,
+    edges: &mut Vec<[u32; 2]>,
+) -> Result<(), String> {
+    if element.count == 0 {
+        return Ok(());
+    }
+    let ends = [end(element, "vertex1")?, end(element, "vertex2")?];
+    let mut edge = [0; 2];
+    values.walk(element, |event| {
+        match event {
+            Event::Value(property, value) => {
+                if let Some(which) = ends.iter().position(|&end| end == property) {
+                    edge[which] = corner(value, vertices)?;
+                }
+            }
+            Event::End => edges.push(edge),
+        }
+        Ok(())
+    })
+}
+
+/// Which property names an end.
+fn end(element: &Element, name: &str) -> Result<usize, String> {
+    let found = element.properties.iter().position(|property| property.name == name);
+    let index = found.ok_or_else(|| format!("element edge has no property {name}; declare it"))?;
+    match element.properties[index].kind {
+        Kind::One(scalar) if scalar.is_integer() => Ok(index),
+        _ => Err(format!("element edge: property `{name}` must be one integer")),
+    }
+}

@@ -1,0 +1,86 @@
+//! What bounds a whole scene, surfels and primitives.
+
+use super::Scene;
+use glam::{DVec3, Vec3};
+
+impl Scene {
+    /// The corners of the smallest axis-parallel box around all positions: of surfels, and of
+    /// vertices that a primitive uses. Both are the origin if the scene is empty.
+    #[must_use]
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        let surfels = (!self.surfels.is_empty()).then(|| self.surfels.bounds());
+        let vertices = self.primitives.used().map(|(position, _)| (position, position));
+        let all = surfels.into_iter().chain(vertices);
+        all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
+    }
+
+    /// A sphere around everything: that of the surfels, see [`super::Surfels::bounding_sphere`], if
+    /// there is nothing else. Otherwise the middle of [`Scene::bounds`], and the largest distance
+    /// from there to a surfel plus its reach or to a used vertex plus its radius; in f64.
+    #[must_use]
+    pub fn bounding_sphere(&self) -> (DVec3, f64) {
+        if self.primitives.is_empty() {
+            return self.surfels.bounding_sphere();
+        }
+        let (low, high) = self.bounds();
+        let center = (low.as_dvec3() + high.as_dvec3()) / 2.0;
+        let reach = |(position, radius): (Vec3, f32)| {
+            (position.as_dvec3() - center).length() + f64::from(radius)
+        };
+        let surfels = self.surfels.reach(center);
+        let most = |most, far| if far > most { far } else { most };
+        (center, self.primitives.used().map(reach).fold(surfels, most))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Cloud, Phong, Polylines, Primitives, Surfels, Triangles, Vertices};
+
+    fn vertices(position: &[Vec3], radius: f32) -> Vertices {
+        let n = position.len();
+        Vertices {
+            position: position.to_vec(),
+            direction: vec![Vec3::Z; n],
+            radius: vec![radius; n],
+            color: None,
+        }
+    }
+
+    fn scene(surfels: Surfels) -> Scene {
+        let nowhere = Vec3::splat(f32::NAN);
+        let flat = [Vec3::ZERO, 2.0 * Vec3::X, Vec3::new(2.0, 4.0, 0.0), nowhere, Vec3::ONE * 99.0];
+        let (triangles, _) = Triangles::new(vertices(&flat, 0.0), vec![[0, 1, 2]]).unwrap();
+        let line = [Vec3::new(1.0, 2.0, -3.0), Vec3::new(1.0, 2.0, 5.0)];
+        let (tubes, _) = Polylines::new(vertices(&line, 0.5), vec![[0, 1]]).unwrap();
+        let primitives = Primitives { triangles, tubes, ..Primitives::default() };
+        let (lights, material) = (vec![], Phong::default());
+        Scene { name: "a".into(), surfels, primitives, lights, material, environment: None }
+    }
+
+    #[test]
+    fn vertices_that_are_used_are_inside() {
+        let alone = scene(Surfels::none());
+        let corners = (Vec3::new(0.0, 0.0, -3.0), Vec3::new(2.0, 4.0, 5.0));
+        assert_eq!(alone.bounds(), corners, "the origin of no surfels is not");
+        // Around (1, 2, 1): corners of the triangle at sqrt(6), the ends of the tube at 4 plus 0.5.
+        assert_eq!(alone.bounding_sphere(), (DVec3::new(1.0, 2.0, 1.0), 4.5));
+    }
+
+    #[test]
+    fn surfels_count_with_their_reach() {
+        let cloud = Cloud {
+            position: vec![Vec3::new(1.0, 2.0, 1.0)],
+            normal: Some(vec![Vec3::Z]),
+            radius: Some(vec![7.0]),
+            ..Cloud::default()
+        };
+        let (surfels, _) = Surfels::new(cloud).unwrap();
+        let mut both = scene(surfels);
+        assert_eq!(both.bounding_sphere(), (DVec3::new(1.0, 2.0, 1.0), 7.0));
+        both.primitives = Primitives::default();
+        assert_eq!(both.bounding_sphere(), both.surfels.bounding_sphere());
+        assert_eq!(both.bounds(), both.surfels.bounds());
+    }
+}

@@ -1,0 +1,297 @@
+//! Polygons, ribbons and tubes: what is drawn of the triangles and edges of a cloud.
+
+use super::{Derive, Derived, Origin, complete, drop_nowhere, given, missing_normals};
+use crate::error::{Error, Result};
+use crate::frame::Exec;
+use crate::scene::hybrid::{HalfSpace, split};
+use crate::scene::indexed::Indexed;
+use crate::scene::{Cloud, Dropped, Polylines, Surfels, Triangles, Vertices};
+use glam::{DVec3, Vec3};
+use std::cell::OnceCell;
+
+/// The triangles of a cloud as polygons, which reach no farther than themselves: every radius is 0.
+///
+/// Normals that are missing are derived as those of surfels, see the module.
+///
+/// # Errors
+/// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if each has a corner
+/// that is degenerate.
+pub fn polygons(
+    mut cloud: Cloud,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<(Triangles, Derived)> {
+    some_triangles(&cloud)?;
+    let before = cloud.triangles.len();
+    cloud.check()?;
+    drop_nowhere(&mut cloud)?;
+    let (normal, normals) = match cloud.normal.take() {
+        Some(normal) => (normal, Origin::File),
+        None => missing_normals(&cloud, &OnceCell::new(), exec, progress)?,
+    };
+    let radius = vec![0.0; cloud.position.len()];
+    let triangles = std::mem::take(&mut cloud.triangles);
+    finish(before, cloud, (normal, normals), (radius, Origin::Zero), triangles)
+}
+
+/// The triangles in a half space as polygons and the rest of a mesh as surfels, [`split`] after
+/// normals and radii have been derived as in [`super::surfels`] of all of the mesh. One of both
+/// parts may be empty.
+///
+/// # Errors
+/// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if nothing is left of
+/// either part.
+pub fn hybrid(
+    cloud: Cloud,
+    half: &HalfSpace,
+    options: &Derive,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<(Surfels, Triangles, Derived)> {
+    some_triangles(&cloud)?;
+    let before = cloud.triangles.len();
+    let (cloud, mut derived) = complete(cloud, options, exec, progress)?;
+    let nowhere = (before - cloud.triangles.len()) as u64;
+    let (points, mut mesh) = split(&cloud, half)?;
+    let (surfels, dropped) = Surfels::new_or_none(points)?;
+    derived.dropped += dropped;
+    let corners = std::mem::take(&mut mesh.triangles);
+    let (normal, radius) = (mesh.normal.take(), mesh.radius.take());
+    let vertices = vertices(mesh, normal.unwrap_or_default(), radius.unwrap_or_default());
+    let (triangles, degenerate) = Triangles::new(vertices, corners)?;
+    derived.dropped_primitives = nowhere + degenerate;
+    if surfels.is_empty() && triangles.is_empty() {
+        let what = "the scene is empty: all of its points and triangles are degenerate";
+        return Err(Error::Invalid(what.into()));
+    }
+    Ok((surfels, triangles, derived))
+}
+
+/// The edges of a cloud as ribbons. Normals must be given; radii, half the widths, too, or be asked
+/// for.
+///
+/// # Errors
+/// [`Error::Invalid`] if [`Cloud::check`] fails, if there are no edges, normals or radii, or if
+/// each edge has an end that is degenerate.
+pub fn ribbons(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived)> {
+    let before = cloud.edges.len();
+    let radius = radii(&mut cloud, options, "ribbons")?;
+    let Some(normal) = cloud.normal.take() else {
+        return Err(Error::Invalid("ribbons need normals; give nx, ny and nz".into()));
+    };
+    let edges = std::mem::take(&mut cloud.edges);
+    finish(before, cloud, (normal, Origin::File), radius, edges)
+}
+
+/// The edges of a cloud as tubes. Radii must be given, or be asked for.
+///
+/// `Decided:` where the file has no tangents, that of a vertex is "the averaged direction of the
+/// attached tube segments" \[MKC08, section 4.3\] as follows. Each edge, in ascending order, from
+/// its first to its second end, divided by its length, in f64, is added to the sum at both its
+/// ends, or subtracted where its dot product with that sum is < 0; the sums are divided by their
+/// length and rounded to `f32` once. An edge without length adds nothing. So edges may be stored
+/// in either direction, and nothing cancels; but a sign that agrees along a line is had only if
+/// the edges of the line follow each other.
+///
+/// # Errors
+/// [`Error::Invalid`] if [`Cloud::check`] fails, if there are no edges or radii, or if each edge
+/// has an end that is degenerate.
+pub fn tubes(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived)> {
+    let before = cloud.edges.len();
+    let radius = radii(&mut cloud, options, "tubes")?;
+    let tangent = match cloud.tangent.take() {
+        Some(tangent) => (tangent, Origin::File),
+        None => (tangents(&cloud.position, &cloud.edges), Origin::Edges),
+    };
+    let edges = std::mem::take(&mut cloud.edges);
+    finish(before, cloud, tangent, radius, edges)
+}
+
+fn some_triangles(cloud: &Cloud) -> Result<()> {
+    if cloud.triangles.is_empty() {
+        let what =
+            "there are no triangles to draw as polygons; give an element face, or draw points";
+        return Err(Error::Invalid(what.into()));
+    }
+    Ok(())
+}
+
+/// Checks a cloud for lines and takes its radii, or those asked for.
+fn radii(cloud: &mut Cloud, options: &Derive, what: &str) -> Result<(Vec<f32>, Origin)> {
+    if cloud.edges.is_empty() {
+        let rest = "give an element edge, or draw points";
+        return Err(Error::Invalid(format!("there are no edges to draw as {what}; {rest}")));
+    }
+    cloud.check()?;
+    drop_nowhere(cloud)?;
+    match (cloud.radius.take(), options.radius) {
+        (Some(radius), _) => Ok((radius, Origin::File)),
+        (None, Some(radius)) => Ok((given(radius, cloud.position.len())?, Origin::Given)),
+        (None, None) => {
+            let rest = "give the property radius, or one radius for all";
+            Err(Error::Invalid(format!("{what} need radii; {rest}")))
+        }
+    }
+}
+
+/// Checked primitives, at least one of `before`.
+fn finish<const N: usize>(
+    before: usize,
+    cloud: Cloud,
+    (direction, normals): (Vec<Vec3>, Origin),
+    (radius, radii): (Vec<f32>, Origin),
+    corners: Vec<[u32; N]>,
+) -> Result<(Indexed<N>, Derived)> {
+    let (indexed, _) = Indexed::new(vertices(cloud, direction, radius), corners)?;
+    if indexed.is_empty() {
+        let what = if N == 3 { "triangles" } else { "edges" };
+        let what = format!("the scene is empty: none of its {before} {what} can be drawn");
+        return Err(Error::Invalid(what));
+    }
+    let dropped_primitives = (before - indexed.len()) as u64;
+    let dropped = Dropped::default();
+    Ok((indexed, Derived { normals, radii, dropped, dropped_primitives }))
+}
+
+fn vertices(cloud: Cloud, direction: Vec<Vec3>, radius: Vec<f32>) -> Vertices {
+    Vertices { position: cloud.position, direction, radius, color: cloud.color }
+}
+
+/// See [`tubes`]; null at vertices without an edge.
+fn tangents(points: &[Vec3], edges: &[[u32; 2]]) -> Vec<Vec3> {
+    let mut sums = vec![DVec3::ZERO; points.len()];
+    for ends in edges {
+        let [a, b] = ends.map(|i| points[i as usize].as_dvec3());
+        let length = (b - a).length();
+        if !(length > 0.0) {
+            continue;
+        }
+        let along = (b - a) / length;
+        for &i in ends {
+            let sum = &mut sums[i as usize];
+            *sum += if sum.dot(along) < 0.0 { -along } else { along };
+        }
+    }
+    let unit = |sum: DVec3| {
+        let length = sum.length();
+        if length > 0.0 { (sum / length).as_vec3() } else { Vec3::ZERO }
+    };
+    sums.into_iter().map(unit).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mesh() -> Cloud {
+        // Two triangles in the plane z = 1, one of them at a point that is nowhere.
+        let p = |x: f32, y: f32| Vec3::new(x, y, 1.0);
+        Cloud {
+            position: vec![p(f32::NAN, 0.0), p(0.0, 0.0), p(3.0, 0.0), p(0.0, 4.0), p(9.0, 9.0)],
+            color: Some((0..5).map(|i| Vec3::splat(i as f32)).collect()),
+            triangles: vec![[0, 1, 2], [1, 2, 3]],
+            edges: vec![[1, 2], [3, 2], [0, 3]],
+            ..Cloud::default()
+        }
+    }
+
+    fn drawn(cloud: Cloud) -> Result<(Triangles, Derived)> {
+        polygons(cloud, &Exec::sequential(), &|_, _, _| ())
+    }
+
+    #[test]
+    fn polygons_have_normals_and_no_radii() {
+        let (triangles, derived) = drawn(mesh()).unwrap();
+        assert_eq!((derived.normals, derived.radii), (Origin::Triangles, Origin::Zero));
+        assert_eq!((derived.dropped_primitives, derived.dropped.total()), (1, 0));
+        assert_eq!(triangles.corners(), [[0, 1, 2]], "the lost point is gone");
+        let vertices = triangles.vertices();
+        assert_eq!(vertices.direction[..3], [Vec3::Z; 3]);
+        assert_eq!(vertices.radius, [0.0; 4]);
+        assert_eq!(vertices.color.as_ref().unwrap()[0], Vec3::ONE);
+
+        let normal = Some(vec![2.0 * Vec3::Y; 5]);
+        let (triangles, derived) = drawn(Cloud { normal, ..mesh() }).unwrap();
+        assert_eq!((triangles.vertices().direction[0], derived.normals), (Vec3::Y, Origin::File));
+    }
+
+    #[test]
+    fn a_hybrid_has_surfels_and_polygons() {
+        let at = |d: f64| HalfSpace::new([1.0, 0.0, 0.0, d]).unwrap();
+        let drawn = |half| {
+            let options = Derive::default();
+            hybrid(mesh(), &half, &options, &Exec::sequential(), &|_, _, _| ()).unwrap()
+        };
+        let (surfels, triangles, derived) = drawn(at(1.0));
+        assert_eq!((surfels.len(), triangles.len()), (3, 0));
+        assert_eq!(surfels.radius(), [5.0; 3], "the longest edge of the triangle");
+        // The point that is nowhere, and the one that no triangle gives a normal.
+        assert_eq!(derived.dropped, Dropped { position: 1, normal: 1, ..Dropped::default() });
+        let (surfels, triangles, derived) = drawn(at(-1.0));
+        assert_eq!((surfels, triangles.len()), (Surfels::none(), 1));
+        assert_eq!((derived.dropped.total(), derived.dropped_primitives), (2, 1));
+    }
+
+    #[test]
+    fn tangents_follow_the_edges() {
+        let options = Derive { radius: Some(0.5) };
+        let (tubes, derived) = tubes(mesh(), &options).unwrap();
+        assert_eq!((derived.normals, derived.radii), (Origin::Edges, Origin::Given));
+        assert_eq!((tubes.corners(), derived.dropped_primitives), ([[0, 1], [2, 1]].as_slice(), 1));
+        let vertices = tubes.vertices();
+        assert_eq!(vertices.radius, [0.5; 4]);
+        // The edges are +x and (3/5, -4/5), which is stored against the line but turns by < 90.
+        let (second, both) =
+            (Vec3::new(0.6, -0.8, 0.0), Vec3::new(1.6, -0.8, 0.0) / 3.2_f32.sqrt());
+        let expected = [Vec3::X, both, second, Vec3::ZERO];
+        for (found, expected) in vertices.direction.iter().zip(expected) {
+            assert!(found.distance(expected) < 1e-6, "{found} instead of {expected}");
+        }
+        let opposite = tangents(&[Vec3::ZERO, Vec3::X, 2.0 * Vec3::X], &[[0, 1], [2, 1], [1, 1]]);
+        assert_eq!(opposite, [Vec3::X, Vec3::X, -Vec3::X], "nothing cancels");
+    }
+
+    #[test]
+    fn what_lines_need_is_taken_from_the_file() {
+        let all = Cloud {
+            normal: Some(vec![Vec3::Y; 5]),
+            tangent: Some(vec![Vec3::Z; 5]),
+            radius: Some(vec![0.25, 0.25, 0.125, -1.0, 1.0]),
+            ..mesh()
+        };
+        let options = Derive { radius: Some(9.0) };
+        let (ribbons, derived) = ribbons(all.clone(), &options).unwrap();
+        assert_eq!((derived.normals, derived.radii), (Origin::File, Origin::File));
+        assert_eq!((ribbons.corners(), derived.dropped_primitives), ([[0, 1]].as_slice(), 2));
+        assert_eq!(ribbons.vertices().direction[0], Vec3::Y);
+        assert_eq!(ribbons.vertices().radius[..2], [0.25, 0.125]);
+        let (tubes, derived) = tubes(all, &options).unwrap();
+        assert_eq!((tubes.vertices().direction[1], derived.normals), (Vec3::Z, Origin::File));
+    }
+
+    #[test]
+    fn what_is_missing_is_one_line() {
+        let none = Derive::default();
+        let line = |error: Error| error.to_string();
+        let points = Cloud { triangles: vec![], edges: vec![], ..mesh() };
+        assert!(
+            line(drawn(points.clone()).unwrap_err()).contains("there are no triangles to draw")
+        );
+        let half = HalfSpace::new([1.0, 0.0, 0.0, 0.0]).unwrap();
+        let exec = Exec::sequential();
+        let error = hybrid(points.clone(), &half, &none, &exec, &|_, _, _| ()).unwrap_err();
+        assert!(line(error).contains("there are no triangles"));
+        let error = line(ribbons(points.clone(), &none).unwrap_err());
+        assert!(error.contains("there are no edges to draw as ribbons; give an element edge"));
+        assert!(line(tubes(points, &none).unwrap_err()).contains("no edges to draw as tubes"));
+        assert!(line(tubes(mesh(), &none).unwrap_err()).contains("tubes need radii; give"));
+        assert!(line(ribbons(mesh(), &none).unwrap_err()).contains("ribbons need radii; give"));
+        let asked = Derive { radius: Some(1.0) };
+        assert!(line(ribbons(mesh(), &asked).unwrap_err()).contains("ribbons need normals; give"));
+        let asked = Derive { radius: Some(-1.0) };
+        assert!(line(tubes(mesh(), &asked).unwrap_err()).contains("must be finite and > 0"));
+        let flat = Cloud { normal: Some(vec![Vec3::ZERO; 5]), ..mesh() };
+        let error = line(drawn(flat).unwrap_err());
+        assert_eq!(error, "the scene is empty: none of its 2 triangles can be drawn");
+    }
+}

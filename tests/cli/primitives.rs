@@ -1,0 +1,116 @@
+//! Scenes with polygons, ribbons and tubes.
+
+use super::*;
+use tempfile::TempDir;
+
+/// A directory with a mesh that has edges, a line, and scenes of them.
+fn scenes() -> TempDir {
+    let at = TempDir::new().unwrap();
+    let write = |name: &str, text: &str| fs::write(at.path().join(name), text).unwrap();
+    let xyz = "property float x\nproperty float y\nproperty float z\n";
+    let edges = "property int vertex1\nproperty int vertex2\nend_header\n";
+    write(
+        "mesh.ply",
+        &format!(
+            "ply\nformat ascii 1.0\nelement vertex 4\n{xyz}element face 2\n\
+             property list uchar int vertex_indices\nelement edge 1\n{edges}\
+             0 0 0\n4 0 0\n0 2 0\n4 2 0\n3 0 1 2\n3 1 3 2\n0 3\n"
+        ),
+    );
+    write(
+        "line.ply",
+        &format!(
+            "ply\nformat ascii 1.0\nelement vertex 2\n{xyz}property float radius\n\
+             property float tx\nproperty float ty\nproperty float tz\nelement edge 1\n{edges}\
+             0 0 0 1 0 0 1\n0 0 8 0.5 0 0 1\n0 1\n"
+        ),
+    );
+    let model =
+        |file: &str, draw: &str| format!("[[model]]\nfile = \"{file}.ply\"\ndraw = {draw}\n");
+    let (polygons, tubes) = (model("mesh", "\"polygons\""), model("line", "\"tubes\""));
+    let hybrid = model("mesh", "\"hybrid\"\nsplit = [-1, -2, 0, -4]");
+    write("polygons.toml", &polygons);
+    write("hybrid.toml", &hybrid);
+    write("all.toml", &format!("{polygons}{tubes}[[model]]\nshape = \"sphere\"\ncount = 100\n"));
+    at
+}
+
+#[test]
+fn info_counts_what_there_is() {
+    let at = scenes();
+    let says = |name: &str, words: &[&str]| {
+        let said = succeeds(at.path(), &["info", name]);
+        words.iter().for_each(|word| assert!(said.contains(word), "{word} in {said}"));
+        said
+    };
+    says("mesh.ply", &["triangles  2", "edges      1", "surfels    4"]);
+    says("line.ply", &["has        radii, tangents", "surfels    none: normals"]);
+    let words = ["polygons: 2 triangles, normals derived from the triangles\n", "(4, 2, 0)"];
+    let said = says("polygons.toml", &words);
+    assert!(said.contains("drawn as polygons") && !said.contains("in the median"), "{said}");
+    // The triangle with x + 2 y <= 4 is a polygon, the corners of the other are surfels.
+    says("hybrid.toml", &["drawn as hybrid", "hybrid: 3 surfels, 1 triangles, normals derived"]);
+    says(
+        "all.toml",
+        &[
+            "all: 100 surfels, 2 triangles, 1 segments of tubes\n",
+            "line: 1 segments of tubes, tangents from the file, radii from the file",
+            "sphere: 100 surfels, procedural",
+            "dropped  none",
+            "(4, 2, 8)",
+            "in the median",
+        ],
+    );
+}
+
+#[test]
+fn only_the_pyramid_draws_them() {
+    let at = scenes();
+    let before = names(at.path());
+    for method in ["ewa", "single-pass", "transparent", "transparent-hq", "peeling", "template"] {
+        for scene in ["polygons", "all"] {
+            let file = format!("{scene}.toml");
+            let line = fails(at.path(), &["render", &file, "--method", method], 1);
+            let expected = format!(
+                "splatref: {scene} has triangles or lines, which the method {method} does not \
+                 draw; use --method pyramid\n"
+            );
+            assert_eq!(line, expected);
+        }
+    }
+    let size = ["--size", "32x24", "--method", "pyramid", "-o", "a.exr"];
+    for scene in ["polygons", "hybrid", "all"] {
+        let scene = format!("{scene}.toml");
+        let said = succeeds(at.path(), &[&["render", &scene], &size[..]].concat());
+        assert!(said.contains(" triangles"), "{said}");
+        let text = exr::read(&at.path().join("a.exr")).unwrap().text.unwrap();
+        assert!(text.contains("\ntriangles = "), "{text}");
+    }
+    ["a.exr", "a.png"].iter().for_each(|name| fs::remove_file(at.path().join(name)).unwrap());
+    let line = fails(at.path(), &["explain", "all.toml", "3", "4"], 1);
+    assert!(line.contains("which the method ewa does not draw"), "{line}");
+    let line = fails(at.path(), &["group", "all.toml", "-o", "b.ply"], 1);
+    assert!(line.contains("only surfels are divided into groups"), "{line}");
+    let line = fails(at.path(), &["render", "all.toml", "--opacity", "0.5"], 1);
+    assert!(line.contains("what is drawn as polygons is opaque"), "{line}");
+    assert_eq!(names(at.path()), before, "nothing was written");
+}
+
+#[test]
+fn what_a_model_lacks_is_said_with_its_file() {
+    let at = scenes();
+    let scene = |model: &str| fs::write(at.path().join("bad.toml"), model).unwrap();
+    for (model, what) in [
+        ("file = \"line.ply\"\ndraw = \"polygons\"", "line.ply: there are no triangles"),
+        ("file = \"line.ply\"\ndraw = \"ribbons\"", "line.ply: ribbons need normals"),
+        ("file = \"mesh.ply\"\ndraw = \"tubes\"", "mesh.ply: tubes need radii"),
+        ("file = \"mesh.ply\"\ndraw = \"hybrid\"", "bad.toml: line 1: a hybrid needs split"),
+        ("shape = \"torus\"\ndraw = \"tubes\"", "bad.toml: line 1: torus is drawn as points"),
+    ] {
+        scene(&format!("[[model]]\n{model}\n"));
+        for command in ["info", "render"] {
+            let line = fails(at.path(), &[command, "bad.toml"], 1);
+            assert!(line.contains(what), "{line}");
+        }
+    }
+}
