@@ -10,8 +10,8 @@
 //!   form <= square        d = sqrt(form / square)        w = 1 - d, at least 2^-24
 //! ```
 //!
-//! `Decided:` the pixel that a centre staying at level 0 was projected to is held by it too, with w = 2^-24 if form <=
-//! square does not hold. A disc smaller than a pixel can miss every pixel's centre: without this rule a dense
+//! `Decided:` the pixel that a centre staying at level 0 was projected to is held by it too, with w = 2^-24 if its
+//! ellipse does not hold it. A disc smaller than a pixel can miss every pixel's centre: without this rule a dense
 //! model, on which \[MOC08, Table 1\] reports, would be full of holes, and no point of it drawn.
 //!
 //! The pixel knows the front: depth t_f, radius r_f and id of the nearest centre blended so far. The ternary test

@@ -6,11 +6,11 @@
 //! 3. **Reconstruction** ([`mod@gather`]): each pixel searches k x k cells around it in every level for ellipses that
 //!    hold it, keeps the surface in front, and blends.
 //! 4. **Normalization**: depth, normal and colour are sums divided by the sum of weights, see
-//!    [`crate::composite::sum`]; the normal is turned to world space (down the columns of the view matrix, (m0 x + m1 y) + m2 z)
+//!    [`crate::composite::sum`]; the average normal is then turned to world space (down the columns of the view matrix, (m0 x + m1 y) + m2 z)
 //!    before it is divided by its length.
 //! 5. **Deferred shading**, see [`crate::shade`].
 //!
-//! The method draws surfels only; \[MOC08\] has no lines. The template is k = 3, 5 or 7 cells wide, h = (k - 1) / 2.
+//! The method draws surfels only, and refuses a scene with triangles or lines, which \[MOC08\] does not have. The template is k = 3, 5 or 7 cells wide, h = (k - 1) / 2.
 //! Levels are those of [`crate::frame::pyramid::sizes`]. The **top** level is the first whose sides are both at most h + 1: from any
 //! of its cells every other is found, so that (section 3.2) coarser ones are not needed.
 //!

@@ -4,7 +4,7 @@ use super::fast::Levels;
 use super::gather::{Gathered, gather};
 use super::{Centre, Settings, levels};
 use crate::composite::sum;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, Framebuffer, NamedPlane, Plane, Samples, Wanted};
 use crate::method::picture::{Clock, Picture, color, finish, framebuffer, named, scalar};
@@ -25,7 +25,7 @@ use crate::splat::View;
 /// A level lies in the upper left corner of its planes; the rest is as in an empty cell.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if the camera or the settings are out of range.
+/// [`Error::Invalid`] if the camera or the settings are out of range, or if the scene has triangles or lines.
 pub fn render<R: Real>(
     scene: &Scene,
     camera: &Camera,
@@ -33,8 +33,7 @@ pub fn render<R: Real>(
     exec: &Exec,
     stages: bool,
 ) -> Result<Picture<R>> {
-    camera.check()?;
-    settings.check()?;
+    check(scene, camera, settings)?;
     let has = Has::of(scene);
     let mut clock = Clock::default();
     let how = (settings.cull, Snap::default());
@@ -83,8 +82,7 @@ pub fn render_f32(
     levels: &mut Levels,
     earlier: Option<Picture<f32>>,
 ) -> Result<Picture<f32>> {
-    camera.check()?;
-    settings.check()?;
+    check(scene, camera, settings)?;
     let color = Has::of(scene).color;
     let wanted = Wanted { normal: !scene.lights.is_empty(), color, observed: false };
     let mut target = framebuffer(camera, wanted, earlier.map(|picture| picture.frame));
@@ -95,6 +93,17 @@ pub fn render_f32(
         ("reconstruction", times.search),
     ]);
     Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
+}
+
+/// Whether the method can draw the scene.
+fn check(scene: &Scene, camera: &Camera, settings: &Settings) -> Result<()> {
+    camera.check()?;
+    settings.check()?;
+    if scene.primitives.is_empty() {
+        Ok(())
+    } else {
+        Err(Error::Invalid("the template draws surfels only, but the scene has others".into()))
+    }
 }
 
 /// The average depth; +inf where nothing was gathered.

@@ -27,44 +27,44 @@ pub(super) struct Mix {
 
 impl Four {
     /// See [`super::super::Cell::foremost`]; `TUBES` false promises that there are none.
+    ///
+    /// One long loop: LLVM unrolls short ones before it looks for vectors, and then finds few.
     #[inline(always)]
     pub(super) fn mix<const GAUSSIAN: bool, const TUBES: bool>(&self) -> Mix {
-        let mut front = [[0.0; LANES]; 4];
-        let (mut form_of, mut square) = ([[0.0; LANES]; 4], [[0.0; LANES]; 4]);
-        for j in 0..4 {
-            for i in 0..LANES {
+        let mut weights = [[0.0; LANES]; 4];
+        let mut distances = [[0.0; LANES]; 4];
+        let mut kinds = [0.0; LANES];
+        for i in 0..LANES {
+            let mut fronts = [0.0; 4];
+            for j in 0..4 {
                 let tilt = Vector2::new(self.tilt[j][0][i], self.tilt[j][1][i]);
                 let ellipse = Ellipse::tilted(tilt, self.radius[j][i]);
                 let form = ellipse.form(self.place[j][0][i], self.place[j][1][i]);
                 let candidate = ellipse.holds(form) & (self.kind[j][i] > 0.0);
                 // NaN fails every comparison.
-                front[j][i] = if candidate { self.front[j][i] } else { f32::NAN };
-                form_of[j][i] = form;
-                square[j][i] = ellipse.square;
+                fronts[j] = if candidate { self.front[j][i] } else { f32::NAN };
+                distances[j][i] = if GAUSSIAN { form / ellipse.square } else { 0.0 };
+            }
+            let (mut nearest, mut end, mut kind) = (f32::INFINITY, f32::NEG_INFINITY, 0.0);
+            for j in 0..4 {
+                let nearer = fronts[j] < nearest;
+                nearest = if nearer { fronts[j] } else { nearest };
+                end = if nearer { self.back[j][i] } else { end };
+                kind = if nearer { self.kind[j][i] } else { kind };
+            }
+            kinds[i] = kind;
+            for j in 0..4 {
+                let alike = !TUBES | ((self.kind[j][i] == TUBE) == (kind == TUBE));
+                weights[j][i] = if (fronts[j] <= end) & alike { 1.0 } else { 0.0 };
             }
         }
-        let mut nearest = [f32::INFINITY; LANES];
-        let mut end = [f32::NEG_INFINITY; LANES];
-        let mut kind = [0.0; LANES];
-        for j in 0..4 {
-            for i in 0..LANES {
-                let nearer = front[j][i] < nearest[i];
-                nearest[i] = if nearer { front[j][i] } else { nearest[i] };
-                end[i] = if nearer { self.back[j][i] } else { end[i] };
-                kind[i] = if nearer { self.kind[j][i] } else { kind[i] };
-            }
-        }
-        let mut weights = [[0.0; LANES]; 4];
-        for j in 0..4 {
-            for i in 0..LANES {
-                let alike = !TUBES | ((self.kind[j][i] == TUBE) == (kind[i] == TUBE));
-                let takes = (front[j][i] <= end[i]) & alike;
-                weights[j][i] = if takes { 1.0 } else { 0.0 };
-            }
-            if GAUSSIAN && weights[j].iter().any(|&weight| weight > 0.0) {
-                for i in 0..LANES {
-                    let weight = gaussian(form_of[j][i] / square[j][i]);
-                    weights[j][i] = if weights[j][i] > 0.0 { weight } else { 0.0 };
+        if GAUSSIAN {
+            for j in 0..4 {
+                if weights[j].iter().any(|&weight| weight > 0.0) {
+                    for i in 0..LANES {
+                        let weight = gaussian(distances[j][i]);
+                        weights[j][i] = if weights[j][i] > 0.0 { weight } else { 0.0 };
+                    }
                 }
             }
         }
@@ -72,7 +72,7 @@ impl Four {
         for i in 0..LANES {
             scale[i] = 1.0 / ((weights[0][i] + weights[1][i]) + (weights[2][i] + weights[3][i]));
         }
-        Mix { weights, scale, kind }
+        Mix { weights, scale, kind: kinds }
     }
 }
 
@@ -95,46 +95,78 @@ fn gaussian(square: f32) -> f32 {
 }
 
 impl Mix {
-    /// The average of a number: [`Mean::of`] in lanes, a step at a time, which is what becomes vectors.
+    /// The average of a number: [`Mean::of`] in lanes, spelled out in one long loop.
     ///
     /// [`Mean::of`]: crate::composite::mean::Mean::of
     #[inline(always)]
     pub(super) fn of(&self, a: &[Lanes; 4]) -> Lanes {
-        let mut terms = [[0.0; LANES]; 4];
-        for j in 0..4 {
-            let weights = self.weights[j];
-            for i in 0..LANES {
-                terms[j][i] = if weights[i] > 0.0 { weights[i] * a[j][i] } else { 0.0 };
-            }
-        }
-        let [least, greatest] = self.hull(a, a);
         let mut average = [0.0; LANES];
         for i in 0..LANES {
-            let sum = (terms[0][i] + terms[1][i]) + (terms[2][i] + terms[3][i]);
-            average[i] = (sum * self.scale[i]).at_least(least[i]).at_most(greatest[i]) + 0.0;
+            let (w, a, takes) = self.lane(i, a);
+            let term = [
+                if takes[0] { w[0] * a[0] } else { 0.0 },
+                if takes[1] { w[1] * a[1] } else { 0.0 },
+                if takes[2] { w[2] * a[2] } else { 0.0 },
+                if takes[3] { w[3] * a[3] } else { 0.0 },
+            ];
+            let sum = (term[0] + term[1]) + (term[2] + term[3]);
+            let (least, greatest) = (least(takes, a), greatest(takes, a));
+            average[i] = (sum * self.scale[i]).at_least(least).at_most(greatest) + 0.0;
         }
         average
     }
 
-    /// The least of one number and the greatest of another.
+    /// The least of a number.
     #[inline(always)]
-    pub(super) fn hull(&self, low: &[Lanes; 4], high: &[Lanes; 4]) -> [Lanes; 2] {
-        let mut lows = [[f32::INFINITY; LANES]; 4];
-        let mut highs = [[f32::NEG_INFINITY; LANES]; 4];
-        for j in 0..4 {
-            let weights = self.weights[j];
-            for i in 0..LANES {
-                lows[j][i] = if weights[i] > 0.0 { low[j][i] } else { f32::INFINITY };
-                highs[j][i] = if weights[i] > 0.0 { high[j][i] } else { f32::NEG_INFINITY };
-            }
-        }
-        let mut hull = [[0.0; LANES]; 2];
+    pub(super) fn least(&self, a: &[Lanes; 4]) -> Lanes {
+        let mut lanes = [0.0; LANES];
         for i in 0..LANES {
-            let (a, b) = (lows[0][i].at_most(lows[1][i]), lows[2][i].at_most(lows[3][i]));
-            hull[0][i] = a.at_most(b);
-            let (a, b) = (highs[0][i].at_least(highs[1][i]), highs[2][i].at_least(highs[3][i]));
-            hull[1][i] = a.at_least(b);
+            let (_, a, takes) = self.lane(i, a);
+            lanes[i] = least(takes, a);
         }
-        hull
+        lanes
     }
+
+    /// The greatest of a number.
+    #[inline(always)]
+    pub(super) fn greatest(&self, a: &[Lanes; 4]) -> Lanes {
+        let mut lanes = [0.0; LANES];
+        for i in 0..LANES {
+            let (_, a, takes) = self.lane(i, a);
+            lanes[i] = greatest(takes, a);
+        }
+        lanes
+    }
+
+    /// Weights and numbers of the four cells of a lane, and which of them take part.
+    #[inline(always)]
+    fn lane(&self, i: usize, a: &[Lanes; 4]) -> ([f32; 4], [f32; 4], [bool; 4]) {
+        let w = [self.weights[0][i], self.weights[1][i], self.weights[2][i], self.weights[3][i]];
+        let takes = [w[0] > 0.0, w[1] > 0.0, w[2] > 0.0, w[3] > 0.0];
+        (w, [a[0][i], a[1][i], a[2][i], a[3][i]], takes)
+    }
+}
+
+/// [`Mean::least`](crate::composite::mean::Mean::least).
+#[inline(always)]
+fn least(takes: [bool; 4], a: [f32; 4]) -> f32 {
+    let a = [
+        if takes[0] { a[0] } else { f32::INFINITY },
+        if takes[1] { a[1] } else { f32::INFINITY },
+        if takes[2] { a[2] } else { f32::INFINITY },
+        if takes[3] { a[3] } else { f32::INFINITY },
+    ];
+    (a[0].at_most(a[1])).at_most(a[2].at_most(a[3]))
+}
+
+/// [`Mean::greatest`](crate::composite::mean::Mean::greatest).
+#[inline(always)]
+fn greatest(takes: [bool; 4], a: [f32; 4]) -> f32 {
+    let a = [
+        if takes[0] { a[0] } else { f32::NEG_INFINITY },
+        if takes[1] { a[1] } else { f32::NEG_INFINITY },
+        if takes[2] { a[2] } else { f32::NEG_INFINITY },
+        if takes[3] { a[3] } else { f32::NEG_INFINITY },
+    ];
+    (a[0].at_least(a[1])).at_least(a[2].at_least(a[3]))
 }

@@ -87,9 +87,8 @@ fn pull_row<const FINEST: bool, const TUBES: bool>(
         if mix.kind.iter().all(|&kind| kind == 0.0) {
             continue;
         }
-        let [front, back] = mix.hull(&four.front, &four.back);
-        put(FRONT, &front);
-        put(BACK, &back);
+        put(FRONT, &mix.least(&four.front));
+        put(BACK, &mix.greatest(&four.back));
         put(RADIUS, &mix.of(&four.radius));
         for axis in 0..2 {
             let place = &four.place;
