@@ -17,6 +17,10 @@
 //!   other means; `transparent_stages` compares, `transparent_known` and `transparent_glass` are known
 //!   answers, `transparent_laws` laws, `transparent_refused` refusals.
 //! - [`peeling`]: depth peeling by other means, and every layer against it.
+//! - [`template`], [`template_projection`], [`rounded`]: reconstruction with templates by other means,
+//!   each number with a bound of its rounding; `template_stages` compares every plane on the scenes of
+//!   `template_cases`, `template_known` are known answers, `template_laws`, `template_cover` and
+//!   `template_mirror` laws.
 #![expect(
     clippy::disallowed_methods,
     reason = "std's functions, so that the oracle shares no code with the crate; its bits are free"
@@ -37,6 +41,7 @@ mod number;
 mod over_laws;
 mod peeling;
 mod pixel;
+mod rounded;
 mod scenes;
 mod single_pass;
 mod single_pass_identity;
@@ -44,6 +49,15 @@ mod single_pass_laws;
 mod single_pass_stages;
 mod stages;
 mod surroundings;
+mod template;
+mod template_cases;
+mod template_cover;
+mod template_known;
+mod template_laws;
+mod template_mirror;
+mod template_projection;
+mod template_stages;
+mod template_tolerance;
 mod tolerance;
 mod transparent;
 mod transparent_cases;
