@@ -147,7 +147,8 @@ pub(crate) fn exact_scene(discs: &[Disc]) -> Scene {
     scene(surfels, Vec::new())
 }
 
-fn scene(surfels: Surfels, lights: Vec<Light>) -> Scene {
+/// Without an environment, of the default material.
+pub(crate) fn scene(surfels: Surfels, lights: Vec<Light>) -> Scene {
     Scene {
         name: String::new(),
         surfels,

@@ -2,13 +2,14 @@
 
 use crate::scenes::{Dice, straight};
 use crate::template::{Cell, Template};
+use crate::template_cases::scene;
 use crate::template_known::id;
 use crate::template_stages::{GUARD, grid, unit};
 use crate::tolerance::Arithmetic;
 use glam::Vec3;
 use splatref::frame::{Exec, NO_ID};
 use splatref::method::template::{self, LevelRule, Settings};
-use splatref::scene::{Camera, Cloud, Light, Phong, Projection, Scene, Surfels};
+use splatref::scene::{Camera, Cloud, Projection, Scene, Surfels};
 
 const SIZES: [[u32; 2]; 8] =
     [[16, 16], [31, 33], [64, 48], [1, 7], [97, 61], [128, 128], [200, 3], [255, 129]];
@@ -38,14 +39,7 @@ fn single(dice: &mut Dice) -> (Scene, Camera) {
         groups: None,
         triangles: Vec::new(),
     };
-    let scene = Scene {
-        name: String::new(),
-        surfels: Surfels::new(cloud).expect("a good surfel").0,
-        lights: Vec::<Light>::new(),
-        material: Phong::default(),
-        primitives: Default::default(),
-        environment: None,
-    };
+    let scene = scene(Surfels::new(cloud).expect("a good surfel").0, Vec::new());
     (scene, camera)
 }
 

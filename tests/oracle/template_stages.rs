@@ -239,9 +239,10 @@ impl<'a> Subject<'a> {
             ["id", "gathered.count", "gathered.Z", "gathered.radius"].map(|name| value(name)[0]);
         let Some(expected) = expected else {
             assert_eq!((id as u32, depth), (NO_ID, f64::INFINITY), "{place}: empty");
-            let names = ["gathered.weight", "gathered.depths", "gathered.normal", "weight", "A"];
-            let all = names.map(value);
-            assert_eq!(all, [[0.0; 3]; 5], "{place}: empty");
+            let names = ["gathered.weight", "gathered.depths", "gathered.normal", "weight"];
+            assert_eq!(names.map(value), [[0.0; 3]; 4], "{place}: empty");
+            let seen = if self.case.scene.environment.is_some() { 1.0 } else { 0.0 };
+            assert_eq!(value("A"), [seen; 3], "{place}: A of an empty pixel");
             assert_eq!((count, radius), (0.0, 0.0), "{place}: empty");
             assert_eq!(color.unwrap_or_default(), [0.0; 3], "{place}: empty");
             return;
@@ -275,7 +276,9 @@ impl<'a> Subject<'a> {
         let (weight, lit) = (value("gathered.weight")[0], frame.plane("normal").is_some());
         if weight == 0.0 {
             let normal = if lit { value("normal") } else { [0.0; 3] };
-            assert_eq!((value("Z"), normal, value("")), ([f64::INFINITY; 3], [0.0; 3], [0.0; 3]));
+            assert_eq!((value("Z"), normal), ([f64::INFINITY; 3], [0.0; 3]), "{place}: empty");
+            let black = self.case.scene.environment.is_none();
+            assert!(!black || value("") == [0.0; 3], "{place}: the colour of an empty pixel");
             return;
         }
         self.measure("Z", value("Z"), average(value("gathered.depths"), weight), [x, y]);
@@ -294,10 +297,7 @@ impl<'a> Subject<'a> {
         }
         let seen = (value("Z")[0], normal, surface);
         match self.projection.shaded(&self.case.scene, [x, y], seen) {
-            Some(expected) if self.case.scene.environment.is_none() => {
-                self.measure("", value(""), expected, [x, y]);
-            }
-            Some(_) => {}
+            Some(expected) => self.measure("", value(""), expected, [x, y]),
             None => self.open.shaded += 1,
         }
     }
