@@ -15,6 +15,7 @@ use splatref::Result;
 use splatref::frame::{Frame, NO_ID, NamedPlane, Samples};
 use splatref::io::exr::Image;
 use splatref::method::Method;
+use splatref::scene::Projection;
 use splatref::verify::metrics::{Region, coverage, regions, summary};
 
 /// What is measured of a picture.
@@ -97,9 +98,14 @@ fn radius_in_pixels(subject: &Subject, frame: &Frame<f32>) -> f32 {
         return 0.0;
     };
     let radius = subject.scene.surfels.radius();
+    let perspective = subject.camera.projection == Projection::Perspective;
     let seen = id.values().iter().zip(depth.values()).filter(|(id, _)| **id != NO_ID);
-    let mut pixels: Vec<f32> =
-        seen.map(|(id, depth)| radius[*id as usize] * subject.camera.fy / depth).collect();
+    let mut pixels: Vec<f32> = seen
+        .map(|(id, depth)| {
+            let scale = if perspective { subject.camera.fy / depth } else { subject.camera.fy };
+            radius[*id as usize] * scale
+        })
+        .collect();
     pixels.sort_by(f32::total_cmp);
     pixels.get(pixels.len() / 2).copied().unwrap_or(0.0)
 }

@@ -7,7 +7,7 @@
 //! picture is known it is **lit too**, in f64 by the same shader, so that errors of normals count as
 //! they are seen. Sections: [`accuracy`], [`stability`], [`reach`]; each states what it measures.
 //!
-//! Scenes are shapes of 10 k and 200 k surfels and scans: as they are, with derived radii, and sampled
+//! Scenes are shapes of 10 k and 200 k surfels, some under a parallel camera too, and scans: as they are, with derived radii, and sampled
 //! evenly at random, with the radius a multiple of sqrt(area / count): 7/4, at which a point lies in
 //! ten discs, but 1 for 1 M points, where discs are smaller than pixels.
 
@@ -23,6 +23,7 @@ use splatref::io::{png, scene_file};
 use splatref::method::pyramid::{self, Occlusion, Weights};
 use splatref::method::template::{self, LevelRule};
 use splatref::method::{Method, Preparation, ewa, render_f32};
+use splatref::number::elementary::tan;
 use splatref::scene::derive::{self, Derive};
 use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Primitives, Scene, Shape, Surfels};
 use splatref::shade::phong::Shader;
@@ -65,19 +66,26 @@ fn main() -> Result<()> {
     bench.reach()
 }
 
-/// Shapes in two samplings.
+/// Shapes in two samplings; two of them also under a parallel camera of the same opening, where the
+/// ellipses of both papers, which are orthogonal projections, are exact.
 fn shapes(pattern: &str) -> Result<Vec<Subject>> {
+    let all = [("sphere", false), ("torus", false), ("cluster", false), ("checkerboard", false)];
+    let parallel = [("torus", true), ("cluster", true)];
     let mut subjects = Vec::new();
-    for shape in
-        ["sphere", "torus", "cluster", "checkerboard"].into_iter().filter_map(Shape::by_name)
-    {
-        for (count, suffix) in [(10_000, " 10 k"), (200_000, " 200 k")] {
-            let name = format!("{}{suffix}", shape.name());
+    for (name, parallel) in all.into_iter().chain(parallel) {
+        let Some(shape) = Shape::by_name(name) else { continue };
+        for (count, suffix) in [(10_000, "10 k"), (200_000, "200 k")] {
+            let camera = if parallel { ", parallel" } else { "" };
+            let name = format!("{name} {suffix}{camera}");
             if !name.contains(pattern) {
                 continue;
             }
             let surfels = shape.surfels(count, 0)?;
-            let (pose, lens) = (shape.default_pose(), shape.default_lens());
+            let (pose, mut lens) = (shape.default_pose(), shape.default_lens());
+            if let (true, Lens::FieldOfView(degrees)) = (parallel, lens) {
+                let height = 2.0 * tan(degrees.to_radians() / 2.0);
+                lens = Lens::Orthographic(height * (pose.target - pose.eye).length());
+            }
             let camera = Camera::new(WIDTH, HEIGHT, pose, lens)?;
             subjects.push(Subject { scene: lit(&name, surfels), name, camera, shape: Some(shape) });
         }

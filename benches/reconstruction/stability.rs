@@ -22,9 +22,18 @@ use splatref::verify::metrics::rmse;
 
 /// Shifts of 1/8 pixel.
 const STEPS: usize = 8;
-const SCENES: [&str; 7] =
-    ["sphere 200 k", "torus 10 k", "cluster 200 k", "checkerboard 200 k", "bunny", "igea", "koala"];
-const METHODS: [&str; 5] = ["pyramid", "outside", "3 x 3", "5 x 5", "7 x 7"];
+const SCENES: [&str; 9] = [
+    "sphere 200 k",
+    "torus 10 k",
+    "torus 10 k, parallel",
+    "cluster 200 k",
+    "checkerboard 200 k",
+    "bunny",
+    "bunny 1 M",
+    "igea",
+    "koala",
+];
+const METHODS: [&str; 6] = ["pyramid", "outside", "3 x 3", "5 x 5", "7 x 7", "5, published"];
 
 impl Bench {
     /// The table.
