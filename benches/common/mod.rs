@@ -24,8 +24,8 @@ pub(crate) fn models(pattern: &str) -> Vec<(&'static str, Cloud)> {
     found
 }
 
-/// `count` points on the triangles of a mesh, evenly by area, with interpolated normals of any length
-/// and nothing else; the mesh has triangles and normals.
+/// `count` points on the triangles of a mesh, evenly by area, with interpolated normals of any length,
+/// interpolated colours if the mesh has them, and nothing else; the mesh has triangles and normals.
 ///
 /// Point i lies in the triangle at which the sum of the areas first exceeds the whole times random
 /// number 3i of the seed, at the corners' mean with the weights 1 - s, s (1 - v), s v, where s is the
@@ -53,8 +53,9 @@ pub(crate) fn resample(cloud: &Cloud, count: usize, seed: u64) -> Cloud {
             let corners = triangle.map(|i| of[i as usize].as_dvec3());
             (corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]).as_vec3()
         };
-        (mean(&cloud.position), mean(normals))
+        (mean(&cloud.position), (mean(normals), cloud.color.as_deref().map(mean)))
     };
-    let (position, normal) = (0..count).map(sample).unzip();
-    Cloud { position, normal: Some(normal), ..Cloud::default() }
+    let (position, (normal, color)): (_, (_, Vec<_>)) = (0..count).map(sample).unzip();
+    let color = color.into_iter().collect();
+    Cloud { position, normal: Some(normal), color, ..Cloud::default() }
 }

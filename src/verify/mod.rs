@@ -2,7 +2,7 @@
 //!
 //! - [`compare`]: equal bit for bit, or where and by how much not.
 //! - [`digest`]: one hash of many pictures.
-//! - [`metrics`]: RMSE, PSNR and SSIM of planes.
+//! - [`metrics`]: RMSE, PSNR and SSIM of planes, holes and spill.
 
 pub mod compare;
 pub mod digest;
