@@ -159,7 +159,7 @@ pub(super) struct SceneOptions {
     /// Width of the template in cells: 3, 5 or 7 [default: 5]
     #[arg(long, value_name = "K", help_heading = "Image space (pyramid, template)")]
     template: Option<u32>,
-    /// The level of an ellipse: covering or published [default: covering]
+    /// The level of an ellipse: covering or published [default: published]
     #[arg(long, value_name = "NAME", value_parser = words::levels,
         help_heading = "Image space (pyramid, template)")]
     levels: Option<LevelRule>,

@@ -1,6 +1,6 @@
 //! The average of up to four neighbours \[MKC08, sections 3.2 and 3.3\], \[MOC08, section 3.1\].
 //!
-//! With weights w_j > 0 for the neighbours that take part, in this order of operations, an absent
+//! With weights `w_j` > 0 for the neighbours that take part, in this order of operations, an absent
 //! neighbour's term and weight being 0:
 //!
 //! ```text
@@ -115,7 +115,7 @@ mod tests {
             let total: f64 = taken().map(|j| f64::from(w[j])).sum();
             let sum: f64 = taken().map(|j| f64::from(w[j]) * f64::from(a[j])).sum();
             // Nine roundings of numbers up to 8: products, sums, total, its inverse, the product.
-            prop_assert!((f64::from(found) - sum / total).abs() <= 9.0 * 8.0 * 2_f64.powi(-24));
+            prop_assert!((f64::from(found) - sum / total).abs() <= 9.0 * 8.0 * f64::from(f32::EPSILON) / 2.0);
         }
 
         #[test]
@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn three_equal_numbers_need_the_bounds() {
-        let a = (0..1000).map(|i| 1.5 + i as f32 * 2_f32.powi(-23));
+        let a = (0..1000).map(|i| 1.5 + i as f32 * f32::EPSILON);
         assert!(a.clone().any(|a| ((a + a) + a) / 3.0 != a), "or the bounds would be for nothing");
         for a in a {
             assert_eq!(Mean::plain([true, true, true, false]).of([a; 4]), a);

@@ -30,8 +30,7 @@ mod tests {
         for (w, h) in [(13, 9), (65_535, 3), (1023, 1025)] {
             let levels = sizes(w, h);
             for pair in levels.windows(2) {
-                for side in 0..2 {
-                    let (fine, coarse) = (pair[0][side], pair[1][side]);
+                for (fine, coarse) in pair[0].into_iter().zip(pair[1]) {
                     assert!(2 * coarse >= fine && 2 * (coarse - 1) < fine, "{fine} {coarse}");
                 }
             }

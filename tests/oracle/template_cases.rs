@@ -85,16 +85,7 @@ fn cloud(dice: &mut Dice, camera: &Camera, count: usize) -> Cloud {
     }
     let color = (dice.below(3) > 0)
         .then(|| (0..count).map(|_| dice.vector(Vec3::ZERO, Vec3::ONE)).collect());
-    Cloud {
-        position,
-        normal: Some(all_normals),
-        radius: Some(radii),
-        color,
-        opacity: None,
-        tangents: None,
-        groups: None,
-        triangles: Vec::new(),
-    }
+    Cloud { position, normal: Some(all_normals), radius: Some(radii), color, ..Cloud::default() }
 }
 
 /// A disc where all numbers are those of the picture: before [`exact_camera`], at a place in pixels.
@@ -133,10 +124,7 @@ pub(crate) fn exact_scene(discs: &[Disc]) -> Scene {
         normal: Some(discs.iter().map(|d| d.normal).collect()),
         radius: Some(discs.iter().map(|d| d.radius).collect()),
         color: Some(discs.iter().map(|d| d.color).collect()),
-        opacity: None,
-        tangents: None,
-        groups: None,
-        triangles: Vec::new(),
+        ..Cloud::default()
     };
     let surfels = if discs.is_empty() {
         Surfels::none()

@@ -34,10 +34,7 @@ fn single(dice: &mut Dice) -> (Scene, Camera) {
         normal: Some(vec![normal]),
         radius: Some(vec![radius * far / (camera.fx * camera.fy).sqrt()]),
         color: None,
-        opacity: None,
-        tangents: None,
-        groups: None,
-        triangles: Vec::new(),
+        ..Cloud::default()
     };
     let scene = scene(Surfels::new(cloud).expect("a good surfel").0, Vec::new());
     (scene, camera)

@@ -144,25 +144,7 @@ impl MethodChoice {
         use MethodName::{Ewa, Peeling, Pyramid, SinglePass, Template, Transparent, TransparentHq};
         let name = self.name.unwrap_or_default();
         let kept = self.of_method(name);
-        let keys = [
-            ("depth", self.voronoi.is_some() && kept.voronoi.is_none()),
-            ("bins", self.bins.is_some() && kept.bins.is_none()),
-            ("holes", self.holes.is_some() && kept.holes.is_none()),
-            ("refraction", self.refraction.is_some() && kept.refraction.is_none()),
-            ("bends", self.bends.is_some() && kept.bends.is_none()),
-            ("peel", self.peel.is_some() && kept.peel.is_none()),
-            ("kernel", self.kernel.is_some() && kept.kernel.is_none()),
-            ("outline", self.outline.is_some() && kept.outline.is_none()),
-            ("cutoff", self.cutoff.is_some() && kept.cutoff.is_none()),
-            ("low_pass", self.low_pass.is_some() && kept.low_pass.is_none()),
-            ("epsilon", self.epsilon.is_some() && kept.epsilon.is_none()),
-            ("weights", self.weights.is_some() && kept.weights.is_none()),
-            ("occluded", self.occluded.is_some() && kept.occluded.is_none()),
-            ("subpixel_bits", self.subpixel_bits.is_some() && kept.subpixel_bits.is_none()),
-            ("template", self.template.is_some() && kept.template.is_none()),
-            ("levels", self.levels.is_some() && kept.levels.is_none()),
-        ];
-        if let Some((key, _)) = keys.iter().find(|(_, lost)| *lost) {
+        if let Some(key) = self.lost(&kept) {
             let name = super::words::of_method(name);
             return Err(Error::Invalid(format!("`{key}` means nothing to the method {name}")));
         }
@@ -213,6 +195,29 @@ impl MethodChoice {
         };
         method.check()?;
         Ok(method)
+    }
+
+    /// The first key that was chosen but not kept.
+    fn lost(&self, kept: &Self) -> Option<&'static str> {
+        let keys = [
+            ("depth", self.voronoi.is_some() && kept.voronoi.is_none()),
+            ("bins", self.bins.is_some() && kept.bins.is_none()),
+            ("holes", self.holes.is_some() && kept.holes.is_none()),
+            ("refraction", self.refraction.is_some() && kept.refraction.is_none()),
+            ("bends", self.bends.is_some() && kept.bends.is_none()),
+            ("peel", self.peel.is_some() && kept.peel.is_none()),
+            ("kernel", self.kernel.is_some() && kept.kernel.is_none()),
+            ("outline", self.outline.is_some() && kept.outline.is_none()),
+            ("cutoff", self.cutoff.is_some() && kept.cutoff.is_none()),
+            ("low_pass", self.low_pass.is_some() && kept.low_pass.is_none()),
+            ("epsilon", self.epsilon.is_some() && kept.epsilon.is_none()),
+            ("weights", self.weights.is_some() && kept.weights.is_none()),
+            ("occluded", self.occluded.is_some() && kept.occluded.is_none()),
+            ("subpixel_bits", self.subpixel_bits.is_some() && kept.subpixel_bits.is_none()),
+            ("template", self.template.is_some() && kept.template.is_none()),
+            ("levels", self.levels.is_some() && kept.levels.is_none()),
+        ];
+        keys.into_iter().find_map(|(key, lost)| lost.then_some(key))
     }
 
     /// What was chosen that means something to a method, with this method.

@@ -7,8 +7,8 @@
 //! screen is dropped; without, its normals are reversed.
 //!
 //! **Perspective-correct weights.** At a pixel the corners i of a piece have exact barycentric weights
-//! w_i >= 0 out of w (of a line: den - num and num out of den); each is rounded to the arithmetic. With
-//! W_ik the weight of corner k of the primitive at corner i of the piece, and m_i as for surfels:
+//! `w_i` >= 0 out of w (of a line: den - num and num out of den); each is rounded to the arithmetic. With
+//! `W_ik` the weight of corner k of the primitive at corner i of the piece, and `m_i` as for surfels:
 //!
 //! ```text
 //!   q_i = (w_i / w) m_i        b_i = q_i / ((q_0 + q_1) + q_2)

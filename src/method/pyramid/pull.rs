@@ -7,12 +7,12 @@
 //!   v_j = displacement_j + (-+H/2, -+H/2)      - for the left column and the upper row, + for the others
 //! ```
 //!
-//! and the new cell's centre is inside it if the ellipse holds the offset v_j. Of the valid cells for which that is so
+//! and the new cell's centre is inside it if the ellipse holds the offset `v_j`. Of the valid cells for which that is so
 //! the foremost and those whose intervals overlap with its own are averaged ([`crate::composite::mean`],
-//! weights 1): normal, tangent, radius, colour and v_j, which is the new displacement. The interval is the hull: the least
+//! weights 1): normal, tangent, radius, colour and `v_j`, which is the new displacement. The interval is the hull: the least
 //! front and the greatest back. If there is no such cell the new one is empty.
 //!
-//! v_j is exact: multiples of 1/2 below 2^17, as long as a cell is passed on alone.
+//! `v_j` is exact: multiples of 1/2 below 2^17, as long as a cell is passed on alone.
 //!
 //! Not symmetric: of several foremost cells the end of the first counts, in the order of j. And in a level of odd
 //! width or height the last column or row is halved alone, so that a mirrored scene has a mirrored

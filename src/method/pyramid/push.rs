@@ -7,16 +7,16 @@
 //! Any other cell is interpolated from four: the parent j = 0, its neighbour in x j = 1, that in y j = 2, that in both
 //! j = 3, each on the side of the parent that the cell is on: x div 2 - 1 for even x, x div 2 + 1 for odd x, and so for y.
 //! Those that do not exist are empty. With H the side of the finer cell in pixels, the ellipse of cell j lies from the
-//! finer cell's centre at v_j = displacement_j + (its centre - the finer centre):
+//! finer cell's centre at `v_j` = `displacement_j` + (its centre - the finer centre):
 //!
 //! ```text
 //!   in x:   parent     +H/2 for even x, -H/2 for odd x
 //!           neighbour  -3H/2 for even x, +3H/2 for odd x              and so in y
 //! ```
 //!
-//! Of the valid ones whose ellipse holds the offset v_j, the foremost and those whose intervals overlap with its own
-//! are averaged ([`crate::composite::mean`]): front, back, normal, tangent, radius, colour and v_j, with weight 1 or
-//! exp(-2 (form_j / square_j)), see [`Weights`].
+//! Of the valid ones whose ellipse holds the offset `v_j`, the foremost and those whose intervals overlap with its own
+//! are averaged ([`crate::composite::mean`]): front, back, normal, tangent, radius, colour and `v_j`, with weight 1 or
+//! `exp(-2 (form_j / square_j))`, see [`Weights`].
 //! `Decided:` "analogously to the pull phase" (section 3.3) means the test of depth too: without it front and back surface
 //! run into each other at every silhouette.
 //!

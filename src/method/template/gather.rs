@@ -14,8 +14,8 @@
 //! ellipse does not hold it. A disc smaller than a pixel can miss every pixel's centre: without this rule a dense
 //! model, on which \[MOC08, Table 1\] reports, would be full of holes, and no point of it drawn.
 //!
-//! The pixel knows the front: depth t_f, radius r_f and id of the nearest centre blended so far. The ternary test
-//! with sum = r + r_f:
+//! The pixel knows the front: depth `t_f`, radius `r_f` and id of the nearest centre blended so far. The ternary test
+//! with sum = r + `r_f`:
 //!
 //! ```text
 //!   first, or t_f - t > sum     before: the sums start anew with this centre, which is the front

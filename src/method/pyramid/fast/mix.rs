@@ -1,5 +1,10 @@
 //! Which of four cells take part, and their averages, in lanes: the formulas of the definition.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
+)]
+
 use super::level::TUBE;
 use crate::method::projection::fast::{LANES, Lanes};
 use crate::number::{Real, Vector2, Vector3};

@@ -1,8 +1,8 @@
 //! The fast path for `f32`: the bits of [`super::plain`], from another layout.
 //!
-//! A level is rows of numbers, one number of all cells of a row after the other, so that [`LANES`] cells of a row
-//! are [`LANES`] neighbours in memory. The pull phase computes [`LANES`] coarser cells at a time, the push phase [`LANES`] finer
-//! ones of every second column, which have [`LANES`] consecutive parents. What is empty is passed over; the push
+//! A level is rows of numbers, one number of all cells of a row after the other, so that 16 cells of a row
+//! are 16 neighbours in memory. The pull phase computes 16 coarser cells at a time, the push phase 16 finer
+//! ones of every second column, which have 16 consecutive parents. What is empty is passed over; the push
 //! phase changes a level in place and touches only cells that are empty or occluded.
 
 mod level;

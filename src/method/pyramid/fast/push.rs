@@ -1,5 +1,10 @@
 //! The push phase in lanes; see [`super::super::push`]. A level is changed in place, where it must be.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
+)]
+
 use super::level::{
     BACK, FRONT, FURTHER, KIND, Level, NORMAL, PAD, PLACE, RADIUS, Shape, TILT, lanes,
 };

@@ -5,6 +5,11 @@
 //! is one centre for all lanes, those outside its template masked. Either way every lane meets its
 //! centres in the order of the definition.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
+)]
+
 use super::level::{COLOR, DEPTH, Level, NORMAL, PAD, PLACE, RADIUS, Row, SQUARE, TILT};
 use crate::composite::sum;
 use crate::frame::NO_ID;
@@ -107,8 +112,7 @@ fn beside<const COLORED: bool>(
             let tilt = Vector2::new(tx[i], ty[i]);
             let ellipse = Ellipse { tilt, square: square[i] };
             form[i] = ellipse.form((x + i) as f32 + 0.5 - px[i], y as f32 + 0.5 - py[i]);
-            // A square that is NaN equals nothing.
-            let stays = square[i] == square[i];
+            let stays = !square[i].is_nan();
             inside[i] = u32::from(ellipse.holds(form[i]) | (own & stays));
         }
         if inside.iter().all(|&inside| inside == 0) {
