@@ -86,6 +86,10 @@ fn scene(path: &Path) -> Result<()> {
                 Source::Shape { shape, count, seed } => {
                     format!("{shape:?}, about {count} surfels, seed {seed}")
                 }
+                Source::Tree { leaves, seed } => {
+                    let word = model.draw.word();
+                    format!("Tree of {leaves} leaves, seed {seed}, drawn as {word}")
+                }
             },
         );
     }

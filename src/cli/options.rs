@@ -10,7 +10,7 @@ use splatref::method::ewa::Epsilon;
 use splatref::method::pyramid::{Occlusion, Weights};
 use splatref::method::template::LevelRule;
 use splatref::method::transparent::Holes;
-use splatref::scene::{Lens, Shape};
+use splatref::scene::{Lens, Shape, plant};
 use splatref::shade::optics::Layers;
 use splatref::splat::{Kernel, Outline};
 use splatref::{Error, Result};
@@ -164,7 +164,7 @@ pub(super) struct SceneOptions {
         help_heading = "Image space (pyramid, template)")]
     levels: Option<LevelRule>,
 
-    /// Surfels of a procedural shape [default: 200000]
+    /// Surfels of a procedural shape, leaves of the tree [default: 200000, 50124]
     #[arg(long, value_name = "N", help_heading = "Shapes")]
     count: Option<usize>,
     /// Seed of a procedural shape [default: 0]
@@ -228,11 +228,16 @@ impl SceneOptions {
     }
 }
 
-/// The scene that `name` stands for; count and seed are for shapes alone.
+/// The scene that `name` stands for; count and seed are for shapes alone, the count of a tree is
+/// that of its leaves.
 pub(super) fn named(name: &Path, count: Option<usize>, seed: Option<u64>) -> Result<SceneFile> {
     if let Some(shape) = name.to_str().and_then(Shape::by_name) {
         let count = count.unwrap_or(DEFAULT_COUNT);
         return Ok(SceneFile::of_model(Source::Shape { shape, count, seed: seed.unwrap_or(0) }));
+    }
+    if name == Path::new(words::TREE) {
+        let leaves = count.unwrap_or(plant::LEAVES);
+        return Ok(SceneFile::of_model(Source::Tree { leaves, seed: seed.unwrap_or(0) }));
     }
     if count.is_some() || seed.is_some() {
         let what = "--count and --seed are for procedural shapes; this scene is a file";
@@ -262,14 +267,11 @@ pub(super) fn kind(path: &Path) -> Result<Kind> {
         Some("ply") => Ok(Kind::Ply),
         Some("toml") => Ok(Kind::Toml),
         Some("exr") => Ok(Kind::Exr),
-        _ => {
-            let shapes: Vec<&str> = Shape::ALL.iter().map(Shape::name).collect();
-            Err(Error::Usage(format!(
-                "{}: no known kind of file; give a .ply, a scene .toml, an .exr, or a shape: {}",
-                path.display(),
-                shapes.join(", ")
-            )))
-        }
+        _ => Err(Error::Usage(format!(
+            "{}: no known kind of file; give a .ply, a scene .toml, an .exr, or a shape: {}",
+            path.display(),
+            words::shapes()
+        ))),
     }
 }
 

@@ -15,10 +15,12 @@ use std::time::{Duration, Instant};
 Examples:
   splatref render
   splatref render torus --count 5000 --outline raycast --stages
+  splatref render tree --method pyramid
   splatref render bunny.ply --eye -1,2,3 --target 0,0.1,0 --fov 30 -o bunny.exr
   splatref render scene.toml --number f64 --epsilon 1.5r")]
 pub(super) struct Args {
-    /// A .ply, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster
+    /// A .ply, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster,
+    /// or tree (with --method pyramid)
     #[arg(default_value = "cluster", hide_default_value = false)]
     scene: PathBuf,
     /// Where the EXR goes, the PNG beside it [default: out/NAME.exr]

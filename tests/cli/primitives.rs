@@ -114,3 +114,51 @@ fn what_a_model_lacks_is_said_with_its_file() {
         }
     }
 }
+
+#[test]
+fn a_tree_is_drawn_by_its_name_and_as_a_scene() {
+    let at = TempDir::new().unwrap();
+    let picture = |scene: &str, more: &[&str], to: &str| {
+        let all = [&["render", scene, "--size", "64x64", "-o", to], more].concat();
+        let said = succeeds(at.path(), &all);
+        (said, exr::read(&at.path().join(to)).unwrap())
+    };
+    let pyramid = ["--count", "200", "--method", "pyramid"];
+    let (said, tree) = picture("tree", &pyramid, "a.exr");
+    let line = said.lines().find(|line| line.starts_with("scene ")).unwrap();
+    assert!(line.contains(" triangles, 600 segments of ribbons, "), "{line}");
+    assert!(line.ends_with(" segments of tubes, procedural"), "{line}");
+    let covered = floats(&tree, "A").iter().filter(|&&a| a == 1.0).count();
+    assert!(covered > 200 && covered < 64 * 64, "{covered} of 64 x 64 pixels");
+
+    let text = "[[model]]\nshape = \"tree\"\nleaves = 200\n[method]\nname = \"pyramid\"\n";
+    fs::write(at.path().join("scene.toml"), text).unwrap();
+    let (_, scene) = picture("scene.toml", &[], "b.exr");
+    assert_eq!(floats(&scene, "Z"), floats(&tree, "Z"));
+    let (_, other) = picture("tree", &[&pyramid[..], &["--seed", "1"]].concat(), "c.exr");
+    assert_ne!(floats(&other, "Z"), floats(&tree, "Z"));
+    let said = succeeds(at.path(), &["info", "scene.toml"]);
+    assert!(said.contains("Tree of 200 leaves, seed 0, drawn as lines\n"), "{said}");
+}
+
+#[test]
+fn a_tree_is_refused_where_it_cannot_be_drawn() {
+    let at = TempDir::new().unwrap();
+    let tree = ["render", "tree", "--count", "20"];
+    for (more, what) in [
+        (
+            &[] as &[&str],
+            "tree has triangles or lines, which the method ewa does not draw; use --method pyramid",
+        ),
+        (&["--method", "pyramid", "--opacity", "0.5"], "tree: what is drawn as lines is opaque"),
+        (&["--method", "pyramid", "--count", "0"], "a tree with 0 leaves"),
+    ] {
+        // An option that comes twice is another mistake.
+        let count = if more.contains(&"--count") { 2 } else { 4 };
+        let line = fails(at.path(), &[&tree[..count], more].concat(), 1);
+        assert!(line.contains(what), "{line}");
+    }
+    let line = fails(at.path(), &["group", "tree", "--count", "20", "-o", "a.ply"], 1);
+    assert!(line.contains("only surfels are divided into groups"), "{line}");
+    assert!(names(at.path()).is_empty());
+}

@@ -1,12 +1,12 @@
 //! As what a model is drawn.
 
+use super::Source;
 use crate::scene::hybrid::HalfSpace;
 
 /// As what a model is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Draw {
     /// Its points as surfels.
-    #[default]
     Points,
     /// Its triangles as polygons.
     Polygons,
@@ -17,35 +17,75 @@ pub enum Draw {
     Ribbons,
     /// Its edges as tubes.
     Tubes,
+    /// Leaves as ribbons, branches as tubes, the trunk as polygons: [`crate::scene::plant`].
+    Lines,
 }
 
 impl Draw {
-    /// What the keys `draw` and `split` say.
+    /// As what a model from this source is drawn if nobody says.
+    pub(super) fn of(source: &Source) -> Self {
+        match source {
+            Source::File { .. } | Source::Shape { .. } => Self::Points,
+            Source::Tree { .. } => Self::Lines,
+        }
+    }
+
+    /// Whether a model from this source can be drawn so.
+    ///
+    /// # Errors
+    /// One line if not.
+    pub(super) fn check(self, source: &Source) -> Result<(), String> {
+        let (fits, choice) = match source {
+            Source::File { .. } => {
+                (self != Self::Lines, "points, polygons, hybrid, ribbons or tubes")
+            }
+            Source::Shape { .. } => (self == Self::Points, "points"),
+            Source::Tree { .. } => {
+                (matches!(self, Self::Lines | Self::Polygons), "lines or polygons")
+            }
+        };
+        if fits {
+            return Ok(());
+        }
+        let (name, word) = (source.name(), self.word());
+        Err(format!("{name} is drawn as {choice}, not as {word}: change or remove `draw`"))
+    }
+
+    /// What the keys `draw` and `split` say of a model from this source.
     ///
     /// # Errors
     /// One line if the word is none, if a hybrid has no split or something else has one, or as
-    /// [`HalfSpace::new`].
-    pub(super) fn choose(word: Option<&str>, split: Option<[f64; 4]>) -> Result<Self, String> {
-        match (word, split) {
+    /// [`HalfSpace::new`] and [`Draw::check`].
+    pub(super) fn choose(
+        word: Option<&str>,
+        split: Option<[f64; 4]>,
+        source: &Source,
+    ) -> Result<Self, String> {
+        let draw = match (word, split) {
             (Some("hybrid"), Some(split)) => {
-                let half = HalfSpace::new(split).map_err(|error| error.to_string())?;
-                Ok(Self::Hybrid(half))
+                Self::Hybrid(HalfSpace::new(split).map_err(|error| error.to_string())?)
             }
             (Some("hybrid"), None) => {
-                Err("a hybrid needs split = [a, b, c, d]: polygons where a x + b y + c z >= d"
-                    .into())
+                let what =
+                    "a hybrid needs split = [a, b, c, d]: polygons where a x + b y + c z >= d";
+                return Err(what.into());
             }
             (_, Some(_)) => {
-                Err("`split` means nothing without draw = \"hybrid\": remove it".into())
+                return Err("`split` means nothing without draw = \"hybrid\": remove it".into());
             }
-            (None | Some("points"), None) => Ok(Self::Points),
-            (Some("polygons"), None) => Ok(Self::Polygons),
-            (Some("ribbons"), None) => Ok(Self::Ribbons),
-            (Some("tubes"), None) => Ok(Self::Tubes),
+            (None, None) => Self::of(source),
+            (Some("points"), None) => Self::Points,
+            (Some("polygons"), None) => Self::Polygons,
+            (Some("ribbons"), None) => Self::Ribbons,
+            (Some("tubes"), None) => Self::Tubes,
+            (Some("lines"), None) => Self::Lines,
             (Some(word), None) => {
-                Err(format!("draw `{word}`; give one of points, polygons, hybrid, ribbons, tubes"))
+                let all = "points, polygons, hybrid, ribbons, tubes, lines";
+                return Err(format!("draw `{word}`; give one of {all}"));
             }
-        }
+        };
+        draw.check(source)?;
+        Ok(draw)
     }
 
     /// The word for it.
@@ -57,6 +97,7 @@ impl Draw {
             Self::Hybrid(_) => "hybrid",
             Self::Ribbons => "ribbons",
             Self::Tubes => "tubes",
+            Self::Lines => "lines",
         }
     }
 }

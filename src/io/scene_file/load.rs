@@ -1,11 +1,12 @@
 //! From a [`SceneFile`] to surfels and primitives.
 
-use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, stem};
+use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, stem, words};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::{environment, ply};
 use crate::scene::derive::{self, Derive, Derived};
 use crate::scene::merge::{join, merge};
+use crate::scene::plant;
 use crate::scene::{Cloud, Counts, Dropped, Environment, Primitives, Scene, Surfels};
 
 /// A scene and how it came about.
@@ -41,12 +42,13 @@ impl SceneFile {
     /// `progress` as in [`derive::surfels`].
     ///
     /// # Errors
-    /// Those of [`environment::read`], [`ply::read`], [`crate::scene::Shape::surfels`], and of
-    /// [`derive::surfels`] and its like for polygons and lines, the file named; [`Error::Invalid`]
-    /// if neither a surfel nor a primitive is left or there are too many, or if a model that is not
-    /// drawn as points was given an opacity.
+    /// Those of [`environment::read`], [`ply::read`], [`crate::scene::Shape::surfels`],
+    /// [`plant::apple_tree`], and of [`derive::surfels`] and its like for polygons and lines, the
+    /// file named; [`Error::Invalid`] if neither a surfel nor a primitive is left or there are too
+    /// many, if a model cannot be drawn as it says, or if one that is not drawn as points was given
+    /// an opacity.
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
-        self.models.iter().try_for_each(check_opaque)?;
+        self.models.iter().try_for_each(check_draw)?;
         let environment = match &self.environment {
             None => None,
             Some(EnvironmentChoice::Sky) => Some(Environment::Sky),
@@ -100,8 +102,9 @@ impl Parts {
     }
 }
 
-/// Whether a model may have its opacity.
-fn check_opaque(model: &Model) -> Result<()> {
+/// Whether a model can be drawn as it says, and may have its opacity.
+fn check_draw(model: &Model) -> Result<()> {
+    model.draw.check(&model.source).map_err(Error::Invalid)?;
     if model.opacity.is_some() && model.draw != Draw::Points {
         let (name, word) = (model.source.name(), model.draw.word());
         let what = format!("{name}: what is drawn as {word} is opaque; remove the opacity");
@@ -125,6 +128,12 @@ fn parts(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Resul
             primitives: Primitives::default(),
             derived: None,
         }),
+        Source::Tree { leaves, seed } => {
+            let tree = plant::apple_tree(*leaves, *seed)?;
+            let primitives =
+                if model.draw == Draw::Polygons { tree.polygons() } else { tree.lines() }?;
+            Ok(Parts { surfels: Surfels::none(), primitives, derived: None })
+        }
     }
 }
 
@@ -158,6 +167,8 @@ fn of_file(
             let (tubes, derived) = derive::tubes(cloud, options)?;
             Parts::new(Surfels::none(), Primitives { tubes, ..none }, derived)
         }
+        // Refused before any file is read.
+        Draw::Lines => return Err(Error::Invalid("only a tree is drawn as lines".into())),
     })
 }
 
@@ -180,6 +191,7 @@ impl Source {
         match self {
             Self::File { path, .. } => stem(path),
             Self::Shape { shape, .. } => shape.name().to_owned(),
+            Self::Tree { .. } => words::TREE.to_owned(),
         }
     }
 }

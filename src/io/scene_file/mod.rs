@@ -6,8 +6,21 @@
 #![doc = include_str!("example.toml")]
 //! ```
 //!
+//! The tree of [`crate::scene::plant`] is a model too, which the method `pyramid` draws:
+//!
+//! ```toml
+//! [[model]]
+//! shape = "tree"
+//! draw = "lines"                  # the default: ribbons, tubes, and triangles of the trunk; or
+//!                                 # "polygons", all as triangles
+//! leaves = 2000                   # 50124 if absent
+//! seed = 1                        # 0 if absent
+//! [method]
+//! name = "pyramid"
+//! ```
+//!
 //! Numbers are read as f64 and rounded to f32 where the scene holds f32; any decimal that `f32`
-//! prints comes back with its bits. Keys that are not in this example are refused, so that a typing
+//! prints comes back with its bits. Keys that are in neither of these are refused, so that a typing
 //! error is not a default.
 //!
 //! [`SceneFile`] is what such a file says. One PLY file or one shape alone makes a scene file too:
@@ -36,7 +49,7 @@ use crate::scene::{Camera, Lens, Light, Phong, Pose, Scene, Shape, Similarity, S
 use glam::{DVec3, Vec3};
 use std::path::{Path, PathBuf};
 
-/// How many surfels cover a shape if nobody says.
+/// How many surfels cover a shape if nobody says; a tree has [`crate::scene::plant::LEAVES`].
 pub const DEFAULT_COUNT: usize = 200_000;
 /// The size of a picture if nobody says.
 pub const DEFAULT_SIZE: [u32; 2] = [1024, 768];
@@ -73,7 +86,7 @@ pub struct SceneFile {
 pub struct Model {
     /// Where they come from.
     pub source: Source,
-    /// As what they are drawn; shapes as points.
+    /// As what they are drawn; shapes as points, a tree as lines or polygons.
     pub draw: Draw,
     /// Where they are put.
     pub transform: Similarity,
@@ -100,6 +113,13 @@ pub enum Source {
         /// About how many surfels.
         count: usize,
         /// Of the random displacements.
+        seed: u64,
+    },
+    /// [`crate::scene::plant::apple_tree`].
+    Tree {
+        /// How many.
+        leaves: usize,
+        /// What decides its growth.
         seed: u64,
     },
 }
@@ -170,7 +190,7 @@ impl SceneFile {
     #[must_use]
     pub fn of_model(source: Source) -> Self {
         let transform = Similarity::IDENTITY;
-        let draw = Draw::default();
+        let draw = Draw::of(&source);
         Self {
             name: source.name(),
             models: vec![Model { source, draw, transform, color: None, opacity: None }],

@@ -5,6 +5,7 @@ use crate::method::pyramid::{Occlusion, Weights};
 use crate::method::single_pass::DepthTest;
 use crate::method::template::LevelRule;
 use crate::method::transparent::Holes;
+use crate::scene::Shape;
 use crate::shade::optics::Layers;
 use crate::splat::{Kernel, Outline};
 
@@ -12,6 +13,16 @@ use super::{EnvironmentChoice, ExtensionChoice, MethodName, Number};
 
 /// Something that a word stands for, or a line that says which words there are.
 type Found<T> = Result<T, String>;
+
+/// What the tree of [`crate::scene::plant`] is called.
+pub const TREE: &str = "tree";
+
+/// The names of all that can be made without a file: [`Shape::ALL`] and [`TREE`].
+#[must_use]
+pub fn shapes() -> String {
+    let names: Vec<&str> = Shape::ALL.iter().map(Shape::name).chain([TREE]).collect();
+    names.join(", ")
+}
 
 /// `default`, `zpvbg01` or `zp06`.
 ///

@@ -16,14 +16,17 @@
 //!   attribute = (c_0 a_0 + c_1 a_1) + c_2 a_2                       two corners: without the third
 //! ```
 //!
-//! for the position p in view space, the radius, the colour, and the direction in view space, which is
-//! then divided by its length. The depth is t = -p.z, rho as for surfels; the centre is that of the pixel.
+//! for the position p in view space, the radius, the colour, and the direction, which is then turned
+//! to view space and divided by its length. The depth is t = -p.z, rho as for surfels; the centre is
+//! that of the pixel.
 //!
 //! **Triangles** have the radius of their vertices, 0 if nobody gave them one, so that they are not
 //! expanded; where a mesh becomes points its boundary has radii (section 5.2).
 //! **Ribbons** have two sides: where the back is seen (g > 0 at p) the normal is reversed.
 //! **Tubes** have the direction to the camera as normal, -p / |p| (orthographic: (0, 0, 1)), and keep
-//! their tangent.
+//! their tangent. `Decided:` a tangent has no sign, so those of the two corners may be opposite, and
+//! what lies between them pass through 0: where a_0 . a_1 < 0, -a_1 takes the place of a_1; in world
+//! space, so that the camera has no part in it.
 
 use super::surfel::{Lens, Placed};
 use super::{Kind, Sample, Stage};
@@ -188,9 +191,9 @@ impl<R: Real> Piece<R> {
         let (scene, lens) = (stage.scene, &stage.lens);
         let of = &scene.primitives;
         let (direction, radius, color) = match self.kind {
-            Kind::Ribbon => attributes(&of.ribbons, self.index, c),
-            Kind::Tube => attributes(&of.tubes, self.index, c),
-            _ => attributes(&of.triangles, self.index, c),
+            Kind::Ribbon => attributes(&of.ribbons, self.index, c, self.kind),
+            Kind::Tube => attributes(&of.tubes, self.index, c, self.kind),
+            _ => attributes(&of.triangles, self.index, c, self.kind),
         };
         let direction = lens.view.direction(direction).normalized();
         let placed = lens.place(p);
@@ -224,6 +227,7 @@ fn attributes<R: Real, const N: usize>(
     of: &Indexed<N>,
     index: usize,
     c: [R; 3],
+    kind: Kind,
 ) -> (Vector3<R>, R, Option<[R; 3]>) {
     let Vertices { direction, radius, color, .. } = of.vertices();
     let corners = of.corners()[index];
@@ -232,7 +236,77 @@ fn attributes<R: Real, const N: usize>(
     let sum =
         |a: &dyn Fn(usize) -> R| (c[0] * a(corner(0)) + c[1] * a(corner(1))) + c[2] * a(corner(2));
     let vector = |of: &[glam::Vec3]| [0, 1, 2].map(|axis| sum(&|i| R::from_f32(of[i][axis])));
-    let [x, y, z] = vector(direction);
+    let mut a = [0, 1, 2].map(|k| Vector3::from_glam(direction[corner(k)]));
+    if kind == Kind::Tube && a[0].dot(a[1]) < R::ZERO {
+        a[1] = -a[1];
+    }
+    let direction = (a[0] * c[0] + a[1] * c[1]) + a[2] * c[2];
     let radius = sum(&|i| R::from_f32(radius[i])).at_least(R::ZERO);
-    (Vector3::new(x, y, z), radius, color.as_deref().map(vector))
+    (direction, radius, color.as_deref().map(vector))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::raster::Snap;
+    use crate::scene::{Camera, Lens, Pose, Primitives, Scene, Surfels};
+    use glam::{DVec3, Vec3};
+
+    /// A segment along x whose corners have these directions.
+    fn segment(direction: [Vec3; 2]) -> Indexed<2> {
+        let position = vec![-Vec3::X, Vec3::X];
+        let (direction, radius) = (direction.to_vec(), vec![0.125; 2]);
+        let vertices = Vertices { position, direction, radius, color: None };
+        Indexed::new(vertices, vec![[0, 1]]).unwrap().0
+    }
+
+    /// The tangents of the pixels of a tube, seen by a camera whose axes are those of the world.
+    fn tangents(direction: [Vec3; 2]) -> Vec<Vector3<f64>> {
+        let primitives = Primitives { tubes: segment(direction), ..Primitives::default() };
+        let scene = Scene { primitives, ..crate::method::tests::scene(Surfels::none()) };
+        let pose = Pose { eye: DVec3::Z * 4.0, target: DVec3::ZERO, up: DVec3::Y };
+        let camera = Camera::new(33, 17, pose, Lens::FieldOfView(40.0)).unwrap();
+        let stage = Stage::new(&scene, &camera, false, Snap::new(8).unwrap());
+        let mut tangents = Vec::new();
+        pieces(&stage, 0, |piece| {
+            let visit = |fragment| tangents.push(piece.sample(&stage, &fragment).tangent);
+            piece.for_each(&piece.bounds, visit);
+        });
+        assert!(tangents.len() > 9, "{tangents:?}");
+        tangents
+    }
+
+    #[test]
+    fn the_tangents_of_a_segment_never_cancel() {
+        for sign in [1.0, -1.0] {
+            // c_0 + c_1, divided by the root of its square: 1 or next to it.
+            let along = Vec3::X * sign;
+            for tangent in tangents([along, -along]) {
+                assert!((tangent.x - f64::from(sign)).abs() < 1e-15, "that of the first corner");
+                assert_eq!((tangent.y, tangent.z), (0.0, 0.0));
+            }
+        }
+        let (first, second) = (Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 0.8, 0.6));
+        assert_eq!(tangents([first, second]), tangents([first, -second]));
+        assert_ne!(
+            tangents([first, second]),
+            tangents([-first, second]),
+            "the first keeps its sign"
+        );
+        // At right angles neither is turned, and each is that of its corner's side.
+        for sign in [1.0, -1.0] {
+            let found = tangents([Vec3::X, Vec3::Y * sign]);
+            assert!(found.iter().all(|t| t.x >= 0.0 && t.y * f64::from(sign) >= 0.0), "{found:?}");
+            assert!(found.iter().any(|t| t.y != 0.0));
+        }
+    }
+
+    #[test]
+    fn only_tangents_are_turned() {
+        let [up, half] = [Vec3::Z, Vec3::new(0.0, 0.6, -0.8)];
+        let middle = |kind| attributes::<f64, 2>(&segment([up, half]), 0, [0.5, 0.5, 0.0], kind).0;
+        let [y, z] = [0.6_f32, 0.8].map(|v| f64::from(v) / 2.0);
+        assert_eq!(middle(Kind::Ribbon), Vector3::new(0.0, y, 0.5 - z));
+        assert_eq!(middle(Kind::Tube), Vector3::new(0.0, -y, 0.5 + z));
+    }
 }

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::error::{Error, Result};
 use crate::scene::transform::{self, Similarity};
-use crate::scene::{Lens, Light, Phong, Shape};
+use crate::scene::{Lens, Light, Phong, Shape, plant};
 use glam::{DMat3, DVec3, Vec3};
 use method::{RawGroups, RawMethod};
 use serde::de::{self, Deserialize, Deserializer};
@@ -110,6 +110,7 @@ struct RawModel {
     step: Option<f32>,
     thickness: Option<f32>,
     count: Option<usize>,
+    leaves: Option<usize>,
     seed: Option<u64>,
     color: Option<[f32; 3]>,
     opacity: Option<f32>,
@@ -119,41 +120,16 @@ struct RawModel {
 
 impl RawModel {
     fn model(mut self) -> std::result::Result<Model, String> {
-        let draw = Draw::choose(self.draw.as_deref(), self.split)?;
-        let source = match (self.file.take(), self.shape.take()) {
-            (Some(_), None) if draw == Draw::Polygons && self.radius.is_some() => {
-                return Err("`radius` means nothing to polygons: remove it".into());
-            }
-            (Some(path), None) => Source::File { path, radius: self.radius.take() },
-            (None, Some(name)) if draw != Draw::Points => {
-                let word = draw.word();
-                return Err(format!("{name} is drawn as points, not as {word}: remove `draw`"));
-            }
-            (None, Some(name)) => {
-                let shape = Shape::by_name(&name).ok_or_else(|| {
-                    let known: Vec<&str> = Shape::ALL.iter().map(Shape::name).collect();
-                    format!("shape `{name}`; give one of {}", known.join(", "))
-                })?;
-                let shape = self.parameters(shape);
-                let count = self.count.take().unwrap_or(DEFAULT_COUNT);
-                Source::Shape { shape, count, seed: self.seed.take().unwrap_or(0) }
-            }
-            _ => return Err("a model is either a `file` or a `shape`".into()),
-        };
-        // Every key that the source uses has been taken.
-        let left = [
-            ("radius", self.radius.is_some()),
-            ("square", self.square.is_some()),
-            ("gap", self.gap.is_some()),
-            ("step", self.step.is_some()),
-            ("thickness", self.thickness.is_some()),
-            ("count", self.count.is_some()),
-            ("seed", self.seed.is_some()),
-        ];
-        if let Some((key, _)) = left.iter().find(|(_, is_left)| *is_left) {
+        let source = self.source()?;
+        let draw = Draw::choose(self.draw.as_deref(), self.split, &source)?;
+        if draw == Draw::Polygons && matches!(source, Source::File { radius: Some(_), .. }) {
+            return Err("`radius` means nothing to polygons: remove it".into());
+        }
+        if let Some(key) = self.left() {
             let of = match &source {
                 Source::File { .. } => "a file",
                 Source::Shape { shape, .. } => shape.name(),
+                Source::Tree { .. } => words::TREE,
             };
             return Err(format!("`{key}` means nothing to {of}: remove it"));
         }
@@ -166,6 +142,40 @@ impl RawModel {
         }
         let (transform, opacity) = (self.transform.similarity()?, self.opacity);
         Ok(Model { source, draw, transform, color, opacity })
+    }
+
+    /// The source; takes every key that it uses.
+    fn source(&mut self) -> std::result::Result<Source, String> {
+        match (self.file.take(), self.shape.take()) {
+            (Some(path), None) => Ok(Source::File { path, radius: self.radius.take() }),
+            (None, Some(name)) if name == words::TREE => {
+                let leaves = self.leaves.take().unwrap_or(plant::LEAVES);
+                Ok(Source::Tree { leaves, seed: self.seed.take().unwrap_or(0) })
+            }
+            (None, Some(name)) => {
+                let shape = Shape::by_name(&name)
+                    .ok_or_else(|| format!("shape `{name}`; give one of {}", words::shapes()))?;
+                let shape = self.parameters(shape);
+                let count = self.count.take().unwrap_or(DEFAULT_COUNT);
+                Ok(Source::Shape { shape, count, seed: self.seed.take().unwrap_or(0) })
+            }
+            _ => Err("a model is either a `file` or a `shape`".into()),
+        }
+    }
+
+    /// A key that was given and that the source has not taken.
+    fn left(&self) -> Option<&'static str> {
+        let keys = [
+            ("radius", self.radius.is_some()),
+            ("square", self.square.is_some()),
+            ("gap", self.gap.is_some()),
+            ("step", self.step.is_some()),
+            ("thickness", self.thickness.is_some()),
+            ("count", self.count.is_some()),
+            ("leaves", self.leaves.is_some()),
+            ("seed", self.seed.is_some()),
+        ];
+        keys.iter().find(|(_, is_left)| *is_left).map(|(key, _)| *key)
     }
 
     /// The shape with the parameters that were given for it.

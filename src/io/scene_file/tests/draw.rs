@@ -1,7 +1,7 @@
 //! Models that are drawn as polygons, ribbons, tubes or hybrids.
 
 use super::*;
-use crate::scene::{Counts, Primitives};
+use crate::scene::{Counts, Primitives, plant};
 
 /// A pyramid of four triangles without a bottom, whose apex is up, and two edges; what more a
 /// vertex has is `properties` and `values`.
@@ -70,7 +70,11 @@ fn keys_that_do_not_go_together_are_refused() {
     for (more, what) in [
         (
             "draw = \"lines\"\n",
-            "draw `lines`; give one of points, polygons, hybrid, ribbons, tubes",
+            "a is drawn as points, polygons, hybrid, ribbons or tubes, not as lines",
+        ),
+        (
+            "draw = \"dots\"\n",
+            "draw `dots`; give one of points, polygons, hybrid, ribbons, tubes, lines",
         ),
         ("draw = \"hybrid\"\n", "a hybrid needs split = [a, b, c, d]"),
         ("split = [0, 1, 0, 0]\n", "`split` means nothing without draw = \"hybrid\""),
@@ -227,4 +231,71 @@ fn the_camera_frames_primitives_too() {
     let low = both.surfels.bounds().0.min(Vec3::new(-1.0, 0.0, -1.0));
     assert_eq!(both.bounds(), (low, Vec3::new(1.0, 3.0, 1.0)));
     assert_ne!(file.camera(&both).unwrap(), framed);
+}
+
+#[test]
+fn a_tree_is_a_shape_of_leaves() {
+    let tree = |more: &str| parse(&format!("[[model]]\nshape = \"tree\"\n{more}"));
+    let source = Source::Tree { leaves: 50_124, seed: 0 };
+    assert_eq!(tree(""), SceneFile { name: "scene".into(), ..SceneFile::of_model(source) });
+    let few = tree("leaves = 30\nseed = 2\n");
+    assert_eq!(few.models[0].source, Source::Tree { leaves: 30, seed: 2 });
+    assert_eq!(few.models[0].draw, Draw::Lines);
+    assert_eq!(tree("draw = \"lines\"\n").models[0].draw, Draw::Lines);
+    let polygons = tree("leaves = 30\nseed = 2\ndraw = \"polygons\"\n");
+
+    let plant = plant::apple_tree(30, 2).unwrap();
+    for (file, primitives) in [(few, plant.lines().unwrap()), (polygons, plant.polygons().unwrap())]
+    {
+        let Loaded { scene, models, dropped_primitives, .. } = load(&file);
+        assert_eq!((&scene.primitives, scene.surfels.len()), (&primitives, 0));
+        let report = ModelReport {
+            name: "tree".into(),
+            surfels: 0,
+            primitives: primitives.counts(),
+            derived: None,
+        };
+        assert_eq!((models, dropped_primitives), (vec![report], 0));
+    }
+    let red = load(&tree("leaves = 30\nseed = 2\ncolor = [1, 0, 0]\ntransform = { scale = 2 }\n"));
+    let (found, own) = (red.scene.primitives.tubes, plant.lines().unwrap().tubes);
+    let pairs = found.vertices().position.iter().zip(&own.vertices().position);
+    pairs.for_each(|(found, own)| assert_eq!(*found, 2.0 * *own));
+    let n = own.vertices().position.len();
+    assert_eq!(found.vertices().color, Some(vec![Vec3::X; n]));
+}
+
+#[test]
+fn what_is_not_of_a_tree_is_refused() {
+    let tree = |more: &str| format!("[[model]]\nshape = \"tree\"\n{more}");
+    for (more, what) in [
+        ("count = 3\n", "`count` means nothing to tree: remove it"),
+        ("radius = 3\n", "`radius` means nothing to tree: remove it"),
+        ("gap = 3\n", "`gap` means nothing to tree: remove it"),
+        ("leaves = -3\n", "-3"),
+        ("draw = \"points\"\n", "tree is drawn as lines or polygons, not as points"),
+        ("draw = \"tubes\"\n", "tree is drawn as lines or polygons, not as tubes"),
+        ("split = [0, 1, 0, 0]\n", "`split` means nothing without"),
+    ] {
+        let found = refused(&tree(more));
+        assert!(found.contains(what) && found.contains("line "), "{found}");
+    }
+    let found = refused("[[model]]\nshape = \"torus\"\nleaves = 3\n");
+    assert!(found.contains("`leaves` means nothing to torus: remove it"), "{found}");
+    let found = refused("[[model]]\nshape = \"torus\"\ndraw = \"lines\"\n");
+    assert!(found.contains("torus is drawn as points, not as lines"), "{found}");
+    let found = refused(&model("leaves = 3\n"));
+    assert!(found.contains("`leaves` means nothing to a file: remove it"), "{found}");
+    for (more, what) in [
+        ("leaves = 0\n", "a tree with 0 leaves; ask for 1 to 1048576"),
+        ("opacity = 0.5\n", "tree: what is drawn as lines is opaque; remove the opacity"),
+    ] {
+        let found = not_loaded("", &tree(more));
+        assert!(found.contains(what), "{found}");
+    }
+    // Models that no scene file says, too.
+    let mut file = parse(&tree(""));
+    file.models[0].draw = Draw::Points;
+    let error = file.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err().to_string();
+    assert!(error.contains("tree is drawn as lines or polygons, not as points"), "{error}");
 }
