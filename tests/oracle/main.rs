@@ -17,6 +17,9 @@
 //!   other means; `transparent_stages` compares, `transparent_known` and `transparent_glass` are known
 //!   answers, `transparent_laws` laws, `transparent_refused` refusals.
 //! - [`peeling`]: depth peeling by other means, and every layer against it.
+//! - [`pyramid`]: every stage of the pull-push pyramid by other means, from [`pyramid_projection`] and
+//!   [`pyramid_pieces`], [`pyramid_levels`] and [`pyramid_shade`], over numbers that bound their rounding,
+//!   [`pyramid_number`]; [`pyramid_cases`]: what is drawn; [`pyramid_tolerance`]: its table.
 #![expect(
     clippy::disallowed_methods,
     reason = "std's functions, so that the oracle shares no code with the crate; its bits are free"
@@ -37,6 +40,14 @@ mod number;
 mod over_laws;
 mod peeling;
 mod pixel;
+mod pyramid;
+mod pyramid_cases;
+mod pyramid_levels;
+mod pyramid_number;
+mod pyramid_pieces;
+mod pyramid_projection;
+mod pyramid_shade;
+mod pyramid_tolerance;
 mod scenes;
 mod single_pass;
 mod single_pass_identity;
