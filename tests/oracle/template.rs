@@ -241,7 +241,8 @@ fn mean(four: [Option<f64>; 4]) -> Rounded {
     let [a, b, c, d] = four.map(|v| v.map_or(Rounded::ZERO, Rounded::exact));
     let sum = (a + b) + (c + d);
     let count = there.count();
-    let mean = if count == 1 { sum } else { sum / Rounded::exact(count as f64) };
+    let scale = Rounded::exact(1.0) / Rounded::exact(count as f64);
+    let mean = if count == 1 { sum } else { sum * scale };
     mean.at_least(least).at_most(greatest)
 }
 
