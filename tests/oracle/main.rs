@@ -17,16 +17,13 @@
 //!   other means; `transparent_stages` compares, `transparent_known` and `transparent_glass` are known
 //!   answers, `transparent_laws` laws, `transparent_refused` refusals.
 //! - [`peeling`]: depth peeling by other means, and every layer against it.
-<<<<<<< HEAD
 //! - [`template`], [`template_projection`], [`rounded`]: reconstruction with templates by other means,
 //!   each number with a bound of its rounding; `template_stages` compares every plane on the scenes of
 //!   `template_cases`, `template_known` are known answers, `template_laws`, `template_cover` and
 //!   `template_mirror` laws.
-=======
 //! - [`pyramid`]: every stage of the pull-push pyramid by other means, from [`pyramid_projection`] and
 //!   [`pyramid_pieces`], [`pyramid_levels`] and [`pyramid_shade`], over numbers that bound their rounding,
 //!   [`pyramid_number`]; [`pyramid_cases`]: what is drawn; [`pyramid_tolerance`]: its table.
->>>>>>> opyr
 #![expect(
     clippy::disallowed_methods,
     reason = "std's functions, so that the oracle shares no code with the crate; its bits are free"
@@ -47,9 +44,6 @@ mod number;
 mod over_laws;
 mod peeling;
 mod pixel;
-<<<<<<< HEAD
-mod rounded;
-=======
 mod pyramid;
 mod pyramid_cases;
 mod pyramid_known;
@@ -61,7 +55,7 @@ mod pyramid_projection;
 mod pyramid_rays;
 mod pyramid_shade;
 mod pyramid_tolerance;
->>>>>>> opyr
+mod rounded;
 mod scenes;
 mod single_pass;
 mod single_pass_identity;

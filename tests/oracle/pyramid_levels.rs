@@ -220,7 +220,11 @@ fn mean<const P: u32>(takes: [bool; 4], weights: [Num<P>; 4], a: [Num<P>; 4]) ->
     let (low, high) =
         (those.clone().fold(f64::INFINITY, f64::min), those.fold(f64::NEG_INFINITY, f64::max));
     let all_equal = low == high && (0..4).all(|j| !takes[j] || a[j].e == 0.0);
-    if all_equal { Num::exact(low) } else { (sum * (Num::exact(1.0) / total)).at_least(low).at_most(high) }
+    if all_equal {
+        Num::exact(low)
+    } else {
+        (sum * (Num::exact(1.0) / total)).at_least(low).at_most(high)
+    }
 }
 
 /// The average of some neighbours; `hull`: the interval is that of all of them, as in the pull phase.

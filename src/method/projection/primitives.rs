@@ -16,17 +16,17 @@
 //!   attribute = (c_0 a_0 + c_1 a_1) + c_2 a_2                       two corners: without the third
 //! ```
 //!
-//! for the position p in view space, the radius, the colour, and the direction, which is then turned
-//! to view space and divided by its length. The depth is t = -p.z, rho as for surfels; the centre is
-//! that of the pixel.
+//! for the position p in view space, the radius, the colour, and the direction, which is then
+//! turned to view space and divided by its length. The depth is t = -p.z, rho as for surfels; the
+//! centre is that of the pixel.
 //!
 //! **Triangles** have the radius of their vertices, 0 if nobody gave them one, so that they are not
 //! expanded; where a mesh becomes points its boundary has radii (section 5.2).
 //! **Ribbons** have two sides: where the back is seen (g > 0 at p) the normal is reversed.
-//! **Tubes** have the direction to the camera as normal, -p / |p| (orthographic: (0, 0, 1)), and keep
-//! their tangent. `Decided:` a tangent has no sign, so those of the two corners may be opposite, and
-//! what lies between them pass through 0: where a_0 . a_1 < 0, -a_1 takes the place of a_1; in world
-//! space, so that the camera has no part in it.
+//! **Tubes** have the direction to the camera as normal, -p / |p| (orthographic: (0, 0, 1)), and
+//! keep their tangent. `Decided:` a tangent has no sign, so those of the two corners may be
+//! opposite, and what lies between them pass through 0: where `a_0 . a_1` < 0, `-a_1` takes the
+//! place of `a_1`; in world space, so that the camera has no part in it.
 
 use super::surfel::{Lens, Placed};
 use super::{Kind, Sample, Stage};
