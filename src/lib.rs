@@ -51,6 +51,9 @@
 //!   method::single_pass    depth-images of groups ─▶ compositing ────────────────┤
 //!   method::transparent    (nearest layer,) blended groups ─▶ average ───────────┤
 //!   method::peeling        layer after layer ────────────────────────────────────┤
+//!   without splats, from surfels, triangles, ribbons and tubes:                  │
+//!   method::pyramid        projection ─▶ pull ─▶ push ───────────────────────────┤
+//!   method::template       projection ─▶ propagation ─▶ reconstruction ──────────┤
 //!                                                                                ▼
 //!   verify::compare ◀─ io::exr ◀─ Frame ◀─ scene::environment ◀─ shade::{phong, optics}
 //! ```
@@ -75,6 +78,12 @@
 //! | depth-image | what the splats of one group leave: one fragment a pixel |
 //! | depth bin | a step of low-precision depth; fragments of one bin are one layer |
 //! | Voronoi-enhanced depth | depth bin, then distance from the splat's own centre |
+//! | projection to single pixels | the nearest sample of the scene in each pixel, with its radius in pixels |
+//! | level, cell | an image of a pyramid, each half as wide as the finer one; a pixel of it |
+//! | pull, push | from finer levels to coarser ones by averages; and back, filling what is empty or occluded |
+//! | displacement | from the centre of a cell to that of its ellipse, in pixels |
+//! | template | the k x k cells of a level around a pixel, in which it searches for ellipses |
+//! | ribbon, tube | a flat strip, a bent cylinder: polylines drawn one pixel wide and reconstructed |
 //! | layer | one of the surfaces that a ray passes through |
 //! | opacity | alpha, the part of the light from behind that a surfel blocks |
 //! | plane | one quantity for every pixel |
@@ -91,7 +100,9 @@
 //! A Graph Coloring Algorithm for Large Scheduling Problems, J. Res. NBS 84, 1979. \[Sam89\] Samet: The
 //! Design and Analysis of Spatial Data Structures, 1989. \[Eve02\] Everitt: Interactive Order-Independent
 //! Transparency, 2002. \[Mam89\] Mammen: Transparency and Antialiasing Algorithms, IEEE CG&A 9(4), 1989.
-//! \[WBSS04\] Wang, Bovik, Sheikh, Simoncelli: Image Quality Assessment, IEEE TIP 2004. In the pages of
+//! \[MKC08\] Marroquim, Kraus, Cavalcanti: Efficient Image Reconstruction for Point-Based and Line-Based
+//! Rendering, Computers & Graphics 32, 2008. \[MOC08\] Marroquim, Oliveira, Cavalcanti: High Quality Image
+//! Reconstruction of Point Models, SIBGRAPI 2008. \[WBSS04\] Wang, Bovik, Sheikh, Simoncelli: Image Quality Assessment, IEEE TIP 2004. In the pages of
 //! the modules, `Decided:` marks what a source leaves open, `Departs:` where this crate differs.
 //!
 //! # Example

@@ -2,6 +2,9 @@
 //!
 //! - [`ewa`]: EWA surface splatting in two geometry passes and a normalization \[ZPvBG01, GP03\].
 //! - [`peeling`]: transparency by depth peeling, the truth that the others are compared with \[ZP06\].
+//! - [`mod@projection`]: a scene as one sample a pixel, which the next two begin with.
+//! - [`pyramid`]: pull-push interpolation, with ribbons, tubes and polygons \[MKC08\].
+//! - [`template`]: reconstruction with templates of k x k pixels \[MOC08\].
 //! - [`single_pass`]: one geometry pass into the depth-images of groups, then compositing \[ZP06\].
 //! - [`transparent`]: layers blended from back to front within groups \[ZP06\].
 //! - [`mod@render`]: any of them, chosen by a value.

@@ -14,7 +14,9 @@
 //!
 //! so that d = sqrt(form / square) is the elliptical distance, 1 on the rim. The axes are never
 //! needed: a sum of squares has no cancellation, and the length of n does not enter, so that
-//! averages of normals need not be made unit vectors. A disc seen edge-on (nz = 0) contains nothing,
+//! averages of normals need not be made unit vectors. (Along the view axis is what both papers say, because
+//! radii are small; but the error is in the angle between the axis and the ray, not in the size of the
+//! disc: a wall that a wide camera sees at its side is edge-on to the axis, and vanishes.) A disc seen edge-on (nz = 0) contains nothing,
 //! not even its centre, and neither does one without a normal or with rho = 0: the form is then
 //! infinite or NaN, or the square is not > 0.
 

@@ -9,7 +9,7 @@ use splatref::scene::indexed::{Indexed, Primitives, Vertices};
 use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Pose, Scene, Surfels};
 
 /// How many goldens of this method there are at least.
-const GOLDENS: usize = 0;
+const GOLDENS: usize = 4;
 
 pub(crate) struct Case {
     pub(crate) name: String,

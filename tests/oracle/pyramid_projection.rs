@@ -4,6 +4,7 @@
 //! it. Where rounding may decide where something is, there is a candidate for each outcome.
 
 use crate::eye::wide;
+use crate::pyramid_levels::TUBE;
 use crate::pyramid_number::{N3, Num, dot, exact, negated, normalized};
 use crate::pyramid_pieces::{Piece, pieces};
 use splatref::method::pyramid::Settings;
@@ -286,11 +287,17 @@ impl<const P: u32, const N: usize> Primitive<P, N> {
         (i, id, kind): (usize, u32, u8),
     ) -> Self {
         let (vertices, corners) = (list.vertices(), list.corners()[i].map(|v| v as usize));
+        // The tangents of a tube's ends agree.
+        let mut directions = corners.map(|v| wide(vertices.direction[v]));
+        let dot: f64 = (0..3).map(|k| directions[0][k] * directions[1][k]).sum();
+        if kind == TUBE && dot < 0.0 {
+            directions[1] = directions[1].map(|v| -v);
+        }
         Self {
             id,
             kind,
             points: corners.map(|v| sight.point(vertices.position[v])),
-            directions: corners.map(|v| exact(wide(vertices.direction[v]))),
+            directions: directions.map(exact),
             radii: corners.map(|v| Num::exact(vertices.radius[v].into())),
             colors: vertices.color.as_ref().map(|all| corners.map(|v| exact(wide(all[v])))),
             colorless: exact(colorless(scene)),
