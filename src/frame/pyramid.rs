@@ -1,4 +1,6 @@
-//! The sizes of an image pyramid.
+//! The sizes of an image pyramid, and its levels as planes.
+
+use super::Plane;
 
 /// The width and height of every level, from the picture to the level of one pixel.
 ///
@@ -18,9 +20,27 @@ pub fn sizes(width: u32, height: u32) -> Vec<[u32; 2]> {
     levels
 }
 
+/// A level in the upper left corner of a plane of the size of the picture.
+#[must_use]
+pub fn in_corner<T: Copy>(level: &Plane<T>, [width, height]: [u32; 2], empty: T) -> Plane<T> {
+    let mut whole = Plane::filled(width, height, empty);
+    let (from, to) = (level.width() as usize, width as usize);
+    for (row, cells) in whole.values_mut().chunks_mut(to).zip(level.values().chunks(from)) {
+        row[..from].copy_from_slice(cells);
+    }
+    whole
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_level_lies_in_the_corner() {
+        let level = Plane::from_values(2, 1, vec![1, 2]);
+        let whole = in_corner(&level, [3, 2], 0);
+        assert_eq!(whole, Plane::from_values(3, 2, vec![1, 2, 0, 0, 0, 0]));
+    }
 
     #[test]
     fn every_level_covers_the_finer_one_and_the_last_is_a_pixel() {

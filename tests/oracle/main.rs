@@ -23,7 +23,8 @@
 //!   `template_mirror` laws.
 //! - [`pyramid`]: every stage of the pull-push pyramid by other means, from [`pyramid_projection`] and
 //!   [`pyramid_pieces`], [`pyramid_levels`] and [`pyramid_shade`], over numbers that bound their rounding,
-//!   [`pyramid_number`]; [`pyramid_cases`]: what is drawn; [`pyramid_tolerance`]: its table.
+//!   [`pyramid_number`]; [`pyramid_cases`]: what is drawn; [`pyramid_tolerance`]: its table. `pyramid_laws`
+//!   are laws, `pyramid_known` known answers, `pyramid_rays` triangles against rays.
 #![expect(
     clippy::disallowed_methods,
     reason = "std's functions, so that the oracle shares no code with the crate; its bits are free"

@@ -23,7 +23,7 @@ pub(crate) struct Piece<const P: u32, const N: usize> {
     shares: [[Num<P>; N]; N],
 }
 
-/// A pixel, and w_i / w there.
+/// A pixel, and `w_i` / w there.
 type Covered<const P: u32> = (i64, i64, Vec<Num<P>>);
 
 /// Too much depends on rounding.
@@ -139,9 +139,9 @@ fn outcomes<const P: u32, const N: usize>(
     }];
     for (i, vertex) in vertices.iter().enumerate() {
         let at = sight.place(vertex.p).at;
-        for axis in 0..2 {
+        for (axis, at) in at.into_iter().enumerate() {
             let mut more = Vec::new();
-            for value in snapped(at[axis], bits)? {
+            for value in snapped(at, bits)? {
                 more.extend(all.iter().cloned().map(|mut piece| {
                     piece.corners[i][axis] = value;
                     piece
@@ -164,7 +164,7 @@ impl<const P: u32, const N: usize> Piece<P, N> {
         cross([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]) < 0
     }
 
-    /// c_k, from w_i / w.
+    /// `c_k`, from `w_i` / w.
     pub(crate) fn shares(&self, weights: &[Num<P>]) -> [Num<P>; N] {
         let q: [Num<P>; N] = std::array::from_fn(|i| weights[i] * self.m[i]);
         let total = if N == 3 { (q[0] + q[1]) + q[2] } else { q[0] + q[1] };

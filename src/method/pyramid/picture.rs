@@ -5,7 +5,7 @@ use super::plain::{pull_all, push_all};
 use super::{Cell, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
-use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples};
+use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples, pyramid};
 use crate::method::picture::{Clock, Picture, before_environment, color, named, scalar};
 use crate::method::projection::{self, Has, world};
 use crate::number::Real;
@@ -178,11 +178,7 @@ fn level_planes<R: Real>(
     camera: &Camera,
     has: Has,
 ) -> Vec<NamedPlane<R>> {
-    let mut whole = Plane::filled(camera.width, camera.height, Cell::empty());
-    let (from, to) = (cells.width() as usize, camera.width as usize);
-    for (row, cells) in whole.values_mut().chunks_mut(to).zip(cells.values().chunks(from)) {
-        row[..from].copy_from_slice(cells);
-    }
+    let whole = pyramid::in_corner(cells, [camera.width, camera.height], Cell::empty());
     let name = |of: &str| format!("{name}.{of}");
     let mut planes = vec![
         named(&name("kind"), Samples::Count(whole.map(|cell| cell.kind as u8))),

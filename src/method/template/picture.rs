@@ -6,7 +6,7 @@ use super::{Centre, Settings, levels};
 use crate::composite::sum;
 use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
-use crate::frame::{Exec, Framebuffer, NamedPlane, Plane, Samples, Wanted};
+use crate::frame::{Exec, Framebuffer, NamedPlane, Plane, Samples, Wanted, pyramid};
 use crate::method::picture::{Clock, Picture, color, finish, framebuffer, named, scalar};
 use crate::method::projection::{self, Has, world};
 use crate::number::{Real, Vector3};
@@ -124,11 +124,7 @@ fn level_planes<R: Real>(
     camera: &Camera,
     has: Has,
 ) -> Vec<NamedPlane<R>> {
-    let mut whole = Plane::filled(camera.width, camera.height, Centre::empty());
-    let (from, to) = (cells.width() as usize, camera.width as usize);
-    for (row, cells) in whole.values_mut().chunks_mut(to).zip(cells.values().chunks(from)) {
-        row[..from].copy_from_slice(cells);
-    }
+    let whole = pyramid::in_corner(cells, [camera.width, camera.height], Centre::empty());
     let of = |what: &str| format!("{name}.{what}");
     let mut planes = vec![
         named(&of("id"), Samples::Index(whole.map(|cell| cell.id))),
