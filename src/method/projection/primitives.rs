@@ -17,7 +17,9 @@
 //! ```
 //!
 //! for the position p in view space, the radius, the colour, and the direction, which is then
-//! turned to view space and divided by its length. The depth is t = -p.z, rho as for surfels; the
+//! turned to view space and divided by its length (of length 0: the null vector). Where other parts of a
+//! scene have colours, one without has the material's. Of two visits of a pixel by one primitive at
+//! equal depth the first stays. The depth is t = -p.z, rho as for surfels; the
 //! centre is that of the pixel.
 //!
 //! **Triangles** have the radius of their vertices, 0 if nobody gave them one, so that they are not

@@ -6,7 +6,7 @@
 //! 3. **Push** ([`mod@push`]): from the coarsest level down, cells that are empty or occluded are computed again
 //!    from four coarser ones; every other cell is copied.
 //! 4. **Deferred shading** of level 0, see [`crate::shade`]. The depth of a pixel is its cell's `front`; its
-//!    normal is the cell's, divided by its length and turned to world space, plus 0; that of a tube too,
+//!    normal is the cell's, turned to world space and divided by its length, plus 0 (of length 0: the null vector); that of a tube too,
 //!    which is lit by its tangent, treated likewise.
 //!
 //! Levels are those of [`crate::frame::pyramid::sizes`]. A cell's ellipse is that of [`crate::splat::ellipse`]; its centre is the

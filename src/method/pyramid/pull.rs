@@ -16,7 +16,7 @@
 //!
 //! Not symmetric: of several foremost cells the end of the first counts, in the order of j. And in a level of odd
 //! width or height the last column or row is halved alone, so that a mirrored scene has a mirrored
-//! picture only if the sides of the picture are powers of two.
+//! picture, along an axis, only if that side is a power of two and not the shorter one.
 
 use super::Cell;
 use crate::composite::mean::Mean;
