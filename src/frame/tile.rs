@@ -69,6 +69,21 @@ impl Exec {
             Some(pool) => pool.install(|| jobs.into_par_iter().map(run).collect()),
         }
     }
+
+    /// Runs `size` neighbouring items a job, in parallel; with the index of the first of them.
+    pub(crate) fn groups<T: Send>(
+        &self,
+        items: impl Iterator<Item = T>,
+        size: usize,
+        run: impl Fn(usize, Vec<T>) + Sync + Send,
+    ) {
+        let mut items = items.enumerate().peekable();
+        let groups = std::iter::from_fn(|| {
+            let first = items.peek()?.0;
+            Some((first, items.by_ref().take(size).map(|(_, item)| item).collect()))
+        });
+        self.ordered(groups.collect(), |(first, group)| run(first, group));
+    }
 }
 
 /// The division of a picture into square tiles; those at the right and lower edge may be cut.

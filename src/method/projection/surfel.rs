@@ -35,13 +35,20 @@ impl<R: Real> Lens<R> {
         Self { view, focal: (view.fx * view.fy).sqrt(), cull }
     }
 
+    /// m at a depth: 1/t, or 1.
+    #[inline(always)]
+    #[must_use]
+    pub fn scale(&self, t: R) -> R {
+        if self.view.perspective { R::ONE / t } else { R::ONE }
+    }
+
     /// Where a point in view space is.
     #[inline(always)]
     #[must_use]
     pub fn place(&self, p: Vector3<R>) -> Placed<R> {
         let view = &self.view;
         let t = -p.z;
-        let m = if view.perspective { R::ONE / t } else { R::ONE };
+        let m = self.scale(t);
         let centre = Vector2::new(view.cx + view.fx * (p.x * m), view.cy - view.fy * (p.y * m));
         Placed { p, t, m, centre }
     }

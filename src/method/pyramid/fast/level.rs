@@ -1,16 +1,14 @@
 //! A level in rows of numbers.
 
-use super::super::Cell;
 use crate::method::projection::fast::{LANES, Lanes};
 use crate::method::projection::{Has, Kind};
-use crate::number::{Vector2, Vector3};
 
 /// The numbers of a cell, by their place in a row; [`KIND`] is the [`Kind`] as a number.
 pub(super) const KIND: usize = 0;
 pub(super) const FRONT: usize = 1;
 pub(super) const BACK: usize = 2;
 pub(super) const RADIUS: usize = 3;
-/// The displacement: two numbers.
+/// The displacement: two numbers; not of level 0, where it is 0 until the push, and then not wanted.
 pub(super) const PLACE: usize = 4;
 /// The normal: three numbers.
 pub(super) const NORMAL: usize = 6;
@@ -75,31 +73,6 @@ impl Level {
     pub(super) fn rows_mut(&mut self) -> std::slice::ChunksMut<'_, f32> {
         let row = self.shape.row();
         self.numbers[row..(self.shape.height + 1) * row].chunks_mut(row)
-    }
-
-    /// A cell; one that is empty has no numbers.
-    pub(super) fn cell(&self, x: usize, y: usize, has: Has) -> Cell<f32> {
-        let row = self.row(y as isize);
-        let n = |attribute: usize| row[attribute * self.shape.stride + PAD + x];
-        let kinds = [Kind::Empty, Kind::Surface, Kind::Ribbon, Kind::Tube, Kind::Polygon];
-        let kind = kinds[n(KIND) as usize];
-        if kind == Kind::Empty {
-            return Cell::empty();
-        }
-        let vector = |at: usize| [n(at), n(at + 1), n(at + 2)];
-        let [nx, ny, nz] = vector(NORMAL);
-        let color = if has.color { vector(FURTHER) } else { [0.0; 3] };
-        let tangent = if has.tangent { vector(self.shape.attributes - 3) } else { [0.0; 3] };
-        Cell {
-            kind,
-            front: n(FRONT),
-            back: n(BACK),
-            radius: n(RADIUS),
-            displacement: Vector2::new(n(PLACE), n(PLACE + 1)),
-            normal: Vector3::new(nx, ny, nz),
-            tangent: Vector3::new(tangent[0], tangent[1], tangent[2]),
-            color,
-        }
     }
 }
 

@@ -16,12 +16,13 @@ use super::plain::side;
 use super::{Cell, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
-use crate::frame::{Exec, NO_ID, Plane, pyramid};
-use crate::method::projection::fast::{LANES, Lanes, Nearest, Points, Sampling};
+use crate::frame::{Exec, Plane, pyramid};
+use crate::method::projection::fast::{LANES, Lanes, Nearest, Points};
+use crate::method::projection::surfel::Lens;
 use crate::method::projection::{self, Has, Kind, Projected};
 use crate::scene::{Camera, Scene};
 use crate::splat::{Tally, View};
-use level::{BACK, FRONT, FURTHER, KIND, Level, NORMAL, PAD, PLACE, RADIUS, Shape};
+use level::{BACK, FRONT, FURTHER, KIND, Level, NORMAL, PAD, RADIUS, Shape};
 use multiversion::multiversion;
 use output::Output;
 use std::time::{Duration, Instant};
@@ -40,7 +41,7 @@ pub struct Timings {
 /// The levels of a picture, which can be used for many pictures.
 #[derive(Debug, Default)]
 pub struct Levels {
-    points: Points,
+    points: Points<4>,
     levels: Vec<Level>,
     has: Has,
 }
@@ -105,12 +106,11 @@ impl Levels {
             store(&projected, self.has, level, exec);
             return Ok(projected.tally);
         }
-        let how = (settings.cull, false);
-        let sampling = Sampling::new(scene, View::new(camera), how);
-        let tally = self.points.find(&scene.surfels, &sampling.lens, exec);
-        let shape = level.shape;
-        self.points.each_row(shape.width, level.rows_mut(), exec, |_, nearest, row| {
-            samples(&sampling, nearest, row, &shape);
+        let lens = Lens::new(View::new(camera), settings.cull);
+        let tally = self.points.find(&scene.surfels, &lens, exec);
+        let (shape, colored) = (level.shape, self.has.color);
+        self.points.each_row(&lens, level.rows_mut(), exec, |nearest, row| {
+            samples(nearest, row, &shape, colored);
         });
         Ok(tally)
     }
@@ -134,16 +134,6 @@ impl Levels {
         });
         exec.ordered(jobs.collect(), |mut output: Output<'_>| output.write(&shape, view));
     }
-
-    /// The cells of level 0.
-    #[must_use]
-    pub fn cells(&self) -> Plane<Cell<f32>> {
-        let level = &self.levels[0];
-        let Shape { width, height, .. } = level.shape;
-        let cells = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        let cells = cells.map(|(x, y)| level.cell(x, y, self.has)).collect();
-        Plane::from_values(width as u32, height as u32, cells)
-    }
 }
 
 /// The rows of a plane that may not be there.
@@ -156,29 +146,27 @@ fn rows(
 
 /// A row of level 0 from the nearest points of its pixels.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn samples(sampling: &Sampling<'_>, nearest: &Nearest<'_>, row: &mut [f32], shape: &Shape) {
+fn samples(nearest: &Nearest<'_, 4>, row: &mut [f32], shape: &Shape, colored: bool) {
     for x in (0..shape.width).step_by(LANES) {
         let mut put = |attribute: usize, lanes: &Lanes| {
             let at = attribute * shape.stride + PAD + x;
             row[at..at + LANES].copy_from_slice(lanes);
         };
-        let Some(s) = sampling.take(nearest, x) else {
+        let Some(s) = nearest.take(x) else {
             put(KIND, &[0.0; LANES]);
             continue;
         };
         let (mut kind, mut back) = ([0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {
-            kind[i] = if s.id[i] == NO_ID { 0.0 } else { SURFACE };
+            kind[i] = if s.depth[i] < f32::INFINITY { SURFACE } else { 0.0 };
             back[i] = s.depth[i] + s.radius[i];
         }
         put(KIND, &kind);
         put(FRONT, &s.depth);
         put(BACK, &back);
         put(RADIUS, &s.extent);
-        put(PLACE, &[0.0; LANES]);
-        put(PLACE + 1, &[0.0; LANES]);
         (0..3).for_each(|axis| put(NORMAL + axis, &s.normal[axis]));
-        if sampling.has.color {
+        if colored {
             (0..3).for_each(|channel| put(FURTHER + channel, &s.color[channel]));
         }
     }
@@ -200,9 +188,9 @@ fn store(projected: &Projected<f32>, has: Has, level: &mut Level, exec: &Exec) {
                     row[(at + k) * shape.stride + PAD + x] = *value;
                 }
             };
-            let (d, n, t) = (cell.displacement, cell.normal, cell.tangent);
+            let (n, t) = (cell.normal, cell.tangent);
             put(KIND, &[f32::from(cell.kind as u8), cell.front, cell.back, cell.radius]);
-            put(PLACE, &[d.x, d.y, n.x, n.y, n.z]);
+            put(NORMAL, &[n.x, n.y, n.z]);
             if has.color {
                 put(FURTHER, &cell.color);
             }

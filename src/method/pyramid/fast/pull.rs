@@ -19,16 +19,9 @@ pub(super) fn pull(fine: &Level, coarse: &mut Level, side: f32, tubes: bool, exe
         (true, true) => pull_row::<true, true>,
     };
     let shapes = [fine.shape, coarse.shape];
-    let rows: Vec<_> = coarse.rows_mut().enumerate().collect();
-    let mut rows = rows.into_iter();
-    let jobs = std::iter::from_fn(|| {
-        let job: Vec<_> = rows.by_ref().take(ROWS).collect();
-        (!job.is_empty()).then_some(job)
-    });
-    exec.ordered(jobs.collect(), |job: Vec<(usize, &mut [f32])>| {
-        for (y, row) in job {
-            let finer = [fine.row(2 * y as isize), fine.row(2 * y as isize + 1)];
-            run(finer, row, &shapes, side);
+    exec.groups(coarse.rows_mut(), ROWS, |first, rows| {
+        for (y, row) in (first as isize..).zip(rows) {
+            run([fine.row(2 * y), fine.row(2 * y + 1)], row, &shapes, side);
         }
     });
 }
@@ -58,7 +51,9 @@ fn pull_row<const FINEST: bool, const TUBES: bool>(
             continue;
         }
         let number = |attribute: usize| four(finer, fine, attribute, x);
-        let (left, upper) = (number(PLACE), number(PLACE + 1));
+        // The displacements of the finest level are 0.
+        let own = |axis| if FINEST { [[0.0; LANES]; 4] } else { number(PLACE + axis) };
+        let (left, upper) = (own(0), own(1));
         let mut place = [[[0.0; LANES]; 2]; 4];
         for j in 0..4 {
             let dx = if j % 2 == 0 { -half } else { half };

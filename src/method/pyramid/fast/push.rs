@@ -33,14 +33,8 @@ pub(super) fn push(
         (Weights::Gaussian, false) => push_row::<true, false>,
         (Weights::Gaussian, true) => push_row::<true, true>,
     };
-    let rows: Vec<_> = fine.rows_mut().enumerate().collect();
-    let mut rows = rows.into_iter();
-    let jobs = std::iter::from_fn(|| {
-        let job: Vec<_> = rows.by_ref().take(ROWS).collect();
-        (!job.is_empty()).then_some(job)
-    });
-    exec.ordered(jobs.collect(), |job: Vec<(usize, &mut [f32])>| {
-        for (y, row) in job {
+    exec.groups(fine.rows_mut(), ROWS, |first, rows| {
+        for (y, row) in (first..).zip(rows) {
             let parent = (y / 2) as isize;
             let even = y % 2 == 0;
             let beside = if even { parent - 1 } else { parent + 1 };
@@ -116,16 +110,9 @@ fn push_row<const GAUSSIAN: bool, const TUBES: bool>(
             continue;
         }
         put(fine, at(KIND), &found, |_, found| found.mix.kind);
-        for attribute in [FRONT, BACK, RADIUS].into_iter().chain(FURTHER..shape.attributes) {
+        for attribute in [FRONT].into_iter().chain(FURTHER..shape.attributes) {
             let new = |odd: usize, found: &Found| found.mix.of(&number(attribute, odd));
             put(fine, at(attribute), &found, new);
-        }
-        for axis in 0..2 {
-            let new = |_, found: &Found| {
-                let place = &found.place;
-                found.mix.of(&[place[0][axis], place[1][axis], place[2][axis], place[3][axis]])
-            };
-            put(fine, at(PLACE + axis), &found, new);
         }
         let mut normal = [[[0.0; LANES]; 3]; 2];
         for axis in 0..3 {
@@ -133,7 +120,19 @@ fn push_row<const GAUSSIAN: bool, const TUBES: bool>(
             let [even, odd] = put(fine, at(NORMAL + axis), &found, new);
             (normal[0][axis], normal[1][axis]) = (even, odd);
         }
+        // Of the finest level the picture wants no more.
         if !finest {
+            for attribute in [BACK, RADIUS] {
+                let new = |odd: usize, found: &Found| found.mix.of(&number(attribute, odd));
+                put(fine, at(attribute), &found, new);
+            }
+            for axis in 0..2 {
+                let new = |_, found: &Found| {
+                    let place = &found.place;
+                    found.mix.of(&[place[0][axis], place[1][axis], place[2][axis], place[3][axis]])
+                };
+                put(fine, at(PLACE + axis), &found, new);
+            }
             let tilt = [tilts(&normal[0]), tilts(&normal[1])];
             for axis in 0..2 {
                 put(fine, at(TILT + axis), &found, |odd, _| tilt[odd][axis]);

@@ -1,25 +1,25 @@
 //! Fast is plain, bit for bit.
 
-use super::super::plain::{pull_all, push_all};
+use super::super::picture::{render, render_f32};
 use super::super::{Occlusion, Weights};
 use super::*;
 use crate::method::tests::{cameras, scene, surfels};
-use crate::scene::Primitives;
 use crate::scene::indexed::{Indexed, Vertices};
+use crate::scene::{Light, Primitives};
 use glam::Vec3;
 
-fn assert_same(scene: &Scene, camera: &Camera, settings: &Settings, levels: &mut Levels) {
+fn assert_same(scene: Scene, camera: &Camera, settings: &Settings, levels: &mut Levels) {
+    // With a light, so that normals are there too.
+    let scene = Scene { lights: vec![Light::DEFAULT], ..scene };
     let exec = Exec::new(3, 16).unwrap();
-    let how = (settings.cull, Snap::new(settings.subpixel_bits).unwrap());
-    let projected = projection::project::<f32>(scene, camera, how, &exec).unwrap();
-    let expected = &push_all(&pull_all(&projected, &exec), settings, &exec)[0];
-    let (tally, _) = levels.draw(scene, camera, settings, &exec).unwrap();
-    assert_eq!(tally, projected.tally);
-    let found = levels.cells();
-    let pairs = found.values().iter().zip(expected.values());
-    for (i, (found, expected)) in pairs.enumerate() {
-        // Their shortest decimals tell floats apart to the last bit, and the signs of zeros.
-        assert_eq!(format!("{found:?}"), format!("{expected:?}"), "pixel {i}, {settings:?}");
+    let expected = render::<f32>(&scene, camera, settings, &exec, false).unwrap();
+    let found = render_f32(&scene, camera, settings, &exec, levels, None).unwrap();
+    assert_eq!(found.tally, expected.tally);
+    assert_eq!(found.frame.planes.len(), expected.frame.planes.len());
+    for (found, expected) in found.frame.planes.iter().zip(&expected.frame.planes) {
+        // The shortest decimals of floats tell them apart to the last bit, and the signs of zeros.
+        let same = format!("{found:?}") == format!("{expected:?}");
+        assert!(same, "{}, {settings:?}, {} surfels", expected.name, scene.surfels.len());
     }
 }
 
@@ -29,12 +29,12 @@ fn every_cell_has_the_bits_of_the_definition() {
     let mut levels = Levels::default();
     for (i, camera) in cameras().into_iter().enumerate() {
         for (count, radius) in [(1, 1e30), (37, 0.4), (3000, 0.05), (50_000, 0.01)] {
-            let scene = scene(surfels(count, radius, count % 2 == 1, i as u64));
+            let surfels = surfels(count, radius, count % 2 == 1, i as u64);
             for occlusion in [Occlusion::Behind, Occlusion::Outside] {
                 let weights = if count == 37 { Weights::Box } else { Weights::Gaussian };
                 let cull = count != 3000;
                 let settings = Settings { weights, occlusion, cull, ..Settings::default() };
-                assert_same(&scene, &camera, &settings, &mut levels);
+                assert_same(scene(surfels.clone()), &camera, &settings, &mut levels);
             }
         }
     }
@@ -65,7 +65,7 @@ fn triangles_and_lines_too() {
         let scene = Scene { primitives, ..scene(surfels(500, 0.05, i % 2 == 0, 7)) };
         for cull in [true, false] {
             let settings = Settings { cull, ..Settings::default() };
-            assert_same(&scene, &camera, &settings, &mut levels);
+            assert_same(scene.clone(), &camera, &settings, &mut levels);
         }
     }
 }

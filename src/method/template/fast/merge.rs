@@ -12,13 +12,8 @@ const ROWS: usize = 8;
 /// The next level, from what does not stay within the first `reach`; the second is its own.
 pub(super) fn merge(fine: &Level, coarse: &mut Level, reach: [f32; 2], exec: &Exec) {
     let shapes = [fine.shape, coarse.shape];
-    let mut rows = coarse.rows_mut().enumerate();
-    let jobs = std::iter::from_fn(|| {
-        let job: Vec<_> = rows.by_ref().take(ROWS).collect();
-        (!job.is_empty()).then_some(job)
-    });
-    exec.ordered(jobs.collect(), |job: Vec<(usize, RowMut<'_>)>| {
-        for (y, mut row) in job {
+    exec.groups(coarse.rows_mut(), ROWS, |first, rows| {
+        for (y, mut row) in (first..).zip(rows) {
             let upper = fine.row(2 * y);
             // Below the last row of an odd level there is none: the upper one stands for it, unread.
             let exists = 2 * y + 1 < fine.shape.height;

@@ -14,7 +14,8 @@ mod tests;
 use super::{Settings, levels};
 use crate::frame::{Exec, Framebuffer, pyramid};
 use crate::method::projection::Has;
-use crate::method::projection::fast::{LANES, Lanes, Nearest, Points, Sampling};
+use crate::method::projection::fast::{LANES, Lanes, Nearest, Points};
+use crate::method::projection::surfel::Lens;
 use crate::scene::{Camera, Scene};
 use crate::splat::{Tally, View};
 use level::{COLOR, DEPTH, EXTENT, Level, NORMAL, PAD, PLACE, RADIUS, RowMut, Shape};
@@ -36,7 +37,7 @@ pub struct Timings {
 /// The levels of a picture, which can be used for many pictures.
 #[derive(Debug, Default)]
 pub struct Levels {
-    points: Points,
+    points: Points<6>,
     levels: Vec<Level>,
 }
 
@@ -92,12 +93,12 @@ impl Levels {
         reach: f32,
         exec: &Exec,
     ) -> Tally {
-        let sampling = Sampling::new(scene, View::new(camera), (cull, true));
-        let tally = self.points.find(&scene.surfels, &sampling.lens, exec);
+        let lens = Lens::new(View::new(camera), cull);
+        let tally = self.points.find(&scene.surfels, &lens, exec);
         let level = &mut self.levels[0];
-        let shape = level.shape;
-        self.points.each_row(shape.width, level.rows_mut(), exec, |_, nearest, mut row| {
-            samples(&sampling, nearest, &mut row, &shape, reach);
+        let (shape, colored) = (level.shape, Has::of(scene).color);
+        self.points.each_row(&lens, level.rows_mut(), exec, |nearest, mut row| {
+            samples(nearest, &mut row, &shape, (reach, colored));
         });
         tally
     }
@@ -127,15 +128,14 @@ impl Levels {
 /// A row of level 0 from the nearest points of its pixels.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn samples(
-    sampling: &Sampling<'_>,
-    nearest: &Nearest<'_>,
+    nearest: &Nearest<'_, 6>,
     row: &mut RowMut<'_>,
     shape: &Shape,
-    reach: f32,
+    (reach, colored): (f32, bool),
 ) {
     *row.has = [false; 2];
     for x in (0..shape.width).step_by(LANES) {
-        let Some(s) = sampling.take(nearest, x) else {
+        let Some(s) = nearest.take(x) else {
             row.clear(shape, x);
             continue;
         };
@@ -148,7 +148,7 @@ fn samples(
         put(EXTENT, &s.extent);
         (0..2).for_each(|axis| put(PLACE + axis, &s.centre[axis]));
         (0..3).for_each(|axis| put(NORMAL + axis, &s.normal[axis]));
-        if sampling.has.color {
+        if colored {
             (0..3).for_each(|channel| put(COLOR + channel, &s.color[channel]));
         }
         row.ids[PAD + x..PAD + x + LANES].copy_from_slice(&s.id);

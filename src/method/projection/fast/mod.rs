@@ -1,0 +1,46 @@
+//! The projection of surfels in `f32` at the speed of memory: the samples of [`super::plain`], bit for bit.
+//!
+//! 1. **[`points`].** Every surfel that is seen becomes a point: pixel, depth, and what a sample takes of
+//!    it, so that nothing is read again from random places. The scene is read once, in order,
+//!    [`LANES`] surfels at a time, without a branch a surfel; a chunk of surfels sorts its points by **bands** of
+//!    rows in the cache, and writes them out in order.
+//! 2. **[`nearest`].** Each band keeps the nearest point of each pixel in memory that fits the cache; one
+//!    thread owns it. What the points carry then becomes the samples of a row of pixels.
+
+mod nearest;
+mod points;
+
+pub(in crate::method) use nearest::Nearest;
+pub(in crate::method) use points::Points;
+
+/// Surfels or pixels that are treated side by side.
+pub(in crate::method) const LANES: usize = 16;
+
+/// One number for each of [`LANES`].
+pub(in crate::method) type Lanes = [f32; LANES];
+
+/// Every second of twice [`LANES`] values of a row from an index on: the even and the odd ones.
+#[inline(always)]
+pub(in crate::method) fn halves<T: Copy + Default>(row: &[T], at: usize) -> [[T; LANES]; 2] {
+    let mut pairs = [T::default(); 2 * LANES];
+    pairs.copy_from_slice(&row[at..at + 2 * LANES]);
+    let (mut even, mut odd) = ([T::default(); LANES], [T::default(); LANES]);
+    for i in 0..LANES {
+        even[i] = pairs[2 * i];
+        odd[i] = pairs[2 * i + 1];
+    }
+    [even, odd]
+}
+
+/// Copies [`LANES`] values, or as many as there is room for: a whole copy is one instruction.
+#[inline(always)]
+pub(in crate::method) fn put<T: Copy>(to: &mut [T], from: &[T; LANES]) {
+    if to.len() == LANES {
+        to.copy_from_slice(from);
+    } else {
+        to.copy_from_slice(&from[..to.len()]);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,343 @@
+//! Every surfel that is seen as a point, sorted by bands.
+
+use super::{LANES, Lanes};
+use crate::frame::Exec;
+use crate::method::projection::surfel::Lens;
+use crate::number::{Real, Vector3};
+use crate::scene::Surfels;
+use crate::splat::{Fate, Tally};
+use glam::Vec3;
+use multiversion::multiversion;
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+
+/// Surfels of a chunk; an index in a chunk has 16 bits.
+pub(super) const CHUNK: usize = 16_384;
+/// Pixels of a band, at most; an index in a band has 16 bits. Depths and slots of a band fit a second-level
+/// cache.
+const BAND: usize = 65_536;
+/// Bands of a picture, at least, if it has as many rows: there should be work for every thread.
+const BANDS: usize = 16;
+
+/// Where a point is, whose it is, and how far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Key {
+    /// The pixel of the band, counted row by row, in the upper half; the surfel of the chunk in the lower.
+    place: u32,
+    /// See [`order`].
+    pub(super) order: u32,
+}
+
+impl Key {
+    /// The pixel of the band.
+    pub(super) fn pixel(self) -> usize {
+        (self.place >> 16) as usize
+    }
+
+    /// The surfel of the chunk.
+    pub(super) fn surfel(self) -> u32 {
+        self.place & 0xFFFF
+    }
+}
+
+/// The bits of a depth, which is finite and not -0, as an integer of the same order.
+#[inline(always)]
+pub(super) fn order(depth: f32) -> u32 {
+    let bits = depth.to_bits();
+    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
+}
+
+/// The depth of this [`order`].
+#[inline(always)]
+pub(super) fn depth(order: u32) -> f32 {
+    f32::from_bits(if order >> 31 == 0 { !order } else { order & !(1 << 31) })
+}
+
+/// The points of a picture; the memory can be used for many pictures.
+///
+/// A **slot** is the place of a point in both arrays. The points of a chunk of surfels have the first
+/// slots from that of its first surfel on, by bands, and in each band in the order of the surfels. A point carries the
+/// normal, towards the viewer and in view space, the radius, if `CARRIED` is 6, not 4, its centre in the picture, and if
+/// the scene has colours its own.
+#[derive(Debug, Default)]
+pub(in crate::method) struct Points<const CARRIED: usize> {
+    pub(super) keys: Vec<Key>,
+    pub(super) carried: Vec<[f32; CARRIED]>,
+    /// Empty if the scene has no colours.
+    pub(super) color: Vec<Vec3>,
+    /// Of each chunk: where each band starts, from its first slot on, and where the last ends.
+    starts: Vec<u32>,
+    bands: Bands,
+    spare: Mutex<Vec<Chunk<CARRIED>>>,
+}
+
+/// The slots of a chunk, to be written.
+struct Slots<'a, const CARRIED: usize> {
+    keys: &'a mut [Key],
+    carried: &'a mut [[f32; CARRIED]],
+    colors: Option<&'a mut [Vec3]>,
+}
+
+/// The division of a picture into bands of as many rows, a power of two.
+#[derive(Clone, Copy, Debug, Default)]
+struct Bands {
+    shift: u32,
+    count: usize,
+}
+
+impl Bands {
+    fn new(width: usize, height: usize) -> Self {
+        let rows = (BAND / width).min(height / BANDS).max(1);
+        let shift = rows.ilog2();
+        Self { shift, count: height.div_ceil(1 << shift) }
+    }
+
+    fn rows(&self) -> usize {
+        1 << self.shift
+    }
+}
+
+impl<const CARRIED: usize> Points<CARRIED> {
+    /// Finds and sorts the points of a scene's surfels.
+    pub(in crate::method) fn find(
+        &mut self,
+        surfels: &Surfels,
+        lens: &Lens<f32>,
+        exec: &Exec,
+    ) -> Tally {
+        let n = surfels.len();
+        let [width, height] = [lens.view.width, lens.view.height].map(|n| n.to_pixel() as usize);
+        self.bands = Bands::new(width, height);
+        let bounds = self.bands.count + 1;
+        // Longer than what they hold, so that they need not be cleared for every picture.
+        if self.keys.len() < n {
+            self.keys.resize(n, Key::default());
+            self.carried.resize(n, [0.0; CARRIED]);
+        }
+        self.color.resize(surfels.color().map_or(0, <[Vec3]>::len), Vec3::ZERO);
+        self.starts.resize(n.div_ceil(CHUNK) * bounds, 0);
+        let mut colors = self.color.chunks_mut(CHUNK);
+        let slots = self.keys[..n].chunks_mut(CHUNK).zip(self.carried[..n].chunks_mut(CHUNK));
+        let slots = slots.map(|(keys, carried)| Slots { keys, carried, colors: colors.next() });
+        let jobs = slots.zip(self.starts.chunks_mut(bounds)).enumerate().collect();
+        let (bands, spare) = (self.bands, &self.spare);
+        let spare = || spare.lock().unwrap_or_else(PoisonError::into_inner);
+        let tallies = exec.ordered(jobs, |(index, (slots, starts))| {
+            let mut chunk = spare().pop().unwrap_or_else(Chunk::new);
+            let range = index * CHUNK..n.min((index + 1) * CHUNK);
+            let (count, tally) = points(surfels, lens, range.clone(), bands, &mut chunk);
+            chunk.sort(count, starts);
+            chunk.write(count, surfels.color().map(|color| &color[range]), slots);
+            spare().push(chunk);
+            tally
+        });
+        tallies.iter().fold(Tally::default(), |sum, tally| sum.plus(tally))
+    }
+
+    /// Rows of a band.
+    pub(super) fn rows(&self) -> usize {
+        self.bands.rows()
+    }
+
+    /// The slots of the points of a band, chunk by chunk.
+    pub(super) fn slots(&self, band: usize) -> impl Iterator<Item = Range<usize>> {
+        let chunks = self.starts.chunks(self.bands.count + 1);
+        (0..).step_by(CHUNK).zip(chunks).map(move |(first, starts)| {
+            first + starts[band] as usize..first + starts[band + 1] as usize
+        })
+    }
+}
+
+/// A chunk of surfels while it becomes points; it fits a second-level cache.
+#[derive(Debug)]
+struct Chunk<const CARRIED: usize> {
+    /// Of all surfels, seen or not.
+    blocks: Vec<Block<CARRIED>>,
+    /// The surfels that are seen, ascending; the rest means nothing.
+    seen: Vec<u16>,
+    /// The next slot of each band.
+    next: Vec<u32>,
+    /// What [`Chunk::sort`] has sorted.
+    keys: Vec<Key>,
+    carried: Vec<[f32; CARRIED]>,
+}
+
+/// [`LANES`] surfels.
+#[derive(Clone, Copy, Debug)]
+struct Block<const CARRIED: usize> {
+    place: [u32; LANES],
+    order: [u32; LANES],
+    band: [u32; LANES],
+    carried: [Lanes; CARRIED],
+}
+
+impl<const CARRIED: usize> Chunk<CARRIED> {
+    fn new() -> Self {
+        let empty = Block {
+            place: [0; LANES],
+            order: [0; LANES],
+            band: [0; LANES],
+            carried: [[0.0; LANES]; CARRIED],
+        };
+        Self {
+            blocks: vec![empty; CHUNK / LANES],
+            seen: vec![0; CHUNK + LANES],
+            next: Vec::new(),
+            keys: vec![Key::default(); CHUNK],
+            carried: vec![[0.0; CARRIED]; CHUNK],
+        }
+    }
+
+    /// Sorts the first `count` seen surfels by bands, and tells where each starts, and where the last ends.
+    fn sort(&mut self, count: usize, starts: &mut [u32]) {
+        let place = |&i: &u16| (usize::from(i) / LANES, usize::from(i) % LANES);
+        let seen = self.seen[..count].iter().map(place);
+        // Counting sort: count, one place late, so that the sums become starts.
+        starts.fill(0);
+        for (block, lane) in seen.clone() {
+            starts[self.blocks[block].band[lane] as usize + 1] += 1;
+        }
+        for band in 1..starts.len() {
+            starts[band] += starts[band - 1];
+        }
+        self.next.clear();
+        self.next.extend_from_slice(starts);
+        for (block, lane) in seen {
+            let block = &self.blocks[block];
+            let next = &mut self.next[block.band[lane] as usize];
+            let (key, carried) =
+                (&mut self.keys[*next as usize], &mut self.carried[*next as usize]);
+            *key = Key { place: block.place[lane], order: block.order[lane] };
+            for (to, from) in carried.iter_mut().zip(&block.carried) {
+                *to = from[lane];
+            }
+            *next += 1;
+        }
+    }
+
+    /// Writes what was sorted, in order, which is faster than to sort it into far memory.
+    fn write(&self, count: usize, colors: Option<&[Vec3]>, slots: Slots<'_, CARRIED>) {
+        slots.keys[..count].copy_from_slice(&self.keys[..count]);
+        slots.carried[..count].copy_from_slice(&self.carried[..count]);
+        if let (Some(of), Some(colors)) = (colors, slots.colors) {
+            for (color, key) in colors.iter_mut().zip(&self.keys[..count]) {
+                *color = of[key.surfel() as usize];
+            }
+        }
+    }
+}
+
+/// What becomes of a range of surfels: fills `chunk` but for what is sorted, and tells how many are seen.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn points<const CARRIED: usize>(
+    surfels: &Surfels,
+    lens: &Lens<f32>,
+    range: Range<usize>,
+    bands: Bands,
+    chunk: &mut Chunk<CARRIED>,
+) -> (usize, Tally) {
+    // A copy, which nothing that is written can be thought to change.
+    let lens = &{ *lens };
+    let (p, last_p) = surfels.position()[range.clone()].as_chunks();
+    let (n, last_n) = surfels.normal()[range.clone()].as_chunks();
+    let (r, last_r) = surfels.radius()[range.clone()].as_chunks();
+    let (mut count, mut fates) = (0, Fates::default());
+    for (index, block) in chunk.blocks[..p.len()].iter_mut().enumerate() {
+        let visible = block.fill((&p[index], &n[index], &r[index]), index, lens, bands, &mut fates);
+        count += note(&visible, index, &mut chunk.seen[count..]);
+    }
+    let rest = last_p.len();
+    if rest > 0 {
+        // Lanes without a surfel have the last one again, and are not counted.
+        let (index, at) = (p.len(), std::array::from_fn(|i: usize| i.min(rest - 1)));
+        let last = (&at.map(|i| last_p[i]), &at.map(|i| last_n[i]), &at.map(|i| last_r[i]));
+        let mut own = Fates::default();
+        let mut visible = chunk.blocks[index].fill(last, index, lens, bands, &mut own);
+        visible[rest..].fill(0);
+        fates.add(&own, rest);
+        count += note(&visible, index, &mut chunk.seen[count..]);
+    }
+    (count, fates.tally(range.len(), count))
+}
+
+/// Notes the surfels of a block that are visible, and tells how many.
+#[inline(always)]
+fn note(visible: &[u32; LANES], block: usize, seen: &mut [u16]) -> usize {
+    // Written whether it is seen or not, and kept only if it is: no branch to mispredict.
+    let seen = &mut seen[..LANES];
+    let mut count = 0;
+    for i in 0..LANES {
+        seen[count] = (block * LANES + i) as u16;
+        count += visible[i] as usize;
+    }
+    count
+}
+
+impl<const CARRIED: usize> Block<CARRIED> {
+    /// The block of this index from positions, normals and radii, and which of them are visible: 1, else 0.
+    #[inline(always)]
+    fn fill(
+        &mut self,
+        (p, n, radius): (&[Vec3; LANES], &[Vec3; LANES], &Lanes),
+        index: usize,
+        lens: &Lens<f32>,
+        bands: Bands,
+        fates: &mut Fates,
+    ) -> [u32; LANES] {
+        let (width, shift, row) =
+            (lens.view.width.to_pixel(), bands.shift, bands.rows() as u32 - 1);
+        let (mut visible, mut place) = ([0; LANES], [0; LANES]);
+        let (mut orders, mut band) = ([0; LANES], [0; LANES]);
+        let mut carried: [Lanes; 6] = [[0.0; LANES]; 6];
+        for i in 0..LANES {
+            let n = lens.view.direction(Vector3::from_glam(n[i]));
+            let (placed, g, fate) = lens.fate(Vector3::from_glam(p[i]), n);
+            visible[i] = u32::from(fate == Fate::Visible);
+            fates.behind[i] += u32::from(fate == Fate::Behind);
+            fates.degenerate[i] += u32::from(fate == Fate::Degenerate);
+            fates.back_facing[i] += u32::from(fate == Fate::BackFacing);
+            let sample = lens.sample(&placed, (n, g), radius[i], (0, [0.0; 3]));
+            let (x, y) = (sample.centre.x.to_pixel(), sample.centre.y.to_pixel());
+            place[i] = ((y & row) * width + x) << 16 | (index * LANES + i) as u32;
+            orders[i] = order(sample.depth);
+            band[i] = y >> shift;
+            (carried[0][i], carried[1][i]) = (sample.normal.x, sample.normal.y);
+            (carried[2][i], carried[3][i]) = (sample.normal.z, sample.radius);
+            (carried[4][i], carried[5][i]) = (sample.centre.x, sample.centre.y);
+        }
+        (self.place, self.order, self.band) = (place, orders, band);
+        for k in 0..CARRIED {
+            self.carried[k] = carried[k];
+        }
+        visible
+    }
+}
+
+/// How many surfels of each lane are not seen, and why.
+#[derive(Clone, Copy, Debug, Default)]
+struct Fates {
+    behind: [u32; LANES],
+    degenerate: [u32; LANES],
+    back_facing: [u32; LANES],
+}
+
+impl Fates {
+    /// Adds those of the first lanes.
+    fn add(&mut self, other: &Self, lanes: usize) {
+        for i in 0..lanes {
+            self.behind[i] += other.behind[i];
+            self.degenerate[i] += other.degenerate[i];
+            self.back_facing[i] += other.back_facing[i];
+        }
+    }
+
+    /// Of so many surfels, of which some are visible.
+    fn tally(&self, all: usize, visible: usize) -> Tally {
+        let sum = |of: &[u32; LANES]| of.iter().map(|&n| u64::from(n)).sum::<u64>();
+        let visible = visible as u64;
+        let [behind, degenerate, back_facing] =
+            [sum(&self.behind), sum(&self.degenerate), sum(&self.back_facing)];
+        let outside = all as u64 - (visible + behind + degenerate + back_facing);
+        Tally { visible, behind, degenerate, back_facing, outside }
+    }
+}
