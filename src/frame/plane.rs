@@ -1,5 +1,7 @@
 //! A rectangle of pixels of one type.
 
+use std::slice::ChunksMut;
+
 /// `width` x `height` values, row by row from the top left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plane<T> {
@@ -49,6 +51,12 @@ impl<T> Plane<T> {
     /// All values, row by row.
     pub fn values_mut(&mut self) -> &mut [T] {
         &mut self.values
+    }
+
+    /// The rows of pixels, from the top, to change them.
+    pub fn rows_mut(&mut self) -> ChunksMut<'_, T> {
+        let width = self.width.max(1) as usize;
+        self.values.chunks_mut(width)
     }
 
     /// The value at column `x`, row `y`.

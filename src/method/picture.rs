@@ -54,8 +54,7 @@ pub(super) fn before_environment<R: Real>(
 ) -> (Plane<[R; 3]>, Plane<R>) {
     let Some(environment) = &scene.environment else { return (color, alpha) };
     let view = View::new(camera);
-    let width = camera.width as usize;
-    let rows = color.values_mut().chunks_mut(width).zip(alpha.values_mut().chunks_mut(width));
+    let rows = color.rows_mut().zip(alpha.rows_mut());
     exec.ordered((0..).zip(rows).collect(), |(y, (colors, alphas)): (u32, _)| {
         let colors: &mut [[R; 3]] = colors;
         let alphas: &mut [R] = alphas;
@@ -84,7 +83,12 @@ pub(super) fn framebuffer(
             && whole(target.weight.width(), target.weight.height())
             && (target.normal.is_some(), target.color.is_some()) == (wanted.normal, wanted.color)
     };
-    let earlier = earlier.map(recycle).filter(fits);
+    // The colour of a scene without colours is that of its material, and not the framebuffer's.
+    let own = |mut target: Framebuffer<f32>| {
+        target.color = target.color.filter(|_| wanted.color);
+        target
+    };
+    let earlier = earlier.map(recycle).map(own).filter(fits);
     earlier.unwrap_or_else(|| Framebuffer::new(width, height, 0.0, wanted))
 }
 

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples, pyramid};
 use crate::method::picture::{Clock, Picture, before_environment, color, named, scalar};
-use crate::method::projection::{self, Has, world};
+use crate::method::projection::{self, Has, Kind, world};
 use crate::number::Real;
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
@@ -57,12 +57,15 @@ pub fn render<R: Real>(
     }
     let (cells, view) = (&pushed[0], View::new(camera));
     let normals = stages || !scene.lights.is_empty();
+    let seen = |cell: &Cell<R>| if cell.kind == Kind::Empty { R::ZERO } else { R::ONE };
     let surface = Surface {
+        alpha: cells.map(seen),
         kind: cells.map(|cell| cell.kind as u8),
         depth: cells.map(|cell| cell.front),
         normal: normals.then(|| cells.map(|cell| world(&view, cell.normal))),
         tangent: has.tangent.then(|| cells.map(|cell| world(&view, cell.tangent))),
-        color: has.color.then(|| cells.map(|cell| cell.color)),
+        color: cells.map(|cell| cell.color),
+        colored: has.color,
     };
     Ok(finish(surface, planes, projected.tally, clock, (scene, camera, exec)))
 }
@@ -82,13 +85,10 @@ pub fn render_f32(
 ) -> Result<Picture<f32>> {
     camera.check()?;
     settings.check()?;
-    let (tally, times) = levels.draw(scene, camera, settings, exec)?;
-    let mut clock =
-        Clock::of(vec![("projection", times.project), ("pull", times.pull), ("push", times.push)]);
     let mut surface = Surface::new(scene, camera, earlier.map(|picture| picture.frame));
-    clock.restart();
-    levels.surface(&View::new(camera), exec, &mut surface);
-    clock.lap("normalization");
+    let (tally, times) = levels.draw(scene, camera, settings, exec, &mut surface)?;
+    let laps = vec![("projection", times.project), ("pull", times.pull), ("push", times.push)];
+    let clock = Clock::of(laps);
     Ok(finish(surface, Vec::new(), tally, clock, (scene, camera, exec)))
 }
 
@@ -96,14 +96,18 @@ pub fn render_f32(
 pub(super) struct Surface<R> {
     /// See [`crate::method::projection::Kind`].
     pub(super) kind: Plane<u8>,
+    /// 1 where something is seen, else 0.
+    pub(super) alpha: Plane<R>,
     /// Depth t; +inf where nothing is seen.
     pub(super) depth: Plane<R>,
     /// Unit normals, if there is light or they were asked for.
     pub(super) normal: Option<Plane<[R; 3]>>,
     /// Unit tangents of tubes, the null vector elsewhere; if the scene has tubes.
     pub(super) tangent: Option<Plane<[R; 3]>>,
-    /// Colours, if the scene has them.
-    pub(super) color: Option<Plane<[R; 3]>>,
+    /// Colours, if `colored`; else anything.
+    pub(super) color: Plane<[R; 3]>,
+    /// Whether the scene has colours.
+    pub(super) colored: bool,
 }
 
 impl Surface<f32> {
@@ -113,35 +117,44 @@ impl Surface<f32> {
         let has = Has::of(scene);
         let mut surface = Self {
             kind: Plane::filled(0, 0, 0),
+            alpha: Plane::filled(0, 0, 0.0),
             depth: Plane::filled(0, 0, 0.0),
             normal: None,
             tangent: None,
-            color: None,
+            color: Plane::filled(0, 0, [0.0; 3]),
+            colored: has.color,
         };
         let earlier = earlier.filter(|frame| (frame.width, frame.height) == (width, height));
         for NamedPlane { name, samples } in earlier.into_iter().flat_map(|frame| frame.planes) {
             match (name.as_str(), samples) {
                 ("kind", Samples::Count(plane)) => surface.kind = plane,
+                ("A", Samples::Scalar(plane)) => surface.alpha = plane,
                 ("Z", Samples::Scalar(plane)) => surface.depth = plane,
                 ("normal", Samples::Vector(plane)) => surface.normal = Some(plane),
                 ("tangent", Samples::Vector(plane)) => surface.tangent = Some(plane),
-                ("", Samples::Color(plane)) => surface.color = Some(plane),
+                ("", Samples::Color(plane)) => surface.color = plane,
                 _ => {}
             }
+        }
+        let whole = |plane: &mut Plane<f32>| {
+            if plane.width() != width {
+                *plane = Plane::filled(width, height, 0.0);
+            }
+        };
+        whole(&mut surface.alpha);
+        whole(&mut surface.depth);
+        if surface.kind.width() != width {
+            surface.kind = Plane::filled(width, height, 0);
+        }
+        if surface.color.width() != width {
+            surface.color = Plane::filled(width, height, [0.0; 3]);
         }
         let vectors = |plane: Option<Plane<[f32; 3]>>, wanted: bool| {
             let plane = plane.filter(|_| wanted);
             wanted.then(|| plane.unwrap_or_else(|| Plane::filled(width, height, [0.0; 3])))
         };
-        if surface.kind.width() != width {
-            surface.kind = Plane::filled(width, height, 0);
-        }
-        if surface.depth.width() != width {
-            surface.depth = Plane::filled(width, height, 0.0);
-        }
         surface.normal = vectors(surface.normal, !scene.lights.is_empty());
         surface.tangent = vectors(surface.tangent, has.tangent);
-        surface.color = vectors(surface.color, has.color);
         surface
     }
 }
@@ -154,13 +167,12 @@ fn finish<R: Real>(
     mut clock: Clock,
     (scene, camera, exec): (&Scene, &Camera, &Exec),
 ) -> Picture<R> {
-    let Surface { kind, depth, normal, tangent, color } = surface;
+    let Surface { kind, alpha, depth, normal, tangent, mut color, colored } = surface;
     let (width, height) = (depth.width(), depth.height());
     clock.restart();
     let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
-    let color = shader.shade(&depth, normal.as_ref(), tangent.as_ref(), color, exec);
+    shader.shade_over(&depth, normal.as_ref(), tangent.as_ref(), (&mut color, colored), exec);
     clock.lap("shading");
-    let alpha = depth.map(|t| if t.is_finite() { R::ONE } else { R::ZERO });
     let (color, alpha) = before_environment(scene, camera, color, alpha, exec);
     planes.push(named("", Samples::Color(color)));
     planes.push(named("A", Samples::Scalar(alpha)));

@@ -29,7 +29,7 @@ use crate::splat::Ellipse;
 pub fn pull<R: Real>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell<R>> {
     let (width, height) = (fine.width().div_ceil(2), fine.height().div_ceil(2));
     let mut coarse = Plane::filled(width, height, Cell::empty());
-    let rows = coarse.values_mut().chunks_mut(width as usize);
+    let rows = coarse.rows_mut();
     exec.ordered((0..).zip(rows).collect(), |(y, row): (u32, &mut [Cell<R>])| {
         for (x, cell) in (0..).zip(row) {
             let finer = [0, 1, 2, 3].map(|j| {

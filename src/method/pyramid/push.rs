@@ -40,7 +40,7 @@ pub fn push<R: Real>(
     exec: &Exec,
 ) -> Plane<Cell<R>> {
     let mut pushed = fine.clone();
-    let rows = pushed.values_mut().chunks_mut(fine.width() as usize);
+    let rows = pushed.rows_mut();
     let exists = |x: i64, y: i64| {
         (0..i64::from(coarse.width())).contains(&x) && (0..i64::from(coarse.height())).contains(&y)
     };

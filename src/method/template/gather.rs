@@ -109,7 +109,7 @@ pub fn gather<R: Real>(
 ) -> Plane<Gathered<R>> {
     let (width, height) = (levels[0].width(), levels[0].height());
     let mut gathered = Plane::filled(width, height, Gathered::empty());
-    let rows = gathered.values_mut().chunks_mut(width as usize);
+    let rows = gathered.rows_mut();
     exec.ordered((0..).zip(rows).collect(), |(y, row): (u32, &mut [Gathered<R>])| {
         for (x, pixel) in (0..).zip(row) {
             for level in 0..levels.len() {

@@ -57,7 +57,7 @@ pub(super) fn moves<R: Real>(centre: &Centre<R>, reach: R) -> bool {
 fn coarser<R: Real>(fine: &Plane<Centre<R>>, reach: R, exec: &Exec) -> Plane<Centre<R>> {
     let (width, height) = (fine.width().div_ceil(2), fine.height().div_ceil(2));
     let mut coarse = Plane::filled(width, height, Centre::empty());
-    let rows = coarse.values_mut().chunks_mut(width as usize);
+    let rows = coarse.rows_mut();
     exec.ordered((0..).zip(rows).collect(), |(y, row): (u32, &mut [Centre<R>])| {
         for (x, centre) in (0..).zip(row) {
             let finer = [0, 1, 2, 3].map(|j| {

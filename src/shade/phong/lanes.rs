@@ -21,7 +21,7 @@ pub(super) struct Row<'a, R> {
     pub(super) normal: Option<&'a [[R; 3]]>,
     /// World space; the null vector where there is no tube.
     pub(super) tangent: Option<&'a [[R; 3]]>,
-    /// s of all pixels, which are black; if absent, each pixel holds its own.
+    /// s of all pixels; if absent, each pixel holds its own.
     pub(super) own: Option<[R; 3]>,
 }
 
@@ -52,9 +52,7 @@ fn group<R: Real>(
     let mut depth = [R::ZERO; LANES];
     depth.copy_from_slice(&row.depth[first..first + LANES]);
     if !any(|i| depth[i].is_finite()) {
-        if row.own.is_none() {
-            *pixels = [[R::ZERO; 3]; LANES];
-        }
+        *pixels = [[R::ZERO; 3]; LANES];
         return;
     }
     let surface = row.own.map_or_else(|| gather(pixels), |own| own.map(|s| [s; LANES]));

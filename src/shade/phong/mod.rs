@@ -105,17 +105,32 @@ impl<R: Real> Shader<R> {
         exec: &Exec,
     ) -> Plane<[R; 3]> {
         let (width, height) = (depth.width(), depth.height());
-        let own = color.is_none().then(|| self.material.color.to_array().map(R::from_f32));
+        let colored = color.is_some();
         let mut shaded = color.unwrap_or_else(|| Plane::filled(width, height, [R::ZERO; 3]));
-        let row = width as usize;
-        let rows = shaded.values_mut().chunks_mut(row.max(1)).enumerate().collect();
-        exec.ordered(rows, |(y, pixels): (usize, &mut [[R; 3]])| {
-            let depth = &depth.values()[y * row..][..row];
-            let normal = normal.map(|plane| &plane.values()[y * row..][..row]);
-            let tangent = tangent.map(|plane| &plane.values()[y * row..][..row]);
-            lanes::shade(self, &lanes::Row { y, depth, normal, tangent, own }, pixels);
-        });
+        self.shade_over(depth, normal, tangent, (&mut shaded, colored), exec);
         shaded
+    }
+
+    /// The same over `pixels`, which hold the colours of the surfaces if `colored`, else anything.
+    pub fn shade_over(
+        &self,
+        depth: &Plane<R>,
+        normal: Option<&Plane<[R; 3]>>,
+        tangent: Option<&Plane<[R; 3]>>,
+        (pixels, colored): (&mut Plane<[R; 3]>, bool),
+        exec: &Exec,
+    ) {
+        let own = (!colored).then(|| self.material.color.to_array().map(R::from_f32));
+        let row = depth.width() as usize;
+        exec.ordered(
+            pixels.rows_mut().enumerate().collect(),
+            |(y, pixels): (usize, &mut [[R; 3]])| {
+                let depth = &depth.values()[y * row..][..row];
+                let normal = normal.map(|plane| &plane.values()[y * row..][..row]);
+                let tangent = tangent.map(|plane| &plane.values()[y * row..][..row]);
+                lanes::shade(self, &lanes::Row { y, depth, normal, tangent, own }, pixels);
+            },
+        );
     }
 
     /// The colour of one pixel at depth t, +inf if it is empty; see the module page. `normal` and

@@ -32,6 +32,16 @@ pub(in crate::method) fn halves<T: Copy + Default>(row: &[T], at: usize) -> [[T;
     [even, odd]
 }
 
+/// Whether one of these is above 0; all are asked, so that they are asked at once.
+#[inline(always)]
+pub(in crate::method) fn any_above_0(values: &[f32]) -> bool {
+    let mut found = false;
+    for &value in values {
+        found |= value > 0.0;
+    }
+    found
+}
+
 /// Copies [`LANES`] values, or as many as there is room for: a whole copy is one instruction.
 #[inline(always)]
 pub(in crate::method) fn put<T: Copy>(to: &mut [T], from: &[T; LANES]) {

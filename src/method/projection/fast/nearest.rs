@@ -71,7 +71,7 @@ impl<const CARRIED: usize> Nearest<'_, CARRIED> {
             own[..count].copy_from_slice(&kept[x..x + count]);
             own
         };
-        if kept.iter().all(|&kept| kept == NONE) {
+        if kept.iter().fold(NONE, |all, kept| all & kept) == NONE {
             return None;
         }
         // A pixel without a point reads slot 0, which means nothing: loops of loads without a branch

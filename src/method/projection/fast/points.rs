@@ -1,5 +1,10 @@
 //! Every surfel that is seen as a point, sorted by bands.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
+)]
+
 use super::{LANES, Lanes};
 use crate::frame::Exec;
 use crate::method::projection::surfel::Lens;
@@ -306,9 +311,7 @@ impl<const CARRIED: usize> Block<CARRIED> {
             (carried[4][i], carried[5][i]) = (sample.centre.x, sample.centre.y);
         }
         (self.place, self.order, self.band) = (place, orders, band);
-        for k in 0..CARRIED {
-            self.carried[k] = carried[k];
-        }
+        self.carried.copy_from_slice(&carried[..CARRIED]);
         visible
     }
 }

@@ -6,7 +6,7 @@
 )]
 
 use super::level::TUBE;
-use crate::method::projection::fast::{LANES, Lanes};
+use crate::method::projection::fast::{LANES, Lanes, any_above_0};
 use crate::number::{Real, Vector2, Vector3};
 use crate::splat::Ellipse;
 
@@ -16,8 +16,10 @@ pub(super) struct Four {
     pub(super) front: [Lanes; 4],
     pub(super) back: [Lanes; 4],
     pub(super) radius: [Lanes; 4],
-    /// From the new cell's centre to that of the ellipse.
-    pub(super) place: [[Lanes; 2]; 4],
+    /// The displacements.
+    pub(super) displacement: [[Lanes; 2]; 4],
+    /// From the new cell's centre to those of the cells; with the displacement, to that of the ellipse.
+    pub(super) shift: [[f32; 2]; 4],
     /// The tilts of the ellipses.
     pub(super) tilt: [[Lanes; 2]; 4],
 }
@@ -44,7 +46,9 @@ impl Four {
             for j in 0..4 {
                 let tilt = Vector2::new(self.tilt[j][0][i], self.tilt[j][1][i]);
                 let ellipse = Ellipse::tilted(tilt, self.radius[j][i]);
-                let form = ellipse.form(self.place[j][0][i], self.place[j][1][i]);
+                let x = self.displacement[j][0][i] + self.shift[j][0];
+                let y = self.displacement[j][1][i] + self.shift[j][1];
+                let form = ellipse.form(x, y);
                 let candidate = ellipse.holds(form) & (self.kind[j][i] > 0.0);
                 // NaN fails every comparison.
                 fronts[j] = if candidate { self.front[j][i] } else { f32::NAN };
@@ -65,7 +69,7 @@ impl Four {
         }
         if GAUSSIAN {
             for j in 0..4 {
-                if weights[j].iter().any(|&weight| weight > 0.0) {
+                if any_above_0(&weights[j]) {
                     for i in 0..LANES {
                         let weight = gaussian(distances[j][i]);
                         weights[j][i] = if weights[j][i] > 0.0 { weight } else { 0.0 };
@@ -78,6 +82,26 @@ impl Four {
             scale[i] = 1.0 / ((weights[0][i] + weights[1][i]) + (weights[2][i] + weights[3][i]));
         }
         Mix { weights, scale, kind: kinds }
+    }
+}
+
+/// Two numbers of four cells, cell by cell.
+#[inline(always)]
+pub(super) fn pairs(x: &[Lanes; 4], y: &[Lanes; 4]) -> [[Lanes; 2]; 4] {
+    [[x[0], y[0]], [x[1], y[1]], [x[2], y[2]], [x[3], y[3]]]
+}
+
+impl Four {
+    /// From the new cell's centre to those of the ellipses, along an axis.
+    #[inline(always)]
+    pub(super) fn place(&self, axis: usize) -> [Lanes; 4] {
+        let mut place = [[0.0; LANES]; 4];
+        for i in 0..LANES {
+            for j in 0..4 {
+                place[j][i] = self.displacement[j][axis][i] + self.shift[j][axis];
+            }
+        }
+        place
     }
 }
 

@@ -16,7 +16,7 @@ use super::plain::side;
 use super::{Cell, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
-use crate::frame::{Exec, Plane, pyramid};
+use crate::frame::{Exec, pyramid};
 use crate::method::projection::fast::{LANES, Lanes, Nearest, Points};
 use crate::method::projection::surfel::Lens;
 use crate::method::projection::{self, Has, Kind, Projected};
@@ -47,16 +47,17 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// Projects a scene, pulls and pushes.
+    /// Projects a scene, pulls and pushes, and overwrites `surface`, which has the size of the picture.
     ///
     /// # Errors
     /// As [`super::render`]; camera and settings must have been checked.
-    pub fn draw(
+    pub(super) fn draw(
         &mut self,
         scene: &Scene,
         camera: &Camera,
         settings: &Settings,
         exec: &Exec,
+        surface: &mut Surface<f32>,
     ) -> Result<(Tally, Timings)> {
         let start = Instant::now();
         self.reshape(camera, Has::of(scene));
@@ -68,11 +69,12 @@ impl Levels {
             pull::pull(&finer[level - 1], &mut coarser[0], side(level - 1), tubes, exec);
         }
         let pulled = Instant::now();
-        for level in (1..self.levels.len()).rev() {
+        for level in (2..self.levels.len()).rev() {
             let (finer, coarser) = self.levels.split_at_mut(level);
-            let how = (side(level - 1), tubes);
-            push::push(&mut finer[level - 1], &coarser[0], how, settings, exec);
+            let (fine, how) = (&mut finer[level - 1], (side(level - 1), tubes, settings));
+            push::push(fine, &coarser[0], how, exec, std::iter::repeat(()), |_, ()| {});
         }
+        self.finish(&View::new(camera), settings, exec, surface);
         let times = Timings {
             project: projected - start,
             pull: pulled - projected,
@@ -115,33 +117,27 @@ impl Levels {
         Ok(tally)
     }
 
-    /// Level 0 as a picture wants it.
-    pub(super) fn surface(&self, view: &View<f32>, exec: &Exec, surface: &mut Surface<f32>) {
-        let level = &self.levels[0];
-        let (width, shape) = (level.shape.width, level.shape);
-        let mut normal = rows(&mut surface.normal, width);
-        let mut tangent = rows(&mut surface.tangent, width);
-        let mut color = rows(&mut surface.color, width);
-        let kinds = surface.kind.values_mut().chunks_mut(width);
-        let numbered = kinds.zip(surface.depth.values_mut().chunks_mut(width)).enumerate();
-        let jobs = numbered.map(|(y, (kind, depth))| Output {
-            row: level.row(y as isize),
-            kind,
-            depth,
-            normal: normal.as_mut().and_then(Iterator::next),
-            tangent: tangent.as_mut().and_then(Iterator::next),
-            color: color.as_mut().and_then(Iterator::next),
-        });
-        exec.ordered(jobs.collect(), |mut output: Output<'_>| output.write(&shape, view));
+    /// The push to level 0, and the picture.
+    fn finish(
+        &mut self,
+        view: &View<f32>,
+        settings: &Settings,
+        exec: &Exec,
+        surface: &mut Surface<f32>,
+    ) {
+        let (finest, coarser) = self.levels.split_at_mut(1);
+        let (fine, outputs) = (&mut finest[0], output::rows(surface));
+        let shape = fine.shape;
+        let write = |row: &[f32], output: Output<'_>| output.write(row, &shape, view);
+        match coarser.first() {
+            Some(coarse) => {
+                let how = (side(0), self.has.tangent, settings);
+                push::push(fine, coarse, how, exec, outputs, write);
+            }
+            // One pixel.
+            None => fine.rows_mut().zip(outputs).for_each(|(row, output)| write(row, output)),
+        }
     }
-}
-
-/// The rows of a plane that may not be there.
-fn rows(
-    plane: &mut Option<Plane<[f32; 3]>>,
-    width: usize,
-) -> Option<std::slice::ChunksMut<'_, [f32; 3]>> {
-    plane.as_mut().map(|plane| plane.values_mut().chunks_mut(width))
 }
 
 /// A row of level 0 from the nearest points of its pixels.

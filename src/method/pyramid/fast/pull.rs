@@ -1,9 +1,9 @@
 //! The pull phase in lanes; see [`super::super::pull`].
 
 use super::level::{BACK, FRONT, FURTHER, KIND, Level, NORMAL, PAD, PLACE, RADIUS, Shape, TILT};
-use super::mix::{Four, tilts};
+use super::mix::{Four, pairs, tilts};
 use crate::frame::Exec;
-use crate::method::projection::fast::{LANES, Lanes, halves};
+use crate::method::projection::fast::{LANES, Lanes, any_above_0, halves};
 use multiversion::multiversion;
 
 /// Rows of a job.
@@ -43,10 +43,11 @@ fn pull_row<const FINEST: bool, const TUBES: bool>(
     side: f32,
 ) {
     let half = side * 0.5;
+    let shift = [[-half, -half], [half, -half], [-half, half], [half, half]];
     for x in (0..shape.width).step_by(LANES) {
         let kind = four(finer, fine, KIND, x);
         let at = PAD + x;
-        if kind.as_flattened().iter().all(|&kind| kind == 0.0) {
+        if !any_above_0(kind.as_flattened()) {
             coarse[at..at + LANES].fill(0.0);
             continue;
         }
@@ -54,41 +55,30 @@ fn pull_row<const FINEST: bool, const TUBES: bool>(
         // The displacements of the finest level are 0.
         let own = |axis| if FINEST { [[0.0; LANES]; 4] } else { number(PLACE + axis) };
         let (left, upper) = (own(0), own(1));
-        let mut place = [[[0.0; LANES]; 2]; 4];
-        for j in 0..4 {
-            let dx = if j % 2 == 0 { -half } else { half };
-            let dy = if j / 2 == 0 { -half } else { half };
-            for i in 0..LANES {
-                place[j][0][i] = left[j][i] + dx;
-                place[j][1][i] = upper[j][i] + dy;
-            }
-        }
+        let displacement = pairs(&left, &upper);
         let [nx, ny, nz] = [number(NORMAL), number(NORMAL + 1), number(NORMAL + 2)];
         let tilt = if FINEST {
             let of = |j: usize| tilts(&[nx[j], ny[j], nz[j]]);
             [of(0), of(1), of(2), of(3)]
         } else {
-            let (x, y) = (number(TILT), number(TILT + 1));
-            [[x[0], y[0]], [x[1], y[1]], [x[2], y[2]], [x[3], y[3]]]
+            pairs(&number(TILT), &number(TILT + 1))
         };
         let (front, back, radius) = (number(FRONT), number(BACK), number(RADIUS));
-        let four = Four { kind, front, back, radius, place, tilt };
+        let four = Four { kind, front, back, radius, displacement, shift, tilt };
         let mix = four.mix::<false, TUBES>();
         let mut put = |attribute: usize, lanes: &Lanes| {
             let at = attribute * shape.stride + at;
             coarse[at..at + LANES].copy_from_slice(lanes);
         };
         put(KIND, &mix.kind);
-        if mix.kind.iter().all(|&kind| kind == 0.0) {
+        if !any_above_0(&mix.kind) {
             continue;
         }
         put(FRONT, &mix.least(&four.front));
         put(BACK, &mix.greatest(&four.back));
         put(RADIUS, &mix.of(&four.radius));
         for axis in 0..2 {
-            let place = &four.place;
-            let place = [place[0][axis], place[1][axis], place[2][axis], place[3][axis]];
-            put(PLACE + axis, &mix.of(&place));
+            put(PLACE + axis, &mix.of(&four.place(axis)));
         }
         let turned = [mix.of(&nx), mix.of(&ny), mix.of(&nz)];
         (0..3).for_each(|axis| put(NORMAL + axis, &turned[axis]));

@@ -8,9 +8,9 @@
 use super::level::{
     BACK, FRONT, FURTHER, KIND, Level, NORMAL, PAD, PLACE, RADIUS, Shape, TILT, lanes,
 };
-use super::mix::{Four, Mix, tilts};
+use super::mix::{Four, Mix, pairs, tilts};
 use crate::frame::Exec;
-use crate::method::projection::fast::{LANES, Lanes, halves};
+use crate::method::projection::fast::{LANES, Lanes, any_above_0, halves};
 use crate::method::pyramid::{Occlusion, Settings, Weights};
 use multiversion::multiversion;
 
@@ -18,12 +18,14 @@ use multiversion::multiversion;
 const ROWS: usize = 8;
 
 /// The cells of a level that are empty or occluded, from the coarser level; `side` is that of a cell in pixels.
-pub(super) fn push(
+/// Each row is then handed to `done`, while it is in the cache, with what `beside` has for it.
+pub(super) fn push<T: Send>(
     fine: &mut Level,
     coarse: &Level,
-    (side, tubes): (f32, bool),
-    settings: &Settings,
+    (side, tubes, settings): (f32, bool, &Settings),
     exec: &Exec,
+    beside: impl Iterator<Item = T>,
+    done: impl Fn(&[f32], T) + Sync + Send,
 ) {
     let shapes = [fine.shape, coarse.shape];
     let outside = settings.occlusion == Occlusion::Outside;
@@ -33,12 +35,13 @@ pub(super) fn push(
         (Weights::Gaussian, false) => push_row::<true, false>,
         (Weights::Gaussian, true) => push_row::<true, true>,
     };
-    exec.groups(fine.rows_mut(), ROWS, |first, rows| {
-        for (y, row) in (first..).zip(rows) {
+    exec.groups(fine.rows_mut().zip(beside), ROWS, |first, rows| {
+        for (y, (row, own)) in (first..).zip(rows) {
             let parent = (y / 2) as isize;
             let even = y % 2 == 0;
             let beside = if even { parent - 1 } else { parent + 1 };
             run([coarse.row(parent), coarse.row(beside)], row, &shapes, (side, even), outside);
+            done(row, own);
         }
     });
 }
@@ -84,10 +87,11 @@ fn push_row<const GAUSSIAN: bool, const TUBES: bool>(
     outside: bool,
 ) {
     let finest = side == 1.0;
+    let shifts = [shifts(side, (true, even_y)), shifts(side, (false, even_y))];
     for x in (0..shape.width).step_by(LANES) {
         // An empty neighbourhood changes nothing: 2 rows of cells from x - 1 to x + LANES.
         let around = PAD + x - 1..PAD + x + LANES + 1;
-        if coarser.iter().all(|row| row[around.clone()].iter().all(|&kind| kind == 0.0)) {
+        if !any_above_0(&coarser[0][around.clone()]) && !any_above_0(&coarser[1][around]) {
             continue;
         }
         let at = |attribute: usize| attribute * fine_shape.stride + PAD + 2 * x;
@@ -95,24 +99,21 @@ fn push_row<const GAUSSIAN: bool, const TUBES: bool>(
         let own = |attribute: usize| lanes(coarser[0], attribute * shape.stride + PAD + x);
         let (kind, front, back) = (own(KIND), own(FRONT), own(BACK));
         let number = |attribute: usize, odd: usize| four(coarser, shape, attribute, x, odd);
-        let mut found = [None, None];
-        for odd in 0..2 {
+        let find = |odd: usize| {
             // Columns 2x + odd, 2x + odd + 2 ... of the width.
             let left = (fine_shape.width + 1 - odd).saturating_sub(2 * x) / 2;
             let parent = [&kind, &front, &back];
             let needed = needed(&kinds[odd], &fronts[odd], parent, (left, outside));
-            if needed.iter().any(|&needed| needed > 0.0) {
-                let number = |attribute: usize| number(attribute, odd);
-                found[odd] = find::<GAUSSIAN, TUBES>(number, needed, side, (odd == 0, even_y));
-            }
-        }
+            let number = |attribute: usize| number(attribute, odd);
+            Found::new::<GAUSSIAN, TUBES>(number, &needed, &shifts[odd])
+        };
+        let found = [find(0), find(1)];
         if found[0].is_none() && found[1].is_none() {
             continue;
         }
         put(fine, at(KIND), &found, |_, found| found.mix.kind);
         for attribute in [FRONT].into_iter().chain(FURTHER..shape.attributes) {
-            let new = |odd: usize, found: &Found| found.mix.of(&number(attribute, odd));
-            put(fine, at(attribute), &found, new);
+            put(fine, at(attribute), &found, |odd, found| found.mix.of(&number(attribute, odd)));
         }
         let mut normal = [[[0.0; LANES]; 3]; 2];
         for axis in 0..3 {
@@ -123,15 +124,14 @@ fn push_row<const GAUSSIAN: bool, const TUBES: bool>(
         // Of the finest level the picture wants no more.
         if !finest {
             for attribute in [BACK, RADIUS] {
-                let new = |odd: usize, found: &Found| found.mix.of(&number(attribute, odd));
-                put(fine, at(attribute), &found, new);
+                put(fine, at(attribute), &found, |odd, found| {
+                    found.mix.of(&number(attribute, odd))
+                });
             }
             for axis in 0..2 {
-                let new = |_, found: &Found| {
-                    let place = &found.place;
-                    found.mix.of(&[place[0][axis], place[1][axis], place[2][axis], place[3][axis]])
-                };
-                put(fine, at(PLACE + axis), &found, new);
+                put(fine, at(PLACE + axis), &found, |_, found| {
+                    found.mix.of(&found.four.place(axis))
+                });
             }
             let tilt = [tilts(&normal[0]), tilts(&normal[1])];
             for axis in 0..2 {
@@ -154,78 +154,64 @@ fn put(
         if let Some(found) = &found[odd] {
             let new = new(odd, found);
             for i in 0..LANES {
-                let old = cells[odd][i];
-                cells[odd][i] = if found.here[i] > 0.0 { new[i] } else { old };
+                // By bits: of a choice LLVM makes a choice of what to load, lane by lane.
+                let (mask, old) = (found.here[i], cells[odd][i].to_bits());
+                cells[odd][i] = f32::from_bits((new[i].to_bits() & mask) | (old & !mask));
             }
         }
     }
-    interleave(&cells, &mut fine[at..at + 2 * LANES]);
+    let mut pairs = [0.0; 2 * LANES];
+    for i in 0..LANES {
+        (pairs[2 * i], pairs[2 * i + 1]) = (cells[0][i], cells[1][i]);
+    }
+    fine[at..at + 2 * LANES].copy_from_slice(&pairs);
     cells
 }
 
 /// What was found for the cells of one parity.
 struct Found {
+    four: Four,
     mix: Mix,
-    place: [[Lanes; 2]; 4],
-    /// Where it is wanted and something was found: 1, else 0.
-    here: Lanes,
+    /// Where it is wanted and something was found: all bits, else none.
+    here: [u32; LANES],
 }
 
-/// Who takes part in the cells of one parity that are needed.
-#[inline(always)]
-fn find<const GAUSSIAN: bool, const TUBES: bool>(
-    number: impl Fn(usize) -> [Lanes; 4],
-    needed: Lanes,
-    side: f32,
-    even: (bool, bool),
-) -> Option<Found> {
-    let (x, y) = (number(TILT), number(TILT + 1));
-    let four = Four {
-        kind: number(KIND),
-        front: number(FRONT),
-        back: number(BACK),
-        radius: number(RADIUS),
-        place: places(number(PLACE), number(PLACE + 1), side, even),
-        tilt: [[x[0], y[0]], [x[1], y[1]], [x[2], y[2]], [x[3], y[3]]],
-    };
-    let mix = four.mix::<GAUSSIAN, TUBES>();
-    let mut here = [0.0; LANES];
-    for i in 0..LANES {
-        here[i] = if mix.kind[i] > 0.0 { needed[i] } else { 0.0 };
+impl Found {
+    /// Who takes part in the cells of one parity that are needed, if any.
+    #[inline(always)]
+    fn new<const GAUSSIAN: bool, const TUBES: bool>(
+        number: impl Fn(usize) -> [Lanes; 4],
+        needed: &Lanes,
+        shift: &[[f32; 2]; 4],
+    ) -> Option<Self> {
+        if !any_above_0(needed) {
+            return None;
+        }
+        let four = Four {
+            kind: number(KIND),
+            front: number(FRONT),
+            back: number(BACK),
+            radius: number(RADIUS),
+            displacement: pairs(&number(PLACE), &number(PLACE + 1)),
+            shift: *shift,
+            tilt: pairs(&number(TILT), &number(TILT + 1)),
+        };
+        let mix = four.mix::<GAUSSIAN, TUBES>();
+        let mut here = [0; LANES];
+        for i in 0..LANES {
+            here[i] = u32::from((mix.kind[i] > 0.0) & (needed[i] > 0.0)).wrapping_neg();
+        }
+        let any = here.iter().fold(0, |any, here| any | here);
+        (any > 0).then_some(Self { four, mix, here })
     }
-    here.iter().any(|&here| here > 0.0).then_some(Found { mix, place: four.place, here })
 }
 
-/// The even and the odd numbers of a row, one after the other.
+/// From the centres of the finer cells to those of their parents and the neighbours of those.
 #[inline(always)]
-fn interleave([even, odd]: &[Lanes; 2], row: &mut [f32]) {
-    let mut pairs = [0.0; 2 * LANES];
-    for i in 0..LANES {
-        pairs[2 * i] = even[i];
-        pairs[2 * i + 1] = odd[i];
-    }
-    row.copy_from_slice(&pairs);
-}
-
-/// From the centres of the finer cells to those of the four ellipses.
-#[inline(always)]
-fn places(
-    x: [Lanes; 4],
-    y: [Lanes; 4],
-    side: f32,
-    (even_x, even_y): (bool, bool),
-) -> [[Lanes; 2]; 4] {
+fn shifts(side: f32, (even_x, even_y): (bool, bool)) -> [[f32; 2]; 4] {
     let shift = |neighbour: bool, even: bool| {
         let far = side * if neighbour { 1.5 } else { 0.5 };
         if neighbour == even { -far } else { far }
     };
-    let mut place = [[[0.0; LANES]; 2]; 4];
-    for j in 0..4 {
-        let (dx, dy) = (shift(j % 2 == 1, even_x), shift(j / 2 == 1, even_y));
-        for i in 0..LANES {
-            place[j][0][i] = x[j][i] + dx;
-            place[j][1][i] = y[j][i] + dy;
-        }
-    }
-    place
+    [0, 1, 2, 3].map(|j| [shift(j % 2 == 1, even_x), shift(j / 2 == 1, even_y)])
 }

@@ -12,7 +12,7 @@ mod search;
 mod tests;
 
 use super::{Settings, levels};
-use crate::frame::{Exec, Framebuffer, pyramid};
+use crate::frame::{Exec, Framebuffer, Plane, pyramid};
 use crate::method::projection::Has;
 use crate::method::projection::fast::{LANES, Lanes, Nearest, Points};
 use crate::method::projection::surfel::Lens;
@@ -158,12 +158,11 @@ fn samples(
 
 /// The rows of a framebuffer.
 fn rows(target: &mut Framebuffer<f32>) -> impl Iterator<Item = Target<'_>> {
-    let width = target.width as usize;
-    let planes = target.depth.values_mut().chunks_mut(width);
-    let planes = planes.zip(target.id.values_mut().chunks_mut(width));
-    let planes = planes.zip(target.weight.values_mut().chunks_mut(width));
-    let mut normal = target.normal.as_mut().map(|plane| plane.values_mut().chunks_mut(width));
-    let mut color = target.color.as_mut().map(|plane| plane.values_mut().chunks_mut(width));
+    let planes = target.depth.rows_mut();
+    let planes = planes.zip(target.id.rows_mut());
+    let planes = planes.zip(target.weight.rows_mut());
+    let mut normal = target.normal.as_mut().map(Plane::rows_mut);
+    let mut color = target.color.as_mut().map(Plane::rows_mut);
     planes.map(move |((depth, id), weight)| Target {
         depth,
         id,
