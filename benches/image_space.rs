@@ -5,7 +5,8 @@
 //! folder of the scan; without it the sphere is sampled), each with the spacing as its radius, in a picture
 //! that it fills. One headlight, back faces culled, `f32`, as many threads as cores. Each number is the median over
 //! the pictures of one run in milliseconds, the minimum in brackets; `frame` is the whole call, from the
-//! scene to shaded planes in the memory of the picture before.
+//! scene to shaded planes in the memory of the picture before. `reading` is the time in which as many threads do no more
+//! than read what the projection reads of all surfels once, 28 bytes each: the speed of memory.
 
 #[path = "common/mod.rs"]
 mod common;
@@ -79,8 +80,8 @@ fn main() -> Result<()> {
         ("template 3 x 3", of(3), &TEMPLATE_3, 768, false),
         ("template 5 x 5", of(5), &TEMPLATE_5, 768, false),
     ];
-    println!("| method | model of the paper | points | paper | frame | ratio | stages |");
-    println!("|---|---|---|---|---|---|---|");
+    println!("| method | model of the paper | points | paper | frame | ratio | stages | reading |");
+    println!("|---|---|---|---|---|---|---|---|");
     for (name, method, rows, side, colored) in tables {
         for row in rows.iter().filter(|_| name.contains(&pattern)) {
             let scene = scene(scans.as_ref(), row.count, colored)?;
@@ -88,18 +89,21 @@ fn main() -> Result<()> {
             let side_on = glam::DVec3::new(0.25, 0.25, 1.0);
             let lens = Lens::FieldOfView(34.0);
             let camera = Camera::framing(side, side, (center, radius * 0.8), side_on, lens)?;
-            let (mut frames, stages) = measure(&scene, &camera, &method)?;
+            let exec = Exec::new(0, 32)?;
+            let (mut frames, stages) = measure(&scene, &camera, &method, &exec)?;
+            let mut reading: Vec<_> = (0..9).map(|_| reading(&scene.surfels, &exec)).collect();
             let frame = median(&mut frames);
             let stages: Vec<String> =
                 stages.into_iter().map(|(n, mut t)| format!("{n} {}", cell(&mut t))).collect();
             println!(
-                "| {name} | {} | {} k | {:.1} | {} | {:.2} | {} |",
+                "| {name} | {} | {} k | {:.1} | {} | {:.2} | {} | {} |",
                 row.model,
                 row.count / 1000,
                 row.paper,
                 cell(&mut frames),
                 frame / row.paper,
-                stages.join(", ")
+                stages.join(", "),
+                cell(&mut reading)
             );
         }
     }
@@ -136,16 +140,38 @@ fn scene(scan: Option<&Cloud>, count: usize, colored: bool) -> Result<Scene> {
 /// The times of whole pictures, and of each stage.
 type Times = (Vec<Duration>, Vec<(&'static str, Vec<Duration>)>);
 
-fn measure(scene: &Scene, camera: &Camera, method: &Method) -> Result<Times> {
-    let exec = Exec::new(0, 32)?;
-    let preparation = Preparation::new(&scene.surfels, None, method, &exec);
+/// How long it takes to read positions, normals and radii.
+fn reading(surfels: &Surfels, exec: &Exec) -> Duration {
+    const CHUNK: usize = 16_384;
+    let bits = |of: &[glam::Vec3]| {
+        let mut sum = [[0_u32; 3]; 32];
+        for block in of.chunks_exact(sum.len()) {
+            for (sum, v) in sum.iter_mut().zip(block) {
+                (0..3).for_each(|axis| sum[axis] = sum[axis].wrapping_add(v[axis].to_bits()));
+            }
+        }
+        sum
+    };
+    let vectors = surfels.position().chunks(CHUNK).zip(surfels.normal().chunks(CHUNK));
+    let chunks = vectors.zip(surfels.radius().chunks(CHUNK)).collect();
+    let start = Instant::now();
+    let sums = exec.ordered(chunks, |((position, normal), radius): ((&[_], &[_]), &[f32])| {
+        let radii = radius.iter().fold(0_u32, |sum, r| sum.wrapping_add(r.to_bits()));
+        (bits(position), bits(normal), radii)
+    });
+    std::hint::black_box(sums);
+    start.elapsed()
+}
+
+fn measure(scene: &Scene, camera: &Camera, method: &Method, exec: &Exec) -> Result<Times> {
+    let preparation = Preparation::new(&scene.surfels, None, method, exec);
     let (mut frames, mut stages) = (Vec::new(), Vec::<(&str, Vec<Duration>)>::new());
     let mut earlier = None;
     let begin = Instant::now();
     // At least 9 pictures, then up to 101 within two seconds; the first fills the memory.
     while frames.len() < 9 || (frames.len() < 101 && begin.elapsed().as_secs() < 2) {
         let start = Instant::now();
-        let picture = render_f32(scene, &preparation, camera, method, &exec, earlier.take())?;
+        let picture = render_f32(scene, &preparation, camera, method, exec, earlier.take())?;
         let time = start.elapsed();
         if !frames.is_empty() || !stages.is_empty() {
             frames.push(time);

@@ -1,32 +1,39 @@
 //! The nearest point of each pixel, and its sample.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
+)]
+
 use super::points::{CHUNK, Points, depth};
 use super::{LANES, Lanes};
 use crate::frame::{Exec, NO_ID};
 use crate::method::projection::surfel::Lens;
-use crate::number::Real;
+use crate::number::{Real, Vector3};
+use crate::scene::Surfels;
 use crate::splat::ellipse;
 
 /// No point: more than any depth and slot.
 const NONE: u64 = u64::MAX;
 
 /// The nearest points of a row of pixels.
-pub(in crate::method) struct Nearest<'a, const CARRIED: usize> {
-    points: &'a Points<CARRIED>,
+pub(in crate::method) struct Nearest<'a> {
+    points: &'a Points,
+    surfels: &'a Surfels,
     lens: &'a Lens<f32>,
     /// The order of the depth in the upper half, and the slot: the less, the nearer, and of two
     /// surfels equally near the one of the lower index, as the order of slots in a pixel is that of the surfels.
     kept: &'a [u64],
 }
 
-impl<const CARRIED: usize> Points<CARRIED> {
+impl Points {
     /// Calls `draw` for every row of pixels with what the row is drawn into.
     pub(in crate::method) fn each_row<T: Send>(
         &self,
-        lens: &Lens<f32>,
+        (surfels, lens): (&Surfels, &Lens<f32>),
         rows: impl Iterator<Item = T>,
         exec: &Exec,
-        draw: impl Fn(&Nearest<'_, CARRIED>, T) + Sync + Send,
+        draw: impl Fn(&Nearest<'_>, T) + Sync + Send,
     ) {
         let width = lens.view.width.to_pixel() as usize;
         exec.groups(rows, self.rows(), |first, rows| {
@@ -38,86 +45,96 @@ impl<const CARRIED: usize> Points<CARRIED> {
                 }
             }
             for (kept, target) in kept.chunks(width).zip(rows) {
-                draw(&Nearest { points: self, lens, kept }, target);
+                draw(&Nearest { points: self, surfels, lens, kept }, target);
             }
         });
     }
 }
 
-/// The samples of [`LANES`] pixels in a row.
+/// What the points of [`LANES`] pixels in a row carry.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::method) struct SampleLanes {
     /// +inf where there is none; the other numbers mean nothing there.
     pub(in crate::method) depth: Lanes,
-    /// [`NO_ID`] where there is none; only with the centre.
-    pub(in crate::method) id: [u32; LANES],
     pub(in crate::method) radius: Lanes,
     pub(in crate::method) extent: Lanes,
-    /// If it was carried.
-    pub(in crate::method) centre: [Lanes; 2],
     pub(in crate::method) normal: [Lanes; 3],
-    /// If the scene has colours.
-    pub(in crate::method) color: [Lanes; 3],
+    slot: [usize; LANES],
 }
 
-impl<const CARRIED: usize> Nearest<'_, CARRIED> {
+impl Nearest<'_> {
     /// The samples of the pixels from column x on; none if there is no point.
     #[inline(always)]
     pub(in crate::method) fn take(&self, x: usize) -> Option<SampleLanes> {
-        let Self { points, lens, kept } = self;
-        let count = LANES.min(kept.len() - x);
-        let kept = {
-            let mut own = [NONE; LANES];
-            own[..count].copy_from_slice(&kept[x..x + count]);
-            own
-        };
+        let count = LANES.min(self.kept.len() - x);
+        let mut kept = [NONE; LANES];
+        kept[..count].copy_from_slice(&self.kept[x..x + count]);
         if kept.iter().fold(NONE, |all, kept| all & kept) == NONE {
             return None;
         }
         // A pixel without a point reads slot 0, which means nothing: loops of loads without a branch
         // wait for memory together.
-        let (mut slot, mut carried) = ([0; LANES], [[0.0; CARRIED]; LANES]);
+        let (mut slot, mut carried) = ([0; LANES], [[0.0; 4]; LANES]);
         for i in 0..LANES {
             slot[i] = if kept[i] == NONE { 0 } else { kept[i] as u32 as usize };
-            carried[i] = points.carried[slot[i]];
+            carried[i] = self.points.carried[slot[i]];
         }
-        let mut column = [[0.0; LANES]; CARRIED];
+        let mut column = [[0.0; LANES]; 4];
         for i in 0..LANES {
-            for k in 0..CARRIED {
+            for k in 0..4 {
                 column[k][i] = carried[i][k];
             }
         }
-        let radius = column[3];
+        let [x, y, z, radius] = column;
         let (mut depths, mut extent) = ([f32::INFINITY; LANES], [0.0; LANES]);
         for i in 0..LANES {
             let t = depth((kept[i] >> 32) as u32);
             depths[i] = if kept[i] == NONE { f32::INFINITY } else { t };
-            extent[i] = ellipse::radius_in_pixels(radius[i], lens.focal, lens.scale(t));
+            let m = self.lens.scale(t);
+            extent[i] = ellipse::radius_in_pixels(radius[i], self.lens.focal, m);
         }
-        let mut sample = SampleLanes {
-            depth: depths,
-            id: [NO_ID; LANES],
-            radius,
-            extent,
-            centre: [[0.0; LANES]; 2],
-            normal: [column[0], column[1], column[2]],
-            color: [[0.0; LANES]; 3],
-        };
-        if CARRIED == 6 {
-            sample.centre = [column[4], column[5]];
-            for i in 0..LANES {
-                // A slot and its surfel are of the same chunk.
-                let id = (slot[i] - slot[i] % CHUNK) as u32 + points.keys[slot[i]].surfel();
-                sample.id[i] = if kept[i] == NONE { NO_ID } else { id };
-            }
+        Some(SampleLanes { depth: depths, radius, extent, normal: [x, y, z], slot })
+    }
+
+    /// The surfels of samples; [`NO_ID`] where there is none.
+    #[inline(always)]
+    pub(in crate::method) fn ids(&self, of: &SampleLanes) -> [u32; LANES] {
+        let mut id = [NO_ID; LANES];
+        for i in 0..LANES {
+            // A slot and its surfel are of the same chunk.
+            let (chunk, slot) = (of.slot[i] - of.slot[i] % CHUNK, of.slot[i]);
+            let own = chunk as u32 + self.points.keys[slot].surfel();
+            id[i] = if of.depth[i] < f32::INFINITY { own } else { NO_ID };
         }
-        if !points.color.is_empty() {
-            for i in 0..LANES {
-                let own = points.color[slot[i]];
-                let [r, g, b] = &mut sample.color;
-                (r[i], g[i], b[i]) = (own.x, own.y, own.z);
-            }
+        id
+    }
+
+    /// Where the centres of these surfels are in the picture; any place where there is none.
+    #[inline(always)]
+    pub(in crate::method) fn centres(&self, id: &[u32; LANES]) -> [Lanes; 2] {
+        let mut p = [[0.0; LANES]; 3];
+        for i in 0..LANES {
+            let own = if id[i] == NO_ID { 0 } else { id[i] as usize };
+            [p[0][i], p[1][i], p[2][i]] = self.surfels.position()[own].to_array();
         }
-        Some(sample)
+        let mut centre = [[0.0; LANES]; 2];
+        for i in 0..LANES {
+            let p = self.lens.view.point(Vector3::new(p[0][i], p[1][i], p[2][i]));
+            let placed = self.lens.place(p);
+            (centre[0][i], centre[1][i]) = (placed.centre.x, placed.centre.y);
+        }
+        centre
+    }
+
+    /// The colours of these surfels, if surfels have colours; any where there is none.
+    #[inline(always)]
+    pub(in crate::method) fn colors(&self, id: &[u32; LANES]) -> Option<[Lanes; 3]> {
+        let colors = self.surfels.color()?;
+        let mut color = [[0.0; LANES]; 3];
+        for i in 0..LANES {
+            let own = if id[i] == NO_ID { 0 } else { id[i] as usize };
+            [color[0][i], color[1][i], color[2][i]] = colors[own].to_array();
+        }
+        Some(color)
     }
 }

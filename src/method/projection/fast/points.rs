@@ -62,25 +62,15 @@ pub(super) fn depth(order: u32) -> f32 {
 ///
 /// A **slot** is the place of a point in both arrays. The points of a chunk of surfels have the first
 /// slots from that of its first surfel on, by bands, and in each band in the order of the surfels. A point carries the
-/// normal, towards the viewer and in view space, the radius, if `CARRIED` is 6, not 4, its centre in the picture, and if
-/// the scene has colours its own.
+/// normal, towards the viewer and in view space, and the radius.
 #[derive(Debug, Default)]
-pub(in crate::method) struct Points<const CARRIED: usize> {
+pub(in crate::method) struct Points {
     pub(super) keys: Vec<Key>,
-    pub(super) carried: Vec<[f32; CARRIED]>,
-    /// Empty if the scene has no colours.
-    pub(super) color: Vec<Vec3>,
+    pub(super) carried: Vec<[f32; 4]>,
     /// Of each chunk: where each band starts, from its first slot on, and where the last ends.
     starts: Vec<u32>,
     bands: Bands,
-    spare: Mutex<Vec<Chunk<CARRIED>>>,
-}
-
-/// The slots of a chunk, to be written.
-struct Slots<'a, const CARRIED: usize> {
-    keys: &'a mut [Key],
-    carried: &'a mut [[f32; CARRIED]],
-    colors: Option<&'a mut [Vec3]>,
+    spare: Mutex<Vec<Chunk>>,
 }
 
 /// The division of a picture into bands of as many rows, a power of two.
@@ -102,7 +92,7 @@ impl Bands {
     }
 }
 
-impl<const CARRIED: usize> Points<CARRIED> {
+impl Points {
     /// Finds and sorts the points of a scene's surfels.
     pub(in crate::method) fn find(
         &mut self,
@@ -117,22 +107,21 @@ impl<const CARRIED: usize> Points<CARRIED> {
         // Longer than what they hold, so that they need not be cleared for every picture.
         if self.keys.len() < n {
             self.keys.resize(n, Key::default());
-            self.carried.resize(n, [0.0; CARRIED]);
+            self.carried.resize(n, [0.0; 4]);
         }
-        self.color.resize(surfels.color().map_or(0, <[Vec3]>::len), Vec3::ZERO);
         self.starts.resize(n.div_ceil(CHUNK) * bounds, 0);
-        let mut colors = self.color.chunks_mut(CHUNK);
         let slots = self.keys[..n].chunks_mut(CHUNK).zip(self.carried[..n].chunks_mut(CHUNK));
-        let slots = slots.map(|(keys, carried)| Slots { keys, carried, colors: colors.next() });
         let jobs = slots.zip(self.starts.chunks_mut(bounds)).enumerate().collect();
         let (bands, spare) = (self.bands, &self.spare);
         let spare = || spare.lock().unwrap_or_else(PoisonError::into_inner);
-        let tallies = exec.ordered(jobs, |(index, (slots, starts))| {
+        let tallies = exec.ordered(jobs, |(index, ((keys, carried), starts))| {
             let mut chunk = spare().pop().unwrap_or_else(Chunk::new);
             let range = index * CHUNK..n.min((index + 1) * CHUNK);
-            let (count, tally) = points(surfels, lens, range.clone(), bands, &mut chunk);
+            let (count, tally) = points(surfels, lens, range, bands, &mut chunk);
             chunk.sort(count, starts);
-            chunk.write(count, surfels.color().map(|color| &color[range]), slots);
+            // In order, which is faster than to sort into far memory.
+            keys[..count].copy_from_slice(&chunk.keys[..count]);
+            carried[..count].copy_from_slice(&chunk.carried[..count]);
             spare().push(chunk);
             tally
         });
@@ -155,41 +144,41 @@ impl<const CARRIED: usize> Points<CARRIED> {
 
 /// A chunk of surfels while it becomes points; it fits a second-level cache.
 #[derive(Debug)]
-struct Chunk<const CARRIED: usize> {
+struct Chunk {
     /// Of all surfels, seen or not.
-    blocks: Vec<Block<CARRIED>>,
+    blocks: Vec<Block>,
     /// The surfels that are seen, ascending; the rest means nothing.
     seen: Vec<u16>,
     /// The next slot of each band.
     next: Vec<u32>,
     /// What [`Chunk::sort`] has sorted.
     keys: Vec<Key>,
-    carried: Vec<[f32; CARRIED]>,
+    carried: Vec<[f32; 4]>,
 }
 
 /// [`LANES`] surfels.
 #[derive(Clone, Copy, Debug)]
-struct Block<const CARRIED: usize> {
+struct Block {
     place: [u32; LANES],
     order: [u32; LANES],
     band: [u32; LANES],
-    carried: [Lanes; CARRIED],
+    carried: [Lanes; 4],
 }
 
-impl<const CARRIED: usize> Chunk<CARRIED> {
+impl Chunk {
     fn new() -> Self {
         let empty = Block {
             place: [0; LANES],
             order: [0; LANES],
             band: [0; LANES],
-            carried: [[0.0; LANES]; CARRIED],
+            carried: [[0.0; LANES]; 4],
         };
         Self {
             blocks: vec![empty; CHUNK / LANES],
             seen: vec![0; CHUNK + LANES],
             next: Vec::new(),
             keys: vec![Key::default(); CHUNK],
-            carried: vec![[0.0; CARRIED]; CHUNK],
+            carried: vec![[0.0; 4]; CHUNK],
         }
     }
 
@@ -219,27 +208,16 @@ impl<const CARRIED: usize> Chunk<CARRIED> {
             *next += 1;
         }
     }
-
-    /// Writes what was sorted, in order, which is faster than to sort it into far memory.
-    fn write(&self, count: usize, colors: Option<&[Vec3]>, slots: Slots<'_, CARRIED>) {
-        slots.keys[..count].copy_from_slice(&self.keys[..count]);
-        slots.carried[..count].copy_from_slice(&self.carried[..count]);
-        if let (Some(of), Some(colors)) = (colors, slots.colors) {
-            for (color, key) in colors.iter_mut().zip(&self.keys[..count]) {
-                *color = of[key.surfel() as usize];
-            }
-        }
-    }
 }
 
 /// What becomes of a range of surfels: fills `chunk` but for what is sorted, and tells how many are seen.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn points<const CARRIED: usize>(
+fn points(
     surfels: &Surfels,
     lens: &Lens<f32>,
     range: Range<usize>,
     bands: Bands,
-    chunk: &mut Chunk<CARRIED>,
+    chunk: &mut Chunk,
 ) -> (usize, Tally) {
     // A copy, which nothing that is written can be thought to change.
     let lens = &{ *lens };
@@ -278,7 +256,7 @@ fn note(visible: &[u32; LANES], block: usize, seen: &mut [u16]) -> usize {
     count
 }
 
-impl<const CARRIED: usize> Block<CARRIED> {
+impl Block {
     /// The block of this index from positions, normals and radii, and which of them are visible: 1, else 0.
     #[inline(always)]
     fn fill(
@@ -293,7 +271,7 @@ impl<const CARRIED: usize> Block<CARRIED> {
             (lens.view.width.to_pixel(), bands.shift, bands.rows() as u32 - 1);
         let (mut visible, mut place) = ([0; LANES], [0; LANES]);
         let (mut orders, mut band) = ([0; LANES], [0; LANES]);
-        let mut carried: [Lanes; 6] = [[0.0; LANES]; 6];
+        let mut carried = [[0.0; LANES]; 4];
         for i in 0..LANES {
             let n = lens.view.direction(Vector3::from_glam(n[i]));
             let (placed, g, fate) = lens.fate(Vector3::from_glam(p[i]), n);
@@ -308,10 +286,9 @@ impl<const CARRIED: usize> Block<CARRIED> {
             band[i] = y >> shift;
             (carried[0][i], carried[1][i]) = (sample.normal.x, sample.normal.y);
             (carried[2][i], carried[3][i]) = (sample.normal.z, sample.radius);
-            (carried[4][i], carried[5][i]) = (sample.centre.x, sample.centre.y);
         }
-        (self.place, self.order, self.band) = (place, orders, band);
-        self.carried.copy_from_slice(&carried[..CARRIED]);
+        (self.place, self.order) = (place, orders);
+        (self.band, self.carried) = (band, carried);
         visible
     }
 }

@@ -11,24 +11,27 @@ use crate::scene::{Camera, Cloud, Projection, Surfels};
 use crate::splat::View;
 
 /// The samples of the fast path, as text: the shortest decimals tell floats apart, and the signs of zeros.
-fn samples(of: &Surfels, camera: &Camera, cull: bool, points: &mut Points<6>) -> Vec<String> {
+fn samples(of: &Surfels, camera: &Camera, cull: bool, points: &mut Points) -> Vec<String> {
     let exec = Exec::new(3, 16).unwrap();
     let lens = Lens::new(View::new(camera), cull);
     points.find(of, &lens, &exec);
     let width = camera.width as usize;
     let mut rows = vec![vec![String::new(); width]; camera.height as usize];
-    points.each_row(&lens, rows.iter_mut(), &exec, |nearest, row| {
+    points.each_row((of, &lens), rows.iter_mut(), &exec, |nearest, row| {
         for x in (0..width).step_by(LANES) {
             let Some(s) = nearest.take(x) else { continue };
+            let ids = nearest.ids(&s);
+            let (centre, color) = (nearest.centres(&ids), nearest.colors(&ids));
             for i in 0..LANES.min(width - x) {
-                if s.id[i] == NO_ID {
+                if ids[i] == NO_ID {
                     assert_eq!(s.depth[i], f32::INFINITY);
                     continue;
                 }
                 let lane = |of: &[Lanes; 3]| of.map(|lanes| lanes[i]);
-                let centre = s.centre.map(|lanes| lanes[i]);
+                let centre = centre.map(|lanes| lanes[i]);
                 let form = (s.depth[i], s.radius[i], s.extent[i], centre, lane(&s.normal));
-                row[x + i] = format!("{} {form:?} {:?}", s.id[i], lane(&s.color));
+                let color = color.as_ref().map_or([0.0; 3], lane);
+                row[x + i] = format!("{} {form:?} {color:?}", ids[i]);
             }
         }
     });

@@ -41,7 +41,7 @@ pub struct Timings {
 /// The levels of a picture, which can be used for many pictures.
 #[derive(Debug, Default)]
 pub struct Levels {
-    points: Points<4>,
+    points: Points,
     levels: Vec<Level>,
     has: Has,
 }
@@ -110,9 +110,9 @@ impl Levels {
         }
         let lens = Lens::new(View::new(camera), settings.cull);
         let tally = self.points.find(&scene.surfels, &lens, exec);
-        let (shape, colored) = (level.shape, self.has.color);
-        self.points.each_row(&lens, level.rows_mut(), exec, |nearest, row| {
-            samples(nearest, row, &shape, colored);
+        let (shape, from) = (level.shape, (&scene.surfels, &lens));
+        self.points.each_row(from, level.rows_mut(), exec, |nearest, row| {
+            samples(nearest, row, &shape);
         });
         Ok(tally)
     }
@@ -142,7 +142,7 @@ impl Levels {
 
 /// A row of level 0 from the nearest points of its pixels.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn samples(nearest: &Nearest<'_, 4>, row: &mut [f32], shape: &Shape, colored: bool) {
+fn samples(nearest: &Nearest<'_>, row: &mut [f32], shape: &Shape) {
     for x in (0..shape.width).step_by(LANES) {
         let mut put = |attribute: usize, lanes: &Lanes| {
             let at = attribute * shape.stride + PAD + x;
@@ -162,8 +162,8 @@ fn samples(nearest: &Nearest<'_, 4>, row: &mut [f32], shape: &Shape, colored: bo
         put(BACK, &back);
         put(RADIUS, &s.extent);
         (0..3).for_each(|axis| put(NORMAL + axis, &s.normal[axis]));
-        if colored {
-            (0..3).for_each(|channel| put(FURTHER + channel, &s.color[channel]));
+        if let Some(color) = nearest.colors(&nearest.ids(&s)) {
+            (0..3).for_each(|channel| put(FURTHER + channel, &color[channel]));
         }
     }
 }

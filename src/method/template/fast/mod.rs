@@ -37,7 +37,7 @@ pub struct Timings {
 /// The levels of a picture, which can be used for many pictures.
 #[derive(Debug, Default)]
 pub struct Levels {
-    points: Points<6>,
+    points: Points,
     levels: Vec<Level>,
 }
 
@@ -96,9 +96,9 @@ impl Levels {
         let lens = Lens::new(View::new(camera), cull);
         let tally = self.points.find(&scene.surfels, &lens, exec);
         let level = &mut self.levels[0];
-        let (shape, colored) = (level.shape, Has::of(scene).color);
-        self.points.each_row(&lens, level.rows_mut(), exec, |nearest, mut row| {
-            samples(nearest, &mut row, &shape, (reach, colored));
+        let (shape, from) = (level.shape, (&scene.surfels, &lens));
+        self.points.each_row(from, level.rows_mut(), exec, |nearest, mut row| {
+            samples(nearest, &mut row, &shape, reach);
         });
         tally
     }
@@ -127,18 +127,15 @@ impl Levels {
 
 /// A row of level 0 from the nearest points of its pixels.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn samples(
-    nearest: &Nearest<'_, 6>,
-    row: &mut RowMut<'_>,
-    shape: &Shape,
-    (reach, colored): (f32, bool),
-) {
+fn samples(nearest: &Nearest<'_>, row: &mut RowMut<'_>, shape: &Shape, reach: f32) {
     *row.has = [false; 2];
     for x in (0..shape.width).step_by(LANES) {
         let Some(s) = nearest.take(x) else {
             row.clear(shape, x);
             continue;
         };
+        let ids = nearest.ids(&s);
+        let centre = nearest.centres(&ids);
         let mut put = |attribute: usize, lanes: &Lanes| {
             let at = attribute * shape.stride + PAD + x;
             row.numbers[at..at + LANES].copy_from_slice(lanes);
@@ -146,12 +143,12 @@ fn samples(
         put(DEPTH, &s.depth);
         put(RADIUS, &s.radius);
         put(EXTENT, &s.extent);
-        (0..2).for_each(|axis| put(PLACE + axis, &s.centre[axis]));
+        (0..2).for_each(|axis| put(PLACE + axis, &centre[axis]));
         (0..3).for_each(|axis| put(NORMAL + axis, &s.normal[axis]));
-        if colored {
-            (0..3).for_each(|channel| put(COLOR + channel, &s.color[channel]));
+        if let Some(color) = nearest.colors(&ids) {
+            (0..3).for_each(|channel| put(COLOR + channel, &color[channel]));
         }
-        row.ids[PAD + x..PAD + x + LANES].copy_from_slice(&s.id);
+        row.ids[PAD + x..PAD + x + LANES].copy_from_slice(&ids);
         row.settle(shape, x, reach);
     }
 }
