@@ -1,9 +1,9 @@
 //! Every plane of every stage of the pull-push pyramid against its oracle.
 //!
-//! Stage by stage: each is computed from what the crate left of the one before, so that errors do not
-//! pile up, and a plane is compared in units of its running error bound. Where rounding may decide,
-//! any outcome is accepted, and such cells are counted. A third run computes in `f32` itself, where no
-//! decision is open: the documentation gives the bits.
+//! Stage by stage: each is computed from what the crate left of the one before, so that errors do
+//! not pile up, and a plane is compared in units of its running error bound. Where rounding may
+//! decide, any outcome is accepted, and such cells are counted. A third run computes in `f32`
+//! itself, where no decision is open: the documentation gives the bits.
 
 use crate::pyramid_cases::{self, Case};
 use crate::pyramid_levels::{Cell, Expected, Level, pulled, pushed};

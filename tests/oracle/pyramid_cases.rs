@@ -30,7 +30,7 @@ pub(crate) enum Discs {
     Many,
     /// Radii from 10^-30 to 10^30.
     Sizes,
-    /// Edge-on and nearly so, at the near plane and behind it.
+    /// Edge-on and nearly so, at the near plane and behind it, at the end of f32.
     EdgeOn,
     /// Two walls a radius or less apart, facing the camera.
     Walls,
@@ -74,13 +74,15 @@ fn surfel(discs: Discs, dice: &mut Dice) -> (Vec3, Vec3, f32) {
             let radii = [1e-30, 1e-12, 1e-3, 0.1, 1.0, 30.0, 1e4, 1e30];
             (around, facing, radii[dice.below(radii.len())])
         }
-        Discs::EdgeOn => match dice.below(6) {
+        Discs::EdgeOn => match dice.below(7) {
             0 => (Vec3::new(0.0, around.y, around.z), Vec3::X, radius),
             1 => (Vec3::new(around.x, 0.0, around.z), Vec3::Y, radius),
             2 => (Vec3::new(around.x / 64.0, 0.0, -0.0625), Vec3::Z, radius),
             3 => (-around, Vec3::Z, radius),
             4 => (around, Vec3::new(1.0, 0.0, 2.0_f32.powi(-10 * dice.below(12) as i32)), radius),
-            _ => (Vec3::new(0.0078125, around.y, around.z), Vec3::X, radius),
+            5 => (Vec3::new(0.0078125, around.y, around.z), Vec3::X, radius),
+            // So far to the side that f32 overflows.
+            _ => (Vec3::new(1e38, around.y, around.z), facing, radius),
         },
         Discs::Walls => {
             let depth = if dice.below(2) == 0 { 3.0 } else { 3.0 + 0.5 * dice.below(3) as f32 };

@@ -1,4 +1,5 @@
-//! Pictures of the pull-push pyramid that are known otherwise: one disc, mirrors, rims, lines, rays.
+//! Pictures of the pull-push pyramid that are known otherwise: one disc, mirrors, rims, lines,
+//! rays.
 
 use crate::eye::wide;
 use crate::pyramid_cases;
@@ -10,7 +11,8 @@ use splatref::method::pyramid::Settings;
 use splatref::scene::indexed::{Indexed, Primitives, Vertices};
 use splatref::scene::{Scene, Surfels};
 
-/// Whether the centre of pixel (x, y) is in the ellipse of a unit normal about that of (u, v), by its axes.
+/// Whether the centre of pixel (x, y) is in the ellipse of a unit normal about that of (u, v), by
+/// its axes.
 fn in_ellipse(normal: Vec3, radius: f64, [x, y]: [f64; 2]) -> bool {
     let [nx, ny, nz] = wide(normal);
     let across = nx.hypot(ny);
@@ -22,7 +24,8 @@ fn in_ellipse(normal: Vec3, radius: f64, [x, y]: [f64; 2]) -> bool {
     (along / (radius * nz.abs())).hypot(aside / radius) <= 1.0
 }
 
-/// How much of its ellipse a disc alone reaches in the middle of an empty picture, and nothing beyond.
+/// How much of its ellipse a disc alone reaches in the middle of an empty picture, and nothing
+/// beyond.
 fn reached(disc: Disc, side: u32, settings: &Settings) -> f64 {
     let (position, normal, radius, _) = disc;
     let frame: Frame<f32> = render(&scene(&[disc]), &plan([side, side]), settings);
@@ -45,9 +48,9 @@ fn reached(disc: Disc, side: u32, settings: &Settings) -> f64 {
 
 /// A disc alone paints within its own ellipse, and how much of it.
 ///
-/// It is passed up while the centre of the cell above is in its ellipse, and down from there to centres
-/// that are: what is reached depends on where it lies among the cells, and the rest is a hole. The
-/// floors are a little below what was measured.
+/// It is passed up while the centre of the cell above is in its ellipse, and down from there to
+/// centres that are: what is reached depends on where it lies among the cells, and the rest is a
+/// hole. The floors are a little below what was measured.
 #[test]
 fn pyramid_disc_stays_in_its_ellipse() {
     let radii = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0];
@@ -124,7 +127,8 @@ fn mirrors(discs: &[Disc], size: [u32; 2], axis: usize, settings: &Settings) -> 
     })
 }
 
-/// Sides that the levels halve without a rest until one cell is left: a power of two, not the shorter.
+/// Sides that the levels halve without a rest until one cell is left: a power of two, not the
+/// shorter.
 #[test]
 fn pyramid_mirrors_along_powers_of_two() {
     let mut dice = Dice(71);
@@ -151,8 +155,9 @@ fn pyramid_mirrors_along_powers_of_two() {
     assert!(broken > 20, "{broken}");
 }
 
-/// A disc at one end of five pixels reaches one pixel farther than at the other: column 4 is halved alone.
-/// And four rows of 16 columns are halved alone once they are one: powers of two are not enough.
+/// A disc at one end of five pixels reaches one pixel farther than at the other: column 4 is halved
+/// alone. And four rows of 16 columns are halved alone once they are one: powers of two are not
+/// enough.
 #[test]
 fn pyramid_does_not_mirror_every_picture() {
     let settings = Settings::default();
@@ -166,7 +171,8 @@ fn pyramid_does_not_mirror_every_picture() {
     assert!(!mirrors(&[disc], [16, 4], 1, &settings), "so are 4 rows, but the shorter side");
 }
 
-/// The rim belongs to the ellipse: four equal discs in a row, whose mean lies (2, 3/2) px from a centre.
+/// The rim belongs to the ellipse: four equal discs in a row, whose mean lies (2, 3/2) px from a
+/// centre.
 #[test]
 fn pyramid_rim_is_inside() {
     for (radius, inside) in [(2.5, true), (2.499_999_8, false)] {
@@ -202,5 +208,31 @@ fn pyramid_line_keeps_its_first_visit() {
         let expected = if corners[0] == 0 { [0.0, 14.5] } else { [0.5, 15.0] };
         let ends = [0, 7].map(|i| value(&frame, "projection", i)[0]);
         assert!((ends[0] - expected[0]).abs() + (ends[1] - expected[1]).abs() < 1e-5, "{ends:?}");
+    }
+}
+
+/// Half way between opposite normals there is none: a pixel, but no ellipse around it. Opposite
+/// tangents are one.
+#[test]
+fn pyramid_directions_that_cancel() {
+    let vertices = Vertices {
+        position: vec![Vec3::new(-4.0, 0.5, -4.0), Vec3::new(3.0, 0.5, -4.0)],
+        direction: vec![Vec3::Z, -Vec3::Z],
+        radius: vec![2.0; 2],
+        color: None,
+    };
+    let line = Indexed::new(vertices, vec![[0, 1]]).expect("a line").0;
+    let ribbon = with(Primitives { ribbons: line.clone(), ..Primitives::default() });
+    let tube = with(Primitives { tubes: line, ..Primitives::default() });
+    // Row 3; the ends are on the borders of pixels 0 and 7, the middle is the centre of pixel 3. A
+    // ribbon turns its other side to the viewer.
+    for (scene, name, expected) in [
+        (ribbon, "projection.normal", [1.0, 0.0, 1.0]),
+        (tube, "projection.tangent", [1.0, 1.0, 1.0]),
+    ] {
+        let scene = Scene { lights: vec![splatref::scene::Light::DEFAULT], ..scene };
+        let frame: Frame<f32> = render(&scene, &plan([8, 8]), &Settings::default());
+        assert_eq!([2, 3, 4].map(|x| value(&frame, name, 24 + x)[2]), expected, "{name}");
+        assert_eq!(value(&frame, "Z", 27)[0], 4.0, "{name}");
     }
 }

@@ -143,7 +143,8 @@ fn pyramid_push_leaves_what_is_seen() {
     assert!(kept > 5_000 && changed > 10_000, "{kept} kept, {changed} computed again");
 }
 
-/// A full picture of one surface: every level is the plain mean of four, and nothing is computed again.
+/// A full picture of one surface: every level is the plain mean of four, and nothing is computed
+/// again.
 #[test]
 fn pyramid_of_a_full_picture_is_its_mean() {
     for (number, size) in [[16, 16], [32, 8], [1, 16], [64, 64]].into_iter().enumerate() {

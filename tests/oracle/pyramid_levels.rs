@@ -1,7 +1,7 @@
 //! One cell of the pull and of the push phase by other means, from the level that the crate made.
 //!
-//! Whether a point is inside an ellipse is decided by its axes, as the paper puts it, and by the form of
-//! the documentation; they must not contradict each other. Depths are compared exactly.
+//! Whether a point is inside an ellipse is decided by its axes, as the paper puts it, and by the
+//! form of the documentation; they must not contradict each other. Depths are compared exactly.
 
 use crate::pyramid_number::{BITS, N3, Num, exact, ways};
 use crate::stages::at;
@@ -163,8 +163,8 @@ impl<const P: u32> Neighbour<P> {
     }
 }
 
-/// Whether an offset is inside an ellipse given by its axes: the major one perpendicular to (nx, ny), the
-/// minor one shortened by |nz| for a unit normal.
+/// Whether an offset is inside an ellipse given by its axes: the major one perpendicular to (nx,
+/// ny), the minor one shortened by |nz| for a unit normal.
 fn by_axes(cell: &Cell, [x, y]: [Num<53>; 2]) -> Option<bool> {
     let [nx, ny, nz] = exact::<53>(cell.normal);
     let radius = Num::exact(cell.radius);
@@ -227,7 +227,8 @@ fn mean<const P: u32>(takes: [bool; 4], weights: [Num<P>; 4], a: [Num<P>; 4]) ->
     }
 }
 
-/// The average of some neighbours; `hull`: the interval is that of all of them, as in the pull phase.
+/// The average of some neighbours; `hull`: the interval is that of all of them, as in the pull
+/// phase.
 fn average<const P: u32>(
     all: &[Neighbour<P>; 4],
     (first, takes): (usize, [bool; 4]),

@@ -1,12 +1,13 @@
-//! Running error analysis: a number in f64, and how far an arithmetic of fewer digits may be from it.
+//! Running error analysis: a number in f64, and how far an arithmetic of fewer digits may be from
+//! it.
 //!
-//! Every operation adds its own rounding, in the arithmetic under test and in f64, to what it passes
-//! on, unless it is exact. The bound is rigorous, so that a tolerance is a share of it and at most 1,
-//! and a comparison has three answers: yes, no, and `None` where rounding may decide.
+//! Every operation adds its own rounding, in the arithmetic under test and in f64, to what it
+//! passes on, unless it is exact. The bound is rigorous, so that a tolerance is a share of it and
+//! at most 1, and a comparison has three answers: yes, no, and `None` where rounding may decide.
 //!
-//! With [`BITS`] digits nothing is bounded: every operation rounds to `f32` (once, since f64 has more than
-//! twice its digits), every comparison has an answer, and what comes out is what the documentation says to
-//! the last bit.
+//! With [`BITS`] digits nothing is bounded: every operation rounds to `f32` (once, since f64 has
+//! more than twice its digits), every comparison has an answer, and what comes out is what the
+//! documentation says to the last bit.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -44,7 +45,8 @@ impl<const P: u32> Num<P> {
         P != 24 || f64::from(v as f32) == v
     }
 
-    /// The result of an operation whose operands' errors pass on as `passed`; `exact`: f64 did not round.
+    /// The result of an operation whose operands' errors pass on as `passed`; `exact`: f64 did not
+    /// round.
     fn rounded(v: f64, passed: f64, exact: bool) -> Self {
         if P == BITS {
             return Self::exact(f64::from(v as f32));

@@ -1,8 +1,8 @@
 //! The pixels of triangles and segments by other means: exact integers, pixel by pixel.
 //!
-//! A pixel centre is inside a triangle if, moved to the right by an infinitesimal and down by a much
-//! smaller one, it is on the same side of all edges. Where snapping may go either way, each outcome is
-//! a piece of its own.
+//! A pixel centre is inside a triangle if, moved to the right by an infinitesimal and down by a
+//! much smaller one, it is on the same side of all edges. Where snapping may go either way, each
+//! outcome is a piece of its own.
 
 use crate::pyramid_number::{N3, Num};
 use crate::pyramid_projection::Sight;

@@ -1,7 +1,7 @@
 //! The projection to single pixels by other means: for every pixel, all that may be seen there.
 //!
-//! Nothing is discarded on the way: a pixel has the list of all candidates, and the picture is held to
-//! it. Where rounding may decide where something is, there is a candidate for each outcome.
+//! Nothing is discarded on the way: a pixel has the list of all candidates, and the picture is held
+//! to it. Where rounding may decide where something is, there is a candidate for each outcome.
 
 use crate::eye::wide;
 use crate::pyramid_levels::TUBE;
@@ -29,7 +29,8 @@ pub(crate) struct Candidate<const P: u32> {
     pub(crate) color: N3<P>,
 }
 
-/// What became of surfels: visible, behind, degenerate, back-facing, outside; and whether any is in doubt.
+/// What became of surfels: visible, behind, degenerate, back-facing, outside; and whether any is in
+/// doubt.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Fates {
     pub(crate) counts: [u64; 5],
@@ -273,6 +274,7 @@ struct Primitive<const P: u32, const N: usize> {
     id: u32,
     kind: u8,
     points: [N3<P>; N],
+    /// In world space, where they are interpolated.
     directions: [N3<P>; N],
     radii: [Num<P>; N],
     colors: Option<[N3<P>; N]>,

@@ -1,7 +1,9 @@
-//! The pixels of triangles against rays through the scene: nothing is clipped, snapped or interpolated.
+//! The pixels of triangles against rays through the scene: nothing is clipped, snapped or
+//! interpolated.
 //!
-//! Snapping moves what is seen by half a unit of the grid at most, so a ray through each corner of a
-//! square of that size bounds depth and radius; pixels whose square is cut by an edge are left out.
+//! Snapping moves what is seen by half a unit of the grid at most, so a ray through each corner of
+//! a square of that size bounds depth and radius; pixels whose square is cut by an edge are left
+//! out.
 
 use crate::eye::{Eye, V3, cross, dot, sub, wide};
 use crate::pyramid_cases::{Case, Discs, Others};

@@ -1,8 +1,8 @@
 //! How far each plane of the pull-push pyramid may be from its oracle, and why.
 //!
-//! The unit is the running error bound of [`crate::pyramid_number`]: with the documented operations in
-//! the documented order an error of 1 is the worst that rounding can do, so no row is above 1. In `f64`
-//! the oracle makes the same operations and 0 means the same bits.
+//! The unit is the running error bound of [`crate::pyramid_number`]: with the documented operations
+//! in the documented order an error of 1 is the worst that rounding can do, so no row is above 1.
+//! In `f64` the oracle makes the same operations and 0 means the same bits.
 
 use crate::tolerance::Arithmetic::{F32, F64};
 use crate::tolerance::{Row, row};
