@@ -1,10 +1,12 @@
-//! Accuracy of \[ZP06\]: its figures 8, 9, 12 and 13 as numbers, with the time that each picture took.
+//! Accuracy of \[ZP06\]: its figures 8, 9, 12 and 13 as numbers, with the time that each picture
+//! took.
 //!
-//! `cargo bench --bench accuracy` prints Markdown tables; an argument is a pattern that the names of
-//! scenes must contain. Scenes are the scans in the folder that `SPLATREF_MODELS` names (`../shared/models`
-//! if it is not set), those that are missing are skipped, and procedural ones. Pictures have 800 x 600
-//! pixels, `f32`, lit by a headlight. RMSE and SSIM are of R, G and B against the picture named in the
-//! title; where both are background counts too. With `--pictures DIR` every picture is kept there.
+//! `cargo bench --bench accuracy` prints Markdown tables; an argument is a pattern that the names
+//! of scenes must contain. Scenes are the scans in the folder that `SPLATREF_MODELS` names
+//! (`../shared/models` if it is not set), those that are missing are skipped, and procedural ones.
+//! Pictures have 800 x 600 pixels, `f32`, lit by a headlight. RMSE and SSIM are of R, G and B
+//! against the picture named in the title; where both are background counts too. With `--pictures
+//! DIR` every picture is kept there.
 
 use splatref::Result;
 use splatref::frame::Exec;

@@ -15,7 +15,8 @@ use splatref::scene::Surfels;
 use splatref::splat::Kernel;
 use std::time::{Duration, Instant};
 
-/// With the tight and the 1 M one, a series of about five layers of discs a pixel; extremes of size.
+/// With the tight and the 1 M one, a series of about five layers of discs a pixel; extremes of
+/// size.
 const MORE: [Workload; 4] = [
     Workload { name: "10 k", count: 10_000, radius: 0.045 },
     Workload { name: "10 M", count: 10_000_000, radius: 0.00142 },

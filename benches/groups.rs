@@ -2,9 +2,9 @@
 //!
 //! `cargo bench --bench groups` prints Markdown; an argument is a pattern that the names of models
 //! must contain, a number after it the largest count of points. Of each model there are the
-//! vertices, and the same surface sampled at random with the counts of the paper's models. Radii are
-//! those that this crate derives, which overlap more than the paper's; in the rows marked with the
-//! factor they are scaled until the average degree at c = 1 is that of the paper's model.
+//! vertices, and the same surface sampled at random with the counts of the paper's models. Radii
+//! are those that this crate derives, which overlap more than the paper's; in the rows marked with
+//! the factor they are scaled until the average degree at c = 1 is that of the paper's model.
 
 mod common;
 

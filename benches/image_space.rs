@@ -1,12 +1,14 @@
 //! Speed of the image-space methods: the timing tables of \[MKC08\] and \[MOC08\], measured again.
 //!
-//! `cargo bench --bench image_space` prints Markdown; an argument is a pattern that the names of rows must contain.
-//! The papers' models are stood for by samplings of the dragon with as many points (`SPLATREF_MODELS` names the
-//! folder of the scan; without it the sphere is sampled), each with the spacing as its radius, in a picture
-//! that it fills. One headlight, back faces culled, `f32`, as many threads as cores. Each number is the median over
-//! the pictures of one run in milliseconds, the minimum in brackets; `frame` is the whole call, from the
-//! scene to shaded planes in the memory of the picture before. `reading` is the time in which as many threads do no more
-//! than read what the projection reads of all surfels once, 28 bytes each: the speed of memory.
+//! `cargo bench --bench image_space` prints Markdown; an argument is a pattern that the names of
+//! rows must contain. The papers' models are stood for by samplings of the dragon with as many
+//! points (`SPLATREF_MODELS` names the folder of the scan; without it the sphere is sampled), each
+//! with the spacing as its radius, in a picture that it fills. One headlight, back faces culled,
+//! `f32`, as many threads as cores. Each number is the median over the pictures of one run in
+//! milliseconds, the minimum in brackets; `frame` is the whole call, from the scene to shaded
+//! planes in the memory of the picture before. `reading` is the time in which as many threads do no
+//! more than read what the projection reads of all surfels once, 28 bytes each: the speed of
+//! memory.
 
 #[path = "common/mod.rs"]
 mod common;

@@ -1,20 +1,20 @@
 //! `splatref`: the ground truth for point-splatting renderers.
 //!
 //! A pure-CPU, tile-parallel software rasterizer that implements published splatting algorithms as
-//! specified, so that the authors of GPU backends can generate golden images, prove their compositing
-//! math, and learn whether their picture is right. The documentation of each stage is normative: an
-//! engineer who has only these pages, in another language, gets the same bits.
+//! specified, so that the authors of GPU backends can generate golden images, prove their
+//! compositing math, and learn whether their picture is right. The documentation of each stage is
+//! normative: an engineer who has only these pages, in another language, gets the same bits.
 //!
 //! # The contract
 //!
 //! 1. **One formula, several numbers.** The arithmetic of a splat or a fragment is written once,
-//!    generic over [`number::Real`]. `f32` is the executable specification: the bits that a GPU gets
-//!    from the same IEEE operations in the same order. `f64` is the truth of the same problem: every
-//!    input and every constant is an `f32`.
+//!    generic over [`number::Real`]. `f32` is the executable specification: the bits that a GPU
+//!    gets from the same IEEE operations in the same order. `f64` is the truth of the same problem:
+//!    every input and every constant is an `f32`.
 //! 2. **What may change the picture, how may not.** [`method::Method`] says what is computed.
 //!    [`frame::Exec`] (threads, tile size) says how, and cannot change one bit.
-//! 3. **Every pass can be seen.** Each stage leaves named planes that can be kept, written to one EXR
-//!    file, compared, and explained pixel by pixel.
+//! 3. **Every pass can be seen.** Each stage leaves named planes that can be kept, written to one
+//!    EXR file, compared, and explained pixel by pixel.
 //!
 //! Bits are a function of (scene, camera, settings, number type) alone: not of threads, tile size,
 //! build flags or host. Only + - * / sqrt, floor, comparisons and conversions are used; `mul_add`
@@ -90,20 +90,24 @@
 //! | tile, bin | a square of pixels that one thread owns; the list of its splats |
 //! | margin | how far a decision was from flipping, in units of the last place |
 //!
-//! Sources: \[ZPvBG01\] Zwicker, Pfister, van Baar, Gross: Surface Splatting, SIGGRAPH 2001. \[GP03\]
-//! Guennebaud, Paulin: Efficient screen space approach for hardware accelerated surfel rendering, VMV
+//! Sources: \[ZPvBG01\] Zwicker, Pfister, van Baar, Gross: Surface Splatting, SIGGRAPH 2001.
+//! \[GP03\] Guennebaud, Paulin: Efficient screen space approach for hardware accelerated surfel
+//! rendering, VMV
 //! 2003. \[GBP04\] Guennebaud, Barthe, Paulin: Deferred Splatting, Eurographics 2004. \[ZRB+04\]
 //! Zwicker, Räsänen, Botsch, Dachsbacher, Pauly: Perspective Accurate Splatting, Graphics Interface
-//! 2004. \[BHZK05\] Botsch, Hornung, Zwicker, Kobbelt: High-Quality Surface Splatting on Today's GPUs,
-//! PBG 2005. \[ZP06\] Zhang, Pajarola: Single-Pass Point Rendering and Transparent Shading, PBG 2006.
-//! \[TCH05\] Talton, Carr, Hart: Voronoi Rasterization of Sparse Point Sets, PBG 2005. \[Lei79\] Leighton:
-//! A Graph Coloring Algorithm for Large Scheduling Problems, J. Res. NBS 84, 1979. \[Sam89\] Samet: The
-//! Design and Analysis of Spatial Data Structures, 1989. \[Eve02\] Everitt: Interactive Order-Independent
-//! Transparency, 2002. \[Mam89\] Mammen: Transparency and Antialiasing Algorithms, IEEE CG&A 9(4), 1989.
-//! \[MKC08\] Marroquim, Kraus, Cavalcanti: Efficient Image Reconstruction for Point-Based and Line-Based
-//! Rendering, Computers & Graphics 32, 2008. \[MOC08\] Marroquim, Oliveira, Cavalcanti: High Quality Image
-//! Reconstruction of Point Models, SIBGRAPI 2008. \[WBSS04\] Wang, Bovik, Sheikh, Simoncelli: Image Quality Assessment, IEEE TIP 2004. In the pages of
-//! the modules, `Decided:` marks what a source leaves open, `Departs:` where this crate differs.
+//! 2004. \[BHZK05\] Botsch, Hornung, Zwicker, Kobbelt: High-Quality Surface Splatting on Today's
+//!       GPUs, PBG 2005. \[ZP06\] Zhang, Pajarola: Single-Pass Point Rendering and Transparent
+//!       Shading, PBG 2006. \[TCH05\] Talton, Carr, Hart: Voronoi Rasterization of Sparse Point
+//!       Sets, PBG 2005. \[Lei79\] Leighton: A Graph Coloring Algorithm for Large Scheduling
+//!       Problems, J. Res. NBS 84, 1979. \[Sam89\] Samet: The Design and Analysis of Spatial Data
+//!       Structures, 1989. \[Eve02\] Everitt: Interactive Order-Independent Transparency, 2002.
+//!       \[Mam89\] Mammen: Transparency and Antialiasing Algorithms, IEEE CG&A 9(4), 1989.
+//!       \[MKC08\] Marroquim, Kraus, Cavalcanti: Efficient Image Reconstruction for Point-Based and
+//!       Line-Based Rendering, Computers & Graphics 32, 2008. \[MOC08\] Marroquim, Oliveira,
+//!       Cavalcanti: High Quality Image Reconstruction of Point Models, SIBGRAPI 2008. \[WBSS04\]
+//!       Wang, Bovik, Sheikh, Simoncelli: Image Quality Assessment, IEEE TIP 2004. In the pages of
+//!       the modules, `Decided:` marks what a source leaves open, `Departs:` where this crate
+//!       differs.
 //!
 //! # Example
 //!

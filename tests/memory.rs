@@ -1,7 +1,7 @@
 //! Peak memory of a render, measured from outside the allocator.
 //!
-//! The budget: 100 bytes a surfel and 64 bytes a pixel beyond the scene. The images of the single pass
-//! have to live in it too, and whole they would not.
+//! The budget: 100 bytes a surfel and 64 bytes a pixel beyond the scene. The images of the single
+//! pass have to live in it too, and whole they would not.
 
 #![cfg(target_os = "linux")]
 

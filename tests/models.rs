@@ -53,8 +53,8 @@ fn derived_normals_agree_with_those_of_the_scans() {
         let truth = cloud.normal.clone().unwrap();
         let bare = Cloud { normal: None, color: None, ..cloud };
         let points = Cloud { triangles: Vec::new(), ..bare.clone() };
-        // Cosine and share of the vertices. The files weight triangles by angle and not by area, and
-        // planes through 17 points round the features off.
+        // Cosine and share of the vertices. The files weight triangles by angle and not by area,
+        // and planes through 17 points round the features off.
         for (cloud, cosine, share) in [(bare, 0.9, 0.99), (points, 0.5, 0.9)] {
             let position = cloud.position.clone();
             let (surfels, derived) =

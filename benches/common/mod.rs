@@ -24,12 +24,13 @@ pub(crate) fn models(pattern: &str) -> Vec<(&'static str, Cloud)> {
     found
 }
 
-/// `count` points on the triangles of a mesh, evenly by area, with interpolated normals of any length,
-/// interpolated colours if the mesh has them, and nothing else; the mesh has triangles and normals.
+/// `count` points on the triangles of a mesh, evenly by area, with interpolated normals of any
+/// length, interpolated colours if the mesh has them, and nothing else; the mesh has triangles and
+/// normals.
 ///
 /// Point i lies in the triangle at which the sum of the areas first exceeds the whole times random
-/// number 3i of the seed, at the corners' mean with the weights 1 - s, s (1 - v), s v, where s is the
-/// square root of number 3i + 1 and v number 3i + 2; all in f64.
+/// number 3i of the seed, at the corners' mean with the weights 1 - s, s (1 - v), s v, where s is
+/// the square root of number 3i + 1 and v number 3i + 2; all in f64.
 pub(crate) fn resample(cloud: &Cloud, count: usize, seed: u64) -> Cloud {
     let corner = |i: u32| cloud.position[i as usize].as_dvec3();
     let mut whole = 0.0;

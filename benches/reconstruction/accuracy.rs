@@ -2,13 +2,13 @@
 //!
 //! - RMSE and SSIM as in [`splatref::verify::metrics`], of the whole picture.
 //! - Holes: empty pixels of the reference's interior, per mille of it. Spill: painted pixels of its
-//!   exterior, per mille of what it covers. Edge: pixels of its silhouette that one of the two paints
-//!   and the other does not, per cent. See [`splatref::verify::metrics::coverage`].
-//! - Inside: the RMSE over the reference's interior, holes included. Behind: painted pixels there whose
-//!   depth is more than 4 median radii greater than the reference's, before: less; per mille.
-//! - Outline: how many pairs of pixels, side by side or one above the other, have one that is painted
-//!   and one that is not, by that number of the reference; above 1 a silhouette is rougher, or there
-//!   are holes.
+//!   exterior, per mille of what it covers. Edge: pixels of its silhouette that one of the two
+//!   paints and the other does not, per cent. See [`splatref::verify::metrics::coverage`].
+//! - Inside: the RMSE over the reference's interior, holes included. Behind: painted pixels there
+//!   whose depth is more than 4 median radii greater than the reference's, before: less; per mille.
+//! - Outline: how many pairs of pixels, side by side or one above the other, have one that is
+//!   painted and one that is not, by that number of the reference; above 1 a silhouette is rougher,
+//!   or there are holes.
 
 use super::{Bench, EWA, Shot, Subject, methods, splatting};
 use splatref::Result;

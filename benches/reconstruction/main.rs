@@ -1,15 +1,17 @@
-//! The image-space methods, the pyramid \[MKC08\] and the template \[MOC08\], against EWA splatting and
-//! against true pictures: what their papers claim about quality, as numbers.
+//! The image-space methods, the pyramid \[MKC08\] and the template \[MOC08\], against EWA splatting
+//! and against true pictures: what their papers claim about quality, as numbers.
 //!
-//! `cargo bench --bench reconstruction` prints Markdown tables; an argument is a pattern that the names
-//! of scenes must contain. With `--pictures DIR` every picture is kept there as a PNG. Pictures have
-//! 800 x 600 pixels, `f32`, from the default cameras, lit by the default headlight. Where the true
-//! picture is known it is **lit too**, in f64 by the same shader, so that errors of normals count as
-//! they are seen. Sections: [`accuracy`], [`stability`], [`reach`]; each states what it measures.
+//! `cargo bench --bench reconstruction` prints Markdown tables; an argument is a pattern that the
+//! names of scenes must contain. With `--pictures DIR` every picture is kept there as a PNG.
+//! Pictures have 800 x 600 pixels, `f32`, from the default cameras, lit by the default headlight.
+//! Where the true picture is known it is **lit too**, in f64 by the same shader, so that errors of
+//! normals count as they are seen. Sections: [`accuracy`], [`stability`], [`reach`]; each states
+//! what it measures.
 //!
-//! Scenes are shapes of 10 k and 200 k surfels, some under a parallel camera too, and scans: as they are, with derived radii, and sampled
-//! evenly at random, with the radius a multiple of sqrt(area / count): 7/4, at which a point lies in
-//! ten discs, but 1 for 1 M points, where discs are smaller than pixels.
+//! Scenes are shapes of 10 k and 200 k surfels, some under a parallel camera too, and scans: as
+//! they are, with derived radii, and sampled evenly at random, with the radius a multiple of
+//! sqrt(area / count): 7/4, at which a point lies in ten discs, but 1 for 1 M points, where discs
+//! are smaller than pixels.
 
 mod accuracy;
 #[path = "../common/mod.rs"]

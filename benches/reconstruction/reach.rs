@@ -1,10 +1,11 @@
 //! Reach: the share of a single ellipse's pixels that are painted.
 //!
-//! One disc, alone in a picture of 256 x 256 pixels under an orthographic camera of one pixel a unit, at
-//! random places, which are as many offsets to the grids of all levels; tilted by 0, 45 or 75 degrees
-//! towards random sides. Its pixels are those whose centres the ellipse around its projected centre
-//! holds. The pyramid's ellipse is around the centre of the pixel that its centre falls into, so a share
-//! below 1 is that too where discs are small. Painted pixels that are none of the disc's: `beyond`.
+//! One disc, alone in a picture of 256 x 256 pixels under an orthographic camera of one pixel a
+//! unit, at random places, which are as many offsets to the grids of all levels; tilted by 0, 45 or
+//! 75 degrees towards random sides. Its pixels are those whose centres the ellipse around its
+//! projected centre holds. The pyramid's ellipse is around the centre of the pixel that its centre
+//! falls into, so a share below 1 is that too where discs are small. Painted pixels that are none
+//! of the disc's: `beyond`.
 
 use super::{Bench, lit, methods};
 use glam::{DVec3, Vec3};

@@ -1,8 +1,8 @@
 //! Stability under motion: the picture moved by s = 0, 1/8 ... 1 pixel to the right.
 //!
 //! The principal point's column becomes cx + s, exactly: nothing but the grid of pixels changes
-//! against the scene. With `P(s)` a method's picture and `T(s)` the reference's at the same shift, the
-//! true picture of a shape or else EWA's, over all pixels:
+//! against the scene. With `P(s)` a method's picture and `T(s)` the reference's at the same shift,
+//! the true picture of a shape or else EWA's, over all pixels:
 //!
 //! ```text
 //!   change    RMSE of P(s + 1/8) and P(s)                             what an eye sees change
@@ -11,8 +11,8 @@
 //!   a pixel   RMSE of P(1) moved back by a column and P(0)            0 if only the pixel grid matters
 //! ```
 //!
-//! each as the mean over the shifts and the worst. `a pixel` leaves out the column that comes in; what
-//! it finds comes from the coarser grids of the method alone.
+//! each as the mean over the shifts and the worst. `a pixel` leaves out the column that comes in;
+//! what it finds comes from the coarser grids of the method alone.
 
 use super::{Bench, EWA, Shot, Subject, methods, splatting};
 use splatref::Result;

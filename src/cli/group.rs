@@ -34,8 +34,8 @@ pub(super) struct Args {
     /// Splats whose normals are opposite may share a group
     #[arg(long)]
     opposite: bool,
-    /// So may those in one plane: least cosine of the normals, most distance from each other's plane
-    /// in sums of their radii, most difference of colours
+    /// So may those in one plane: least cosine of the normals, most distance from each other's
+    /// plane in sums of their radii, most difference of colours
     #[arg(long, value_name = "COSINE,OFFSET,COLOR", value_parser = coplanar,
         allow_hyphen_values = true)]
     coplanar: Option<Coplanar>,

@@ -124,7 +124,8 @@ pub(super) struct SceneOptions {
     /// Depth bins, 1 to 65535 [default: as deep as epsilon]
     #[arg(long, value_name = "N", help_heading = "Groups")]
     bins: Option<u32>,
-    /// How groups are made to cover the surface: none, add or enlarge [default of transparency: add]
+    /// How groups are made to cover the surface: none, add or enlarge [default of transparency:
+    /// add]
     #[arg(long, value_name = "NAME", value_parser = words::extension, help_heading = "Groups")]
     extend: Option<ExtensionChoice>,
 

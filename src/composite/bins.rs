@@ -1,8 +1,8 @@
 //! Low-precision and Voronoi-enhanced depth \[ZP06, eq. 6 and 10\].
 //!
-//! With `d_min` and `d_max` the nearest and the farthest depth and n bins, both are kept in units of a
-//! bin, that is n times the paper's value (`Departs:` a final product with 1/n would only round digits
-//! away, and no comparison needs it):
+//! With `d_min` and `d_max` the nearest and the farthest depth and n bins, both are kept in units
+//! of a bin, that is n times the paper's value (`Departs:` a final product with 1/n would only
+//! round digits away, and no comparison needs it):
 //!
 //! ```text
 //!   bin(t)        = floor(((t - d_min) / (d_max - d_min)) n), brought into [0, n]          eq. 6
@@ -10,20 +10,20 @@
 //!   ratio         = d_i / r_i, the distance from the splat's centre as a part of its radius
 //! ```
 //!
-//! in this order of operations. `Departs:` at the rim of a splat the ratio is 1 and eq. 10 gives the
-//! value of the next bin's centre; the ratio therefore ends at 255/256, which added to a bin up to
-//! [`MAX_BINS`] is exact in `f32`.
+//! in this order of operations. `Departs:` at the rim of a splat the ratio is 1 and eq. 10 gives
+//! the value of the next bin's centre; the ratio therefore ends at 255/256, which added to a bin up
+//! to [`MAX_BINS`] is exact in `f32`.
 //!
 //! Laws, for numbers t >= 0 as depths are:
 //!
 //! - `bin` never falls as t grows: no rounding turns two layers around.
 //! - Depths in [`d_min`, `d_max`] that differ by at least (1 + 2^-5) `(d_max - d_min) / n` are in
-//!   different bins, and then z decides as the depth does, whatever the ratios. (In exact arithmetic
-//!   1/n is enough; `f32` with the most bins rounds away up to 2^-5 of one.) Depths beyond an end
-//!   are all in its bin.
-//! - Within a bin z never falls as the ratio grows: the fragment nearest to its own centre wins. Two
-//!   ratios that differ by no more than the spacing of `f32` at the bin, at most 2^-8, may tie; all
-//!   from 255/256 on do.
+//!   different bins, and then z decides as the depth does, whatever the ratios. (In exact
+//!   arithmetic 1/n is enough; `f32` with the most bins rounds away up to 2^-5 of one.) Depths
+//!   beyond an end are all in its bin.
+//! - Within a bin z never falls as the ratio grows: the fragment nearest to its own centre wins.
+//!   Two ratios that differ by no more than the spacing of `f32` at the bin, at most 2^-8, may tie;
+//!   all from 255/256 on do.
 
 use crate::error::{Error, Result};
 use crate::number::Real;

@@ -14,9 +14,10 @@ pub fn limit<R: Real>(nearest: R, epsilon: R) -> R {
 /// Whether a fragment of depth `t` belongs to the visible surface: `t <= limit(nearest, epsilon)`,
 /// the limit included.
 ///
-/// The conservative test of \[ZP06, section 3.2, Fig. 5, line 6\] and of the 2+1-pass methods before
-/// it. Laws: the nearest fragment always passes; epsilon = 0 keeps the depth of the nearest alone;
-/// epsilon = +inf keeps everything; a greater epsilon never drops a fragment that a smaller kept.
+/// The conservative test of \[ZP06, section 3.2, Fig. 5, line 6\] and of the 2+1-pass methods
+/// before it. Laws: the nearest fragment always passes; epsilon = 0 keeps the depth of the nearest
+/// alone; epsilon = +inf keeps everything; a greater epsilon never drops a fragment that a smaller
+/// kept.
 #[inline(always)]
 pub fn visible<R: Real>(t: R, nearest: R, epsilon: R) -> bool {
     t <= limit(nearest, epsilon)

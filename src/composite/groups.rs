@@ -1,7 +1,7 @@
 //! The compositing operator over the depth-images of groups \[ZP06, section 3.2, Fig. 5\].
 //!
-//! [`compose`] is n-ary, and has to be: the epsilon-z test of one image needs the nearest depth of all.
-//! With `t_k`, the depth of image k, and its weighted attributes:
+//! [`compose`] is n-ary, and has to be: the epsilon-z test of one image needs the nearest depth of
+//! all. With `t_k`, the depth of image k, and its weighted attributes:
 //!
 //! ```text
 //!   nearest = the least t_k                                         line 4
@@ -20,9 +20,9 @@
 //!   depth test of the whole group hid, and, if that is the Voronoi one, hide another by a nearer
 //!   depth: that is the depth test's doing, not this operator's.)
 //! - It is **not** associative: folding it over pairs is another function. With epsilon = 1 and
-//!   depths 0, 0.75, 1.5, all three together keep the first two; `(1 with 2) with 0` keeps all three
-//!   if the pair is represented by its nearest depth, 0.75 - the pair was blended before the nearest
-//!   was known. So a backend may not composite images as they come.
+//!   depths 0, 0.75, 1.5, all three together keep the first two; `(1 with 2) with 0` keeps all
+//!   three if the pair is represented by its nearest depth, 0.75 - the pair was blended before the
+//!   nearest was known. So a backend may not composite images as they come.
 
 use super::{epsilon, sum};
 use crate::number::Real;
@@ -64,8 +64,8 @@ impl<R: Real> Sample<R> {
 
 /// The operator of Fig. 5 over the samples of all images at one pixel, in the order of the groups.
 ///
-/// Gives the sums, with the nearest depth, and how many samples passed the epsilon-z test. `epsilon`
-/// is >= 0 and may be +inf.
+/// Gives the sums, with the nearest depth, and how many samples passed the epsilon-z test.
+/// `epsilon` is >= 0 and may be +inf.
 pub fn compose<R: Real>(samples: &[Sample<R>], epsilon: R) -> (Sample<R>, u32) {
     let mut sums = Sample::<R>::EMPTY;
     for sample in samples {

@@ -8,10 +8,11 @@
 //!   not less than the least a_j and not more than the greatest of those that take part, plus 0
 //! ```
 //!
-//! `Decided:` the bounds. They change nothing but rounding (three equal numbers, added and divided by 3, can
-//! differ from them), and give the laws: a constant is reproduced exactly, an average never leaves the
-//! hull of its terms, and since the sums pair neighbours 0 with 1 and 2 with 3, exchanging left with right
-//! or top with bottom changes no bit. Of 1, 2 or 4 terms of weight 1 it is the plain mean.
+//! `Decided:` the bounds. They change nothing but rounding (three equal numbers, added and divided
+//! by 3, can differ from them), and give the laws: a constant is reproduced exactly, an average
+//! never leaves the hull of its terms, and since the sums pair neighbours 0 with 1 and 2 with 3,
+//! exchanging left with right or top with bottom changes no bit. Of 1, 2 or 4 terms of weight 1 it
+//! is the plain mean.
 
 use crate::number::Real;
 
@@ -66,11 +67,11 @@ impl<R: Real> Mean<R> {
     }
 }
 
-/// Which of four neighbours belong to the surface in front: of the `candidates` the one with the least
-/// `front`, ties to the earlier, and all whose `front` is not beyond its `back`.
+/// Which of four neighbours belong to the surface in front: of the `candidates` the one with the
+/// least `front`, ties to the earlier, and all whose `front` is not beyond its `back`.
 ///
-/// Intervals [front, back] that overlap, since no other begins before that of the frontmost. The second
-/// result is which one is in front, 0 if there is no candidate.
+/// Intervals [front, back] that overlap, since no other begins before that of the frontmost. The
+/// second result is which one is in front, 0 if there is no candidate.
 #[inline(always)]
 #[must_use]
 pub fn foremost<R: Real>(candidates: [bool; 4], front: [R; 4], back: [R; 4]) -> ([bool; 4], usize) {

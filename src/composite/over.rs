@@ -1,7 +1,7 @@
 //! Alpha-blending of transparent layers.
 //!
-//! Colours are accumulated over black, that is, multiplied by their opacity; whatever lies behind is
-//! blended in at the end by what the layers let through.
+//! Colours are accumulated over black, that is, multiplied by their opacity; whatever lies behind
+//! is blended in at the end by what the layers let through.
 
 use super::sum;
 use crate::number::Real;
@@ -37,8 +37,8 @@ impl<R: Real> Blend<R> {
     /// The next nearer layer, back to front: `alpha c + (1 - alpha) below`, of the colour and, with
     /// c = 1, of the opacity \[ZP06, section 3.3\].
     ///
-    /// Laws: alpha = 1 leaves the layer alone, alpha = 0 leaves what was, and the opacity of layers is
-    /// 1 - the product of their 1 - alpha, up to rounding.
+    /// Laws: alpha = 1 leaves the layer alone, alpha = 0 leaves what was, and the opacity of layers
+    /// is 1 - the product of their 1 - alpha, up to rounding.
     #[inline(always)]
     #[must_use]
     pub fn over(self, alpha: R, color: [R; 3]) -> Self {

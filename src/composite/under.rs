@@ -1,7 +1,7 @@
 //! Alpha-blending of transparent layers from front to back: each goes under what is there.
 //!
-//! As [Porter, Duff 1984, *Compositing Digital Images*] have it, with the colour over black, that is,
-//! multiplied by its opacity:
+//! As [Porter, Duff 1984, *Compositing Digital Images*] have it, with the colour over black, that
+//! is, multiplied by its opacity:
 //!
 //! ```text
 //!   start    C = 0, A = 0, T = 1
@@ -9,10 +9,10 @@
 //!            T = T (1 - a)
 //! ```
 //!
-//! The layers nearest to the eye lose no digits, and T tells when there is no more to see. A factor of
-//! 0 adds nothing, even of an infinite colour. Laws: a = 1 on a clear pixel gives the layer's colour
-//! unchanged and hides the rest; a = 0 changes nothing; blending the same layers from back to front
-//! gives the same up to rounding.
+//! The layers nearest to the eye lose no digits, and T tells when there is no more to see. A factor
+//! of 0 adds nothing, even of an infinite colour. Laws: a = 1 on a clear pixel gives the layer's
+//! colour unchanged and hides the rest; a = 0 changes nothing; blending the same layers from back
+//! to front gives the same up to rounding.
 
 use crate::number::Real;
 

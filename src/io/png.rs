@@ -11,10 +11,10 @@ use std::path::Path;
 
 /// Writes a plane of linear RGB to the PNG file at `path`, sRGB-encoded, 8 bits a channel.
 ///
-/// With `alpha`, a plane of coverage in [0, 1] of the same size, the file is RGBA, not premultiplied,
-/// as PNG means it; alpha is stored linearly, `floor(255 a + 1/2)`. Values beyond [0, 1] are clipped,
-/// NaN is 0. The pixels of the file are a function of the arguments; its bytes also of the version of
-/// the `image` crate.
+/// With `alpha`, a plane of coverage in [0, 1] of the same size, the file is RGBA, not
+/// premultiplied, as PNG means it; alpha is stored linearly, `floor(255 a + 1/2)`. Values beyond
+/// [0, 1] are clipped, NaN is 0. The pixels of the file are a function of the arguments; its bytes
+/// also of the version of the `image` crate.
 ///
 /// # Errors
 /// [`Error::Invalid`] if the planes have no pixel or are not of one size; [`Error::Io`] if the file

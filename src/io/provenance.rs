@@ -13,8 +13,9 @@ use crate::splat::Kernel;
 ///
 /// Equal for equal pictures: nothing in it depends on the time, the machine, the directory or the
 /// way the picture was computed. Floats are the shortest decimals that give the same `f32`. The
-/// scene is identified by [`Scene::sha256`], its groups by [`crate::scene::group::Groups::sha256`], the
-/// camera by all its numbers. `bins_in_world_units` are `d_min`, `d_max` and n of \[ZP06, eq. 6\].
+/// scene is identified by [`Scene::sha256`], its groups by [`crate::scene::group::Groups::sha256`],
+/// the camera by all its numbers. `bins_in_world_units` are `d_min`, `d_max` and n of \[ZP06, eq.
+/// 6\].
 #[must_use]
 pub fn text(
     scene: &Scene,

@@ -1,7 +1,8 @@
 //! One file or folder for each published method; each reads as its paper's pass list.
 //!
 //! - [`ewa`]: EWA surface splatting in two geometry passes and a normalization \[ZPvBG01, GP03\].
-//! - [`peeling`]: transparency by depth peeling, the truth that the others are compared with \[ZP06\].
+//! - [`peeling`]: transparency by depth peeling, the truth that the others are compared with
+//!   \[ZP06\].
 //! - [`mod@projection`]: a scene as one sample a pixel, which the next two begin with.
 //! - [`pyramid`]: pull-push interpolation, with ribbons, tubes and polygons \[MKC08\].
 //! - [`template`]: reconstruction with templates of k x k pixels \[MOC08\].
@@ -12,10 +13,10 @@
 //! # Fast paths
 //!
 //! [`ewa::fast`] and [`single_pass::fast`] give the bits of the definitions for `f32`, from another
-//! layout. A tile is done from beginning to end while it is in the cache: its splats are gathered into
-//! one list, and its pixels are kept in blocks of 4 x 4, one vector of 16 lanes a quantity. A lane is a
-//! pixel and never a partial sum, so every pixel sees the operations of the definition in their
-//! order. Three things differ, and none of them changes a bit:
+//! layout. A tile is done from beginning to end while it is in the cache: its splats are gathered
+//! into one list, and its pixels are kept in blocks of 4 x 4, one vector of 16 lanes a quantity. A
+//! lane is a pixel and never a partial sum, so every pixel sees the operations of the definition in
+//! their order. Three things differ, and none of them changes a bit:
 //!
 //! - A block is visited whole. The lanes outside a splat's bounds have q > k^2.
 //! - The epsilon-z test `1/w <= limit` becomes `w >= least`, with `least` the smallest `f32` that

@@ -11,8 +11,9 @@ use std::time::{Duration, Instant};
 /// A picture and how it came about.
 #[derive(Clone, Debug)]
 pub struct Picture<R> {
-    /// The planes: the shaded colour (`R G B`), `A` (1 where a surfel or the environment is seen, else 0), `Z`,
-    /// `normal` (world space; not of an unlit scene), `weight`, `id`; before them those of the stages, if asked for.
+    /// The planes: the shaded colour (`R G B`), `A` (1 where a surfel or the environment is seen,
+    /// else 0), `Z`, `normal` (world space; not of an unlit scene), `weight`, `id`; before them
+    /// those of the stages, if asked for.
     pub frame: Frame<R>,
     /// What became of the surfels.
     pub tally: Tally,
@@ -69,7 +70,8 @@ pub(super) fn before_environment<R: Real>(
     (color, alpha)
 }
 
-/// A framebuffer for a camera's picture: the memory of an earlier frame, if that had the same planes.
+/// A framebuffer for a camera's picture: the memory of an earlier frame, if that had the same
+/// planes.
 pub(super) fn framebuffer(
     camera: &Camera,
     wanted: Wanted,

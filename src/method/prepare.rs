@@ -32,8 +32,9 @@ impl<R: Real, S: Send> Prepared<R, S> {
     ) -> Self {
         let view = View::new(camera);
         let projector = Projector::new(view, &settings.kernel, settings.cull);
-        // Many batches, so that threads end together, of at most 8192 surfels, which fit the cache; but
-        // at least two items for each tile, so that the starts of its bins take 2 bytes an item.
+        // Many batches, so that threads end together, of at most 8192 surfels, which fit the cache;
+        // but at least two items for each tile, so that the starts of its bins take 2 bytes an
+        // item.
         let size = (count / 64).min(8192).max(2 * grid.len());
         let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
         let results = exec.ordered(ranges.collect(), |range: Range<usize>| {

@@ -30,8 +30,8 @@ pub enum Method {
 }
 
 impl Method {
-    /// Footprints, epsilon and culling of a method that draws splats; none of one that reconstructs in
-    /// image space.
+    /// Footprints, epsilon and culling of a method that draws splats; none of one that reconstructs
+    /// in image space.
     #[must_use]
     pub fn splats(&self) -> Option<&ewa::Settings> {
         match self {
@@ -176,8 +176,8 @@ pub struct Preparation {
     memory: Memory,
 }
 
-/// What the fast paths of the image-space methods work in, kept from picture to picture; a picture that is drawn
-/// while another one is has its own.
+/// What the fast paths of the image-space methods work in, kept from picture to picture; a picture
+/// that is drawn while another one is has its own.
 #[derive(Debug, Default)]
 struct Memory {
     pyramid: Mutex<pyramid::fast::Levels>,

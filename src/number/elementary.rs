@@ -5,9 +5,9 @@
 //!
 //! - **f64**: the functions of `libm` (pinned), which give the same bits on every target.
 //! - **f32**: the definition is *the correctly rounded value*. It is computed in f64 and rounded
-//!   once: [`exp_f32`] by the polynomial below, which is checked over every `f32` in its range by an
-//!   ignored test against a correctly rounded oracle; the others through `libm`, or to the bits of
-//!   `libm` by another way ([`powers_f32`]).
+//!   once: [`exp_f32`] by the polynomial below, which is checked over every `f32` in its range by
+//!   an ignored test against a correctly rounded oracle; the others through `libm`, or to the bits
+//!   of `libm` by another way ([`powers_f32`]).
 
 /// e^x in f64.
 #[must_use]
@@ -37,14 +37,14 @@ pub const LANES: usize = 16;
 /// nothing underflows, the product is off by a relative error of (w + 72) u to first order: the
 /// squares and their products are rounded fewer than w times, counted with what a square doubles;
 /// each of at most 24 roots is off by 2 u or less, and its multiplication adds u. [`pow`] is off by
-/// less than an ulp, 2 u. So its value is in the interval of (w + 128) 2 u about the product, and if
-/// both ends round to one `f32`, so does that value. Where they do not, [`pow`] is called: for w = 32
-/// that is about one number in a million.
+/// less than an ulp, 2 u. So its value is in the interval of (w + 128) 2 u about the product, and
+/// if both ends round to one `f32`, so does that value. Where they do not, [`pow`] is called: for w
+/// = 32 that is about one number in a million.
 ///
-/// An underflow of a factor means that x < 1 and that x^y, the product and the value of [`pow`] are all
-/// beyond 2^-1000: they round to 0. An overflow likewise means that they round to infinity. A NaN
-/// differs from itself, and is left to [`pow`]; so is every `y` not in [0, 65536] and every `y` below 1
-/// that needs more than 24 roots.
+/// An underflow of a factor means that x < 1 and that x^y, the product and the value of [`pow`] are
+/// all beyond 2^-1000: they round to 0. An overflow likewise means that they round to infinity. A
+/// NaN differs from itself, and is left to [`pow`]; so is every `y` not in [0, 65536] and every `y`
+/// below 1 that needs more than 24 roots.
 #[inline(always)]
 #[must_use]
 pub fn powers_f32(x: &[f32; LANES], y: f32) -> [f32; LANES] {
@@ -222,7 +222,8 @@ mod tests {
         assert_eq!(exp_f32(0.0), 1.0);
     }
 
-    /// Bases that a power may meet: all of (0, 1), near 1 on both sides, tiny, and any float at all.
+    /// Bases that a power may meet: all of (0, 1), near 1 on both sides, tiny, and any float at
+    /// all.
     fn bases(seed: u64) -> [f32; LANES] {
         std::array::from_fn(|lane| {
             let (i, lane) = (seed * LANES as u64, lane as u64);
@@ -277,7 +278,8 @@ mod tests {
 
     #[test]
     fn a_power_that_the_product_cannot_tell_is_left_to_pow() {
-        // Large exponents multiply the error: all floats near 1, whose powers are not 0 or infinite.
+        // Large exponents multiply the error: all floats near 1, whose powers are not 0 or
+        // infinite.
         let mut misled = 0;
         for y in (0_u16..40).map(|i| 65_536.0 - 0.25 * f32::from(i * i)) {
             let whole = (y as u32, ((y - y.floor()) * 16_777_216.0) as u32);

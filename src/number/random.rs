@@ -40,8 +40,8 @@ mod tests {
     #[test]
     fn the_streams_are_those_of_splitmix64() {
         // The outputs of Vigna's splitmix64.c (https://prng.di.unimi.it/splitmix64.c) as they are
-        // published for seed 0 and, at https://rosettacode.org/wiki/Pseudo-random_numbers/Splitmix64,
-        // for seed 1234567.
+        // published for seed 0 and, at
+        // https://rosettacode.org/wiki/Pseudo-random_numbers/Splitmix64, for seed 1234567.
         let zero = [0xE220_A839_7B1D_CDAF, 0x6E78_9E6A_A1B9_65F4, 0x06C4_5D18_8009_454F];
         assert_eq!([0, 1, 2].map(|i| bits(0, i)), zero);
         let rosetta = [

@@ -75,9 +75,9 @@ impl Scene {
 impl Groups {
     /// SHA-256 in lower-case hexadecimal.
     ///
-    /// Of the bytes `"splatref groups 1\n"`, the u64 count of groups and the scale of each (f32), the
-    /// u64 count of surfels and the own group of each (a byte), the u64 count of additions, each a u32
-    /// surfel and a byte, ascending; numbers in little-endian order.
+    /// Of the bytes `"splatref groups 1\n"`, the u64 count of groups and the scale of each (f32),
+    /// the u64 count of surfels and the own group of each (a byte), the u64 count of additions,
+    /// each a u32 surfel and a byte, ascending; numbers in little-endian order.
     #[must_use]
     pub fn sha256(&self) -> String {
         let mut hash = Hasher(Sha256::new());

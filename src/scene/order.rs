@@ -1,46 +1,47 @@
 //! Surfels from back to front: a BSP tree that is built once and walked for every view.
 //!
 //! \[ZP06, section 5.2.1\] takes it from \[Sam89\] (Samet: *The Design and Analysis of Spatial Data
-//! Structures*, 1989). The tree splits the **centres** of the surfels; their radii and normals do not
-//! matter.
+//! Structures*, 1989). The tree splits the **centres** of the surfels; their radii and normals do
+//! not matter.
 //!
 //! **The tree**, a function of the positions and their indices:
 //!
 //! 1. A node is a set of surfels; the root has all of them. A node of one surfel is not split.
 //! 2. Its axis is the one with the largest extent: largest minus smallest coordinate, in f64. Ties:
 //!    the first of x, y, z.
-//! 3. Sort its surfels by (coordinate along the axis, surfel index). Coordinates compare as numbers:
-//!    -0 = +0. The surfel of rank floor(len/2), counted from 0, is the node's own; those before it are
-//!    the low half, those after it the high half, which may be empty. Its coordinate is the plane.
+//! 3. Sort its surfels by (coordinate along the axis, surfel index). Coordinates compare as
+//!    numbers: -0 = +0. The surfel of rank floor(len/2), counted from 0, is the node's own; those
+//!    before it are the low half, those after it the high half, which may be empty. Its coordinate
+//!    is the plane.
 //!
-//! So surfels that lie in the plane may be in either half, and coincident ones cost nothing extra: the
-//! tree of n surfels is floor(log2 n) deep whatever they are.
+//! So surfels that lie in the plane may be in either half, and coincident ones cost nothing extra:
+//! the tree of n surfels is floor(log2 n) deep whatever they are.
 //!
-//! **The walk**, at each node: the far half, the node's own surfel, the near half. The high half is the
-//! near one if `e > plane` in f64, else the low half is, with e the eye along the node's axis:
+//! **The walk**, at each node: the far half, the node's own surfel, the near half. The high half is
+//! the near one if `e > plane` in f64, else the low half is, with e the eye along the node's axis:
 //!
-//! - perspective: the coordinate of [`Camera::eye`]. `Decided:` if the eye lies in the plane, the low
-//!   half is the near one: no ray passes from one half into the other.
-//! - orthographic: +inf if the component along the axis of the direction towards the eye, which is the
-//!   third row of the view matrix, is > 0, else -inf. `Decided:` a component of 0 counts as
+//! - perspective: the coordinate of [`Camera::eye`]. `Decided:` if the eye lies in the plane, the
+//!   low half is the near one: no ray passes from one half into the other.
+//! - orthographic: +inf if the component along the axis of the direction towards the eye, which is
+//!   the third row of the view matrix, is > 0, else -inf. `Decided:` a component of 0 counts as
 //!   negative, for the same reason.
 //!
-//! **The law**: of two surfels of a node whose centres lie strictly on different sides of its plane,
-//! the one on the side away from the eye comes first. No ray from the eye meets the near side after
-//! the far one, so that one order is right for all pixels, and exactly so for surfels that reach
-//! across no plane.
+//! **The law**: of two surfels of a node whose centres lie strictly on different sides of its
+//! plane, the one on the side away from the eye comes first. No ray from the eye meets the near
+//! side after the far one, so that one order is right for all pixels, and exactly so for surfels
+//! that reach across no plane.
 //!
-//! `Decided:` where centres coincide along the axis, the index decides which is low, and so it is the
-//! eye that decides which comes first. If all surfels are at one place every axis is x: they come in
-//! ascending order of index if `e > plane`, and in descending order if not.
+//! `Decided:` where centres coincide along the axis, the index decides which is low, and so it is
+//! the eye that decides which comes first. If all surfels are at one place every axis is x: they
+//! come in ascending order of index if `e > plane`, and in descending order if not.
 //!
-//! `Decided:` surfels that reach across a plane are not cut, as a BSP tree of polygons would cut them:
-//! each is ordered as a whole, by its centre. What goes wrong: of two surfels that overlap on the
-//! screen and both reach across the plane between their centres, one is drawn before the other at every
-//! pixel, although it may be the nearer one at some. Each is then closer to the plane than its own
-//! radius. It is seen when the eye passes the plane, and the pair swaps at once over the whole overlap.
-//! Within one sheet the two have nearly the same depth, and nearly the same colour; where two sheets
-//! cut each other, a fringe as wide as a radius flickers along the cut.
+//! `Decided:` surfels that reach across a plane are not cut, as a BSP tree of polygons would cut
+//! them: each is ordered as a whole, by its centre. What goes wrong: of two surfels that overlap on
+//! the screen and both reach across the plane between their centres, one is drawn before the other
+//! at every pixel, although it may be the nearer one at some. Each is then closer to the plane than
+//! its own radius. It is seen when the eye passes the plane, and the pair swaps at once over the
+//! whole overlap. Within one sheet the two have nearly the same depth, and nearly the same colour;
+//! where two sheets cut each other, a fringe as wide as a radius flickers along the cut.
 
 use super::tree::Tree;
 use super::{Camera, Projection, Surfels};

@@ -7,8 +7,8 @@
 //! axis, index); those before it are the low half, those after it the high half. `Decided:`
 //! coordinates compare as numbers, so that -0 and +0 are a tie.
 //!
-//! So the tree is a function of the points and their indices, and its depth is the logarithm of their
-//! number whatever they are, coincident ones included.
+//! So the tree is a function of the points and their indices, and its depth is the logarithm of
+//! their number whatever they are, coincident ones included.
 
 use crate::frame::Exec;
 use glam::Vec3;
@@ -36,8 +36,8 @@ pub(super) struct Entry {
 type Part<'a> = (&'a mut [Entry], &'a mut [u8]);
 
 impl Tree {
-    /// Of fewer than 2^32 finite points. Ranges of at most `leaf` points, at least 1, are not split:
-    /// their order has no meaning.
+    /// Of fewer than 2^32 finite points. Ranges of at most `leaf` points, at least 1, are not
+    /// split: their order has no meaning.
     pub(super) fn new(points: &[Vec3], leaf: usize, exec: &Exec) -> Self {
         let mut entries: Vec<_> =
             points.iter().zip(0..).map(|(&point, id)| Entry { point, id }).collect();

@@ -1,9 +1,9 @@
 //! A disc by orthogonal projection: the ellipse of image-space reconstruction.
 //!
-//! A disc of radius rho pixels and normal n = (nx, ny, nz), given in view space and of any length, is
-//! projected along the view axis \[MKC08, section 3.2\], \[MOC08, section 3.1\]: its major axis is
-//! perpendicular to (nx, ny) and 2 rho long, its minor axis is that times |nz|, for |n| = 1. At the
-//! offset (x, y) from its centre, in pixels, x right and y down, in this order of operations:
+//! A disc of radius rho pixels and normal n = (nx, ny, nz), given in view space and of any length,
+//! is projected along the view axis \[MKC08, section 3.2\], \[MOC08, section 3.1\]: its major axis
+//! is perpendicular to (nx, ny) and 2 rho long, its minor axis is that times |nz|, for |n| = 1. At
+//! the offset (x, y) from its centre, in pixels, x right and y down, in this order of operations:
 //!
 //! ```text
 //!   tilt = (nx / nz, ny / nz)             square = rho rho
@@ -14,11 +14,12 @@
 //!
 //! so that d = sqrt(form / square) is the elliptical distance, 1 on the rim. The axes are never
 //! needed: a sum of squares has no cancellation, and the length of n does not enter, so that
-//! averages of normals need not be made unit vectors. (Along the view axis is what both papers say, because
-//! radii are small; but the error is in the angle between the axis and the ray, not in the size of the
-//! disc: a wall that a wide camera sees at its side is edge-on to the axis, and vanishes.) A disc seen edge-on (nz = 0) contains nothing,
-//! not even its centre, and neither does one without a normal or with rho = 0: the form is then
-//! infinite or NaN, or the square is not > 0.
+//! averages of normals need not be made unit vectors. (Along the view axis is what both papers say,
+//! because radii are small; but the error is in the angle between the axis and the ray, not in the
+//! size of the disc: a wall that a wide camera sees at its side is edge-on to the axis, and
+//! vanishes.) A disc seen edge-on (nz = 0) contains nothing, not even its centre, and neither does
+//! one without a normal or with rho = 0: the form is then infinite or NaN, or the square is not >
+//! 0.
 
 use crate::number::{Real, Vector2, Vector3};
 

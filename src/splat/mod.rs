@@ -65,7 +65,8 @@ impl Kernel {
     /// The choice of \[ZPvBG01\]: cut at one standard deviation, a low-pass filter of variance 1.
     pub const ZPVBG01: Self = Self { outline: Outline::Affine, cutoff: 1.0, low_pass: 1.0 };
 
-    /// The choice of \[ZP06, section 3.1\]: the distance from the centre in the disc's plane, no low-pass filter.
+    /// The choice of \[ZP06, section 3.1\]: the distance from the centre in the disc's plane, no
+    /// low-pass filter.
     pub const ZP06: Self = Self { outline: Outline::RayCast, cutoff: 2.0, low_pass: 0.0 };
 
     /// Whether the numbers are in range.

@@ -11,8 +11,9 @@
 //!   g = (n.x d.x + n.y d.y) - n.z               < 0: the front is seen
 //! ```
 //!
-//! **Shape.** The covariance V0 in px^2 of the disc, a Gaussian of standard deviation s = r/k on its
-//! plane, needs no tangent basis: with c = (1, 0, d.x) x n, e = (0, 1, d.y) x n, rx = s sx, ry = s sy
+//! **Shape.** The covariance V0 in px^2 of the disc, a Gaussian of standard deviation s = r/k on
+//! its plane, needs no tangent basis: with c = (1, 0, d.x) x n, e = (0, 1, d.y) x n, rx = s sx, ry
+//! = s sy
 //!
 //! ```text
 //!   xx = (rx rx) c.c      xy = -((rx ry) c.e)      yy = (ry ry) e.e      area = |(rx ry) g|
@@ -32,10 +33,10 @@
 //! Its plane and its facing are those of the surfel's normal, not of U x V. n is not made a unit
 //! vector again in view space.
 //!
-//! **Nearness** of the plane: w0 = 1/t or -t at the centre, wx = m n.x / (fx g), wy = -m n.y / (fy g)
-//! per pixel, the ray-plane intersection relative to the centre. `Decided:` a fragment in the skirt
-//! of the low-pass filter, outside the disc, has no meaningful intersection; its nearness is clamped
-//! to that of the depths [t - half, t + half], the nearer not nearer than the near plane.
+//! **Nearness** of the plane: w0 = 1/t or -t at the centre, wx = m n.x / (fx g), wy = -m n.y / (fy
+//! g) per pixel, the ray-plane intersection relative to the centre. `Decided:` a fragment in the
+//! skirt of the low-pass filter, outside the disc, has no meaningful intersection; its nearness is
+//! clamped to that of the depths [t - half, t + half], the nearer not nearer than the near plane.
 //!
 //! **Outline.** `Affine`, the projection linearized at the centre \[ZPvBG01\]: V = V0 + h I,
 //!
@@ -49,8 +50,8 @@
 //! k sqrt(xx') and k sqrt(yy') about the centre, see [`super::bounds`].
 //!
 //! `Perspective`, the exact ellipse of the projected disc \[ZRB+04\], then the low-pass filter.
-//! `Decided:` \[ZRB+04\] gives the outline as a conic; here its centre and covariance follow from V0
-//! by a rank-one update, without cancellation. With rest = ((t - half)/t) ((t + half)/t) and
+//! `Decided:` \[ZRB+04\] gives the outline as a conic; here its centre and covariance follow from
+//! V0 by a rank-one update, without cancellation. With rest = ((t - half)/t) ((t + half)/t) and
 //! factor = (k k) / rest, before the formulas of `Affine`:
 //!
 //! ```text
@@ -73,13 +74,14 @@
 //! Bounds: those of the exact outline and of the filter's circle of radius k sqrt(h), both; a disc
 //! that reaches the near plane has those of its visible part.
 //!
-//! **Fate**, in this arithmetic: it may differ between `f32` and `f64`. In this order: a surfel whose centre is not farther than the near plane is `Behind`;
-//! one whose amplitude is below 2^-96, whose gradient of nearness exceeds 2^96 a pixel, or of which
-//! any number is not finite is `Degenerate` (seen edge-on, or astronomically large or small); with
-//! culling, one with g >= 0 is `BackFacing`; one that cannot be seen is `Outside`: no pixel of the
-//! picture is in its bounds, or the sphere about p that holds it, of radius r or, for an ellipse,
-//! sqrt(k U . k U + k V . k V), lies beyond a side of the view by more than the reach of the low-pass
-//! filter, k sqrt(h) px. For the left side that is
+//! **Fate**, in this arithmetic: it may differ between `f32` and `f64`. In this order: a surfel
+//! whose centre is not farther than the near plane is `Behind`; one whose amplitude is below 2^-96,
+//! whose gradient of nearness exceeds 2^96 a pixel, or of which any number is not finite is
+//! `Degenerate` (seen edge-on, or astronomically large or small); with culling, one with g >= 0 is
+//! `BackFacing`; one that cannot be seen is `Outside`: no pixel of the picture is in its bounds, or
+//! the sphere about p that holds it, of radius r or, for an ellipse, sqrt(k U . k U + k V . k V),
+//! lies beyond a side of the view by more than the reach of the low-pass filter, k sqrt(h) px. For
+//! the left side that is
 //!
 //! ```text
 //!   fx p.x + cx t < -(r sqrt(fx fx + cx cx) + (k sqrt(h)) t)      orthographic: t = 1, and fx r
@@ -128,8 +130,8 @@ pub struct Disc<R> {
 }
 
 impl<R: Real> Disc<R> {
-    /// The radius of a sphere that holds it: r, or sqrt(U . U + V . V) of an ellipse, whose half axes
-    /// need not be perpendicular.
+    /// The radius of a sphere that holds it: r, or sqrt(U . U + V . V) of an ellipse, whose half
+    /// axes need not be perpendicular.
     pub(super) fn reach(&self) -> R {
         match self.tangents {
             None => self.radius,

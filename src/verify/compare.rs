@@ -69,8 +69,8 @@ pub struct Differences {
     pub failing: usize,
     /// Pixels where either value is NaN, whether their bits differ or not.
     pub nan: usize,
-    /// The first pixel, in the order of rows, that is beyond the tolerance; where there is none, the
-    /// first whose bits differ.
+    /// The first pixel, in the order of rows, that is beyond the tolerance; where there is none,
+    /// the first whose bits differ.
     pub first: Option<Difference>,
     /// The largest distance in representable numbers, NaN aside; of indices, in integers.
     pub max_ulp: u32,

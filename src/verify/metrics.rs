@@ -1,10 +1,10 @@
-//! RMSE, PSNR and SSIM: how far two pictures are apart, in one number each; and holes and spill, how
-//! far they agree on what is covered ([`coverage`]).
+//! RMSE, PSNR and SSIM: how far two pictures are apart, in one number each; and holes and spill,
+//! how far they agree on what is covered ([`coverage`]).
 //!
-//! `Decided:` the first three are taken of the values as stored, for pictures linear and not clipped, with
-//! a peak of 1: a value that a display would clip counts in full. They serve to rank methods; whether
-//! a picture is right is for [`super::compare`] to say. A NaN or an infinity in a plane makes each
-//! number NaN or infinite. Everything is f64, summed row by row from the top left.
+//! `Decided:` the first three are taken of the values as stored, for pictures linear and not
+//! clipped, with a peak of 1: a value that a display would clip counts in full. They serve to rank
+//! methods; whether a picture is right is for [`super::compare`] to say. A NaN or an infinity in a
+//! plane makes each number NaN or infinite. Everything is f64, summed row by row from the top left.
 
 use crate::io::exr::{Image, Values};
 use crate::number::elementary;
@@ -81,16 +81,16 @@ pub fn psnr(rmse: f64) -> f64 {
 /// The mean structural similarity of two planes, `width` values a row, as \[WBSS04\] defines it.
 ///
 /// At each position of the 11 x 11 Gaussian window g (standard deviation 1.5, sum 1) inside the
-/// plane, with the weighted means m = sum g x, variances v = sum g x^2 - m^2 (population, not sample)
-/// and covariance c = sum g x y - `m_x` `m_y`,
+/// plane, with the weighted means m = sum g x, variances v = sum g x^2 - m^2 (population, not
+/// sample) and covariance c = sum g x y - `m_x` `m_y`,
 ///
 /// ```text
 /// SSIM = (2 m_x m_y + C1) (2 c + C2) / ((m_x^2 + m_y^2 + C1) (v_x + v_y + C2))
 /// ```
 ///
 /// with C1 = 0.01^2 and C2 = 0.03^2, and the result is the mean over the positions. There is no
-/// padding and, as in the paper's equations and unlike in the authors' later script, no downsampling.
-/// For a colour, take the mean over its channels. `None` if the window does not fit.
+/// padding and, as in the paper's equations and unlike in the authors' later script, no
+/// downsampling. For a colour, take the mean over its channels. `None` if the window does not fit.
 ///
 /// # Panics
 /// If the planes differ in length, or it is no multiple of `width`.
@@ -178,8 +178,8 @@ pub enum Region {
 
 /// The region of each pixel of a plane of coverage, `width` values a row.
 ///
-/// A pixel is covered if its value is > 0; a NaN is not. Its neighbours are those of the eight pixels
-/// around it that are in the plane, so that the border of the picture is no silhouette.
+/// A pixel is covered if its value is > 0; a NaN is not. Its neighbours are those of the eight
+/// pixels around it that are in the plane, so that the border of the picture is no silhouette.
 ///
 /// # Panics
 /// If the plane is no multiple of `width`.

@@ -176,8 +176,8 @@ fn threads_and_tiles_leave_no_trace() {
     }
 }
 
-/// A flat ellipse that ends exactly in a row of pixel centres: there q = u u + k k rounds to k k for
-/// a stretch of the row, all of which is inside, however narrow the ellipse is at its tip.
+/// A flat ellipse that ends exactly in a row of pixel centres: there q = u u + k k rounds to k k
+/// for a stretch of the row, all of which is inside, however narrow the ellipse is at its tip.
 #[test]
 fn the_tip_of_a_wide_ellipse_has_the_bits_of_the_plain_path() {
     let pose = Pose { eye: DVec3::new(0.0, 0.0, 4.0), target: DVec3::ZERO, up: DVec3::Y };

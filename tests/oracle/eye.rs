@@ -76,8 +76,8 @@ impl Eye {
         if self.perspective { ([0.0; 3], [u, v, -1.0]) } else { ([u, v, 0.0], [0.0, 0.0, -1.0]) }
     }
 
-    /// By how much a sphere about `p` lies beyond the worst side of the view, moved out by `reach` px:
-    /// px times depth, > 0 if it is out of sight. And the terms that this is the difference of.
+    /// By how much a sphere about `p` lies beyond the worst side of the view, moved out by `reach`
+    /// px: px times depth, > 0 if it is out of sight. And the terms that this is the difference of.
     pub(crate) fn beyond(&self, p: V3, radius: f64, reach: f64) -> [f64; 2] {
         let t = if self.perspective { -p[2] } else { 1.0 };
         let sides = [

@@ -87,8 +87,8 @@ fn visible<R: Real>(all: &[Sample<R>], epsilon: R) -> Vec<Sample<R>> {
     full().filter(|s| s.depth <= nearest + epsilon).copied().collect()
 }
 
-/// Sums of the same m terms in two orders: each is within (m - 1) u of the sum of magnitudes, u half
-/// an ulp of 1, so the two are within (m - 1) 2 u, which is at most 2 (m - 1) ulp of that sum.
+/// Sums of the same m terms in two orders: each is within (m - 1) u of the sum of magnitudes, u
+/// half an ulp of 1, so the two are within (m - 1) 2 u, which is at most 2 (m - 1) ulp of that sum.
 fn same_but_order<R: Real>(
     (a, b): (&Sample<R>, &Sample<R>),
     terms: &[Sample<R>],
@@ -185,7 +185,8 @@ fn a_constant_stays<R: Real>(all: &[Numbers], band: f32, color: f32) -> TestCase
     all.iter_mut().for_each(|s| s[5..8].fill((color, 0.5)));
     let (sums, count) = compose(&samples::<R>(&all), R::from_f32(band));
     let value = filled::<R>((color, 0.5)).to_f64();
-    // The products round once, the sum of weights and that of products m - 1 times, the quotient once.
+    // The products round once, the sum of weights and that of products m - 1 times, the quotient
+    // once.
     let bound = 2.0 * f64::from(count) * unit::<R>() * value * 1.001;
     for average in sum::average(sums.color, sums.weight).map(R::to_f64) {
         let expected = if count == 0 { 0.0 } else { value };

@@ -147,8 +147,8 @@ fn one_splat_sums_to_its_integral() {
             let deviation = f64::from(radius / k) * f64::from(camera.fx);
             let cut = 1.0 - (-0.5 * f64::from(k * k)).exp();
             let integral = 2.0 * PI * deviation * deviation * slant * cut;
-            // The rim cuts pixels: their count differs from its area by its lattice discrepancy, far
-            // below the length of the rim 2 pi k sigma, times the weight there, over the whole.
+            // The rim cuts pixels: their count differs from its area by its lattice discrepancy,
+            // far below the length of the rim 2 pi k sigma, times the weight there, over the whole.
             let rim = 2.0 * PI * f64::from(k) * deviation * (1.0 - cut) * slant;
             let bound = 0.25 * rim / integral + 1e-6;
             let error = (sum / integral - 1.0).abs();
@@ -160,11 +160,11 @@ fn one_splat_sums_to_its_integral() {
 
 #[test]
 fn a_dense_plane_is_a_partition_of_unity() {
-    // A grid of spacing L px of Gaussians of variance V and height A. Poisson: without a cut-off the
-    // sum is 2 pi A V / L^2 within the factor 1 +- 4.01 exp(-2 pi^2 V / L^2). Each lattice point
-    // beyond the cut-off R = k sqrt(V) weighs at most the average over its cell moved inwards by the
-    // half diagonal d = L / sqrt(2), so the cut takes at most the factor
-    // (1 + d / (R - 2 d)) exp(-(R - 2 d)^2 / 2V).
+    // A grid of spacing L px of Gaussians of variance V and height A. Poisson: without a cut-off
+    // the sum is 2 pi A V / L^2 within the factor 1 +- 4.01 exp(-2 pi^2 V / L^2). Each lattice
+    // point beyond the cut-off R = k sqrt(V) weighs at most the average over its cell moved inwards
+    // by the half diagonal d = L / sqrt(2), so the cut takes at most the factor (1 + d / (R - 2 d))
+    // exp(-(R - 2 d)^2 / 2V).
     let (pixels, spacing, k, h) = (64_u32, 0.0625_f32, 4.0_f32, 0.25_f32);
     let deviations = 3.0_f32;
     let camera = camera(Lens::Orthographic(1.0), pixels);

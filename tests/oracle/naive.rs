@@ -242,8 +242,8 @@ pub(crate) struct Splat {
 }
 
 impl Splat {
-    /// The splat of a surfel whose radius or tangents are multiplied by `scale`; none if it is behind, degenerate or culled. `guard`: how many
-    /// conditions count as rounding.
+    /// The splat of a surfel whose radius or tangents are multiplied by `scale`; none if it is
+    /// behind, degenerate or culled. `guard`: how many conditions count as rounding.
     pub(crate) fn new(
         optics: &Optics,
         surfels: &Surfels,

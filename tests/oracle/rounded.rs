@@ -1,9 +1,9 @@
 //! A number of the oracle, and how many roundings it may be off.
 //!
-//! Running error analysis: every operation adds what it may round, so that a formula carries its own
-//! bound, of the first order, in units of the arithmetic's rounding (2^-24 for `f32`, 2^-53 for
-//! `f64`). The order of operations hardly matters to it, and a cancellation shows. What no arithmetic
-//! rounds, it does not either: adding 0, multiplying by 0 or 1.
+//! Running error analysis: every operation adds what it may round, so that a formula carries its
+//! own bound, of the first order, in units of the arithmetic's rounding (2^-24 for `f32`, 2^-53 for
+//! `f64`). The order of operations hardly matters to it, and a cancellation shows. What no
+//! arithmetic rounds, it does not either: adding 0, multiplying by 0 or 1.
 
 use crate::eye::V3;
 use std::cmp::Ordering;

@@ -325,7 +325,8 @@ fn ties_go_to_the_lower_surfel() {
         assert_eq!(value(&frame, "id", i)[0], 0.0, "among the groups: {depth:?}");
         assert_eq!(index(&frame, "group02.id", i), Some(NO_ID));
     }
-    // At the rim of both discs the ratio ends at 255/256, although the second is nearer to its centre.
+    // At the rim of both discs the ratio ends at 255/256, although the second is nearer to its
+    // centre.
     let rim = [(-1.998, 4.0), (1.996, 4.0)];
     let (frame, i) = middle(&rim, 1.0, &[0, 0], DepthTest::Voronoi(BinCount::Count(1)));
     assert_eq!(value(&frame, "group00.voronoi", i)[0].fract(), 255.0 / 256.0);

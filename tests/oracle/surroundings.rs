@@ -108,8 +108,8 @@ pub(crate) fn world_ray(eye: &Eye, [x, y]: [f64; 2]) -> V3 {
     [0, 1, 2].map(|i| dot(eye.direction([0, 1, 2].map(|j| f64::from(u8::from(i == j)))), ray))
 }
 
-/// What the formula takes, one number after the other: `C_F`, alpha, n, `C_O`, the sum of opacities,
-/// hidden, v.
+/// What the formula takes, one number after the other: `C_F`, alpha, n, `C_O`, the sum of
+/// opacities, hidden, v.
 type Inputs = [f64; 15];
 
 /// One channel of a refracting pixel; `None` for T is total reflection.

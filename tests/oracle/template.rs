@@ -1,8 +1,8 @@
 //! Reconstruction with templates \[MOC08\] by brute force, stage by stage, in f64.
 //!
-//! Each stage takes what the crate left before it, which f64 holds exactly, so that an error is found
-//! where it arises and a decision that rounding turns spreads no further. Candidates of a pixel are
-//! found by asking every centre of every level, not by visiting cells.
+//! Each stage takes what the crate left before it, which f64 holds exactly, so that an error is
+//! found where it arises and a decision that rounding turns spreads no further. Candidates of a
+//! pixel are found by asking every centre of every level, not by visiting cells.
 
 use crate::eye::V3;
 use crate::rounded::{Rounded, unit};

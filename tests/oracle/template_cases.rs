@@ -88,7 +88,8 @@ fn cloud(dice: &mut Dice, camera: &Camera, count: usize) -> Cloud {
     Cloud { position, normal: Some(all_normals), radius: Some(radii), color, ..Cloud::default() }
 }
 
-/// A disc where all numbers are those of the picture: before [`exact_camera`], at a place in pixels.
+/// A disc where all numbers are those of the picture: before [`exact_camera`], at a place in
+/// pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Disc {
     pub(crate) place: [f32; 2],

@@ -55,7 +55,8 @@ enum Seen {
     Open,
 }
 
-/// What a disc that stays at a level does to every pixel, row by row; `own`: where it was projected to.
+/// What a disc that stays at a level does to every pixel, row by row; `own`: where it was projected
+/// to.
 fn seen(template: &Template, disc: &Cell, own: [u32; 2], level: usize) -> Vec<Seen> {
     let [width, height] = template.sizes[0];
     let cell = own.map(|v| v >> level);

@@ -1,5 +1,5 @@
-//! Known answers of the reconstruction with templates: every threshold, tie and degenerate input that
-//! its documentation names, on numbers that no arithmetic rounds, for `f32` and `f64` alike.
+//! Known answers of the reconstruction with templates: every threshold, tie and degenerate input
+//! that its documentation names, on numbers that no arithmetic rounds, for `f32` and `f64` alike.
 
 use crate::template_cases::{Disc, exact_camera, exact_scene};
 use glam::Vec3;

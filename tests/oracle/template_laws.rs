@@ -187,8 +187,9 @@ fn larger_templates_tend_to_merge_less() {
 }
 
 /// Each 4 x 4 pixels have a small disc, a huge one far behind it in the same 2 x 2, and a third one
-/// farther behind. With k = 5 the small disc moves once, hides the huge one, and stays; the third stays
-/// as well. With k = 7 the small one never moves, so that the huge ones do, hide the third, and merge.
+/// farther behind. With k = 5 the small disc moves once, hides the huge one, and stays; the third
+/// stays as well. With k = 7 the small one never moves, so that the huge ones do, hide the third,
+/// and merge.
 #[test]
 fn a_larger_template_can_merge_more() {
     let group = |x: f32, y: f32| {

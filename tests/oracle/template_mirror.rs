@@ -1,8 +1,8 @@
 //! What becomes of a picture when its scene is mirrored.
 //!
 //! One disc mirrors bit for bit. Of several neither is true: their sums are added in another order,
-//! so that rounding differs, and the ternary test depends on which is found first, so that a pixel can
-//! even show other discs. That is the documented order, and the paper's method.
+//! so that rounding differs, and the ternary test depends on which is found first, so that a pixel
+//! can even show other discs. That is the documented order, and the paper's method.
 
 use crate::scenes::Dice;
 use crate::stages::at;
@@ -79,8 +79,8 @@ fn one_disc_mirrors_bit_for_bit() {
     }
 }
 
-/// Discs of one surface: all depths within the sums of radii. Not all rims agree, because the mean of
-/// three places rounds; all sums agree as far as sums of so many numbers round.
+/// Discs of one surface: all depths within the sums of radii. Not all rims agree, because the mean
+/// of three places rounds; all sums agree as far as sums of so many numbers round.
 #[test]
 fn a_surface_mirrors_up_to_rounding_and_not_bit_for_bit() {
     let (mut dice, size) = (Dice(6), [32, 32]);
@@ -128,8 +128,8 @@ fn a_surface_mirrors_up_to_rounding_and_not_bit_for_bit() {
     assert!(worst < 32.0 && rims * 1000 < same, "{worst} {rims}");
 }
 
-/// Three discs, each within the sum of radii of its neighbour in depth, the first and the last not: from
-/// the left the last is behind the first; from the right the front comes nearer by and by.
+/// Three discs, each within the sum of radii of its neighbour in depth, the first and the last not:
+/// from the left the last is behind the first; from the right the front comes nearer by and by.
 #[test]
 fn the_ternary_test_does_not_mirror() {
     let row = [(7.5, 4.0), (8.5, 5.75), (9.5, 7.5)];

@@ -1,7 +1,8 @@
-//! Surfels as pixels \[MOC08, section 3.1\] by brute force, and the shading of what is reconstructed.
+//! Surfels as pixels \[MOC08, section 3.1\] by brute force, and the shading of what is
+//! reconstructed.
 //!
-//! Which pixel a surfel falls into and which is the nearest there can hang on rounding. So every pixel
-//! has a list of all that it may show; whoever compares asks which it does.
+//! Which pixel a surfel falls into and which is the nearest there can hang on rounding. So every
+//! pixel has a list of all that it may show; whoever compares asks which it does.
 
 use crate::eye::{Eye, V3, wide};
 use crate::rounded::{Rounded, dot, scaled, unit};

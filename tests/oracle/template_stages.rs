@@ -17,7 +17,8 @@ use splatref::method::{Method, Picture};
 use splatref::number::Real;
 use splatref::splat::Tally;
 
-/// How many times its bound a rounding is taken for, where it decides. In f64 the oracle rounds too.
+/// How many times its bound a rounding is taken for, where it decides. In f64 the oracle rounds
+/// too.
 pub(crate) const GUARD: f64 = 2.0;
 
 /// 2^-24 or 2^-53.

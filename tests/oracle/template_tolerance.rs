@@ -1,8 +1,8 @@
 //! How far each plane of the reconstruction with templates may be from the oracle, and why.
 //!
-//! The unit is what [`crate::rounded::Rounded`] counts: the sum of all roundings on the way, which the
-//! same operations cannot exceed. In f64 the oracle rounds too: as the documentation says, so that no
-//! bit may differ, but in Phong's formula, where it is free and both errors make 2 units.
+//! The unit is what [`crate::rounded::Rounded`] counts: the sum of all roundings on the way, which
+//! the same operations cannot exceed. In f64 the oracle rounds too: as the documentation says, so
+//! that no bit may differ, but in Phong's formula, where it is free and both errors make 2 units.
 
 use crate::tolerance::Arithmetic::{F32, F64};
 use crate::tolerance::{Row, row};

@@ -1,11 +1,11 @@
 //! How far each plane may be from the oracle, and why.
 //!
-//! The unit is the **condition** of the value at that pixel: by how much the oracle's value changes,
-//! summed over all inputs of all surfels that the pixel sees, when each input moves by the rounding
-//! of the arithmetic (2^-24 of its magnitude for `f32`, 2^-53 for `f64`). A backward stable formula
-//! stays within a small number of conditions however thin, near or grazing a splat is, so one number
-//! a row holds for every scene. A row that is 16 times looser than what all scenes together show
-//! fails: it must be tightened.
+//! The unit is the **condition** of the value at that pixel: by how much the oracle's value
+//! changes, summed over all inputs of all surfels that the pixel sees, when each input moves by the
+//! rounding of the arithmetic (2^-24 of its magnitude for `f32`, 2^-53 for `f64`). A backward
+//! stable formula stays within a small number of conditions however thin, near or grazing a splat
+//! is, so one number a row holds for every scene. A row that is 16 times looser than what all
+//! scenes together show fails: it must be tightened.
 
 use std::collections::BTreeMap;
 
@@ -16,8 +16,8 @@ pub(crate) enum Arithmetic {
     F32,
     /// `f64` on scenes whose normals have length 1 exactly.
     F64,
-    /// `f64` on scenes whose normals and view matrix were rounded to `f32`: a unit normal is then an
-    /// assumption that is wrong by 2^-24, and formulas that use it differently differ by that.
+    /// `f64` on scenes whose normals and view matrix were rounded to `f32`: a unit normal is then
+    /// an assumption that is wrong by 2^-24, and formulas that use it differently differ by that.
     F64Rounded,
 }
 

@@ -1,4 +1,5 @@
-//! \[ZP06, Algorithms 2 and 3\] by brute force: every surfel in every group of its own, at one pixel.
+//! \[ZP06, Algorithms 2 and 3\] by brute force: every surfel in every group of its own, at one
+//! pixel.
 //!
 //! The order comes from a tree of its own; the nearest layer is that of [`crate::single_pass`]. A
 //! pixel where rounding decides what is inside, in which bin, or in which layer is left out.

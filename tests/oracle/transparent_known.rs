@@ -44,8 +44,8 @@ pub(crate) fn sheets(layers: &[Sheet], count: usize) -> (Scene, Groups) {
     let mut own = Vec::new();
     for layer in layers {
         for k in 0..count {
-            // Within the plane of the layer, and closer to each other than layers: centres are sorted
-            // along the axis of their largest extent.
+            // Within the plane of the layer, and closer to each other than layers: centres are
+            // sorted along the axis of their largest extent.
             let aside = layer.normal.cross(Vec3::Y) * (0.0625 * k as f32);
             cloud.position.push(Vec3::new(0.0, 0.0, -layer.depth) + aside);
             cloud.normal.as_mut().into_iter().for_each(|all| all.push(layer.normal));
@@ -215,8 +215,8 @@ fn something_opaque_hides_what_is_behind_it_and_nothing_else() {
     }
 }
 
-/// Two discs of one layer, a little apart: in bins of epsilon they are one, in many bins two, and the
-/// layer is too opaque there. A documented failure.
+/// Two discs of one layer, a little apart: in bins of epsilon they are one, in many bins two, and
+/// the layer is too opaque there. A documented failure.
 #[test]
 fn many_bins_tear_a_layer() {
     let layers = [5.0, 5.0 + 1.0 / 64.0].map(|depth| sheet(depth, [1.0; 3], 0.5));
@@ -290,9 +290,9 @@ fn one_surfel_is_itself() {
     }
 }
 
-/// In the nearest layer a surfel has its own radius, in the others that of its group: with a band of
-/// (scale - 1) r it is not drawn behind itself. (Without one it is: depths are clamped to the radius,
-/// and round otherwise.)
+/// In the nearest layer a surfel has its own radius, in the others that of its group: with a band
+/// of (scale - 1) r it is not drawn behind itself. (Without one it is: depths are clamped to the
+/// radius, and round otherwise.)
 #[test]
 fn an_enlarged_disc_is_not_behind_itself() {
     for (outline, orthographic) in [(0, false), (1, false), (2, false), (0, true), (1, true)] {

@@ -72,8 +72,8 @@ fn white() -> Environment {
     Environment::Map(Map::new(Plane::filled(8, 4, [1.0; 3])).expect("twice as wide as high"))
 }
 
-/// Nothing shines through opaque surfels: Algorithm 3 is Algorithm 1, whatever the groups are extended
-/// by.
+/// Nothing shines through opaque surfels: Algorithm 3 is Algorithm 1, whatever the groups are
+/// extended by.
 #[test]
 fn opaque_surfels_make_the_picture_of_the_single_pass() {
     fn check<R: Real>(subject: &Subject, alone: &Groups) {

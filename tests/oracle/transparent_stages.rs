@@ -1,5 +1,5 @@
-//! Every stage of Algorithms 2 and 3 against the oracle, for groups, extensions and opacities drawn by
-//! lot.
+//! Every stage of Algorithms 2 and 3 against the oracle, for groups, extensions and opacities drawn
+//! by lot.
 
 use crate::eye::V3;
 use crate::goldens;

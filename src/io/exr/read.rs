@@ -27,8 +27,8 @@ type Reason<T> = std::result::Result<T, String>;
 
 /// Reads every channel of the flat EXR file at `path`, whoever wrote it.
 ///
-/// Scan lines or tiles, of which only the full resolution is read; compressed in any way but DWA and
-/// HTJ2K; one part or several. A channel of a file with several parts is called `part.channel`.
+/// Scan lines or tiles, of which only the full resolution is read; compressed in any way but DWA
+/// and HTJ2K; one part or several. A channel of a file with several parts is called `part.channel`.
 /// `HALF` values are widened exactly (a signalling NaN becomes quiet); all other bits are kept.
 ///
 /// Memory beside the file's own bytes: the planes, at most 1376 bytes (twice that for `HALF`) for a
@@ -230,7 +230,8 @@ fn empty_planes(header: &PartHeader) -> Vec<Values> {
     header.channels.list.iter().map(|channel| plane(channel.sample_type)).collect()
 }
 
-/// The compressed block that the table of offsets places at byte `offset`, if it is the expected one.
+/// The compressed block that the table of offsets places at byte `offset`, if it is the expected
+/// one.
 ///
 /// Read here and not by the exr crate, whose reader allocates what a block claims to be, loses its
 /// place after a small gap between blocks, and takes a block twice.

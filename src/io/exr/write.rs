@@ -23,8 +23,8 @@ const LONGEST_NAME: usize = 31;
 /// Writes all channels of `frame` and `text`, the attribute [`ATTRIBUTE`], to the file at `path`.
 ///
 /// One part of scan lines, ZIP-compressed 16 lines at a time, lossless: [`ChannelData::Float`] as
-/// `FLOAT`, [`ChannelData::Index`] and [`ChannelData::Count`] as `UINT`. The bytes of the file are a
-/// function of `frame` and `text`. The planes are not copied: beside them stands one block of 16
+/// `FLOAT`, [`ChannelData::Index`] and [`ChannelData::Count`] as `UINT`. The bytes of the file are
+/// a function of `frame` and `text`. The planes are not copied: beside them stands one block of 16
 /// lines at a time, raw and compressed.
 ///
 /// # Errors

@@ -64,7 +64,8 @@ pub struct MethodChoice {
     pub epsilon: Option<Epsilon>,
     /// See [`ewa::Settings`].
     pub cull: Option<bool>,
-    /// Whether groups keep what is nearest to its own centre, [`DepthTest::Voronoi`]; yes if absent.
+    /// Whether groups keep what is nearest to its own centre, [`DepthTest::Voronoi`]; yes if
+    /// absent.
     pub voronoi: Option<bool>,
     /// How many depth bins, see [`BinCount`]; as epsilon has it if absent.
     pub bins: Option<u32>,
@@ -139,7 +140,8 @@ impl MethodChoice {
     /// The method: what was chosen, and the defaults for the rest.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if something was chosen that the method does not have, or is out of range.
+    /// [`Error::Invalid`] if something was chosen that the method does not have, or is out of
+    /// range.
     pub fn method(&self) -> Result<Method> {
         use MethodName::{Ewa, Peeling, Pyramid, SinglePass, Template, Transparent, TransparentHq};
         let name = self.name.unwrap_or_default();

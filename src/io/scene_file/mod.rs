@@ -207,9 +207,9 @@ impl SceneFile {
     /// The camera: what was chosen, and for the rest what shows `scene`, this one when loaded.
     ///
     /// A scene of one shape that is not transformed has the shape's own pose and lens. Any other is
-    /// framed from [`DEFAULT_SIDE`], see [`Camera::framing`]; where only the eye was chosen it looks
-    /// at the middle of [`Scene::bounding_sphere`], where only the target was chosen it looks from
-    /// [`DEFAULT_SIDE`] at a sphere of that radius around it.
+    /// framed from [`DEFAULT_SIDE`], see [`Camera::framing`]; where only the eye was chosen it
+    /// looks at the middle of [`Scene::bounding_sphere`], where only the target was chosen it looks
+    /// from [`DEFAULT_SIDE`] at a sphere of that radius around it.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Camera::new`].

@@ -1,6 +1,7 @@
 //! EWA surface splatting in two geometry passes and a normalization.
 //!
-//! The passes of \[GBP04, section 3\] (after \[GP03\]) and of the 2+1-pass method of \[ZP06, section 3.1\]:
+//! The passes of \[GBP04, section 3\] (after \[GP03\]) and of the 2+1-pass method of \[ZP06,
+//! section 3.1\]:
 //!
 //! 1. **Projection.** Each surfel becomes a [`Splat`] (see [`mod@crate::splat::project`]).
 //! 2. **Visibility splatting.** Each pixel keeps the greatest nearness of all fragments that are

@@ -79,7 +79,8 @@ pub fn render_f32(
     render_into(scene, camera, settings, exec, None)
 }
 
-/// As [`render_f32`], in the memory of an earlier picture, which is much of the time of a small one.
+/// As [`render_f32`], in the memory of an earlier picture, which is much of the time of a small
+/// one.
 ///
 /// # Errors
 /// As [`render`].

@@ -118,7 +118,8 @@ impl<'a, R: Real> Plain<'a, R> {
         });
     }
 
-    /// Runs `draw` for every fragment of every splat: splat, (q, nearness), tile, pixel in the tile.
+    /// Runs `draw` for every fragment of every splat: splat, (q, nearness), tile, pixel in the
+    /// tile.
     fn each_fragment(
         &mut self,
         draw: impl Fn(&Splat<R>, (R, R), &mut FramebufferTile<'_, R>, (usize, usize)) + Sync + Send,
@@ -164,8 +165,8 @@ pub(in crate::method) fn fragment<R: Real>(
     splat.footprint.fragment(shared, dx, dy)
 }
 
-/// Runs `draw` for every fragment of a splat that is inside, in some pixels: the pixel, counted row by
-/// row in `rect`, q and nearness.
+/// Runs `draw` for every fragment of a splat that is inside, in some pixels: the pixel, counted row
+/// by row in `rect`, q and nearness.
 #[inline(always)]
 pub(in crate::method) fn each_inside<R: Real>(
     shared: &Shared<R>,

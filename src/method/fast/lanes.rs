@@ -1,7 +1,7 @@
 //! Lanes: what is done with one splat at the pixels of one block.
 //!
-//! Lanes are read into local arrays, changed there and written back: the loops over them then become
-//! single vector instructions, of the width of the function that these are inlined into.
+//! Lanes are read into local arrays, changed there and written back: the loops over them then
+//! become single vector instructions, of the width of the function that these are inlined into.
 
 use super::tile::{LANES, Lanes, Record, SIDE};
 use crate::frame::Rect;
@@ -73,7 +73,8 @@ pub(in crate::method) fn columns<const RAY_CAST: bool>(
 /// Columns of blocks from which on the rows of a splat are cut to its ellipse.
 const WIDE: u32 = 6;
 
-/// The nearness of the fragments that are inside; NaN, which fails every comparison, for the others.
+/// The nearness of the fragments that are inside; NaN, which fails every comparison, for the
+/// others.
 #[inline(always)]
 pub(in crate::method) fn inside(q: &Lanes, w: &Lanes, limit: f32) -> Lanes {
     let mut inside = [f32::NAN; LANES];

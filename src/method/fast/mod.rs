@@ -38,8 +38,9 @@ pub(super) fn prepare(
 
 /// Draws every tile of a framebuffer, and gives the stages' shares of the wall time.
 ///
-/// `stages` leaves depths, averages and directions in the blocks of a tile that has splats, and tells
-/// how long each stage took; the first includes gathering the splats, the last storing the pixels.
+/// `stages` leaves depths, averages and directions in the blocks of a tile that has splats, and
+/// tells how long each stage took; the first includes gathering the splats, the last storing the
+/// pixels.
 pub(super) fn draw<const N: usize>(
     prepared: &Prepared<f32, Record>,
     target: &mut Framebuffer<f32>,

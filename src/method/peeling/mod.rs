@@ -1,56 +1,60 @@
 //! Depth peeling: the truth of transparency \[ZP06, sections 2 and 6.2, Fig. 12\].
 //!
-//! After \[Mam89\] (Mammen: *Transparency and Antialiasing Algorithms Implemented with the Virtual Pixel
-//! Maps Technique*, IEEE CG&A 9(4), 1989) and \[Eve02\] (Everitt: *Interactive Order-Independent
-//! Transparency*, 2002), each layer drawn by the opaque method of [`super::ewa`], one layer after the
-//! other from the front:
+//! After \[Mam89\] (Mammen: *Transparency and Antialiasing Algorithms Implemented with the Virtual
+//! Pixel Maps Technique*, IEEE CG&A 9(4), 1989) and \[Eve02\] (Everitt: *Interactive
+//! Order-Independent Transparency*, 2002), each layer drawn by the opaque method of [`super::ewa`],
+//! one layer after the other from the front:
 //!
 //! 1. **Projection**, as in [`super::ewa`].
-//! 2. **Visibility splatting** of layer j = 1, 2, ...: of the fragments that are inside (q <= k^2) and
-//!    strictly beyond the layer before, `t > limit_(j-1)`, each pixel keeps the greatest nearness, and
-//!    the surfel it came from (ties: the lower index); `t_j` is its depth. `limit_0` is -inf, so that
-//!    layer 1 is of all fragments.
-//! 3. **Attribute splatting**: of the same fragments, each with `t <= limit_j` adds its weight, and its
-//!    weight times normal, times colour and times opacity, in ascending surfel index;
-//!    `limit_j = t_j + epsilon`, see [`crate::composite::epsilon`]. A surfel seen from behind adds its
+//! 2. **Visibility splatting** of layer j = 1, 2, ...: of the fragments that are inside (q <= k^2)
+//!    and strictly beyond the layer before, `t > limit_(j-1)`, each pixel keeps the greatest
+//!    nearness, and the surfel it came from (ties: the lower index); `t_j` is its depth. `limit_0`
+//!    is -inf, so that layer 1 is of all fragments.
+//! 3. **Attribute splatting**: of the same fragments, each with `t <= limit_j` adds its weight, and
+//!    its weight times normal, times colour and times opacity, in ascending surfel index; `limit_j
+//!    = t_j + epsilon`, see [`crate::composite::epsilon`]. A surfel seen from behind adds its
 //!    normal reversed. In a scene without opacities each is 1.
-//! 4. **Normalization**: colour and opacity `a_j` = sum / weight, normal = direction of sum / weight.
-//! 5. **Deferred shading** ([`crate::shade::phong`]) of the layer at depth `t_j`, to its colour `C_j`.
+//! 4. **Normalization**: colour and opacity `a_j` = sum / weight, normal = direction of sum /
+//!    weight.
+//! 5. **Deferred shading** ([`crate::shade::phong`]) of the layer at depth `t_j`, to its colour
+//!    `C_j`.
 //! 6. **Blending** under the layers before, see [`crate::composite::under`]: with T = 1 at first,
 //!    `C += (T a_j) C_j` and `A += T a_j`, then `T *= 1 - a_j`. In the end A is cut at 1.
 //!
 //! A pixel is done when no fragment is left beyond its last layer, or after [`Settings::layers`].
-//! `Decided:` not earlier: layers behind an opaque one are peeled too, so that their number does not
-//! depend on the opacities. Every layer takes at least its nearest fragment, and no fragment is in two
-//! layers.
+//! `Decided:` not earlier: layers behind an opaque one are peeled too, so that their number does
+//! not depend on the opacities. Every layer takes at least its nearest fragment, and no fragment is
+//! in two layers.
 //!
 //! `Decided:` from front to back, where \[ZP06\] collects all layers and blends them from back to
 //! front: no layer has to be kept, and the result is the same up to rounding.
 //!
-//! So layer 1 is the picture of [`super::ewa`], and a scene of opaque surfels gives that picture bit for
-//! bit. (But where all weights underflow to 0, and A is 0 in both, the colour here is black.)
+//! So layer 1 is the picture of [`super::ewa`], and a scene of opaque surfels gives that picture
+//! bit for bit. (But where all weights underflow to 0, and A is 0 in both, the colour here is
+//! black.)
 //!
-//! `Decided:` the average of colours is not weighted by opacity: within a layer a surfel's opacity says
-//! how dense the surface is there, not how much of its colour counts.
+//! `Decided:` the average of colours is not weighted by opacity: within a layer a surfel's opacity
+//! says how dense the surface is there, not how much of its colour counts.
 //!
 //! # What even the truth gets wrong
 //!
 //! A layer is what lies within epsilon of depth. A surface steeper than its band allows is cut into
-//! several layers at one pixel and blended with itself: at silhouettes it is too opaque. Two surfaces
-//! closer than epsilon are one layer and are averaged: too transparent. The pixels of a layer need not
-//! be of one surface.
+//! several layers at one pixel and blended with itself: at silhouettes it is too opaque. Two
+//! surfaces closer than epsilon are one layer and are averaged: too transparent. The pixels of a
+//! layer need not be of one surface.
 //!
 //! So epsilon must exceed the depth that a surface spans within a footprint on the screen, and the
-//! low-pass filter makes that more than a radius where surfels are smaller than a pixel. Of a torus of
-//! 10 k, 100 k and 1 M surfels whose sight lines nearly all meet two surfaces, at 512 x 512, 99 %,
-//! 91 % and 23 % of the covered pixels have two layers with epsilon = 1 median radius; 92 %, 99 % and
-//! 92 % with 8. [`Layer::count`] and the plane `layers` show where it is wrong.
+//! low-pass filter makes that more than a radius where surfels are smaller than a pixel. Of a torus
+//! of 10 k, 100 k and 1 M surfels whose sight lines nearly all meet two surfaces, at 512 x 512, 99
+//! %, 91 % and 23 % of the covered pixels have two layers with epsilon = 1 median radius; 92 %, 99
+//! % and 92 % with 8. [`Layer::count`] and the plane `layers` show where it is wrong.
 //!
 //! # It is slow
 //!
-//! Every layer is a 2-pass method over all splats: L layers cost 2 L passes, of which each runs over all
-//! fragments, those already peeled included. Fragments grow with the layers, so the time grows with
-//! their square. \[ZP06\] reports less than 2 frames a second for 8 layers, where its single pass makes
+//! Every layer is a 2-pass method over all splats: L layers cost 2 L passes, of which each runs
+//! over all fragments, those already peeled included. Fragments grow with the layers, so the time
+//! grows with their square. \[ZP06\] reports less than 2 frames a second for 8 layers, where its
+//! single pass makes
 //! 9. It is here to be compared against, not to be fast.
 
 mod layers;

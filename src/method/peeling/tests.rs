@@ -181,8 +181,8 @@ fn agrees_with_the_page<R: Real>(scene: &Scene, camera: &Camera, settings: &Sett
     }
 }
 
-/// A few large discs at all angles, in a box before the camera; every fourth lies on the one before,
-/// with another colour and opacity.
+/// A few large discs at all angles, in a box before the camera; every fourth lies on the one
+/// before, with another colour and opacity.
 fn jumble(seed: u64, n: usize, colored: bool, transparent: bool) -> Cloud {
     let value = |i: usize, c: u64| {
         let i = if i % 4 == 3 && c < 9 { i - 1 } else { i };

@@ -1,11 +1,11 @@
 //! Projection to single pixels: the one pass over the scene of image-space reconstruction.
 //!
-//! Source: \[MKC08, sections 3.1, 4.1, 4.2, 5\], \[MOC08, section 3.1\]. Every surfel becomes at most one pixel,
-//! ribbons and tubes become lines one pixel wide, triangles the pixels they cover. What a pixel keeps
-//! is one [`Sample`], the nearest; ties: the lower [id](self#ids).
+//! Source: \[MKC08, sections 3.1, 4.1, 4.2, 5\], \[MOC08, section 3.1\]. Every surfel becomes at
+//! most one pixel, ribbons and tubes become lines one pixel wide, triangles the pixels they cover.
+//! What a pixel keeps is one [`Sample`], the nearest; ties: the lower [id](self#ids).
 //!
-//! **Surfels.** With p the centre and n the normal in view space, t = -p.z, m = 1/t and (a, b) = (p.x m, p.y m)
-//! (orthographic: m = 1 and (a, b) = (p.x, p.y)):
+//! **Surfels.** With p the centre and n the normal in view space, t = -p.z, m = 1/t and (a, b) =
+//! (p.x m, p.y m) (orthographic: m = 1 and (a, b) = (p.x, p.y)):
 //!
 //! ```text
 //!   centre  X = cx + fx a      Y = cy - fy b      drawn into pixel (floor X, floor Y)
@@ -14,12 +14,12 @@
 //!   extent  rho = r (f m)      f = sqrt(fx fy), at most 2^48
 //! ```
 //!
-//! Fates, in this order: `Behind` unless t > near; `Degenerate` if X, Y, t or g is not finite; with culling
-//! `BackFacing` if g >= 0; `Outside` unless 0 <= X < width and 0 <= Y < height; else it is a sample. Where the back is
-//! seen (g > 0) the normal is reversed. `Decided:` an elliptical surfel counts as the disc of its radius,
-//! and opacity is ignored: both papers know discs and opaque surfaces only. A disc whose centre is
-//! outside the picture is lost even where it reaches into it: that is the papers' algorithm, and one of
-//! its errors.
+//! Fates, in this order: `Behind` unless t > near; `Degenerate` if X, Y, t or g is not finite; with
+//! culling `BackFacing` if g >= 0; `Outside` unless 0 <= X < width and 0 <= Y < height; else it is
+//! a sample. Where the back is seen (g > 0) the normal is reversed. `Decided:` an elliptical surfel
+//! counts as the disc of its radius, and opacity is ignored: both papers know discs and opaque
+//! surfaces only. A disc whose centre is outside the picture is lost even where it reaches into it:
+//! that is the papers' algorithm, and one of its errors.
 //!
 //! **Ribbons, tubes and triangles**: see [`primitives`].
 //!
@@ -29,9 +29,10 @@
 //!
 //! # Planes
 //!
-//! With stages: `projection.id`, `projection.kind` (the [`Kind`] as a stencil), `projection.Z`, `projection.normal`
-//! (view space), `projection.extent` (rho), `projection.radius` (r), `projection.centre.X`, `.Y`, and if the scene has them
-//! `projection.R G B` and `projection.tangent` (view space).
+//! With stages: `projection.id`, `projection.kind` (the [`Kind`] as a stencil), `projection.Z`,
+//! `projection.normal` (view space), `projection.extent` (rho), `projection.radius` (r),
+//! `projection.centre.X`, `.Y`, and if the scene has them `projection.R G B` and
+//! `projection.tangent` (view space).
 
 pub(in crate::method) mod fast;
 mod plain;
@@ -79,8 +80,9 @@ pub struct Sample<R> {
     pub radius: R,
     /// Radius rho in pixels.
     pub extent: R,
-    /// Where the centre is in the picture, in pixels. `Decided:` \[MOC08\] stores the coordinates of the
-    /// projection, so they are not rounded; \[MKC08\] has displacement (0, 0), so its centre is the pixel's.
+    /// Where the centre is in the picture, in pixels. `Decided:` \[MOC08\] stores the coordinates
+    /// of the projection, so they are not rounded; \[MKC08\] has displacement (0, 0), so its centre
+    /// is the pixel's.
     pub centre: Vector2<R>,
     /// Normal, towards the viewer.
     pub normal: Vector3<R>,

@@ -1,14 +1,15 @@
 //! Triangles, ribbons and tubes as pixels \[MKC08, sections 4.1, 4.2 and 5.1\].
 //!
-//! A primitive has two or three corners; those of a piece of it are clipped, see [`crate::splat::clip`],
-//! placed as the centre of a surfel is, see [`super`], and snapped to fixed point, see
-//! [`crate::frame::raster`], which says exactly what pixels a piece covers. A clipped triangle is drawn as
-//! the fan of its first corner. `Decided:` with culling a triangle whose corners run clockwise on the
-//! screen is dropped; without, its normals are reversed.
+//! A primitive has two or three corners; those of a piece of it are clipped, see
+//! [`crate::splat::clip`], placed as the centre of a surfel is, see [`super`], and snapped to fixed
+//! point, see [`crate::frame::raster`], which says exactly what pixels a piece covers. A clipped
+//! triangle is drawn as the fan of its first corner. `Decided:` with culling a triangle whose
+//! corners run clockwise on the screen is dropped; without, its normals are reversed.
 //!
-//! **Perspective-correct weights.** At a pixel the corners i of a piece have exact barycentric weights
-//! `w_i` >= 0 out of w (of a line: den - num and num out of den); each is rounded to the arithmetic. With
-//! `W_ik` the weight of corner k of the primitive at corner i of the piece, and `m_i` as for surfels:
+//! **Perspective-correct weights.** At a pixel the corners i of a piece have exact barycentric
+//! weights `w_i` >= 0 out of w (of a line: den - num and num out of den); each is rounded to the
+//! arithmetic. With `W_ik` the weight of corner k of the primitive at corner i of the piece, and
+//! `m_i` as for surfels:
 //!
 //! ```text
 //!   q_i = (w_i / w) m_i        b_i = q_i / ((q_0 + q_1) + q_2)
@@ -17,10 +18,10 @@
 //! ```
 //!
 //! for the position p in view space, the radius, the colour, and the direction, which is then
-//! turned to view space and divided by its length (of length 0: the null vector). Where other parts of a
-//! scene have colours, one without has the material's. Of two visits of a pixel by one primitive at
-//! equal depth the first stays. The depth is t = -p.z, rho as for surfels; the
-//! centre is that of the pixel.
+//! turned to view space and divided by its length (of length 0: the null vector). Where other parts
+//! of a scene have colours, one without has the material's. Of two visits of a pixel by one
+//! primitive at equal depth the first stays. The depth is t = -p.z, rho as for surfels; the centre
+//! is that of the pixel.
 //!
 //! **Triangles** have the radius of their vertices, 0 if nobody gave them one, so that they are not
 //! expanded; where a mesh becomes points its boundary has radii (section 5.2).

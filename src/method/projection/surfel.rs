@@ -64,7 +64,8 @@ impl<R: Real> Lens<R> {
         }
     }
 
-    /// The fate of a surfel without a branch, so that a loop over it vectorizes: where it is, g, fate.
+    /// The fate of a surfel without a branch, so that a loop over it vectorizes: where it is, g,
+    /// fate.
     #[inline(always)]
     #[must_use]
     pub fn fate(&self, position: Vector3<R>, n: Vector3<R>) -> (Placed<R>, R, Fate) {

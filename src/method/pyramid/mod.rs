@@ -1,18 +1,21 @@
 //! Pull-push interpolation of one pixel a point \[MKC08\].
 //!
-//! 1. **Projection** to single pixels, see [`mod@super::projection`]; each sample becomes a [`Cell`] of level 0
-//!    with the interval [t, t + r], the radius rho, displacement (0, 0), normal, tangent and colour.
+//! 1. **Projection** to single pixels, see [`mod@super::projection`]; each sample becomes a
+//!    [`Cell`] of level 0 with the interval [t, t + r], the radius rho, displacement (0, 0),
+//!    normal, tangent and colour.
 //! 2. **Pull** ([`mod@pull`]): each coarser level from the finer one, four cells to one.
-//! 3. **Push** ([`mod@push`]): from the coarsest level down, cells that are empty or occluded are computed again
-//!    from four coarser ones; every other cell is copied.
-//! 4. **Deferred shading** of level 0, see [`crate::shade`]. The depth of a pixel is its cell's `front`; its
-//!    normal is the cell's, turned to world space and divided by its length, plus 0 (of length 0: the null vector); that of a tube too,
-//!    which is lit by its tangent, treated likewise.
+//! 3. **Push** ([`mod@push`]): from the coarsest level down, cells that are empty or occluded are
+//!    computed again from four coarser ones; every other cell is copied.
+//! 4. **Deferred shading** of level 0, see [`crate::shade`]. The depth of a pixel is its cell's
+//!    `front`; its normal is the cell's, turned to world space and divided by its length, plus 0
+//!    (of length 0: the null vector); that of a tube too, which is lit by its tangent, treated
+//!    likewise.
 //!
-//! Levels are those of [`crate::frame::pyramid::sizes`]. A cell's ellipse is that of [`crate::splat::ellipse`]; its centre is the
-//! centre of the cell plus the displacement. `Decided:` everywhere a cell is an average of others, those of a
-//! tube and those of anything else are never averaged: neither their light nor their vectors agree (\[MKC08\]
-//! 5.2 excludes it too). The average has the kind of the foremost.
+//! Levels are those of [`crate::frame::pyramid::sizes`]. A cell's ellipse is that of
+//! [`crate::splat::ellipse`]; its centre is the centre of the cell plus the displacement.
+//! `Decided:` everywhere a cell is an average of others, those of a tube and those of anything else
+//! are never averaged: neither their light nor their vectors agree (\[MKC08\] 5.2 excludes it too).
+//! The average has the kind of the foremost.
 //!
 //! [`plain`] is the definition, over any [`crate::number::Real`].
 
@@ -35,19 +38,19 @@ use crate::number::{Real, Vector2, Vector3};
 pub enum Weights {
     /// 1 inside the ellipse.
     Box,
-    /// exp(-2 d^2) inside the ellipse, d the elliptical distance. `Decided:` the rim is two standard deviations
-    /// from the centre, as it is by default for every splat of the crate.
+    /// exp(-2 d^2) inside the ellipse, d the elliptical distance. `Decided:` the rim is two
+    /// standard deviations from the centre, as it is by default for every splat of the crate.
     #[default]
     Gaussian,
 }
 
-/// When a cell that has something counts as occluded, by the interval [front, back] of its parent, the cell
-/// of the next coarser level that it is part of.
+/// When a cell that has something counts as occluded, by the interval [front, back] of its parent,
+/// the cell of the next coarser level that it is part of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Occlusion {
-    /// front > parent's back. `Departs:` by the words of the paper a cell in *front* of its parent's
-    /// interval is "occluded" too, so that a triangle or a thin ribbon, which takes no part in the
-    /// coarser level, is overwritten by the surface behind it, against section 5.1.
+    /// front > parent's back. `Departs:` by the words of the paper a cell in *front* of its
+    /// parent's interval is "occluded" too, so that a triangle or a thin ribbon, which takes no
+    /// part in the coarser level, is overwritten by the surface behind it, against section 5.1.
     #[default]
     Behind,
     /// front > parent's back, or front < parent's front: the words of \[MKC08, section 3.3\].
@@ -153,8 +156,8 @@ impl<R: Real> Cell<R> {
     /// Of four cells those that take part, and which one is foremost.
     ///
     /// Candidates are the valid ones within whose ellipses the new cell's centre lies; see
-    /// [`crate::composite::mean::foremost`]; those that are not tubes if the foremost is one, or tubes if it is none,
-    /// take no part.
+    /// [`crate::composite::mean::foremost`]; those that are not tubes if the foremost is one, or
+    /// tubes if it is none, take no part.
     pub(super) fn foremost(cells: &[Self; 4], inside: [bool; 4]) -> ([bool; 4], usize) {
         let candidates = [0, 1, 2, 3].map(|j| inside[j] & cells[j].is_valid());
         let (fronts, backs) = (cells.map(|cell| cell.front), cells.map(|cell| cell.back));

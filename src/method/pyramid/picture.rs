@@ -13,8 +13,8 @@ use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
 
-/// Renders with the definition, in any number. Beside the usual planes the picture has `kind`, and `tangent` if
-/// the scene has tubes. With `stages`, every stage leaves its planes:
+/// Renders with the definition, in any number. Beside the usual planes the picture has `kind`, and
+/// `tangent` if the scene has tubes. With `stages`, every stage leaves its planes:
 ///
 /// | stage | planes |
 /// |---|---|
@@ -70,8 +70,8 @@ pub fn render<R: Real>(
     Ok(finish(surface, planes, projected.tally, clock, (scene, camera, exec)))
 }
 
-/// Renders in `f32` by the fast path: the bits of [`render`], without the planes of the stages, in the memory of
-/// `levels` and of an earlier picture.
+/// Renders in `f32` by the fast path: the bits of [`render`], without the planes of the stages, in
+/// the memory of `levels` and of an earlier picture.
 ///
 /// # Errors
 /// As [`render`].

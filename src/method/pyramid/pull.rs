@@ -1,22 +1,25 @@
 //! The pull phase \[MKC08, section 3.2\]: four cells to one of the next coarser level.
 //!
-//! The four finer cells of (X, Y) are j = 0 .. 3 at (2X + j mod 2, 2Y + j div 2); those that do not exist are
-//! empty. With H the side of a finer cell in pixels, a power of two, its ellipse lies from the new cell's centre at
+//! The four finer cells of (X, Y) are j = 0 .. 3 at (2X + j mod 2, 2Y + j div 2); those that do not
+//! exist are empty. With H the side of a finer cell in pixels, a power of two, its ellipse lies
+//! from the new cell's centre at
 //!
 //! ```text
 //!   v_j = displacement_j + (-+H/2, -+H/2)      - for the left column and the upper row, + for the others
 //! ```
 //!
-//! and the new cell's centre is inside it if the ellipse holds the offset `v_j`. Of the valid cells for which that is so
-//! the foremost and those whose intervals overlap with its own are averaged ([`crate::composite::mean`],
-//! weights 1): normal, tangent, radius, colour and `v_j`, which is the new displacement. The interval is the hull: the least
-//! front and the greatest back. If there is no such cell the new one is empty.
+//! and the new cell's centre is inside it if the ellipse holds the offset `v_j`. Of the valid cells
+//! for which that is so the foremost and those whose intervals overlap with its own are averaged
+//! ([`crate::composite::mean`], weights 1): normal, tangent, radius, colour and `v_j`, which is the
+//! new displacement. The interval is the hull: the least front and the greatest back. If there is
+//! no such cell the new one is empty.
 //!
 //! `v_j` is exact: multiples of 1/2 below 2^17, as long as a cell is passed on alone.
 //!
-//! Not symmetric: of several foremost cells the end of the first counts, in the order of j. And in a level of odd
-//! width or height the last column or row is halved alone, so that a mirrored scene has a mirrored
-//! picture, along an axis, only if that side is a power of two and not the shorter one.
+//! Not symmetric: of several foremost cells the end of the first counts, in the order of j. And in
+//! a level of odd width or height the last column or row is halved alone, so that a mirrored scene
+//! has a mirrored picture, along an axis, only if that side is a power of two and not the shorter
+//! one.
 
 use super::Cell;
 use crate::composite::mean::Mean;

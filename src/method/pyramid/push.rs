@@ -1,28 +1,30 @@
-//! The push phase \[MKC08, section 3.3\]: empty and occluded cells from four of the next coarser level.
+//! The push phase \[MKC08, section 3.3\]: empty and occluded cells from four of the next coarser
+//! level.
 //!
-//! The parent of the cell (x, y) is (x div 2, y div 2) of the coarser level as the push phase left it. A valid
-//! cell is occluded as [`Occlusion`] says if its parent is valid. A cell that is valid and not occluded is copied; so
-//! is every cell of the coarsest level.
+//! The parent of the cell (x, y) is (x div 2, y div 2) of the coarser level as the push phase left
+//! it. A valid cell is occluded as [`Occlusion`] says if its parent is valid. A cell that is valid
+//! and not occluded is copied; so is every cell of the coarsest level.
 //!
-//! Any other cell is interpolated from four: the parent j = 0, its neighbour in x j = 1, that in y j = 2, that in both
-//! j = 3, each on the side of the parent that the cell is on: x div 2 - 1 for even x, x div 2 + 1 for odd x, and so for y.
-//! Those that do not exist are empty. With H the side of the finer cell in pixels, the ellipse of cell j lies from the
-//! finer cell's centre at `v_j` = `displacement_j` + (its centre - the finer centre):
+//! Any other cell is interpolated from four: the parent j = 0, its neighbour in x j = 1, that in y
+//! j = 2, that in both j = 3, each on the side of the parent that the cell is on: x div 2 - 1 for
+//! even x, x div 2 + 1 for odd x, and so for y. Those that do not exist are empty. With H the side
+//! of the finer cell in pixels, the ellipse of cell j lies from the finer cell's centre at `v_j` =
+//! `displacement_j` + (its centre - the finer centre):
 //!
 //! ```text
 //!   in x:   parent     +H/2 for even x, -H/2 for odd x
 //!           neighbour  -3H/2 for even x, +3H/2 for odd x              and so in y
 //! ```
 //!
-//! Of the valid ones whose ellipse holds the offset `v_j`, the foremost and those whose intervals overlap with its own
-//! are averaged ([`crate::composite::mean`]): front, back, normal, tangent, radius, colour and `v_j`, with weight 1 or
-//! `exp(-2 (form_j / square_j))`, see [`Weights`].
-//! `Decided:` "analogously to the pull phase" (section 3.3) means the test of depth too: without it front and back surface
-//! run into each other at every silhouette.
+//! Of the valid ones whose ellipse holds the offset `v_j`, the foremost and those whose intervals
+//! overlap with its own are averaged ([`crate::composite::mean`]): front, back, normal, tangent,
+//! radius, colour and `v_j`, with weight 1 or `exp(-2 (form_j / square_j))`, see [`Weights`].
+//! `Decided:` "analogously to the pull phase" (section 3.3) means the test of depth too: without it
+//! front and back surface run into each other at every silhouette.
 //!
-//! If there is no such cell: an empty cell stays empty, and an occluded one is copied. `Departs:` by the words of
-//! the paper the second becomes empty; but what does not cover a cell does not hide it, and there would be a
-//! hole beside every silhouette.
+//! If there is no such cell: an empty cell stays empty, and an occluded one is copied. `Departs:`
+//! by the words of the paper the second becomes empty; but what does not cover a cell does not hide
+//! it, and there would be a hole beside every silhouette.
 
 use super::{Cell, Occlusion, Settings, Weights};
 use crate::composite::mean::Mean;
@@ -30,7 +32,8 @@ use crate::frame::{Exec, Plane};
 use crate::number::{Real, Vector2};
 use crate::splat::Ellipse;
 
-/// The finer level, as [`super::pull`] left it, from the coarser one; `side` is that of the finer cells in pixels.
+/// The finer level, as [`super::pull`] left it, from the coarser one; `side` is that of the finer
+/// cells in pixels.
 #[must_use]
 pub fn push<R: Real>(
     fine: &Plane<Cell<R>>,

@@ -52,7 +52,8 @@ pub struct Touch<R> {
     pub q: R,
     /// Depth of the fragment.
     pub t: R,
-    /// What its depth test compares, if it is inside: its own value and that of what was kept before.
+    /// What its depth test compares, if it is inside: its own value and that of what was kept
+    /// before.
     pub test: Option<[R; 2]>,
     /// Whether it was kept.
     pub kept: bool,
@@ -61,7 +62,8 @@ pub struct Touch<R> {
 /// Replays both passes at one pixel.
 ///
 /// # Errors
-/// [`crate::Error::Usage`] if the pixel is outside the picture; [`crate::Error::Invalid`] as [`super::render`].
+/// [`crate::Error::Usage`] if the pixel is outside the picture; [`crate::Error::Invalid`] as
+/// [`super::render`].
 pub fn explain<R: Real>(
     surfels: &Surfels,
     groups: &Groups,

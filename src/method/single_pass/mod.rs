@@ -1,38 +1,40 @@
 //! Single-pass point rendering: deferred blending over groups \[ZP06, Algorithm 1\].
 //!
-//! The passes of \[ZP06, Fig. 7\], for surfels whose [`Groups`] are known, each in its own group and
-//! at its own radius (what an extension added or enlarged is for transparency alone):
+//! The passes of \[ZP06, Fig. 7\], for surfels whose [`Groups`] are known, each in its own group
+//! and at its own radius (what an extension added or enlarged is for transparency alone):
 //!
 //! 1. **Projection.** Each surfel becomes a [`Splat`], as in [`super::ewa`].
 //! 2. **Geometry pass.** Each group k has a depth-image `I_k`. Each fragment of its surfels that is
-//!    inside (q <= k^2), in ascending surfel index, replaces what the pixel of `I_k` holds if it passes
-//!    the depth test ([`DepthTest`]); the fragment kept leaves its depth, its weight, and its weight
-//!    times normal and times colour (eq. 4). A surfel seen from behind gives its normal reversed.
-//! 3. **Compositing pass.** The operator of Fig. 5 over all `I_k`, see [`crate::composite::groups`],
-//!    with the sums in the order of the groups; then depth, average colour and direction of the
-//!    normal as in [`super::ewa`]. The id of a pixel is that of the greatest nearness of all `I_k`,
-//!    ties to the lower surfel.
+//!    inside (q <= k^2), in ascending surfel index, replaces what the pixel of `I_k` holds if it
+//!    passes the depth test ([`DepthTest`]); the fragment kept leaves its depth, its weight, and
+//!    its weight times normal and times colour (eq. 4). A surfel seen from behind gives its normal
+//!    reversed.
+//! 3. **Compositing pass.** The operator of Fig. 5 over all `I_k`, see
+//!    [`crate::composite::groups`], with the sums in the order of the groups; then depth, average
+//!    colour and direction of the normal as in [`super::ewa`]. The id of a pixel is that of the
+//!    greatest nearness of all `I_k`, ties to the lower surfel.
 //! 4. **Deferred shading**, see [`crate::shade`].
 //!
 //! The depth test of the geometry pass:
 //!
 //! - [`DepthTest::Plain`]: the greater nearness wins, ties to the lower surfel.
 //! - [`DepthTest::Voronoi`]: the smaller Voronoi-enhanced depth wins (eq. 10, see
-//!   [`crate::composite::bins`]), ties to the lower surfel, with `ratio = sqrt(q / (k k))`. With the
-//!   paper's kernel, a disc by ray casting without low-pass filter, that is `|f_i - p_i| / r_i`.
-//!   `Decided:` with any other footprint q is the squared distance from its own centre in its own
-//!   standard deviations, and the ratio is the same formula.
+//!   [`crate::composite::bins`]), ties to the lower surfel, with `ratio = sqrt(q / (k k))`. With
+//!   the paper's kernel, a disc by ray casting without low-pass filter, that is `|f_i - p_i| /
+//!   r_i`. `Decided:` with any other footprint q is the squared distance from its own centre in its
+//!   own standard deviations, and the ratio is the same formula.
 //!
-//! `Decided:` `d_min` and `d_max` are the depths of [`depth_range`], which a backend knows before it has
-//! drawn anything; the depth of a fragment is brought into the bins (an enlarged splat can leave
-//! them).
+//! `Decided:` `d_min` and `d_max` are the depths of [`depth_range`], which a backend knows before
+//! it has drawn anything; the depth of a fragment is brought into the bins (an enlarged splat can
+//! leave them).
 //!
 //! # When it is the 2+1-pass method
 //!
-//! At a pixel where no two fragments of one group are within epsilon of the nearest fragment of all,
-//! and with the plain depth test, the sums of both methods are over the same fragments: the pictures
-//! differ by the order of the sums alone. Groups that do not overlap (c = 1, nothing relaxed) leave
-//! these pixels where it does not hold, because two fragments of one group are within epsilon:
+//! At a pixel where no two fragments of one group are within epsilon of the nearest fragment of
+//! all, and with the plain depth test, the sums of both methods are over the same fragments: the
+//! pictures differ by the order of the sums alone. Groups that do not overlap (c = 1, nothing
+//! relaxed) leave these pixels where it does not hold, because two fragments of one group are
+//! within epsilon:
 //!
 //! - discs that do not overlap in space, but do on the screen within epsilon of depth: at steep
 //!   angles, at the silhouette, and where two sheets are closer than epsilon;
@@ -141,11 +143,11 @@ impl Settings {
 
 /// `d_min` and `d_max` of \[ZP06, eq. 6\]: the depths of the scene's bounding sphere.
 ///
-/// With the centre (x, y, z) and the radius r of [`Surfels::bounding_sphere`] and the third row m of
-/// the view matrix, in f64: `t = -(((m0 x + m1 y) + m2 z) + m3)`; `d_min` is t - r, at least the near
-/// plane, and `d_max` is t + r, each rounded once to `f32`. Where `d_max` would not be greater than `d_min`
-/// (nothing is in sight, or the scene is less deep than the spacing of `f32` there) it is the next
-/// `f32` after it.
+/// With the centre (x, y, z) and the radius r of [`Surfels::bounding_sphere`] and the third row m
+/// of the view matrix, in f64: `t = -(((m0 x + m1 y) + m2 z) + m3)`; `d_min` is t - r, at least the
+/// near plane, and `d_max` is t + r, each rounded once to `f32`. Where `d_max` would not be greater
+/// than `d_min` (nothing is in sight, or the scene is less deep than the spacing of `f32` there) it
+/// is the next `f32` after it.
 #[must_use]
 pub fn depth_range(surfels: &Surfels, camera: &Camera) -> (f32, f32) {
     let (center, radius) = surfels.bounding_sphere();

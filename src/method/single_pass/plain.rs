@@ -132,8 +132,8 @@ impl<'a, R: Real> Geometry<'a, R> {
         self.prepared.for_each(tile, visit);
     }
 
-    /// The depth test: replaces what a pixel keeps by a fragment that is inside, if it passes. Gives
-    /// the fragment's Voronoi-enhanced depth, 0 under the plain depth test.
+    /// The depth test: replaces what a pixel keeps by a fragment that is inside, if it passes.
+    /// Gives the fragment's Voronoi-enhanced depth, 0 under the plain depth test.
     pub(super) fn offer(&self, splat: &Splat<R>, q: R, nearness: R, kept: &mut Kept<R>) -> R {
         let shared = &self.prepared.shared;
         let (z, passes) = match &self.bins {

@@ -1,21 +1,23 @@
 //! Reconstruction \[MOC08, section 3.2\]: the definition, a gather.
 //!
-//! Each pixel (x, y) visits, level by level from 0 to the top, the cells of the template around its own cell
-//! (x div 2^l, y div 2^l): row by row from h above to h below, in a row from h left to h right. `Decided:` this order; the
-//! paper has one shader pass a level and does not say which comes first. Of the centres that stay at the level it
-//! considers those whose ellipse ([`crate::splat::ellipse`]) holds the pixel's centre (x + 1/2, y + 1/2): with the offset from the
-//! place to there,
+//! Each pixel (x, y) visits, level by level from 0 to the top, the cells of the template around its
+//! own cell (x div 2^l, y div 2^l): row by row from h above to h below, in a row from h left to h
+//! right. `Decided:` this order; the paper has one shader pass a level and does not say which comes
+//! first. Of the centres that stay at the level it considers those whose ellipse
+//! ([`crate::splat::ellipse`]) holds the pixel's centre (x + 1/2, y + 1/2): with the offset from
+//! the place to there,
 //!
 //! ```text
 //!   form <= square        d = sqrt(form / square)        w = 1 - d, at least 2^-24
 //! ```
 //!
-//! `Decided:` the pixel that a centre staying at level 0 was projected to is held by it too, with w = 2^-24 if its
-//! ellipse does not hold it. A disc smaller than a pixel can miss every pixel's centre: without this rule a dense
-//! model, on which \[MOC08, Table 1\] reports, would be full of holes, and no point of it drawn.
+//! `Decided:` the pixel that a centre staying at level 0 was projected to is held by it too, with w
+//! = 2^-24 if its ellipse does not hold it. A disc smaller than a pixel can miss every pixel's
+//! centre: without this rule a dense model, on which \[MOC08, Table 1\] reports, would be full of
+//! holes, and no point of it drawn.
 //!
-//! The pixel knows the front: depth `t_f`, radius `r_f` and id of the nearest centre blended so far. The ternary test
-//! with sum = r + `r_f`:
+//! The pixel knows the front: depth `t_f`, radius `r_f` and id of the nearest centre blended so
+//! far. The ternary test with sum = r + `r_f`:
 //!
 //! ```text
 //!   first, or t_f - t > sum     before: the sums start anew with this centre, which is the front
@@ -23,9 +25,10 @@
 //!   else                        blended: added to the sums; the front if t < t_f
 //! ```
 //!
-//! Sums of w, w t, w normal and w colour. `Decided:` the test is against the nearest centre, as in the propagation; the paper's
-//! words leave open what depth a blended pixel has. `Decided:` the least weight, so that the rim, d = 1, is painted
-//! with a defined colour; no `f32` below 1 is closer to it, so nothing else changes.
+//! Sums of w, w t, w normal and w colour. `Decided:` the test is against the nearest centre, as in
+//! the propagation; the paper's words leave open what depth a blended pixel has. `Decided:` the
+//! least weight, so that the rim, d = 1, is painted with a defined colour; no `f32` below 1 is
+//! closer to it, so nothing else changes.
 
 use super::{Centre, Settings, levels};
 use crate::composite::sum;
@@ -70,7 +73,8 @@ impl<R: Real> Gathered<R> {
         }
     }
 
-    /// A centre whose ellipse holds the pixel, with its weight; the ternary test of the module page.
+    /// A centre whose ellipse holds the pixel, with its weight; the ternary test of the module
+    /// page.
     fn add(&mut self, centre: &Centre<R>, weight: R) {
         let sum = centre.radius + self.radius;
         if self.id == NO_ID || self.depth - centre.depth > sum {

@@ -1,20 +1,21 @@
 //! Propagation and merging \[MOC08, section 3.1\].
 //!
-//! A centre **stays** at level l if rho <= [`Settings::reach`] of l, or if l is the top level; else it moves on. Cell (X, Y)
-//! of the next level gets the moving ones of the finer cells j = 0 .. 3 at (2X + j mod 2, 2Y + j div 2). One alone is
-//! copied. Of several the foremost is the one of the least depth, ties to the lower j, and with it all
-//! for which
+//! A centre **stays** at level l if rho <= [`Settings::reach`] of l, or if l is the top level; else
+//! it moves on. Cell (X, Y) of the next level gets the moving ones of the finer cells j = 0 .. 3 at
+//! (2X + j mod 2, 2Y + j div 2). One alone is copied. Of several the foremost is the one of the
+//! least depth, ties to the lower j, and with it all for which
 //!
 //! ```text
 //!   t_j - t_front <= r_j + r_front
 //! ```
 //!
-//! are averaged ([`crate::composite::mean`], weights 1): place, normal, rho, r, t and colour; the id is that of the foremost. The
-//! others are lost. `Departs:` section 3.1 says "its depth is less than the foremost depth minus the sum of their
-//! radii", which no depth behind the foremost can be; meant is the distance.
+//! are averaged ([`crate::composite::mean`], weights 1): place, normal, rho, r, t and colour; the
+//! id is that of the foremost. The others are lost. `Departs:` section 3.1 says "its depth is less
+//! than the foremost depth minus the sum of their radii", which no depth behind the foremost can
+//! be; meant is the distance.
 //!
-//! An average of radii that all are greater than the reach of a level is greater too, so that a centre never
-//! stays at a level that it should have left.
+//! An average of radii that all are greater than the reach of a level is greater too, so that a
+//! centre never stays at a level that it should have left.
 
 use super::{Centre, Settings};
 use crate::composite::mean::Mean;

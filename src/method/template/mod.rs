@@ -1,13 +1,13 @@
 //! Image reconstruction with templates of k x k pixels \[MOC08\].
 //!
 //! 1. **Projection** to single pixels, see [`mod@super::projection`].
-//! 2. **Propagation** ([`mod@levels`]): each centre moves up the levels of a pyramid until k x k cells of its level
-//!    cover it; centres that meet in a cell are merged.
-//! 3. **Reconstruction** ([`mod@gather`]): each pixel searches k x k cells around it in every level for ellipses that
-//!    hold it, keeps the surface in front, and blends.
+//! 2. **Propagation** ([`mod@levels`]): each centre moves up the levels of a pyramid until k x k
+//!    cells of its level cover it; centres that meet in a cell are merged.
+//! 3. **Reconstruction** ([`mod@gather`]): each pixel searches k x k cells around it in every level
+//!    for ellipses that hold it, keeps the surface in front, and blends.
 //! 4. **Normalization**: depth, normal and colour are sums divided by the sum of weights, see
-//!    [`crate::composite::sum`]; the average normal is then turned to world space (down the columns of the view matrix, (m0 x + m1 y) + m2 z)
-//!    before it is divided by its length.
+//!    [`crate::composite::sum`]; the average normal is then turned to world space (down the columns
+//!    of the view matrix, (m0 x + m1 y) + m2 z) before it is divided by its length.
 //! 5. **Deferred shading**, see [`crate::shade`].
 //!
 //! The method draws surfels only, and refuses a scene with triangles or lines, which \[MOC08\] does not have. The template is k = 3, 5 or 7 cells wide, h = (k - 1) / 2.
@@ -31,14 +31,16 @@ use crate::number::{Real, Vector2, Vector3};
 /// The level at which a centre stays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LevelRule {
-    /// The least l >= 0 with rho <= h 2^l: a cell of level l is found from every pixel within h 2^l pixels of
-    /// any point in it, so that the whole ellipse is found. But an ellipse that has just left a level shares a
-    /// cell of the next with others that it does not cover, and is merged with them: a sampling of large or
-    /// tilted discs gets holes (with k = 3 always, with k = 5 from a tilt of 45 degrees on, with k = 7 from 62).
+    /// The least l >= 0 with rho <= h 2^l: a cell of level l is found from every pixel within h 2^l
+    /// pixels of any point in it, so that the whole ellipse is found. But an ellipse that has just
+    /// left a level shares a cell of the next with others that it does not cover, and is merged
+    /// with them: a sampling of large or tilted discs gets holes (with k = 3 always, with k = 5
+    /// from a tilt of 45 degrees on, with k = 7 from 62).
     Covering,
-    /// The least l >= 0 with rho <= k 2^l, which is \[MOC08, eq. 1\], l = ceil(log2(D / `t_s`)), D being "the projected
-    /// radius" and `t_s` the size of the template. It cuts ellipses: guaranteed is a distance of h 2^l only, half the
-    /// radius or less. Surfaces have fewer holes by it nevertheless, since discs overlap and fewer are merged.
+    /// The least l >= 0 with rho <= k 2^l, which is \[MOC08, eq. 1\], l = ceil(log2(D / `t_s`)), D
+    /// being "the projected radius" and `t_s` the size of the template. It cuts ellipses:
+    /// guaranteed is a distance of h 2^l only, half the radius or less. Surfaces have fewer holes
+    /// by it nevertheless, since discs overlap and fewer are merged.
     #[default]
     Published,
 }

@@ -13,8 +13,8 @@ use crate::number::{Real, Vector3};
 use crate::scene::{Camera, Scene};
 use crate::splat::View;
 
-/// Renders with the definition, in any number. `weight` is the sum of the weights, `id` the nearest centre of
-/// those blended. With `stages`, every stage leaves its planes:
+/// Renders with the definition, in any number. `weight` is the sum of the weights, `id` the nearest
+/// centre of those blended. With `stages`, every stage leaves its planes:
 ///
 /// | stage | planes |
 /// |---|---|
@@ -25,7 +25,8 @@ use crate::splat::View;
 /// A level lies in the upper left corner of its planes; the rest is as in an empty cell.
 ///
 /// # Errors
-/// [`Error::Invalid`] if the camera or the settings are out of range, or if the scene has triangles or lines.
+/// [`Error::Invalid`] if the camera or the settings are out of range, or if the scene has triangles
+/// or lines.
 pub fn render<R: Real>(
     scene: &Scene,
     camera: &Camera,
@@ -69,8 +70,8 @@ pub fn render<R: Real>(
     Ok(finish(target, planes, projected.tally, clock, (scene, camera, exec)))
 }
 
-/// Renders in `f32` by the fast path: the bits of [`render`], without the planes of the stages, in the memory of
-/// `levels` and of an earlier picture.
+/// Renders in `f32` by the fast path: the bits of [`render`], without the planes of the stages, in
+/// the memory of `levels` and of an earlier picture.
 ///
 /// # Errors
 /// As [`render`].

@@ -17,9 +17,9 @@ use crate::splat::View;
 
 /// Renders by Algorithm 2 or 3 \[ZP06\], in any number.
 ///
-/// The planes of the picture: `R G B` and `A`; `Z` and `id` of the nearest fragment that passed its depth
-/// test; `layers`, the mean count of layers, and of Algorithm 3 `normal` and `weight` of the nearest
-/// layer. With `stages`:
+/// The planes of the picture: `R G B` and `A`; `Z` and `id` of the nearest fragment that passed its
+/// depth test; `layers`, the mean count of layers, and of Algorithm 3 `normal` and `weight` of the
+/// nearest layer. With `stages`:
 ///
 /// | stage | planes |
 /// |---|---|
@@ -29,8 +29,8 @@ use crate::splat::View;
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the camera or the settings are out of range, if the low-precision
-/// depth takes too many bins, if refraction is wanted without an environment, or if there are not as
-/// many surfels in the groups or in the order as in the scene.
+/// depth takes too many bins, if refraction is wanted without an environment, or if there are not
+/// as many surfels in the groups or in the order as in the scene.
 pub fn render<R: Real>(
     scene: &Scene,
     (groups, order): (&Groups, &BackToFront),

@@ -1,7 +1,7 @@
 //! The k nearest neighbours of every point, exactly and in a fixed order.
 //!
-//! By the k-d tree of [`crate::scene::tree`]: unlike a grid it does not care how unevenly the points
-//! are spread.
+//! By the k-d tree of [`crate::scene::tree`]: unlike a grid it does not care how unevenly the
+//! points are spread.
 
 use crate::frame::Exec;
 use crate::scene::tree::{Entry, Tree};

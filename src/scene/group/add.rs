@@ -6,10 +6,10 @@ use super::tree::Tree;
 
 /// The surfels that are added to group `k`, in the order in which they are.
 ///
-/// The paper's queue needs no queue. A surfel is taken out at the priority p; if it has grown since,
-/// it goes back with a larger one. All others were at p or below and have not been looked at since:
-/// it is the first again, nothing has changed, and step 2b adds it. So each surfel is decided when
-/// its turn comes, in the order of the priorities that step 1 gave.
+/// The paper's queue needs no queue. A surfel is taken out at the priority p; if it has grown
+/// since, it goes back with a larger one. All others were at p or below and have not been looked at
+/// since: it is the first again, nothing has changed, and step 2b adds it. So each surfel is
+/// decided when its turn comes, in the order of the priorities that step 1 gave.
 pub(super) fn added(tree: &Tree, graph: &Graph, own: &[u8], k: u8, most: f32) -> Vec<u32> {
     let group = |place: usize| own[tree.surfel[place] as usize];
     let too_big = |covered: u64| covered.count_ones() as f32 / SAMPLES as f32 > most;

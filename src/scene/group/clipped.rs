@@ -28,8 +28,8 @@ pub(super) struct Disc {
     pub(super) radius: f64,
 }
 
-/// The samples of the unit disc: x, y and x^2 + y^2 of each; and the cosines and sines of the angles
-/// that they are turned by.
+/// The samples of the unit disc: x, y and x^2 + y^2 of each; and the cosines and sines of the
+/// angles that they are turned by.
 struct Pattern {
     x: [f64; SAMPLES],
     y: [f64; SAMPLES],

@@ -60,7 +60,8 @@ pub fn check_count(groups: usize) -> Result<()> {
     }
 }
 
-/// As [`group`], with the largest c that gives at most `count` groups, as the [module](super) defines it.
+/// As [`group`], with the largest c that gives at most `count` groups, as the [module](super)
+/// defines it.
 ///
 /// # Errors
 /// [`Error::Invalid`] as [`Rules::check`], and if `count` is not in 1 to [`MAX_GROUPS`].
@@ -123,8 +124,8 @@ fn groups(tree: &Tree, color: &[u32], groups: usize) -> Groups {
     Groups { own, added: Vec::new(), scale: vec![1.0; groups] }
 }
 
-/// The colour of every place: those with more neighbours first, of those with equally many the lower
-/// `index`; each gets the smallest colour that no neighbour has.
+/// The colour of every place: those with more neighbours first, of those with equally many the
+/// lower `index`; each gets the smallest colour that no neighbour has.
 pub(super) fn largest_first(graph: &Graph, index: &[u32]) -> Vec<u32> {
     const NONE: u32 = u32::MAX;
     let mut order: Vec<u32> = (0..index.len() as u32).collect();

@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// How many pairs of near surfels are looked at, at most.
 ///
-/// Colours and average degree are much the same in practice (Table 1 of the paper), so that twice as
-/// many neighbours on the average as there can be groups is more than any good scene needs. The
+/// Colours and average degree are much the same in practice (Table 1 of the paper), so that twice
+/// as many neighbours on the average as there can be groups is more than any good scene needs. The
 /// bound is for memory and time where a million surfels stand at one place.
 #[derive(Debug)]
 pub(super) struct Budget {
@@ -28,7 +28,8 @@ impl Budget {
         Self { surfels, factor, spent: AtomicU64::new(0) }
     }
 
-    /// Takes from the budget. Whether there is an error in the end does not depend on who asks when.
+    /// Takes from the budget. Whether there is an error in the end does not depend on who asks
+    /// when.
     ///
     /// # Errors
     /// [`Error::Invalid`] if more is spent than there is.

@@ -1,4 +1,5 @@
-//! Minimal independent groups: surfels that do not overlap share one depth-image \[ZP06, section 4\].
+//! Minimal independent groups: surfels that do not overlap share one depth-image \[ZP06, section
+//! 4\].
 //!
 //! [`group`] divides the surfels of a scene so that no two of a group overlap; [`extend`] then lets
 //! each group cover the surface. All numbers are f64 made of the f32 of the scene; i and j are
@@ -12,9 +13,9 @@
 //!   (d.x d.x + d.y d.y) + d.z d.z  <  m m       where  m = c (r_i + r_j)
 //! ```
 //!
-//! which is eq. 5 for c = 1 and modification 3 for c < 1. `Decided:` r is the radius of a surfel, and
-//! of an ellipse the length of its longer half axis, `sqrt((x x + y y) + z z)`: what lies in its disc
-//! covers it. Surfels that are near by the c of the [`Rules`] have an edge, unless
+//! which is eq. 5 for c = 1 and modification 3 for c < 1. `Decided:` r is the radius of a surfel,
+//! and of an ellipse the length of its longer half axis, `sqrt((x x + y y) + z z)`: what lies in
+//! its disc covers it. Surfels that are near by the c of the [`Rules`] have an edge, unless
 //!
 //! - `opposite` is set and `n_i . n_j < 0` (modification 2), or
 //! - they are [`Coplanar`] (modification 1). `Decided:` that is `n_i . n_j >= cosine`, and for n of
@@ -30,22 +31,23 @@
 //! degree alone, which fails for complete graphs.)
 //!
 //! Low colours are filled first, so that groups are of very different size: of a randomly sampled
-//! surface in four groups (c about 0.15) the first covers all, the second a fifth, the last nothing.
+//! surface in four groups (c about 0.15) the first covers all, the second a fifth, the last
+//! nothing.
 //!
 //! [`group_into`] looks for the largest c that gives at most a number of groups. `Decided:` it is
 //! bisection that defines the result, as K need not fall with c from one step to the next: of the
 //! multiples of 1/64 up to the c of the rules, c = 0 has no edge and one group, and fits; the first
-//! multiple above the rules' c does not; the middle of the two, rounded down, is tried and takes the
-//! place of one of them until they are neighbours. A graph with too many edges does not fit.
+//! multiple above the rules' c does not; the middle of the two, rounded down, is tried and takes
+//! the place of one of them until they are neighbours. A graph with too many edges does not fit.
 //!
 //! # The part of a disc that others cover (4.2.2)
 //!
-//! `Clipped(p_i, r, k)` is the area of disc i that discs of group k overlap. `Decided:` it is measured
-//! on 64 samples of disc i, so that it has one of 65 values and step 2b below can ask for equality.
-//! With `q_m = (m + 1/2)/64` and the golden angle g = 2.399963229728653, sample m of the unit disc is
-//! `sqrt(q_m) (cos(m g), sin(m g))`: each stands for the same area. The samples of disc i lie on axes u
-//! and v of its plane, turned by a random multiple of 1/64 of a turn, as errors would add up where
-//! surfels are regular: with n that of i,
+//! `Clipped(p_i, r, k)` is the area of disc i that discs of group k overlap. `Decided:` it is
+//! measured on 64 samples of disc i, so that it has one of 65 values and step 2b below can ask for
+//! equality. With `q_m = (m + 1/2)/64` and the golden angle g = 2.399963229728653, sample m of the
+//! unit disc is `sqrt(q_m) (cos(m g), sin(m g))`: each stands for the same area. The samples of
+//! disc i lie on axes u and v of its plane, turned by a random multiple of 1/64 of a turn, as
+//! errors would add up where surfels are regular: with n that of i,
 //!
 //! ```text
 //!   s  = 1, or -1 if n.z < 0        a = -1 / (s + n.z)          b = n.x n.y a
@@ -89,19 +91,19 @@
 //!
 //! # Enlarging radii (4.2.2, extension 2)
 //!
-//! For each group by itself, [`Extension::Enlarge`] iterates eq. 9 from scale 1. `Decided:` radii may
-//! differ, all of a group are multiplied by one scale s, and n pi r^2 is the sum of `pi r_i^2`:
+//! For each group by itself, [`Extension::Enlarge`] iterates eq. 9 from scale 1. `Decided:` radii
+//! may differ, all of a group are multiplied by one scale s, and n pi r^2 is the sum of `pi r_i^2`:
 //!
 //! ```text
 //!   s' = sqrt((A / pi + s s (R - U)) / R)
 //!   where  R = sum of r_i r_i,  U = covered area at radii s r_i, divided by pi s s
 //! ```
 //!
-//! s' < 1 becomes 1. It ends when |s' - s| <= [`SMALL_STEP`] s': the group has converged. `Decided:`
-//! it has not if s' reaches [`MAX_SCALE`], which then is its scale, or after [`MAX_STEPS`] steps. As a
-//! group covers all, clipping grows as fast as the area, and each step gains a part of what is still
-//! open: the iteration ends at about 99 % of A. It fails for the last groups of a colouring, which
-//! may be a handful of surfels. The scale is rounded to f32 once.
+//! s' < 1 becomes 1. It ends when |s' - s| <= [`SMALL_STEP`] s': the group has converged.
+//! `Decided:` it has not if s' reaches [`MAX_SCALE`], which then is its scale, or after
+//! [`MAX_STEPS`] steps. As a group covers all, clipping grows as fast as the area, and each step
+//! gains a part of what is still open: the iteration ends at about 99 % of A. It fails for the last
+//! groups of a colouring, which may be a handful of surfels. The scale is rounded to f32 once.
 
 mod add;
 mod clipped;
@@ -216,12 +218,12 @@ impl Groups {
 }
 
 impl Groups {
-    /// Groups that somebody else has made: the group of each surfel, further ones as (surfel, group)
-    /// in any order, and the scale of each group.
+    /// Groups that somebody else has made: the group of each surfel, further ones as (surfel,
+    /// group) in any order, and the scale of each group.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if there are not 1 to [`MAX_GROUPS`] scales, if one is not finite and > 0,
-    /// or if a surfel or a group does not exist.
+    /// [`Error::Invalid`] if there are not 1 to [`MAX_GROUPS`] scales, if one is not finite and >
+    /// 0, or if a surfel or a group does not exist.
     pub fn new(own: Vec<u8>, added: Vec<(u32, u8)>, scale: Vec<f32>) -> Result<Self> {
         let groups = scale.len();
         check_count(groups)?;

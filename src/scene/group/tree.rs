@@ -2,8 +2,8 @@
 //!
 //! A balanced tree over blocks of [`LANES`] discs: like a k-d tree it does not care how unevenly
 //! they are spread, and as each box knows the largest radius in it, nor how their sizes differ. One
-//! block is searched for at a time, and pairs are tested a block at a time. What is found depends on
-//! the discs alone; the tree leaves no trace but the order in which it is found.
+//! block is searched for at a time, and pairs are tested a block at a time. What is found depends
+//! on the discs alone; the tree leaves no trace but the order in which it is found.
 
 use super::clipped::Disc;
 use crate::error::Result;

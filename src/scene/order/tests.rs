@@ -116,8 +116,8 @@ proptest! {
         check(&points, all(), &order.unwrap(), &|axis, _| row[axis] > 0.0)?;
     }
 
-    /// Knows no tree: whatever axis-aligned planes are used, a point may only come before another if
-    /// along some axis the eye is not strictly beyond it, seen from the other.
+    /// Knows no tree: whatever axis-aligned planes are used, a point may only come before another
+    /// if along some axis the eye is not strictly beyond it, seen from the other.
     #[test]
     fn no_point_is_drawn_before_one_that_it_could_hide(
         seed in any::<u64>(),

@@ -13,8 +13,8 @@ const LIGHT: DVec3 = DVec3::new(0.875, 0.84375, 0.75);
 const DARK: DVec3 = DVec3::new(0.0625, 0.09375, 0.1875);
 
 /// About `count` surfels: an inner grid of n x n cells, n even, and in each ring the cells of an
-/// n x n grid of the ring's size but for those that lie wholly in its middle half, which the smaller
-/// grids fill.
+/// n x n grid of the ring's size but for those that lie wholly in its middle half, which the
+/// smaller grids fill.
 pub(super) fn sample(square: f32, count: usize, sampler: &mut Sampler) {
     let grids = 1.0 + 0.75 * f64::from(RINGS);
     let half = ((count as f64 / grids).sqrt() / 2.0 + 0.5).floor() as usize;

@@ -16,11 +16,11 @@
 //!
 //! The sphere and the spheres of the cluster carry golden spirals. The other shapes are cut into
 //! cells, nearly square, with one surfel in each, displaced at random by up to 1/8 of the cell's
-//! sides. The radius is everywhere **the spacing**: the square root of the area that a surfel stands
-//! for (of a cell that is not square, the root mean square of its sides). It covers with some
-//! margin: a displaced surfel is at most sqrt(1/2) * 5/4 = 0.88 spacings from the corners of its
-//! cell, and no point of a sphere is, as measured, farther than 0.77 spacings from its spiral. On
-//! the average a point lies in pi discs.
+//! sides. The radius is everywhere **the spacing**: the square root of the area that a surfel
+//! stands for (of a cell that is not square, the root mean square of its sides). It covers with
+//! some margin: a displaced surfel is at most sqrt(1/2) * 5/4 = 0.88 spacings from the corners of
+//! its cell, and no point of a sphere is, as measured, farther than 0.77 spacings from its spiral.
+//! On the average a point lies in pi discs.
 //!
 //! ```
 //! use splatref::scene::{Camera, Shape};
@@ -92,7 +92,8 @@ pub enum Shape {
         /// Distance from the front of a plate to its back.
         thickness: f32,
     },
-    /// 32 spheres with centres in [-1, 1]^3 and radii in [1/8, 3/8], in eight colours; some overlap.
+    /// 32 spheres with centres in [-1, 1]^3 and radii in [1/8, 3/8], in eight colours; some
+    /// overlap.
     ///
     /// `Decided:` each sphere is whole. What lies inside another has surfels too, which a renderer
     /// must find hidden.
@@ -145,8 +146,8 @@ impl Shape {
     /// Sphere and torus give exactly `count`, the cluster `count` but at least one for each sphere.
     /// The others give what their grids can hold: within 5 % of `count` from 10,000 on. The seed
     /// turns the spirals and displaces surfels in their cells; it never changes the shape.
-    /// The discs cover the shape, see the [module](self), once they are small against its curvature:
-    /// from about a hundred surfels a sphere on.
+    /// The discs cover the shape, see the [module](self), once they are small against its
+    /// curvature: from about a hundred surfels a sphere on.
     ///
     /// # Errors
     /// [`Error::Invalid`] if `count` is 0 or more than [`MAX_COUNT`], or if a parameter is not in
@@ -191,8 +192,8 @@ impl Shape {
     /// is seen).
     ///
     /// World rays are view rays taken through the inverse of `view_from_world`, computed in f64.
-    /// `Decided:` the near plane cuts the shape open: what is not farther than it is passed through,
-    /// and the ray goes on to the next hit.
+    /// `Decided:` the near plane cuts the shape open: what is not farther than it is passed
+    /// through, and the ray goes on to the next hit.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Camera::check`], or if a parameter of the shape is not in its range.

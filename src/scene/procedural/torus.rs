@@ -94,8 +94,8 @@ impl Quartic {
     /// The roots in [-reach, reach] where the sign changes, in ascending order.
     ///
     /// Between neighbouring zeros of its derivative a function crosses zero at most once. So the
-    /// zeros of the second derivative, +-sqrt(-square / 6), isolate those of the first, and these the
-    /// roots. A ray that only touches the torus, to rounding, may be taken to miss it.
+    /// zeros of the second derivative, +-sqrt(-square / 6), isolate those of the first, and these
+    /// the roots. A ray that only touches the torus, to rounding, may be taken to miss it.
     fn roots(&self, reach: f64) -> [Option<f64>; 4] {
         let bend = if self.square < 0.0 { (-self.square / 6.0).sqrt() } else { 0.0 };
         let bend = if bend < reach { bend } else { reach };

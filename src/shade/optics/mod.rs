@@ -18,9 +18,9 @@
 //! Decided: the paper combines the parts "using" Fresnel's equations without saying how.
 //! - The equations are the exact ones of an unpolarized dielectric, not Schlick's approximation,
 //!   which has no total reflection and no Brewster angle, and misses the ratios near 1.
-//! - Opacity covers the optics: F acts on the part 1 - alpha of a surface. So an opaque pixel is its
-//!   Phong colour exactly, a nearly opaque one nearly so, and without reflection (F = 0) the result
-//!   is the paper's alpha `C_F` + (1 - alpha) `C_O` over the absorbed environment.
+//! - Opacity covers the optics: F acts on the part 1 - alpha of a surface. So an opaque pixel is
+//!   its Phong colour exactly, a nearly opaque one nearly so, and without reflection (F = 0) the
+//!   result is the paper's alpha `C_F` + (1 - alpha) `C_O` over the absorbed environment.
 //! - l counts the nearest layer itself, so that eq. 11 attenuates by it too.
 //! - Opaque surfels among the other layers hide the environment, `hidden` says in what part; eq. 11
 //!   alone, made for one opacity everywhere, would let light through them.

@@ -1,7 +1,7 @@
 //! Pixels side by side: in every lane the operations of the definition, in its order.
 //!
-//! Pixels are gathered into arrays, shaded in straight loops, and scattered. A branch of the definition
-//! becomes a choice between two results; only the powers differ, see [`Real::powers`].
+//! Pixels are gathered into arrays, shaded in straight loops, and scattered. A branch of the
+//! definition becomes a choice between two results; only the powers differ, see [`Real::powers`].
 
 use super::{Answer, Form, Shader, mirrored};
 use crate::number::elementary::LANES;

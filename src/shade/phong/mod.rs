@@ -1,7 +1,7 @@
 //! Deferred Phong shading.
 //!
-//! In view space, for a pixel at depth t with normal n (turned from world to view space) and surface
-//! colour s (that of the pixel, or the material's where the scene has none):
+//! In view space, for a pixel at depth t with normal n (turned from world to view space) and
+//! surface colour s (that of the pixel, or the material's where the scene has none):
 //!
 //! ```text
 //!   p = (x, y, -t)      perspective: x = ((X - cx)/fx) t, y = -((Y - cy)/fy) t; else without t
@@ -10,14 +10,15 @@
 //!              ((diffuse (n . l)) s + specular (r . v)^shininess)     r = n (2 (n . l)) - l
 //! ```
 //!
-//! A light with n . l <= 0 adds nothing; a highlight needs r . v > 0. Without any light the colour is
-//! s. An empty pixel is black.
+//! A light with n . l <= 0 adds nothing; a highlight needs r . v > 0. Without any light the colour
+//! is s. An empty pixel is black.
 //!
 //! # Tubes
 //!
-//! A tube is shown where a pixel has a tangent: T is that tangent, turned from world to view space and
-//! then divided by its length. The pixel's own normal is not used; each light has its own, the
-//! direction l towards it projected onto the plane orthogonal to the tangent \[MKC08, section 4.2\]:
+//! A tube is shown where a pixel has a tangent: T is that tangent, turned from world to view space
+//! and then divided by its length. The pixel's own normal is not used; each light has its own, the
+//! direction l towards it projected onto the plane orthogonal to the tangent \[MKC08, section
+//! 4.2\]:
 //!
 //! ```text
 //!   m     = l - T (l . T)
@@ -26,11 +27,12 @@
 //! ```
 //!
 //! Where |m| is 0, because l is parallel to T or null, the light adds nothing. Where T is the null
-//! vector, because the tangent is, or because its length is 0 or not finite, the pixel shows a surface.
+//! vector, because the tangent is, or because its length is 0 or not finite, the pixel shows a
+//! surface.
 //!
 //! - `Decided:` the highlight takes the same n; the paper leaves it open.
-//! - `Decided:` n . l is the length of m, which it is equal to. Where l is nearly parallel to T, n is
-//!   the direction of a rounding error, and its dot product with l anything up to 1.
+//! - `Decided:` n . l is the length of m, which it is equal to. Where l is nearly parallel to T, n
+//!   is the direction of a rounding error, and its dot product with l anything up to 1.
 //! - As in the paper, n always turns towards the light: one that is behind the tube lights it too.
 
 mod lanes;
@@ -93,8 +95,8 @@ impl<R: Real> Shader<R> {
 
     /// Shades every pixel; `color` may be reused as the result.
     ///
-    /// `depth` is +inf where a pixel is empty; only an unlit scene can do without normals. `tangent`
-    /// is the null vector where a pixel shows no tube.
+    /// `depth` is +inf where a pixel is empty; only an unlit scene can do without normals.
+    /// `tangent` is the null vector where a pixel shows no tube.
     #[must_use]
     pub fn shade(
         &self,

@@ -127,8 +127,9 @@ impl<R: Real> Clip<R> {
     }
 
     /// What is left of a triangle: the corners of a convex polygon in the order of the triangle, to
-    /// be drawn as a fan around the first; none, or 3 to 8. At each plane the crossing of the edge that
-    /// ends at a corner comes before that corner, beginning with the edge that ends at the first.
+    /// be drawn as a fan around the first; none, or 3 to 8. At each plane the crossing of the edge
+    /// that ends at a corner comes before that corner, beginning with the edge that ends at the
+    /// first.
     ///
     /// Vertices may coincide. Where an edge lies within a rounding of a plane there can be more.
     #[must_use]

@@ -1,4 +1,5 @@
-//! The fast path for `f32`: the bits of [`super::plain`], from another layout, see [`crate::method`].
+//! The fast path for `f32`: the bits of [`super::plain`], from another layout, see
+//! [`crate::method`].
 
 mod kernels;
 

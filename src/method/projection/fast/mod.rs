@@ -1,12 +1,13 @@
-//! The projection of surfels in `f32` at the speed of memory: the samples of [`super::plain`], bit for bit.
+//! The projection of surfels in `f32` at the speed of memory: the samples of [`super::plain`], bit
+//! for bit.
 //!
-//! 1. **[`points`].** Every surfel that is seen becomes a point: pixel, depth, normal and radius, so that those
-//!    are not read again from random places. The scene is read once, in order, [`LANES`] surfels at a
-//!    time, without a branch a surfel; a chunk of surfels sorts its points by **bands** of rows in the cache,
-//!    and writes them out in order.
-//! 2. **[`nearest`].** Each band keeps the nearest point of each pixel in memory that fits the cache; one
-//!    thread owns it. What the points carry then becomes the samples of a row of pixels; colours, and the
-//!    positions of those who want them, are read for those alone.
+//! 1. **[`points`].** Every surfel that is seen becomes a point: pixel, depth, normal and radius,
+//!    so that those are not read again from random places. The scene is read once, in order,
+//!    [`LANES`] surfels at a time, without a branch a surfel; a chunk of surfels sorts its points
+//!    by **bands** of rows in the cache, and writes them out in order.
+//! 2. **[`nearest`].** Each band keeps the nearest point of each pixel in memory that fits the
+//!    cache; one thread owns it. What the points carry then becomes the samples of a row of pixels;
+//!    colours, and the positions of those who want them, are read for those alone.
 
 mod nearest;
 mod points;

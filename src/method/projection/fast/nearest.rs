@@ -22,7 +22,8 @@ pub(in crate::method) struct Nearest<'a> {
     surfels: &'a Surfels,
     lens: &'a Lens<f32>,
     /// The order of the depth in the upper half, and the slot: the less, the nearer, and of two
-    /// surfels equally near the one of the lower index, as the order of slots in a pixel is that of the surfels.
+    /// surfels equally near the one of the lower index, as the order of slots in a pixel is that of
+    /// the surfels.
     kept: &'a [u64],
 }
 
@@ -72,8 +73,8 @@ impl Nearest<'_> {
         if kept.iter().fold(NONE, |all, kept| all & kept) == NONE {
             return None;
         }
-        // A pixel without a point reads slot 0, which means nothing: loops of loads without a branch
-        // wait for memory together.
+        // A pixel without a point reads slot 0, which means nothing: loops of loads without a
+        // branch wait for memory together.
         let (mut slot, mut carried) = ([0; LANES], [[0.0; 4]; LANES]);
         for i in 0..LANES {
             slot[i] = if kept[i] == NONE { 0 } else { kept[i] as u32 as usize };

@@ -18,8 +18,8 @@ use std::sync::{Mutex, PoisonError};
 
 /// Surfels of a chunk; an index in a chunk has 16 bits.
 pub(super) const CHUNK: usize = 16_384;
-/// Pixels of a band, at most; an index in a band has 16 bits. Depths and slots of a band fit a second-level
-/// cache.
+/// Pixels of a band, at most; an index in a band has 16 bits. Depths and slots of a band fit a
+/// second-level cache.
 const BAND: usize = 65_536;
 /// Bands of a picture, at least, if it has as many rows: there should be work for every thread.
 const BANDS: usize = 16;
@@ -27,7 +27,8 @@ const BANDS: usize = 16;
 /// Where a point is, whose it is, and how far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Key {
-    /// The pixel of the band, counted row by row, in the upper half; the surfel of the chunk in the lower.
+    /// The pixel of the band, counted row by row, in the upper half; the surfel of the chunk in the
+    /// lower.
     place: u32,
     /// See [`order`].
     pub(super) order: u32,
@@ -60,9 +61,9 @@ pub(super) fn depth(order: u32) -> f32 {
 
 /// The points of a picture; the memory can be used for many pictures.
 ///
-/// A **slot** is the place of a point in both arrays. The points of a chunk of surfels have the first
-/// slots from that of its first surfel on, by bands, and in each band in the order of the surfels. A point carries the
-/// normal, towards the viewer and in view space, and the radius.
+/// A **slot** is the place of a point in both arrays. The points of a chunk of surfels have the
+/// first slots from that of its first surfel on, by bands, and in each band in the order of the
+/// surfels. A point carries the normal, towards the viewer and in view space, and the radius.
 #[derive(Debug, Default)]
 pub(in crate::method) struct Points {
     pub(super) keys: Vec<Key>,
@@ -182,7 +183,8 @@ impl Chunk {
         }
     }
 
-    /// Sorts the first `count` seen surfels by bands, and tells where each starts, and where the last ends.
+    /// Sorts the first `count` seen surfels by bands, and tells where each starts, and where the
+    /// last ends.
     fn sort(&mut self, count: usize, starts: &mut [u32]) {
         let place = |&i: &u16| (usize::from(i) / LANES, usize::from(i) % LANES);
         let seen = self.seen[..count].iter().map(place);
@@ -210,7 +212,8 @@ impl Chunk {
     }
 }
 
-/// What becomes of a range of surfels: fills `chunk` but for what is sorted, and tells how many are seen.
+/// What becomes of a range of surfels: fills `chunk` but for what is sorted, and tells how many are
+/// seen.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn points(
     surfels: &Surfels,
@@ -257,7 +260,8 @@ fn note(visible: &[u32; LANES], block: usize, seen: &mut [u16]) -> usize {
 }
 
 impl Block {
-    /// The block of this index from positions, normals and radii, and which of them are visible: 1, else 0.
+    /// The block of this index from positions, normals and radii, and which of them are visible: 1,
+    /// else 0.
     #[inline(always)]
     fn fill(
         &mut self,

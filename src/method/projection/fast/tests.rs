@@ -10,7 +10,8 @@ use crate::method::tests::{cameras, scene, surfels};
 use crate::scene::{Camera, Cloud, Projection, Surfels};
 use crate::splat::View;
 
-/// The samples of the fast path, as text: the shortest decimals tell floats apart, and the signs of zeros.
+/// The samples of the fast path, as text: the shortest decimals tell floats apart, and the signs of
+/// zeros.
 fn samples(of: &Surfels, camera: &Camera, cull: bool, points: &mut Points) -> Vec<String> {
     let exec = Exec::new(3, 16).unwrap();
     let lens = Lens::new(View::new(camera), cull);

@@ -8,12 +8,13 @@ pub(super) const KIND: usize = 0;
 pub(super) const FRONT: usize = 1;
 pub(super) const BACK: usize = 2;
 pub(super) const RADIUS: usize = 3;
-/// The displacement: two numbers; not of level 0, where it is 0 until the push, and then not wanted.
+/// The displacement: two numbers; not of level 0, where it is 0 until the push, and then not
+/// wanted.
 pub(super) const PLACE: usize = 4;
 /// The normal: three numbers.
 pub(super) const NORMAL: usize = 6;
-/// The tilt of the ellipse: two numbers; not of level 0, of which each is needed once. After it the colour,
-/// three, and the tangent, three, if the scene has them.
+/// The tilt of the ellipse: two numbers; not of level 0, of which each is needed once. After it the
+/// colour, three, and the tangent, three, if the scene has them.
 pub(super) const TILT: usize = 9;
 /// The first number that not every scene has.
 pub(super) const FURTHER: usize = 11;
@@ -24,8 +25,8 @@ pub(super) const TUBE: f32 = Kind::Tube as u8 as f32;
 /// Cells before the first and after the last of a row that are always empty.
 pub(super) const PAD: usize = LANES;
 
-/// The shape of a level's memory: rows of `attributes` times `stride` numbers, cell x of a number at [`PAD`] + x;
-/// an empty row above the first and below the last.
+/// The shape of a level's memory: rows of `attributes` times `stride` numbers, cell x of a number
+/// at [`PAD`] + x; an empty row above the first and below the last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shape {
     pub(super) width: usize,

@@ -18,7 +18,8 @@ pub(super) struct Four {
     pub(super) radius: [Lanes; 4],
     /// The displacements.
     pub(super) displacement: [[Lanes; 2]; 4],
-    /// From the new cell's centre to those of the cells; with the displacement, to that of the ellipse.
+    /// From the new cell's centre to those of the cells; with the displacement, to that of the
+    /// ellipse.
     pub(super) shift: [[f32; 2]; 4],
     /// The tilts of the ellipses.
     pub(super) tilt: [[Lanes; 2]; 4],

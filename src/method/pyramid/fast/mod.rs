@@ -1,9 +1,10 @@
 //! The fast path for `f32`: the bits of [`super::plain`], from another layout.
 //!
-//! A level is rows of numbers, one number of all cells of a row after the other, so that 16 cells of a row
-//! are 16 neighbours in memory. The pull phase computes 16 coarser cells at a time, the push phase 16 finer
-//! ones of every second column, which have 16 consecutive parents. What is empty is passed over; the push
-//! phase changes a level in place and touches only cells that are empty or occluded.
+//! A level is rows of numbers, one number of all cells of a row after the other, so that 16 cells
+//! of a row are 16 neighbours in memory. The pull phase computes 16 coarser cells at a time, the
+//! push phase 16 finer ones of every second column, which have 16 consecutive parents. What is
+//! empty is passed over; the push phase changes a level in place and touches only cells that are
+//! empty or occluded.
 
 mod level;
 mod mix;
@@ -47,7 +48,8 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// Projects a scene, pulls and pushes, and overwrites `surface`, which has the size of the picture.
+    /// Projects a scene, pulls and pushes, and overwrites `surface`, which has the size of the
+    /// picture.
     ///
     /// # Errors
     /// As [`super::render`]; camera and settings must have been checked.

@@ -1,4 +1,5 @@
-//! The push phase in lanes; see [`super::super::push`]. A level is changed in place, where it must be.
+//! The push phase in lanes; see [`super::super::push`]. A level is changed in place, where it must
+//! be.
 
 #![expect(
     clippy::needless_range_loop,
@@ -17,8 +18,9 @@ use multiversion::multiversion;
 /// Rows of a job.
 const ROWS: usize = 8;
 
-/// The cells of a level that are empty or occluded, from the coarser level; `side` is that of a cell in pixels.
-/// Each row is then handed to `done`, while it is in the cache, with what `beside` has for it.
+/// The cells of a level that are empty or occluded, from the coarser level; `side` is that of a
+/// cell in pixels. Each row is then handed to `done`, while it is in the cache, with what `beside`
+/// has for it.
 pub(super) fn push<T: Send>(
     fine: &mut Level,
     coarse: &Level,
@@ -141,7 +143,8 @@ fn push_row<const GAUSSIAN: bool, const TUBES: bool>(
     }
 }
 
-/// Replaces a number of the cells of both parities where they were found, and returns it for all cells.
+/// Replaces a number of the cells of both parities where they were found, and returns it for all
+/// cells.
 #[inline(always)]
 fn put(
     fine: &mut [f32],

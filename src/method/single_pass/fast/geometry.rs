@@ -22,7 +22,8 @@ struct Layer {
 }
 
 impl Images {
-    /// Draws every splat into the image of its group, with the plain depth test if there are no bins.
+    /// Draws every splat into the image of its group, with the plain depth test if there are no
+    /// bins.
     pub(super) fn draw(
         &mut self,
         tile: &Tile,
@@ -142,7 +143,8 @@ fn keep(lanes: &mut Lanes, mask: &[u32; LANES], values: &Lanes) {
     *lanes = kept;
 }
 
-/// Adds what a block has become to the images: a weight is computed once, for the fragment that is kept.
+/// Adds what a block has become to the images: a weight is computed once, for the fragment that is
+/// kept.
 #[inline(always)]
 fn finish(images: &mut Images, block: usize, layer: &Layer) {
     let Layer { nearness, q, amplitude, splat, .. } = *layer;

@@ -41,7 +41,8 @@ pub(super) struct Images {
     pub(super) attributes: Vec<Attributes>,
     /// The blocks that are touched, group by group.
     pub(super) images: Vec<Image>,
-    /// Which of the images each block has, by group: of each block as many places as there are `ends`.
+    /// Which of the images each block has, by group: of each block as many places as there are
+    /// `ends`.
     pub(super) lists: Vec<u32>,
     /// How many of those places are in use.
     pub(super) counts: Vec<usize>,
@@ -50,8 +51,8 @@ pub(super) struct Images {
 }
 
 impl Images {
-    /// Sorts the splats of a tile by group; nothing is touched yet. `empty` is the nearness of an empty
-    /// pixel.
+    /// Sorts the splats of a tile by group; nothing is touched yet. `empty` is the nearness of an
+    /// empty pixel.
     pub(super) fn new(tile: &Tile, groups: &Groups, empty: f32) -> Self {
         let (splats, blocks) = (tile.splats.len(), tile.blocks.len());
         // A loop of its own: the groups are far away, and a short loop waits for many at once.

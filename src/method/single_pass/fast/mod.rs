@@ -1,8 +1,10 @@
-//! The fast path for `f32`: the bits of [`super::plain`], from another layout, see [`crate::method`].
+//! The fast path for `f32`: the bits of [`super::plain`], from another layout, see
+//! [`crate::method`].
 //!
 //! In a tile the splats are sorted by group, and the groups are drawn one after the other into the
-//! same blocks. What a group has left in a block is then put aside: nearness, weight and splat of each
-//! pixel. So the images exist for one tile at a time, and there only where something was drawn.
+//! same blocks. What a group has left in a block is then put aside: nearness, weight and splat of
+//! each pixel. So the images exist for one tile at a time, and there only where something was
+//! drawn.
 //!
 //! Geometry is visited once, and a weight (an exponential) is computed once a pixel and group, not
 //! once a fragment; in exchange each block of an image has to be composited. So this method is the
@@ -40,8 +42,8 @@ pub struct Timings {
 /// stencil and margin are not written; see [`super::plain`] for those.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if the Voronoi depth test takes too many bins, or if there are not as many
-/// surfels in the groups.
+/// [`crate::Error::Invalid`] if the Voronoi depth test takes too many bins, or if there are not as
+/// many surfels in the groups.
 ///
 /// # Panics
 /// If the framebuffer has not the size of the camera's picture.

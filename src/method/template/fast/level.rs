@@ -22,7 +22,8 @@ pub(super) const COLOR: usize = 11;
 /// Cells before the first and after the last of a row that are always empty.
 pub(super) const PAD: usize = LANES;
 
-/// The shape of a level's memory: rows of `attributes` times `stride` numbers, cell x of a number at [`PAD`] + x.
+/// The shape of a level's memory: rows of `attributes` times `stride` numbers, cell x of a number
+/// at [`PAD`] + x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shape {
     pub(super) width: usize,
@@ -106,8 +107,8 @@ impl Level {
 }
 
 impl RowMut<'_> {
-    /// Finds the ellipses of [`LANES`] cells from x on, of which ids, extents and normals are there, and notes
-    /// which of them stay within `reach`.
+    /// Finds the ellipses of [`LANES`] cells from x on, of which ids, extents and normals are
+    /// there, and notes which of them stay within `reach`.
     #[inline(always)]
     pub(super) fn settle(&mut self, shape: &Shape, x: usize, reach: f32) {
         let at = |attribute: usize| attribute * shape.stride + PAD + x;

@@ -1,9 +1,10 @@
 //! The fast path for `f32`: the bits of [`super::gather`], from another layout.
 //!
-//! A level is rows of numbers, one number of all cells of a row after the other. Ellipses are found once a
-//! centre, not once a visit. 16 pixels of a row search together: at level 0 for centres that lie beside one
-//! another in memory, at coarser levels for one centre after the other; rows and levels where no
-//! centre stays are passed over. Each pixel meets its centres in the order of the definition.
+//! A level is rows of numbers, one number of all cells of a row after the other. Ellipses are found
+//! once a centre, not once a visit. 16 pixels of a row search together: at level 0 for centres that
+//! lie beside one another in memory, at coarser levels for one centre after the other; rows and
+//! levels where no centre stays are passed over. Each pixel meets its centres in the order of the
+//! definition.
 
 mod level;
 mod merge;
@@ -42,8 +43,8 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// Projects a scene, propagates and reconstructs; every pixel of `target` is overwritten but for stencil
-    /// and margin.
+    /// Projects a scene, propagates and reconstructs; every pixel of `target` is overwritten but
+    /// for stencil and margin.
     ///
     /// # Panics
     /// If the framebuffer has not the size of the camera's picture.

@@ -1,9 +1,9 @@
 //! Reconstruction and normalization in lanes; see [`super::super::gather`].
 //!
-//! A block is [`LANES`] pixels of a row. At level 0 each has a template of its own: the centres beside one
-//! another are read as lanes. A cell of a coarser level belongs to the templates of many of them: it
-//! is one centre for all lanes, those outside its template masked. Either way every lane meets its
-//! centres in the order of the definition.
+//! A block is [`LANES`] pixels of a row. At level 0 each has a template of its own: the centres
+//! beside one another are read as lanes. A cell of a coarser level belongs to the templates of many
+//! of them: it is one centre for all lanes, those outside its template masked. Either way every
+//! lane meets its centres in the order of the definition.
 
 #![expect(
     clippy::needless_range_loop,

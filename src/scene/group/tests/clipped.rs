@@ -56,9 +56,9 @@ fn lens(r: f64, other: f64, distance: f64) -> f64 {
 
 #[test]
 fn the_overlap_of_two_discs_is_that_of_two_circles() {
-    // A sample stands for a cell with sides of about sqrt(pi / 64) = 0.22. The edge of an overlap is
-    // at most pi long and passes some 14 of them, each of which it counts wrong by up to a half: as
-    // if at random, by sqrt(14 / 12) = 1.1 in all, and three times that in the worst of 360.
+    // A sample stands for a cell with sides of about sqrt(pi / 64) = 0.22. The edge of an overlap
+    // is at most pi long and passes some 14 of them, each of which it counts wrong by up to a half:
+    // as if at random, by sqrt(14 / 12) = 1.1 in all, and three times that in the worst of 360.
     let (mut worst, mut sum, mut count) = (0.0_f64, 0.0, 0);
     for radius in [0.5_f32, 1.0, 3.0] {
         for step in 0..120 {
@@ -95,7 +95,8 @@ fn only_discs_that_face_the_same_way_cover() {
     assert_eq!(cover(&two(Vec3::Z, 0.0), 0, 1), u64::MAX, "itself");
     assert_eq!(cover(&two(Vec3::Z, 1.5), 0, 1), 0, "out of reach");
     assert_eq!(cover(&two(-Vec3::Z, 0.01), 0, 1), 0, "the other side of a wall");
-    // At height 0.6 the ball of radius 1 cuts the plane in a circle of radius 0.8: 0.64 of 64 is 40.96.
+    // At height 0.6 the ball of radius 1 cuts the plane in a circle of radius 0.8: 0.64 of 64 is
+    // 40.96.
     assert_eq!(cover(&two(Vec3::new(0.6, 0.0, 0.8), 0.6), 0, 1).count_ones(), 41);
 }
 
