@@ -8,8 +8,8 @@ use super::Plane;
 /// stands for the finer pixels (2X, 2Y), (2X + 1, 2Y), (2X, 2Y + 1), (2X + 1, 2Y + 1), of which
 /// those beyond the right or lower edge of an odd level do not exist. (\[MKC08\] and \[MOC08\] show
 /// powers of two.) So a pixel of level l is a square of side 2^l pixels whose centre is (2^l (X +
-/// 1/2), 2^l (Y + 1/2)); only for a width that is a power of two do the squares end where the
-/// picture ends.
+/// 1/2), 2^l (Y + 1/2)). Along a side that is a power of two, and not the shorter one, the squares
+/// of all levels end where the picture ends; along any other those of some level reach beyond it.
 #[must_use]
 pub fn sizes(width: u32, height: u32) -> Vec<[u32; 2]> {
     let mut levels = vec![[width, height]];
