@@ -11,9 +11,11 @@
 
 mod nearest;
 mod points;
+mod shape;
 
 pub(in crate::method) use nearest::Nearest;
 pub(in crate::method) use points::Points;
+pub(in crate::method) use shape::{PAD, Shape, lanes};
 
 /// Surfels or pixels that are treated side by side.
 pub(in crate::method) const LANES: usize = 16;

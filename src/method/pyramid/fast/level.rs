@@ -1,7 +1,8 @@
 //! A level in rows of numbers.
 
-use crate::method::projection::fast::{LANES, Lanes};
 use crate::method::projection::{Has, Kind};
+
+pub(super) use crate::method::projection::fast::{PAD, Shape, lanes};
 
 /// The numbers of a cell, by their place in a row; [`KIND`] is the [`Kind`] as a number.
 pub(super) const KIND: usize = 0;
@@ -22,35 +23,13 @@ pub(super) const FURTHER: usize = 11;
 /// [`Kind::Tube`] as a number.
 pub(super) const TUBE: f32 = Kind::Tube as u8 as f32;
 
-/// Cells before the first and after the last of a row that are always empty.
-pub(super) const PAD: usize = LANES;
-
-/// The shape of a level's memory: rows of `attributes` times `stride` numbers, cell x of a number
-/// at [`PAD`] + x; an empty row above the first and below the last.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Shape {
-    pub(super) width: usize,
-    pub(super) height: usize,
-    pub(super) attributes: usize,
-    pub(super) stride: usize,
+/// The shape of a level's memory.
+pub(super) fn shape(size: [u32; 2], has: Has) -> Shape {
+    let further = 3 * (usize::from(has.color) + usize::from(has.tangent));
+    Shape::new(size, FURTHER + further)
 }
 
-impl Shape {
-    pub(super) fn new([width, height]: [u32; 2], has: Has) -> Self {
-        let further = 3 * (usize::from(has.color) + usize::from(has.tangent));
-        let (width, height) = (width as usize, height as usize);
-        // Blocks of LANES coarser cells, which are two blocks of finer ones.
-        let stride = PAD + width.next_multiple_of(2 * LANES) + PAD;
-        Self { width, height, attributes: FURTHER + further, stride }
-    }
-
-    /// Numbers in a row of cells.
-    pub(super) fn row(&self) -> usize {
-        self.attributes * self.stride
-    }
-}
-
-/// A level.
+/// A level; an empty row above the first and below the last.
 #[derive(Debug)]
 pub(super) struct Level {
     pub(super) shape: Shape,
@@ -75,12 +54,4 @@ impl Level {
         let row = self.shape.row();
         self.numbers[row..(self.shape.height + 1) * row].chunks_mut(row)
     }
-}
-
-/// [`LANES`] numbers of a row from an index on.
-#[inline(always)]
-pub(super) fn lanes(row: &[f32], at: usize) -> Lanes {
-    let mut lanes = [0.0; LANES];
-    lanes.copy_from_slice(&row[at..at + LANES]);
-    lanes
 }

@@ -23,7 +23,7 @@ use crate::method::projection::surfel::Lens;
 use crate::method::projection::{self, Has, Kind, Projected};
 use crate::scene::{Camera, Scene};
 use crate::splat::{Tally, View};
-use level::{BACK, FRONT, FURTHER, KIND, Level, NORMAL, PAD, RADIUS, Shape};
+use level::{BACK, FRONT, FURTHER, KIND, Level, NORMAL, RADIUS, Shape};
 use multiversion::multiversion;
 use output::Output;
 use std::time::{Duration, Instant};
@@ -88,7 +88,7 @@ impl Levels {
     /// The memory for a picture.
     fn reshape(&mut self, camera: &Camera, has: Has) {
         let sizes = pyramid::sizes(camera.width, camera.height);
-        let shapes = sizes.into_iter().map(|size| Shape::new(size, has));
+        let shapes = sizes.into_iter().map(|size| level::shape(size, has));
         if !shapes.clone().eq(self.levels.iter().map(|level| level.shape)) {
             self.levels = shapes.map(Level::new).collect();
         }
@@ -147,7 +147,7 @@ impl Levels {
 fn samples(nearest: &Nearest<'_>, row: &mut [f32], shape: &Shape) {
     for x in (0..shape.width).step_by(LANES) {
         let mut put = |attribute: usize, lanes: &Lanes| {
-            let at = attribute * shape.stride + PAD + x;
+            let at = shape.at(attribute, x);
             row[at..at + LANES].copy_from_slice(lanes);
         };
         let Some(s) = nearest.take(x) else {
@@ -183,7 +183,7 @@ fn store(projected: &Projected<f32>, has: Has, level: &mut Level, exec: &Exec) {
             let cell = Cell::new(sample);
             let mut put = |at: usize, values: &[f32]| {
                 for (k, value) in values.iter().enumerate() {
-                    row[(at + k) * shape.stride + PAD + x] = *value;
+                    row[shape.at(at + k, x)] = *value;
                 }
             };
             let (n, t) = (cell.normal, cell.tangent);

@@ -1,7 +1,7 @@
 //! Level 0 as a picture wants it, in lanes.
 
 use super::super::picture::Surface;
-use super::level::{FRONT, FURTHER, KIND, NORMAL, PAD, Shape, lanes};
+use super::level::{FRONT, FURTHER, KIND, NORMAL, Shape, lanes};
 use crate::frame::Plane;
 use crate::method::projection::fast::{LANES, any_above_0, put};
 use crate::method::projection::world;
@@ -55,7 +55,7 @@ impl Output<'_> {
 
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn write(row: &[f32], shape: &Shape, (kinds, depths, alphas): (&mut [u8], &mut [f32], &mut [f32])) {
-    let number = |attribute: usize| &row[attribute * shape.stride + PAD..][..shape.width];
+    let number = |attribute: usize| &row[shape.at(attribute, 0)..][..shape.width];
     let found = number(KIND).iter().zip(number(FRONT));
     let pixels = kinds.iter_mut().zip(depths).zip(alphas);
     for ((found, front), ((kind, depth), alpha)) in found.zip(pixels) {
@@ -76,7 +76,7 @@ fn vectors(
     output: &mut [[f32; 3]],
 ) {
     for (x, output) in (0..).step_by(LANES).zip(output.chunks_mut(LANES)) {
-        let number = |attribute: usize| lanes(row, attribute * shape.stride + PAD + x);
+        let number = |attribute: usize| lanes(row, shape.at(attribute, x));
         let kind = number(KIND);
         let mut block = [[0.0; 3]; LANES];
         if any_above_0(&kind) {

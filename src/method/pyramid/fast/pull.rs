@@ -29,7 +29,7 @@ pub(super) fn pull(fine: &Level, coarse: &mut Level, side: f32, tubes: bool, exe
 /// A number of the four finer cells of [`LANES`] coarser ones from column x on.
 #[inline(always)]
 fn four(finer: [&[f32]; 2], shape: &Shape, attribute: usize, x: usize) -> [Lanes; 4] {
-    let at = attribute * shape.stride + PAD + 2 * x;
+    let at = shape.at(attribute, 2 * x);
     let [a, b] = halves(finer[0], at);
     let [c, d] = halves(finer[1], at);
     [a, b, c, d]

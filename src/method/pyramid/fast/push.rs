@@ -51,7 +51,7 @@ pub(super) fn push<T: Send>(
 /// A number of the parents and their three neighbours, for the columns of one parity.
 #[inline(always)]
 fn four(coarser: [&[f32]; 2], shape: &Shape, attribute: usize, x: usize, odd: usize) -> [Lanes; 4] {
-    let own = attribute * shape.stride + PAD + x;
+    let own = shape.at(attribute, x);
     let beside = own - 1 + 2 * odd;
     [
         lanes(coarser[0], own),
@@ -96,9 +96,9 @@ fn push_row<const GAUSSIAN: bool, const TUBES: bool>(
         if !any_above_0(&coarser[0][around.clone()]) && !any_above_0(&coarser[1][around]) {
             continue;
         }
-        let at = |attribute: usize| attribute * fine_shape.stride + PAD + 2 * x;
+        let at = |attribute: usize| fine_shape.at(attribute, 2 * x);
         let (kinds, fronts) = (halves(fine, at(KIND)), halves(fine, at(FRONT)));
-        let own = |attribute: usize| lanes(coarser[0], attribute * shape.stride + PAD + x);
+        let own = |attribute: usize| lanes(coarser[0], shape.at(attribute, x));
         let (kind, front, back) = (own(KIND), own(FRONT), own(BACK));
         let number = |attribute: usize, odd: usize| four(coarser, shape, attribute, x, odd);
         let find = |odd: usize| {

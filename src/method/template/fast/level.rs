@@ -2,6 +2,7 @@
 
 use crate::frame::NO_ID;
 use crate::method::projection::fast::LANES;
+pub(super) use crate::method::projection::fast::{PAD, Shape, lanes};
 use crate::number::Vector3;
 use crate::splat::Ellipse;
 
@@ -19,26 +20,9 @@ pub(super) const NORMAL: usize = 8;
 /// The first number that not every scene has.
 pub(super) const COLOR: usize = 11;
 
-/// Cells before the first and after the last of a row that are always empty.
-pub(super) const PAD: usize = LANES;
-
-/// The shape of a level's memory: rows of `attributes` times `stride` numbers, cell x of a number
-/// at [`PAD`] + x.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Shape {
-    pub(super) width: usize,
-    pub(super) height: usize,
-    pub(super) attributes: usize,
-    pub(super) stride: usize,
-}
-
-impl Shape {
-    pub(super) fn new([width, height]: [u32; 2], color: bool) -> Self {
-        let (width, height) = (width as usize, height as usize);
-        let attributes = if color { COLOR + 3 } else { COLOR };
-        let stride = PAD + width.next_multiple_of(2 * LANES) + PAD;
-        Self { width, height, attributes, stride }
-    }
+/// The shape of a level's memory.
+pub(super) fn shape(size: [u32; 2], color: bool) -> Shape {
+    Shape::new(size, if color { COLOR + 3 } else { COLOR })
 }
 
 /// A row of a level, to be written.
@@ -71,10 +55,10 @@ pub(super) struct Level {
 impl Level {
     /// An empty level.
     pub(super) fn new(shape: Shape) -> Self {
-        let Shape { height, attributes, stride, .. } = shape;
+        let Shape { height, stride, .. } = shape;
         Self {
             shape,
-            numbers: vec![f32::NAN; height * attributes * stride],
+            numbers: vec![f32::NAN; height * shape.row()],
             ids: vec![NO_ID; height * stride],
             has: vec![[false; 2]; height],
         }
@@ -83,8 +67,7 @@ impl Level {
     /// A row of cells.
     #[inline(always)]
     pub(super) fn row(&self, y: usize) -> Row<'_> {
-        let Shape { attributes, stride, .. } = self.shape;
-        let row = attributes * stride;
+        let (row, stride) = (self.shape.row(), self.shape.stride);
         Row {
             numbers: &self.numbers[y * row..(y + 1) * row],
             ids: &self.ids[y * stride..(y + 1) * stride],
@@ -99,9 +82,8 @@ impl Level {
 
     /// All rows, to be written.
     pub(super) fn rows_mut(&mut self) -> impl Iterator<Item = RowMut<'_>> {
-        let Shape { attributes, stride, .. } = self.shape;
-        let numbers = self.numbers.chunks_mut(attributes * stride);
-        let rows = numbers.zip(self.ids.chunks_mut(stride)).zip(&mut self.has);
+        let numbers = self.numbers.chunks_mut(self.shape.row());
+        let rows = numbers.zip(self.ids.chunks_mut(self.shape.stride)).zip(&mut self.has);
         rows.map(|((numbers, ids), has)| RowMut { numbers, ids, has })
     }
 }
@@ -111,13 +93,10 @@ impl RowMut<'_> {
     /// there, and notes which of them stay within `reach`.
     #[inline(always)]
     pub(super) fn settle(&mut self, shape: &Shape, x: usize, reach: f32) {
-        let at = |attribute: usize| attribute * shape.stride + PAD + x;
-        let lanes = |attribute: usize| {
-            let mut lanes = [0.0; LANES];
-            lanes.copy_from_slice(&self.numbers[at(attribute)..at(attribute) + LANES]);
-            lanes
-        };
-        let (extent, n) = (lanes(EXTENT), [0, 1, 2].map(|axis| lanes(NORMAL + axis)));
+        let at = |attribute: usize| shape.at(attribute, x);
+        let number = |attribute: usize| lanes(self.numbers, at(attribute));
+        let n = [number(NORMAL), number(NORMAL + 1), number(NORMAL + 2)];
+        let extent = number(EXTENT);
         let mut ids = [0; LANES];
         ids.copy_from_slice(&self.ids[PAD + x..PAD + x + LANES]);
         let (mut tilt, mut square) = ([[0.0; LANES]; 2], [0.0; LANES]);
@@ -140,7 +119,7 @@ impl RowMut<'_> {
     /// Marks [`LANES`] cells from x on as empty.
     #[inline(always)]
     pub(super) fn clear(&mut self, shape: &Shape, x: usize) {
-        let at = SQUARE * shape.stride + PAD + x;
+        let at = shape.at(SQUARE, x);
         self.numbers[at..at + LANES].fill(f32::NAN);
         self.ids[PAD + x..PAD + x + LANES].fill(NO_ID);
     }

@@ -45,7 +45,7 @@ fn merge_row(
             continue;
         }
         let number = |attribute: usize| {
-            let at = attribute * fine.stride + PAD + 2 * x;
+            let at = fine.at(attribute, 2 * x);
             let [a, b] = halves(finer[0].numbers, at);
             let [c, d] = halves(finer[1].numbers, at);
             [a, b, c, d]
@@ -104,7 +104,7 @@ impl Four {
         let own = [PLACE, PLACE + 1, DEPTH, RADIUS, EXTENT].into_iter().chain(NORMAL..COLOR);
         for attribute in own.chain(COLOR..shape.attributes) {
             let a = number(attribute);
-            let at = attribute * shape.stride + PAD + x;
+            let at = shape.at(attribute, x);
             let mut average = [0.0; LANES];
             for i in 0..LANES {
                 let mean = Mean::plain([0, 1, 2, 3].map(|j| takes[j][i] > 0.0));

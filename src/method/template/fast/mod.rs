@@ -61,7 +61,7 @@ impl Levels {
         let has = Has::of(scene);
         let sizes = pyramid::sizes(camera.width, camera.height);
         let top = levels::top(settings, &sizes);
-        let shapes = sizes[..=top].iter().map(|&size| Shape::new(size, has.color));
+        let shapes = sizes[..=top].iter().map(|&size| level::shape(size, has.color));
         if !shapes.clone().eq(self.levels.iter().map(|level| level.shape)) {
             self.levels = shapes.map(Level::new).collect();
         }
@@ -138,7 +138,7 @@ fn samples(nearest: &Nearest<'_>, row: &mut RowMut<'_>, shape: &Shape, reach: f3
         let ids = nearest.ids(&s);
         let centre = nearest.centres(&ids);
         let mut put = |attribute: usize, lanes: &Lanes| {
-            let at = attribute * shape.stride + PAD + x;
+            let at = shape.at(attribute, x);
             row.numbers[at..at + LANES].copy_from_slice(lanes);
         };
         put(DEPTH, &s.depth);

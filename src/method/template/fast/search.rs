@@ -10,7 +10,7 @@
     reason = "a lane is an index into several arrays, and such a loop becomes vectors"
 )]
 
-use super::level::{COLOR, DEPTH, Level, NORMAL, PAD, PLACE, RADIUS, Row, SQUARE, TILT};
+use super::level::{COLOR, DEPTH, Level, NORMAL, PAD, PLACE, RADIUS, Row, SQUARE, TILT, lanes};
 use crate::composite::sum;
 use crate::frame::NO_ID;
 use crate::method::projection::fast::{LANES, Lanes, put};
@@ -75,11 +75,10 @@ pub(super) fn search_row<const COLORED: bool>(
             let row = y >> level;
             for cy in row.saturating_sub(half)..cells.shape.height.min(row + half + 1) {
                 let cells = (cells.row(cy), cells.shape.stride, cells.shape.width);
-                if !cells.0.has[0] {
-                } else if level == 0 {
-                    beside::<COLORED>(&mut block, cells, (x, y, cy == y), half);
-                } else {
-                    around::<COLORED>(&mut block, cells, (x, y, level), half);
+                match (cells.0.has[0], level) {
+                    (false, _) => {}
+                    (true, 0) => beside::<COLORED>(&mut block, cells, (x, y, cy == y), half),
+                    (true, _) => around::<COLORED>(&mut block, cells, (x, y, level), half),
                 }
             }
         }
@@ -97,15 +96,10 @@ fn beside<const COLORED: bool>(
 ) {
     for dx in 0..=2 * half {
         let first = PAD + x + dx - half;
-        let lanes = |attribute: usize| {
-            let mut lanes = [0.0; LANES];
-            let at = attribute * stride + first;
-            lanes.copy_from_slice(&row.numbers[at..at + LANES]);
-            lanes
-        };
+        let number = |attribute: usize| lanes(row.numbers, attribute * stride + first);
         let own = own_row && dx == half;
-        let (px, py, square) = (lanes(PLACE), lanes(PLACE + 1), lanes(SQUARE));
-        let (tx, ty) = (lanes(TILT), lanes(TILT + 1));
+        let (px, py, square) = (number(PLACE), number(PLACE + 1), number(SQUARE));
+        let (tx, ty) = (number(TILT), number(TILT + 1));
         let mut form = [0.0; LANES];
         let mut inside = [0_u32; LANES];
         for i in 0..LANES {
@@ -122,10 +116,14 @@ fn beside<const COLORED: bool>(
         ids.copy_from_slice(&row.ids[first..first + LANES]);
         let centres = Centres {
             id: ids,
-            depth: lanes(DEPTH),
-            radius: lanes(RADIUS),
-            normal: [0, 1, 2].map(|axis| lanes(NORMAL + axis)),
-            color: if COLORED { [0, 1, 2].map(|c| lanes(COLOR + c)) } else { [[0.0; LANES]; 3] },
+            depth: number(DEPTH),
+            radius: number(RADIUS),
+            normal: [number(NORMAL), number(NORMAL + 1), number(NORMAL + 2)],
+            color: if COLORED {
+                [number(COLOR), number(COLOR + 1), number(COLOR + 2)]
+            } else {
+                [[0.0; LANES]; 3]
+            },
         };
         block.add::<COLORED>(&centres, &inside, &form, &square);
     }
@@ -168,8 +166,12 @@ fn around<const COLORED: bool>(
             id: [row.ids[PAD + cx]; LANES],
             depth: all(DEPTH),
             radius: all(RADIUS),
-            normal: [0, 1, 2].map(|axis| all(NORMAL + axis)),
-            color: if COLORED { [0, 1, 2].map(|c| all(COLOR + c)) } else { [[0.0; LANES]; 3] },
+            normal: [all(NORMAL), all(NORMAL + 1), all(NORMAL + 2)],
+            color: if COLORED {
+                [all(COLOR), all(COLOR + 1), all(COLOR + 2)]
+            } else {
+                [[0.0; LANES]; 3]
+            },
         };
         block.add::<COLORED>(&centres, &inside, &form, &[square; LANES]);
     }
@@ -248,7 +250,7 @@ fn normalize<const COLORED: bool>(
         let mut turned = [[0.0; 3]; LANES];
         if !empty {
             for i in 0..LANES {
-                let sums = [0, 1, 2].map(|axis| block.normals[axis][i]);
+                let sums = [block.normals[0][i], block.normals[1][i], block.normals[2][i]];
                 let [x, y, z] = sum::average(sums, block.weight[i]);
                 turned[i] = world(view, Vector3::new(x, y, z));
             }
@@ -257,7 +259,8 @@ fn normalize<const COLORED: bool>(
     }
     if let Some(colors) = target.color.as_mut().filter(|_| COLORED) {
         for (i, color) in colors[x..x + count].iter_mut().enumerate() {
-            *color = sum::average([0, 1, 2].map(|c| block.colors[c][i]), block.weight[i]);
+            let sums = [block.colors[0][i], block.colors[1][i], block.colors[2][i]];
+            *color = sum::average(sums, block.weight[i]);
         }
     }
 }
