@@ -10,6 +10,7 @@ use crate::frame::Exec;
 use crate::method::projection::surfel::Lens;
 use crate::number::{Real, Vector3};
 use crate::scene::Surfels;
+use crate::scene::camera::MAX_EXTENT;
 use crate::splat::{Fate, Tally};
 use glam::Vec3;
 use multiversion::multiversion;
@@ -21,6 +22,7 @@ pub(super) const CHUNK: usize = 16_384;
 /// Pixels of a band, at most; an index in a band has 16 bits. Depths and slots of a band fit a
 /// second-level cache.
 const BAND: usize = 65_536;
+const _: () = assert!(MAX_EXTENT as usize <= BAND, "a band has a row of the widest picture");
 /// Bands of a picture, at least, if it has as many rows: there should be work for every thread.
 const BANDS: usize = 16;
 

@@ -30,13 +30,13 @@ use std::time::{Duration, Instant};
 
 /// Wall times of the stages.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Timings {
+pub(super) struct Timings {
     /// Projection to single pixels.
-    pub project: Duration,
+    pub(super) project: Duration,
     /// The pull phase.
-    pub pull: Duration,
-    /// The push phase.
-    pub push: Duration,
+    pub(super) pull: Duration,
+    /// The push phase, and the picture.
+    pub(super) push: Duration,
 }
 
 /// The levels of a picture, which can be used for many pictures.
