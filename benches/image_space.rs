@@ -6,9 +6,9 @@
 //! with the spacing as its radius, in a picture that it fills. One headlight, back faces culled,
 //! `f32`, as many threads as cores. Each number is the median over the pictures of one run in
 //! milliseconds, the minimum in brackets; `frame` is the whole call, from the scene to shaded
-//! planes in the memory of the picture before. `reading` is the time in which as many threads do no
-//! more than read what the projection reads of all surfels once, 28 bytes each: the speed of
-//! memory.
+//! planes in the memory of the picture before. `moving` is the time in which as many threads do no
+//! more than move what the projection moves: read 28 bytes of every surfel, write 24 for each that
+//! is seen, and read those again.
 
 #[path = "common/mod.rs"]
 mod common;
@@ -82,7 +82,7 @@ fn main() -> Result<()> {
         ("template 3 x 3", of(3), &TEMPLATE_3, 768, false),
         ("template 5 x 5", of(5), &TEMPLATE_5, 768, false),
     ];
-    println!("| method | model of the paper | points | paper | frame | ratio | stages | reading |");
+    println!("| method | model of the paper | points | paper | frame | ratio | stages | moving |");
     println!("|---|---|---|---|---|---|---|---|");
     for (name, method, rows, side, colored) in tables {
         for row in rows.iter().filter(|_| name.contains(&pattern)) {
@@ -92,8 +92,10 @@ fn main() -> Result<()> {
             let lens = Lens::FieldOfView(34.0);
             let camera = Camera::framing(side, side, (center, radius * 0.8), side_on, lens)?;
             let exec = Exec::new(0, 32)?;
-            let (mut frames, stages) = measure(&scene, &camera, &method, &exec)?;
-            let mut reading: Vec<_> = (0..9).map(|_| reading(&scene.surfels, &exec)).collect();
+            let (mut frames, stages, seen) = measure(&scene, &camera, &method, &exec)?;
+            let mut points = vec![[1; 6]; row.count];
+            let mut moved = || moving(&scene.surfels, seen, &exec, &mut points);
+            let mut moving: Vec<_> = (0..9).map(|_| moved()).collect();
             let frame = median(&mut frames);
             let stages: Vec<String> =
                 stages.into_iter().map(|(n, mut t)| format!("{n} {}", cell(&mut t))).collect();
@@ -105,7 +107,7 @@ fn main() -> Result<()> {
                 cell(&mut frames),
                 frame / row.paper,
                 stages.join(", "),
-                cell(&mut reading)
+                cell(&mut moving)
             );
         }
     }
@@ -139,12 +141,15 @@ fn scene(scan: Option<&Cloud>, count: usize, colored: bool) -> Result<Scene> {
     })
 }
 
-/// The times of whole pictures, and of each stage.
-type Times = (Vec<Duration>, Vec<(&'static str, Vec<Duration>)>);
+/// The times of whole pictures, and of each stage, and how many surfels are seen.
+type Times = (Vec<Duration>, Vec<(&'static str, Vec<Duration>)>, u64);
 
-/// How long it takes to read positions, normals and radii.
-fn reading(surfels: &Surfels, exec: &Exec) -> Duration {
+/// How long it takes to move what the projection moves: to read position, normal and radius of
+/// every surfel, and to write 24 bytes for each of the `seen` ones and read them again.
+fn moving(surfels: &Surfels, seen: u64, exec: &Exec, points: &mut [[u32; 6]]) -> Duration {
     const CHUNK: usize = 16_384;
+    let share = seen as f64 / surfels.len() as f64;
+    let seen = |surfels: usize| (surfels as f64 * share) as usize;
     let bits = |of: &[glam::Vec3]| {
         let mut sum = [[0_u32; 3]; 32];
         for block in of.chunks_exact(sum.len()) {
@@ -152,14 +157,24 @@ fn reading(surfels: &Surfels, exec: &Exec) -> Duration {
                 (0..3).for_each(|axis| sum[axis] = sum[axis].wrapping_add(v[axis].to_bits()));
             }
         }
-        sum
+        sum[0]
     };
-    let vectors = surfels.position().chunks(CHUNK).zip(surfels.normal().chunks(CHUNK));
-    let chunks = vectors.zip(surfels.radius().chunks(CHUNK)).collect();
     let start = Instant::now();
-    let sums = exec.ordered(chunks, |((position, normal), radius): ((&[_], &[_]), &[f32])| {
+    let vectors = surfels.position().chunks(CHUNK).zip(surfels.normal().chunks(CHUNK));
+    let chunks = vectors.zip(surfels.radius().chunks(CHUNK)).zip(points.chunks_mut(CHUNK));
+    exec.ordered(chunks.collect(), |(((position, normal), radius), points)| {
+        let (position, normal, radius): (&[_], &[_], &[f32]) = (position, normal, radius);
+        let points: &mut [[u32; 6]] = points;
         let radii = radius.iter().fold(0_u32, |sum, r| sum.wrapping_add(r.to_bits()));
-        (bits(position), bits(normal), radii)
+        let (p, n) = (bits(position), bits(normal));
+        points[..seen(radius.len())].fill([p[0], p[1], p[2], n[0], n[1] ^ n[2], radii]);
+    });
+    let sums = exec.ordered(points.chunks(CHUNK).collect(), |points: &[[u32; 6]]| {
+        let mut sum = [0_u32; 6];
+        for point in &points[..seen(points.len())] {
+            (0..6).for_each(|i| sum[i] = sum[i].wrapping_add(point[i]));
+        }
+        sum
     });
     std::hint::black_box(sums);
     start.elapsed()
@@ -186,7 +201,8 @@ fn measure(scene: &Scene, camera: &Camera, method: &Method, exec: &Exec) -> Resu
         }
         earlier = Some(picture);
     }
-    Ok((frames, stages))
+    let seen = earlier.map_or(0, |picture| picture.tally.visible);
+    Ok((frames, stages, seen))
 }
 
 fn median(times: &mut [Duration]) -> f64 {
