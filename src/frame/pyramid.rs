@@ -25,8 +25,8 @@ pub fn sizes(width: u32, height: u32) -> Vec<[u32; 2]> {
 #[must_use]
 pub fn in_corner<T: Copy>(level: &Plane<T>, [width, height]: [u32; 2], empty: T) -> Plane<T> {
     let mut whole = Plane::filled(width, height, empty);
-    let (from, to) = (level.width() as usize, width as usize);
-    for (row, cells) in whole.values_mut().chunks_mut(to).zip(level.values().chunks(from)) {
+    let from = level.width() as usize;
+    for (row, cells) in whole.rows_mut().zip(level.values().chunks(from)) {
         row[..from].copy_from_slice(cells);
     }
     whole

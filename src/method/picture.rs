@@ -85,17 +85,12 @@ pub(super) fn framebuffer(
             && whole(target.weight.width(), target.weight.height())
             && (target.normal.is_some(), target.color.is_some()) == (wanted.normal, wanted.color)
     };
-    // The colour of a scene without colours is that of its material, and not the framebuffer's.
-    let own = |mut target: Framebuffer<f32>| {
-        target.color = target.color.filter(|_| wanted.color);
-        target
-    };
-    let earlier = earlier.map(recycle).map(own).filter(fits);
+    let earlier = earlier.map(|frame| recycle(frame, wanted)).filter(fits);
     earlier.unwrap_or_else(|| Framebuffer::new(width, height, 0.0, wanted))
 }
 
 /// The planes of a frame as a framebuffer; what it lacks has no pixels.
-fn recycle(frame: Frame<f32>) -> Framebuffer<f32> {
+fn recycle(frame: Frame<f32>, wanted: Wanted) -> Framebuffer<f32> {
     let Frame { width, height, planes } = frame;
     let none = Wanted { normal: false, color: false, observed: false };
     let mut target = Framebuffer { width, height, ..Framebuffer::new(0, 0, 0.0, none) };
@@ -105,7 +100,8 @@ fn recycle(frame: Frame<f32>) -> Framebuffer<f32> {
             ("weight", Samples::Scalar(plane)) => target.weight = plane,
             ("id", Samples::Index(plane)) => target.id = plane,
             ("normal", Samples::Vector(plane)) => target.normal = Some(plane),
-            ("", Samples::Color(plane)) => target.color = Some(plane),
+            // That of a scene without colours is its material's, and not the framebuffer's.
+            ("", Samples::Color(plane)) if wanted.color => target.color = Some(plane),
             _ => {}
         }
     }

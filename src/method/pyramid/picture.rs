@@ -136,19 +136,10 @@ impl Surface<f32> {
                 _ => {}
             }
         }
-        let whole = |plane: &mut Plane<f32>| {
-            if plane.width() != width {
-                *plane = Plane::filled(width, height, 0.0);
-            }
-        };
-        whole(&mut surface.alpha);
-        whole(&mut surface.depth);
-        if surface.kind.width() != width {
-            surface.kind = Plane::filled(width, height, 0);
-        }
-        if surface.color.width() != width {
-            surface.color = Plane::filled(width, height, [0.0; 3]);
-        }
+        fit(&mut surface.kind, camera, 0);
+        fit(&mut surface.alpha, camera, 0.0);
+        fit(&mut surface.depth, camera, 0.0);
+        fit(&mut surface.color, camera, [0.0; 3]);
         let vectors = |plane: Option<Plane<[f32; 3]>>, wanted: bool| {
             let plane = plane.filter(|_| wanted);
             wanted.then(|| plane.unwrap_or_else(|| Plane::filled(width, height, [0.0; 3])))
@@ -156,6 +147,13 @@ impl Surface<f32> {
         surface.normal = vectors(surface.normal, !scene.lights.is_empty());
         surface.tangent = vectors(surface.tangent, has.tangent);
         surface
+    }
+}
+
+/// Replaces a plane that is not of the size of the picture.
+fn fit<T: Clone>(plane: &mut Plane<T>, camera: &Camera, value: T) {
+    if plane.width() != camera.width {
+        *plane = Plane::filled(camera.width, camera.height, value);
     }
 }
 

@@ -12,6 +12,7 @@ use crate::method::projection::surfel::Lens;
 use crate::number::{Real, Vector3};
 use crate::scene::Surfels;
 use crate::splat::ellipse;
+use glam::Vec3;
 
 /// No point: more than any depth and slot.
 const NONE: u64 = u64::MAX;
@@ -113,11 +114,7 @@ impl Nearest<'_> {
     /// Where the centres of these surfels are in the picture; any place where there is none.
     #[inline(always)]
     pub(in crate::method) fn centres(&self, id: &[u32; LANES]) -> [Lanes; 2] {
-        let mut p = [[0.0; LANES]; 3];
-        for i in 0..LANES {
-            let own = if id[i] == NO_ID { 0 } else { id[i] as usize };
-            [p[0][i], p[1][i], p[2][i]] = self.surfels.position()[own].to_array();
-        }
+        let p = vectors(self.surfels.position(), id);
         let mut centre = [[0.0; LANES]; 2];
         for i in 0..LANES {
             let p = self.lens.view.point(Vector3::new(p[0][i], p[1][i], p[2][i]));
@@ -131,11 +128,17 @@ impl Nearest<'_> {
     #[inline(always)]
     pub(in crate::method) fn colors(&self, id: &[u32; LANES]) -> Option<[Lanes; 3]> {
         let colors = self.surfels.color()?;
-        let mut color = [[0.0; LANES]; 3];
-        for i in 0..LANES {
-            let own = if id[i] == NO_ID { 0 } else { id[i] as usize };
-            [color[0][i], color[1][i], color[2][i]] = colors[own].to_array();
-        }
-        Some(color)
+        Some(vectors(colors, id))
     }
+}
+
+/// The vectors of these surfels; where there is none that of the first, which means nothing.
+#[inline(always)]
+fn vectors(of: &[Vec3], id: &[u32; LANES]) -> [Lanes; 3] {
+    let mut vectors = [[0.0; LANES]; 3];
+    for i in 0..LANES {
+        let own = if id[i] == NO_ID { 0 } else { id[i] as usize };
+        [vectors[0][i], vectors[1][i], vectors[2][i]] = of[own].to_array();
+    }
+    vectors
 }
