@@ -10,14 +10,15 @@
 
 use splatref::Result;
 use splatref::frame::Exec;
-use splatref::io::exr::Image;
+use splatref::frame::image::Image;
+use splatref::index::grouping::Grouping;
+use splatref::index::grouping::{Extension, Rules};
 use splatref::io::scene_file::SceneFile;
 use splatref::io::{exr, provenance};
 use splatref::method::ewa::{self, Epsilon};
 use splatref::method::single_pass::{self, BinCount, DepthTest};
 use splatref::method::transparent::{self, Holes};
-use splatref::method::{Grouping, Method, Preparation, peeling, render_f32};
-use splatref::scene::group::{Extension, Rules};
+use splatref::method::{Method, Preparation, peeling, render_f32};
 use splatref::scene::{Camera, Scene};
 use splatref::verify::metrics::summary;
 use std::path::{Path, PathBuf};
@@ -247,7 +248,7 @@ impl Bench {
         Ok(Shot {
             image: Image::from(&picture.frame),
             milliseconds: times[times.len() / 2],
-            groups: preparation.groups().map(splatref::scene::group::Groups::len),
+            groups: preparation.groups().map(splatref::scene::Groups::len),
         })
     }
 }

@@ -10,9 +10,9 @@ mod common;
 
 use common::{models, resample};
 use splatref::frame::Exec;
-use splatref::scene::derive::{self, Derive};
-use splatref::scene::group::{Extension, Report, Rules, extend, group, group_into};
+use splatref::index::grouping::{Extension, GroupingReport, Rules, extend, group, group_into};
 use splatref::scene::{Cloud, Surfels};
+use splatref::source::derive::{self, Derive};
 use std::time::{Duration, Instant};
 
 /// The paper's models: points, and K / max degree / average degree at each c.
@@ -126,7 +126,7 @@ fn covering(name: &str, surfels: &Surfels, most: f32, exec: &Exec) {
     let start = Instant::now();
     let extension = Extension::Add { most };
     let (_, extended) = extend(surfels, &groups, &extension, exec, &silent).expect("coverage");
-    let percents = |of: fn(&splatref::scene::group::Coverage) -> f64| {
+    let percents = |of: fn(&splatref::index::grouping::Coverage) -> f64| {
         let parts = extended.groups.iter().map(|g| format!("{:.0} %", 100.0 * of(g)));
         parts.collect::<Vec<_>>().join(", ")
     };

@@ -17,7 +17,8 @@ use splatref::Result;
 use splatref::frame::Exec;
 use splatref::method::pyramid::{self, Weights};
 use splatref::method::{Method, Preparation, render_f32, template};
-use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Scene, Shape, Surfels};
+use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Scene, Surfels};
+use splatref::source::Shape;
 use std::time::{Duration, Instant};
 
 /// A row of a paper's table: model, points, and the frame time in ms on a GPU of 2008.

@@ -12,9 +12,10 @@ mod sphere;
 
 use sphere::{STANDARD, camera, cell, sphere};
 use splatref::frame::{Exec, Framebuffer, Wanted};
+use splatref::index::grouping::{GroupingReport, Rules, group, group_into};
 use splatref::method::ewa;
 use splatref::method::single_pass::{BinCount, DepthTest, Settings, fast};
-use splatref::scene::group::{Groups, Report, Rules, group, group_into};
+use splatref::scene::Groups;
 use splatref::scene::{Camera, Surfels};
 use std::time::{Duration, Instant};
 
@@ -68,7 +69,7 @@ fn groupings(surfels: &Surfels) -> Vec<(String, Groups)> {
     let by_c = |overlap| group(surfels, &Rules { overlap, ..Rules::default() }, &exec, &silent);
     let eight = group_into(surfels, &Rules::default(), 8, &exec, &silent);
     let all = [1.0, 0.8, 0.6, 0.4].map(by_c).into_iter().chain([eight]);
-    let named = |result: splatref::Result<(Groups, Report)>| {
+    let named = |result: splatref::Result<(Groups, GroupingReport)>| {
         let (groups, report) = result.expect("groups");
         (format!("K = {}, c = {:.3}", report.groups, report.overlap), groups)
     };

@@ -114,7 +114,8 @@
 //! ```
 //! use splatref::frame::{Exec, Samples};
 //! use splatref::method::ewa::{self, Settings};
-//! use splatref::scene::{Camera, Light, Phong, Scene, Shape};
+//! use splatref::scene::{Camera, Light, Phong, Scene};
+//! use splatref::source::Shape;
 //!
 //! let shape = Shape::Sphere;
 //! let scene = Scene {
@@ -139,11 +140,13 @@
 pub mod composite;
 pub mod error;
 pub mod frame;
+pub mod index;
 pub mod io;
 pub mod method;
 pub mod number;
 pub mod scene;
 pub mod shade;
+pub mod source;
 pub mod splat;
 pub mod verify;
 

@@ -9,8 +9,9 @@ use glam::DVec3;
 use splatref::frame::{Exec, Framebuffer, Wanted};
 use splatref::method::ewa::{self, Settings};
 use splatref::method::single_pass;
-use splatref::scene::group::Groups;
-use splatref::scene::{Camera, Lens, Pose, Shape};
+use splatref::scene::Groups;
+use splatref::scene::{Camera, Lens, Pose};
+use splatref::source::Shape;
 use splatref::splat::Tally;
 
 /// A line of /proc/self/status, in bytes.

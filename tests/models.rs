@@ -4,8 +4,8 @@
 
 use splatref::frame::Exec;
 use splatref::io::ply;
-use splatref::scene::derive::{Derive, Origin, surfels};
 use splatref::scene::{Cloud, Dropped};
+use splatref::source::derive::{Derive, Origin, surfels};
 use std::path::PathBuf;
 
 /// The clouds of the models, with the counts of vertices and triangles that their source states.

@@ -12,8 +12,8 @@
 
 use super::{Bench, EWA, Shot, Subject, methods, splatting};
 use splatref::Result;
+use splatref::frame::image::Image;
 use splatref::frame::{Frame, NO_ID, NamedPlane, Samples};
-use splatref::io::exr::Image;
 use splatref::method::Method;
 use splatref::scene::Projection;
 use splatref::verify::metrics::{Region, coverage, regions, summary};

@@ -26,9 +26,10 @@ use splatref::method::pyramid::{self, Occlusion, Weights};
 use splatref::method::template::{self, LevelRule};
 use splatref::method::{Method, Preparation, ewa, render_f32};
 use splatref::number::elementary::tan;
-use splatref::scene::derive::{self, Derive};
-use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Primitives, Scene, Shape, Surfels};
+use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Primitives, Scene, Surfels};
 use splatref::shade::phong::Shader;
+use splatref::source::Shape;
+use splatref::source::derive::{self, Derive};
 use splatref::splat::View;
 use std::path::PathBuf;
 

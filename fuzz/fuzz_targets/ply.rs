@@ -4,7 +4,7 @@
 use libfuzzer_sys::fuzz_target;
 use splatref::frame::Exec;
 use splatref::io::ply;
-use splatref::scene::derive::{Derive, polygons, ribbons, surfels, tubes};
+use splatref::source::derive::{Derive, polygons, ribbons, surfels, tubes};
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(cloud) = ply::parse(bytes) else { return };

@@ -3,8 +3,9 @@
 use super::options::ExecOptions;
 use super::ready::Ready;
 use super::{Finding, Outcome, draw, say};
+use splatref::frame::image::{Image, Values};
 use splatref::frame::{Exec, Frame, NamedPlane, Plane, Samples};
-use splatref::io::exr::{self, Image, Values};
+use splatref::io::exr;
 use splatref::io::provenance;
 use splatref::io::scene_file::SceneFile;
 use splatref::verify::compare::{Finding as PlaneFinding, Report, Tolerance, Verdict, compare};

@@ -3,11 +3,11 @@
 use super::options::{Kind, kind, named};
 use super::{Finding, Outcome, progress, report};
 use splatref::frame::Exec;
+use splatref::index::grouping::{Coplanar, Extended, Grouping, GroupingReport, Rules};
 use splatref::io::ply;
 use splatref::io::scene_file::{ExtensionChoice, words};
-use splatref::method::Grouping;
+use splatref::scene::Groups;
 use splatref::scene::Scene;
-use splatref::scene::group::{Coplanar, Extended, Groups, Report, Rules};
 use splatref::{Error, Result};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -103,8 +103,8 @@ impl Args {
 }
 
 /// The row of Table 1, and the groups one by one.
-fn table(found: &Report, groups: &Groups, extended: Option<&Extended>) {
-    let Report { groups: k, overlap, edges, max_degree, average_degree, .. } = found;
+fn table(found: &GroupingReport, groups: &Groups, extended: Option<&Extended>) {
+    let GroupingReport { groups: k, overlap, edges, max_degree, average_degree, .. } = found;
     report::line("groups", format!("{k} at c = {overlap}"));
     let degree = format!("{max_degree} at most, {average_degree:.1} on the average, {edges} edges");
     report::line("  degree", degree);

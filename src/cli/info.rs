@@ -9,7 +9,7 @@ use splatref::io::exr::{self, ChannelType};
 use splatref::io::scene_file::{Draw, EnvironmentChoice, SceneFile, Source};
 use splatref::io::{ply, scene_file::Loaded};
 use splatref::scene::Light;
-use splatref::scene::derive::{self, Derive};
+use splatref::source::derive::{self, Derive};
 use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]

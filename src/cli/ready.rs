@@ -3,10 +3,10 @@
 use super::{progress, report};
 use splatref::Result;
 use splatref::frame::Exec;
+use splatref::index::grouping::{Extended, GroupingReport};
 use splatref::io::scene_file::{Loaded, SceneFile};
 use splatref::method::{Method, Preparation};
 use splatref::scene::Camera;
-use splatref::scene::group::{Extended, Report};
 
 /// All that [`super::draw::draw`] needs.
 pub(super) struct Ready {
@@ -15,7 +15,7 @@ pub(super) struct Ready {
     pub(super) camera: Camera,
     pub(super) method: Method,
     /// How the groups were made, if they were not read.
-    grouping: Option<(Report, Option<Extended>)>,
+    grouping: Option<(GroupingReport, Option<Extended>)>,
 }
 
 impl Ready {

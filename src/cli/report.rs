@@ -2,13 +2,14 @@
 
 use super::say;
 use glam::Vec3;
+use splatref::index::grouping::{Extended, GroupCoverage, GroupingReport};
 use splatref::io::provenance;
 use splatref::io::scene_file::{Loaded, MethodName, ModelReport, Output, words};
 use splatref::method::Method;
 use splatref::method::ewa::Epsilon;
-use splatref::scene::derive::Origin;
-use splatref::scene::group::{Coverage, Extended, Groups, Report};
+use splatref::scene::Groups;
 use splatref::scene::{Camera, Counts, Dropped, Projection, Surfels};
+use splatref::source::derive::Origin;
 use splatref::splat::Tally;
 use std::time::Duration;
 
@@ -155,7 +156,7 @@ pub(super) fn method(method: &Method, surfels: &Surfels) {
 }
 
 /// The groups, and how they were made.
-pub(super) fn groups(groups: &Groups, made: Option<&(Report, Option<Extended>)>) {
+pub(super) fn groups(groups: &Groups, made: Option<&(GroupingReport, Option<Extended>)>) {
     let Some((report, extended)) = made else {
         return line("groups", format!("{}, from the file", groups.len()));
     };
@@ -167,7 +168,7 @@ pub(super) fn groups(groups: &Groups, made: Option<&(Report, Option<Extended>)>)
         ),
     );
     if let Some(extended) = extended {
-        let mean = |of: fn(&Coverage) -> f64| {
+        let mean = |of: fn(&GroupCoverage) -> f64| {
             extended.groups.iter().map(of).sum::<f64>() / extended.groups.len() as f64
         };
         line(

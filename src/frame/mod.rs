@@ -1,6 +1,7 @@
 //! What is rendered into: planes, named planes, the framebuffer, bins and tiles.
 //!
 //! - [`plane`], [`rect`], [`named`]: pixels, rectangles of them, and the names they have in files.
+//! - [`mod@image`]: a picture as files hold it.
 //! - [`framebuffer`]: depth, stencil and floating accumulation.
 //! - [`raster`]: the pixels of triangles and of lines, exactly.
 //! - [`mod@pyramid`]: the sizes of an image pyramid.
@@ -10,6 +11,7 @@
 
 pub mod bin;
 pub mod framebuffer;
+pub mod image;
 pub mod named;
 pub mod plane;
 pub mod pyramid;
@@ -20,6 +22,7 @@ pub mod tile;
 
 pub use bin::Bins;
 pub use framebuffer::{Framebuffer, FramebufferTile, Wanted};
+pub use image::Image;
 pub use named::{Channel, ChannelData, Frame, NamedPlane, Samples};
 pub use plane::Plane;
 pub use rect::Rect;

@@ -71,18 +71,18 @@ impl Exec {
     }
 
     /// Runs `size` neighbouring items a job, in parallel; with the index of the first of them.
-    pub(crate) fn groups<T: Send>(
+    pub(crate) fn chunks<T: Send>(
         &self,
         items: impl Iterator<Item = T>,
         size: usize,
         run: impl Fn(usize, Vec<T>) + Sync + Send,
     ) {
         let mut items = items.enumerate().peekable();
-        let groups = std::iter::from_fn(|| {
+        let chunks = std::iter::from_fn(|| {
             let first = items.peek()?.0;
             Some((first, items.by_ref().take(size).map(|(_, item)| item).collect()))
         });
-        self.ordered(groups.collect(), |(first, group)| run(first, group));
+        self.ordered(chunks.collect(), |(first, chunk)| run(first, chunk));
     }
 }
 

@@ -1,8 +1,9 @@
 //! Environment maps from EXR files.
 
-use super::exr::{self, Values};
+use super::exr;
 use crate::error::{Error, Result};
 use crate::frame::Plane;
+use crate::frame::image::Values;
 use crate::scene::environment::{Environment, Map};
 use std::path::Path;
 

@@ -13,7 +13,7 @@ use crate::splat::Kernel;
 ///
 /// Equal for equal pictures: nothing in it depends on the time, the machine, the directory or the
 /// way the picture was computed. Floats are the shortest decimals that give the same `f32`. The
-/// scene is identified by [`Scene::sha256`], its groups by [`crate::scene::group::Groups::sha256`],
+/// scene is identified by [`Scene::sha256`], its groups by [`crate::scene::Groups::sha256`],
 /// the camera by all its numbers. `bins_in_world_units` are `d_min`, `d_max` and n of \[ZP06, eq.
 /// 6\].
 #[must_use]
@@ -124,7 +124,8 @@ pub fn further(method: &Method) -> String {
 mod tests {
     use super::*;
     use crate::frame::Exec;
-    use crate::scene::{Lens, Light, Phong, Pose, Shape};
+    use crate::scene::{Lens, Light, Phong, Pose};
+    use crate::source::Shape;
     use glam::DVec3;
 
     #[test]

@@ -38,4 +38,4 @@ mod tests;
 pub mod transparent;
 
 pub use picture::Picture;
-pub use render::{Grouping, Method, Preparation, render, render_f32};
+pub use render::{Method, Preparation, render, render_f32};

@@ -5,10 +5,10 @@ use super::{Picture, ewa, peeling, pyramid, single_pass, template, transparent};
 use crate::composite::bins::Range;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::index::order::BackToFront;
 use crate::io::scene_file::{MethodName, words};
 use crate::number::Real;
-use crate::scene::group::{self, Extended, Extension, Groups, Report, Rules};
-use crate::scene::order::BackToFront;
+use crate::scene::Groups;
 use crate::scene::{Camera, Scene, Surfels};
 use std::sync::Mutex;
 
@@ -117,52 +117,6 @@ impl Method {
     #[must_use]
     pub fn needs_groups(&self) -> bool {
         matches!(self, Self::SinglePass(_) | Self::Transparent(_))
-    }
-}
-
-/// How surfels are divided into groups.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grouping {
-    /// Which surfels may not share a group.
-    pub rules: Rules,
-    /// The most groups, see [`group::group_into`]; none: as many as the rules take.
-    pub count: Option<usize>,
-    /// How groups are made to cover the surface.
-    pub extension: Extension,
-}
-
-impl Grouping {
-    /// Whether the numbers are in range.
-    ///
-    /// # Errors
-    /// [`crate::Error::Invalid`] if one is not.
-    pub fn check(&self) -> Result<()> {
-        self.rules.check()?;
-        self.extension.check()?;
-        self.count.map_or(Ok(()), group::check_count)
-    }
-
-    /// Makes the groups, and tells what was found and what the extension did.
-    ///
-    /// `progress` is told the name of a step, how much of it is done, and of how much.
-    ///
-    /// # Errors
-    /// As [`group::group`], [`group::group_into`] and [`group::extend`].
-    pub fn groups(
-        &self,
-        surfels: &Surfels,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<(Groups, Report, Option<Extended>)> {
-        let (groups, report) = match self.count {
-            None => group::group(surfels, &self.rules, exec, progress)?,
-            Some(count) => group::group_into(surfels, &self.rules, count, exec, progress)?,
-        };
-        if self.extension == Extension::None {
-            return Ok((groups, report, None));
-        }
-        let (groups, extended) = group::extend(surfels, &groups, &self.extension, exec, progress)?;
-        Ok((groups, report, Some(extended)))
     }
 }
 
@@ -280,7 +234,9 @@ pub fn render_f32(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Lens, Light, Phong, Shape, Triangles, Vertices};
+    use crate::index::grouping::{Extension, Grouping, Rules};
+    use crate::scene::{Lens, Light, Phong, Triangles, Vertices};
+    use crate::source::Shape;
     use glam::Vec3;
 
     fn surfel_methods() -> [Method; 5] {

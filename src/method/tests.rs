@@ -3,7 +3,7 @@
 use super::{Method, Preparation, ewa, pyramid, render_f32, single_pass, template};
 use crate::frame::Exec;
 use crate::number::random::unit;
-use crate::scene::group::Groups;
+use crate::scene::Groups;
 use crate::scene::{Camera, Cloud, Lens, Light, Phong, Pose, Scene, Surfels};
 use glam::{DVec3, Vec3};
 

@@ -1,6 +1,6 @@
 //! Points as a file holds them: nothing derived, nothing checked but the lengths of the arrays.
 
-use super::group::Groups;
+use super::Groups;
 use glam::Vec3;
 
 /// Points, with whatever else their file gave.
@@ -34,7 +34,7 @@ pub struct Cloud {
 impl Cloud {
     /// Keeps the points marked in `keep`, one for each, in their order, with the triangles and
     /// edges all of whose corners are kept.
-    pub(super) fn retain(&mut self, keep: &[bool]) {
+    pub(crate) fn retain(&mut self, keep: &[bool]) {
         // The new index of each point that stays.
         let mut kept = 0;
         let index: Vec<Option<u32>> = keep

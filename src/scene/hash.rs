@@ -2,7 +2,7 @@
 
 use super::indexed::Indexed;
 use super::{Environment, Light, Phong, Scene};
-use crate::scene::group::Groups;
+use crate::scene::Groups;
 use glam::Vec3;
 use sha2::{Digest, Sha256};
 

@@ -1,7 +1,7 @@
 //! Surfels: the checked structure of arrays that every method takes.
 
 use super::Cloud;
-use super::group::Groups;
+use super::Groups;
 use crate::error::{Error, Result};
 use glam::{DVec3, Vec3};
 

@@ -1,6 +1,6 @@
 //! Two pictures, plane by plane: equal bit for bit, or where, and by how much, not.
 
-use crate::io::exr::{Image, Values};
+use crate::frame::image::{Image, Values};
 use crate::number::real::ordered_f32;
 use std::fmt;
 

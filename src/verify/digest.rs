@@ -1,6 +1,6 @@
 //! One hash of many pictures, so that machines can be compared by a line.
 
-use crate::io::exr::{Image, Values};
+use crate::frame::image::{Image, Values};
 use sha2::{Digest, Sha256};
 
 /// SHA-256 in lower-case hexadecimal of named pictures, in the order given.

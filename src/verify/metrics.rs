@@ -6,7 +6,7 @@
 //! methods; whether a picture is right is for [`super::compare`] to say. A NaN or an infinity in a
 //! plane makes each number NaN or infinite. Everything is f64, summed row by row from the top left.
 
-use crate::io::exr::{Image, Values};
+use crate::frame::image::{Image, Values};
 use crate::number::elementary;
 
 /// The side of the window of \[WBSS04\], in pixels.

@@ -9,7 +9,8 @@ mod primitives;
 mod refusals;
 mod reports;
 
-use splatref::io::exr::{self, Image, Values};
+use splatref::frame::image::{Image, Values};
+use splatref::io::exr;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};

@@ -156,7 +156,7 @@ proptest! {
     }
 
     #[test]
-    fn in_a_bin_the_fragment_nearest_its_own_centre_wins(
+    fn in_a_bin_the_fragment_nearest_its_own_center_wins(
         range in range(),
         part in -0.1_f64..1.1,
         ratios in [0.0_f32..1.0, 0.0_f32..1.0],

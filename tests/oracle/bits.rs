@@ -10,7 +10,7 @@ use splatref::method::ewa::{self, Epsilon, Settings};
 use splatref::method::single_pass::{self, BinCount, DepthTest};
 use splatref::number::Real;
 use splatref::number::random::unit;
-use splatref::scene::group::{Groups, MAX_GROUPS};
+use splatref::scene::groups::{Groups, MAX_GROUPS};
 use splatref::scene::{Camera, Cloud, Lens, Phong, Pose, Scene, Surfels};
 use splatref::splat::Kernel;
 

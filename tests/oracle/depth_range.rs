@@ -9,7 +9,8 @@ use proptest::prelude::*;
 use splatref::frame::{Exec, Samples};
 use splatref::method::ewa;
 use splatref::method::single_pass::{self, BinCount, DepthTest, Settings, depth_range};
-use splatref::scene::{Camera, Cloud, Lens, Pose, Scene, Shape, Surfels};
+use splatref::scene::{Camera, Cloud, Lens, Pose, Scene, Surfels};
+use splatref::source::Shape;
 use splatref::splat::Kernel;
 
 /// The depths of all fragments that the groups of a scene keep.

@@ -6,7 +6,7 @@ use crate::scenes::Case;
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;
 use splatref::method::Method;
-use splatref::scene::group::Groups;
+use splatref::scene::Groups;
 use std::path::Path;
 
 /// A golden's scene, ready to be drawn.

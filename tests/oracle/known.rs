@@ -5,7 +5,8 @@ use glam::{DVec3, Mat4, Vec3};
 use splatref::frame::{Exec, Frame, Samples};
 use splatref::method::ewa::{self, Epsilon, Settings};
 use splatref::number::Real;
-use splatref::scene::{Camera, Cloud, Lens, Phong, Pose, Scene, Shape, Surfels};
+use splatref::scene::{Camera, Cloud, Lens, Phong, Pose, Scene, Surfels};
+use splatref::source::Shape;
 use splatref::splat::{Kernel, Outline};
 use std::f64::consts::PI;
 

@@ -15,7 +15,7 @@ use splatref::frame::{Exec, Frame, NO_ID};
 use splatref::method::peeling::{self, STAGES, Settings};
 use splatref::method::{Method, transparent};
 use splatref::number::Real;
-use splatref::scene::group::Groups;
+use splatref::scene::Groups;
 
 /// One layer of a pixel.
 struct Layer {

@@ -171,8 +171,8 @@ impl<R: Real, const P: u32> Check<'_, R, P> {
             ("projection.Z", c.t, plane("Z")[0]),
             ("projection.extent", c.extent, plane("extent")[0]),
             ("projection.radius", c.radius, plane("radius")[0]),
-            ("projection.centre", c.centre[0], plane("centre.X")[0]),
-            ("projection.centre", c.centre[1], plane("centre.Y")[0]),
+            ("projection.centre", c.center[0], plane("centre.X")[0]),
+            ("projection.centre", c.center[1], plane("centre.Y")[0]),
         ];
         all.extend(vector("projection.normal", c.normal, plane("normal")));
         if let Some(found) = self.optional("projection", i) {

@@ -201,13 +201,13 @@ impl<const P: u32, const N: usize> Piece<P, N> {
     /// The areas opposite to the corners out of the whole, if the pixel is covered.
     fn weights(&self, x: i64, y: i64) -> Option<Vec<Num<P>>> {
         // In halves of a unit of the grid.
-        let centre = [x, y].map(|v| (2 * i128::from(v) + 1) << self.bits);
+        let center = [x, y].map(|v| (2 * i128::from(v) + 1) << self.bits);
         let corner = |i: usize| self.corners[i % N].map(|v| 2 * i128::from(v));
         let (mut areas, mut signs) = (Vec::new(), Vec::new());
         for i in 0..3 {
             let (q, r) = (corner(i + 1), corner(i + 2));
             let side = [r[0] - q[0], r[1] - q[1]];
-            let area = cross(side, [centre[0] - q[0], centre[1] - q[1]]);
+            let area = cross(side, [center[0] - q[0], center[1] - q[1]]);
             // The change of the area when the centre moves to the right, then down.
             let sign = [area, -side[1], side[0]].into_iter().find(|v| *v != 0)?;
             areas.push(area.abs());
@@ -235,11 +235,11 @@ impl<const P: u32, const N: usize> Piece<P, N> {
         let mut between = Vec::new();
         for i in 0..i128::from(size[major]) {
             // Twice the coordinate of the centre.
-            let centre = (2 * i + 1) * one;
-            if !(2 * low < centre && centre < 2 * high) {
+            let center = (2 * i + 1) * one;
+            if !(2 * low < center && center < 2 * high) {
                 continue;
             }
-            let along = (centre - 2 * a[major]).abs();
+            let along = (center - 2 * a[major]).abs();
             // The other coordinate, out of 2 length.
             let other = a[1 - major] * 2 * length + delta[1 - major] * along;
             let mut at = [i; 2];

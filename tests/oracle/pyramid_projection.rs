@@ -25,7 +25,7 @@ pub(crate) struct Candidate<const P: u32> {
     pub(crate) tangent: N3<P>,
     pub(crate) extent: Num<P>,
     pub(crate) radius: Num<P>,
-    pub(crate) centre: [Num<P>; 2],
+    pub(crate) center: [Num<P>; 2],
     pub(crate) color: N3<P>,
 }
 
@@ -206,7 +206,7 @@ impl<const P: u32> Projected<P> {
             tangent: exact([0.0; 3]),
             extent: sight.extent(radius, placed.m),
             radius,
-            centre: [x, y],
+            center: [x, y],
             color: exact(color),
         };
         let (columns, rows) = (floors(x), floors(y));
@@ -341,7 +341,7 @@ impl<const P: u32, const N: usize> Primitive<P, N> {
             tangent,
             extent: sight.extent(radius, placed.m),
             radius,
-            centre: [x, y].map(|v| Num::exact(v as f64 + 0.5)),
+            center: [x, y].map(|v| Num::exact(v as f64 + 0.5)),
             color: self.colors.as_ref().map_or(self.colorless, vector),
         };
         normals.into_iter().map(candidate).collect()

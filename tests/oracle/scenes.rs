@@ -2,7 +2,8 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use splatref::method::ewa::{Epsilon, Settings};
-use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Pose, Scene, Shape, Surfels};
+use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Pose, Scene, Surfels};
+use splatref::source::Shape;
 use splatref::splat::{Kernel, Outline};
 
 pub(crate) const OUTLINES: [Outline; 3] = [Outline::Affine, Outline::Perspective, Outline::RayCast];

@@ -15,7 +15,8 @@ use proptest::prelude::*;
 use splatref::frame::{Exec, Frame};
 use splatref::method::ewa::{self, Epsilon};
 use splatref::method::single_pass::{self, DepthTest};
-use splatref::scene::{Camera, Cloud, Light, Phong, Scene, Shape, Surfels};
+use splatref::scene::{Camera, Cloud, Light, Phong, Scene, Surfels};
+use splatref::source::Shape;
 use splatref::splat::{Kernel, Outline};
 
 /// The spacing of `f64` at 1: two roundings, one for either method.

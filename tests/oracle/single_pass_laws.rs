@@ -15,7 +15,7 @@ use splatref::frame::{Exec, Frame, NO_ID};
 use splatref::method::ewa::{self, Epsilon};
 use splatref::method::single_pass::{self, BinCount, DepthTest, Settings};
 use splatref::number::Real;
-use splatref::scene::group::Groups;
+use splatref::scene::Groups;
 use splatref::scene::{Cloud, Scene};
 use splatref::splat::{Kernel, Outline};
 

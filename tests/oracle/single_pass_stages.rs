@@ -11,7 +11,7 @@ use splatref::method::Method;
 use splatref::method::ewa::Epsilon;
 use splatref::method::single_pass::{self, BinCount, DepthTest, Settings};
 use splatref::number::Real;
-use splatref::scene::group::Groups;
+use splatref::scene::Groups;
 
 /// A plane of a depth-image: the end of its name, the row of the table that holds for all groups,
 /// and what it holds where the image is empty.

@@ -62,7 +62,7 @@ pub(crate) struct Merged {
 pub(crate) struct Staying {
     pub(crate) level: usize,
     pub(crate) cell: [u32; 2],
-    pub(crate) centre: Cell,
+    pub(crate) center: Cell,
 }
 
 /// What a pixel gathers.
@@ -109,13 +109,13 @@ impl Template {
     }
 
     /// Whether a centre at a level goes no further.
-    pub(crate) fn stays(&self, level: usize, centre: &Cell) -> bool {
+    pub(crate) fn stays(&self, level: usize, center: &Cell) -> bool {
         let k = f64::from(self.settings.size);
         let cells = match self.settings.levels {
             LevelRule::Covering => (k - 1.0) / 2.0,
             LevelRule::Published => k,
         };
-        level == self.top() || centre.extent <= cells * (level as f64).exp2()
+        level == self.top() || center.extent <= cells * (level as f64).exp2()
     }
 
     /// The centres that stay at a level, row by row.
@@ -125,8 +125,8 @@ impl Template {
         grid: &'a Grid,
     ) -> impl Iterator<Item = Staying> + 'a {
         grid.positions().filter_map(move |cell| {
-            let centre = *grid.at(cell[0], cell[1])?;
-            self.stays(level, &centre).then_some(Staying { level, cell, centre })
+            let center = *grid.at(cell[0], cell[1])?;
+            self.stays(level, &center).then_some(Staying { level, cell, center })
         })
     }
 
@@ -138,18 +138,18 @@ impl Template {
         [x, y]: [u32; 2],
     ) -> Result<Option<Merged>, ()> {
         let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| finer.at(2 * x + i, 2 * y + j));
-        let mut four = four.map(|cell| cell.filter(|centre| !self.stays(level, centre)));
+        let mut four = four.map(|cell| cell.filter(|center| !self.stays(level, center)));
         // The first of the least: ties go to the earlier.
         let moving = four.into_iter().flatten();
         let least = moving.clone().map(|c| c.depth).fold(f64::INFINITY, f64::min);
         let Some(front) = moving.clone().find(|c| c.depth == least) else { return Ok(None) };
         let mut lost = Vec::new();
         for place in &mut four {
-            let Some(centre) = place.filter(|centre| centre.id != front.id) else { continue };
-            let apart = Rounded::exact(centre.depth) - Rounded::exact(front.depth);
-            let near = Rounded::exact(centre.radius) + Rounded::exact(front.radius);
+            let Some(center) = place.filter(|center| center.id != front.id) else { continue };
+            let apart = Rounded::exact(center.depth) - Rounded::exact(front.depth);
+            let near = Rounded::exact(center.radius) + Rounded::exact(front.radius);
             if apart.above(near, self.unit).ok_or(())? {
-                lost.push(centre.id);
+                lost.push(center.id);
                 *place = None;
             }
         }
@@ -177,13 +177,13 @@ impl Template {
     /// rounding decides.
     pub(crate) fn gathered(&self, all: &[Staying], pixel: [u32; 2]) -> Result<Option<Sums>, ()> {
         let mut sums: Option<Sums> = None;
-        for Staying { level, cell, centre } in all {
+        for Staying { level, cell, center } in all {
             if !self.finds(*level, *cell, pixel) {
                 continue;
             }
             let own = *level == 0 && *cell == pixel;
-            let Some(weight) = self.weight(centre, pixel, own)? else { continue };
-            let [t, r] = [centre.depth, centre.radius].map(Rounded::exact);
+            let Some(weight) = self.weight(center, pixel, own)? else { continue };
+            let [t, r] = [center.depth, center.radius].map(Rounded::exact);
             if let Some(front) = &mut sums {
                 let [t_front, r_front] = [front.depth, front.radius].map(Rounded::exact);
                 if (t - t_front).above(r + r_front, self.unit).ok_or(())? {
@@ -195,10 +195,10 @@ impl Template {
                 }
             }
             let sums = sums.get_or_insert(Sums::NONE);
-            if centre.depth < sums.depth {
-                (sums.id, sums.depth, sums.radius) = (centre.id, centre.depth, centre.radius);
+            if center.depth < sums.depth {
+                (sums.id, sums.depth, sums.radius) = (center.id, center.depth, center.radius);
             }
-            sums.add(centre, weight);
+            sums.add(center, weight);
         }
         Ok(sums)
     }
@@ -207,20 +207,20 @@ impl Template {
     /// rounding decides.
     pub(crate) fn weight(
         &self,
-        centre: &Cell,
+        center: &Cell,
         pixel: [u32; 2],
         own: bool,
     ) -> Result<Option<Rounded>, ()> {
         let rim = Rounded::exact(LEAST);
         let outside = Ok(own.then_some(rim));
-        let [nx, ny, nz] = Rounded::vector(centre.normal);
-        let square = Rounded::exact(centre.extent) * Rounded::exact(centre.extent);
-        if centre.normal[2] == 0.0 || square.value == 0.0 {
+        let [nx, ny, nz] = Rounded::vector(center.normal);
+        let square = Rounded::exact(center.extent) * Rounded::exact(center.extent);
+        if center.normal[2] == 0.0 || square.value == 0.0 {
             return outside;
         }
         let form = {
             let [x, y] = [0, 1].map(|i| {
-                Rounded::exact(f64::from(pixel[i]) + 0.5) - Rounded::exact(centre.place[i])
+                Rounded::exact(f64::from(pixel[i]) + 0.5) - Rounded::exact(center.place[i])
             });
             let behind = nx / nz * x - ny / nz * y;
             x * x + y * y + behind * behind
@@ -260,15 +260,15 @@ impl Sums {
         color: [Rounded::ZERO; 3],
     };
 
-    fn add(&mut self, centre: &Cell, weight: Rounded) {
+    fn add(&mut self, center: &Cell, weight: Rounded) {
         let more = |sum: [Rounded; 3], value: V3| {
             [0, 1, 2].map(|i| sum[i] + weight * Rounded::exact(value[i]))
         };
         self.count += 1;
         self.weight = self.weight + weight;
-        self.depths = self.depths + weight * Rounded::exact(centre.depth);
-        self.normal = more(self.normal, centre.normal);
-        self.color = more(self.color, centre.color);
+        self.depths = self.depths + weight * Rounded::exact(center.depth);
+        self.normal = more(self.normal, center.normal);
+        self.color = more(self.color, center.color);
     }
 }
 

@@ -150,7 +150,7 @@ fn a_tilted_disc_is_narrow_across_its_normal() {
 }
 
 #[test]
-fn discs_that_hold_no_pixel_centre_paint_their_own_pixel() {
+fn discs_that_hold_no_pixel_center_paint_their_own_pixel() {
     let black = Vec3::new(0.25, 0.5, 0.75);
     let tiny = Disc { color: black, ..Disc::new(3.125, 2.25, 1e-30) };
     let small = Disc { radius: 0.25, ..tiny };
@@ -167,10 +167,10 @@ fn discs_that_hold_no_pixel_centre_paint_their_own_pixel() {
         }
         // Exactly at the centre form = square = 0 once the square has underflowed, and 0/0 is no
         // weight: `f32` holds it by the rule for its own pixel, `f64` by the ellipse.
-        let centred = Disc { place: [3.5, 2.5], ..tiny };
+        let centerd = Disc { place: [3.5, 2.5], ..tiny };
         let weights = [
-            number(&drawn::<f32>([9, 9], &[centred], &settings(k)), "weight", [3, 2]),
-            number(&drawn::<f64>([9, 9], &[centred], &settings(k)).to_f32(), "weight", [3, 2]),
+            number(&drawn::<f32>([9, 9], &[centerd], &settings(k)), "weight", [3, 2]),
+            number(&drawn::<f64>([9, 9], &[centerd], &settings(k)).to_f32(), "weight", [3, 2]),
         ];
         assert_eq!(weights, [LEAST, 1.0]);
         // Of those that moved on nothing is left.
@@ -181,7 +181,7 @@ fn discs_that_hold_no_pixel_centre_paint_their_own_pixel() {
 }
 
 #[test]
-fn centres_as_far_apart_as_their_radii_are_one_surface() {
+fn centers_as_far_apart_as_their_radii_are_one_surface() {
     // Both move into one cell; r + r_front = 6.
     for (behind, merged) in [(10.0_f32, true), (10.0_f32.next_up(), false)] {
         let discs = [Disc::new(2.5, 2.5, 3.0), Disc::new(3.5, 2.5, 3.0).at_depth(behind)];

@@ -86,7 +86,7 @@ fn a_surface_of_one_colour_has_that_colour() {
 struct Account {
     /// Samples that are in a centre which stays, and how many such centres there are.
     kept: usize,
-    centres: usize,
+    centers: usize,
     /// Samples that were behind another surface where centres met.
     lost: usize,
 }
@@ -102,10 +102,10 @@ fn account(template: &Template, grids: &[Grid], case: &str) -> Option<Account> {
     let samples = holds.len();
     for (level, here) in grids.iter().enumerate() {
         for staying in template.staying(level, here) {
-            let content = holds.remove(&staying.centre.id);
+            let content = holds.remove(&staying.center.id);
             let content = content.unwrap_or_else(|| panic!("{case}: a centre stays twice"));
             account.kept += content.len();
-            account.centres += 1;
+            account.centers += 1;
         }
         let Some(above) = grids.get(level + 1) else { break };
         let mut arrived = BTreeMap::new();
@@ -137,7 +137,7 @@ fn every_sample_is_in_one_place_or_lost_by_the_rule() {
             let grids = levels(&template, &drawn(&scene, &camera, &settings));
             match account(&template, &grids, &format!("{name}, {settings:?}")) {
                 Some(account) => {
-                    merged += account.kept - account.centres;
+                    merged += account.kept - account.centers;
                     lost += account.lost;
                 }
                 None => open += 1,
@@ -159,11 +159,11 @@ fn crowd(dice: &mut Dice, size: u32, count: usize) -> Vec<Disc> {
 }
 
 /// How many centres are left of discs; `None` if rounding decides.
-fn centres(discs: &[Disc], size: u32, settings: Settings) -> Option<usize> {
+fn centers(discs: &[Disc], size: u32, settings: Settings) -> Option<usize> {
     let (scene, camera) = (exact_scene(discs), exact_camera([size, size]));
     let template = oracle(settings, &camera);
     let grids = levels(&template, &drawn(&scene, &camera, &settings));
-    account(&template, &grids, "a crowd").map(|account| account.centres)
+    account(&template, &grids, "a crowd").map(|account| account.centers)
 }
 
 /// \[MOC08, section 3.2\]: "larger templates tend to merge less splats". They do, and it is no law.
@@ -175,7 +175,7 @@ fn larger_templates_tend_to_merge_less() {
         for _ in 0..60 {
             let discs = crowd(&mut dice, 32, 150);
             let found =
-                [3, 5, 7].map(|size| centres(&discs, 32, Settings { size, levels, cull: false }));
+                [3, 5, 7].map(|size| centers(&discs, 32, Settings { size, levels, cull: false }));
             let [Some(a), Some(b), Some(c)] = found else { continue };
             let found = [a, b, c];
             (0..3).for_each(|i| total[i] += found[i]);
@@ -200,7 +200,7 @@ fn a_larger_template_can_merge_more() {
     let discs = [[8.0, 8.0], [12.0, 8.0], [8.0, 12.0], [12.0, 12.0]].map(|[x, y]| group(x, y));
     let discs: Vec<Disc> = discs.into_iter().flatten().collect();
     let left = [5, 7].map(|size| {
-        centres(&discs, 64, Settings { size, levels: LevelRule::Covering, cull: false })
+        centers(&discs, 64, Settings { size, levels: LevelRule::Covering, cull: false })
     });
     assert_eq!(left, [Some(8), Some(5)], "of 12");
 }

@@ -155,10 +155,10 @@ fn cells_mirror_for_powers_of_two_only() {
     for (width, merged) in [(16, 0), (13, 1)] {
         let size = [width, 16];
         let frame = drawn(size, &mirrored(size, &discs, 0), &settings);
-        let centres = (0..width).filter(|x| id(&frame, "level01.id", [*x, 2]) != NO_ID).count();
-        assert_eq!(centres, 2 - merged, "{width}");
+        let centers = (0..width).filter(|x| id(&frame, "level01.id", [*x, 2]) != NO_ID).count();
+        assert_eq!(centers, 2 - merged, "{width}");
         let frame = drawn(size, &discs, &settings);
-        let centres = (0..width).filter(|x| id(&frame, "level01.id", [*x, 2]) != NO_ID).count();
-        assert_eq!(centres, 2, "{width}");
+        let centers = (0..width).filter(|x| id(&frame, "level01.id", [*x, 2]) != NO_ID).count();
+        assert_eq!(centers, 2, "{width}");
     }
 }

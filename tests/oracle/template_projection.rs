@@ -30,7 +30,7 @@ pub(crate) struct Shot {
     pub(crate) back: Option<bool>,
     pub(crate) depth: Rounded,
     pub(crate) extent: Rounded,
-    pub(crate) centre: [Rounded; 2],
+    pub(crate) center: [Rounded; 2],
     /// As seen from the front.
     pub(crate) normal: [Rounded; 3],
     pub(crate) radius: f64,
@@ -107,11 +107,11 @@ impl Projection {
         let depth = -p[2];
         let near = if eye.perspective { Rounded::ONE / depth } else { Rounded::ONE };
         let (a, b) = (p[0] * near, p[1] * near);
-        let centre = [cx + fx * a, cy - fy * b];
+        let center = [cx + fx * a, cy - fy * b];
         let facing = if eye.perspective { n[0] * a + n[1] * b - n[2] } else { -n[2] };
         let scale = (fx * fy).sqrt() * near;
         let extent = (Rounded::exact(radius) * scale).at_most(48.0_f64.exp2());
-        let pixels = self.pixels(centre);
+        let pixels = self.pixels(center);
         let certain = pixels.len() == 1 || pixels.is_empty();
         let fate = match (depth.above(Rounded::exact(eye.near), self.unit), self.culled(facing)) {
             (None, _) | (Some(true), None) => None,
@@ -129,7 +129,7 @@ impl Projection {
             back: facing.above(Rounded::ZERO, self.unit),
             depth,
             extent,
-            centre,
+            center,
             normal: n,
             radius,
             color: surfels.color().map_or([0.0; 3], |colors| wide(colors[i])),
@@ -146,10 +146,10 @@ impl Projection {
     }
 
     /// The pixels that a centre may lie in, none standing for any outside; empty if all are.
-    fn pixels(&self, centre: [Rounded; 2]) -> Vec<Option<[u32; 2]>> {
+    fn pixels(&self, center: [Rounded; 2]) -> Vec<Option<[u32; 2]>> {
         let span = |i: usize| {
-            let reach = centre[i].units * self.unit;
-            let ends = [centre[i].value - reach, centre[i].value + reach].map(f64::floor);
+            let reach = center[i].units * self.unit;
+            let ends = [center[i].value - reach, center[i].value + reach].map(f64::floor);
             if ends[0] == ends[1] { vec![ends[0]] } else { ends.to_vec() }
         };
         let inside = |v: f64, size: u32| (v >= 0.0 && v < f64::from(size)).then_some(v as u32);

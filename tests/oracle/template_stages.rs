@@ -181,7 +181,7 @@ impl<'a> Subject<'a> {
                 along < 0.0
             });
             let normal = if back { shot.normal.map(|v| -v) } else { shot.normal };
-            let [cx, cy] = shot.centre;
+            let [cx, cy] = shot.center;
             for (key, found, expected) in [
                 ("projection.Z", [cell.depth; 3], [shot.depth; 3]),
                 ("projection.extent", [cell.extent; 3], [shot.extent; 3]),

@@ -11,7 +11,7 @@ use crate::pixel::{Oracle, Seen};
 use crate::single_pass::Algorithm1;
 use splatref::composite::bins::Range;
 use splatref::method::transparent::{Holes, Settings};
-use splatref::scene::group::Groups;
+use splatref::scene::Groups;
 use splatref::scene::{Camera, Surfels};
 use splatref::splat::Outline;
 

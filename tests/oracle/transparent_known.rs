@@ -5,13 +5,13 @@ use crate::single_pass_stages::groups;
 use crate::stages::at;
 use glam::{DVec3, Vec3};
 use splatref::frame::{Exec, Frame};
+use splatref::index::order::BackToFront;
 use splatref::method::ewa::{self, Epsilon};
 use splatref::method::peeling;
 use splatref::method::single_pass::{BinCount, DepthTest};
 use splatref::method::transparent::{self, Holes, Settings};
 use splatref::number::Real;
-use splatref::scene::group::Groups;
-use splatref::scene::order::BackToFront;
+use splatref::scene::Groups;
 use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Pose, Scene, Surfels};
 use splatref::splat::Kernel;
 

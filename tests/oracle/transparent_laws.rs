@@ -7,13 +7,13 @@ use crate::transparent_cases::Subject;
 use glam::Vec3;
 use splatref::composite::bins::DepthBins;
 use splatref::frame::{Exec, Frame, NO_ID, Plane, Samples};
+use splatref::index::order::BackToFront;
 use splatref::method::ewa;
 use splatref::method::single_pass::{self, BinCount};
 use splatref::method::transparent::{self, Holes};
 use splatref::number::Real;
+use splatref::scene::Groups;
 use splatref::scene::environment::Map;
-use splatref::scene::group::Groups;
-use splatref::scene::order::BackToFront;
 use splatref::scene::{Cloud, Environment, Light, Scene, Surfels};
 use splatref::shade::optics::{Layers, Refraction};
 

@@ -5,13 +5,13 @@ use crate::transparent_cases::Subject;
 use splatref::composite::bins::MAX_BINS;
 use splatref::error::Error;
 use splatref::frame::Exec;
+use splatref::index::order::BackToFront;
 use splatref::method::ewa::Epsilon;
 use splatref::method::single_pass::{BinCount, DepthTest};
 use splatref::method::transparent::{self, Settings};
 use splatref::method::{Picture, peeling};
 use splatref::scene::Environment;
-use splatref::scene::group::Groups;
-use splatref::scene::order::BackToFront;
+use splatref::scene::Groups;
 use splatref::shade::optics::{Layers, Refraction};
 
 fn render(subject: &Subject) -> Result<Picture<f32>, Error> {
@@ -139,7 +139,7 @@ fn groups_and_orders_of_other_surfels_are_refused() {
     for count in [8, 500] {
         let subject = subject(|_| ());
         let exec = Exec::sequential();
-        let other = splatref::scene::Shape::Sphere.surfels(count, 0).expect("few surfels");
+        let other = splatref::source::Shape::Sphere.surfels(count, 0).expect("few surfels");
         let order = BackToFront::new(&other, &exec);
         let (scene, camera) = (&subject.case.scene, &subject.case.camera);
         let given = (&subject.groups, &order);

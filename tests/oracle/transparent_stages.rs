@@ -14,11 +14,11 @@ use crate::transparent::{Image, Transparent, Truth, back_to_front};
 use crate::transparent_cases::Subject;
 use crate::transparent_tolerance::TRANSPARENT;
 use splatref::frame::{Exec, Frame, NO_ID, Samples};
+use splatref::index::order::BackToFront;
 use splatref::method::Method;
 use splatref::method::single_pass::{self, DepthTest};
 use splatref::method::transparent;
 use splatref::number::Real;
-use splatref::scene::order::BackToFront;
 use splatref::scene::{Environment, Scene};
 
 /// Compares one number, or three.

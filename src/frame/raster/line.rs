@@ -81,7 +81,7 @@ impl Line {
         let (first, end) = self.samples(rect);
         for k in 0..end - first {
             let i = if a[major] < b[major] { first + k } else { end - 1 - k };
-            let along = (snap.centre(i) - 2 * a[major]).abs();
+            let along = (snap.center(i) - 2 * a[major]).abs();
             visit_inside(self.sample(i, along, length), along, length);
         }
         visit_inside(snap.pixel(b), length, length);
@@ -91,8 +91,8 @@ impl Line {
     /// only.
     fn samples(&self, rect: &Rect) -> (i64, i64) {
         let (a, b) = (self.a[self.major], self.b[self.major]);
-        let first = self.snap.first_centre_from(2 * a.min(b) + 1);
-        let end = self.snap.first_centre_from(2 * a.max(b));
+        let first = self.snap.first_center_from(2 * a.min(b) + 1);
+        let end = self.snap.first_center_from(2 * a.max(b));
         let (low, high) = [(rect.x0, rect.x1), (rect.y0, rect.y1)][self.major];
         (first.max(low.into()), end.min(high.into()))
     }

@@ -90,14 +90,14 @@ impl Snap {
     }
 
     /// The first pixel, of one axis, whose centre is not before `halves` of a fixed-point unit.
-    fn first_centre_from(&self, halves: i64) -> i64 {
+    fn first_center_from(&self, halves: i64) -> i64 {
         // (2 i + 1) 2^bits >= halves, solved for the least i.
         (halves + (1 << self.bits) - 1) >> (self.bits + 1)
     }
 
     /// The centre of a pixel, of one axis, in halves of a fixed-point unit: with 0 bits it lies
     /// between two.
-    fn centre(&self, pixel: i64) -> i64 {
+    fn center(&self, pixel: i64) -> i64 {
         (2 * pixel + 1) << self.bits
     }
 }

@@ -52,7 +52,7 @@ impl Edge {
         // Coordinates are at most 2^29, gradients 2^30, p - 2 q at most 2^31 for every pixel that
         // is visited: products stay below 2^61, their sum below 2^62.
         let gradient = [-sense * (r[1] - q[1]), sense * (r[0] - q[0])];
-        let first = snap.centre(0);
+        let first = snap.center(0);
         let origin = gradient[0] * (first - 2 * q[0]) + gradient[1] * (first - 2 * q[1]);
         let top_or_left = gradient[0] > 0 || (gradient[0] == 0 && gradient[1] > 0);
         let step = gradient.map(|g| g << (snap.bits + 1));
@@ -82,8 +82,8 @@ impl Triangle {
         let edges = [[b, c], [c, a], [a, b]].map(|[q, r]| Edge::new(snap, q, r, sense));
         // A centre on the right or the lower border is on no left and no top edge: the ends are
         // exclusive.
-        let low = [0, 1].map(|i| snap.first_centre_from(2 * a[i].min(b[i]).min(c[i])));
-        let high = [0, 1].map(|i| snap.first_centre_from(2 * a[i].max(b[i]).max(c[i])));
+        let low = [0, 1].map(|i| snap.first_center_from(2 * a[i].min(b[i]).min(c[i])));
+        let high = [0, 1].map(|i| snap.first_center_from(2 * a[i].max(b[i]).max(c[i])));
         let bounds = not_negative(low, high);
         Some(Self { edges, area: 2 * cross.abs(), front: cross < 0, bounds })
     }

@@ -12,32 +12,8 @@ mod write;
 pub use read::{read, read_header};
 pub use write::write;
 
-use crate::frame::{ChannelData, Frame};
-
 /// The name of the one text attribute that a file of this crate carries.
 pub const ATTRIBUTE: &str = "splatref";
-
-/// A picture as an EXR file holds it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Image {
-    /// Width in pixels, at least 1.
-    pub width: u32,
-    /// Height in pixels, at least 1.
-    pub height: u32,
-    /// The channels and their names, sorted by name, no name twice.
-    pub channels: Vec<(String, Values)>,
-    /// The text attribute [`ATTRIBUTE`].
-    pub text: Option<String>,
-}
-
-/// The values of a channel, row by row from the top left, one a pixel.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Values {
-    /// `FLOAT` channels, with their bits; `HALF` channels, widened exactly.
-    Float(Vec<f32>),
-    /// `UINT` channels: indices and counts.
-    Index(Vec<u32>),
-}
 
 /// What the header of an EXR file promises.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -63,32 +39,4 @@ pub enum ChannelType {
     Float,
     /// 32-bit unsigned integers.
     Uint,
-}
-
-impl From<&Frame<f32>> for Image {
-    /// What [`read()`] gives after [`write()`], text aside.
-    fn from(frame: &Frame<f32>) -> Self {
-        let channels = frame.channels().into_iter().map(|channel| {
-            let values = match channel.data {
-                ChannelData::Float { values, stride, offset } => {
-                    Values::Float(values.iter().skip(offset).step_by(stride).copied().collect())
-                }
-                ChannelData::Index(values) => Values::Index(values.to_vec()),
-                ChannelData::Count(values) => {
-                    Values::Index(values.iter().map(|&count| u32::from(count)).collect())
-                }
-            };
-            (channel.name, values)
-        });
-        let channels = channels.collect();
-        Self { width: frame.width, height: frame.height, channels, text: None }
-    }
-}
-
-impl Image {
-    /// The values of the channel called `name`.
-    #[must_use]
-    pub fn channel(&self, name: &str) -> Option<&Values> {
-        self.channels.iter().find(|(of, _)| of == name).map(|(_, values)| values)
-    }
 }

@@ -1,6 +1,7 @@
 //! File to image, trusting nothing.
 
-use super::{ATTRIBUTE, ChannelType, Header, Image, Values};
+use super::{ATTRIBUTE, ChannelType, Header};
+use crate::frame::image::{Image, Values};
 use crate::{Error, Result};
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::Error;
+use crate::frame::image::{Image, Values};
 use crate::frame::{Frame, NO_ID, NamedPlane, Plane, Samples};
 use exr::math::RoundingMode;
 use exr::prelude::{

@@ -2,7 +2,7 @@
 
 use super::header::{Element, Kind};
 use super::values::{Event, Values};
-use crate::scene::group::{Groups, MAX_GROUPS};
+use crate::scene::groups::{Groups, MAX_GROUPS};
 
 const GROUP: &str = "element vertex: property `group` must be one integer, the number of a group; \
                      if it is something else, rename it";

@@ -14,7 +14,7 @@
 //! | | | `float`, `double` | kept |
 //! | | `tux tuy tuz tvx tvy tvz` | any | half axes of an ellipse, world units |
 //! | | `tx ty tz` | any | tangent of a tube, of any length |
-//! | | `group` | an integer | the surfel's own [group](crate::scene::group), 0 to 63 |
+//! | | `group` | an integer | the surfel's own [group](crate::index::grouping), 0 to 63 |
 //! | | `also` | list of integers | further groups that it was added to, none twice; skipped without `group` |
 //! | `group` | `scale` | any | what radii are multiplied by, finite and > 0, for each group; skipped without `group` |
 //! | `face` | `vertex_indices` or `vertex_index` | list of integers | a polygon is the fan of its first corner; with fewer than 3 corners it is nothing |

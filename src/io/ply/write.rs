@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::io::replace::write_atomically;
 use crate::scene::Cloud;
-use crate::scene::group::Groups;
+use crate::scene::Groups;
 use std::io::{self, Write};
 use std::path::Path;
 

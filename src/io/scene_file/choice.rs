@@ -1,13 +1,13 @@
 //! The method and its groups as far as they were chosen, and the defaults for the rest.
 
 use crate::error::{Error, Result};
+use crate::index::grouping::{Coplanar, Extension, Grouping, Rules};
 use crate::method::ewa::{self, Epsilon};
 use crate::method::pyramid::{self, Occlusion, Weights};
 use crate::method::single_pass::{self, BinCount, DepthTest};
 use crate::method::template::{self, LevelRule};
 use crate::method::transparent::{self, Holes};
-use crate::method::{Grouping, Method, peeling};
-use crate::scene::group::{Coplanar, Extension, Rules};
+use crate::method::{Method, peeling};
 use crate::shade::optics::{Layers, Refraction};
 use crate::splat::{Kernel, Outline};
 

@@ -1,7 +1,7 @@
 //! As what a model is drawn.
 
 use super::Source;
-use crate::scene::hybrid::HalfSpace;
+use crate::source::hybrid::HalfSpace;
 
 /// As what a model is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,13 +11,13 @@ pub enum Draw {
     /// Its triangles as polygons.
     Polygons,
     /// Triangles in this half space, in the model's own coordinates, as polygons, the rest as
-    /// surfels: [`crate::scene::hybrid::split`].
+    /// surfels: [`crate::source::hybrid::split`].
     Hybrid(HalfSpace),
     /// Its edges as ribbons.
     Ribbons,
     /// Its edges as tubes.
     Tubes,
-    /// Leaves as ribbons, branches as tubes, the trunk as polygons: [`crate::scene::plant`].
+    /// Leaves as ribbons, branches as tubes, the trunk as polygons: [`crate::source::plant`].
     Lines,
 }
 

@@ -4,10 +4,10 @@ use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, stem, words};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::{environment, ply};
-use crate::scene::derive::{self, Derive, Derived};
-use crate::scene::merge::{join, merge};
-use crate::scene::plant;
 use crate::scene::{Cloud, Counts, Dropped, Environment, Primitives, Scene, Surfels};
+use crate::source::derive::{self, Derive, Derived};
+use crate::source::merge::{join, merge};
+use crate::source::plant;
 
 /// A scene and how it came about.
 #[derive(Clone, Debug)]
@@ -42,7 +42,7 @@ impl SceneFile {
     /// `progress` as in [`derive::surfels`].
     ///
     /// # Errors
-    /// Those of [`environment::read`], [`ply::read`], [`crate::scene::Shape::surfels`],
+    /// Those of [`environment::read`], [`ply::read`], [`crate::source::Shape::surfels`],
     /// [`plant::apple_tree`], and of [`derive::surfels`] and its like for polygons and lines, the
     /// file named; [`Error::Invalid`] if neither a surfel nor a primitive is left or there are too
     /// many, if a model cannot be drawn as it says, or if one that is not drawn as points was given

@@ -6,7 +6,7 @@
 #![doc = include_str!("example.toml")]
 //! ```
 //!
-//! The tree of [`crate::scene::plant`] is a model too, which the method `pyramid` draws:
+//! The tree of [`crate::source::plant`] is a model too, which the method `pyramid` draws:
 //!
 //! ```toml
 //! [[model]]
@@ -43,13 +43,15 @@ pub use load::{Loaded, ModelReport};
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::index::grouping::{Extended, GroupingReport};
 use crate::method::Method;
-use crate::scene::group::{Extended, Groups, Report};
-use crate::scene::{Camera, Lens, Light, Phong, Pose, Scene, Shape, Similarity, Surfels};
+use crate::scene::Groups;
+use crate::scene::{Camera, Lens, Light, Phong, Pose, Scene, Similarity, Surfels};
+use crate::source::Shape;
 use glam::{DVec3, Vec3};
 use std::path::{Path, PathBuf};
 
-/// How many surfels cover a shape if nobody says; a tree has [`crate::scene::plant::LEAVES`].
+/// How many surfels cover a shape if nobody says; a tree has [`crate::source::plant::LEAVES`].
 pub const DEFAULT_COUNT: usize = 200_000;
 /// The size of a picture if nobody says.
 pub const DEFAULT_SIZE: [u32; 2] = [1024, 768];
@@ -115,7 +117,7 @@ pub enum Source {
         /// Of the random displacements.
         seed: u64,
     },
-    /// [`crate::scene::plant::apple_tree`].
+    /// [`crate::source::plant::apple_tree`].
     Tree {
         /// How many.
         leaves: usize,
@@ -257,14 +259,14 @@ impl SceneFile {
 }
 
 /// The groups of a scene, and how they were made; nothing if they were read.
-pub type Made = (Groups, Option<(Report, Option<Extended>)>);
+pub type Made = (Groups, Option<(GroupingReport, Option<Extended>)>);
 
 impl SceneFile {
     /// The groups for a method, none for one that draws none: those that the surfels of this scene
     /// brought along, unless something was chosen for them; else they are made.
     ///
     /// # Errors
-    /// As [`crate::method::Grouping::groups`].
+    /// As [`crate::index::grouping::Grouping::groups`].
     pub fn groups(
         &self,
         surfels: &Surfels,

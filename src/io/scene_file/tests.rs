@@ -2,15 +2,15 @@ mod draw;
 
 use super::*;
 use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples};
+use crate::index::grouping::Extension;
 use crate::io::exr;
 use crate::method::Method;
 use crate::method::ewa::{Epsilon, Settings};
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::transparent;
-use crate::scene::derive::Origin;
 use crate::scene::environment::{Environment, Map};
-use crate::scene::group::Extension;
 use crate::shade::optics::{Layers, Refraction};
+use crate::source::derive::Origin;
 use crate::splat::{Kernel, Outline};
 use proptest::prelude::*;
 use std::fs;

@@ -5,8 +5,8 @@ use crate::method::pyramid::{Occlusion, Weights};
 use crate::method::single_pass::DepthTest;
 use crate::method::template::LevelRule;
 use crate::method::transparent::Holes;
-use crate::scene::Shape;
 use crate::shade::optics::Layers;
+use crate::source::Shape;
 use crate::splat::{Kernel, Outline};
 
 use super::{EnvironmentChoice, ExtensionChoice, MethodName, Number};
@@ -14,7 +14,7 @@ use super::{EnvironmentChoice, ExtensionChoice, MethodName, Number};
 /// Something that a word stands for, or a line that says which words there are.
 type Found<T> = Result<T, String>;
 
-/// What the tree of [`crate::scene::plant`] is called.
+/// What the tree of [`crate::source::plant`] is called.
 pub const TREE: &str = "tree";
 
 /// The names of all that can be made without a file: [`Shape::ALL`] and [`TREE`].

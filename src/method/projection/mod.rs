@@ -31,7 +31,7 @@
 //!
 //! With stages: `projection.id`, `projection.kind` (the [`Kind`] as a stencil), `projection.Z`,
 //! `projection.normal` (view space), `projection.extent` (rho), `projection.radius` (r),
-//! `projection.centre.X`, `.Y`, and if the scene has them `projection.R G B` and
+//! `projection.center.X`, `.Y`, and if the scene has them `projection.R G B` and
 //! `projection.tangent` (view space).
 
 pub(in crate::method) mod fast;
@@ -83,7 +83,7 @@ pub struct Sample<R> {
     /// Where the centre is in the picture, in pixels. `Decided:` \[MOC08\] stores the coordinates
     /// of the projection, so they are not rounded; \[MKC08\] has displacement (0, 0), so its centre
     /// is the pixel's.
-    pub centre: Vector2<R>,
+    pub center: Vector2<R>,
     /// Normal, towards the viewer.
     pub normal: Vector3<R>,
     /// Tangent of a tube; else the null vector.
@@ -102,7 +102,7 @@ impl<R: Real> Sample<R> {
             depth: R::INFINITY,
             radius: R::ZERO,
             extent: R::ZERO,
-            centre: Vector2::new(R::ZERO, R::ZERO),
+            center: Vector2::new(R::ZERO, R::ZERO),
             normal: Vector3::ZERO,
             tangent: Vector3::ZERO,
             color: [R::ZERO; 3],

@@ -113,5 +113,5 @@ fn surfel<R: Real>(stage: &Stage<'_, R>, i: usize, tally: &mut Tally, drawn: &mu
     let color = if stage.has.color { color.to_array().map(R::from_f32) } else { [R::ZERO; 3] };
     let radius = R::from_f32(surfels.radius()[i]);
     let sample = lens.sample(&placed, (n, g), radius, (i as u32, color));
-    drawn.push(Drawn::Pixel([placed.centre.x.to_pixel(), placed.centre.y.to_pixel()], sample));
+    drawn.push(Drawn::Pixel([placed.center.x.to_pixel(), placed.center.y.to_pixel()], sample));
 }

@@ -18,8 +18,8 @@ pub(in crate::method) fn planes<R: Real>(projected: &Projected<R>, has: Has) -> 
         ),
         scalar("projection.extent", samples.map(|s| s.extent)),
         scalar("projection.radius", samples.map(|s| s.radius)),
-        scalar("projection.centre.X", samples.map(|s| s.centre.x)),
-        scalar("projection.centre.Y", samples.map(|s| s.centre.y)),
+        scalar("projection.centre.X", samples.map(|s| s.center.x)),
+        scalar("projection.centre.Y", samples.map(|s| s.center.y)),
     ];
     if has.color {
         planes.push(color("projection", samples.map(|s| s.color)));

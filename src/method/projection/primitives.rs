@@ -100,8 +100,8 @@ fn corners<R: Real, const N: usize>(
 
 /// A corner of a piece: its place in fixed point, and m.
 fn placed<R: Real>(stage: &Stage<'_, R>, p: Vector3<R>) -> ([i64; 2], R) {
-    let Placed { m, centre, .. } = stage.lens.place(p);
-    ([stage.snap.fixed(centre.x), stage.snap.fixed(centre.y)], m)
+    let Placed { m, center, .. } = stage.lens.place(p);
+    ([stage.snap.fixed(center.x), stage.snap.fixed(center.y)], m)
 }
 
 fn triangle<R: Real>(
@@ -217,7 +217,7 @@ impl<R: Real> Piece<R> {
             depth: placed.t,
             radius,
             extent: ellipse::radius_in_pixels(radius, lens.focal, placed.m),
-            centre: Vector2::new(R::from_f32(x as f32 + 0.5), R::from_f32(y as f32 + 0.5)),
+            center: Vector2::new(R::from_f32(x as f32 + 0.5), R::from_f32(y as f32 + 0.5)),
             normal: zero(normal),
             tangent: zero(tangent),
             color: if stage.has.color { color.unwrap_or_else(own) } else { [R::ZERO; 3] },

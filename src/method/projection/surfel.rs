@@ -25,7 +25,7 @@ pub struct Placed<R> {
     /// 1/t, or 1.
     pub m: R,
     /// In the picture.
-    pub centre: Vector2<R>,
+    pub center: Vector2<R>,
 }
 
 impl<R: Real> Lens<R> {
@@ -49,8 +49,8 @@ impl<R: Real> Lens<R> {
         let view = &self.view;
         let t = -p.z;
         let m = self.scale(t);
-        let centre = Vector2::new(view.cx + view.fx * (p.x * m), view.cy - view.fy * (p.y * m));
-        Placed { p, t, m, centre }
+        let center = Vector2::new(view.cx + view.fx * (p.x * m), view.cy - view.fy * (p.y * m));
+        Placed { p, t, m, center }
     }
 
     /// How a surface turns: < 0 if its front is seen.
@@ -72,7 +72,7 @@ impl<R: Real> Lens<R> {
         let view = &self.view;
         let placed = self.place(view.point(position));
         let g = self.facing(&placed, n);
-        let Vector2 { x, y } = placed.centre;
+        let Vector2 { x, y } = placed.center;
         let inside = (x >= R::ZERO) & (x < view.width) & (y >= R::ZERO) & (y < view.height);
         let sound = x.is_finite() & y.is_finite() & placed.t.is_finite() & g.is_finite();
         let fate = if inside { Fate::Visible } else { Fate::Outside };
@@ -100,7 +100,7 @@ impl<R: Real> Lens<R> {
             depth: placed.t + R::ZERO,
             radius,
             extent: ellipse::radius_in_pixels(radius, self.focal, placed.m),
-            centre: placed.centre,
+            center: placed.center,
             normal: Vector3::new(n.x + R::ZERO, n.y + R::ZERO, n.z + R::ZERO),
             tangent: Vector3::ZERO,
             color,

@@ -49,7 +49,7 @@ pub fn pull<R: Real>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell<
 /// One cell from four, see the module page.
 fn one<R: Real>(finer: &[Cell<R>; 4], side: R) -> Cell<R> {
     let half = side * R::from_f32(0.5);
-    let centres = [0, 1, 2, 3].map(|j| {
+    let centers = [0, 1, 2, 3].map(|j| {
         let d = finer[j].displacement;
         let x = if j % 2 == 0 { d.x - half } else { d.x + half };
         let y = if j / 2 == 0 { d.y - half } else { d.y + half };
@@ -57,7 +57,7 @@ fn one<R: Real>(finer: &[Cell<R>; 4], side: R) -> Cell<R> {
     });
     let inside = [0, 1, 2, 3].map(|j| {
         let ellipse = Ellipse::new(finer[j].normal, finer[j].radius);
-        ellipse.holds(ellipse.form(centres[j].x, centres[j].y))
+        ellipse.holds(ellipse.form(centers[j].x, centers[j].y))
     });
     let (takes, first) = Cell::foremost(finer, inside);
     if !takes[first] {
@@ -67,6 +67,6 @@ fn one<R: Real>(finer: &[Cell<R>; 4], side: R) -> Cell<R> {
     Cell {
         front: mean.least(finer.map(|cell| cell.front)),
         back: mean.greatest(finer.map(|cell| cell.back)),
-        ..Cell::average(finer, centres, &mean, finer[first].kind)
+        ..Cell::average(finer, centers, &mean, finer[first].kind)
     }
 }

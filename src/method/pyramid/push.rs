@@ -90,12 +90,12 @@ fn one<R: Real>(
         let far = side * R::from_f32(if neighbour { 1.5 } else { 0.5 });
         if neighbour == even { -far } else { far }
     };
-    let centres = [0, 1, 2, 3].map(|j| {
+    let centers = [0, 1, 2, 3].map(|j| {
         let d = coarser[j].displacement;
         Vector2::new(d.x + shift(j % 2 == 1, even_x), d.y + shift(j / 2 == 1, even_y))
     });
     let ellipses = coarser.map(|cell| Ellipse::new(cell.normal, cell.radius));
-    let forms = [0, 1, 2, 3].map(|j| ellipses[j].form(centres[j].x, centres[j].y));
+    let forms = [0, 1, 2, 3].map(|j| ellipses[j].form(centers[j].x, centers[j].y));
     let inside = [0, 1, 2, 3].map(|j| ellipses[j].holds(forms[j]));
     let (takes, first) = Cell::foremost(coarser, inside);
     if !takes[first] {
@@ -108,5 +108,5 @@ fn one<R: Real>(
         _ => R::ONE,
     };
     let mean = Mean::new(takes, [0, 1, 2, 3].map(weight));
-    Some(Cell::average(coarser, centres, &mean, coarser[first].kind))
+    Some(Cell::average(coarser, centers, &mean, coarser[first].kind))
 }

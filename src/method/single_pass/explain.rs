@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::frame::{Exec, NO_ID};
 use crate::method::ewa::plain::fragment;
 use crate::number::Real;
-use crate::scene::group::Groups;
+use crate::scene::Groups;
 use crate::scene::{Camera, Surfels};
 use std::fmt;
 
@@ -181,7 +181,8 @@ mod tests {
     use super::*;
     use crate::frame::Samples;
     use crate::method::ewa::{self, Epsilon};
-    use crate::scene::{Lens, Light, Phong, Scene, Shape};
+    use crate::scene::{Lens, Light, Phong, Scene};
+    use crate::source::Shape;
 
     #[test]
     fn an_explanation_is_what_the_picture_shows() {

@@ -48,7 +48,7 @@
 //!
 //! [`Splat`]: crate::splat::Splat
 //! [`Real`]: crate::number::Real
-//! [`Groups`]: crate::scene::group::Groups
+//! [`Groups`]: crate::scene::Groups
 
 pub mod explain;
 pub mod fast;

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::frame::{Exec, Frame, Framebuffer, Grid, NO_ID, NamedPlane, Samples, Wanted};
 use crate::method::picture::{Clock, Picture, finish, framebuffer, named};
 use crate::number::Real;
-use crate::scene::group::Groups;
+use crate::scene::Groups;
 use crate::scene::{Camera, Scene};
 
 /// Renders with the definition, in any number; with `stages`, every stage leaves its planes:

@@ -9,7 +9,7 @@ use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, NO_ID, Rect};
 use crate::method::ewa::plain::{each_inside, facing};
 use crate::method::prepare::Prepared;
 use crate::number::Real;
-use crate::scene::group::Groups;
+use crate::scene::Groups;
 use crate::scene::{Camera, Surfels};
 use crate::splat::{Shared, Splat, Tally};
 

@@ -30,7 +30,7 @@
 //! least weight, so that the rim, d = 1, is painted with a defined colour; no `f32` below 1 is
 //! closer to it, so nothing else changes.
 
-use super::{Centre, Settings, levels};
+use super::{Center, Settings, levels};
 use crate::composite::sum;
 use crate::frame::{Exec, NO_ID, Plane};
 use crate::number::Real;
@@ -75,21 +75,21 @@ impl<R: Real> Gathered<R> {
 
     /// A centre whose ellipse holds the pixel, with its weight; the ternary test of the module
     /// page.
-    fn add(&mut self, centre: &Centre<R>, weight: R) {
-        let sum = centre.radius + self.radius;
-        if self.id == NO_ID || self.depth - centre.depth > sum {
+    fn add(&mut self, center: &Center<R>, weight: R) {
+        let sum = center.radius + self.radius;
+        if self.id == NO_ID || self.depth - center.depth > sum {
             *self = Self::empty();
-        } else if centre.depth - self.depth > sum {
+        } else if center.depth - self.depth > sum {
             return;
         }
-        if centre.depth < self.depth {
-            (self.id, self.depth, self.radius) = (centre.id, centre.depth, centre.radius);
+        if center.depth < self.depth {
+            (self.id, self.depth, self.radius) = (center.id, center.depth, center.radius);
         }
         self.weight = self.weight + weight;
-        self.depths = self.depths + weight * centre.depth;
-        let n = centre.normal;
+        self.depths = self.depths + weight * center.depth;
+        let n = center.normal;
         self.normals = sum::add(self.normals, weight, [n.x, n.y, n.z]);
-        self.colors = sum::add(self.colors, weight, centre.color);
+        self.colors = sum::add(self.colors, weight, center.color);
         self.count = self.count.saturating_add(1);
     }
 }
@@ -107,7 +107,7 @@ const LEAST: f32 = 1.0 / 16_777_216.0;
 /// Gathers every pixel.
 #[must_use]
 pub fn gather<R: Real>(
-    levels: &[Plane<Centre<R>>],
+    levels: &[Plane<Center<R>>],
     settings: &Settings,
     exec: &Exec,
 ) -> Plane<Gathered<R>> {
@@ -126,7 +126,7 @@ pub fn gather<R: Real>(
 
 /// The template of one level around a pixel.
 fn search<R: Real>(
-    levels: &[Plane<Centre<R>>],
+    levels: &[Plane<Center<R>>],
     level: usize,
     settings: &Settings,
     (x, y): (u32, u32),
@@ -138,18 +138,18 @@ fn search<R: Real>(
     let (column, row) = (x >> level, y >> level);
     for cy in row.saturating_sub(h)..cells.height().min(row + h + 1) {
         for cx in column.saturating_sub(h)..cells.width().min(column + h + 1) {
-            let centre = cells.at(cx, cy);
-            if !centre.is_valid() || (!is_top && levels::moves(centre, reach)) {
+            let center = cells.at(cx, cy);
+            if !center.is_valid() || (!is_top && levels::moves(center, reach)) {
                 continue;
             }
-            let ellipse = Ellipse::new(centre.normal, centre.extent);
+            let ellipse = Ellipse::new(center.normal, center.extent);
             let form = ellipse.form(
-                R::from_f32(x as f32 + 0.5) - centre.place.x,
-                R::from_f32(y as f32 + 0.5) - centre.place.y,
+                R::from_f32(x as f32 + 0.5) - center.place.x,
+                R::from_f32(y as f32 + 0.5) - center.place.y,
             );
             let own = level == 0 && (cx, cy) == (x, y);
             if ellipse.holds(form) || own {
-                pixel.add(centre, weight(form, ellipse.square));
+                pixel.add(center, weight(form, ellipse.square));
             }
         }
     }

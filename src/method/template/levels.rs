@@ -17,7 +17,7 @@
 //! An average of radii that all are greater than the reach of a level is greater too, so that a
 //! centre never stays at a level that it should have left.
 
-use super::{Centre, Settings};
+use super::{Center, Settings};
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
 use crate::method::projection::Projected;
@@ -38,10 +38,10 @@ pub fn propagate<R: Real>(
     projected: &Projected<R>,
     settings: &Settings,
     exec: &Exec,
-) -> Vec<Plane<Centre<R>>> {
+) -> Vec<Plane<Center<R>>> {
     let samples = &projected.samples;
     let sizes = crate::frame::pyramid::sizes(samples.width(), samples.height());
-    let mut levels = vec![samples.map(Centre::new)];
+    let mut levels = vec![samples.map(Center::new)];
     for level in 0..top(settings, &sizes) {
         let reach = R::from_f32(settings.reach(level));
         levels.push(coarser(&levels[level], reach, exec));
@@ -50,31 +50,31 @@ pub fn propagate<R: Real>(
 }
 
 /// Whether a centre of a level that is not the top moves on.
-pub(super) fn moves<R: Real>(centre: &Centre<R>, reach: R) -> bool {
-    centre.is_valid() && !(centre.extent <= reach)
+pub(super) fn moves<R: Real>(center: &Center<R>, reach: R) -> bool {
+    center.is_valid() && !(center.extent <= reach)
 }
 
 /// The next level, from what does not stay within `reach`.
-fn coarser<R: Real>(fine: &Plane<Centre<R>>, reach: R, exec: &Exec) -> Plane<Centre<R>> {
+fn coarser<R: Real>(fine: &Plane<Center<R>>, reach: R, exec: &Exec) -> Plane<Center<R>> {
     let (width, height) = (fine.width().div_ceil(2), fine.height().div_ceil(2));
-    let mut coarse = Plane::filled(width, height, Centre::empty());
+    let mut coarse = Plane::filled(width, height, Center::empty());
     let rows = coarse.rows_mut();
-    exec.ordered((0..).zip(rows).collect(), |(y, row): (u32, &mut [Centre<R>])| {
-        for (x, centre) in (0..).zip(row) {
+    exec.ordered((0..).zip(rows).collect(), |(y, row): (u32, &mut [Center<R>])| {
+        for (x, center) in (0..).zip(row) {
             let finer = [0, 1, 2, 3].map(|j| {
                 let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
                 let exists = x < fine.width() && y < fine.height();
-                if exists { *fine.at(x, y) } else { Centre::empty() }
+                if exists { *fine.at(x, y) } else { Center::empty() }
             });
-            *centre = merged(&finer, finer.map(|centre| moves(&centre, reach)));
+            *center = merged(&finer, finer.map(|center| moves(&center, reach)));
         }
     });
     coarse
 }
 
 /// One centre from those that move, see the module page.
-fn merged<R: Real>(finer: &[Centre<R>; 4], moving: [bool; 4]) -> Centre<R> {
-    let mut front = Centre::empty();
+fn merged<R: Real>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Center<R> {
+    let mut front = Center::empty();
     for j in 0..4 {
         if moving[j] && finer[j].depth < front.depth {
             front = finer[j];
@@ -83,10 +83,10 @@ fn merged<R: Real>(finer: &[Centre<R>; 4], moving: [bool; 4]) -> Centre<R> {
     if !front.is_valid() {
         return front;
     }
-    let near = |c: &Centre<R>| c.depth - front.depth <= c.radius + front.radius;
+    let near = |c: &Center<R>| c.depth - front.depth <= c.radius + front.radius;
     let mean = Mean::plain([0, 1, 2, 3].map(|j| moving[j] && near(&finer[j])));
-    let number = |of: fn(&Centre<R>) -> R| mean.of([0, 1, 2, 3].map(|j| of(&finer[j])));
-    Centre {
+    let number = |of: fn(&Center<R>) -> R| mean.of([0, 1, 2, 3].map(|j| of(&finer[j])));
+    Center {
         id: front.id,
         depth: number(|c| c.depth),
         radius: number(|c| c.radius),

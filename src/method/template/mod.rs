@@ -95,7 +95,7 @@ impl Settings {
 
 /// The centre of an ellipse in a cell of a level; view space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Centre<R> {
+pub struct Center<R> {
     /// The surfel, of several that were merged the foremost; [`NO_ID`] in an empty cell.
     pub id: u32,
     /// Depth t in world units; +inf in an empty cell.
@@ -112,7 +112,7 @@ pub struct Centre<R> {
     pub color: [R; 3],
 }
 
-impl<R: Real> Centre<R> {
+impl<R: Real> Center<R> {
     /// An empty cell: all but depth and id is 0.
     #[must_use]
     pub fn empty() -> Self {
@@ -138,7 +138,7 @@ impl<R: Real> Centre<R> {
             depth: sample.depth,
             radius: sample.radius,
             extent: sample.extent,
-            place: sample.centre,
+            place: sample.center,
             normal: sample.normal,
             color: sample.color,
         }

@@ -2,7 +2,7 @@
 
 use super::fast::Levels;
 use super::gather::{Gathered, gather};
-use super::{Centre, Settings, levels};
+use super::{Center, Settings, levels};
 use crate::composite::sum;
 use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
@@ -121,11 +121,11 @@ fn normal<R: Real>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
 /// The planes of a level, of the size of the picture.
 fn level_planes<R: Real>(
     name: &str,
-    cells: &Plane<Centre<R>>,
+    cells: &Plane<Center<R>>,
     camera: &Camera,
     has: Has,
 ) -> Vec<NamedPlane<R>> {
-    let whole = pyramid::in_corner(cells, [camera.width, camera.height], Centre::empty());
+    let whole = pyramid::in_corner(cells, [camera.width, camera.height], Center::empty());
     let of = |what: &str| format!("{name}.{what}");
     let mut planes = vec![
         named(&of("id"), Samples::Index(whole.map(|cell| cell.id))),

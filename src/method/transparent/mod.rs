@@ -6,7 +6,7 @@
 //!
 //! # Algorithm 2
 //!
-//! 1. **Order.** The surfels from back to front, see [`crate::scene::order`]. A surfel is drawn
+//! 1. **Order.** The surfels from back to front, see [`crate::index::order`]. A surfel is drawn
 //!    once in each of its groups, its radius (or tangents) times the scale of the group, see
 //!    [`Groups`]; the order of a surfel's groups does not matter.
 //! 2. **Shading.** `Decided:` (blended fragments cannot be shaded later) each surfel is shaded
@@ -45,16 +45,16 @@
 //! - Two fragments of one layer and one group that fall on either side of a bin's edge are blended
 //!   as two layers: darker arcs, the more of them the more bins there are.
 //! - Two layers in one bin are one layer: the one that is drawn first, the farther, is seen.
-//! - A group that does not cover a layer leaves holes in it, see [`crate::scene::group`] for the
+//! - A group that does not cover a layer leaves holes in it, see [`crate::index::grouping`] for the
 //!   extensions that close them, and [`Holes`].
-//! - Overlapping surfels are ordered by their centres, see [`crate::scene::order`].
+//! - Overlapping surfels are ordered by their centres, see [`crate::index::order`].
 //! - Algorithm 3 can draw a surfel that its group enlarges behind itself: where the nearest layer
 //!   clamps its depth to its own radius (see [`mod@crate::splat::project`]) and epsilon < (scale -
 //!   1) r, and, as depths of another radius round otherwise, anywhere with an epsilon of 0.
 //!
 //! The truth that it is held against is [`super::peeling`].
 //!
-//! [`Groups`]: crate::scene::group::Groups
+//! [`Groups`]: crate::scene::Groups
 
 mod blend;
 mod nearest;

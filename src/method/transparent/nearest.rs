@@ -9,7 +9,7 @@ use crate::method::picture::{color, named, scalar};
 use crate::method::single_pass;
 use crate::method::single_pass::plain::{Composite, Geometry, store};
 use crate::number::Real;
-use crate::scene::group::Groups;
+use crate::scene::Groups;
 use crate::scene::{Camera, Scene};
 use crate::shade::optics;
 use crate::shade::phong::Shader;

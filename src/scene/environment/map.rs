@@ -115,7 +115,7 @@ mod tests {
         Vector3::new(sin(polar) * sin(longitude), cos(polar), -(sin(polar) * cos(longitude)))
     }
 
-    fn centre(i: u32, j: u32, height: u32) -> Vector3<f64> {
+    fn center(i: u32, j: u32, height: u32) -> Vector3<f64> {
         let height = f64::from(height);
         direction((f64::from(i) + 0.5) / (2.0 * height), (f64::from(j) + 0.5) / height)
     }
@@ -127,7 +127,7 @@ mod tests {
     /// A map whose pixel is f of the direction of its centre.
     fn of(height: u32, f: impl Fn(Vector3<f64>) -> [f64; 3]) -> Map {
         let pixels = (0..height).flat_map(|j| (0..2 * height).map(move |i| (i, j)));
-        let values = pixels.map(|(i, j)| f(centre(i, j, height)).map(|v| v as f32)).collect();
+        let values = pixels.map(|(i, j)| f(center(i, j, height)).map(|v| v as f32)).collect();
         Map::new(Plane::from_values(2 * height, height, values)).unwrap()
     }
 
@@ -164,13 +164,13 @@ mod tests {
     }
 
     #[test]
-    fn a_pixel_centre_gives_the_pixel() {
+    fn a_pixel_center_gives_the_pixel() {
         let map = of(16, shown);
         for j in 0..16 {
             for i in 0..32 {
                 let [expected, found] =
-                    [map.pixels().at(i, j).map(f64::from), map.radiance(centre(i, j, 16))];
-                let single = map.radiance(single(centre(i, j, 16)));
+                    [map.pixels().at(i, j).map(f64::from), map.radiance(center(i, j, 16))];
+                let single = map.radiance(single(center(i, j, 16)));
                 for c in 0..3 {
                     assert!((found[c] - expected[c]).abs() < 1e-7, "({i}, {j})");
                     assert!((f64::from(single[c]) - expected[c]).abs() < 1e-5, "({i}, {j})");

@@ -30,7 +30,7 @@ fn parameters(bits: u32, a: Point, b: Point, x: u32, y: u32) -> Vec<(i128, i128)
     if contains(a) {
         list.push((0, 1));
     }
-    let along = (centre(bits, x, y)[m] - a2[m]) * d[m].signum();
+    let along = (center(bits, x, y)[m] - a2[m]) * d[m].signum();
     let length = d[m].abs();
     if 0 < along && along < length {
         // a + d along / length in [border, border + 1 pixel), times the length.

@@ -25,13 +25,13 @@ fn halves(p: Point) -> [i128; 2] {
     p.map(|c| 2 * i128::from(c))
 }
 
-fn centre(bits: u32, x: u32, y: u32) -> [i128; 2] {
+fn center(bits: u32, x: u32, y: u32) -> [i128; 2] {
     [x, y].map(|c| (2 * i128::from(c) + 1) << bits)
 }
 
 /// Where a centre lies: 1 inside, 0 on the outline, -1 outside.
 fn side(bits: u32, corners: [Point; 3], x: u32, y: u32) -> i32 {
-    let ([a, b, c], p) = (corners.map(halves), centre(bits, x, y));
+    let ([a, b, c], p) = (corners.map(halves), center(bits, x, y));
     let sense = cross(a, b, c).signum();
     let least = [cross(a, b, p), cross(b, c, p), cross(c, a, p)].into_iter().map(|w| w * sense);
     least.min().map_or(-1, |w| w.signum() as i32)
@@ -40,7 +40,7 @@ fn side(bits: u32, corners: [Point; 3], x: u32, y: u32) -> i32 {
 /// The rule as Direct3D words it: corners in clockwise order, a top edge is horizontal and runs to
 /// the right, a left edge runs up.
 fn covers(bits: u32, corners: [Point; 3], x: u32, y: u32) -> bool {
-    let ([a, mut b, mut c], p) = (corners.map(halves), centre(bits, x, y));
+    let ([a, mut b, mut c], p) = (corners.map(halves), center(bits, x, y));
     if cross(a, b, c) < 0 {
         (b, c) = (c, b);
     }
@@ -69,7 +69,7 @@ fn covered(bits: u32, corners: [Point; 3], rect: &Rect) -> Vec<(u32, u32)> {
         for axis in 0..2 {
             // There is one triple of this sum that gives the point.
             let parts = [0, 1, 2].map(|k| i128::from(weights[k]) * halves(corners[k])[axis]);
-            let point = i128::from(triangle.area()) * centre(bits, x, y)[axis];
+            let point = i128::from(triangle.area()) * center(bits, x, y)[axis];
             assert_eq!(parts.iter().sum::<i128>(), point);
         }
         list.push((y, x));
@@ -162,7 +162,7 @@ proptest! {
             let count = lists.iter().filter(|list| list.contains(&(x, y))).count();
             let sides = [side(bits, [a, b, c], x, y), side(bits, [a, c, d], x, y)];
             // On the shared edge but not at its ends, if both triangles have the centre on it.
-            let m = centre(bits, x, y);
+            let m = center(bits, x, y);
             let shared = sides == [0, 0] && m != p && m != r;
             if sides.contains(&1) || shared {
                 prop_assert_eq!(count, 1);
@@ -217,7 +217,7 @@ proptest! {
         }
         all.sort_unstable_by_key(|(x, y)| (*y, *x));
         let inside = |(x, y): &(u32, u32)| {
-            let c = centre(bits, *x, *y);
+            let c = center(bits, *x, *y);
             (0..2).all(|k| halves(low)[k] <= c[k] && c[k] < halves(high)[k])
         };
         prop_assert_eq!(all, pixels(&PICTURE).filter(inside).collect::<Vec<_>>());
@@ -264,7 +264,7 @@ proptest! {
 }
 
 #[test]
-fn centres_on_the_outline_belong_to_the_left_and_the_top() {
+fn centers_on_the_outline_belong_to_the_left_and_the_top() {
     // A square from centre to centre, in two triangles with corners at 1/2 px.
     let [a, b, c, d] = [[1, 1], [5, 1], [5, 5], [1, 5]];
     let room = Rect { x0: 0, y0: 0, x1: 9, y1: 9 };

@@ -3,7 +3,7 @@
 mod refused;
 
 use super::*;
-use crate::scene::group::Groups;
+use crate::scene::Groups;
 use glam::Vec3;
 
 /// An ascii file: header lines, then body lines.

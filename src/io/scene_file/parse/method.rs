@@ -1,8 +1,8 @@
 //! The tables of the method and of the groups.
 
 use super::super::{ExtensionChoice, GroupChoice, MethodChoice, words};
+use crate::index::grouping::Coplanar;
 use crate::method::ewa::Epsilon;
-use crate::scene::group::Coplanar;
 use serde::de::{Deserialize, Deserializer, Visitor};
 use std::fmt;
 

@@ -11,7 +11,8 @@ use super::{
 };
 use crate::error::{Error, Result};
 use crate::scene::transform::{self, Similarity};
-use crate::scene::{Lens, Light, Phong, Shape, plant};
+use crate::scene::{Lens, Light, Phong};
+use crate::source::{Shape, plant};
 use glam::{DMat3, DVec3, Vec3};
 use method::{RawGroups, RawMethod};
 use serde::de::{self, Deserialize, Deserializer};

@@ -1,7 +1,8 @@
 //! Models that are drawn as polygons, ribbons, tubes or hybrids.
 
 use super::*;
-use crate::scene::{Counts, Primitives, plant};
+use crate::scene::{Counts, Primitives};
+use crate::source::plant;
 
 /// A pyramid of four triangles without a bottom, whose apex is up, and two edges; what more a
 /// vertex has is `properties` and `values`.

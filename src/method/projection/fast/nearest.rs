@@ -38,7 +38,7 @@ impl Points {
         draw: impl Fn(&Nearest<'_>, T) + Sync + Send,
     ) {
         let width = lens.view.width.to_pixel() as usize;
-        exec.groups(rows, self.rows(), |first, rows| {
+        exec.chunks(rows, self.rows(), |first, rows| {
             let mut kept = vec![NONE; rows.len() * width];
             for slots in self.slots(first / self.rows()) {
                 for (slot, key) in slots.clone().zip(&self.keys[slots]) {
@@ -113,15 +113,15 @@ impl Nearest<'_> {
 
     /// Where the centres of these surfels are in the picture; any place where there is none.
     #[inline(always)]
-    pub(in crate::method) fn centres(&self, id: &[u32; LANES]) -> [Lanes; 2] {
+    pub(in crate::method) fn centers(&self, id: &[u32; LANES]) -> [Lanes; 2] {
         let p = vectors(self.surfels.position(), id);
-        let mut centre = [[0.0; LANES]; 2];
+        let mut center = [[0.0; LANES]; 2];
         for i in 0..LANES {
             let p = self.lens.view.point(Vector3::new(p[0][i], p[1][i], p[2][i]));
             let placed = self.lens.place(p);
-            (centre[0][i], centre[1][i]) = (placed.centre.x, placed.centre.y);
+            (center[0][i], center[1][i]) = (placed.center.x, placed.center.y);
         }
-        centre
+        center
     }
 
     /// The colours of these surfels, if surfels have colours; any where there is none.

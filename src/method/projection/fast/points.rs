@@ -286,7 +286,7 @@ impl Block {
             fates.degenerate[i] += u32::from(fate == Fate::Degenerate);
             fates.back_facing[i] += u32::from(fate == Fate::BackFacing);
             let sample = lens.sample(&placed, (n, g), radius[i], (0, [0.0; 3]));
-            let (x, y) = (sample.centre.x.to_pixel(), sample.centre.y.to_pixel());
+            let (x, y) = (sample.center.x.to_pixel(), sample.center.y.to_pixel());
             place[i] = ((y & row) * width + x) << 16 | (index * LANES + i) as u32;
             orders[i] = order(sample.depth);
             band[i] = y >> shift;

@@ -22,15 +22,15 @@ fn samples(of: &Surfels, camera: &Camera, cull: bool, points: &mut Points) -> Ve
         for x in (0..width).step_by(LANES) {
             let Some(s) = nearest.take(x) else { continue };
             let ids = nearest.ids(&s);
-            let (centre, color) = (nearest.centres(&ids), nearest.colors(&ids));
+            let (center, color) = (nearest.centers(&ids), nearest.colors(&ids));
             for i in 0..LANES.min(width - x) {
                 if ids[i] == NO_ID {
                     assert_eq!(s.depth[i], f32::INFINITY);
                     continue;
                 }
                 let lane = |of: &[Lanes; 3]| of.map(|lanes| lanes[i]);
-                let centre = centre.map(|lanes| lanes[i]);
-                let form = (s.depth[i], s.radius[i], s.extent[i], centre, lane(&s.normal));
+                let center = center.map(|lanes| lanes[i]);
+                let form = (s.depth[i], s.radius[i], s.extent[i], center, lane(&s.normal));
                 let color = color.as_ref().map_or([0.0; 3], lane);
                 row[x + i] = format!("{} {form:?} {color:?}", ids[i]);
             }
@@ -46,7 +46,7 @@ fn expected(of: &Surfels, camera: &Camera, cull: bool) -> Vec<String> {
     let projected = project::<f32>(&scene(of.clone()), camera, how, &exec).unwrap();
     let text = |s: &crate::method::projection::Sample<f32>| {
         let normal = [s.normal.x, s.normal.y, s.normal.z];
-        let form = (s.depth, s.radius, s.extent, [s.centre.x, s.centre.y], normal);
+        let form = (s.depth, s.radius, s.extent, [s.center.x, s.center.y], normal);
         format!("{} {form:?} {:?}", s.id, s.color)
     };
     let samples = projected.samples.values().iter();

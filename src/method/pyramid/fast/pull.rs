@@ -19,7 +19,7 @@ pub(super) fn pull(fine: &Level, coarse: &mut Level, side: f32, tubes: bool, exe
         (true, true) => pull_row::<true, true>,
     };
     let shapes = [fine.shape, coarse.shape];
-    exec.groups(coarse.rows_mut(), ROWS, |first, rows| {
+    exec.chunks(coarse.rows_mut(), ROWS, |first, rows| {
         for (y, row) in (first as isize..).zip(rows) {
             run([fine.row(2 * y), fine.row(2 * y + 1)], row, &shapes, side);
         }

@@ -37,7 +37,7 @@ pub(super) fn push<T: Send>(
         (Weights::Gaussian, false) => push_row::<true, false>,
         (Weights::Gaussian, true) => push_row::<true, true>,
     };
-    exec.groups(fine.rows_mut().zip(beside), ROWS, |first, rows| {
+    exec.chunks(fine.rows_mut().zip(beside), ROWS, |first, rows| {
         for (y, (row, own)) in (first..).zip(rows) {
             let parent = (y / 2) as isize;
             let even = y % 2 == 0;

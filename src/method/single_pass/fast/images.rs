@@ -2,7 +2,7 @@
 
 use crate::frame::NO_ID;
 use crate::method::fast::tile::{LANES, Lanes, Tile};
-use crate::scene::group::Groups;
+use crate::scene::Groups;
 
 /// Colour, 1 and normal of a splat, so that all sums of a pixel are those of one vector; the last
 /// number means nothing.

@@ -19,7 +19,7 @@ use super::Settings;
 use crate::error::Result;
 use crate::frame::{Exec, Framebuffer};
 use crate::method::fast::{draw, prepare};
-use crate::scene::group::Groups;
+use crate::scene::Groups;
 use crate::scene::{Camera, Surfels};
 use crate::splat::Tally;
 use images::Images;

@@ -12,7 +12,7 @@ const ROWS: usize = 8;
 /// The next level, from what does not stay within the first `reach`; the second is its own.
 pub(super) fn merge(fine: &Level, coarse: &mut Level, reach: [f32; 2], exec: &Exec) {
     let shapes = [fine.shape, coarse.shape];
-    exec.groups(coarse.rows_mut(), ROWS, |first, rows| {
+    exec.chunks(coarse.rows_mut(), ROWS, |first, rows| {
         for (y, mut row) in (first..).zip(rows) {
             let upper = fine.row(2 * y);
             // Below the last row of an odd level there is none: the upper one stands for it, unread.

@@ -136,7 +136,7 @@ fn samples(nearest: &Nearest<'_>, row: &mut RowMut<'_>, shape: &Shape, reach: f3
             continue;
         };
         let ids = nearest.ids(&s);
-        let centre = nearest.centres(&ids);
+        let center = nearest.centers(&ids);
         let mut put = |attribute: usize, lanes: &Lanes| {
             let at = shape.at(attribute, x);
             row.numbers[at..at + LANES].copy_from_slice(lanes);
@@ -144,7 +144,7 @@ fn samples(nearest: &Nearest<'_>, row: &mut RowMut<'_>, shape: &Shape, reach: f3
         put(DEPTH, &s.depth);
         put(RADIUS, &s.radius);
         put(EXTENT, &s.extent);
-        (0..2).for_each(|axis| put(PLACE + axis, &centre[axis]));
+        (0..2).for_each(|axis| put(PLACE + axis, &center[axis]));
         (0..3).for_each(|axis| put(NORMAL + axis, &s.normal[axis]));
         if let Some(color) = nearest.colors(&ids) {
             (0..3).for_each(|channel| put(COLOR + channel, &color[channel]));

@@ -32,7 +32,7 @@ struct Block {
 }
 
 /// One centre for each lane.
-struct Centres {
+struct Centers {
     id: [u32; LANES],
     depth: Lanes,
     radius: Lanes,
@@ -114,7 +114,7 @@ fn beside<const COLORED: bool>(
         }
         let mut ids = [0; LANES];
         ids.copy_from_slice(&row.ids[first..first + LANES]);
-        let centres = Centres {
+        let centers = Centers {
             id: ids,
             depth: number(DEPTH),
             radius: number(RADIUS),
@@ -125,7 +125,7 @@ fn beside<const COLORED: bool>(
                 [[0.0; LANES]; 3]
             },
         };
-        block.add::<COLORED>(&centres, &inside, &form, &square);
+        block.add::<COLORED>(&centers, &inside, &form, &square);
     }
 }
 
@@ -162,7 +162,7 @@ fn around<const COLORED: bool>(
             continue;
         }
         let all = |attribute: usize| [number(attribute); LANES];
-        let centres = Centres {
+        let centers = Centers {
             id: [row.ids[PAD + cx]; LANES],
             depth: all(DEPTH),
             radius: all(RADIUS),
@@ -173,7 +173,7 @@ fn around<const COLORED: bool>(
                 [[0.0; LANES]; 3]
             },
         };
-        block.add::<COLORED>(&centres, &inside, &form, &[square; LANES]);
+        block.add::<COLORED>(&centers, &inside, &form, &[square; LANES]);
     }
 }
 
@@ -182,7 +182,7 @@ impl Block {
     #[inline(always)]
     fn add<const COLORED: bool>(
         &mut self,
-        c: &Centres,
+        c: &Centers,
         inside: &[u32; LANES],
         form: &Lanes,
         square: &Lanes,

@@ -14,7 +14,7 @@
 //! | vertices of tubes | 69,604 | 65,051 |
 //!
 //! ```
-//! let tree = splatref::scene::plant::apple_tree(500, 0)?;
+//! let tree = splatref::source::plant::apple_tree(500, 0)?;
 //! let lines = tree.lines()?;
 //! assert_eq!(lines.ribbons.len(), 3 * 500);
 //! assert_eq!(lines.triangles.len(), tree.trunk.len(), "all the rest has become lines");
@@ -29,8 +29,8 @@ mod ribbons;
 mod tests;
 mod tubes;
 
-use super::{Polylines, Primitives, Triangles, Vertices};
 use crate::error::{Error, Result};
+use crate::scene::{Polylines, Primitives, Triangles, Vertices};
 use glam::{DVec3, Vec3};
 pub use ribbons::ribbons;
 pub use tubes::tubes;

@@ -1,15 +1,16 @@
 //! Largest First colouring \[Lei79\]: from the graph to groups.
 
+use super::disc_tree::DiscTree;
 use super::graph::{Graph, conflicts};
-use super::tree::Tree;
-use super::{Groups, MAX_GROUPS, Rules};
+use super::rules::Rules;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::scene::Surfels;
+use crate::scene::groups::{MAX_GROUPS, check_count};
+use crate::scene::{Groups, Surfels};
 
 /// What [`group`] found: a row of Table 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Report {
+pub struct GroupingReport {
     /// Surfels of the scene.
     pub surfels: u64,
     /// c.
@@ -34,10 +35,10 @@ pub fn group(
     rules: &Rules,
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
-) -> Result<(Groups, Report)> {
+) -> Result<(Groups, GroupingReport)> {
     rules.check()?;
     progress("sorting surfels", 0, 1);
-    let tree = Tree::new(surfels, 0..surfels.len() as u32);
+    let tree = DiscTree::new(surfels, 0..surfels.len() as u32);
     let (color, report) = color(surfels, &tree, rules, rules.overlap, exec, progress)?;
     if report.groups > MAX_GROUPS {
         return Err(Error::Invalid(format!(
@@ -45,19 +46,7 @@ pub fn group(
             rules.overlap, report.groups
         )));
     }
-    Ok((groups(&tree, &color, report.groups), report))
-}
-
-/// Whether there can be so many groups.
-///
-/// # Errors
-/// [`Error::Invalid`] if there cannot.
-pub fn check_count(groups: usize) -> Result<()> {
-    if (1..=MAX_GROUPS).contains(&groups) {
-        Ok(())
-    } else {
-        Err(Error::Invalid(format!("{groups} groups; give 1 to {MAX_GROUPS}")))
-    }
+    Ok((groups(&tree, &color, report.groups)?, report))
 }
 
 /// As [`group`], with the largest c that gives at most `count` groups, as the [module](super)
@@ -71,11 +60,11 @@ pub fn group_into(
     count: usize,
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
-) -> Result<(Groups, Report)> {
+) -> Result<(Groups, GroupingReport)> {
     rules.check()?;
     check_count(count)?;
     progress("sorting surfels", 0, 1);
-    let tree = Tree::new(surfels, 0..surfels.len() as u32);
+    let tree = DiscTree::new(surfels, 0..surfels.len() as u32);
     let colored = |c: f32| color(surfels, &tree, rules, c, exec, progress);
     // c = 0 has no edges, and so fits; what is above the c of the rules does not.
     let mut best = colored(0.0)?;
@@ -88,23 +77,23 @@ pub fn group_into(
         }
     }
     let (color, report) = best;
-    Ok((groups(&tree, &color, report.groups), report))
+    Ok((groups(&tree, &color, report.groups)?, report))
 }
 
 /// The colour of every place, by the rules with another c.
 fn color(
     surfels: &Surfels,
-    tree: &Tree,
+    tree: &DiscTree,
     rules: &Rules,
     overlap: f32,
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
-) -> Result<(Vec<u32>, Report)> {
+) -> Result<(Vec<u32>, GroupingReport)> {
     let graph = conflicts(surfels, tree, rules, overlap, exec, progress)?;
     progress("colouring", 0, 1);
     let color = largest_first(&graph, &tree.surfel);
     let n = surfels.len();
-    let report = Report {
+    let report = GroupingReport {
         surfels: n as u64,
         overlap,
         groups: color.iter().fold(0, |most, &color| most.max(color)) as usize + 1,
@@ -116,12 +105,12 @@ fn color(
 }
 
 /// The groups of the colour of every place.
-fn groups(tree: &Tree, color: &[u32], groups: usize) -> Groups {
+fn groups(tree: &DiscTree, color: &[u32], groups: usize) -> Result<Groups> {
     let mut own = vec![0; color.len()];
     for (&surfel, &color) in tree.surfel.iter().zip(color) {
         own[surfel as usize] = color as u8;
     }
-    Groups { own, added: Vec::new(), scale: vec![1.0; groups] }
+    Groups::new(own, Vec::new(), vec![1.0; groups])
 }
 
 /// The colour of every place: those with more neighbours first, of those with equally many the

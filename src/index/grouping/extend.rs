@@ -1,12 +1,12 @@
 //! Groups that each cover the surface \[ZP06, section 4.2.2\].
 
 use super::clipped::{area, by_lower};
+use super::disc_tree::DiscTree;
 use super::graph::Graph;
-use super::tree::Tree;
-use super::{Groups, add, enlarge};
+use super::{add, enlarge};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::scene::Surfels;
+use crate::scene::{Groups, Surfels};
 use std::f64::consts::PI;
 
 /// How groups are changed so as to cover more of the surface.
@@ -33,12 +33,12 @@ pub struct Extended {
     /// What that is in per cent of the surfels.
     pub percent: f64,
     /// Each group.
-    pub groups: Vec<Coverage>,
+    pub groups: Vec<GroupCoverage>,
 }
 
 /// What [`extend`] did to a group.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coverage {
+pub struct GroupCoverage {
     /// Surfels in the group, those added included.
     pub surfels: u64,
     /// What its radii are multiplied by.
@@ -86,7 +86,7 @@ pub fn extend(
     groups.check(surfels)?;
     let (n, count) = (surfels.len(), groups.len());
     progress("sorting surfels", 0, 1);
-    let tree = Tree::new(surfels, 0..n as u32);
+    let tree = DiscTree::new(surfels, 0..n as u32);
     let show = |done, of| progress("measuring the surface", done, of);
     let (target, _) = area(&tree, &by_lower(&tree, 1.0, exec, &show)?);
     let graph = match extension {
@@ -95,24 +95,23 @@ pub fn extend(
     };
     let work = Work { surfels, groups, extension, tree, graph, target, exec };
 
-    let mut result = Groups { own: groups.own.clone(), added: Vec::new(), scale: Vec::new() };
-    let mut coverages = Vec::new();
+    let (mut further, mut scale, mut coverages) = (Vec::new(), Vec::new(), Vec::new());
     // Groups in parallel, a few at a time so that it is seen how far it is.
     let all: Vec<u8> = (0..count as u8).collect();
     for batch in all.chunks(2 * exec.threads()) {
         progress("extending groups", batch[0].into(), count as u64);
         for (&k, found) in batch.iter().zip(exec.ordered(batch.to_vec(), |k| work.extend(k))) {
             let (added, coverage) = found?;
-            result.added.extend(added.into_iter().map(|surfel| (surfel, k)));
-            result.scale.push(coverage.scale);
+            further.extend(added.into_iter().map(|surfel| (surfel, k)));
+            scale.push(coverage.scale);
             coverages.push(coverage);
         }
     }
     progress("extending groups", count as u64, count as u64);
-    result.added.sort_unstable();
-    let added = result.added.len() as u64;
+    let added = further.len() as u64;
+    let extended = Groups::new(groups.own().to_vec(), further, scale)?;
     let percent = 100.0 * added as f64 / n as f64;
-    Ok((result, Extended { area: PI * target, added, percent, groups: coverages }))
+    Ok((extended, Extended { area: PI * target, added, percent, groups: coverages }))
 }
 
 /// What the groups share.
@@ -121,7 +120,7 @@ struct Work<'a> {
     groups: &'a Groups,
     extension: &'a Extension,
     /// Of all surfels.
-    tree: Tree,
+    tree: DiscTree,
     /// Of those that overlap, if surfels are to be added.
     graph: Graph,
     /// A divided by pi.
@@ -131,12 +130,12 @@ struct Work<'a> {
 
 impl Work<'_> {
     /// Extends a group; the surfels that are added to it.
-    fn extend(&self, k: u8) -> Result<(Vec<u32>, Coverage)> {
+    fn extend(&self, k: u8) -> Result<(Vec<u32>, GroupCoverage)> {
         let own: Vec<u32> =
-            (0_u32..).zip(&self.groups.own).filter(|g| *g.1 == k).map(|g| g.0).collect();
+            (0_u32..).zip(self.groups.own()).filter(|g| *g.1 == k).map(|g| g.0).collect();
         let before = self.coverage(own.iter().copied(), 1.0)?;
         let mut added = Vec::new();
-        let mut coverage = Coverage {
+        let mut coverage = GroupCoverage {
             surfels: own.len() as u64,
             scale: 1.0,
             converged: true,
@@ -146,14 +145,14 @@ impl Work<'_> {
         match *self.extension {
             Extension::None => {}
             Extension::Add { most } => {
-                added = add::added(&self.tree, &self.graph, &self.groups.own, k, most);
+                added = add::added(&self.tree, &self.graph, self.groups.own(), k, most);
                 coverage.surfels += added.len() as u64;
                 coverage.after =
                     self.coverage(own.into_iter().chain(added.iter().copied()), 1.0)?;
             }
             Extension::Enlarge if own.is_empty() => coverage.converged = false,
             Extension::Enlarge => {
-                let tree = Tree::new(self.surfels, own.iter().copied());
+                let tree = DiscTree::new(self.surfels, own.iter().copied());
                 let enlarged = enlarge::enlarged(&tree, self.target, self.exec)?;
                 (coverage.scale, coverage.converged) = (enlarged.scale, enlarged.converged);
                 coverage.after = self.coverage(own.into_iter(), enlarged.scale.into())?;
@@ -164,7 +163,7 @@ impl Work<'_> {
 
     /// The area that some surfels cover, all radii times `scale`, as a part of A.
     fn coverage(&self, members: impl Iterator<Item = u32>, scale: f64) -> Result<f64> {
-        let tree = Tree::new(self.surfels, members);
+        let tree = DiscTree::new(self.surfels, members);
         let (area, _) = area(&tree, &by_lower(&tree, scale, self.exec, &|_, _| ())?);
         Ok(scale * scale * area / self.target)
     }

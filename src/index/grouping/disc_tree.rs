@@ -5,11 +5,11 @@
 //! block is searched for at a time, and pairs are tested a block at a time. What is found depends
 //! on the discs alone; the tree leaves no trace but the order in which it is found.
 
-use super::clipped::Disc;
+use super::disc::SpaceDisc;
 use crate::error::Result;
 use crate::frame::Exec;
+use crate::index::point_tree::widest;
 use crate::scene::Surfels;
-use crate::scene::tree::widest;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
@@ -18,18 +18,18 @@ pub(super) const LANES: usize = 8;
 
 /// Discs in the order of the tree: *places* 0, 1, 2 ...
 #[derive(Debug)]
-pub(super) struct Tree {
+pub(super) struct DiscTree {
     /// The surfel at each place.
     pub(super) surfel: Vec<u32>,
     normal: Vec<Vec3>,
-    blocks: Vec<Block>,
+    blocks: Vec<DiscBlock>,
     /// Boxes around 1, 2, 4 ... blocks, up to the one around all.
     levels: Vec<Vec<Bounds>>,
 }
 
 /// Discs side by side; what is left of the last block is NaN, which is near nothing.
 #[derive(Clone, Debug)]
-struct Block {
+struct DiscBlock {
     x: [f64; LANES],
     y: [f64; LANES],
     z: [f64; LANES],
@@ -44,7 +44,7 @@ struct Bounds {
     r: f64,
 }
 
-impl Tree {
+impl DiscTree {
     /// Of some surfels, by index, each once.
     pub(super) fn new(surfels: &Surfels, members: impl Iterator<Item = u32>) -> Self {
         let position = surfels.position();
@@ -53,7 +53,7 @@ impl Tree {
         let radius = radii(surfels);
         let block = |entries: &[(Vec3, u32)]| {
             let [x, y, z, r] = [[f64::NAN; LANES]; 4];
-            let mut block = Block { x, y, z, r };
+            let mut block = DiscBlock { x, y, z, r };
             for (lane, &(p, id)) in entries.iter().enumerate() {
                 let p = p.as_dvec3();
                 (block.x[lane], block.y[lane], block.z[lane]) = (p.x, p.y, p.z);
@@ -61,7 +61,7 @@ impl Tree {
             }
             block
         };
-        let blocks: Vec<Block> = entries.chunks(LANES).map(block).collect();
+        let blocks: Vec<DiscBlock> = entries.chunks(LANES).map(block).collect();
         let mut levels = vec![blocks.iter().map(Bounds::of).collect::<Vec<_>>()];
         while let Some(below) = levels.last().filter(|level| level.len() > 1) {
             let pair = |pair: &[Bounds]| pair[1..].iter().fold(pair[0], Bounds::and);
@@ -80,9 +80,9 @@ impl Tree {
 
     /// The disc at a place.
     #[inline]
-    pub(super) fn disc(&self, place: usize) -> Disc {
+    pub(super) fn disc(&self, place: usize) -> SpaceDisc {
         let (block, lane) = (&self.blocks[place / LANES], place % LANES);
-        Disc {
+        SpaceDisc {
             surfel: self.surfel[place],
             center: DVec3::new(block.x[lane], block.y[lane], block.z[lane]),
             normal: self.normal[place].as_dvec3(),
@@ -196,7 +196,7 @@ fn split(entries: &mut [(Vec3, u32)]) {
     split(above);
 }
 
-impl Block {
+impl DiscBlock {
     /// A bit for each disc here that is near the disc in a lane of another block.
     #[inline]
     fn hits(&self, of: &Self, lane: usize, factor: f64) -> u32 {
@@ -212,7 +212,7 @@ impl Block {
 }
 
 impl Bounds {
-    fn of(block: &Block) -> Self {
+    fn of(block: &DiscBlock) -> Self {
         let lane = |l: usize| Self {
             low: DVec3::new(block.x[l], block.y[l], block.z[l]),
             high: DVec3::new(block.x[l], block.y[l], block.z[l]),

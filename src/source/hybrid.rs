@@ -1,7 +1,7 @@
 //! A mesh as polygons on one side of a plane and as surfels on the other \[MKC08, section 5.2\].
 
-use super::Cloud;
 use crate::error::{Error, Result};
+use crate::scene::Cloud;
 use glam::{DVec3, Vec3};
 
 /// The points with `(a x + b y) + c z >= d`, in f64.

@@ -3,9 +3,9 @@
 use super::{Derive, Derived, Origin, complete, drop_nowhere, given, missing_normals};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::scene::hybrid::{HalfSpace, split};
 use crate::scene::indexed::Indexed;
 use crate::scene::{Cloud, Dropped, Polylines, Surfels, Triangles, Vertices};
+use crate::source::hybrid::{HalfSpace, split};
 use glam::{DVec3, Vec3};
 use std::cell::OnceCell;
 

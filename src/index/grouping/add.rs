@@ -1,8 +1,8 @@
 //! Extension (1): surfels of other groups are added to a group \[ZP06, section 4.2.2\].
 
-use super::clipped::{SAMPLES, Samples};
+use super::clipped::{DiscSamples, SAMPLES};
+use super::disc_tree::DiscTree;
 use super::graph::Graph;
-use super::tree::Tree;
 
 /// The surfels that are added to group `k`, in the order in which they are.
 ///
@@ -10,7 +10,7 @@ use super::tree::Tree;
 /// since, it goes back with a larger one. All others were at p or below and have not been looked at
 /// since: it is the first again, nothing has changed, and step 2b adds it. So each surfel is
 /// decided when its turn comes, in the order of the priorities that step 1 gave.
-pub(super) fn added(tree: &Tree, graph: &Graph, own: &[u8], k: u8, most: f32) -> Vec<u32> {
+pub(super) fn added(tree: &DiscTree, graph: &Graph, own: &[u8], k: u8, most: f32) -> Vec<u32> {
     let group = |place: usize| own[tree.surfel[place] as usize];
     let too_big = |covered: u64| covered.count_ones() as f32 / SAMPLES as f32 > most;
     let mut covered = vec![0; own.len()];
@@ -19,7 +19,7 @@ pub(super) fn added(tree: &Tree, graph: &Graph, own: &[u8], k: u8, most: f32) ->
         for &other in graph.of(place) {
             let mask = &mut covered[other as usize];
             if *mask != u64::MAX {
-                *mask |= Samples::of(tree.disc(other as usize)).covered_by(&by);
+                *mask |= DiscSamples::of(tree.disc(other as usize)).covered_by(&by);
             }
         }
     };

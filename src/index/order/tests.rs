@@ -1,6 +1,6 @@
 use super::*;
+use crate::index::point_tree::given::points;
 use crate::number::random::unit;
-use crate::scene::tree::given::points;
 use crate::scene::{Cloud, Lens, Pose};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;

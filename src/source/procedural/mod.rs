@@ -23,7 +23,8 @@
 //! On the average a point lies in pi discs.
 //!
 //! ```
-//! use splatref::scene::{Camera, Shape};
+//! use splatref::scene::Camera;
+//! use splatref::source::Shape;
 //!
 //! let shape = Shape::by_name("torus").expect("one of Shape::ALL");
 //! let surfels = shape.surfels(10_000, 0)?;
@@ -44,9 +45,9 @@ mod sampling;
 mod tests;
 mod torus;
 
-use super::{Camera, Lens, Pose, Surfels};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
+use crate::scene::{Camera, Lens, Pose, Surfels};
 use glam::DVec3;
 use sampling::Sampler;
 

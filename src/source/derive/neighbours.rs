@@ -1,10 +1,10 @@
 //! The k nearest neighbours of every point, exactly and in a fixed order.
 //!
-//! By the k-d tree of [`crate::scene::tree`]: unlike a grid it does not care how unevenly the
+//! By the k-d tree of [`crate::index::point_tree`]: unlike a grid it does not care how unevenly the
 //! points are spread.
 
 use crate::frame::Exec;
-use crate::scene::tree::{Entry, Tree};
+use crate::index::point_tree::{Entry, PointTree};
 use glam::Vec3;
 
 /// Ranges up to this length are searched through: so few points cost less than a branch for each.
@@ -16,7 +16,7 @@ const JOB: usize = 1 << 8;
 /// Points ordered for the search.
 #[derive(Debug)]
 pub(super) struct Neighbours {
-    tree: Tree,
+    tree: PointTree,
 }
 
 /// A point and how far it is.
@@ -31,7 +31,7 @@ pub(super) struct Neighbour {
 impl Neighbours {
     /// Of fewer than 2^32 finite points.
     pub(super) fn new(points: &[Vec3], exec: &Exec) -> Self {
-        Self { tree: Tree::new(points, LEAF, exec) }
+        Self { tree: PointTree::new(points, LEAF, exec) }
     }
 
     /// `f(id, neighbours)` for every point, in the order of the ids.
@@ -140,7 +140,7 @@ impl Nearest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::tree::given::points;
+    use crate::index::point_tree::given::points;
     use proptest::prelude::*;
 
     /// All others by (distance, index), by the definition.

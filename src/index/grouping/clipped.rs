@@ -1,7 +1,8 @@
 //! Clipped(p, r, k): how much of a disc others cover \[ZP06, section 4.2.2\].
 
-use super::graph::Budget;
-use super::tree::{LANES, Tree};
+use super::budget::Budget;
+use super::disc::{SpaceDisc, dot};
+use super::disc_tree::{DiscTree, LANES};
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::elementary::{cos, sin};
@@ -16,17 +17,6 @@ pub(super) const SAMPLES: usize = 64;
 
 /// The golden angle, pi (3 - sqrt(5)), in radians.
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
-
-/// A disc in space.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Disc {
-    /// Which surfel it is of.
-    pub(super) surfel: u32,
-    pub(super) center: DVec3,
-    /// Of length 1.
-    pub(super) normal: DVec3,
-    pub(super) radius: f64,
-}
 
 /// The samples of the unit disc: x, y and x^2 + y^2 of each; and the cosines and sines of the
 /// angles that they are turned by.
@@ -47,15 +37,15 @@ static PATTERN: LazyLock<Pattern> = LazyLock::new(|| {
 });
 
 /// The samples of a disc.
-pub(super) struct Samples {
-    disc: Disc,
+pub(super) struct DiscSamples {
+    disc: SpaceDisc,
     u: DVec3,
     v: DVec3,
 }
 
-impl Samples {
+impl DiscSamples {
     #[inline]
-    pub(super) fn of(disc: Disc) -> Self {
+    pub(super) fn of(disc: SpaceDisc) -> Self {
         let (u, v) = axes(disc.normal);
         let (c, s) = PATTERN.turn[(random::bits(0, disc.surfel.into()) >> 58) as usize];
         Self { disc, u: c * u + s * v, v: c * v - s * u }
@@ -63,7 +53,7 @@ impl Samples {
 
     /// Bit m is set if sample m is covered by a disc, see the [module](super).
     #[inline]
-    pub(super) fn covered_by(&self, other: &Disc) -> u64 {
+    pub(super) fn covered_by(&self, other: &SpaceDisc) -> u64 {
         if dot(self.disc.normal, other.normal) < 0.0 {
             return 0;
         }
@@ -92,11 +82,6 @@ fn axes(n: DVec3) -> (DVec3, DVec3) {
     (u, v)
 }
 
-/// `(x x' + y y') + z z'`.
-pub(super) fn dot(a: DVec3, b: DVec3) -> f64 {
-    (a.x * b.x + a.y * b.y) + a.z * b.z
-}
-
 /// The part of a disc that a mask of covered samples leaves, in [0, 1].
 pub(super) fn open(covered: u64) -> f64 {
     f64::from(covered.count_zeros()) / SAMPLES as f64
@@ -104,7 +89,7 @@ pub(super) fn open(covered: u64) -> f64 {
 
 /// For each place, the samples that surfels of a lower index cover, all radii times `scale`.
 pub(super) fn by_lower(
-    tree: &Tree,
+    tree: &DiscTree,
     scale: f64,
     exec: &Exec,
     progress: &dyn Fn(u64, u64),
@@ -114,11 +99,12 @@ pub(super) fn by_lower(
         let first = tree.places(blocks.start).start;
         let disc = |place: usize| {
             let disc = tree.disc(place);
-            Disc { radius: scale * disc.radius, ..disc }
+            SpaceDisc { radius: scale * disc.radius, ..disc }
         };
         let mut covered = vec![0; tree.places(blocks.end - 1).end - first];
         for block in blocks {
-            let samples: Vec<Samples> = tree.places(block).map(|i| Samples::of(disc(i))).collect();
+            let samples: Vec<DiscSamples> =
+                tree.places(block).map(|i| DiscSamples::of(disc(i))).collect();
             let mut seen = 0;
             tree.near(block, scale, |i, j| {
                 let mask = &mut covered[i - first];
@@ -139,7 +125,7 @@ pub(super) fn by_lower(
 
 /// The covered area of eq. 7 for all radii times `scale`, divided by pi scale^2, and the sum of the
 /// squared radii: sums in ascending index.
-pub(super) fn area(tree: &Tree, covered: &[u64]) -> (f64, f64) {
+pub(super) fn area(tree: &DiscTree, covered: &[u64]) -> (f64, f64) {
     let mut order: Vec<u32> = (0..covered.len() as u32).collect();
     order.sort_unstable_by_key(|&place| tree.surfel[place as usize]);
     let (mut area, mut sum) = (0.0, 0.0);

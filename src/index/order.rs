@@ -43,23 +43,23 @@
 //! whole overlap. Within one sheet the two have nearly the same depth, and nearly the same colour;
 //! where two sheets cut each other, a fringe as wide as a radius flickers along the cut.
 
-use super::tree::Tree;
-use super::{Camera, Projection, Surfels};
+use super::point_tree::PointTree;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::scene::{Camera, Projection, Surfels};
 use std::ops::Range;
 
 /// The surfels of a scene, ready to be ordered for any view; see the module.
 #[derive(Debug)]
 pub struct BackToFront {
-    tree: Tree,
+    tree: PointTree,
 }
 
 impl BackToFront {
     /// Builds the tree. `exec` cannot change it.
     #[must_use]
     pub fn new(surfels: &Surfels, exec: &Exec) -> Self {
-        Self { tree: Tree::new(surfels.position(), 1, exec) }
+        Self { tree: PointTree::new(surfels.position(), 1, exec) }
     }
 
     /// Whether this can be the order of these surfels: there must be as many.

@@ -19,7 +19,7 @@ const JOB: usize = 1 << 13;
 
 /// The points in the order of the tree: low half, own point, high half.
 #[derive(Debug)]
-pub(super) struct Tree {
+pub(crate) struct PointTree {
     entries: Vec<Entry>,
     /// For the middle of a range that was split, its axis.
     axis: Vec<u8>,
@@ -27,22 +27,22 @@ pub(super) struct Tree {
 
 /// A point and its index.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Entry {
-    pub(super) point: Vec3,
-    pub(super) id: u32,
+pub(crate) struct Entry {
+    pub(crate) point: Vec3,
+    pub(crate) id: u32,
 }
 
 /// A range of the tree while it is built.
-type Part<'a> = (&'a mut [Entry], &'a mut [u8]);
+type HalfOfTree<'a> = (&'a mut [Entry], &'a mut [u8]);
 
-impl Tree {
+impl PointTree {
     /// Of fewer than 2^32 finite points. Ranges of at most `leaf` points, at least 1, are not
     /// split: their order has no meaning.
-    pub(super) fn new(points: &[Vec3], leaf: usize, exec: &Exec) -> Self {
+    pub(crate) fn new(points: &[Vec3], leaf: usize, exec: &Exec) -> Self {
         let mut entries: Vec<_> =
             points.iter().zip(0..).map(|(&point, id)| Entry { point, id }).collect();
         let mut axis = vec![0; points.len()];
-        let mut parts: Vec<Part<'_>> = vec![(&mut entries, &mut axis)];
+        let mut parts: Vec<HalfOfTree<'_>> = vec![(&mut entries, &mut axis)];
         // The first is the longest: a low half is never shorter than its high half.
         while parts[0].0.len() > JOB {
             parts = exec.ordered(parts, halve).into_iter().flatten().collect();
@@ -52,20 +52,20 @@ impl Tree {
     }
 
     /// All points, in the order of the tree.
-    pub(super) fn entries(&self) -> &[Entry] {
+    pub(crate) fn entries(&self) -> &[Entry] {
         &self.entries
     }
 
     /// The rank of the point that splits a range, and the axis along which it does.
     #[inline(always)]
-    pub(super) fn node(&self, range: &std::ops::Range<usize>) -> (usize, usize) {
+    pub(crate) fn node(&self, range: &std::ops::Range<usize>) -> (usize, usize) {
         let middle = range.start + range.len() / 2;
         (middle, usize::from(self.axis[middle]))
     }
 }
 
 /// Splits a range down to its leaves.
-fn split(part: Part<'_>, leaf: usize) {
+fn split(part: HalfOfTree<'_>, leaf: usize) {
     if part.0.len() > leaf {
         let [low, high] = halve(part);
         split(low, leaf);
@@ -74,7 +74,7 @@ fn split(part: Part<'_>, leaf: usize) {
 }
 
 /// Splits a range that is not empty once.
-fn halve<'a>((entries, axes): Part<'a>) -> [Part<'a>; 2] {
+fn halve<'a>((entries, axes): HalfOfTree<'a>) -> [HalfOfTree<'a>; 2] {
     let axis = widest(entries.iter().map(|entry| entry.point));
     let middle = entries.len() / 2;
     entries.select_nth_unstable_by(middle, |a, b| {
@@ -88,7 +88,7 @@ fn halve<'a>((entries, axes): Part<'a>) -> [Part<'a>; 2] {
 }
 
 /// The axis of the largest extent of some points, the first of equal ones.
-pub(super) fn widest(points: impl Iterator<Item = Vec3>) -> usize {
+pub(crate) fn widest(points: impl Iterator<Item = Vec3>) -> usize {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for point in points {
         low = low.min(point);
@@ -106,7 +106,7 @@ pub(super) fn widest(points: impl Iterator<Item = Vec3>) -> usize {
 
 /// Points for property tests.
 #[cfg(test)]
-pub(super) mod given {
+pub(crate) mod given {
     use glam::Vec3;
     use proptest::prelude::*;
 
@@ -121,7 +121,7 @@ pub(super) mod given {
     }
 
     /// Points with ties, extremes, and runs on a line and at one place.
-    pub(in crate::scene) fn points() -> impl Strategy<Value = Vec<Vec3>> {
+    pub(crate) fn points() -> impl Strategy<Value = Vec<Vec3>> {
         let point = prop_oneof![
             6 => [coordinate(), coordinate(), coordinate()].prop_map(Vec3::from_array),
             2 => coordinate().prop_map(|t| Vec3::new(t, 2.0, -1.0)),

@@ -1,9 +1,10 @@
 //! The graph and its colouring.
 
+use super::super::disc_tree::DiscTree;
 use super::super::graph::conflicts;
-use super::super::tree::Tree;
 use super::*;
-use crate::scene::Shape;
+use crate::scene::groups::MAX_GROUPS;
+use crate::source::Shape;
 
 /// The neighbours of every surfel by the definition, ascending.
 fn definition(surfels: &Surfels, rules: &Rules) -> Vec<Vec<usize>> {
@@ -51,7 +52,7 @@ proptest! {
 
     #[test]
     fn the_graph_is_that_of_the_definition(surfels in scene(), rules in rules()) {
-        let tree = Tree::new(&surfels, 0..surfels.len() as u32);
+        let tree = DiscTree::new(&surfels, 0..surfels.len() as u32);
         let exec = Exec::sequential();
         let graph = conflicts(&surfels, &tree, &rules, rules.overlap, &exec, &silent).unwrap();
         let mut found = vec![Vec::new(); surfels.len()];

@@ -1,51 +1,13 @@
 //! The graph of section 4.1: which surfels may not share a group.
 
-use super::clipped::dot;
-use super::tree::Tree;
-use super::{Coplanar, Rules};
-use crate::error::{Error, Result};
+use super::budget::Budget;
+use super::disc::dot;
+use super::disc_tree::DiscTree;
+use super::rules::{Coplanar, Rules};
+use crate::error::Result;
 use crate::frame::Exec;
 use crate::scene::Surfels;
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering};
-
-/// How many pairs of near surfels are looked at, at most.
-///
-/// Colours and average degree are much the same in practice (Table 1 of the paper), so that twice
-/// as many neighbours on the average as there can be groups is more than any good scene needs. The
-/// bound is for memory and time where a million surfels stand at one place.
-#[derive(Debug)]
-pub(super) struct Budget {
-    surfels: usize,
-    factor: f64,
-    /// Ordered pairs: each pair counts twice.
-    spent: AtomicU64,
-}
-
-impl Budget {
-    /// For so many surfels, near by this factor.
-    pub(super) fn new(surfels: usize, factor: f64) -> Self {
-        Self { surfels, factor, spent: AtomicU64::new(0) }
-    }
-
-    /// Takes from the budget. Whether there is an error in the end does not depend on who asks
-    /// when.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if more is spent than there is.
-    pub(super) fn spend(&self, pairs: u64) -> Result<()> {
-        let most = 64 * self.surfels as u64 + (1 << 20);
-        let before = self.spent.fetch_add(pairs, Ordering::Relaxed);
-        if before.saturating_add(pairs) <= 2 * most {
-            return Ok(());
-        }
-        Err(Error::Invalid(format!(
-            "more than {most} pairs of {} surfels overlap at c = {}, over 64 a surfel: give a lower \
-             c or smaller radii",
-            self.surfels, self.factor
-        )))
-    }
-}
 
 /// The neighbours of every place of a tree, as one array.
 #[derive(Debug, Default)]
@@ -56,9 +18,9 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    /// Of the pairs of places that are [near](Tree::near) and are kept.
+    /// Of the pairs of places that are [near](DiscTree::near) and are kept.
     pub(super) fn new(
-        tree: &Tree,
+        tree: &DiscTree,
         factor: f64,
         keep: impl Fn(usize, usize) -> bool + Sync,
         exec: &Exec,
@@ -117,7 +79,7 @@ impl Graph {
 /// The graph of some rules, at their c or another.
 pub(super) fn conflicts(
     surfels: &Surfels,
-    tree: &Tree,
+    tree: &DiscTree,
     rules: &Rules,
     overlap: f32,
     exec: &Exec,
@@ -152,7 +114,7 @@ pub(super) fn relaxed(surfels: &Surfels, rules: &Rules, i: usize, j: usize) -> b
 fn within_planes(surfels: &Surfels, rule: &Coplanar, i: usize, j: usize) -> bool {
     let [p, q] = [i, j].map(|i| surfels.position()[i].as_dvec3());
     let d = p - q;
-    let radius = super::tree::radii(surfels);
+    let radius = super::disc_tree::radii(surfels);
     let most = f64::from(rule.offset) * (radius(i as u32) + radius(j as u32));
     [i, j].into_iter().all(|i| dot(d, surfels.normal()[i].as_dvec3()).abs() <= most)
 }

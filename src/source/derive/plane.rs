@@ -10,10 +10,10 @@ use glam::{DVec3, Vec3};
 /// equal eigenvalues the first wins, so that collinear points get some direction across the line.
 /// The result is rounded to `f32` once; its sign has no meaning.
 pub(super) fn normal(points: &[Vec3], of: u32, neighbours: &[Neighbour]) -> Vec3 {
-    let centre = points[of as usize].as_dvec3();
+    let center = points[of as usize].as_dvec3();
     let mut ids: Vec<u32> = neighbours.iter().map(|n| n.id).chain([of]).collect();
     ids.sort_unstable();
-    let offset = |id: u32| points[id as usize].as_dvec3() - centre;
+    let offset = |id: u32| points[id as usize].as_dvec3() - center;
     let mut mean = DVec3::ZERO;
     for &id in &ids {
         mean += offset(id);

@@ -2,7 +2,7 @@
 //! 4.2.2\].
 
 use super::clipped::{area, by_lower};
-use super::tree::Tree;
+use super::disc_tree::DiscTree;
 use crate::error::Result;
 use crate::frame::Exec;
 
@@ -21,7 +21,7 @@ pub(super) struct Enlarged {
 }
 
 /// Iterates eq. 9 for a group, `target` being A divided by pi.
-pub(super) fn enlarged(tree: &Tree, target: f64, exec: &Exec) -> Result<Enlarged> {
+pub(super) fn enlarged(tree: &DiscTree, target: f64, exec: &Exec) -> Result<Enlarged> {
     let mut scale = 1.0;
     for _ in 0..MAX_STEPS {
         let covered = by_lower(tree, scale, exec, &|_, _| ())?;

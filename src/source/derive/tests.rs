@@ -1,7 +1,7 @@
 //! Derived normals and radii against shapes whose truth is known.
 
 use super::*;
-use crate::scene::group::Groups;
+use crate::scene::Groups;
 use proptest::prelude::*;
 
 fn derive(cloud: Cloud) -> Result<(Surfels, Derived)> {
@@ -36,8 +36,8 @@ fn torus(n: usize) -> (Vec<Vec3>, Vec<Vec3>) {
         let (u, v) = (tau * uniform(i, 2_f64.sqrt()), tau * uniform(i, 3_f64.sqrt()));
         let (cu, su, cv, sv) = (libm::cos(u), libm::sin(u), libm::cos(v), libm::sin(v));
         let normal = glam::DVec3::new(cv * cu, cv * su, sv);
-        let centre = glam::DVec3::new(cu, su, 0.0);
-        ((centre + 0.25 * normal).as_vec3(), normal.as_vec3())
+        let center = glam::DVec3::new(cu, su, 0.0);
+        ((center + 0.25 * normal).as_vec3(), normal.as_vec3())
     };
     (0..n).map(point).unzip()
 }

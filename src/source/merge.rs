@@ -1,8 +1,8 @@
 //! Several models as one: their clouds, and their primitives.
 
-use super::indexed::Indexed;
-use super::{Cloud, Primitives, Vertices};
 use crate::error::Result;
+use crate::scene::indexed::Indexed;
+use crate::scene::{Cloud, Primitives, Vertices};
 use glam::{DVec3, Vec3};
 
 /// Joins complete clouds, with normals and radii, in their order; triangles, edges and the

@@ -1,0 +1,42 @@
+//! How much of the neighbourhood is looked at.
+
+use crate::error::{Error, Result};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// How many pairs of near surfels are looked at, at most.
+///
+/// Colours and average degree are much the same in practice (Table 1 of the paper), so that twice
+/// as many neighbours on the average as there can be groups is more than any good scene needs. The
+/// bound is for memory and time where a million surfels stand at one place.
+#[derive(Debug)]
+pub(super) struct Budget {
+    surfels: usize,
+    factor: f64,
+    /// Ordered pairs: each pair counts twice.
+    spent: AtomicU64,
+}
+
+impl Budget {
+    /// For so many surfels, near by this factor.
+    pub(super) fn new(surfels: usize, factor: f64) -> Self {
+        Self { surfels, factor, spent: AtomicU64::new(0) }
+    }
+
+    /// Takes from the budget. Whether there is an error in the end does not depend on who asks
+    /// when.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if more is spent than there is.
+    pub(super) fn spend(&self, pairs: u64) -> Result<()> {
+        let most = 64 * self.surfels as u64 + (1 << 20);
+        let before = self.spent.fetch_add(pairs, Ordering::Relaxed);
+        if before.saturating_add(pairs) <= 2 * most {
+            return Ok(());
+        }
+        Err(Error::Invalid(format!(
+            "more than {most} pairs of {} surfels overlap at c = {}, over 64 a surfel: give a lower \
+             c or smaller radii",
+            self.surfels, self.factor
+        )))
+    }
+}

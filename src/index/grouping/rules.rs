@@ -1,0 +1,55 @@
+//! Which surfels may not share a group: the rules of the graph.
+
+use crate::error::{Error, Result};
+
+/// Which surfels may not share a group \[ZP06, section 4.1\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rules {
+    /// c: surfels conflict if `|p_i - p_j| < c (r_i + r_j)`. In [0, 1].
+    pub overlap: f32,
+    /// Whether surfels with `n_i . n_j < 0` never conflict (the paper's modification 2).
+    pub opposite: bool,
+    /// Which surfels are virtually co-planar and so never conflict (modification 1); none: all may.
+    pub coplanar: Option<Coplanar>,
+}
+
+/// When two surfels are virtually co-planar and of one colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coplanar {
+    /// The least `n_i . n_j`. In [0, 1].
+    pub cosine: f32,
+    /// The most that either centre is off the other's plane, as a part of `r_i + r_j`. In [0, 1].
+    pub offset: f32,
+    /// The most that any component of the colours differs. In [0, inf].
+    pub color: f32,
+}
+
+impl Default for Rules {
+    /// c = 1, nothing relaxed: groups do not overlap.
+    fn default() -> Self {
+        Self { overlap: 1.0, opposite: false, coplanar: None }
+    }
+}
+
+impl Rules {
+    /// Whether the numbers are in range.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if one is not.
+    pub fn check(&self) -> Result<()> {
+        let unit = 0.0..=1.0;
+        if !unit.contains(&self.overlap) {
+            let what = format!("overlap: c = {}; give 0 to 1", self.overlap);
+            return Err(Error::Invalid(what));
+        }
+        let Some(Coplanar { cosine, offset, color }) = self.coplanar else { return Ok(()) };
+        if unit.contains(&cosine) && unit.contains(&offset) && color >= 0.0 {
+            Ok(())
+        } else {
+            let what = format!(
+                "coplanar: cosine {cosine}, offset {offset}, color {color}; give 0 to 1, 0 to 1, >= 0"
+            );
+            Err(Error::Invalid(what))
+        }
+    }
+}

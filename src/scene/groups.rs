@@ -1,0 +1,130 @@
+//! Which surfels share a depth-image: groups as a file gives them, or as
+//! [`crate::index::grouping`] makes them.
+
+use crate::error::{Error, Result};
+use crate::scene::Surfels;
+
+/// The most groups that a scene may need; a GPU of the paper's time had 16 texture units.
+pub const MAX_GROUPS: usize = 64;
+
+/// Whether there can be so many groups.
+///
+/// # Errors
+/// [`Error::Invalid`] if there cannot.
+pub fn check_count(groups: usize) -> Result<()> {
+    if (1..=MAX_GROUPS).contains(&groups) {
+        Ok(())
+    } else {
+        Err(Error::Invalid(format!("{groups} groups; give 1 to {MAX_GROUPS}")))
+    }
+}
+
+/// The groups of a scene's surfels.
+///
+/// Every surfel is in one group of its own; an extension may have added it to others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Groups {
+    /// The group of each surfel, below `scale.len()`.
+    own: Vec<u8>,
+    /// Surfels that were added to further groups: (surfel, group), ascending, without doubles.
+    added: Vec<(u32, u8)>,
+    /// For each group, what the radii of its surfels are multiplied by: 1 unless enlarged.
+    scale: Vec<f32>,
+}
+
+impl Groups {
+    /// How many groups there are: 1 to [`MAX_GROUPS`].
+    #[must_use]
+    #[expect(clippy::len_without_is_empty, reason = "never empty")]
+    pub fn len(&self) -> usize {
+        self.scale.len()
+    }
+
+    /// The group of each surfel, in the order of the surfels.
+    #[must_use]
+    pub fn own(&self) -> &[u8] {
+        &self.own
+    }
+
+    /// Surfels that are in further groups too: (surfel, group), ascending, without doubles.
+    #[must_use]
+    pub fn added(&self) -> &[(u32, u8)] {
+        &self.added
+    }
+
+    /// For each group, what the radii of its surfels are multiplied by.
+    #[must_use]
+    pub fn scale(&self) -> &[f32] {
+        &self.scale
+    }
+}
+
+impl Groups {
+    /// Groups that somebody else has made: the group of each surfel, further ones as (surfel,
+    /// group) in any order, and the scale of each group.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there are not 1 to [`MAX_GROUPS`] scales, if one is not finite and >
+    /// 0, or if a surfel or a group does not exist.
+    pub fn new(own: Vec<u8>, added: Vec<(u32, u8)>, scale: Vec<f32>) -> Result<Self> {
+        let groups = scale.len();
+        check_count(groups)?;
+        if let Some(wrong) = scale.iter().find(|scale| !(**scale > 0.0 && scale.is_finite())) {
+            return Err(Error::Invalid(format!("groups: a scale of {wrong}; give a number > 0")));
+        }
+        let all = own.iter().enumerate().map(|(surfel, &group)| (surfel as u64, group));
+        let further = added.iter().map(|&(surfel, group)| (u64::from(surfel), group));
+        let exists = |(surfel, group): &(u64, u8)| {
+            *surfel < own.len() as u64 && usize::from(*group) < groups
+        };
+        if let Some((surfel, group)) = all.chain(further).find(|member| !exists(member)) {
+            return Err(Error::Invalid(format!(
+                "surfel {surfel} in group {group}: there are {} surfels and {groups} groups",
+                own.len()
+            )));
+        }
+        let mut added = added;
+        added.retain(|&(surfel, group)| own[surfel as usize] != group);
+        added.sort_unstable();
+        added.dedup();
+        Ok(Self { own, added, scale })
+    }
+
+    /// The groups of the surfels that are marked, in order; a group may be left without any.
+    pub(crate) fn retain(self, keep: &[bool]) -> Self {
+        if keep.iter().all(|&keep| keep) {
+            return self;
+        }
+        let mut kept = 0;
+        let index: Vec<Option<u32>> = keep
+            .iter()
+            .map(|&keep| {
+                kept += u32::from(keep);
+                keep.then(|| kept - 1)
+            })
+            .collect();
+        let own = self.own.iter().zip(keep).filter(|pair| *pair.1).map(|pair| *pair.0);
+        let added = self.added.iter().filter_map(|&(i, group)| Some((index[i as usize]?, group)));
+        Self { own: own.collect(), added: added.collect(), scale: self.scale }
+    }
+
+    /// Whether they can be groups of these surfels: there must be as many.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there are not.
+    pub fn check(&self, surfels: &Surfels) -> Result<()> {
+        let (grouped, there) = (self.own.len(), surfels.len());
+        if grouped == there {
+            Ok(())
+        } else {
+            Err(Error::Invalid(format!("groups of {grouped} surfels for a scene of {there}")))
+        }
+    }
+
+    /// The groups that a surfel is in: its own, then those it was added to.
+    pub fn of(&self, surfel: u32) -> impl Iterator<Item = u8> + '_ {
+        let first = self.added.partition_point(|&(added, _)| added < surfel);
+        let added = self.added[first..].iter().take_while(move |(added, _)| *added == surfel);
+        std::iter::once(self.own[surfel as usize]).chain(added.map(|&(_, group)| group))
+    }
+}

@@ -1,0 +1,15 @@
+//! What makes a scene: derived attributes, procedural shapes, plants, and several models as one.
+//!
+//! - [`mod@derive`]: from what a file gives to complete surfels.
+//! - [`hybrid`]: a mesh as polygons here and surfels there.
+//! - [`merge`]: several models as one.
+//! - [`plant`]: a tree of triangles, and the ribbons and tubes that stand for the tree.
+//! - [`procedural`]: shapes whose true picture is known.
+
+pub mod derive;
+pub mod hybrid;
+pub mod merge;
+pub mod plant;
+pub mod procedural;
+
+pub use procedural::Shape;
