@@ -96,7 +96,7 @@ fn row(name: &str, surfels: &Surfels, radii: &str, exec: &Exec) {
     println!("| {name} | {} | {radii} | {cells} | {first} | {all} |", surfels.len());
 }
 
-fn divide(surfels: &Surfels, overlap: f32, exec: &Exec) -> Option<Report> {
+fn divide(surfels: &Surfels, overlap: f32, exec: &Exec) -> Option<GroupingReport> {
     let rules = Rules { overlap, ..Rules::default() };
     group(surfels, &rules, exec, &|_, _, _| ()).ok().map(|found| found.1)
 }
@@ -126,7 +126,7 @@ fn covering(name: &str, surfels: &Surfels, most: f32, exec: &Exec) {
     let start = Instant::now();
     let extension = Extension::Add { most };
     let (_, extended) = extend(surfels, &groups, &extension, exec, &silent).expect("coverage");
-    let percents = |of: fn(&splatref::index::grouping::Coverage) -> f64| {
+    let percents = |of: fn(&splatref::index::grouping::GroupCoverage) -> f64| {
         let parts = extended.groups.iter().map(|g| format!("{:.0} %", 100.0 * of(g)));
         parts.collect::<Vec<_>>().join(", ")
     };
