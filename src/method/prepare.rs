@@ -1,9 +1,9 @@
 //! Projection and binning: what every method does first.
 
-use super::ewa::Settings;
 use crate::frame::{Bins, Exec, Grid, Rect};
 use crate::number::Real;
 use crate::scene::{Camera, Surfels};
+use crate::splat::SplatSettings;
 use crate::splat::{Projector, Shared, Splat, Tally, View, batch};
 use std::ops::Range;
 
@@ -25,7 +25,7 @@ impl<R: Real, S: Send> Prepared<R, S> {
     pub(super) fn new(
         (surfels, count): (&Surfels, usize),
         camera: &Camera,
-        settings: &Settings,
+        settings: &SplatSettings,
         (exec, grid): (&Exec, &Grid),
         project: impl Fn(&Projector<R>, Range<usize>, &mut Vec<S>) -> Tally + Sync + Send,
         bounds: impl Fn(&S) -> Rect + Sync + Send,
@@ -71,7 +71,7 @@ impl<R: Real> Prepared<R, Splat<R>> {
     pub(super) fn splats(
         surfels: &Surfels,
         camera: &Camera,
-        settings: &Settings,
+        settings: &SplatSettings,
         how: (&Exec, &Grid),
     ) -> Self {
         Self::new(

@@ -20,12 +20,14 @@ mod crossing;
 pub mod ellipse;
 pub mod frustum;
 pub mod project;
+pub mod settings;
 mod shape;
 pub mod view;
 
 pub use batch::Tally;
 pub use ellipse::Ellipse;
 pub use project::{Disc, Fate, Projector, project};
+pub use settings::{Epsilon, SplatSettings};
 pub use view::View;
 
 use crate::error::{Error, Result};

@@ -1,16 +1,16 @@
 //! Pass 1 of Algorithm 3: the nearest layer in high quality, by the single pass.
 
-use super::blend::Average;
+use super::Settings;
 use crate::composite::sum;
 use crate::error::Result;
 use crate::frame::stencil::{Operation, Outcome};
-use crate::frame::{Exec, Framebuffer, NamedPlane, Plane, Rect, Samples, Stencil, Wanted};
+use crate::frame::{Framebuffer, NamedPlane, Plane, Rect, Samples, Stencil, Wanted};
+use crate::method::algorithm::Job;
 use crate::method::picture::{color, named, scalar};
 use crate::method::single_pass;
 use crate::method::single_pass::plain::{Composite, Geometry, store};
+use crate::method::transparent::blend::Average;
 use crate::number::Real;
-use crate::scene::Groups;
-use crate::scene::{Camera, Scene};
 use crate::shade::optics;
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
@@ -31,15 +31,16 @@ pub(super) struct First<R> {
 impl<R: Real> First<R> {
     /// Both passes and the shading; with `stages` their planes too.
     pub(super) fn new(
-        scene: &Scene,
-        groups: &Groups,
-        camera: &Camera,
-        settings: &single_pass::Settings,
-        exec: &Exec,
+        job: &Job<'_>,
+        settings: &Settings,
         stages: bool,
         planes: &mut Vec<NamedPlane<R>>,
     ) -> Result<Self> {
-        let geometry = Geometry::<R>::project(&scene.surfels, groups, camera, settings, exec)?;
+        let Job { scene, index, camera, exec } = *job;
+        let settings =
+            single_pass::Settings { splats: settings.layers.splats, depth: settings.nearest };
+        let groups = index.groups()?;
+        let geometry = Geometry::<R>::project(&scene.surfels, groups, camera, &settings, exec)?;
         let wanted =
             Wanted { normal: true, color: scene.surfels.color().is_some(), observed: stages };
         let mut target = Framebuffer::new(camera.width, camera.height, R::INFINITY, wanted);
