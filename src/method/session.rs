@@ -181,3 +181,6 @@ impl<'a> Session<'a> {
         Ok(Job { scene: self.scene, index: &self.index, camera, exec: self.exec })
     }
 }
+
+#[cfg(test)]
+mod tests;
