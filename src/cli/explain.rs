@@ -6,7 +6,7 @@ use super::{Finding, Outcome, report, say};
 use splatref::frame::Exec;
 use splatref::io::scene_file::Number;
 use splatref::method::{Method, ewa, single_pass};
-use splatref::number::Real;
+use splatref::number::Exact;
 use splatref::{Error, Result};
 use std::path::PathBuf;
 
@@ -53,7 +53,7 @@ pub(super) fn run(args: &Args) -> Finding {
 }
 
 /// The decisions at a pixel, in words.
-fn replay<R: Real>(ready: &Ready, exec: &Exec, pixel: (u32, u32)) -> Result<String> {
+fn replay<R: Exact>(ready: &Ready, exec: &Exec, pixel: (u32, u32)) -> Result<String> {
     let Ready { loaded, preparation, camera, method, .. } = ready;
     let surfels = &loaded.scene.surfels;
     match (method, preparation.groups()) {

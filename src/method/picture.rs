@@ -2,7 +2,7 @@
 
 use crate::composite::over::Blend;
 use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Samples, Wanted};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
@@ -22,7 +22,7 @@ pub struct Picture<R> {
 }
 
 /// Deferred shading, and the planes of the picture.
-pub(super) fn finish<R: Real>(
+pub(super) fn finish<R: Exact>(
     target: Framebuffer<R>,
     mut planes: Vec<NamedPlane<R>>,
     tally: Tally,
@@ -46,7 +46,7 @@ pub(super) fn finish<R: Real>(
 }
 
 /// Colours multiplied by their opacity before the environment of the scene, if it has one.
-pub(super) fn before_environment<R: Real>(
+pub(super) fn before_environment<R: Exact>(
     scene: &Scene,
     camera: &Camera,
     mut color: Plane<[R; 3]>,

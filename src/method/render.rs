@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::order::BackToFront;
 use crate::io::scene_file::{MethodName, words};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::Groups;
 use crate::scene::{Camera, Scene, Surfels};
 use std::sync::Mutex;
@@ -169,7 +169,7 @@ impl Preparation {
 /// # Errors
 /// As the method and [`Method::check_scene`]; [`Error::Invalid`] if the preparation is not that of
 /// the scene and the method.
-pub fn render<R: Real>(
+pub fn render<R: Exact>(
     scene: &Scene,
     preparation: &Preparation,
     camera: &Camera,

@@ -14,11 +14,11 @@
 //!    weight. A pixel without weight is empty.
 //! 5. **Deferred shading**, see [`crate::shade`].
 //!
-//! [`plain`] is the definition, over any [`Real`] and one fragment at a time; [`fast`] gives the
-//! same bits for `f32`. [`explain`] lists every decision at one pixel.
+//! [`plain`] is the definition, over any [`Exact`] number and one fragment at a time; [`fast`] gives
+//! the same bits for `f32`. [`explain`] lists every decision at one pixel.
 //!
 //! [`Splat`]: crate::splat::Splat
-//! [`Real`]: crate::number::Real
+//! [`Exact`]: crate::number::Exact
 
 pub mod explain;
 pub mod fast;

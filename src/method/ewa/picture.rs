@@ -6,7 +6,7 @@ use super::plain::Plain;
 use crate::error::Result;
 use crate::frame::{Exec, Frame, Samples, Wanted};
 use crate::method::picture::{Clock, Picture, finish, framebuffer, named};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 
 /// Renders with the definition, in any number; with `stages`, every stage leaves its planes:
@@ -20,7 +20,7 @@ use crate::scene::{Camera, Scene};
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the camera or the settings are out of range.
-pub fn render<R: Real>(
+pub fn render<R: Exact>(
     scene: &Scene,
     camera: &Camera,
     settings: &Settings,

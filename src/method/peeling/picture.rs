@@ -4,7 +4,7 @@ use super::{Layer, Peeling, Settings};
 use crate::error::Result;
 use crate::frame::{Exec, Frame, Grid, NO_ID, NamedPlane, Samples};
 use crate::method::picture::{Clock, Picture, before_environment, named};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 
 /// How many layers leave planes.
@@ -25,7 +25,7 @@ pub const STAGES: u32 = 8;
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the camera or the settings are out of range.
-pub fn render<R: Real>(
+pub fn render<R: Exact>(
     scene: &Scene,
     camera: &Camera,
     settings: &Settings,
@@ -63,7 +63,7 @@ pub fn render<R: Real>(
 }
 
 /// The planes of the first layers: `layers[tile][layer][pixel]`, fewer where a tile has fewer.
-fn layer_planes<R: Real>(
+fn layer_planes<R: Exact>(
     grid: &Grid,
     layers: &[Vec<Vec<Layer<R>>>],
     count: usize,

@@ -17,7 +17,7 @@
 //! are never averaged: neither their light nor their vectors agree (\[MKC08\] 5.2 excludes it too).
 //! The average has the kind of the foremost.
 //!
-//! [`plain`] is the definition, over any [`crate::number::Real`].
+//! [`plain`] is the definition, over any [`crate::number::Exact`] number.
 
 pub mod fast;
 mod picture;
@@ -31,7 +31,7 @@ use crate::composite::mean::Mean;
 use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::method::projection::{Kind, Sample};
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 
 /// How the cells that a pixel is interpolated from are weighted \[MKC08, section 3.3, Fig. 4\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -112,7 +112,7 @@ pub struct Cell<R> {
     pub color: [R; 3],
 }
 
-impl<R: Real> Cell<R> {
+impl<R: Exact> Cell<R> {
     /// Nothing: kind [`Kind::Empty`], front +inf, back -inf, all else 0.
     #[must_use]
     pub fn empty() -> Self {

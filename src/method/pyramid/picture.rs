@@ -8,7 +8,7 @@ use crate::frame::raster::Snap;
 use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples, pyramid};
 use crate::method::picture::{Clock, Picture, before_environment, color, named, scalar};
 use crate::method::projection::{self, Has, Kind, world};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
@@ -26,7 +26,7 @@ use crate::splat::{Tally, View};
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the camera or the settings are out of range.
-pub fn render<R: Real>(
+pub fn render<R: Exact>(
     scene: &Scene,
     camera: &Camera,
     settings: &Settings,
@@ -158,7 +158,7 @@ fn fit<T: Clone>(plane: &mut Plane<T>, camera: &Camera, value: T) {
 }
 
 /// Deferred shading, and the planes of the picture.
-fn finish<R: Real>(
+fn finish<R: Exact>(
     surface: Surface<R>,
     mut planes: Vec<NamedPlane<R>>,
     tally: Tally,
@@ -182,7 +182,7 @@ fn finish<R: Real>(
 }
 
 /// The planes of a level, of the size of the picture.
-fn level_planes<R: Real>(
+fn level_planes<R: Exact>(
     name: &str,
     cells: &Plane<Cell<R>>,
     camera: &Camera,

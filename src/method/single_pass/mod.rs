@@ -43,11 +43,11 @@
 //!
 //! There the group keeps the nearer fragment alone.
 //!
-//! [`plain`] is the definition, over any [`Real`]; [`fast`] gives the same bits for `f32`.
+//! [`plain`] is the definition, over any [`Exact`] number; [`fast`] gives the same bits for `f32`.
 //! [`explain`] lists every decision at one pixel.
 //!
 //! [`Splat`]: crate::splat::Splat
-//! [`Real`]: crate::number::Real
+//! [`Exact`]: crate::number::Exact
 //! [`Groups`]: crate::scene::Groups
 
 pub mod explain;
@@ -61,7 +61,7 @@ pub use picture::{render, render_f32, render_f32_again};
 use super::ewa;
 use crate::composite::bins::{DepthBins, MAX_BINS, Range};
 use crate::error::{Error, Result};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Surfels};
 
 /// What is computed; everything here may change the picture.
@@ -134,7 +134,7 @@ impl Settings {
     }
 
     /// The bins of the Voronoi depth test; none for the plain one.
-    fn bins<R: Real>(&self, surfels: &Surfels, camera: &Camera) -> Result<Option<DepthBins<R>>> {
+    fn bins<R: Exact>(&self, surfels: &Surfels, camera: &Camera) -> Result<Option<DepthBins<R>>> {
         let DepthTest::Voronoi(bins) = &self.depth else { return Ok(None) };
         let epsilon = self.splats.epsilon.resolve(surfels);
         Ok(Some(DepthBins::new(&bins.resolve(surfels, camera, epsilon)?)))

@@ -6,7 +6,7 @@ use crate::composite::groups::Sample;
 use crate::error::Result;
 use crate::frame::{Exec, Frame, Framebuffer, Grid, NO_ID, NamedPlane, Samples, Wanted};
 use crate::method::picture::{Clock, Picture, finish, framebuffer, named};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::Groups;
 use crate::scene::{Camera, Scene};
 
@@ -21,7 +21,7 @@ use crate::scene::{Camera, Scene};
 /// # Errors
 /// [`crate::Error::Invalid`] if the camera or the settings are out of range, or if there are not as
 /// many surfels in the groups as in the scene.
-pub fn render<R: Real>(
+pub fn render<R: Exact>(
     scene: &Scene,
     groups: &Groups,
     camera: &Camera,
@@ -121,7 +121,7 @@ fn check(
 }
 
 /// The depth-image of each group.
-pub(in crate::method) fn image_planes<R: Real>(
+pub(in crate::method) fn image_planes<R: Exact>(
     prefix: &str,
     geometry: &Geometry<'_, R>,
     images: &[Images<R>],
@@ -155,7 +155,7 @@ pub(in crate::method) fn image_planes<R: Real>(
 }
 
 /// The sums of the compositing pass.
-fn sum_planes<R: Real>(
+fn sum_planes<R: Exact>(
     grid: &Grid,
     composites: &[Vec<Composite<R>>],
     color: bool,

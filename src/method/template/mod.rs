@@ -14,7 +14,7 @@
 //! Levels are those of [`crate::frame::pyramid::sizes`]. The **top** level is the first whose sides are both at most h + 1: from any
 //! of its cells every other is found, so that (section 3.2) coarser ones are not needed.
 //!
-//! [`gather`] is the definition, over any [`crate::number::Real`].
+//! [`gather`] is the definition, over any [`crate::number::Exact`] number.
 
 pub mod fast;
 pub mod gather;
@@ -26,7 +26,7 @@ pub use picture::{render, render_f32};
 use crate::error::{Error, Result};
 use crate::frame::NO_ID;
 use crate::method::projection::{Kind, Sample};
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 
 /// The level at which a centre stays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -112,7 +112,7 @@ pub struct Center<R> {
     pub color: [R; 3],
 }
 
-impl<R: Real> Center<R> {
+impl<R: Exact> Center<R> {
     /// An empty cell: all but depth and id is 0.
     #[must_use]
     pub fn empty() -> Self {

@@ -9,7 +9,7 @@ use crate::frame::raster::Snap;
 use crate::frame::{Exec, Framebuffer, NamedPlane, Plane, Samples, Wanted, pyramid};
 use crate::method::picture::{Clock, Picture, color, finish, framebuffer, named, scalar};
 use crate::method::projection::{self, Has, world};
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::{Camera, Scene};
 use crate::splat::View;
 
@@ -27,7 +27,7 @@ use crate::splat::View;
 /// # Errors
 /// [`Error::Invalid`] if the camera or the settings are out of range, or if the scene has triangles
 /// or lines.
-pub fn render<R: Real>(
+pub fn render<R: Exact>(
     scene: &Scene,
     camera: &Camera,
     settings: &Settings,
@@ -108,18 +108,18 @@ fn check(scene: &Scene, camera: &Camera, settings: &Settings) -> Result<()> {
 }
 
 /// The average depth; +inf where nothing was gathered.
-fn depth<R: Real>(pixel: &Gathered<R>) -> R {
+fn depth<R: Exact>(pixel: &Gathered<R>) -> R {
     if pixel.weight > R::ZERO { pixel.depths / pixel.weight } else { R::INFINITY }
 }
 
 /// The direction of the average normal, world space.
-fn normal<R: Real>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
+fn normal<R: Exact>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
     let [x, y, z] = sum::average(pixel.normals, pixel.weight);
     world(view, Vector3::new(x, y, z))
 }
 
 /// The planes of a level, of the size of the picture.
-fn level_planes<R: Real>(
+fn level_planes<R: Exact>(
     name: &str,
     cells: &Plane<Center<R>>,
     camera: &Camera,
@@ -144,7 +144,7 @@ fn level_planes<R: Real>(
 }
 
 /// The planes of the sums.
-fn sums<R: Real>(gathered: &Plane<Gathered<R>>, has: Has) -> Vec<NamedPlane<R>> {
+fn sums<R: Exact>(gathered: &Plane<Gathered<R>>, has: Has) -> Vec<NamedPlane<R>> {
     let mut planes = vec![
         named("gathered.count", Samples::Count(gathered.map(|pixel| pixel.count))),
         scalar("gathered.weight", gathered.map(|pixel| pixel.weight)),

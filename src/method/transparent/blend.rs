@@ -9,7 +9,7 @@ use crate::frame::{Exec, NO_ID, Rect};
 use crate::index::order::BackToFront;
 use crate::method::ewa::plain::{each_inside, facing};
 use crate::method::prepare::Prepared;
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::Groups;
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
@@ -44,7 +44,7 @@ pub(super) struct Layers<R> {
     pub(super) surfel: u32,
 }
 
-impl<R: Real> Layers<R> {
+impl<R: Exact> Layers<R> {
     const EMPTY: Self = Self {
         bin: R::INFINITY,
         blend: Blend::CLEAR,
@@ -80,7 +80,7 @@ pub(super) struct Blending<R> {
     holes: Holes,
 }
 
-impl<R: Real> Blending<R> {
+impl<R: Exact> Blending<R> {
     /// Order, projection and shading.
     pub(super) fn project(
         scene: &Scene,
@@ -184,7 +184,7 @@ pub(super) struct Average<R> {
     pub(super) surfel: u32,
 }
 
-impl<R: Real> Average<R> {
+impl<R: Exact> Average<R> {
     pub(super) const EMPTY: Self = Self {
         blend: Blend::CLEAR,
         opacity: R::ZERO,
@@ -219,7 +219,7 @@ impl<R: Real> Average<R> {
 }
 
 /// Projects a surfel that is enlarged.
-fn place<R: Real>(
+fn place<R: Exact>(
     scene: &Scene,
     surfel: u32,
     scale: f32,
@@ -236,7 +236,7 @@ fn place<R: Real>(
 }
 
 /// The shaded colour and the opacity of a surfel.
-fn appearance<R: Real>(scene: &Scene, shader: &Shader<R>, splat: &Splat<R>) -> ([R; 3], R) {
+fn appearance<R: Exact>(scene: &Scene, shader: &Shader<R>, splat: &Splat<R>) -> ([R; 3], R) {
     let (surfels, i) = (&scene.surfels, splat.surfel as usize);
     let color = surfels.color().map_or(scene.material.color, |colors| colors[i]);
     let normal = surfels.normal()[i].to_array().map(R::from_f32);

@@ -9,7 +9,7 @@ use crate::frame::{Exec, Frame, Grid, NO_ID, NamedPlane, Rect, Samples};
 use crate::index::order::BackToFront;
 use crate::method::picture::{Clock, Picture, before_environment, color, named, scalar};
 use crate::method::single_pass;
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::Groups;
 use crate::scene::{Camera, Scene};
 use crate::shade::optics::{self, Behind, Nearest};
@@ -31,7 +31,7 @@ use crate::splat::View;
 /// [`crate::Error::Invalid`] if the camera or the settings are out of range, if the low-precision
 /// depth takes too many bins, if refraction is wanted without an environment, or if there are not
 /// as many surfels in the groups or in the order as in the scene.
-pub fn render<R: Real>(
+pub fn render<R: Exact>(
     scene: &Scene,
     (groups, order): (&Groups, &BackToFront),
     camera: &Camera,
@@ -87,7 +87,7 @@ pub fn render<R: Real>(
 }
 
 /// The planes of the picture, with `stages` after those of the averages.
-fn picture_planes<R: Real>(
+fn picture_planes<R: Exact>(
     (scene, camera, exec): (&Scene, &Camera, &Exec),
     grid: &Grid,
     pixels: &[Vec<(Average<R>, Blend<R>)>],
@@ -130,7 +130,7 @@ struct Tail<'a, R> {
     first: Option<&'a First<R>>,
 }
 
-impl<R: Real> Tail<'_, R> {
+impl<R: Exact> Tail<'_, R> {
     /// The colour and the opacity of pixel `i` of a tile.
     fn pixel(&self, (tile, i): (usize, usize), rect: Rect, others: &Average<R>) -> Blend<R> {
         let columns = (rect.x1 - rect.x0) as usize;
@@ -156,7 +156,7 @@ impl<R: Real> Tail<'_, R> {
 }
 
 /// The image of each group.
-fn image_planes<R: Real>(
+fn image_planes<R: Exact>(
     grid: &Grid,
     images: &[Vec<Vec<Layers<R>>>],
     groups: usize,
@@ -180,7 +180,7 @@ fn image_planes<R: Real>(
 }
 
 /// The averages of the compositing pass.
-fn average_planes<'a, R: Real>(
+fn average_planes<'a, R: Exact>(
     grid: &Grid,
     at: impl Fn(usize, usize) -> &'a Average<R>,
 ) -> Vec<NamedPlane<R>> {
