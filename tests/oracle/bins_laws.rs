@@ -4,7 +4,7 @@ use crate::groups_laws::unit;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use splatref::composite::bins::{DepthBins, MAX_BINS, Range};
-use splatref::number::Real;
+use splatref::number::Exact;
 
 /// A number as a multiple of 2^-64, exactly: for multiples of that below 2^32.
 fn integer(value: f64) -> i128 {
@@ -15,13 +15,13 @@ fn integer(value: f64) -> i128 {
 
 /// A range in exact arithmetic: (t - low) n / extent.
 #[derive(Clone, Copy)]
-struct Exact {
+struct ExactBins {
     low: i128,
     extent: i128,
     n: i128,
 }
 
-impl Exact {
+impl ExactBins {
     fn new(range: &Range) -> Self {
         let low = integer(range.nearest.into());
         Self { low, extent: integer(range.farthest.into()) - low, n: range.count.into() }
@@ -68,7 +68,7 @@ fn range() -> impl Strategy<Value = Range> {
 }
 
 /// A depth at a part of a range, in the digits of the number.
-fn at<R: Real>(range: &Range, part: f64) -> R {
+fn at<R: Exact>(range: &Range, part: f64) -> R {
     let (low, high) = (f64::from(range.nearest), f64::from(range.farthest));
     let t = low + (high - low) * part;
     // A multiple of 2^-64 in f64 as well.
@@ -79,8 +79,8 @@ fn at<R: Real>(range: &Range, part: f64) -> R {
 
 /// The bin is that of exact arithmetic if the position is off by at most four roundings: of the
 /// difference, the extent, the quotient and the product.
-fn bin_is_floor<R: Real>(range: &Range, part: f64) -> TestCaseResult {
-    let (bins, exact) = (DepthBins::<R>::new(range), Exact::new(range));
+fn bin_is_floor<R: Exact>(range: &Range, part: f64) -> TestCaseResult {
+    let (bins, exact) = (DepthBins::<R>::new(range), ExactBins::new(range));
     let t = at::<R>(range, part);
     let bin = bins.bin(t).to_f64();
     let bits = if unit::<R>() < 1e-10 { 51 } else { 22 };
@@ -90,7 +90,7 @@ fn bin_is_floor<R: Real>(range: &Range, part: f64) -> TestCaseResult {
     Ok(())
 }
 
-fn nearer_is_not_behind<R: Real>(range: &Range, parts: [f64; 2]) -> TestCaseResult {
+fn nearer_is_not_behind<R: Exact>(range: &Range, parts: [f64; 2]) -> TestCaseResult {
     let bins = DepthBins::<R>::new(range);
     let [a, b] = parts.map(|part| at::<R>(range, part));
     let (near, far) = if a < b { (a, b) } else { (b, a) };
@@ -99,12 +99,12 @@ fn nearer_is_not_behind<R: Real>(range: &Range, parts: [f64; 2]) -> TestCaseResu
 }
 
 /// Depths in the range that differ by (1 + 2^-5) extent / n are apart, whatever their ratios.
-fn apart<R: Real>(range: &Range, parts: [f64; 2]) -> TestCaseResult {
+fn apart<R: Exact>(range: &Range, parts: [f64; 2]) -> TestCaseResult {
     let bins = DepthBins::<R>::new(range);
     let [a, b] = parts.map(|part| at::<R>(range, part));
     let (near, far) = if a < b { (a, b) } else { (b, a) };
     let inside = near >= R::from_f32(range.nearest) && far <= R::from_f32(range.farthest);
-    if inside && Exact::new(range).apart([near.to_f64(), far.to_f64()]) >= 33 {
+    if inside && ExactBins::new(range).apart([near.to_f64(), far.to_f64()]) >= 33 {
         prop_assert!(bins.bin(near) < bins.bin(far), "{:?} {:?} in {:?}", near, far, range);
         let (worst, best) = (bins.voronoi(near, R::ONE), bins.voronoi(far, R::ZERO));
         prop_assert!(worst < best, "{:?} {:?} in {:?}", near, far, range);
@@ -112,7 +112,7 @@ fn apart<R: Real>(range: &Range, parts: [f64; 2]) -> TestCaseResult {
     Ok(())
 }
 
-fn own_center_wins<R: Real>(range: &Range, part: f64, ratios: [f32; 2]) -> TestCaseResult {
+fn own_center_wins<R: Exact>(range: &Range, part: f64, ratios: [f32; 2]) -> TestCaseResult {
     let bins = DepthBins::<R>::new(range);
     let t = at::<R>(range, part);
     let bin = bins.bin(t);

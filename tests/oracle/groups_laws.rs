@@ -4,16 +4,16 @@ use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use splatref::composite::groups::{Sample, compose};
 use splatref::composite::{epsilon, sum};
-use splatref::number::Real;
+use splatref::number::Exact;
 
 /// Half the spacing of the numbers in [1, 2).
-pub(crate) fn unit<R: Real>() -> f64 {
+pub(crate) fn unit<R: Exact>() -> f64 {
     let single = R::ONE + R::from_f32(2.0_f32.powi(-30)) == R::ONE;
     if single { 2.0_f64.powi(-24) } else { 2.0_f64.powi(-53) }
 }
 
 /// A number of about `coarse` that fills the digits of `f64` as well.
-pub(crate) fn filled<R: Real>((coarse, fine): (f32, f32)) -> R {
+pub(crate) fn filled<R: Exact>((coarse, fine): (f32, f32)) -> R {
     let step = R::from_f32(fine) * R::from_f32(2.0_f32.powi(-26));
     R::from_f32(coarse) * (R::ONE + step)
 }
@@ -21,7 +21,7 @@ pub(crate) fn filled<R: Real>((coarse, fine): (f32, f32)) -> R {
 /// The numbers of a sample: depth, weight, normal, colour, opacity.
 type Numbers = [(f32, f32); 9];
 
-fn sample<R: Real>(numbers: &Numbers) -> Sample<R> {
+fn sample<R: Exact>(numbers: &Numbers) -> Sample<R> {
     if numbers[0].0 == f32::INFINITY {
         return Sample::EMPTY;
     }
@@ -29,7 +29,7 @@ fn sample<R: Real>(numbers: &Numbers) -> Sample<R> {
     Sample::new(t, w, [nx, ny, nz], [r, g, b], o)
 }
 
-fn samples<R: Real>(all: &[Numbers]) -> Vec<Sample<R>> {
+fn samples<R: Exact>(all: &[Numbers]) -> Vec<Sample<R>> {
     all.iter().map(sample).collect()
 }
 
@@ -71,17 +71,17 @@ fn band() -> impl Strategy<Value = f32> {
 }
 
 /// The nine attributes but for the depth.
-fn attributes<R: Real>(s: &Sample<R>) -> [f64; 8] {
+fn attributes<R: Exact>(s: &Sample<R>) -> [f64; 8] {
     let ([nx, ny, nz], [r, g, b]) = (s.normal, s.color);
     [s.weight, nx, ny, nz, r, g, b, s.opacity].map(R::to_f64)
 }
 
-fn bits<R: Real>((sums, count): &(Sample<R>, u32)) -> ([u64; 8], u64, u32) {
+fn bits<R: Exact>((sums, count): &(Sample<R>, u32)) -> ([u64; 8], u64, u32) {
     (attributes(sums).map(f64::to_bits), sums.depth.to_f64().to_bits(), *count)
 }
 
 /// Those that pass the epsilon-z test, by the definition in words.
-fn visible<R: Real>(all: &[Sample<R>], epsilon: R) -> Vec<Sample<R>> {
+fn visible<R: Exact>(all: &[Sample<R>], epsilon: R) -> Vec<Sample<R>> {
     let full = || all.iter().filter(|s| s.depth.is_finite());
     let nearest = full().map(|s| s.depth).fold(R::INFINITY, |a, b| if b < a { b } else { a });
     full().filter(|s| s.depth <= nearest + epsilon).copied().collect()
@@ -89,7 +89,7 @@ fn visible<R: Real>(all: &[Sample<R>], epsilon: R) -> Vec<Sample<R>> {
 
 /// Sums of the same m terms in two orders: each is within (m - 1) u of the sum of magnitudes, u
 /// half an ulp of 1, so the two are within (m - 1) 2 u, which is at most 2 (m - 1) ulp of that sum.
-fn same_but_order<R: Real>(
+fn same_but_order<R: Exact>(
     (a, b): (&Sample<R>, &Sample<R>),
     terms: &[Sample<R>],
 ) -> TestCaseResult {
@@ -103,7 +103,7 @@ fn same_but_order<R: Real>(
     Ok(())
 }
 
-fn order_is_rounding<R: Real>(all: &[Numbers], order: &[usize], band: f32) -> TestCaseResult {
+fn order_is_rounding<R: Exact>(all: &[Numbers], order: &[usize], band: f32) -> TestCaseResult {
     let (all, band) = (samples::<R>(all), R::from_f32(band));
     let permuted: Vec<_> = order.iter().map(|i| all[*i]).collect();
     let (before, after) = (compose(&all, band), compose(&permuted, band));
@@ -115,7 +115,7 @@ fn order_is_rounding<R: Real>(all: &[Numbers], order: &[usize], band: f32) -> Te
     Ok(())
 }
 
-fn empty_is_neutral<R: Real>(all: &[Numbers], places: &[usize], band: f32) -> TestCaseResult {
+fn empty_is_neutral<R: Exact>(all: &[Numbers], places: &[usize], band: f32) -> TestCaseResult {
     let (mut all, band) = (samples::<R>(all), R::from_f32(band));
     let before = compose(&all, band);
     for place in places {
@@ -125,7 +125,7 @@ fn empty_is_neutral<R: Real>(all: &[Numbers], places: &[usize], band: f32) -> Te
     Ok(())
 }
 
-fn it_is_its_definition<R: Real>(all: &[Numbers], band: f32) -> TestCaseResult {
+fn it_is_its_definition<R: Exact>(all: &[Numbers], band: f32) -> TestCaseResult {
     let (all, band) = (samples::<R>(all), R::from_f32(band));
     let (sums, count) = compose(&all, band);
     let terms = visible(&all, band);
@@ -157,7 +157,7 @@ fn it_is_its_definition<R: Real>(all: &[Numbers], band: f32) -> TestCaseResult {
     Ok(())
 }
 
-fn greater_keeps_more<R: Real>(all: &[Numbers], [a, b]: [f32; 2]) -> TestCaseResult {
+fn greater_keeps_more<R: Exact>(all: &[Numbers], [a, b]: [f32; 2]) -> TestCaseResult {
     let all = samples::<R>(all);
     let (small, large) = if a < b { (a, b) } else { (b, a) };
     let (less, more) = (compose(&all, R::from_f32(small)), compose(&all, R::from_f32(large)));
@@ -168,7 +168,7 @@ fn greater_keeps_more<R: Real>(all: &[Numbers], [a, b]: [f32; 2]) -> TestCaseRes
     Ok(())
 }
 
-fn an_image_of_its_own<R: Real>(all: &[Numbers], place: usize, band: f32) -> TestCaseResult {
+fn an_image_of_its_own<R: Exact>(all: &[Numbers], place: usize, band: f32) -> TestCaseResult {
     let (all, band) = (samples::<R>(all), R::from_f32(band));
     let place = place % all.len();
     let mut apart = all.clone();
@@ -180,7 +180,7 @@ fn an_image_of_its_own<R: Real>(all: &[Numbers], place: usize, band: f32) -> Tes
 }
 
 /// Values that are one constant average to it, whatever is seen.
-fn a_constant_stays<R: Real>(all: &[Numbers], band: f32, color: f32) -> TestCaseResult {
+fn a_constant_stays<R: Exact>(all: &[Numbers], band: f32, color: f32) -> TestCaseResult {
     let mut all = all.to_vec();
     all.iter_mut().for_each(|s| s[5..8].fill((color, 0.5)));
     let (sums, count) = compose(&samples::<R>(&all), R::from_f32(band));

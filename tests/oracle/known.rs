@@ -4,7 +4,7 @@ use crate::eye::{Eye, dot, wide};
 use glam::{DVec3, Mat4, Vec3};
 use splatref::frame::{Exec, Frame, Samples};
 use splatref::method::ewa::{self, Epsilon, Settings};
-use splatref::number::Real;
+use splatref::number::Exact;
 use splatref::scene::{Camera, Cloud, Lens, Phong, Pose, Scene, Surfels};
 use splatref::source::Shape;
 use splatref::splat::{Kernel, Outline};
@@ -41,12 +41,12 @@ fn camera(lens: Lens, size: u32) -> Camera {
     camera
 }
 
-fn render<R: Real>(scene: &Scene, camera: &Camera, settings: &Settings) -> Frame<R> {
+fn render<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) -> Frame<R> {
     let exec = Exec::sequential();
     ewa::render::<R>(scene, camera, settings, &exec, true).expect("renders").frame
 }
 
-fn scalars<'a, R: Real>(frame: &'a Frame<R>, name: &str) -> &'a [R] {
+fn scalars<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a [R] {
     match frame.plane(name) {
         Some(Samples::Scalar(plane)) => plane.values(),
         _ => panic!("no plane {name}"),
@@ -247,7 +247,7 @@ fn the_depth_of_a_sphere_is_within_the_sagitta_of_its_discs() {
 }
 
 /// A disc of radius 4 px about a pixel's centre, moved to the right by `shift` px.
-fn cut_off<R: Real>(outline: Outline, shift: f32) -> Vec<u32> {
+fn cut_off<R: Exact>(outline: Outline, shift: f32) -> Vec<u32> {
     let mut camera = camera(Lens::Orthographic(16.0), 16);
     (camera.fx, camera.fy, camera.cx, camera.cy) = (1.0, 1.0, 8.5, 8.5);
     let scene = scene(&[(Vec3::new(shift, 0.0, -3.0), Vec3::Z)], 4.0, None);

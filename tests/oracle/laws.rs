@@ -7,7 +7,7 @@ use splatref::composite::{epsilon, sum};
 use splatref::frame::{Exec, Frame, NO_ID, Samples};
 use splatref::method::ewa::explain::explain;
 use splatref::method::ewa::{self, Epsilon, Settings};
-use splatref::number::Real;
+use splatref::number::Exact;
 use splatref::scene::{Cloud, Surfels};
 use splatref::splat::Kernel;
 
@@ -74,7 +74,7 @@ proptest! {
     }
 }
 
-fn numbers<R: Real>(frame: &Frame<R>, name: &str) -> Vec<f64> {
+fn numbers<R: Exact>(frame: &Frame<R>, name: &str) -> Vec<f64> {
     match frame.plane(name) {
         Some(Samples::Scalar(p)) => p.values().iter().map(|v| v.to_f64()).collect(),
         Some(Samples::Color(p) | Samples::Vector(p)) => {
@@ -86,7 +86,7 @@ fn numbers<R: Real>(frame: &Frame<R>, name: &str) -> Vec<f64> {
     }
 }
 
-fn render<R: Real>(case: &Case) -> Frame<R> {
+fn render<R: Exact>(case: &Case) -> Frame<R> {
     let exec = Exec::sequential();
     let picture = ewa::render::<R>(&case.scene, &case.camera, &case.settings, &exec, true);
     picture.expect("renders").frame

@@ -4,7 +4,7 @@ use crate::groups_laws::{filled, unit};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use splatref::composite::over::Blend;
-use splatref::number::Real;
+use splatref::number::Exact;
 
 /// A layer: opacity, colour.
 type Layer = [(f32, f32); 4];
@@ -22,14 +22,14 @@ fn layer() -> impl Strategy<Value = Layer> {
     )
 }
 
-fn blend<R: Real>(layers: &[Layer]) -> Blend<R> {
+fn blend<R: Exact>(layers: &[Layer]) -> Blend<R> {
     layers.iter().fold(Blend::CLEAR, |below, layer| {
         let [a, r, g, b] = layer.map(filled::<R>);
         below.over(a, [r, g, b])
     })
 }
 
-fn bits<R: Real>(blend: &Blend<R>) -> [u64; 4] {
+fn bits<R: Exact>(blend: &Blend<R>) -> [u64; 4] {
     let [r, g, b] = blend.color;
     [r, g, b, blend.alpha].map(|v| v.to_f64().to_bits())
 }
@@ -37,7 +37,7 @@ fn bits<R: Real>(blend: &Blend<R>) -> [u64; 4] {
 /// Back to front, m layers: opacity is 1 - the product of all 1 - alpha, colour the sum of alpha c
 /// times the product of 1 - alpha of the nearer ones. A layer costs four roundings of numbers that
 /// are no larger than the result's bound, the closed form's own are those of f64.
-fn closed_form<R: Real>(layers: &[Layer]) -> TestCaseResult {
+fn closed_form<R: Exact>(layers: &[Layer]) -> TestCaseResult {
     let found = blend::<R>(layers);
     let (mut through, mut color, mut largest) = (1.0_f64, [0.0_f64; 3], 1.0_f64);
     for layer in layers.iter().rev() {
@@ -58,7 +58,7 @@ fn closed_form<R: Real>(layers: &[Layer]) -> TestCaseResult {
     Ok(())
 }
 
-fn ends<R: Real>(layers: &[Layer], top: &Layer) -> TestCaseResult {
+fn ends<R: Exact>(layers: &[Layer], top: &Layer) -> TestCaseResult {
     let below = blend::<R>(layers);
     let [_, r, g, b] = top.map(filled::<R>);
     let opaque = below.over(R::ONE, [r, g, b]);
@@ -68,7 +68,7 @@ fn ends<R: Real>(layers: &[Layer], top: &Layer) -> TestCaseResult {
 }
 
 /// Whatever is below, an opaque layer makes its own colour of it: what is nearer decides alone.
-fn nothing_shines_through<R: Real>(
+fn nothing_shines_through<R: Exact>(
     layers: &[Layer],
     others: &[Layer],
     wall: &Layer,

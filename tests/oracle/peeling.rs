@@ -14,7 +14,7 @@ use crate::transparent_tolerance::PEELING;
 use splatref::frame::{Exec, Frame, NO_ID};
 use splatref::method::peeling::{self, STAGES, Settings};
 use splatref::method::{Method, transparent};
-use splatref::number::Real;
+use splatref::number::Exact;
 use splatref::scene::Groups;
 
 /// One layer of a pixel.
@@ -73,7 +73,7 @@ impl Peeled {
     }
 }
 
-fn stages<R: Real>(compare: &mut Compare<'_, R>, peeled: &Peeled, most: u32) {
+fn stages<R: Exact>(compare: &mut Compare<'_, R>, peeled: &Peeled, most: u32) {
     for j in 0..most.min(STAGES) as usize {
         let name = format!("layer{}", j + 1);
         let [alpha, depth, count] = ["A", "Z", "count"].map(|end| format!("{name}.{end}"));
@@ -90,7 +90,7 @@ fn stages<R: Real>(compare: &mut Compare<'_, R>, peeled: &Peeled, most: u32) {
 }
 
 /// Compares one picture; returns how many pixels were left out.
-fn compare<R: Real>(
+fn compare<R: Exact>(
     subject: &Subject,
     frame: &Frame<R>,
     arithmetic: Arithmetic,

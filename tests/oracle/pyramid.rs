@@ -17,7 +17,7 @@ use Arithmetic::{F32, F64};
 use splatref::frame::{Exec, Frame, NO_ID, Samples};
 use splatref::method::Picture;
 use splatref::method::pyramid::{self, fast::Levels};
-use splatref::number::Real;
+use splatref::number::Exact;
 use splatref::splat::Tally;
 use std::collections::BTreeMap;
 
@@ -56,7 +56,7 @@ struct Check<'a, R, const P: u32> {
     open: &'a mut Open,
 }
 
-impl<R: Real, const P: u32> Check<'_, R, P> {
+impl<R: Exact, const P: u32> Check<'_, R, P> {
     fn number(&self, name: &str, i: usize) -> f64 {
         self.vector(name, i)[0]
     }
@@ -310,7 +310,7 @@ const PUSH: [&str; 8] = [
     "push",
 ];
 
-fn compare<R: Real, const P: u32>(
+fn compare<R: Exact, const P: u32>(
     case: &Case,
     arithmetic: Arithmetic,
     (measured, open): (&mut Measured, &mut Open),

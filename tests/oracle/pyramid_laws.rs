@@ -7,7 +7,7 @@ use crate::stages::at;
 use glam::{DVec3, Mat4, Vec3};
 use splatref::frame::{Exec, Frame};
 use splatref::method::pyramid::{self, Settings, Weights};
-use splatref::number::Real;
+use splatref::number::Exact;
 use splatref::scene::{Camera, Cloud, Lens, Phong, Pose, Scene, Surfels};
 
 /// A surfel: position, normal, radius, colour.
@@ -41,16 +41,16 @@ pub(crate) fn plan([width, height]: [u32; 2]) -> Camera {
     camera
 }
 
-pub(crate) fn render<R: Real>(scene: &Scene, camera: &Camera, settings: &Settings) -> Frame<R> {
+pub(crate) fn render<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) -> Frame<R> {
     let exec = Exec::sequential();
     pyramid::render(scene, camera, settings, &exec, true).expect("renders").frame
 }
 
-pub(crate) fn value<R: Real>(frame: &Frame<R>, name: &str, i: usize) -> [f64; 3] {
+pub(crate) fn value<R: Exact>(frame: &Frame<R>, name: &str, i: usize) -> [f64; 3] {
     at(frame.plane(name).unwrap_or_else(|| panic!("no plane {name}")), i)
 }
 
-pub(crate) fn filled<R: Real>(frame: &Frame<R>) -> Vec<usize> {
+pub(crate) fn filled<R: Exact>(frame: &Frame<R>) -> Vec<usize> {
     let all = 0..(frame.width * frame.height) as usize;
     all.filter(|i| value(frame, "kind", *i)[0] != 0.0).collect()
 }
@@ -62,7 +62,7 @@ fn sizes([width, height]: [u32; 2]) -> Vec<[u32; 2]> {
 }
 
 /// What the pull and the push phase left, the finest level first; the coarsest is not pushed.
-fn levels<R: Real>(frame: &Frame<R>) -> (Vec<Level>, Vec<Level>) {
+fn levels<R: Exact>(frame: &Frame<R>) -> (Vec<Level>, Vec<Level>) {
     let sizes = sizes([frame.width, frame.height]);
     let mut pulls = vec![Level::projected(frame)];
     for (l, size) in sizes.iter().enumerate().skip(1) {
@@ -76,7 +76,7 @@ fn levels<R: Real>(frame: &Frame<R>) -> (Vec<Level>, Vec<Level>) {
 /// All surfels with one normal, colour and radius: that is what every pixel has, exactly.
 #[test]
 fn pyramid_reproduces_a_constant() {
-    fn check<R: Real>(number: usize) {
+    fn check<R: Exact>(number: usize) {
         let mut dice = Dice(number as u64 * 77 + 5);
         let size = pyramid_cases::SIZES[number % 6];
         let mut camera = pyramid_cases::camera(&mut dice, true, size);

@@ -7,7 +7,7 @@ use crate::pyramid_number::{BITS, N3, Num, exact, ways};
 use crate::stages::at;
 use splatref::frame::Frame;
 use splatref::method::pyramid::{Occlusion, Settings, Weights};
-use splatref::number::Real;
+use splatref::number::Exact;
 
 pub(crate) const TUBE: u8 = 3;
 
@@ -51,7 +51,7 @@ impl Level {
     }
 
     /// The level in the upper left corner of the planes of `stage`; the rest must be empty.
-    pub(crate) fn read<R: Real>(frame: &Frame<R>, stage: &str, size: [u32; 2]) -> Self {
+    pub(crate) fn read<R: Exact>(frame: &Frame<R>, stage: &str, size: [u32; 2]) -> Self {
         let plane = |name: &str| frame.plane(&format!("{stage}{name}"));
         let needed = |name: &str| plane(name).unwrap_or_else(|| panic!("no plane {stage}{name}"));
         let optional = |name: &str, i| plane(name).map_or([0.0; 3], |samples| at(samples, i));
@@ -79,7 +79,7 @@ impl Level {
     }
 
     /// Level 0 from the projection; the interval ends where the arithmetic says t + r is.
-    pub(crate) fn projected<R: Real>(frame: &Frame<R>) -> Self {
+    pub(crate) fn projected<R: Exact>(frame: &Frame<R>) -> Self {
         let plane = |name: &str, i| {
             let samples = frame.plane(&format!("projection{name}"));
             samples.map_or([0.0; 3], |samples| at(samples, i))

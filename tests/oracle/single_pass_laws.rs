@@ -14,14 +14,14 @@ use splatref::composite::groups::{Sample, compose};
 use splatref::frame::{Exec, Frame, NO_ID};
 use splatref::method::ewa::{self, Epsilon};
 use splatref::method::single_pass::{self, BinCount, DepthTest, Settings};
-use splatref::number::Real;
+use splatref::number::Exact;
 use splatref::scene::Groups;
 use splatref::scene::{Cloud, Scene};
 use splatref::splat::{Kernel, Outline};
 
 const PLAIN: DepthTest = DepthTest::Plain;
 
-fn render<R: Real>(case: &Case, groups: &Groups, depth: DepthTest) -> Frame<R> {
+fn render<R: Exact>(case: &Case, groups: &Groups, depth: DepthTest) -> Frame<R> {
     let (settings, exec) = (Settings { splats: case.settings, depth }, Exec::sequential());
     let picture =
         single_pass::render::<R>(&case.scene, groups, &case.camera, &settings, &exec, true);
@@ -32,7 +32,7 @@ fn pixels<R>(frame: &Frame<R>) -> std::ops::Range<usize> {
     0..(frame.width * frame.height) as usize
 }
 
-fn value<R: Real>(frame: &Frame<R>, name: &str, i: usize) -> [f64; 3] {
+fn value<R: Exact>(frame: &Frame<R>, name: &str, i: usize) -> [f64; 3] {
     frame.plane(name).map_or([0.0; 3], |plane| at(plane, i))
 }
 
@@ -57,7 +57,7 @@ fn depth(case: &Case, number: usize) -> DepthTest {
 }
 
 /// Sums of the same m terms in two orders, see [`crate::groups_laws`].
-fn same_but_order<R: Real>(a: &Frame<R>, b: &Frame<R>, i: usize, place: &str) -> TestCaseResult {
+fn same_but_order<R: Exact>(a: &Frame<R>, b: &Frame<R>, i: usize, place: &str) -> TestCaseResult {
     let count = value(a, "sums.count", i)[0];
     prop_assert_eq!(count, value(b, "sums.count", i)[0], "{}", place);
     let part = 2.0 * (count - 1.0).max(0.0) * unit::<R>() * 1.001;
@@ -72,7 +72,7 @@ fn same_but_order<R: Real>(a: &Frame<R>, b: &Frame<R>, i: usize, place: &str) ->
 }
 
 /// A group for each surfel, in their order: nothing is dropped and the sums have EWA's order.
-fn apart_is_ewa<R: Real>(case: &Case) -> TestCaseResult {
+fn apart_is_ewa<R: Exact>(case: &Case) -> TestCaseResult {
     let n = case.scene.surfels.len();
     let single = render::<R>(case, &groups((0..n as u8).collect(), n), PLAIN);
     let (camera, settings, exec) = (&case.camera, &case.settings, Exec::sequential());
@@ -96,7 +96,7 @@ fn apart_is_ewa<R: Real>(case: &Case) -> TestCaseResult {
 }
 
 /// Groups under other names: the same images under other names, and the sums in another order.
-fn relabelled<R: Real>(
+fn relabelled<R: Exact>(
     case: &Case,
     own: &[u8],
     names: &[usize],
@@ -139,7 +139,7 @@ fn relabelled<R: Real>(
 }
 
 /// A number of R that f64 holds; in parts of f32, small ones enlarged so that no part underflows.
-fn exactly<R: Real>(value: f64) -> R {
+fn exactly<R: Exact>(value: f64) -> R {
     if !value.is_finite() {
         return R::from_f32(value as f32);
     }
@@ -152,7 +152,7 @@ fn exactly<R: Real>(value: f64) -> R {
         * R::from_f32(2.0_f32.powi(-scale))
 }
 
-fn narrowed<R: Real>(s: Sample<f64>) -> Sample<R> {
+fn narrowed<R: Exact>(s: Sample<f64>) -> Sample<R> {
     Sample {
         depth: exactly(s.depth),
         weight: exactly(s.weight),
@@ -163,7 +163,7 @@ fn narrowed<R: Real>(s: Sample<f64>) -> Sample<R> {
 }
 
 /// The surfels that a pixel shows.
-fn shown<R: Real>(frame: &Frame<R>, i: usize, count: usize, band: R) -> Vec<u32> {
+fn shown<R: Exact>(frame: &Frame<R>, i: usize, count: usize, band: R) -> Vec<u32> {
     let nearest = value(frame, "Z", i)[0];
     let groups = (0..count).filter_map(|group| {
         let t = value(frame, &format!("group{group:02}.Z"), i)[0];
@@ -178,7 +178,7 @@ fn shown<R: Real>(frame: &Frame<R>, i: usize, count: usize, band: R) -> Vec<u32>
 /// that was shown is the nearest of its part too, and so is still shown; fragments may appear that
 /// were behind another of their group within epsilon, and where none does, nothing changes but the
 /// order of the sums.
-fn splitting_shows_more<R: Real>(case: &Case, own: &[u8], finer: &[u8]) -> TestCaseResult {
+fn splitting_shows_more<R: Exact>(case: &Case, own: &[u8], finer: &[u8]) -> TestCaseResult {
     let whole = render::<R>(case, &groups(own.to_vec(), 4), PLAIN);
     let split = render::<R>(case, &groups(finer.to_vec(), 32), PLAIN);
     for name in ["Z", "A", "id"] {

@@ -10,7 +10,7 @@ use splatref::frame::{Exec, Frame, NO_ID, Samples};
 use splatref::method::Method;
 use splatref::method::ewa::Epsilon;
 use splatref::method::single_pass::{self, BinCount, DepthTest, Settings};
-use splatref::number::Real;
+use splatref::number::Exact;
 use splatref::scene::Groups;
 
 /// A plane of a depth-image: the end of its name, the row of the table that holds for all groups,
@@ -31,7 +31,7 @@ struct Layer<'a, R> {
     planes: Vec<(&'a Samples<R>, Kind)>,
 }
 
-impl<'a, R: Real> Layer<'a, R> {
+impl<'a, R: Exact> Layer<'a, R> {
     fn new(frame: &'a Frame<R>, group: usize) -> Self {
         let named = |end: &str| frame.plane(&format!("group{group:02}{end}"));
         let planes = PLANES.into_iter().filter_map(|p| named(p.0).map(|samples| (samples, p)));
@@ -81,7 +81,7 @@ fn variant(case: &Case, number: usize) -> (Groups, DepthTest) {
 }
 
 /// What the stages hold where no image has a fragment.
-fn check_empty<R: Real>(frame: &Frame<R>, i: usize, place: &str) {
+fn check_empty<R: Exact>(frame: &Frame<R>, i: usize, place: &str) {
     let stages = ["sums", "sums.normal", "sums.weight", "sums.count", "resolved", "weight", ""];
     for name in stages {
         let Some(samples) = frame.plane(name) else { continue };
@@ -93,7 +93,7 @@ fn check_empty<R: Real>(frame: &Frame<R>, i: usize, place: &str) {
 
 impl Subject<'_> {
     /// What every group keeps at a pixel, each checked against the candidates.
-    fn kept<R: Real>(
+    fn kept<R: Exact>(
         &self,
         layers: &[Layer<'_, R>],
         (i, center): (usize, [f64; 2]),
@@ -126,7 +126,7 @@ impl Subject<'_> {
     }
 
     /// The compositing pass and the normalization of what was kept.
-    fn composite<R: Real>(
+    fn composite<R: Exact>(
         &self,
         frame: &Frame<R>,
         (i, center): (usize, [f64; 2]),
@@ -159,7 +159,7 @@ impl Subject<'_> {
     }
 
     /// Compares pictures of one arithmetic, the first with its stages.
-    fn compare<R: Real>(&self, frames: &[&Frame<R>], measured: &mut Measured) -> Open {
+    fn compare<R: Exact>(&self, frames: &[&Frame<R>], measured: &mut Measured) -> Open {
         let (mut open, camera) = (Open::default(), &self.case.camera);
         let groups = 0..self.algorithm.count;
         let layers: Vec<_> = groups.map(|k| Layer::new(frames[0], k)).collect();

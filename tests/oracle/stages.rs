@@ -7,7 +7,7 @@ use crate::tolerance::{self, Arithmetic, Measured};
 use splatref::frame::{Exec, Frame, NO_ID, Samples};
 use splatref::method::Method;
 use splatref::method::{Picture, ewa};
-use splatref::number::Real;
+use splatref::number::Exact;
 
 /// How many conditions of rounding leave a decision open.
 pub(crate) const GUARD: f64 = 4.0;
@@ -17,7 +17,7 @@ pub(crate) fn oracle<'a>(case: &'a Case, arithmetic: Arithmetic) -> Oracle<'a> {
     Oracle::new(&case.scene, &case.camera, &case.settings, [step, GUARD * part])
 }
 
-pub(crate) fn at<R: Real>(samples: &Samples<R>, i: usize) -> [f64; 3] {
+pub(crate) fn at<R: Exact>(samples: &Samples<R>, i: usize) -> [f64; 3] {
     match samples {
         Samples::Scalar(plane) => [plane.values()[i].to_f64(); 3],
         Samples::Color(plane) | Samples::Vector(plane) => plane.values()[i].map(R::to_f64),
@@ -26,7 +26,7 @@ pub(crate) fn at<R: Real>(samples: &Samples<R>, i: usize) -> [f64; 3] {
     }
 }
 
-pub(crate) fn index<R: Real>(frame: &Frame<R>, name: &str, i: usize) -> Option<u32> {
+pub(crate) fn index<R: Exact>(frame: &Frame<R>, name: &str, i: usize) -> Option<u32> {
     match frame.plane(name) {
         Some(Samples::Index(plane)) => Some(plane.values()[i]),
         _ => None,
@@ -34,7 +34,7 @@ pub(crate) fn index<R: Real>(frame: &Frame<R>, name: &str, i: usize) -> Option<u
 }
 
 /// What an empty pixel holds.
-fn check_empty<R: Real>(frame: &Frame<R>, i: usize, place: &str) {
+fn check_empty<R: Exact>(frame: &Frame<R>, i: usize, place: &str) {
     for plane in &frame.planes {
         let value = at(&plane.samples, i);
         let expected = match plane.name.as_str() {
@@ -50,7 +50,7 @@ fn check_empty<R: Real>(frame: &Frame<R>, i: usize, place: &str) {
 }
 
 /// One pixel of one picture against the oracle.
-fn check<R: Real>(frame: &Frame<R>, truth: &Pixel, i: usize, place: &str) {
+fn check<R: Exact>(frame: &Frame<R>, truth: &Pixel, i: usize, place: &str) {
     if truth.nearest.is_empty() {
         check_empty(frame, i, place);
         return;
@@ -74,7 +74,7 @@ fn check<R: Real>(frame: &Frame<R>, truth: &Pixel, i: usize, place: &str) {
 }
 
 /// Measures the deviation of a plane at one pixel, in conditions, for the row `key` of the table.
-pub(crate) fn measure<R: Real>(
+pub(crate) fn measure<R: Exact>(
     (samples, key): (&Samples<R>, &'static str),
     entry: &Entry,
     i: usize,
@@ -93,7 +93,7 @@ pub(crate) fn measure<R: Real>(
 }
 
 /// Compares pictures of one arithmetic with the oracle; returns how many pixels were left out.
-fn compare<R: Real>(
+fn compare<R: Exact>(
     case: &Case,
     arithmetic: Arithmetic,
     pictures: &[Picture<R>],

@@ -5,7 +5,7 @@ use crate::template_cases::{Disc, exact_camera, exact_scene};
 use glam::Vec3;
 use splatref::frame::{Exec, Frame, NO_ID, Samples};
 use splatref::method::template::{self, LevelRule, Settings};
-use splatref::number::Real;
+use splatref::number::Exact;
 
 /// 2^-24.
 const LEAST: f32 = 1.0 / 16_777_216.0;
@@ -14,7 +14,7 @@ fn settings(size: u32) -> Settings {
     Settings { size, levels: LevelRule::Covering, cull: false }
 }
 
-fn drawn<R: Real>(size: [u32; 2], discs: &[Disc], settings: &Settings) -> Frame<R> {
+fn drawn<R: Exact>(size: [u32; 2], discs: &[Disc], settings: &Settings) -> Frame<R> {
     let (scene, camera, exec) = (exact_scene(discs), exact_camera(size), Exec::sequential());
     template::render(&scene, &camera, settings, &exec, true).expect("renders").frame
 }

@@ -14,7 +14,7 @@ use splatref::frame::{Exec, Frame, NO_ID, Samples};
 use splatref::method::projection::Kind;
 use splatref::method::template::{self, LevelRule, Settings};
 use splatref::method::{Method, Picture};
-use splatref::number::Real;
+use splatref::number::Exact;
 use splatref::splat::Tally;
 
 /// How many times its bound a rounding is taken for, where it decides. In f64 the oracle rounds
@@ -27,12 +27,12 @@ pub(crate) fn unit(arithmetic: Arithmetic) -> f64 {
 }
 
 /// A plane that must be there.
-pub(crate) fn plane<'a, R: Real>(frame: &'a Frame<R>, name: &str) -> &'a Samples<R> {
+pub(crate) fn plane<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Samples<R> {
     frame.plane(name).unwrap_or_else(|| panic!("no plane '{name}'"))
 }
 
 /// A level as the picture shows it; `names`: of its place.
-pub(crate) fn grid<R: Real>(frame: &Frame<R>, level: usize, [width, height]: [u32; 2]) -> Grid {
+pub(crate) fn grid<R: Exact>(frame: &Frame<R>, level: usize, [width, height]: [u32; 2]) -> Grid {
     let (stage, place) = match level {
         0 => ("projection".to_string(), "centre"),
         _ => (format!("level{level:02}"), "place"),
@@ -128,7 +128,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    fn compare<R: Real>(&mut self, picture: &Picture<R>) {
+    fn compare<R: Exact>(&mut self, picture: &Picture<R>) {
         let frame = &picture.frame;
         let shots = self.projection.shots(&self.case.scene);
         check_tally(&shots, &picture.tally, self.case);
@@ -151,7 +151,7 @@ impl<'a> Subject<'a> {
     }
 
     /// The projection, pixel by pixel.
-    fn projected<R: Real>(&mut self, frame: &Frame<R>, grid: &Grid, shots: &[Shot]) {
+    fn projected<R: Exact>(&mut self, frame: &Frame<R>, grid: &Grid, shots: &[Shot]) {
         let mut lists = vec![Vec::new(); grid.cells.len()];
         for shot in shots {
             for [x, y] in &shot.pixels {
@@ -227,7 +227,7 @@ impl<'a> Subject<'a> {
     }
 
     /// The sums of a pixel.
-    fn gathered<R: Real>(&mut self, frame: &Frame<R>, staying: &[Staying], [x, y]: [u32; 2]) {
+    fn gathered<R: Exact>(&mut self, frame: &Frame<R>, staying: &[Staying], [x, y]: [u32; 2]) {
         let Ok(expected) = self.template.gathered(staying, [x, y]) else {
             self.open.gathered += 1;
             return;
@@ -270,7 +270,7 @@ impl<'a> Subject<'a> {
     }
 
     /// Normalization and shading of the sums that the crate has.
-    fn resolved<R: Real>(&mut self, frame: &Frame<R>, [x, y]: [u32; 2]) {
+    fn resolved<R: Exact>(&mut self, frame: &Frame<R>, [x, y]: [u32; 2]) {
         let i = (y * frame.width + x) as usize;
         let value = |name: &str| at(plane(frame, name), i);
         let place = self.place(x, y);

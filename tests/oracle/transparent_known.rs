@@ -10,7 +10,7 @@ use splatref::method::ewa::{self, Epsilon};
 use splatref::method::peeling;
 use splatref::method::single_pass::{BinCount, DepthTest};
 use splatref::method::transparent::{self, Holes, Settings};
-use splatref::number::Real;
+use splatref::number::Exact;
 use splatref::scene::Groups;
 use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Pose, Scene, Surfels};
 use splatref::splat::Kernel;
@@ -81,7 +81,7 @@ pub(crate) fn settings(outline: usize, nearest: Option<DepthTest>) -> Settings {
     Settings { splats, nearest, ..Settings::default() }
 }
 
-pub(crate) fn render<R: Real>(
+pub(crate) fn render<R: Exact>(
     (scene, groups): &(Scene, Groups),
     camera: &Camera,
     settings: &Settings,
@@ -92,7 +92,7 @@ pub(crate) fn render<R: Real>(
     picture.expect("renders").frame
 }
 
-pub(crate) fn value<R: Real>(frame: &Frame<R>, name: &str, i: usize) -> [f64; 3] {
+pub(crate) fn value<R: Exact>(frame: &Frame<R>, name: &str, i: usize) -> [f64; 3] {
     at(frame.plane(name).unwrap_or_else(|| panic!("no plane {name}")), i)
 }
 
@@ -139,7 +139,7 @@ fn random(dice: &mut Dice, tilted: bool) -> Vec<Sheet> {
 /// their order in the scene, by Algorithms 2 and 3 and by peeling.
 #[test]
 fn sheets_blend_in_closed_form() {
-    fn check<R: Real>(number: usize, part: f64) {
+    fn check<R: Exact>(number: usize, part: f64) {
         let mut dice = Dice(number as u64 * 31 + 7);
         let layers = random(&mut dice, number % 3 == 1);
         let count = 1 + dice.below(4);

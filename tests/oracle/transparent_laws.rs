@@ -11,7 +11,7 @@ use splatref::index::order::BackToFront;
 use splatref::method::ewa;
 use splatref::method::single_pass::{self, BinCount};
 use splatref::method::transparent::{self, Holes};
-use splatref::number::Real;
+use splatref::number::Exact;
 use splatref::scene::Groups;
 use splatref::scene::environment::Map;
 use splatref::scene::{Cloud, Environment, Light, Scene, Surfels};
@@ -20,7 +20,7 @@ use splatref::shade::optics::{Layers, Refraction};
 /// How many scenes a law is tried on.
 const SCENES: usize = 48;
 
-fn render<R: Real>(subject: &Subject, stages: bool) -> Frame<R> {
+fn render<R: Exact>(subject: &Subject, stages: bool) -> Frame<R> {
     let exec = Exec::sequential();
     let Case { scene, camera, .. } = &subject.case;
     let order = BackToFront::new(&scene.surfels, &exec);
@@ -44,12 +44,12 @@ fn pixels<R>(frame: &Frame<R>) -> std::ops::Range<usize> {
     0..(frame.width * frame.height) as usize
 }
 
-fn value<R: Real>(frame: &Frame<R>, name: &str, i: usize) -> [f64; 3] {
+fn value<R: Exact>(frame: &Frame<R>, name: &str, i: usize) -> [f64; 3] {
     at(frame.plane(name).unwrap_or_else(|| panic!("no plane {name}")), i)
 }
 
 /// Asserts that two frames hold the same bits in these planes.
-fn same<R: Real>(a: &Frame<R>, b: &Frame<R>, planes: &[&str], name: &str) {
+fn same<R: Exact>(a: &Frame<R>, b: &Frame<R>, planes: &[&str], name: &str) {
     for plane in planes {
         assert!(a.plane(plane).is_some(), "no plane '{plane}'");
         assert!(a.plane(plane) == b.plane(plane), "plane '{plane}': {name}");
@@ -57,7 +57,7 @@ fn same<R: Real>(a: &Frame<R>, b: &Frame<R>, planes: &[&str], name: &str) {
 }
 
 /// Asserts that two frames are equal up to rounding.
-fn close<R: Real>(a: &Frame<R>, b: &Frame<R>, planes: &[&str], part: f64, name: &str) {
+fn close<R: Exact>(a: &Frame<R>, b: &Frame<R>, planes: &[&str], part: f64, name: &str) {
     for plane in planes {
         for i in pixels(a) {
             for (a, b) in value(a, plane, i).into_iter().zip(value(b, plane, i)) {
@@ -76,7 +76,7 @@ fn white() -> Environment {
 /// extended by.
 #[test]
 fn opaque_surfels_make_the_picture_of_the_single_pass() {
-    fn check<R: Real>(subject: &Subject, alone: &Groups) {
+    fn check<R: Exact>(subject: &Subject, alone: &Groups) {
         let Case { scene, camera, name, .. } = &subject.case;
         let depth = subject.settings.nearest.expect("Algorithm 3");
         let settings = single_pass::Settings { splats: subject.settings.splats, depth };
@@ -108,7 +108,7 @@ fn opaque_surfels_make_the_picture_of_the_single_pass() {
 /// Of opaque surfels Algorithm 2 shows the mean of the groups, each a surfel of its nearest bin.
 #[test]
 fn opaque_surfels_show_the_nearest_bin_of_each_group() {
-    fn check<R: Real>(mut subject: Subject) {
+    fn check<R: Exact>(mut subject: Subject) {
         subject.settings.nearest = None;
         subject.settings.refraction = None;
         subject.case.scene.environment = None;
@@ -150,7 +150,7 @@ fn opaque_surfels_show_the_nearest_bin_of_each_group() {
 /// Clear surfels leave no light, and do not change the environment by a bit.
 #[test]
 fn an_opacity_of_0_is_not_seen() {
-    fn check<R: Real>(mut subject: Subject) {
+    fn check<R: Exact>(mut subject: Subject) {
         opacities(&mut subject.case, 0.0);
         subject.settings.refraction = None;
         let frame = render::<R>(&subject, false);
@@ -181,7 +181,7 @@ fn an_opacity_of_0_is_not_seen() {
 
 #[test]
 fn the_names_of_the_groups_do_not_matter() {
-    fn check<R: Real>(number: usize, part: f64) {
+    fn check<R: Exact>(number: usize, part: f64) {
         let mut subject = Subject::new(number);
         let before = render::<R>(&subject, true);
         let (old, count) = (subject.groups.clone(), subject.groups.len());
@@ -218,7 +218,7 @@ fn the_names_of_the_groups_do_not_matter() {
 /// In white light white surfels are not seen, whatever their opacities, groups and holes.
 #[test]
 fn a_white_furnace_is_white() {
-    fn check<R: Real>(number: usize, part: f64) {
+    fn check<R: Exact>(number: usize, part: f64) {
         let mut subject = Subject::new(number);
         let case = &mut subject.case;
         case.scene.environment = Some(white());

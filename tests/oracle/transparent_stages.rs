@@ -18,7 +18,7 @@ use splatref::index::order::BackToFront;
 use splatref::method::Method;
 use splatref::method::single_pass::{self, DepthTest};
 use splatref::method::transparent;
-use splatref::number::Real;
+use splatref::number::Exact;
 use splatref::scene::{Environment, Scene};
 
 /// Compares one number, or three.
@@ -30,7 +30,7 @@ pub(crate) struct Compare<'a, R> {
     pub(crate) measured: &'a mut Measured,
 }
 
-impl<R: Real> Compare<'_, R> {
+impl<R: Exact> Compare<'_, R> {
     pub(crate) fn color(&mut self, name: &str, key: &'static str, numbers: [Num; 3]) {
         let (step, _) = self.arithmetic.step();
         let value: V3 = numbers.map(|n| n.value);
@@ -147,7 +147,7 @@ impl Subject {
     }
 
     /// Compares one picture; returns how many pixels were left out.
-    fn compare<R: Real>(
+    fn compare<R: Exact>(
         &self,
         frame: &Frame<R>,
         arithmetic: Arithmetic,
@@ -252,7 +252,7 @@ fn every_stage_of_transparency_equals_the_oracle() {
 /// The nearest layer is Algorithm 1 of the groups without their extensions, to the last bit.
 #[test]
 fn the_images_of_the_nearest_layer_are_those_of_the_single_pass() {
-    fn check<R: Real>(subject: &Subject, depth: DepthTest) {
+    fn check<R: Exact>(subject: &Subject, depth: DepthTest) {
         let exec = Exec::sequential();
         let Case { scene, camera, .. } = &subject.case;
         let order = BackToFront::new(&scene.surfels, &exec);
