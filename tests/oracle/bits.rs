@@ -1,6 +1,6 @@
 //! Bits: the fast path is the plain one, and neither threads nor tiles can be seen in a picture.
 
-use crate::scenes::{Case, KINDS, Kind, OUTLINES};
+use crate::ewa::cases::{Case, KINDS, Kind, OUTLINES};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};

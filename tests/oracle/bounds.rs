@@ -3,9 +3,9 @@
 //! This is a property of the crate's own numbers, in each arithmetic; only the test of tightness
 //! takes extents from the oracle.
 
-use crate::eye::{Eye, wide};
-use crate::naive::{Body, Figure, Optics};
-use crate::scenes::OUTLINES;
+use crate::ewa::cases::OUTLINES;
+use crate::ewa::splat::{Body, Figure, Optics};
+use crate::kit::eye::{Eye, wide};
 use glam::{DVec3, Mat4, Vec3};
 use proptest::prelude::*;
 use splatref::method::ewa::Settings;

@@ -1,8 +1,8 @@
 //! A third number: f64 that counts its operations. Every formula of the crate runs on it.
 
 use crate::bits::digest;
-use crate::scenes::{Case, Kind, OUTLINES};
-use crate::single_pass_stages::groups;
+use crate::ewa::cases::{Case, Kind, OUTLINES};
+use crate::single_pass::stages::groups;
 use glam::Vec3;
 use splatref::composite::{epsilon, sum};
 use splatref::frame::{Exec, Samples};

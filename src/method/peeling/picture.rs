@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::frame::{Frame, Grid, NO_ID, NamedPlane, Samples};
 use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, before_environment, named};
-use crate::number::{Exact, Real};
+use crate::number::Exact;
 
 /// How many layers leave planes.
 pub const STAGES: u32 = 8;

@@ -61,7 +61,7 @@ use crate::frame::{Frame, Pool};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::{Picture, Stage};
-use crate::number::{Exact, Real};
+use crate::number::Exact;
 use crate::scene::{Camera, Scene, Surfels};
 use crate::splat::SplatSettings;
 pub(super) use picture::image_planes;

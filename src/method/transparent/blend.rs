@@ -9,7 +9,7 @@ use crate::frame::{NO_ID, Rect};
 use crate::method::algorithm::Job;
 use crate::method::ewa::plain::{each_inside, facing};
 use crate::method::prepare::Prepared;
-use crate::number::{Exact, Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::Scene;
 use crate::shade::phong::Shader;
 use crate::splat::{Disc, Fate, Projector, Splat, Tally, View, batch, project};

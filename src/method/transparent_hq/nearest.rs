@@ -10,7 +10,7 @@ use crate::method::picture::{color, named, scalar};
 use crate::method::single_pass;
 use crate::method::single_pass::plain::{Composite, Geometry, store};
 use crate::method::transparent::blend::Average;
-use crate::number::{Exact, Real};
+use crate::number::Exact;
 use crate::shade::optics;
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
