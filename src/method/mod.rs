@@ -37,5 +37,5 @@ pub mod template;
 mod tests;
 pub mod transparent;
 
-pub use picture::Picture;
+pub use picture::{Laps, Picture};
 pub use render::{Method, Preparation, render, render_f32};

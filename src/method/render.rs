@@ -134,8 +134,8 @@ pub struct Preparation {
 /// that is drawn while another one is has its own.
 #[derive(Debug, Default)]
 struct Memory {
-    pyramid: Mutex<pyramid::fast::Levels>,
-    template: Mutex<template::fast::Levels>,
+    pyramid: Mutex<pyramid::fast::CellLevels>,
+    template: Mutex<template::fast::CenterLevels>,
 }
 
 /// Runs `draw` with what a mutex holds, or with new memory if another thread has it.

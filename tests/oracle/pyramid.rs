@@ -16,7 +16,7 @@ use crate::tolerance::{Arithmetic, Measured};
 use Arithmetic::{F32, F64};
 use splatref::frame::{Exec, Frame, NO_ID, Samples};
 use splatref::method::Picture;
-use splatref::method::pyramid::{self, fast::Levels};
+use splatref::method::pyramid::{self, fast::CellLevels};
 use splatref::number::Real;
 use splatref::splat::Tally;
 use std::collections::BTreeMap;

@@ -104,14 +104,8 @@ fn render_into(
     camera.check()?;
     settings.check()?;
     let mut target = framebuffer(camera, wanted(scene, false), earlier);
-    let (tally, times) = fast::render(&scene.surfels, camera, settings, exec, &mut target);
-    let clock = Clock::of(vec![
-        ("projection", times.project),
-        ("visibility", times.visibility),
-        ("attributes", times.attributes),
-        ("normalization", times.normalize),
-    ]);
-    Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
+    let (tally, laps) = fast::render(&scene.surfels, camera, settings, exec, &mut target);
+    Ok(finish(target, Vec::new(), tally, Clock::of(laps), (scene, camera, exec)))
 }
 
 /// The planes that a scene needs.

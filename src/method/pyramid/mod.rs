@@ -20,6 +20,7 @@
 //! [`plain`] is the definition, over any [`crate::number::Real`].
 
 pub mod fast;
+mod gbuffer;
 mod picture;
 pub mod plain;
 pub mod pull;

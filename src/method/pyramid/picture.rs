@@ -1,6 +1,7 @@
 //! All stages in one call: from a scene to named planes.
 
-use super::fast::Levels;
+use super::fast::CellLevels;
+use super::gbuffer::GBuffer;
 use super::plain::{pull_all, push_all};
 use super::{Cell, Settings};
 use crate::error::Result;
@@ -58,7 +59,7 @@ pub fn render<R: Real>(
     let (cells, view) = (&pushed[0], View::new(camera));
     let normals = stages || !scene.lights.is_empty();
     let seen = |cell: &Cell<R>| if cell.kind == Kind::Empty { R::ZERO } else { R::ONE };
-    let surface = Surface {
+    let target = GBuffer {
         alpha: cells.map(seen),
         kind: cells.map(|cell| cell.kind as u8),
         depth: cells.map(|cell| cell.front),
@@ -67,7 +68,7 @@ pub fn render<R: Real>(
         color: cells.map(|cell| cell.color),
         colored: has.color,
     };
-    Ok(finish(surface, planes, projected.tally, clock, (scene, camera, exec)))
+    Ok(finish(target, planes, projected.tally, clock, (scene, camera, exec)))
 }
 
 /// Renders in `f32` by the fast path: the bits of [`render`], without the planes of the stages, in
@@ -80,92 +81,25 @@ pub fn render_f32(
     camera: &Camera,
     settings: &Settings,
     exec: &Exec,
-    levels: &mut Levels,
+    levels: &mut CellLevels,
     earlier: Option<Picture<f32>>,
 ) -> Result<Picture<f32>> {
     camera.check()?;
     settings.check()?;
-    let mut surface = Surface::new(scene, camera, earlier.map(|picture| picture.frame));
-    let (tally, times) = levels.draw(scene, camera, settings, exec, &mut surface)?;
-    let laps = vec![("projection", times.project), ("pull", times.pull), ("push", times.push)];
-    let clock = Clock::of(laps);
-    Ok(finish(surface, Vec::new(), tally, clock, (scene, camera, exec)))
-}
-
-/// What is seen, pixel by pixel; vectors in world space.
-pub(super) struct Surface<R> {
-    /// See [`crate::method::projection::Kind`].
-    pub(super) kind: Plane<u8>,
-    /// 1 where something is seen, else 0.
-    pub(super) alpha: Plane<R>,
-    /// Depth t; +inf where nothing is seen.
-    pub(super) depth: Plane<R>,
-    /// Unit normals, if there is light or they were asked for.
-    pub(super) normal: Option<Plane<[R; 3]>>,
-    /// Unit tangents of tubes, the null vector elsewhere; if the scene has tubes.
-    pub(super) tangent: Option<Plane<[R; 3]>>,
-    /// Colours, if `colored`; else anything.
-    pub(super) color: Plane<[R; 3]>,
-    /// Whether the scene has colours.
-    pub(super) colored: bool,
-}
-
-impl Surface<f32> {
-    /// What a scene needs, in the memory of an earlier frame of the same size; the values are any.
-    fn new(scene: &Scene, camera: &Camera, earlier: Option<Frame<f32>>) -> Self {
-        let (width, height) = (camera.width, camera.height);
-        let has = Has::of(scene);
-        let mut surface = Self {
-            kind: Plane::filled(0, 0, 0),
-            alpha: Plane::filled(0, 0, 0.0),
-            depth: Plane::filled(0, 0, 0.0),
-            normal: None,
-            tangent: None,
-            color: Plane::filled(0, 0, [0.0; 3]),
-            colored: has.color,
-        };
-        let earlier = earlier.filter(|frame| (frame.width, frame.height) == (width, height));
-        for NamedPlane { name, samples } in earlier.into_iter().flat_map(|frame| frame.planes) {
-            match (name.as_str(), samples) {
-                ("kind", Samples::Count(plane)) => surface.kind = plane,
-                ("A", Samples::Scalar(plane)) => surface.alpha = plane,
-                ("Z", Samples::Scalar(plane)) => surface.depth = plane,
-                ("normal", Samples::Vector(plane)) => surface.normal = Some(plane),
-                ("tangent", Samples::Vector(plane)) => surface.tangent = Some(plane),
-                ("", Samples::Color(plane)) => surface.color = plane,
-                _ => {}
-            }
-        }
-        fit(&mut surface.kind, camera, 0);
-        fit(&mut surface.alpha, camera, 0.0);
-        fit(&mut surface.depth, camera, 0.0);
-        fit(&mut surface.color, camera, [0.0; 3]);
-        let vectors = |plane: Option<Plane<[f32; 3]>>, wanted: bool| {
-            let plane = plane.filter(|_| wanted);
-            wanted.then(|| plane.unwrap_or_else(|| Plane::filled(width, height, [0.0; 3])))
-        };
-        surface.normal = vectors(surface.normal, !scene.lights.is_empty());
-        surface.tangent = vectors(surface.tangent, has.tangent);
-        surface
-    }
-}
-
-/// Replaces a plane that is not of the size of the picture.
-fn fit<T: Clone>(plane: &mut Plane<T>, camera: &Camera, value: T) {
-    if plane.width() != camera.width {
-        *plane = Plane::filled(camera.width, camera.height, value);
-    }
+    let mut target = GBuffer::new(scene, camera, earlier.map(|picture| picture.frame));
+    let (tally, laps) = levels.draw(scene, camera, settings, exec, &mut target)?;
+    Ok(finish(target, Vec::new(), tally, Clock::of(laps), (scene, camera, exec)))
 }
 
 /// Deferred shading, and the planes of the picture.
 fn finish<R: Real>(
-    surface: Surface<R>,
+    target: GBuffer<R>,
     mut planes: Vec<NamedPlane<R>>,
     tally: Tally,
     mut clock: Clock,
     (scene, camera, exec): (&Scene, &Camera, &Exec),
 ) -> Picture<R> {
-    let Surface { kind, alpha, depth, normal, tangent, mut color, colored } = surface;
+    let GBuffer { kind, alpha, depth, normal, tangent, mut color, colored } = target;
     let (width, height) = (depth.width(), depth.height());
     clock.restart();
     let shader = Shader::new(View::new(camera), &scene.lights, scene.material);

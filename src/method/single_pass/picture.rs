@@ -93,13 +93,8 @@ fn render_into(
 ) -> Result<Picture<f32>> {
     let wanted = check(scene, groups, camera, settings, false)?;
     let mut target = framebuffer(camera, wanted, earlier);
-    let (tally, times) = fast::render(&scene.surfels, groups, camera, settings, exec, &mut target)?;
-    let clock = Clock::of(vec![
-        ("projection", times.project),
-        ("geometry", times.geometry),
-        ("compositing", times.compositing),
-    ]);
-    Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
+    let (tally, laps) = fast::render(&scene.surfels, groups, camera, settings, exec, &mut target)?;
+    Ok(finish(target, Vec::new(), tally, Clock::of(laps), (scene, camera, exec)))
 }
 
 /// The planes that a picture needs.

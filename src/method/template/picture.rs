@@ -1,6 +1,6 @@
 //! All stages in one call: from a scene to named planes.
 
-use super::fast::Levels;
+use super::fast::CenterLevels;
 use super::gather::{Gathered, gather};
 use super::{Center, Settings, levels};
 use crate::composite::sum;
@@ -80,20 +80,15 @@ pub fn render_f32(
     camera: &Camera,
     settings: &Settings,
     exec: &Exec,
-    levels: &mut Levels,
+    levels: &mut CenterLevels,
     earlier: Option<Picture<f32>>,
 ) -> Result<Picture<f32>> {
     check(scene, camera, settings)?;
     let color = Has::of(scene).color;
     let wanted = Wanted { normal: !scene.lights.is_empty(), color, observed: false };
     let mut target = framebuffer(camera, wanted, earlier.map(|picture| picture.frame));
-    let (tally, times) = levels.draw(scene, camera, settings, exec, &mut target);
-    let clock = Clock::of(vec![
-        ("projection", times.project),
-        ("propagation", times.propagate),
-        ("reconstruction", times.search),
-    ]);
-    Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
+    let (tally, laps) = levels.draw(scene, camera, settings, exec, &mut target);
+    Ok(finish(target, Vec::new(), tally, Clock::of(laps), (scene, camera, exec)))
 }
 
 /// Whether the method can draw the scene.
