@@ -73,9 +73,8 @@ fn measure(surfels: &Surfels, kernel: Kernel, normal: bool, threads: usize) -> [
     // At least 9 frames, then up to 101 within two seconds.
     while columns[0].len() < 9 || (columns[0].len() < 101 && start.elapsed().as_secs() < 2) {
         let frame = Instant::now();
-        let (_, times) = fast::render(surfels, &camera, &settings, &exec, &mut target);
-        let all =
-            [frame.elapsed(), times.project, times.visibility, times.attributes, times.normalize];
+        let (_, laps) = fast::render(surfels, &camera, &settings, &exec, &mut target);
+        let all = std::iter::once(frame.elapsed()).chain(laps.into_iter().map(|(_, time)| time));
         columns.iter_mut().zip(all).for_each(|(column, time)| column.push(time));
     }
     columns

@@ -118,15 +118,16 @@ fn frame(
     match method {
         Method::TwoPass => {
             let settings = ewa::Settings::default();
-            let (_, times) = ewa::fast::render(surfels, camera, &settings, exec, target);
-            let geometry = times.visibility + times.attributes;
-            [start.elapsed(), times.project, geometry, times.normalize]
+            let (_, laps) = ewa::fast::render(surfels, camera, &settings, exec, target);
+            let time = |stage: usize| laps[stage].1;
+            [start.elapsed(), time(0), time(1) + time(2), time(3)]
         }
         Method::SinglePass(groups, depth) => {
             let settings = Settings { depth: *depth, ..Settings::default() };
-            let (_, times) = fast::render(surfels, groups, camera, &settings, exec, target)
+            let (_, laps) = fast::render(surfels, groups, camera, &settings, exec, target)
                 .expect("few enough bins");
-            [start.elapsed(), times.project, times.geometry, times.compositing]
+            let time = |stage: usize| laps[stage].1;
+            [start.elapsed(), time(0), time(1), time(2)]
         }
     }
 }

@@ -6,10 +6,12 @@
 //!
 //! - [`real`]: the trait, its comparisons, and the numbers with two outcomes, [`Exact`].
 //! - [`vector`]: two- and three-component vectors whose order of operations is written out.
+//! - [`lanes`]: values side by side, and kernels for every width of vectors.
 //! - [`elementary`]: the only home of exp, pow, sin ... in the crate.
 //! - [`random`]: random values as functions of a seed and an index.
 
 pub mod elementary;
+pub mod lanes;
 pub mod random;
 pub mod real;
 pub mod vector;

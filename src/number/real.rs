@@ -1,6 +1,7 @@
 //! The number that every formula is generic over.
 
-use super::elementary::{self, LANES};
+use super::elementary;
+use super::lanes::LANES;
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 

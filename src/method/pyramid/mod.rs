@@ -20,6 +20,7 @@
 //! [`plain`] is the definition, over any [`crate::number::Real`].
 
 pub mod fast;
+mod gbuffer;
 mod picture;
 pub mod plain;
 pub mod pull;
@@ -200,7 +201,7 @@ impl Algorithm for Settings {
         "one pixel a point, pull-push interpolation; ribbons, tubes, polygons and hybrids [MKC08]";
     const STAGES: &'static [Stage] = &[];
     const DRAWS_PRIMITIVES: bool = true;
-    type Memory = fast::Levels;
+    type Memory = fast::CellLevels;
 
     fn check(&self) -> Result<()> {
         Self::check(self)
@@ -213,7 +214,7 @@ impl Algorithm for Settings {
     fn draw(
         &self,
         job: &Job<'_>,
-        memory: &mut fast::Levels,
+        memory: &mut fast::CellLevels,
         pool: &mut Pool,
     ) -> Result<Picture<f32>> {
         picture::draw(job, self, memory, pool)

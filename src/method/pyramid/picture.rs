@@ -1,6 +1,7 @@
 //! All stages in one call: from a scene to named planes.
 
-use super::fast::Levels;
+use super::fast::CellLevels;
+use super::gbuffer::GBuffer;
 use super::plain::{pull_all, push_all};
 use super::{Cell, Settings};
 use crate::error::Result;
@@ -10,7 +11,7 @@ use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, before_environment, color, named, scalar};
 use crate::method::projection::{self, Has, Kind, world};
 use crate::number::Exact;
-use crate::scene::{Camera, Scene};
+use crate::scene::Camera;
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
 
@@ -44,7 +45,7 @@ pub(super) fn define<R: Exact>(
     let (cells, view) = (&pushed[0], View::new(camera));
     let normals = stages || !scene.lights.is_empty();
     let seen = |cell: &Cell<R>| if cell.kind == Kind::Empty { R::ZERO } else { R::ONE };
-    let surface = Surface {
+    let target = GBuffer {
         alpha: cells.map(seen),
         kind: cells.map(|cell| cell.kind as u8),
         depth: cells.map(|cell| cell.front),
@@ -53,68 +54,32 @@ pub(super) fn define<R: Exact>(
         color: cells.map(|cell| cell.color),
         colored: has.color,
     };
-    Ok(finish(surface, planes, projected.tally, clock, job))
+    Ok(finish(target, planes, projected.tally, clock, job))
 }
 
 /// The fast path for `f32`.
 pub(super) fn draw(
     job: &Job<'_>,
     settings: &Settings,
-    levels: &mut Levels,
+    levels: &mut CellLevels,
     pool: &mut Pool,
 ) -> Result<Picture<f32>> {
     let Job { scene, camera, exec, .. } = *job;
-    let mut surface = Surface::new(scene, camera, pool);
-    let (tally, times) = levels.draw(scene, camera, settings, exec, &mut surface)?;
-    let laps = vec![("projection", times.project), ("pull", times.pull), ("push", times.push)];
-    let clock = Clock::of(laps);
-    Ok(finish(surface, Vec::new(), tally, clock, job))
-}
-
-/// What is seen, pixel by pixel; vectors in world space.
-pub(super) struct Surface<R> {
-    /// See [`crate::method::projection::Kind`].
-    pub(super) kind: Plane<u8>,
-    /// 1 where something is seen, else 0.
-    pub(super) alpha: Plane<R>,
-    /// Depth t; +inf where nothing is seen.
-    pub(super) depth: Plane<R>,
-    /// Unit normals, if there is light or they were asked for.
-    pub(super) normal: Option<Plane<[R; 3]>>,
-    /// Unit tangents of tubes, the null vector elsewhere; if the scene has tubes.
-    pub(super) tangent: Option<Plane<[R; 3]>>,
-    /// Colours, if `colored`; else anything.
-    pub(super) color: Plane<[R; 3]>,
-    /// Whether the scene has colours.
-    pub(super) colored: bool,
-}
-
-impl Surface<f32> {
-    /// What a scene needs, in memory that is used again: the values are any.
-    fn new(scene: &Scene, camera: &Camera, pool: &mut Pool) -> Self {
-        let (size, has) = ([camera.width, camera.height], Has::of(scene));
-        Self {
-            kind: pool.count(size),
-            alpha: pool.scalar(size),
-            depth: pool.scalar(size),
-            normal: (!scene.lights.is_empty()).then(|| pool.triple(size)),
-            tangent: has.tangent.then(|| pool.triple(size)),
-            color: pool.triple(size),
-            colored: has.color,
-        }
-    }
+    let mut target = GBuffer::new(scene, camera, pool);
+    let (tally, laps) = levels.draw(scene, camera, settings, exec, &mut target)?;
+    Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 
 /// Deferred shading, and the planes of the picture.
 fn finish<R: Exact>(
-    surface: Surface<R>,
+    target: GBuffer<R>,
     mut planes: Vec<NamedPlane<R>>,
     tally: Tally,
     mut clock: Clock,
     job: &Job<'_>,
 ) -> Picture<R> {
     let Job { scene, camera, exec, .. } = *job;
-    let Surface { kind, alpha, depth, normal, tangent, mut color, colored } = surface;
+    let GBuffer { kind, alpha, depth, normal, tangent, mut color, colored } = target;
     let (width, height) = (depth.width(), depth.height());
     clock.restart();
     let shader = Shader::new(View::new(camera), &scene.lights, scene.material);

@@ -156,7 +156,7 @@ impl Algorithm for Settings {
     const SUMMARY: &'static str =
         "one pixel a point, search with templates of k x k pixels in a pyramid [MOC08]";
     const STAGES: &'static [Stage] = &[];
-    type Memory = fast::Levels;
+    type Memory = fast::CenterLevels;
 
     fn check(&self) -> Result<()> {
         Self::check(self)
@@ -169,7 +169,7 @@ impl Algorithm for Settings {
     fn draw(
         &self,
         job: &Job<'_>,
-        memory: &mut fast::Levels,
+        memory: &mut fast::CenterLevels,
         pool: &mut Pool,
     ) -> Result<Picture<f32>> {
         picture::draw(job, self, memory, pool)

@@ -1,6 +1,6 @@
 //! All stages in one call: from a scene to named planes.
 
-use super::fast::Levels;
+use super::fast::CenterLevels;
 use super::gather::{Gathered, gather};
 use super::{Center, Settings, levels};
 use crate::composite::sum;
@@ -60,20 +60,15 @@ pub(super) fn define<R: Exact>(
 pub(super) fn draw(
     job: &Job<'_>,
     settings: &Settings,
-    levels: &mut Levels,
+    levels: &mut CenterLevels,
     pool: &mut Pool,
 ) -> Result<Picture<f32>> {
     let Job { scene, camera, exec, .. } = *job;
     let color = Has::of(scene).color;
     let wanted = Wanted { normal: !scene.lights.is_empty(), color, observed: false };
     let mut target = framebuffer(camera, wanted, pool);
-    let (tally, times) = levels.draw(scene, camera, settings, exec, &mut target);
-    let clock = Clock::of(vec![
-        ("projection", times.project),
-        ("propagation", times.propagate),
-        ("reconstruction", times.search),
-    ]);
-    Ok(finish(target, Vec::new(), tally, clock, job))
+    let (tally, laps) = levels.draw(scene, camera, settings, exec, &mut target);
+    Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 
 /// The average depth; +inf where nothing was gathered.

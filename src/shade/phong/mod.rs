@@ -130,7 +130,7 @@ impl<R: Exact> Shader<R> {
                 let depth = &depth.values()[y * row..][..row];
                 let normal = normal.map(|plane| &plane.values()[y * row..][..row]);
                 let tangent = tangent.map(|plane| &plane.values()[y * row..][..row]);
-                lanes::shade(self, &lanes::Row { y, depth, normal, tangent, own }, pixels);
+                lanes::shade(self, &lanes::ShadedRow { y, depth, normal, tangent, own }, pixels);
             },
         );
     }
