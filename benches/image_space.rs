@@ -12,14 +12,13 @@
 
 mod common;
 
-use common::draw::Renderer;
 use common::models::{models, resample};
 use common::report::{Arguments, Table};
 use common::sphere::cell;
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::method::pyramid::{self, Weights};
-use splatref::method::{Method, template};
+use splatref::method::{Method, Session, template};
 use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Scene, Surfels};
 use splatref::source::Shape;
 use std::time::{Duration, Instant};
@@ -192,14 +191,14 @@ fn moving(surfels: &Surfels, seen: u64, exec: &Exec, points: &mut [[u32; 6]]) ->
 }
 
 fn measure(scene: &Scene, camera: &Camera, method: &Method, exec: &Exec) -> Result<Times> {
-    let mut renderer = Renderer::new(scene, None, method, exec);
+    let mut session = Session::with_groups(scene, *method, None, exec)?;
     let (mut frames, mut stages) = (Vec::new(), Vec::<(&str, Vec<Duration>)>::new());
     let mut seen = 0;
     let begin = Instant::now();
     // At least 9 pictures, then up to 101 within two seconds; the first fills the memory.
     while frames.len() < 9 || (frames.len() < 101 && begin.elapsed().as_secs() < 2) {
         let start = Instant::now();
-        let picture = renderer.draw(camera)?;
+        let picture = session.render(camera)?;
         let time = start.elapsed();
         if !frames.is_empty() || !stages.is_empty() {
             frames.push(time);

@@ -12,13 +12,12 @@
 mod common;
 
 use common::chart::{Axis, Series, svg};
-use common::draw::Renderer;
 use common::report::{Arguments, Table, machine};
 use common::shot::{Shot, lit};
 use common::sphere::cell;
 use splatref::frame::{Exec, Image};
 use splatref::index::grouping::{Rules, group};
-use splatref::method::{Method, ewa, pyramid, single_pass, template};
+use splatref::method::{Method, Session, ewa, pyramid, single_pass, template};
 use splatref::scene::{Camera, Scene};
 use splatref::source::Shape;
 use splatref::verify::metrics::summary;
@@ -83,13 +82,13 @@ fn draw(
         Method::SinglePass(_) => Some(group(&scene.surfels, &rules, exec, &|_, _, _| ())?.0),
         _ => None,
     };
-    let mut renderer = Renderer::new(scene, groups, method, exec);
-    let image = Image::from(&renderer.draw(camera)?.frame);
+    let mut session = Session::with_groups(scene, *method, groups, exec)?;
+    let image = Image::from(&session.render(camera)?.frame);
     let (mut times, begin) = (Vec::new(), Instant::now());
     // At least 9 pictures, then up to 101 within two seconds.
     while times.len() < 9 || (times.len() < 101 && begin.elapsed().as_secs() < 2) {
         let start = Instant::now();
-        renderer.draw(camera)?;
+        session.render(camera)?;
         times.push(start.elapsed());
     }
     Ok((image, times))
