@@ -1,31 +1,40 @@
 //! A picture in the number type and with the planes that were asked for, as files hold it.
 
+use super::progress;
 use splatref::Result;
 use splatref::frame::Exec;
-use splatref::io::scene_file::{Number, Output};
-use splatref::method::{self, Method, Picture, Preparation};
-use splatref::scene::{Camera, Scene};
+use splatref::io::scene_file::{Number, Output, Ready, SceneFile};
+use splatref::method::session::Made;
+use splatref::method::{Picture, Session};
+use splatref::scene::Camera;
+use std::borrow::Cow;
 
-/// Draws; `earlier` is a picture whose memory may be used again.
-pub(super) fn draw(
-    (scene, preparation): (&Scene, &Preparation),
+/// Loads a scene, with progress.
+pub(super) fn ready(file: &SceneFile, exec: &Exec) -> Result<Ready> {
+    let steps = progress::Steps::new();
+    file.ready(exec, &|what, done, of| steps.show(what, done, of))
+}
+
+/// Prepares a scene for its method, with progress.
+pub(super) fn session<'a>(ready: &'a Ready, exec: &'a Exec) -> Result<(Session<'a>, Option<Made>)> {
+    let steps = progress::Steps::new();
+    ready.session(exec, &|what, done, of| steps.show(what, done, of))
+}
+
+/// Draws.
+pub(super) fn draw<'s>(
+    session: &'s mut Session<'_>,
     camera: &Camera,
-    method: &Method,
-    exec: &Exec,
     output: Output,
-    earlier: Option<Picture<f32>>,
-) -> Result<Picture<f32>> {
-    match output {
-        Output { number: Number::F32, stages: false } => {
-            method::render_f32(scene, preparation, camera, method, exec, earlier)
-        }
+) -> Result<Cow<'s, Picture<f32>>> {
+    Ok(match output {
+        Output { number: Number::F32, stages: false } => Cow::Borrowed(session.render(camera)?),
         Output { number: Number::F32, stages: true } => {
-            method::render::<f32>(scene, preparation, camera, method, exec, true)
+            Cow::Owned(session.define::<f32>(camera, true)?)
         }
         Output { number: Number::F64, stages } => {
-            let exact = method::render::<f64>(scene, preparation, camera, method, exec, stages)?;
-            let Picture { frame, tally, timings } = exact;
-            Ok(Picture { frame: frame.to_f32(), tally, timings })
+            let Picture { frame, tally, timings } = session.define::<f64>(camera, stages)?;
+            Cow::Owned(Picture { frame: frame.to_f32(), tally, timings })
         }
-    }
+    })
 }

@@ -1,13 +1,8 @@
 //! `splatref explain`: every decision at one pixel.
 
 use super::options::{ExecOptions, SceneOptions};
-use super::ready::Ready;
-use super::{Finding, Outcome, report, say};
-use splatref::frame::Exec;
-use splatref::io::scene_file::Number;
-use splatref::method::{Method, ewa, single_pass};
-use splatref::number::Real;
-use splatref::{Error, Result};
+use super::{Finding, Outcome, draw, report, say};
+use splatref::io::scene_file::{Number, Ready};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -32,40 +27,20 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args) -> Finding {
     let file = args.options.scene_file(&args.scene)?;
     let exec = args.exec.exec()?;
-    if !matches!(file.method.method()?, Method::Ewa(_) | Method::SinglePass(_)) {
-        let what = "explain replays the methods ewa and single-pass; give one of them by --method";
-        return Err(Error::Usage(what.into()));
-    }
-    let ready = Ready::new(&file, &exec)?;
+    let ready = draw::ready(&file, &exec)?;
+    ready.camera.check_pixel(args.x, args.y)?;
+    let (session, made) = draw::session(&ready, &exec)?;
     let pixel = (args.x, args.y);
     let text = match file.output.number {
-        Number::F32 => replay::<f32>(&ready, &exec, pixel)?,
-        Number::F64 => replay::<f64>(&ready, &exec, pixel)?,
+        Number::F32 => session.explain::<f32>(&ready.camera, pixel)?,
+        Number::F64 => session.explain::<f64>(&ready.camera, pixel)?,
     };
     let Ready { loaded, camera, method, .. } = &ready;
     report::camera(camera);
     report::picture(camera, file.output);
     report::method(method, &loaded.scene.surfels);
-    ready.report_groups();
+    report::groups(session.groups(), made.as_ref());
     say("");
     say(text.trim_end());
     Ok(Outcome::Good)
-}
-
-/// The decisions at a pixel, in words.
-fn replay<R: Real>(ready: &Ready, exec: &Exec, pixel: (u32, u32)) -> Result<String> {
-    let Ready { loaded, preparation, camera, method, .. } = ready;
-    let surfels = &loaded.scene.surfels;
-    match (method, preparation.groups()) {
-        (Method::Ewa(settings), _) => {
-            let found = ewa::explain::explain::<R>(surfels, camera, settings, exec, pixel)?;
-            Ok(found.to_string())
-        }
-        (Method::SinglePass(settings), Some(groups)) => {
-            let found =
-                single_pass::explain::explain::<R>(surfels, groups, camera, settings, exec, pixel)?;
-            Ok(found.to_string())
-        }
-        _ => Err(Error::Usage("there is no replay of this method".into())),
-    }
 }

@@ -1,11 +1,10 @@
 //! `splatref golden`: the pictures under `golden/` are reproduced bit for bit, or blessed.
 
 use super::options::ExecOptions;
-use super::ready::Ready;
 use super::{Finding, Outcome, draw, say};
 use splatref::frame::image::{Image, Values};
 use splatref::frame::{Exec, Frame, Plane, Samples};
-use splatref::io::scene_file::SceneFile;
+use splatref::io::scene_file::{Ready, SceneFile};
 use splatref::io::{exr, png, provenance};
 use splatref::verify::compare::{Comparison, Criteria, Relation, Verdict, compare};
 use splatref::verify::digest;
@@ -117,11 +116,13 @@ fn check(args: &Args, exec: &Exec, name: &str) -> Result<(Image, bool)> {
 fn render(dir: &Path, exec: &Exec, name: &str) -> Result<Case> {
     let (scene, picture) = (dir.join(format!("{name}.toml")), dir.join(format!("{name}.exr")));
     let file = SceneFile::read(&scene)?;
-    let Ready { loaded, preparation, camera, method, .. } = Ready::new(&file, exec)?;
-    let drawn = (&loaded.scene, &preparation);
-    let drawing = draw::draw(drawn, &camera, &method, exec, file.output, None)?;
-    let text = provenance::text(&loaded.scene, &preparation, &camera, &method, file.output.number);
-    Ok(Case { scene, picture, text, frame: drawing.frame })
+    let ready = draw::ready(&file, exec)?;
+    let (mut session, _) = draw::session(&ready, exec)?;
+    let frame = draw::draw(&mut session, &ready.camera, file.output)?.into_owned().frame;
+    let Ready { loaded, camera, method, .. } = &ready;
+    let (groups, number) = (session.groups(), file.output.number);
+    let text = provenance::text(&loaded.scene, groups, camera, method, number);
+    Ok(Case { scene, picture, text, frame })
 }
 
 /// The first planes that differ, and how to look into the first pixel.

@@ -11,7 +11,6 @@ mod group;
 mod info;
 mod options;
 mod progress;
-mod ready;
 mod render;
 mod report;
 

@@ -6,14 +6,13 @@ use splatref::io::scene_file::{
     DEFAULT_COUNT, EnvironmentChoice, ExtensionChoice, MethodName, Number, SceneFile, Source,
     check_opacity, words,
 };
-use splatref::method::ewa::Epsilon;
 use splatref::method::pyramid::{Occlusion, Weights};
 use splatref::method::template::LevelRule;
 use splatref::method::transparent::Holes;
 use splatref::scene::Lens;
 use splatref::shade::optics::Layers;
 use splatref::source::{Shape, plant};
-use splatref::splat::{Kernel, Outline};
+use splatref::splat::{Epsilon, Kernel, Outline};
 use splatref::{Error, Result};
 use std::path::Path;
 
@@ -221,7 +220,7 @@ impl SceneOptions {
         replace(&mut method.epsilon, self.epsilon);
         replace(&mut method.cull, self.cull);
         let grouped = self.overlap.is_some() || self.groups.is_some() || self.extend.is_some();
-        if grouped && !file.method.method()?.needs_groups() {
+        if grouped && file.method.method()?.grouping().is_none() {
             let what = "--overlap, --groups and --extend are for methods that draw groups; give a --method";
             return Err(Error::Usage(what.into()));
         }

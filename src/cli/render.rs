@@ -1,11 +1,12 @@
 //! `splatref render`: a scene into an EXR and a PNG.
 
 use super::options::{ExecOptions, Kind, SceneOptions, kind};
-use super::ready::Ready;
 use super::{Finding, Outcome, draw, progress, report};
+use splatref::io::scene_file::Ready;
 use splatref::io::{exr, png, provenance};
 use splatref::method::Picture;
 use splatref::{Error, Result};
+use std::borrow::Cow;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -47,21 +48,20 @@ pub(super) fn run(args: &Args) -> Finding {
     if let Some(path) = &args.output {
         check_place(path)?;
     }
-    let ready = Ready::new(&file, &exec)?;
+    let ready = draw::ready(&file, &exec)?;
+    let (mut session, made) = draw::session(&ready, &exec)?;
     let loading = start.elapsed();
-    let Ready { loaded, preparation, camera, method, .. } = &ready;
+    let Ready { loaded, camera, method, .. } = &ready;
     let scene = &loaded.scene;
 
-    let render =
-        |earlier| draw::draw((scene, preparation), camera, method, &exec, file.output, earlier);
     let mut times = Vec::new();
     let drawing = progress::during("rendering", || -> Result<_> {
-        let mut drawing = timed(&mut times, || render(None))?;
         for _ in 1..args.repeat {
-            drawing = timed(&mut times, || render(Some(drawing)))?;
+            timed(&mut times, || draw::draw(&mut session, camera, file.output))?;
         }
-        Ok(drawing)
-    })?;
+        timed(&mut times, || draw::draw(&mut session, camera, file.output))
+    })?
+    .into_owned();
 
     let writing = Instant::now();
     let picture = match &args.output {
@@ -74,7 +74,7 @@ pub(super) fn run(args: &Args) -> Finding {
     };
     let preview = picture.with_extension("png");
     progress::during("writing", || {
-        let text = provenance::text(scene, preparation, camera, method, file.output.number);
+        let text = provenance::text(scene, session.groups(), camera, method, file.output.number);
         exr::write(&picture, &drawing.frame, &text)?;
         png::write_frame(&preview, &drawing.frame)
     })?;
@@ -84,7 +84,7 @@ pub(super) fn run(args: &Args) -> Finding {
     report::camera(camera);
     report::picture(camera, file.output);
     report::method(method, &scene.surfels);
-    ready.report_groups();
+    report::groups(session.groups(), made.as_ref());
     report::tally(&drawing.tally);
     print_times(&exec, loading, times, writing);
     report::time("total", vec![start.elapsed()]);
@@ -118,12 +118,14 @@ pub(super) fn check_folder(path: &Path) -> Result<()> {
 type Times = Vec<Vec<(&'static str, Duration)>>;
 
 /// Draws once and notes how long it took.
-fn timed(times: &mut Times, render: impl FnOnce() -> Result<Picture<f32>>) -> Result<Picture<f32>> {
+fn timed<'s>(
+    times: &mut Times,
+    render: impl FnOnce() -> Result<Cow<'s, Picture<f32>>>,
+) -> Result<Cow<'s, Picture<f32>>> {
     let start = Instant::now();
-    let mut drawing = render()?;
-    let whole = start.elapsed();
-    let mut laps = std::mem::take(&mut drawing.timings);
-    laps.push(("picture", whole));
+    let drawing = render()?;
+    let mut laps = drawing.timings.clone();
+    laps.push(("picture", start.elapsed()));
     times.push(laps);
     Ok(drawing)
 }

@@ -2,15 +2,15 @@
 
 use super::say;
 use glam::Vec3;
-use splatref::index::grouping::{Extended, GroupCoverage, GroupingReport};
+use splatref::index::grouping::GroupCoverage;
 use splatref::io::provenance;
 use splatref::io::scene_file::{Loaded, MethodName, ModelReport, Output, words};
 use splatref::method::Method;
-use splatref::method::ewa::Epsilon;
+use splatref::method::session::Made;
 use splatref::scene::Groups;
 use splatref::scene::{Camera, Counts, Dropped, Projection, Surfels};
 use splatref::source::derive::Origin;
-use splatref::splat::Tally;
+use splatref::splat::{Epsilon, Tally};
 use std::time::Duration;
 
 /// A line with its label.
@@ -133,7 +133,7 @@ pub(super) fn camera(camera: &Camera) {
 }
 
 pub(super) fn method(method: &Method, surfels: &Surfels) {
-    let splats = method.splats().map_or(String::new(), |splats| {
+    let splats = provenance::splats(method).map_or(String::new(), |splats| {
         let kernel = splats.kernel;
         let depth = short(f64::from(splats.epsilon.resolve(surfels)));
         let epsilon = match splats.epsilon {
@@ -147,7 +147,7 @@ pub(super) fn method(method: &Method, surfels: &Surfels) {
         )
     });
     let name = words::of_method(MethodName::of(method));
-    let sides = if method.culls() { "back faces culled" } else { "both sides" };
+    let sides = if provenance::culls(method) { "back faces culled" } else { "both sides" };
     line("method", format!("{name}{splats}, {sides}"));
     let further = provenance::further(method);
     if !further.is_empty() {
@@ -156,7 +156,8 @@ pub(super) fn method(method: &Method, surfels: &Surfels) {
 }
 
 /// The groups, and how they were made.
-pub(super) fn groups(groups: &Groups, made: Option<&(GroupingReport, Option<Extended>)>) {
+pub(super) fn groups(groups: Option<&Groups>, made: Option<&Made>) {
+    let Some(groups) = groups else { return };
     let Some((report, extended)) = made else {
         return line("groups", format!("{}, from the file", groups.len()));
     };

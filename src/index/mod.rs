@@ -6,3 +6,47 @@
 pub mod grouping;
 pub mod order;
 pub(crate) mod point_tree;
+
+use crate::error::{Error, Result};
+use crate::scene::{Groups, Surfels};
+use order::BackToFront;
+
+/// What a method asks of a scene for every view, as far as the method needs it.
+#[derive(Debug, Default)]
+pub struct Index {
+    /// Which surfels share a depth-image.
+    pub groups: Option<Groups>,
+    /// The surfels from back to front.
+    pub order: Option<BackToFront>,
+}
+
+impl Index {
+    /// The groups.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there are none.
+    pub fn groups(&self) -> Result<&Groups> {
+        self.groups.as_ref().ok_or_else(|| missing("groups"))
+    }
+
+    /// The order from back to front.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there is none.
+    pub fn order(&self) -> Result<&BackToFront> {
+        self.order.as_ref().ok_or_else(|| missing("an order from back to front"))
+    }
+
+    /// Whether this can be an index of these surfels: it must be of as many.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if it is not.
+    pub fn check(&self, surfels: &Surfels) -> Result<()> {
+        self.groups.as_ref().map_or(Ok(()), |groups| groups.check(surfels))?;
+        self.order.as_ref().map_or(Ok(()), |order| order.check(surfels))
+    }
+}
+
+fn missing(what: &str) -> Error {
+    Error::Invalid(format!("the scene was prepared for another method, without {what}"))
+}

@@ -1,13 +1,11 @@
 //! The text that a picture carries: what it is a picture of, and by which settings.
 
-use crate::composite::bins::Range;
 use crate::io::scene_file::{MethodName, Number, words};
 use crate::method::single_pass::{BinCount, DepthTest};
-use crate::method::transparent::Settings;
-use crate::method::{Method, Preparation, ewa};
-use crate::scene::{Camera, Counts, Projection, Scene};
+use crate::method::{Method, transparent, transparent_hq};
+use crate::scene::{Camera, Counts, Groups, Projection, Scene};
 use crate::shade::optics::Refraction;
-use crate::splat::Kernel;
+use crate::splat::{Kernel, SplatSettings};
 
 /// The text as TOML, for the attribute [`super::exr::ATTRIBUTE`].
 ///
@@ -19,19 +17,16 @@ use crate::splat::Kernel;
 #[must_use]
 pub fn text(
     scene: &Scene,
-    preparation: &Preparation,
+    groups: Option<&Groups>,
     camera: &Camera,
     method: &Method,
     number: Number,
 ) -> String {
-    let groups = preparation.groups().map_or(String::new(), |groups| {
+    let groups = groups.map_or(String::new(), |groups| {
         format!("[groups]\ncount = {}\nsha256 = \"{}\"\n\n", groups.len(), groups.sha256())
     });
-    // The picture has been drawn, so that its bins can be counted.
-    let bins = method.depth_bins(&scene.surfels, camera).ok().flatten();
-    let bins = bins.map_or(String::new(), |Range { nearest, farthest, count }| {
-        format!("bins_in_world_units = [{nearest:?}, {farthest:?}, {count}]\n")
-    });
+    let resolved = method.resolved(scene, camera);
+    let resolved = resolved.into_iter().map(|(name, value)| format!("{name} = {value}\n"));
     let primitives = if scene.primitives.is_empty() {
         String::new()
     } else {
@@ -57,9 +52,9 @@ pub fn text(
         surfels = scene.surfels.len(),
         hash = scene.sha256(),
         method = words::of_method(MethodName::of(method)),
-        further = further(method) + &bins,
-        splats = method.splats().map_or(String::new(), |splats| footprints(splats, scene)),
-        cull = method.culls(),
+        further = further(method) + &resolved.collect::<String>(),
+        splats = splats(method).map_or(String::new(), footprints),
+        cull = culls(method),
         width = camera.width,
         height = camera.height,
         fx = camera.fx,
@@ -71,15 +66,34 @@ pub fn text(
     )
 }
 
+/// What of a method is about splats.
+pub fn splats(method: &Method) -> Option<&SplatSettings> {
+    match method {
+        Method::Ewa(settings) => Some(settings),
+        Method::SinglePass(settings) => Some(&settings.splats),
+        Method::Transparent(settings) => Some(&settings.splats),
+        Method::TransparentHq(settings) => Some(&settings.layers.splats),
+        Method::Peeling(settings) => Some(&settings.splats),
+        Method::Pyramid(_) | Method::Template(_) => None,
+    }
+}
+
+/// Whether a method drops what is seen from behind.
+pub fn culls(method: &Method) -> bool {
+    match method {
+        Method::Pyramid(settings) => settings.cull,
+        Method::Template(settings) => settings.cull,
+        _ => splats(method).is_some_and(|splats| splats.cull),
+    }
+}
+
 /// Kernel and epsilon, as lines of TOML.
-fn footprints(splats: &ewa::Settings, scene: &Scene) -> String {
+fn footprints(splats: &SplatSettings) -> String {
     let Kernel { outline, cutoff, low_pass } = splats.kernel;
     format!(
-        "outline = \"{}\"\ncutoff = {cutoff:?}\nlow_pass = {low_pass:?}\nepsilon = \"{}\"\n\
-         epsilon_in_world_units = {:?}\n",
+        "outline = \"{}\"\ncutoff = {cutoff:?}\nlow_pass = {low_pass:?}\nepsilon = \"{}\"\n",
         words::of_outline(outline),
         words::of_epsilon(splats.epsilon),
-        splats.epsilon.resolve(&scene.surfels),
     )
 }
 
@@ -91,6 +105,9 @@ pub fn further(method: &Method) -> String {
         BinCount::Count(count) => format!("bins = {count}\n"),
     };
     let depth = |test: DepthTest| format!("depth = \"{}\"\n", words::of_depth(test));
+    let blending = |settings: &transparent::Settings| {
+        format!("{}holes = \"{}\"\n", bins(&settings.bins), words::of_holes(settings.holes))
+    };
     match method {
         Method::Ewa(_) => String::new(),
         Method::Peeling(settings) => format!("peel = {}\n", settings.layers),
@@ -108,14 +125,12 @@ pub fn further(method: &Method) -> String {
             DepthTest::Plain => depth(settings.depth),
             DepthTest::Voronoi(count) => depth(settings.depth) + &bins(count),
         },
-        Method::Transparent(settings) => {
-            let Settings { holes, nearest, refraction, .. } = *settings;
-            let nearest = nearest.map_or(String::new(), depth);
+        Method::Transparent(settings) => blending(settings),
+        Method::TransparentHq(transparent_hq::Settings { layers, nearest, refraction }) => {
             let refraction = refraction.map_or(String::new(), |Refraction { ratio, layers }| {
                 format!("refraction = {ratio:?}\nbends = \"{}\"\n", words::of_bends(layers))
             });
-            let holes = format!("holes = \"{}\"\n", words::of_holes(holes));
-            format!("{}{holes}{nearest}{refraction}", bins(&settings.bins))
+            format!("{}{}{refraction}", blending(layers), depth(*nearest))
         }
     }
 }
@@ -123,7 +138,6 @@ pub fn further(method: &Method) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Exec;
     use crate::scene::{Lens, Light, Phong, Pose};
     use crate::source::Shape;
     use glam::DVec3;
@@ -146,11 +160,9 @@ mod tests {
         let eye = DVec3::new(0.1, 1.0 / 3.0, 5.0);
         let pose = Pose { eye, target: DVec3::ZERO, up: DVec3::Y };
         let camera = Camera::new(61, 47, pose, Lens::FieldOfView(33.3)).unwrap();
-        let settings = ewa::Settings::default();
+        let settings = SplatSettings::default();
         let method = Method::Ewa(settings);
-        let exec = Exec::sequential();
-        let preparation = Preparation::new(&scene.surfels, None, &method, &exec);
-        let text = text(&scene, &preparation, &camera, &method, Number::F64);
+        let text = text(&scene, None, &camera, &method, Number::F64);
 
         let table: toml::Table = text.parse().unwrap();
         assert_eq!(table["number"].as_str(), Some("f64"));

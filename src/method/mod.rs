@@ -8,7 +8,8 @@
 //! - [`template`]: reconstruction with templates of k x k pixels \[MOC08\].
 //! - [`single_pass`]: one geometry pass into the depth-images of groups, then compositing \[ZP06\].
 //! - [`transparent`]: layers blended from back to front within groups \[ZP06\].
-//! - [`mod@render`]: any of them, chosen by a value.
+//! - [`transparent_hq`]: the same behind a nearest layer in high quality \[ZP06\].
+//! - [`Method`]: any of them, chosen by a value; [`session`]: a scene drawn by one of them.
 //!
 //! # Fast paths
 //!
@@ -23,6 +24,7 @@
 //!   passes: 1/w, correctly rounded, never grows with w.
 //! - A fragment that fails adds weight 0 instead of nothing.
 
+mod algorithm;
 pub mod ewa;
 mod fast;
 pub mod peeling;
@@ -30,12 +32,18 @@ mod picture;
 mod prepare;
 pub mod projection;
 pub mod pyramid;
-pub mod render;
+pub mod session;
 pub mod single_pass;
+pub mod stage;
+mod table;
 pub mod template;
 #[cfg(test)]
 mod tests;
 pub mod transparent;
+pub mod transparent_hq;
 
+pub use algorithm::{Algorithm, Job};
 pub use picture::Picture;
-pub use render::{Method, Preparation, render, render_f32};
+pub use session::Session;
+pub use stage::{Holds, PlaneRow, Stage, When};
+pub use table::Method;

@@ -1,8 +1,9 @@
 //! What every method leaves: named planes, counts and times.
 
+use super::algorithm::Job;
 use crate::composite::over::Blend;
-use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Samples, Wanted};
-use crate::number::Real;
+use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Pool, Samples, Wanted};
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
@@ -22,13 +23,14 @@ pub struct Picture<R> {
 }
 
 /// Deferred shading, and the planes of the picture.
-pub(super) fn finish<R: Real>(
+pub(super) fn finish<R: Exact>(
     target: Framebuffer<R>,
     mut planes: Vec<NamedPlane<R>>,
     tally: Tally,
     mut clock: Clock,
-    (scene, camera, exec): (&Scene, &Camera, &Exec),
+    job: &Job<'_>,
 ) -> Picture<R> {
+    let Job { scene, camera, exec, .. } = *job;
     let Framebuffer { width, height, depth, id, weight, normal, color, .. } = target;
     clock.restart();
     let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
@@ -46,7 +48,7 @@ pub(super) fn finish<R: Real>(
 }
 
 /// Colours multiplied by their opacity before the environment of the scene, if it has one.
-pub(super) fn before_environment<R: Real>(
+pub(super) fn before_environment<R: Exact>(
     scene: &Scene,
     camera: &Camera,
     mut color: Plane<[R; 3]>,
@@ -70,42 +72,20 @@ pub(super) fn before_environment<R: Real>(
     (color, alpha)
 }
 
-/// A framebuffer for a camera's picture: the memory of an earlier frame, if that had the same
-/// planes.
-pub(super) fn framebuffer(
-    camera: &Camera,
-    wanted: Wanted,
-    earlier: Option<Frame<f32>>,
-) -> Framebuffer<f32> {
-    let (width, height) = (camera.width, camera.height);
-    let whole = |w: u32, h: u32| (w, h) == (width, height);
-    let fits = |target: &Framebuffer<f32>| {
-        whole(target.depth.width(), target.depth.height())
-            && whole(target.id.width(), target.id.height())
-            && whole(target.weight.width(), target.weight.height())
-            && (target.normal.is_some(), target.color.is_some()) == (wanted.normal, wanted.color)
-    };
-    let earlier = earlier.map(|frame| recycle(frame, wanted)).filter(fits);
-    earlier.unwrap_or_else(|| Framebuffer::new(width, height, 0.0, wanted))
-}
-
-/// The planes of a frame as a framebuffer; what it lacks has no pixels.
-fn recycle(frame: Frame<f32>, wanted: Wanted) -> Framebuffer<f32> {
-    let Frame { width, height, planes } = frame;
-    let none = Wanted { normal: false, color: false, observed: false };
-    let mut target = Framebuffer { width, height, ..Framebuffer::new(0, 0, 0.0, none) };
-    for NamedPlane { name, samples } in planes {
-        match (name.as_str(), samples) {
-            ("Z", Samples::Scalar(plane)) => target.depth = plane,
-            ("weight", Samples::Scalar(plane)) => target.weight = plane,
-            ("id", Samples::Index(plane)) => target.id = plane,
-            ("normal", Samples::Vector(plane)) => target.normal = Some(plane),
-            // That of a scene without colours is its material's, and not the framebuffer's.
-            ("", Samples::Color(plane)) if wanted.color => target.color = Some(plane),
-            _ => {}
-        }
+/// A framebuffer for a camera's picture, in memory that is used again: the values are any.
+pub(super) fn framebuffer(camera: &Camera, wanted: Wanted, pool: &mut Pool) -> Framebuffer<f32> {
+    let size = [camera.width, camera.height];
+    Framebuffer {
+        width: camera.width,
+        height: camera.height,
+        depth: pool.scalar(size),
+        id: pool.index(size),
+        weight: pool.scalar(size),
+        normal: wanted.normal.then(|| pool.triple(size)),
+        color: wanted.color.then(|| pool.triple(size)),
+        stencil: None,
+        margin: None,
     }
-    target
 }
 
 pub(super) fn scalar<R>(name: &str, plane: Plane<R>) -> NamedPlane<R> {

@@ -1,9 +1,9 @@
 //! Projection and binning: what every method does first.
 
-use super::ewa::Settings;
 use crate::frame::{Bins, Exec, Grid, Rect};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Surfels};
+use crate::splat::SplatSettings;
 use crate::splat::{Projector, Shared, Splat, Tally, View, batch};
 use std::ops::Range;
 
@@ -18,14 +18,14 @@ pub(super) struct Prepared<R, S> {
     batches: Vec<(Vec<S>, Bins)>,
 }
 
-impl<R: Real, S: Send> Prepared<R, S> {
+impl<R: Exact, S: Send> Prepared<R, S> {
     /// Projects `count` items and sorts the splats into tiles.
     ///
     /// `project` makes the records of a range of items; `bounds` gives the pixels of a record.
     pub(super) fn new(
         (surfels, count): (&Surfels, usize),
         camera: &Camera,
-        settings: &Settings,
+        settings: &SplatSettings,
         (exec, grid): (&Exec, &Grid),
         project: impl Fn(&Projector<R>, Range<usize>, &mut Vec<S>) -> Tally + Sync + Send,
         bounds: impl Fn(&S) -> Rect + Sync + Send,
@@ -66,12 +66,12 @@ impl<R: Real, S: Send> Prepared<R, S> {
     }
 }
 
-impl<R: Real> Prepared<R, Splat<R>> {
+impl<R: Exact> Prepared<R, Splat<R>> {
     /// Every surfel as the splat it is, in ascending index.
     pub(super) fn splats(
         surfels: &Surfels,
         camera: &Camera,
-        settings: &Settings,
+        settings: &SplatSettings,
         how: (&Exec, &Grid),
     ) -> Self {
         Self::new(

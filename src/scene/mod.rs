@@ -49,3 +49,24 @@ pub struct Scene {
     /// What surrounds the surfels; black if absent.
     pub environment: Option<Environment>,
 }
+
+impl Scene {
+    /// Surfels under one headlight, of the default material, before nothing.
+    #[must_use]
+    pub fn lit(name: &str, surfels: Surfels) -> Self {
+        Self { lights: vec![Light::DEFAULT], ..Self::unlit(name, surfels) }
+    }
+
+    /// Surfels that show their own colours.
+    #[must_use]
+    pub fn unlit(name: &str, surfels: Surfels) -> Self {
+        Self {
+            name: name.to_owned(),
+            surfels,
+            primitives: Primitives::default(),
+            lights: Vec::new(),
+            material: Phong::default(),
+            environment: None,
+        }
+    }
+}

@@ -2,14 +2,14 @@
 
 use crate::error::{Error, Result};
 use crate::index::grouping::{Coplanar, Extension, Grouping, Rules};
-use crate::method::ewa::{self, Epsilon};
 use crate::method::pyramid::{self, Occlusion, Weights};
 use crate::method::single_pass::{self, BinCount, DepthTest};
 use crate::method::template::{self, LevelRule};
 use crate::method::transparent::{self, Holes};
+use crate::method::transparent_hq;
 use crate::method::{Method, peeling};
 use crate::shade::optics::{Layers, Refraction};
-use crate::splat::{Kernel, Outline};
+use crate::splat::{Epsilon, Kernel, Outline, SplatSettings};
 
 /// A method by its name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,8 +38,8 @@ impl MethodName {
         match method {
             Method::Ewa(_) => Self::Ewa,
             Method::SinglePass(_) => Self::SinglePass,
-            Method::Transparent(transparent::Settings { nearest: None, .. }) => Self::Transparent,
-            Method::Transparent(_) => Self::TransparentHq,
+            Method::Transparent(_) => Self::Transparent,
+            Method::TransparentHq(_) => Self::TransparentHq,
             Method::Peeling(_) => Self::Peeling,
             Method::Pyramid(_) => Self::Pyramid,
             Method::Template(_) => Self::Template,
@@ -60,9 +60,9 @@ pub struct MethodChoice {
     pub cutoff: Option<f32>,
     /// See [`Kernel`].
     pub low_pass: Option<f32>,
-    /// See [`ewa::Settings`].
+    /// See [`SplatSettings`].
     pub epsilon: Option<Epsilon>,
-    /// See [`ewa::Settings`].
+    /// See [`SplatSettings`].
     pub cull: Option<bool>,
     /// Whether groups keep what is nearest to its own centre, [`DepthTest::Voronoi`]; yes if
     /// absent.
@@ -153,7 +153,7 @@ impl MethodChoice {
         if self.bends.is_some() && self.refraction.is_none() {
             return Err(Error::Invalid("`bends` means nothing without a `refraction`".into()));
         }
-        let splats = self.splats(ewa::Settings::default());
+        let splats = self.splats(SplatSettings::default());
         let method = match name {
             Pyramid => {
                 let default = pyramid::Settings::default();
@@ -181,19 +181,15 @@ impl MethodChoice {
                     layers: self.peel.unwrap_or(default.layers),
                 })
             }
-            Transparent | TransparentHq => {
-                let default = transparent::Settings::default();
-                Method::Transparent(transparent::Settings {
-                    splats: self.splats(default.splats),
-                    bins: self.bin_count(),
-                    holes: self.holes.unwrap_or(default.holes),
-                    nearest: (name == TransparentHq).then(|| self.depth()),
-                    refraction: self.refraction.map(|ratio| Refraction {
-                        ratio,
-                        layers: self.bends.unwrap_or(Layers::Multiple),
-                    }),
-                })
-            }
+            Transparent => Method::Transparent(self.layers()),
+            TransparentHq => Method::TransparentHq(transparent_hq::Settings {
+                layers: self.layers(),
+                nearest: self.depth(),
+                refraction: self.refraction.map(|ratio| Refraction {
+                    ratio,
+                    layers: self.bends.unwrap_or(Layers::Multiple),
+                }),
+            }),
         };
         method.check()?;
         Ok(method)
@@ -253,9 +249,9 @@ impl MethodChoice {
         }
     }
 
-    fn splats(&self, default: ewa::Settings) -> ewa::Settings {
+    fn splats(&self, default: SplatSettings) -> SplatSettings {
         let preset = self.kernel.unwrap_or(default.kernel);
-        ewa::Settings {
+        SplatSettings {
             kernel: Kernel {
                 outline: self.outline.unwrap_or(preset.outline),
                 cutoff: self.cutoff.unwrap_or(preset.cutoff),
@@ -263,6 +259,15 @@ impl MethodChoice {
             },
             epsilon: self.epsilon.unwrap_or(default.epsilon),
             cull: self.cull.unwrap_or(default.cull),
+        }
+    }
+
+    fn layers(&self) -> transparent::Settings {
+        let default = transparent::Settings::default();
+        transparent::Settings {
+            splats: self.splats(default.splats),
+            bins: self.bin_count(),
+            holes: self.holes.unwrap_or(default.holes),
         }
     }
 
@@ -282,7 +287,7 @@ impl GroupChoice {
     /// The grouping for a method: what was chosen, and its defaults for the rest.
     #[must_use]
     pub fn grouping(&self, method: &Method) -> Grouping {
-        let blends = matches!(method, Method::Transparent(_));
+        let blends = method.needs_order();
         let (overlap, count, extension) = if blends {
             (1.0, Some(DEFAULT_TRANSPARENT_GROUPS), ExtensionChoice::Add)
         } else {

@@ -30,6 +30,7 @@ mod choice;
 mod draw;
 mod load;
 mod parse;
+mod ready;
 #[cfg(test)]
 mod tests;
 pub mod words;
@@ -40,13 +41,12 @@ pub use choice::{
 };
 pub use draw::Draw;
 pub use load::{Loaded, ModelReport};
+pub use ready::Ready;
 
 use crate::error::{Error, Result};
-use crate::frame::Exec;
-use crate::index::grouping::{Extended, GroupingReport};
+use crate::index::grouping::Grouping;
 use crate::method::Method;
-use crate::scene::Groups;
-use crate::scene::{Camera, Lens, Light, Phong, Pose, Scene, Similarity, Surfels};
+use crate::scene::{Camera, Lens, Light, Phong, Pose, Scene, Similarity};
 use crate::source::Shape;
 use glam::{DVec3, Vec3};
 use std::path::{Path, PathBuf};
@@ -258,31 +258,11 @@ impl SceneFile {
     }
 }
 
-/// The groups of a scene, and how they were made; nothing if they were read.
-pub type Made = (Groups, Option<(GroupingReport, Option<Extended>)>);
-
 impl SceneFile {
-    /// The groups for a method, none for one that draws none: those that the surfels of this scene
-    /// brought along, unless something was chosen for them; else they are made.
-    ///
-    /// # Errors
-    /// As [`crate::index::grouping::Grouping::groups`].
-    pub fn groups(
-        &self,
-        surfels: &Surfels,
-        method: &Method,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Option<Made>> {
-        if !method.needs_groups() {
-            return Ok(None);
-        }
-        if let Some(read) = surfels.groups().filter(|_| self.groups.is_open()) {
-            return Ok(Some((read.clone(), None)));
-        }
-        let grouping = self.groups.grouping(method);
-        let (groups, report, extended) = grouping.groups(surfels, exec, progress)?;
-        Ok(Some((groups, Some((report, extended)))))
+    /// The grouping that was chosen for a method; none: that of the file, or of the method.
+    #[must_use]
+    pub fn grouping(&self, method: &Method) -> Option<Grouping> {
+        (!self.groups.is_open()).then(|| self.groups.grouping(method))
     }
 }
 

@@ -1,13 +1,12 @@
 //! Settings as words: what scene files, the command line and the text in a picture call them.
 
-use crate::method::ewa::Epsilon;
 use crate::method::pyramid::{Occlusion, Weights};
 use crate::method::single_pass::DepthTest;
 use crate::method::template::LevelRule;
 use crate::method::transparent::Holes;
 use crate::shade::optics::Layers;
 use crate::source::Shape;
-use crate::splat::{Kernel, Outline};
+use crate::splat::{Epsilon, Kernel, Outline};
 
 use super::{EnvironmentChoice, ExtensionChoice, MethodName, Number};
 

@@ -14,80 +14,56 @@
 //!    weight. A pixel without weight is empty.
 //! 5. **Deferred shading**, see [`crate::shade`].
 //!
-//! [`plain`] is the definition, over any [`Real`] and one fragment at a time; [`fast`] gives the
-//! same bits for `f32`. [`explain`] lists every decision at one pixel.
+//! [`plain`] is the definition, over any [`Exact`] number and one fragment at a time; [`fast`] gives
+//! the same bits for `f32`. [`explain`] lists every decision at one pixel.
 //!
 //! [`Splat`]: crate::splat::Splat
-//! [`Real`]: crate::number::Real
+//! [`Exact`]: crate::number::Exact
 
 pub mod explain;
 pub mod fast;
 mod picture;
 pub mod plain;
 
-pub use picture::{render, render_f32, render_f32_again};
+pub use crate::splat::SplatSettings as Settings;
 
-use crate::error::{Error, Result};
-use crate::scene::Surfels;
-use crate::splat::Kernel;
+use crate::error::Result;
+use crate::frame::{Frame, Pool};
+use crate::method::algorithm::{Algorithm, Job};
+use crate::method::{Picture, Stage};
+use crate::number::Exact;
+use crate::scene::{Camera, Scene};
 
-/// What is computed; everything here may change the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Reconstruction kernel and low-pass filter.
-    pub kernel: Kernel,
-    /// Depth of the band that belongs to the visible surface.
-    pub epsilon: Epsilon,
-    /// Whether surfels seen from behind are dropped. On by default: at the silhouette of a closed
-    /// surface, discs of its far side stick out.
-    pub cull: bool,
-}
+impl Algorithm for Settings {
+    const NAME: &'static str = "ewa";
+    const SUMMARY: &'static str = "EWA surface splatting in 2+1 passes [ZPvBG01, GP03]";
+    const STAGES: &'static [Stage] = &[];
+    type Memory = ();
 
-impl Default for Settings {
-    fn default() -> Self {
-        Self { kernel: Kernel::DEFAULT, epsilon: Epsilon::default(), cull: true }
+    fn check(&self) -> Result<()> {
+        Self::check(self)
     }
-}
 
-/// A depth, in one of two units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Epsilon {
-    /// World units.
-    World(f32),
-    /// Multiples of the median radius of the scene's surfels.
-    MedianRadii(f32),
-}
-
-impl Default for Epsilon {
-    /// One median radius.
-    fn default() -> Self {
-        Self::MedianRadii(1.0)
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+        picture::define(job, self, stages)
     }
-}
 
-impl Epsilon {
-    /// The depth in world units; the product with the median is rounded once.
-    #[must_use]
-    pub fn resolve(&self, surfels: &Surfels) -> f32 {
-        match *self {
-            Self::World(depth) => depth,
-            Self::MedianRadii(count) => count * surfels.median_radius(),
-        }
+    fn draw(&self, job: &Job<'_>, (): &mut (), pool: &mut Pool) -> Result<Picture<f32>> {
+        picture::draw(job, self, pool)
     }
-}
 
-impl Settings {
-    /// Whether the numbers are in range.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if the kernel is out of range, or epsilon is negative or NaN.
-    pub fn check(&self) -> Result<()> {
-        self.kernel.check()?;
-        let (Epsilon::World(value) | Epsilon::MedianRadii(value)) = self.epsilon;
-        if value >= 0.0 {
-            Ok(())
-        } else {
-            Err(Error::Invalid(format!("epsilon: {value}; give a number >= 0")))
-        }
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+        let _ = (job, from);
+        Err(crate::method::stage::unknown(stage))
+    }
+
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
+        let Job { scene, camera, exec, .. } = *job;
+        let found = explain::explain::<R>(&scene.surfels, camera, self, exec, pixel)?;
+        Ok(found.to_string())
+    }
+
+    fn resolved(&self, scene: &Scene, _: &Camera) -> Vec<(&'static str, String)> {
+        self.resolved(scene)
     }
 }

@@ -4,31 +4,19 @@ use super::Settings;
 use super::fast;
 use super::plain::Plain;
 use crate::error::Result;
-use crate::frame::{Exec, Frame, Samples, Wanted};
+use crate::frame::{Pool, Samples, Wanted};
+use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, finish, framebuffer, named};
-use crate::number::Real;
-use crate::scene::{Camera, Scene};
+use crate::number::Exact;
+use crate::scene::Scene;
 
-/// Renders with the definition, in any number; with `stages`, every stage leaves its planes:
-///
-/// | stage | planes |
-/// |---|---|
-/// | visibility | `visibility.Z`, `visibility.id` |
-/// | attributes | `attributes.R G B` (if the scene has colours), `attributes.normal.X Y Z`, `attributes.weight`: sums; `attributes.count`: fragments, up to 255 |
-/// | | `margin`: how far the nearest decision of the pixel was from flipping, in ulp; +inf: no decision. Taken over the splats whose bounds hold the pixel |
-/// | normalization | `resolved.R G B` (if the scene has colours) |
-///
-/// # Errors
-/// [`crate::Error::Invalid`] if the camera or the settings are out of range.
-pub fn render<R: Real>(
-    scene: &Scene,
-    camera: &Camera,
+/// The definition, in any number; with `stages`, every stage leaves its planes.
+pub(super) fn define<R: Exact>(
+    job: &Job<'_>,
     settings: &Settings,
-    exec: &Exec,
     stages: bool,
 ) -> Result<Picture<R>> {
-    camera.check()?;
-    settings.check()?;
+    let Job { scene, camera, exec, .. } = *job;
     let mut clock = Clock::default();
     let mut planes = Vec::new();
     let mut plain =
@@ -63,47 +51,13 @@ pub fn render<R: Real>(
         planes.extend(color.map(|p| named("resolved", Samples::Color(p))));
     }
     let tally = plain.tally();
-    Ok(finish(plain.target, planes, tally, clock, (scene, camera, exec)))
+    Ok(finish(plain.target, planes, tally, clock, job))
 }
 
-/// Renders in `f32` by the fast path: the bits of [`render`], without the planes of the stages.
-///
-/// # Errors
-/// As [`render`].
-pub fn render_f32(
-    scene: &Scene,
-    camera: &Camera,
-    settings: &Settings,
-    exec: &Exec,
-) -> Result<Picture<f32>> {
-    render_into(scene, camera, settings, exec, None)
-}
-
-/// As [`render_f32`], in the memory of an earlier picture, which is much of the time of a small
-/// one.
-///
-/// # Errors
-/// As [`render`].
-pub fn render_f32_again(
-    scene: &Scene,
-    camera: &Camera,
-    settings: &Settings,
-    exec: &Exec,
-    earlier: Picture<f32>,
-) -> Result<Picture<f32>> {
-    render_into(scene, camera, settings, exec, Some(earlier.frame))
-}
-
-fn render_into(
-    scene: &Scene,
-    camera: &Camera,
-    settings: &Settings,
-    exec: &Exec,
-    earlier: Option<Frame<f32>>,
-) -> Result<Picture<f32>> {
-    camera.check()?;
-    settings.check()?;
-    let mut target = framebuffer(camera, wanted(scene, false), earlier);
+/// The fast path for `f32`.
+pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
+    let Job { scene, camera, exec, .. } = *job;
+    let mut target = framebuffer(camera, wanted(scene, false), pool);
     let (tally, times) = fast::render(&scene.surfels, camera, settings, exec, &mut target);
     let clock = Clock::of(vec![
         ("projection", times.project),
@@ -111,7 +65,7 @@ fn render_into(
         ("attributes", times.attributes),
         ("normalization", times.normalize),
     ]);
-    Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
+    Ok(finish(target, Vec::new(), tally, clock, job))
 }
 
 /// The planes that a scene needs.

@@ -6,10 +6,10 @@ pub(super) mod resolve;
 mod store;
 pub(super) mod tile;
 
-use super::ewa::Settings;
 use super::prepare::Prepared;
 use crate::frame::{Exec, Framebuffer, Grid};
 use crate::scene::{Camera, Surfels};
+use crate::splat::SplatSettings;
 use crate::splat::batch;
 use std::time::{Duration, Instant};
 use tile::{Record, Tile};
@@ -18,7 +18,7 @@ use tile::{Record, Tile};
 pub(super) fn prepare(
     surfels: &Surfels,
     camera: &Camera,
-    settings: &Settings,
+    settings: &SplatSettings,
     (exec, grid): (&Exec, &Grid),
 ) -> Prepared<f32, Record> {
     let colors = surfels.color();

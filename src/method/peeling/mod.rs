@@ -63,17 +63,22 @@ mod picture;
 mod tests;
 
 pub use layers::{Layer, Peeling, Pixel};
-pub use picture::{STAGES, render};
+pub use picture::STAGES;
 
-use super::ewa;
 use crate::error::{Error, Result};
+use crate::frame::Frame;
+use crate::method::algorithm::{Algorithm, Job};
+use crate::method::{Picture, Stage};
+use crate::number::Exact;
+use crate::scene::{Camera, Scene};
+use crate::splat::SplatSettings;
 
 /// What is computed; everything here may change the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Footprints, the epsilon of each layer, and culling: off by default, as the far side of a
     /// transparent object is seen.
-    pub splats: ewa::Settings,
+    pub splats: SplatSettings,
     /// The most layers of a pixel: 1 to [`MAX_LAYERS`].
     pub layers: u32,
 }
@@ -84,7 +89,7 @@ pub const MAX_LAYERS: u32 = 256;
 impl Default for Settings {
     /// 64 layers, seen from both sides.
     fn default() -> Self {
-        Self { splats: ewa::Settings { cull: false, ..ewa::Settings::default() }, layers: 64 }
+        Self { splats: SplatSettings::BOTH_SIDES, layers: 64 }
     }
 }
 
@@ -92,7 +97,7 @@ impl Settings {
     /// Whether the numbers are in range.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`ewa::Settings::check`], and if the number of layers is out of range.
+    /// [`Error::Invalid`] as [`SplatSettings::check`], and if the number of layers is out of range.
     pub fn check(&self) -> Result<()> {
         self.splats.check()?;
         if (1..=MAX_LAYERS).contains(&self.layers) {
@@ -100,5 +105,35 @@ impl Settings {
         } else {
             Err(Error::Invalid(format!("layers: {}; give 1 to {MAX_LAYERS}", self.layers)))
         }
+    }
+}
+
+impl Algorithm for Settings {
+    const NAME: &'static str = "peeling";
+    const SUMMARY: &'static str =
+        "depth peeling, each layer by 2+1 passes: the truth of transparency [Mam89, Eve02]";
+    const STAGES: &'static [Stage] = &[];
+    type Memory = ();
+
+    fn check(&self) -> Result<()> {
+        Self::check(self)
+    }
+
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+        picture::define(job, self, stages)
+    }
+
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+        let _ = (job, from);
+        Err(crate::method::stage::unknown(stage))
+    }
+
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
+        let _ = (job, pixel);
+        Err(Error::Usage("there is no replay of this method".into()))
+    }
+
+    fn resolved(&self, scene: &Scene, _: &Camera) -> Vec<(&'static str, String)> {
+        self.splats.resolved(scene)
     }
 }

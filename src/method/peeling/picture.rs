@@ -2,38 +2,21 @@
 
 use super::{Layer, Peeling, Settings};
 use crate::error::Result;
-use crate::frame::{Exec, Frame, Grid, NO_ID, NamedPlane, Samples};
+use crate::frame::{Frame, Grid, NO_ID, NamedPlane, Samples};
+use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, before_environment, named};
-use crate::number::Real;
-use crate::scene::{Camera, Scene};
+use crate::number::Exact;
 
 /// How many layers leave planes.
 pub const STAGES: u32 = 8;
 
-/// Peels a scene, in any number. The picture is, in this order,
-///
-/// | plane | |
-/// |---|---|
-/// | `layerJ.R G B` | with `stages`, of each layer J = 1 to [`STAGES`] that the settings allow: shaded, not multiplied by its opacity |
-/// | `layerJ.A` | its opacity, 0 where there is none |
-/// | `layerJ.Z` | depth of its nearest fragment; +inf where there is none |
-/// | `layerJ.count` | fragments that were averaged, up to 255 |
-/// | `R G B` | all layers, blended over black: multiplied by `A`; over the environment where the scene has one, and then `A` is 1 |
-/// | `A` | opacity, in [0, 1] |
-/// | `Z`, `id` | depth and surfel of the nearest fragment of all |
-/// | `layers` | how many layers were peeled, up to 255 |
-///
-/// # Errors
-/// [`crate::Error::Invalid`] if the camera or the settings are out of range.
-pub fn render<R: Real>(
-    scene: &Scene,
-    camera: &Camera,
+/// The definition, in any number; with `stages`, the first [`STAGES`] layers leave their planes.
+pub(super) fn define<R: Exact>(
+    job: &Job<'_>,
     settings: &Settings,
-    exec: &Exec,
     stages: bool,
 ) -> Result<Picture<R>> {
-    camera.check()?;
-    settings.check()?;
+    let Job { scene, camera, exec, .. } = *job;
     let mut clock = Clock::default();
     let peeling = Peeling::<R>::project(scene, camera, settings, exec);
     clock.lap("projection");
@@ -63,7 +46,7 @@ pub fn render<R: Real>(
 }
 
 /// The planes of the first layers: `layers[tile][layer][pixel]`, fewer where a tile has fewer.
-fn layer_planes<R: Real>(
+fn layer_planes<R: Exact>(
     grid: &Grid,
     layers: &[Vec<Vec<Layer<R>>>],
     count: usize,

@@ -25,13 +25,14 @@ pub mod plain;
 pub mod pull;
 pub mod push;
 
-pub use picture::{render, render_f32};
-
 use crate::composite::mean::Mean;
 use crate::error::Result;
 use crate::frame::raster::Snap;
+use crate::frame::{Frame, Pool};
+use crate::method::algorithm::{Algorithm, Job};
 use crate::method::projection::{Kind, Sample};
-use crate::number::{Real, Vector2, Vector3};
+use crate::method::{Picture, Stage};
+use crate::number::{Exact, Vector2, Vector3};
 
 /// How the cells that a pixel is interpolated from are weighted \[MKC08, section 3.3, Fig. 4\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -112,7 +113,7 @@ pub struct Cell<R> {
     pub color: [R; 3],
 }
 
-impl<R: Real> Cell<R> {
+impl<R: Exact> Cell<R> {
     /// Nothing: kind [`Kind::Empty`], front +inf, back -inf, all else 0.
     #[must_use]
     pub fn empty() -> Self {
@@ -190,5 +191,41 @@ impl<R: Real> Cell<R> {
             tangent: vector(|cell| cell.tangent),
             color: [0, 1, 2].map(|c| mean.of(cells.map(|cell| cell.color[c]))),
         }
+    }
+}
+
+impl Algorithm for Settings {
+    const NAME: &'static str = "pyramid";
+    const SUMMARY: &'static str =
+        "one pixel a point, pull-push interpolation; ribbons, tubes, polygons and hybrids [MKC08]";
+    const STAGES: &'static [Stage] = &[];
+    const DRAWS_PRIMITIVES: bool = true;
+    type Memory = fast::Levels;
+
+    fn check(&self) -> Result<()> {
+        Self::check(self)
+    }
+
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+        picture::define(job, self, stages)
+    }
+
+    fn draw(
+        &self,
+        job: &Job<'_>,
+        memory: &mut fast::Levels,
+        pool: &mut Pool,
+    ) -> Result<Picture<f32>> {
+        picture::draw(job, self, memory, pool)
+    }
+
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+        let _ = (job, from);
+        Err(crate::method::stage::unknown(stage))
+    }
+
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
+        let _ = (job, pixel);
+        Err(crate::Error::Usage("there is no replay of this method".into()))
     }
 }

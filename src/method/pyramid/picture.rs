@@ -5,36 +5,22 @@ use super::plain::{pull_all, push_all};
 use super::{Cell, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
-use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples, pyramid};
+use crate::frame::{Frame, NamedPlane, Plane, Pool, Samples, pyramid};
+use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, before_environment, color, named, scalar};
 use crate::method::projection::{self, Has, Kind, world};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
 
-/// Renders with the definition, in any number. Beside the usual planes the picture has `kind`, and
-/// `tangent` if the scene has tubes. With `stages`, every stage leaves its planes:
-///
-/// | stage | planes |
-/// |---|---|
-/// | projection | see [`mod@crate::method::projection`] |
-/// | pull | for each level from 1 on, `pull01` ...: `.kind`, `.front`, `.back`, `.radius`, `.displacement.X`, `.Y`, `.normal`, and if the scene has them `.R G B`, `.tangent` |
-/// | push | the same for each level but the coarsest, from `push00` on |
-///
-/// A level lies in the upper left corner of its planes; the rest is as in an empty cell.
-///
-/// # Errors
-/// [`crate::Error::Invalid`] if the camera or the settings are out of range.
-pub fn render<R: Real>(
-    scene: &Scene,
-    camera: &Camera,
+/// The definition, in any number; with `stages`, every stage leaves its planes.
+pub(super) fn define<R: Exact>(
+    job: &Job<'_>,
     settings: &Settings,
-    exec: &Exec,
     stages: bool,
 ) -> Result<Picture<R>> {
-    camera.check()?;
-    settings.check()?;
+    let Job { scene, camera, exec, .. } = *job;
     let snap = Snap::new(settings.subpixel_bits)?;
     let has = Has::of(scene);
     let mut clock = Clock::default();
@@ -67,29 +53,22 @@ pub fn render<R: Real>(
         color: cells.map(|cell| cell.color),
         colored: has.color,
     };
-    Ok(finish(surface, planes, projected.tally, clock, (scene, camera, exec)))
+    Ok(finish(surface, planes, projected.tally, clock, job))
 }
 
-/// Renders in `f32` by the fast path: the bits of [`render`], without the planes of the stages, in
-/// the memory of `levels` and of an earlier picture.
-///
-/// # Errors
-/// As [`render`].
-pub fn render_f32(
-    scene: &Scene,
-    camera: &Camera,
+/// The fast path for `f32`.
+pub(super) fn draw(
+    job: &Job<'_>,
     settings: &Settings,
-    exec: &Exec,
     levels: &mut Levels,
-    earlier: Option<Picture<f32>>,
+    pool: &mut Pool,
 ) -> Result<Picture<f32>> {
-    camera.check()?;
-    settings.check()?;
-    let mut surface = Surface::new(scene, camera, earlier.map(|picture| picture.frame));
+    let Job { scene, camera, exec, .. } = *job;
+    let mut surface = Surface::new(scene, camera, pool);
     let (tally, times) = levels.draw(scene, camera, settings, exec, &mut surface)?;
     let laps = vec![("projection", times.project), ("pull", times.pull), ("push", times.push)];
     let clock = Clock::of(laps);
-    Ok(finish(surface, Vec::new(), tally, clock, (scene, camera, exec)))
+    Ok(finish(surface, Vec::new(), tally, clock, job))
 }
 
 /// What is seen, pixel by pixel; vectors in world space.
@@ -111,60 +90,30 @@ pub(super) struct Surface<R> {
 }
 
 impl Surface<f32> {
-    /// What a scene needs, in the memory of an earlier frame of the same size; the values are any.
-    fn new(scene: &Scene, camera: &Camera, earlier: Option<Frame<f32>>) -> Self {
-        let (width, height) = (camera.width, camera.height);
-        let has = Has::of(scene);
-        let mut surface = Self {
-            kind: Plane::filled(0, 0, 0),
-            alpha: Plane::filled(0, 0, 0.0),
-            depth: Plane::filled(0, 0, 0.0),
-            normal: None,
-            tangent: None,
-            color: Plane::filled(0, 0, [0.0; 3]),
+    /// What a scene needs, in memory that is used again: the values are any.
+    fn new(scene: &Scene, camera: &Camera, pool: &mut Pool) -> Self {
+        let (size, has) = ([camera.width, camera.height], Has::of(scene));
+        Self {
+            kind: pool.count(size),
+            alpha: pool.scalar(size),
+            depth: pool.scalar(size),
+            normal: (!scene.lights.is_empty()).then(|| pool.triple(size)),
+            tangent: has.tangent.then(|| pool.triple(size)),
+            color: pool.triple(size),
             colored: has.color,
-        };
-        let earlier = earlier.filter(|frame| (frame.width, frame.height) == (width, height));
-        for NamedPlane { name, samples } in earlier.into_iter().flat_map(|frame| frame.planes) {
-            match (name.as_str(), samples) {
-                ("kind", Samples::Count(plane)) => surface.kind = plane,
-                ("A", Samples::Scalar(plane)) => surface.alpha = plane,
-                ("Z", Samples::Scalar(plane)) => surface.depth = plane,
-                ("normal", Samples::Vector(plane)) => surface.normal = Some(plane),
-                ("tangent", Samples::Vector(plane)) => surface.tangent = Some(plane),
-                ("", Samples::Color(plane)) => surface.color = plane,
-                _ => {}
-            }
         }
-        fit(&mut surface.kind, camera, 0);
-        fit(&mut surface.alpha, camera, 0.0);
-        fit(&mut surface.depth, camera, 0.0);
-        fit(&mut surface.color, camera, [0.0; 3]);
-        let vectors = |plane: Option<Plane<[f32; 3]>>, wanted: bool| {
-            let plane = plane.filter(|_| wanted);
-            wanted.then(|| plane.unwrap_or_else(|| Plane::filled(width, height, [0.0; 3])))
-        };
-        surface.normal = vectors(surface.normal, !scene.lights.is_empty());
-        surface.tangent = vectors(surface.tangent, has.tangent);
-        surface
-    }
-}
-
-/// Replaces a plane that is not of the size of the picture.
-fn fit<T: Clone>(plane: &mut Plane<T>, camera: &Camera, value: T) {
-    if plane.width() != camera.width {
-        *plane = Plane::filled(camera.width, camera.height, value);
     }
 }
 
 /// Deferred shading, and the planes of the picture.
-fn finish<R: Real>(
+fn finish<R: Exact>(
     surface: Surface<R>,
     mut planes: Vec<NamedPlane<R>>,
     tally: Tally,
     mut clock: Clock,
-    (scene, camera, exec): (&Scene, &Camera, &Exec),
+    job: &Job<'_>,
 ) -> Picture<R> {
+    let Job { scene, camera, exec, .. } = *job;
     let Surface { kind, alpha, depth, normal, tangent, mut color, colored } = surface;
     let (width, height) = (depth.width(), depth.height());
     clock.restart();
@@ -182,7 +131,7 @@ fn finish<R: Real>(
 }
 
 /// The planes of a level, of the size of the picture.
-fn level_planes<R: Real>(
+fn level_planes<R: Exact>(
     name: &str,
     cells: &Plane<Cell<R>>,
     camera: &Camera,

@@ -55,20 +55,22 @@ pub mod fast;
 mod picture;
 pub mod plain;
 
-pub(super) use picture::image_planes;
-pub use picture::{render, render_f32, render_f32_again};
-
-use super::ewa;
 use crate::composite::bins::{DepthBins, MAX_BINS, Range};
 use crate::error::{Error, Result};
-use crate::number::Real;
-use crate::scene::{Camera, Surfels};
+use crate::frame::{Frame, Pool};
+use crate::index::grouping::{Extension, Grouping, Rules};
+use crate::method::algorithm::{Algorithm, Job};
+use crate::method::{Picture, Stage};
+use crate::number::Exact;
+use crate::scene::{Camera, Scene, Surfels};
+use crate::splat::SplatSettings;
+pub(super) use picture::image_planes;
 
 /// What is computed; everything here may change the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings {
     /// Footprints, the epsilon of the compositing pass, culling.
-    pub splats: ewa::Settings,
+    pub splats: SplatSettings,
     /// Which fragment of a group is kept.
     pub depth: DepthTest,
 }
@@ -118,13 +120,27 @@ impl BinCount {
             Self::Epsilon => Range::of_epsilon(nearest, farthest, epsilon),
         }
     }
+
+    /// The bins of a picture as TOML: `d_min`, `d_max` and n of \[ZP06, eq. 6\], if there are not
+    /// too many.
+    pub(in crate::method) fn resolved(
+        &self,
+        splats: &SplatSettings,
+        scene: &Scene,
+        camera: &Camera,
+    ) -> Option<(&'static str, String)> {
+        let epsilon = splats.epsilon.resolve(&scene.surfels);
+        let Range { nearest, farthest, count } =
+            self.resolve(&scene.surfels, camera, epsilon).ok()?;
+        Some(("bins_in_world_units", format!("[{nearest:?}, {farthest:?}, {count}]")))
+    }
 }
 
 impl Settings {
     /// Whether the numbers are in range.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`ewa::Settings::check`] and [`BinCount::check`].
+    /// [`Error::Invalid`] as [`SplatSettings::check`] and [`BinCount::check`].
     pub fn check(&self) -> Result<()> {
         self.splats.check()?;
         match &self.depth {
@@ -134,7 +150,7 @@ impl Settings {
     }
 
     /// The bins of the Voronoi depth test; none for the plain one.
-    fn bins<R: Real>(&self, surfels: &Surfels, camera: &Camera) -> Result<Option<DepthBins<R>>> {
+    fn bins<R: Exact>(&self, surfels: &Surfels, camera: &Camera) -> Result<Option<DepthBins<R>>> {
         let DepthTest::Voronoi(bins) = &self.depth else { return Ok(None) };
         let epsilon = self.splats.epsilon.resolve(surfels);
         Ok(Some(DepthBins::new(&bins.resolve(surfels, camera, epsilon)?)))
@@ -156,4 +172,49 @@ pub fn depth_range(surfels: &Surfels, camera: &Camera) -> (f32, f32) {
     let (low, high) = ((t - radius) as f32, (t + radius) as f32);
     let low = if low > camera.near { low } else { camera.near };
     (low, if high > low { high } else { low.next_up() })
+}
+
+impl Algorithm for Settings {
+    const NAME: &'static str = "single-pass";
+    const SUMMARY: &'static str = "one geometry pass into the depth-images of groups, epsilon-z compositing [ZP06, Algorithm 1]";
+    const STAGES: &'static [Stage] = &[];
+    /// c = 0.4, which \[ZP06, section 6.1\] finds acceptable; opposite normals relaxed.
+    const GROUPING: Option<Grouping> = Some(Grouping {
+        rules: Rules { overlap: 0.4, opposite: true, coplanar: None },
+        count: None,
+        extension: Extension::None,
+    });
+    type Memory = ();
+
+    fn check(&self) -> Result<()> {
+        Self::check(self)
+    }
+
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+        picture::define(job, self, stages)
+    }
+
+    fn draw(&self, job: &Job<'_>, (): &mut (), pool: &mut Pool) -> Result<Picture<f32>> {
+        picture::draw(job, self, pool)
+    }
+
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+        let _ = (job, from);
+        Err(crate::method::stage::unknown(stage))
+    }
+
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
+        let Job { scene, camera, exec, index } = *job;
+        let groups = index.groups()?;
+        let found = explain::explain::<R>(&scene.surfels, groups, camera, self, exec, pixel)?;
+        Ok(found.to_string())
+    }
+
+    fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
+        let mut resolved = self.splats.resolved(scene);
+        if let DepthTest::Voronoi(bins) = &self.depth {
+            resolved.extend(bins.resolved(&self.splats, scene, camera));
+        }
+        resolved
+    }
 }

@@ -4,32 +4,20 @@ use super::plain::{Composite, Geometry, Images, store};
 use super::{Settings, fast};
 use crate::composite::groups::Sample;
 use crate::error::Result;
-use crate::frame::{Exec, Frame, Framebuffer, Grid, NO_ID, NamedPlane, Samples, Wanted};
+use crate::frame::{Framebuffer, Grid, NO_ID, NamedPlane, Pool, Samples, Wanted};
+use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, finish, framebuffer, named};
-use crate::number::Real;
-use crate::scene::Groups;
-use crate::scene::{Camera, Scene};
+use crate::number::Exact;
+use crate::scene::Scene;
 
-/// Renders with the definition, in any number; with `stages`, every stage leaves its planes:
-///
-/// | stage | planes |
-/// |---|---|
-/// | geometry pass | for each group k (of two digits) `groupK.Z`, `groupK.id`, `groupK.weight`, `groupK.normal.X Y Z` and, if the scene has colours, `groupK.R G B`: weighted, as eq. 4 has them; `groupK.voronoi`: Voronoi-enhanced depth in bins, if it is used; +inf: empty |
-/// | compositing pass | `sums.R G B` (if the scene has colours), `sums.normal.X Y Z`, `sums.weight`; `sums.count`: how many groups passed the epsilon-z test |
-/// | normalization | `resolved.R G B` (if the scene has colours) |
-///
-/// # Errors
-/// [`crate::Error::Invalid`] if the camera or the settings are out of range, or if there are not as
-/// many surfels in the groups as in the scene.
-pub fn render<R: Real>(
-    scene: &Scene,
-    groups: &Groups,
-    camera: &Camera,
+/// The definition, in any number; with `stages`, every stage leaves its planes.
+pub(super) fn define<R: Exact>(
+    job: &Job<'_>,
     settings: &Settings,
-    exec: &Exec,
     stages: bool,
 ) -> Result<Picture<R>> {
-    let wanted = check(scene, groups, camera, settings, stages)?;
+    let Job { scene, camera, exec, .. } = *job;
+    let (groups, wanted) = (job.index.groups()?, wanted(scene, stages));
     let mut clock = Clock::default();
     let geometry = Geometry::<R>::project(&scene.surfels, groups, camera, settings, exec)?;
     let mut target = Framebuffer::new(camera.width, camera.height, R::ZERO, wanted);
@@ -52,76 +40,34 @@ pub fn render<R: Real>(
         planes.extend(target.stencil.take().map(|p| named("sums.count", Samples::Count(p))));
         planes.extend(target.color.clone().map(|p| named("resolved", Samples::Color(p))));
     }
-    Ok(finish(target, planes, geometry.tally(), clock, (scene, camera, exec)))
+    Ok(finish(target, planes, geometry.tally(), clock, job))
 }
 
-/// Renders in `f32` by the fast path: the bits of [`render`], without the planes of the stages.
-///
-/// # Errors
-/// As [`render`].
-pub fn render_f32(
-    scene: &Scene,
-    groups: &Groups,
-    camera: &Camera,
-    settings: &Settings,
-    exec: &Exec,
-) -> Result<Picture<f32>> {
-    render_into(scene, groups, (camera, settings, exec), None)
-}
-
-/// As [`render_f32`], in the memory of an earlier picture, which is much of the time of a small
-/// one.
-///
-/// # Errors
-/// As [`render`].
-pub fn render_f32_again(
-    scene: &Scene,
-    groups: &Groups,
-    camera: &Camera,
-    settings: &Settings,
-    exec: &Exec,
-    earlier: Picture<f32>,
-) -> Result<Picture<f32>> {
-    render_into(scene, groups, (camera, settings, exec), Some(earlier.frame))
-}
-
-fn render_into(
-    scene: &Scene,
-    groups: &Groups,
-    (camera, settings, exec): (&Camera, &Settings, &Exec),
-    earlier: Option<Frame<f32>>,
-) -> Result<Picture<f32>> {
-    let wanted = check(scene, groups, camera, settings, false)?;
-    let mut target = framebuffer(camera, wanted, earlier);
+/// The fast path for `f32`.
+pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
+    let Job { scene, camera, exec, .. } = *job;
+    let groups = job.index.groups()?;
+    let mut target = framebuffer(camera, wanted(scene, false), pool);
     let (tally, times) = fast::render(&scene.surfels, groups, camera, settings, exec, &mut target)?;
     let clock = Clock::of(vec![
         ("projection", times.project),
         ("geometry", times.geometry),
         ("compositing", times.compositing),
     ]);
-    Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
+    Ok(finish(target, Vec::new(), tally, clock, job))
 }
 
-/// The planes that a picture needs.
-fn check(
-    scene: &Scene,
-    groups: &Groups,
-    camera: &Camera,
-    settings: &Settings,
-    stages: bool,
-) -> Result<Wanted> {
-    camera.check()?;
-    settings.check()?;
-    groups.check(&scene.surfels)?;
-    Ok(Wanted {
+/// The planes that a scene needs.
+fn wanted(scene: &Scene, stages: bool) -> Wanted {
+    Wanted {
         normal: stages || !scene.lights.is_empty(),
         color: scene.surfels.color().is_some(),
         observed: stages,
-    })
+    }
 }
 
 /// The depth-image of each group.
-pub(in crate::method) fn image_planes<R: Real>(
+pub(in crate::method) fn image_planes<R: Exact>(
     prefix: &str,
     geometry: &Geometry<'_, R>,
     images: &[Images<R>],
@@ -155,7 +101,7 @@ pub(in crate::method) fn image_planes<R: Real>(
 }
 
 /// The sums of the compositing pass.
-fn sum_planes<R: Real>(
+fn sum_planes<R: Exact>(
     grid: &Grid,
     composites: &[Vec<Composite<R>>],
     color: bool,

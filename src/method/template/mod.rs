@@ -21,12 +21,12 @@ pub mod gather;
 pub mod levels;
 mod picture;
 
-pub use picture::{render, render_f32};
-
 use crate::error::{Error, Result};
-use crate::frame::NO_ID;
+use crate::frame::{Frame, NO_ID, Pool};
+use crate::method::algorithm::{Algorithm, Job};
 use crate::method::projection::{Kind, Sample};
-use crate::number::{Real, Vector2, Vector3};
+use crate::method::{Picture, Stage};
+use crate::number::{Exact, Vector2, Vector3};
 
 /// The level at which a centre stays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -112,7 +112,7 @@ pub struct Center<R> {
     pub color: [R; 3],
 }
 
-impl<R: Real> Center<R> {
+impl<R: Exact> Center<R> {
     /// An empty cell: all but depth and id is 0.
     #[must_use]
     pub fn empty() -> Self {
@@ -148,5 +148,40 @@ impl<R: Real> Center<R> {
     #[must_use]
     pub fn is_valid(&self) -> bool {
         self.id != NO_ID
+    }
+}
+
+impl Algorithm for Settings {
+    const NAME: &'static str = "template";
+    const SUMMARY: &'static str =
+        "one pixel a point, search with templates of k x k pixels in a pyramid [MOC08]";
+    const STAGES: &'static [Stage] = &[];
+    type Memory = fast::Levels;
+
+    fn check(&self) -> Result<()> {
+        Self::check(self)
+    }
+
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+        picture::define(job, self, stages)
+    }
+
+    fn draw(
+        &self,
+        job: &Job<'_>,
+        memory: &mut fast::Levels,
+        pool: &mut Pool,
+    ) -> Result<Picture<f32>> {
+        picture::draw(job, self, memory, pool)
+    }
+
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+        let _ = (job, from);
+        Err(crate::method::stage::unknown(stage))
+    }
+
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
+        let _ = (job, pixel);
+        Err(Error::Usage("there is no replay of this method".into()))
     }
 }

@@ -4,37 +4,23 @@ use super::fast::Levels;
 use super::gather::{Gathered, gather};
 use super::{Center, Settings, levels};
 use crate::composite::sum;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::frame::raster::Snap;
-use crate::frame::{Exec, Framebuffer, NamedPlane, Plane, Samples, Wanted, pyramid};
+use crate::frame::{Framebuffer, NamedPlane, Plane, Pool, Samples, Wanted, pyramid};
+use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, color, finish, framebuffer, named, scalar};
 use crate::method::projection::{self, Has, world};
-use crate::number::{Real, Vector3};
-use crate::scene::{Camera, Scene};
+use crate::number::{Exact, Vector3};
+use crate::scene::Camera;
 use crate::splat::View;
 
-/// Renders with the definition, in any number. `weight` is the sum of the weights, `id` the nearest
-/// centre of those blended. With `stages`, every stage leaves its planes:
-///
-/// | stage | planes |
-/// |---|---|
-/// | projection | see [`mod@crate::method::projection`] |
-/// | propagation | for each level from 1 on, `level01` ...: `.id`, `.Z`, `.radius`, `.extent`, `.place.X`, `.Y`, `.normal`, and `.R G B` if the scene has colours |
-/// | reconstruction | `gathered.count` (centres blended, up to 255), `.weight`, `.depths`, `.normal`, and `.R G B` if the scene has colours: sums; `.Z`, `.radius`: of the front |
-///
-/// A level lies in the upper left corner of its planes; the rest is as in an empty cell.
-///
-/// # Errors
-/// [`Error::Invalid`] if the camera or the settings are out of range, or if the scene has triangles
-/// or lines.
-pub fn render<R: Real>(
-    scene: &Scene,
-    camera: &Camera,
+/// The definition, in any number; with `stages`, every stage leaves its planes.
+pub(super) fn define<R: Exact>(
+    job: &Job<'_>,
     settings: &Settings,
-    exec: &Exec,
     stages: bool,
 ) -> Result<Picture<R>> {
-    check(scene, camera, settings)?;
+    let Job { scene, camera, exec, .. } = *job;
     let has = Has::of(scene);
     let mut clock = Clock::default();
     let how = (settings.cull, Snap::default());
@@ -67,59 +53,42 @@ pub fn render<R: Real>(
         margin: None,
     };
     clock.lap("normalization");
-    Ok(finish(target, planes, projected.tally, clock, (scene, camera, exec)))
+    Ok(finish(target, planes, projected.tally, clock, job))
 }
 
-/// Renders in `f32` by the fast path: the bits of [`render`], without the planes of the stages, in
-/// the memory of `levels` and of an earlier picture.
-///
-/// # Errors
-/// As [`render`].
-pub fn render_f32(
-    scene: &Scene,
-    camera: &Camera,
+/// The fast path for `f32`.
+pub(super) fn draw(
+    job: &Job<'_>,
     settings: &Settings,
-    exec: &Exec,
     levels: &mut Levels,
-    earlier: Option<Picture<f32>>,
+    pool: &mut Pool,
 ) -> Result<Picture<f32>> {
-    check(scene, camera, settings)?;
+    let Job { scene, camera, exec, .. } = *job;
     let color = Has::of(scene).color;
     let wanted = Wanted { normal: !scene.lights.is_empty(), color, observed: false };
-    let mut target = framebuffer(camera, wanted, earlier.map(|picture| picture.frame));
+    let mut target = framebuffer(camera, wanted, pool);
     let (tally, times) = levels.draw(scene, camera, settings, exec, &mut target);
     let clock = Clock::of(vec![
         ("projection", times.project),
         ("propagation", times.propagate),
         ("reconstruction", times.search),
     ]);
-    Ok(finish(target, Vec::new(), tally, clock, (scene, camera, exec)))
-}
-
-/// Whether the method can draw the scene.
-fn check(scene: &Scene, camera: &Camera, settings: &Settings) -> Result<()> {
-    camera.check()?;
-    settings.check()?;
-    if scene.primitives.is_empty() {
-        Ok(())
-    } else {
-        Err(Error::Invalid("the template draws surfels only, but the scene has others".into()))
-    }
+    Ok(finish(target, Vec::new(), tally, clock, job))
 }
 
 /// The average depth; +inf where nothing was gathered.
-fn depth<R: Real>(pixel: &Gathered<R>) -> R {
+fn depth<R: Exact>(pixel: &Gathered<R>) -> R {
     if pixel.weight > R::ZERO { pixel.depths / pixel.weight } else { R::INFINITY }
 }
 
 /// The direction of the average normal, world space.
-fn normal<R: Real>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
+fn normal<R: Exact>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
     let [x, y, z] = sum::average(pixel.normals, pixel.weight);
     world(view, Vector3::new(x, y, z))
 }
 
 /// The planes of a level, of the size of the picture.
-fn level_planes<R: Real>(
+fn level_planes<R: Exact>(
     name: &str,
     cells: &Plane<Center<R>>,
     camera: &Camera,
@@ -144,7 +113,7 @@ fn level_planes<R: Real>(
 }
 
 /// The planes of the sums.
-fn sums<R: Real>(gathered: &Plane<Gathered<R>>, has: Has) -> Vec<NamedPlane<R>> {
+fn sums<R: Exact>(gathered: &Plane<Gathered<R>>, has: Has) -> Vec<NamedPlane<R>> {
     let mut planes = vec![
         named("gathered.count", Samples::Count(gathered.map(|pixel| pixel.count))),
         scalar("gathered.weight", gathered.map(|pixel| pixel.weight)),

@@ -5,13 +5,12 @@ use crate::composite::bins::DepthBins;
 use crate::composite::epsilon;
 use crate::composite::over::Blend;
 use crate::error::Result;
-use crate::frame::{Exec, NO_ID, Rect};
-use crate::index::order::BackToFront;
+use crate::frame::{NO_ID, Rect};
+use crate::method::algorithm::Job;
 use crate::method::ewa::plain::{each_inside, facing};
 use crate::method::prepare::Prepared;
-use crate::number::{Real, Vector3};
-use crate::scene::Groups;
-use crate::scene::{Camera, Scene};
+use crate::number::{Exact, Vector3};
+use crate::scene::Scene;
 use crate::shade::phong::Shader;
 use crate::splat::{Disc, Fate, Projector, Splat, Tally, View, batch, project};
 
@@ -27,24 +26,24 @@ struct Drawn<R> {
 
 /// What the image of a group holds at a pixel.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Layers<R> {
+pub(in crate::method) struct Layers<R> {
     /// The bin of the nearest fragment so far; +inf where there is none.
-    pub(super) bin: R,
+    pub(in crate::method) bin: R,
     /// All fragments that passed, blended.
-    pub(super) blend: Blend<R>,
+    pub(in crate::method) blend: Blend<R>,
     /// The sum of the opacities in front of the nearest opaque fragment.
-    pub(super) opacity: R,
+    pub(in crate::method) opacity: R,
     /// 1 if an opaque fragment hides what is behind, else 0.
-    pub(super) hidden: R,
+    pub(in crate::method) hidden: R,
     /// How many fragments passed, up to 255.
-    pub(super) count: u8,
+    pub(in crate::method) count: u8,
     /// Depth of the fragment that passed last, the nearest; +inf where there is none.
-    pub(super) depth: R,
+    pub(in crate::method) depth: R,
     /// Its surfel.
-    pub(super) surfel: u32,
+    pub(in crate::method) surfel: u32,
 }
 
-impl<R: Real> Layers<R> {
+impl<R: Exact> Layers<R> {
     const EMPTY: Self = Self {
         bin: R::INFINITY,
         blend: Blend::CLEAR,
@@ -73,22 +72,18 @@ impl<R: Real> Layers<R> {
 
 /// The splats of all groups, projected and sorted into tiles.
 #[derive(Debug)]
-pub(super) struct Blending<R> {
+pub(in crate::method) struct Blending<R> {
     prepared: Prepared<R, Drawn<R>>,
     bins: DepthBins<R>,
     groups: usize,
     holes: Holes,
 }
 
-impl<R: Real> Blending<R> {
+impl<R: Exact> Blending<R> {
     /// Order, projection and shading.
-    pub(super) fn project(
-        scene: &Scene,
-        (groups, order): (&Groups, &BackToFront),
-        camera: &Camera,
-        settings: &Settings,
-        exec: &Exec,
-    ) -> Result<Self> {
+    pub(in crate::method) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
+        let Job { scene, index, camera, exec } = *job;
+        let (groups, order) = (index.groups()?, index.order()?);
         let surfels = &scene.surfels;
         let epsilon = settings.splats.epsilon.resolve(surfels);
         let bins = DepthBins::new(&settings.bins.resolve(surfels, camera, epsilon)?);
@@ -122,7 +117,7 @@ impl<R: Real> Blending<R> {
     }
 
     /// What became of the surfels, each counted once in each of its groups.
-    pub(super) fn tally(&self) -> Tally {
+    pub(in crate::method) fn tally(&self) -> Tally {
         self.prepared.tally
     }
 
@@ -130,7 +125,7 @@ impl<R: Real> Blending<R> {
     ///
     /// With `mask`, the depth of the nearest layer at each pixel, fragments up to epsilon behind it
     /// are dropped.
-    pub(super) fn images(
+    pub(in crate::method) fn images(
         &self,
         tile: usize,
         rect: Rect,
@@ -155,7 +150,7 @@ impl<R: Real> Blending<R> {
     }
 
     /// The compositing pass: the average of all groups at one pixel of their images.
-    pub(super) fn average(&self, images: &[Vec<Layers<R>>], pixel: usize) -> Average<R> {
+    pub(in crate::method) fn average(&self, images: &[Vec<Layers<R>>], pixel: usize) -> Average<R> {
         let mut sum = Average::EMPTY;
         let mut count = 0_u8;
         for image in images {
@@ -170,22 +165,22 @@ impl<R: Real> Blending<R> {
 
 /// The groups of a pixel together.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Average<R> {
-    pub(super) blend: Blend<R>,
+pub(in crate::method) struct Average<R> {
+    pub(in crate::method) blend: Blend<R>,
     /// See [`Layers::opacity`].
-    pub(super) opacity: R,
+    pub(in crate::method) opacity: R,
     /// See [`Layers::hidden`].
-    pub(super) hidden: R,
+    pub(in crate::method) hidden: R,
     /// Mean count of layers.
-    pub(super) layers: R,
+    pub(in crate::method) layers: R,
     /// Least depth of any group.
-    pub(super) depth: R,
+    pub(in crate::method) depth: R,
     /// Its surfel; ties: the lower one.
-    pub(super) surfel: u32,
+    pub(in crate::method) surfel: u32,
 }
 
-impl<R: Real> Average<R> {
-    pub(super) const EMPTY: Self = Self {
+impl<R: Exact> Average<R> {
+    pub(in crate::method) const EMPTY: Self = Self {
         blend: Blend::CLEAR,
         opacity: R::ZERO,
         hidden: R::ZERO,
@@ -219,7 +214,7 @@ impl<R: Real> Average<R> {
 }
 
 /// Projects a surfel that is enlarged.
-fn place<R: Real>(
+fn place<R: Exact>(
     scene: &Scene,
     surfel: u32,
     scale: f32,
@@ -236,7 +231,7 @@ fn place<R: Real>(
 }
 
 /// The shaded colour and the opacity of a surfel.
-fn appearance<R: Real>(scene: &Scene, shader: &Shader<R>, splat: &Splat<R>) -> ([R; 3], R) {
+fn appearance<R: Exact>(scene: &Scene, shader: &Shader<R>, splat: &Splat<R>) -> ([R; 3], R) {
     let (surfels, i) = (&scene.surfels, splat.surfel as usize);
     let color = surfels.color().map_or(scene.material.color, |colors| colors[i]);
     let normal = surfels.normal()[i].to_array().map(R::from_f32);

@@ -1,5 +1,4 @@
-//! Transparent surfels: back-to-front blending within groups, averaged \[ZP06, Algorithms 2 and
-//! 3\].
+//! Transparent surfels: back-to-front blending within groups, averaged \[ZP06, Algorithm 2\].
 //!
 //! A surfel has its own opacity alpha; where a scene has none it is 1. Opaque and transparent
 //! surfels mix freely. Back faces are layers too: [`Settings::default`] does not cull.
@@ -22,23 +21,8 @@
 //!    opacities, hidden part; each is a sum in the order of the groups, divided once by their
 //!    count.
 //!
-//! # Algorithm 3
-//!
-//! 1. **Nearest layer.** The geometry and the compositing pass of [`super::single_pass`], with
-//!    opacity as one more weighted attribute. `Decided:` each surfel in its own group alone and
-//!    with its own radius: a surfel that an extension added elsewhere would count twice in a
-//!    weighted sum. Deferred shading gives `C_F`, the average opacity is alpha. The stencil is 1
-//!    where the layer is.
-//! 2. **Other layers.** Algorithm 2 without the fragments of the nearest layer and what is before
-//!    it: those with t <= Z + epsilon, Z the depth of pass 1. Where pass 1 left nothing, Z is +inf
-//!    and all are dropped: enlarged surfels do not stick out of the silhouette. Its average is
-//!    `C_O`.
-//! 3. **Compositing.** I = alpha `C_F` + (1 - alpha) `C_O`, and so for the opacity, with 1 for
-//!    `C_F`.
-//!
-//! With [`Settings::refraction`] and an environment, that sum is the one of
-//! [`crate::shade::optics`]. An environment is behind everything: colour + (1 - A) env(ray of the
-//! pixel), and A becomes 1. Without one colours are over black, that is, multiplied by A.
+//! An environment is behind everything: colour + (1 - A) env(ray of the pixel), and A becomes 1.
+//! Without one colours are over black, that is, multiplied by A.
 //!
 //! # What it gets wrong
 //!
@@ -48,38 +32,33 @@
 //! - A group that does not cover a layer leaves holes in it, see [`crate::index::grouping`] for the
 //!   extensions that close them, and [`Holes`].
 //! - Overlapping surfels are ordered by their centres, see [`crate::index::order`].
-//! - Algorithm 3 can draw a surfel that its group enlarges behind itself: where the nearest layer
-//!   clamps its depth to its own radius (see [`mod@crate::splat::project`]) and epsilon < (scale -
-//!   1) r, and, as depths of another radius round otherwise, anywhere with an epsilon of 0.
 //!
 //! The truth that it is held against is [`super::peeling`].
 //!
 //! [`Groups`]: crate::scene::Groups
 
-mod blend;
-mod nearest;
-mod picture;
+pub(super) mod blend;
+pub(super) mod picture;
 
-pub use picture::render;
-
-use super::ewa;
-use super::single_pass::{BinCount, DepthTest};
-use crate::error::{Error, Result};
-use crate::shade::optics::Refraction;
+use crate::error::Result;
+use crate::frame::Frame;
+use crate::index::grouping::{Extension, Grouping, Rules};
+use crate::method::algorithm::{Algorithm, Job};
+use crate::method::single_pass::BinCount;
+use crate::method::{Picture, Stage};
+use crate::number::Exact;
+use crate::scene::{Camera, Scene};
+use crate::splat::SplatSettings;
 
 /// What is computed; everything here may change the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Footprints, epsilon, culling.
-    pub splats: ewa::Settings,
+    pub splats: SplatSettings,
     /// The bins of the low-precision depth.
     pub bins: BinCount,
     /// What a group that has nothing at a pixel gives to the average.
     pub holes: Holes,
-    /// Algorithm 3, the nearest layer separately, with this depth test; none: Algorithm 2.
-    pub nearest: Option<DepthTest>,
-    /// How light is bent at the nearest layer; needs `nearest`, and an environment to be seen.
-    pub refraction: Option<Refraction>,
 }
 
 /// What a group that has no fragment at a pixel gives to the average.
@@ -95,11 +74,9 @@ pub enum Holes {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            splats: ewa::Settings { cull: false, ..ewa::Settings::default() },
+            splats: SplatSettings::BOTH_SIDES,
             bins: BinCount::default(),
             holes: Holes::default(),
-            nearest: None,
-            refraction: None,
         }
     }
 }
@@ -108,19 +85,50 @@ impl Settings {
     /// Whether the numbers are in range.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if one is not, or if refraction is wanted without the nearest layer.
+    /// [`crate::Error::Invalid`] if one is not.
     pub fn check(&self) -> Result<()> {
         self.splats.check()?;
-        self.bins.check()?;
-        if let Some(DepthTest::Voronoi(bins)) = &self.nearest {
-            bins.check()?;
-        }
-        match &self.refraction {
-            None => Ok(()),
-            Some(_) if self.nearest.is_none() => Err(Error::Invalid(
-                "refraction: light is bent at the nearest layer; give a method that has one".into(),
-            )),
-            Some(refraction) => refraction.check(),
-        }
+        self.bins.check()
+    }
+}
+
+/// K = 4, which \[ZP06, section 6.2\] finds sufficient; groups are extended by adding surfels.
+pub(super) const GROUPING: Grouping = Grouping {
+    rules: Rules { overlap: 1.0, opposite: true, coplanar: None },
+    count: Some(4),
+    extension: Extension::Add { most: 0.5 },
+};
+
+impl Algorithm for Settings {
+    const NAME: &'static str = "transparent";
+    const SUMMARY: &'static str =
+        "layers alpha-blended within groups, averaged [ZP06, Algorithm 2]";
+    const STAGES: &'static [Stage] = &[];
+    const GROUPING: Option<Grouping> = Some(GROUPING);
+    const BACK_TO_FRONT: bool = true;
+    type Memory = ();
+
+    fn check(&self) -> Result<()> {
+        Self::check(self)
+    }
+
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+        picture::define(job, self, stages)
+    }
+
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+        let _ = (job, from);
+        Err(crate::method::stage::unknown(stage))
+    }
+
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
+        let _ = (job, pixel);
+        Err(crate::Error::Usage("there is no replay of this method".into()))
+    }
+
+    fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
+        let mut resolved = self.splats.resolved(scene);
+        resolved.extend(self.bins.resolved(&self.splats, scene, camera));
+        resolved
     }
 }

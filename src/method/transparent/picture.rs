@@ -2,161 +2,128 @@
 
 use super::Settings;
 use super::blend::{Average, Blending, Layers};
-use super::nearest::First;
 use crate::composite::over::Blend;
-use crate::error::{Error, Result};
-use crate::frame::{Exec, Frame, Grid, NO_ID, NamedPlane, Rect, Samples};
-use crate::index::order::BackToFront;
+use crate::error::Result;
+use crate::frame::{Frame, Grid, NO_ID, NamedPlane, Rect, Samples};
+use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, before_environment, color, named, scalar};
-use crate::method::single_pass;
-use crate::number::{Real, Vector3};
-use crate::scene::Groups;
-use crate::scene::{Camera, Scene};
-use crate::shade::optics::{self, Behind, Nearest};
-use crate::splat::View;
+use crate::number::Exact;
+use crate::splat::Tally;
 
-/// Renders by Algorithm 2 or 3 \[ZP06\], in any number.
-///
-/// The planes of the picture: `R G B` and `A`; `Z` and `id` of the nearest fragment that passed its
-/// depth test; `layers`, the mean count of layers, and of Algorithm 3 `normal` and `weight` of the
-/// nearest layer. With `stages`:
-///
-/// | stage | planes |
-/// |---|---|
-/// | nearest layer | `nearest.groupK.*` as in [`single_pass::render`]; `nearest.R G B`: `C_F`; `nearest.A`: alpha; `nearest.mask`: the stencil |
-/// | blending | for each group k `blended.groupK.R G B`, `.A`, `.opacity` (the sum of opacities), `.bin` (+inf: empty), `.count`, `.id` (of the surfel blended last) |
-/// | average | `blended.R G B`, `.A`, `.opacity`, `.hidden`, `.layers`; of Algorithm 3 `l`: the layer count of eq. 11 and 12, 0 where there is no layer or where its opacity is 0 |
-///
-/// # Errors
-/// [`crate::Error::Invalid`] if the camera or the settings are out of range, if the low-precision
-/// depth takes too many bins, if refraction is wanted without an environment, or if there are not
-/// as many surfels in the groups or in the order as in the scene.
-pub fn render<R: Real>(
-    scene: &Scene,
-    (groups, order): (&Groups, &BackToFront),
-    camera: &Camera,
+/// The definition of Algorithm 2, in any number; with `stages`, every stage leaves its planes.
+pub(super) fn define<R: Exact>(
+    job: &Job<'_>,
     settings: &Settings,
-    exec: &Exec,
     stages: bool,
 ) -> Result<Picture<R>> {
-    camera.check()?;
-    settings.check()?;
-    if settings.refraction.is_some() && scene.environment.is_none() {
-        let what = "refraction: there is nothing to be seen through it; give an environment";
-        return Err(Error::Invalid(what.into()));
-    }
-    groups.check(&scene.surfels)?;
-    order.check(&scene.surfels)?;
     let mut clock = Clock::default();
-    let mut planes = Vec::new();
-    let grid = exec.grid(camera.width, camera.height);
-    let first = match settings.nearest {
-        None => None,
-        Some(depth) => {
-            let settings = single_pass::Settings { splats: settings.splats, depth };
-            let first = First::new(scene, groups, camera, &settings, exec, stages, &mut planes)?;
-            clock.lap("nearest layer");
-            Some(first)
-        }
-    };
-    let blending = Blending::project(scene, (groups, order), camera, settings, exec)?;
-    clock.lap("order, projection");
-
-    let tail = Tail { scene, settings, view: View::new(camera), first: first.as_ref() };
-    let tiles = grid.rects().into_iter().enumerate().collect();
-    let done = exec.ordered(tiles, |(tile, rect): (usize, Rect)| {
-        let mask = first.as_ref().map(|first| first.mask(rect));
-        let images = blending.images(tile, rect, mask.as_deref());
-        let pixels: Vec<_> = (0..rect.pixels())
-            .map(|i| {
-                let average = blending.average(&images, i);
-                (average, tail.pixel((tile, i), rect, &average))
-            })
-            .collect();
-        (stages.then_some(images), pixels)
-    });
-    clock.lap("blending");
-
-    let (images, pixels): (Vec<_>, Vec<_>) = done.into_iter().unzip();
-    let images: Vec<_> = images.into_iter().flatten().collect();
-    planes.extend(image_planes(&grid, &images, groups.len()));
-    let tally = first.as_ref().map_or(blending.tally(), |first| first.tally);
-    planes.extend(picture_planes((scene, camera, exec), &grid, &pixels, first, stages));
-    let frame = Frame { width: camera.width, height: camera.height, planes };
-    Ok(Picture { frame, tally, timings: clock.into_laps() })
-}
-
-/// The planes of the picture, with `stages` after those of the averages.
-fn picture_planes<R: Real>(
-    (scene, camera, exec): (&Scene, &Camera, &Exec),
-    grid: &Grid,
-    pixels: &[Vec<(Average<R>, Blend<R>)>],
-    first: Option<First<R>>,
-    stages: bool,
-) -> Vec<NamedPlane<R>> {
-    let average = |tile: usize, i: usize| -> &Average<R> { &pixels[tile][i].0 };
-    let blend = |tile: usize, i: usize| -> &Blend<R> { &pixels[tile][i].1 };
+    let blended = blend(job, settings, stages, |_| None, |_, average| average.blend, &mut clock)?;
     let mut planes = Vec::new();
     if stages {
-        planes.extend(average_planes(grid, average));
-        planes.extend(first.as_ref().map(|first| {
-            let l = grid.assemble(R::ZERO, |tile, i| first.layers((tile, i), average(tile, i)));
-            scalar("l", l)
-        }));
+        planes.extend(blended.planes());
     }
-    let colors = grid.assemble([R::ZERO; 3], |t, i| blend(t, i).color);
-    let alphas = grid.assemble(R::ZERO, |t, i| blend(t, i).alpha);
-    let (colors, alphas) = before_environment(scene, camera, colors, alphas, exec);
-    planes.push(color("", colors));
-    planes.push(scalar("A", alphas));
-    let counts = grid.assemble(R::ZERO, |t, i| average(t, i).layers);
-    match first {
-        None => {
-            planes.push(scalar("Z", grid.assemble(R::ZERO, |t, i| average(t, i).depth)));
-            let ids = grid.assemble(NO_ID, |t, i| average(t, i).surfel);
-            planes.push(named("id", Samples::Index(ids)));
-            planes.push(scalar("layers", counts));
-        }
-        Some(first) => planes.extend(first.planes(&counts)),
-    }
-    planes
+    planes.extend(blended.colors(job));
+    planes.push(scalar("Z", blended.plane(R::ZERO, |average| average.depth)));
+    planes.push(named("id", Samples::Index(blended.plane(NO_ID, |average| average.surfel))));
+    planes.push(scalar("layers", blended.plane(R::ZERO, |average| average.layers)));
+    let frame = Frame { width: job.camera.width, height: job.camera.height, planes };
+    Ok(Picture { frame, tally: blended.tally, timings: clock.into_laps() })
 }
 
-/// The last step: what the layers of a pixel make together, and what is refracted through them.
-struct Tail<'a, R> {
-    scene: &'a Scene,
-    settings: &'a Settings,
-    view: View<R>,
-    first: Option<&'a First<R>>,
+/// A pixel: its tile, its place in the tile, row by row, and its column and row in the picture.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::method) struct At {
+    pub(in crate::method) tile: usize,
+    pub(in crate::method) pixel: usize,
+    pub(in crate::method) x: u32,
+    pub(in crate::method) y: u32,
 }
 
-impl<R: Real> Tail<'_, R> {
-    /// The colour and the opacity of pixel `i` of a tile.
-    fn pixel(&self, (tile, i): (usize, usize), rect: Rect, others: &Average<R>) -> Blend<R> {
+/// The blended groups of a picture, by tile and pixel.
+pub(in crate::method) struct Blended<R> {
+    grid: Grid,
+    groups: usize,
+    /// The image of each group, if the planes of the stages are kept.
+    images: Vec<Vec<Vec<Layers<R>>>>,
+    averages: Vec<Vec<Average<R>>>,
+    /// What each pixel shows, before the environment.
+    shown: Vec<Vec<Blend<R>>>,
+    pub(in crate::method) tally: Tally,
+}
+
+/// Order, projection, blending and average.
+///
+/// `mask` gives the depths of the nearest layer in a rectangle, if fragments up to epsilon behind
+/// it are dropped; `show` makes the colour of a pixel from the average of its groups.
+pub(in crate::method) fn blend<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    stages: bool,
+    mask: impl Fn(Rect) -> Option<Vec<R>> + Sync + Send,
+    show: impl Fn(At, &Average<R>) -> Blend<R> + Sync + Send,
+    clock: &mut Clock,
+) -> Result<Blended<R>> {
+    let Job { camera, exec, .. } = *job;
+    let grid = exec.grid(camera.width, camera.height);
+    let blending = Blending::project(job, settings)?;
+    clock.lap("projection");
+    let tiles = grid.rects().into_iter().enumerate().collect();
+    let done = exec.ordered(tiles, |(tile, rect): (usize, Rect)| {
+        let images = blending.images(tile, rect, mask(rect).as_deref());
         let columns = (rect.x1 - rect.x0) as usize;
-        let (x, y) = (rect.x0 + (i % columns) as u32, rect.y0 + (i / columns) as u32);
-        let Some(first) = self.first.filter(|first| first.target.depth.at(x, y).is_finite()) else {
-            return others.blend;
-        };
-        let (alpha, near) = (first.alpha[tile][i], *first.color.at(x, y));
-        let (Some(refraction), Some(environment)) =
-            (&self.settings.refraction, &self.scene.environment)
-        else {
-            return others.blend.over(alpha, near);
-        };
-        let normal = first.target.normal.as_ref().map(|plane| *plane.at(x, y));
-        let [nx, ny, nz] = normal.unwrap_or([R::ZERO; 3]);
-        let nearest = Nearest { color: near, opacity: alpha, normal: Vector3::new(nx, ny, nz) };
-        let Average { blend, opacity, hidden, .. } = *others;
-        let behind = Behind { color: blend.color, opacity, hidden };
-        let view = -self.view.ray(x, y).normalized();
-        let color = optics::shade(environment, refraction, view, &nearest, &behind);
-        Blend { color, alpha: R::ONE }
+        let pixels = (0..rect.pixels()).map(|pixel| {
+            let (x, y) = (rect.x0 + (pixel % columns) as u32, rect.y0 + (pixel / columns) as u32);
+            let average = blending.average(&images, pixel);
+            (average, show(At { tile, pixel, x, y }, &average))
+        });
+        let (averages, shown): (Vec<_>, Vec<_>) = pixels.unzip();
+        (stages.then_some(images), (averages, shown))
+    });
+    clock.lap("blending");
+    let (images, pixels): (Vec<_>, Vec<_>) = done.into_iter().unzip();
+    let (averages, shown) = pixels.into_iter().unzip();
+    let images = images.into_iter().flatten().collect();
+    let (groups, tally) = (job.index.groups()?.len(), blending.tally());
+    Ok(Blended { grid, groups, images, averages, shown, tally })
+}
+
+impl<R: Exact> Blended<R> {
+    /// A plane of the averages.
+    pub(in crate::method) fn plane<T: Clone>(
+        &self,
+        fill: T,
+        of: impl Fn(&Average<R>) -> T,
+    ) -> crate::frame::Plane<T> {
+        self.grid.assemble(fill, |t, i| of(&self.averages[t][i]))
+    }
+
+    /// A plane of the averages and the pixels they are of.
+    pub(in crate::method) fn plane_at(
+        &self,
+        of: impl Fn((usize, usize), &Average<R>) -> R,
+    ) -> crate::frame::Plane<R> {
+        self.grid.assemble(R::ZERO, |t, i| of((t, i), &self.averages[t][i]))
+    }
+
+    /// The planes of blending and average.
+    pub(in crate::method) fn planes(&self) -> Vec<NamedPlane<R>> {
+        let mut planes = image_planes(&self.grid, &self.images, self.groups);
+        planes.extend(average_planes(&self.grid, |t, i| &self.averages[t][i]));
+        planes
+    }
+
+    /// Colour and opacity before the environment.
+    pub(in crate::method) fn colors(&self, job: &Job<'_>) -> [NamedPlane<R>; 2] {
+        let shown = |t: usize, i: usize| &self.shown[t][i];
+        let colors = self.grid.assemble([R::ZERO; 3], |t, i| shown(t, i).color);
+        let alphas = self.grid.assemble(R::ZERO, |t, i| shown(t, i).alpha);
+        let (colors, alphas) = before_environment(job.scene, job.camera, colors, alphas, job.exec);
+        [color("", colors), scalar("A", alphas)]
     }
 }
 
 /// The image of each group.
-fn image_planes<R: Real>(
+fn image_planes<R: Exact>(
     grid: &Grid,
     images: &[Vec<Vec<Layers<R>>>],
     groups: usize,
@@ -180,7 +147,7 @@ fn image_planes<R: Real>(
 }
 
 /// The averages of the compositing pass.
-fn average_planes<'a, R: Real>(
+fn average_planes<'a, R: Exact>(
     grid: &Grid,
     at: impl Fn(usize, usize) -> &'a Average<R>,
 ) -> Vec<NamedPlane<R>> {

@@ -2,7 +2,7 @@
 
 use super::super::{ExtensionChoice, GroupChoice, MethodChoice, words};
 use crate::index::grouping::Coplanar;
-use crate::method::ewa::Epsilon;
+use crate::splat::Epsilon;
 use serde::de::{Deserialize, Deserializer, Visitor};
 use std::fmt;
 

@@ -1,0 +1,91 @@
+//! What a method is: the interface that a row of the table of methods implements.
+
+use super::{Picture, Stage};
+use crate::error::Result;
+use crate::frame::{Exec, Frame, Pool};
+use crate::index::Index;
+use crate::index::grouping::Grouping;
+use crate::number::Exact;
+use crate::scene::{Camera, Scene};
+use std::fmt::Debug;
+
+/// What a picture is made of, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct Job<'a> {
+    /// What is given.
+    pub scene: &'a Scene,
+    /// What was built once from the scene.
+    pub index: &'a Index,
+    /// Where the scene is seen from.
+    pub camera: &'a Camera,
+    /// Threads and tiles; these cannot change one bit.
+    pub exec: &'a Exec,
+}
+
+/// A method, implemented by its settings: everything in the settings may change the picture.
+///
+/// The settings have been checked and the scene is one that the method draws when a picture is
+/// asked for: [`super::Session`] sees to both.
+pub trait Algorithm: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
+    /// The name in scene files and on the command line.
+    const NAME: &'static str;
+    /// What the method is, in one line, with its source.
+    const SUMMARY: &'static str;
+    /// The passes, in the order in which they run.
+    const STAGES: &'static [Stage];
+    /// Whether triangles, ribbons and tubes are drawn beside surfels.
+    const DRAWS_PRIMITIVES: bool = false;
+    /// How surfels are divided into groups if nobody says; none: the method draws no groups.
+    const GROUPING: Option<Grouping> = None;
+    /// Whether surfels are needed from back to front.
+    const BACK_TO_FRONT: bool = false;
+
+    /// What the fast path works in, kept from picture to picture.
+    type Memory: Debug + Default + Send;
+
+    /// Whether the numbers are in range.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] if one is not.
+    fn check(&self) -> Result<()>;
+
+    /// The definition, in any number; with `stages` the planes of every stage are kept.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] if the method cannot draw the scene with these settings.
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>>;
+
+    /// The picture in `f32`, by the fast path where there is one: the bits of the definition.
+    ///
+    /// # Errors
+    /// As [`Algorithm::define`].
+    fn draw(
+        &self,
+        job: &Job<'_>,
+        memory: &mut Self::Memory,
+        pool: &mut Pool,
+    ) -> Result<Picture<f32>> {
+        let _ = (memory, pool);
+        self.define(job, false)
+    }
+
+    /// Runs one stage on the planes of the stages that it reads, whoever made these planes, and
+    /// gives the planes that the stage leaves.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] if a plane is missing, of another type or size, or if no stage of
+    /// this name can be run so.
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>>;
+
+    /// Every decision at one pixel, with its operands, in words.
+    ///
+    /// # Errors
+    /// [`crate::Error::Usage`] if the pixel is outside the picture; else as [`Algorithm::define`].
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String>;
+
+    /// What the settings come to in a scene: names and values as TOML, for the text of a picture.
+    fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
+        let _ = (scene, camera);
+        Vec::new()
+    }
+}

@@ -1,0 +1,186 @@
+//! A scene that is drawn by one method from as many cameras as one likes.
+
+use super::algorithm::Job;
+use super::table::Memory;
+use super::{Method, Picture};
+use crate::error::Result;
+use crate::frame::{Exec, Frame, Pool};
+use crate::index::Index;
+use crate::index::grouping::{Extended, Grouping, GroupingReport};
+use crate::index::order::BackToFront;
+use crate::number::Exact;
+use crate::scene::{Camera, Groups, Scene};
+
+/// A scene, a method, what the method prepared of the scene, and memory that is used again.
+///
+/// ```
+/// use splatref::frame::Exec;
+/// use splatref::method::{Method, Session};
+/// use splatref::scene::{Camera, Scene};
+/// use splatref::source::Shape;
+///
+/// let shape = Shape::Sphere;
+/// let scene = Scene::lit("sphere", shape.surfels(2_000, 0)?);
+/// let exec = Exec::sequential();
+/// let mut session = Session::new(&scene, Method::by_name("pyramid")?, &exec)?;
+/// for side in [32, 64] {
+///     let camera = Camera::new(side, side, shape.default_pose(), shape.default_lens())?;
+///     let picture = session.render(&camera)?;
+///     assert_eq!(picture.frame.width, side);
+/// }
+/// # Ok::<(), splatref::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct Session<'a> {
+    scene: &'a Scene,
+    method: Method,
+    exec: &'a Exec,
+    index: Index,
+    memory: Memory,
+    pool: Pool,
+    /// What [`Session::render`] has drawn last.
+    picture: Option<Picture<f32>>,
+}
+
+/// How the groups of a scene were made.
+pub type Made = (GroupingReport, Option<Extended>);
+
+impl<'a> Session<'a> {
+    /// Prepares a scene for a method: with the groups that the scene brought along, else with
+    /// groups made as [`Method::grouping`] says.
+    ///
+    /// # Errors
+    /// As [`Session::with_groups`] and [`Grouping::groups`].
+    pub fn new(scene: &'a Scene, method: Method, exec: &'a Exec) -> Result<Self> {
+        Ok(Self::prepare(scene, method, None, exec, &|_, _, _| ())?.0)
+    }
+
+    /// As [`Session::new`], with a grouping of one's own in place of the scene's groups and of the
+    /// method's; tells how the groups were made, if they were.
+    ///
+    /// `progress` is told the name of a step, how much of it is done, and of how much.
+    ///
+    /// # Errors
+    /// As [`Session::new`].
+    pub fn prepare(
+        scene: &'a Scene,
+        method: Method,
+        grouping: Option<Grouping>,
+        exec: &'a Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<(Self, Option<Made>)> {
+        method.check()?;
+        method.check_scene(scene)?;
+        let Some(default) = method.grouping() else {
+            return Ok((Self::with_groups(scene, method, None, exec)?, None));
+        };
+        if let (None, Some(groups)) = (grouping, scene.surfels.groups()) {
+            return Ok((Self::with_groups(scene, method, Some(groups.clone()), exec)?, None));
+        }
+        let grouping = grouping.unwrap_or(default);
+        let (groups, report, extended) = grouping.groups(&scene.surfels, exec, progress)?;
+        let session = Self::with_groups(scene, method, Some(groups), exec)?;
+        Ok((session, Some((report, extended))))
+    }
+
+    /// As [`Session::new`], with groups that somebody else has made.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] if the settings are out of range, if the method cannot draw the
+    /// scene, or if the groups are missing or of another number of surfels.
+    pub fn with_groups(
+        scene: &'a Scene,
+        method: Method,
+        groups: Option<Groups>,
+        exec: &'a Exec,
+    ) -> Result<Self> {
+        method.check()?;
+        method.check_scene(scene)?;
+        let groups = groups.filter(|_| method.grouping().is_some());
+        let order = method.needs_order().then(|| BackToFront::new(&scene.surfels, exec));
+        let index = Index { groups, order };
+        index.check(&scene.surfels)?;
+        if method.grouping().is_some() {
+            index.groups()?;
+        }
+        let (memory, pool) = (method.memory(), Pool::default());
+        Ok(Self { scene, method, exec, index, memory, pool, picture: None })
+    }
+
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
+    /// The method.
+    #[must_use]
+    pub fn method(&self) -> &Method {
+        &self.method
+    }
+
+    /// The groups, if the method draws them.
+    #[must_use]
+    pub fn groups(&self) -> Option<&Groups> {
+        self.index.groups.as_ref()
+    }
+
+    /// The picture in `f32`, by the fast path where there is one, in the memory of the last one.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] if the camera is out of range, or what the method asks of scene
+    /// and settings together does not hold.
+    pub fn render(&mut self, camera: &Camera) -> Result<&Picture<f32>> {
+        camera.check()?;
+        if let Some(last) = self.picture.take() {
+            self.pool.recycle(last.frame);
+        }
+        let Self { scene, exec, index, .. } = self;
+        let job = Job { scene, index, camera, exec };
+        let picture = self.method.draw(&job, &mut self.memory, &mut self.pool)?;
+        self.pool.clear();
+        Ok(self.picture.insert(picture))
+    }
+
+    /// The picture by the definition, in any number; with `stages`, the planes of every stage,
+    /// which [`Method::stages`] lists.
+    ///
+    /// # Errors
+    /// As [`Session::render`].
+    pub fn define<R: Exact>(&self, camera: &Camera, stages: bool) -> Result<Picture<R>> {
+        self.method.define(&self.job(camera)?, stages)
+    }
+
+    /// Runs one stage of the method on somebody's planes of the stages that it reads, and gives
+    /// the planes that the stage leaves.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] if a plane is missing, or of another type or size than the
+    /// stage's; if there is no such stage; else as [`Session::render`].
+    pub fn stage<R: Exact>(
+        &self,
+        camera: &Camera,
+        stage: &str,
+        from: &Frame<R>,
+    ) -> Result<Frame<R>> {
+        self.method.stage(&self.job(camera)?, stage, from)
+    }
+
+    /// Every decision at one pixel, in words.
+    ///
+    /// # Errors
+    /// [`crate::Error::Usage`] if the pixel is outside the picture; else as [`Session::render`].
+    pub fn explain<R: Exact>(&self, camera: &Camera, pixel: (u32, u32)) -> Result<String> {
+        let job = self.job(camera)?;
+        camera.check_pixel(pixel.0, pixel.1)?;
+        self.method.explain::<R>(&job, pixel)
+    }
+
+    fn job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {
+        camera.check()?;
+        Ok(Job { scene: self.scene, index: &self.index, camera, exec: self.exec })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,122 @@
+//! Stages as values: the passes of a method, what each reads, and the planes that each leaves.
+
+use crate::error::Error;
+use crate::frame::{Frame, Samples};
+
+/// A pass of a method.
+///
+/// A method lists its stages in the order in which they run. The timings of a picture carry the
+/// names of these stages, whether the definition or the fast path drew it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stage {
+    /// What the pass is called: `visibility`.
+    pub name: &'static str,
+    /// The stages whose planes or records it reads; every stage reads the scene and the camera.
+    pub reads: &'static [&'static str],
+    /// The planes it leaves.
+    pub leaves: &'static [PlaneRow],
+}
+
+/// A plane that a stage leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlaneRow {
+    /// The name, see [`crate::frame::NamedPlane`]; each run of `#` stands for a number of as many
+    /// digits: `group##.Z`.
+    pub name: &'static str,
+    /// The type of the values.
+    pub holds: Holds,
+    /// The unit of the values: `px`, `world units`; empty for what has none.
+    pub unit: &'static str,
+    /// What a value says, and what an empty pixel has.
+    pub meaning: &'static str,
+    /// When the plane is there.
+    pub when: When,
+}
+
+/// The type of a plane's values, see [`Samples`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Holds {
+    /// One number a pixel.
+    Scalar,
+    /// Linear RGB.
+    Color,
+    /// Three components.
+    Vector,
+    /// Indices.
+    Index,
+    /// Small counts.
+    Count,
+}
+
+/// When a stage leaves a plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    /// In every picture.
+    Always,
+    /// In every picture of a lit scene, and with the planes of the stages.
+    Lit,
+    /// In every picture of a scene with tubes.
+    Tubes,
+    /// With the planes of the stages.
+    Stages,
+    /// With the planes of the stages, if the scene has colours.
+    Colored,
+    /// With the planes of the stages, if the scene has tubes.
+    StagesOfTubes,
+    /// With the planes of the stages, if the settings ask for the quantity.
+    Settings,
+}
+
+impl PlaneRow {
+    /// A row.
+    #[must_use]
+    pub const fn new(
+        name: &'static str,
+        holds: Holds,
+        unit: &'static str,
+        meaning: &'static str,
+        when: When,
+    ) -> Self {
+        Self { name, holds, unit, meaning, when }
+    }
+
+    /// Whether a plane of this name is of this row.
+    #[must_use]
+    pub fn is_called(&self, name: &str) -> bool {
+        let same = |(of, c): (u8, u8)| of == c || (of == b'#' && c.is_ascii_digit());
+        self.name.len() == name.len() && self.name.bytes().zip(name.bytes()).all(same)
+    }
+
+    /// Whether a plane of these values can be of this row.
+    #[must_use]
+    pub fn holds<R>(&self, samples: &Samples<R>) -> bool {
+        let holds = match samples {
+            Samples::Scalar(_) => Holds::Scalar,
+            Samples::Color(_) => Holds::Color,
+            Samples::Vector(_) => Holds::Vector,
+            Samples::Index(_) => Holds::Index,
+            Samples::Count(_) => Holds::Count,
+        };
+        self.holds == holds
+    }
+}
+
+impl Stage {
+    /// The row of a plane that the stage leaves.
+    #[must_use]
+    pub fn row(&self, name: &str) -> Option<&'static PlaneRow> {
+        self.leaves.iter().find(|row| row.is_called(name))
+    }
+
+    /// The planes of a frame that this stage left.
+    #[must_use]
+    pub fn planes_of<R: Clone>(&self, frame: &Frame<R>) -> Frame<R> {
+        let own = frame.planes.iter().filter(|plane| self.row(&plane.name).is_some());
+        Frame { width: frame.width, height: frame.height, planes: own.cloned().collect() }
+    }
+}
+
+/// There is no stage of this name, or none that runs on planes.
+pub(super) fn unknown(stage: &str) -> Error {
+    Error::Invalid(format!("there is no stage `{stage}` that runs on planes"))
+}

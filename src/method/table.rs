@@ -1,0 +1,184 @@
+//! The table of methods: one row a method, from which everything follows that is said of methods.
+
+use super::algorithm::{Algorithm, Job};
+use super::{
+    Picture, Stage, ewa, peeling, pyramid, single_pass, template, transparent, transparent_hq,
+};
+use crate::error::{Error, Result};
+use crate::frame::{Frame, Pool};
+use crate::index::grouping::Grouping;
+use crate::number::Exact;
+use crate::scene::{Camera, Scene};
+
+/// Makes the enum of methods, and hands every question on to the settings of the method that is
+/// asked.
+macro_rules! methods {
+    ($($(#[$doc:meta])* $method:ident($settings:ty),)*) => {
+        /// A method and what it computes.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Method {
+            $($(#[$doc])* $method($settings),)*
+        }
+
+        /// What the fast path of a method works in.
+        #[derive(Debug)]
+        pub(super) enum Memory {
+            $($method(<$settings as Algorithm>::Memory),)*
+        }
+
+        $(impl From<$settings> for Method {
+            fn from(settings: $settings) -> Self {
+                Self::$method(settings)
+            }
+        })*
+
+        impl Method {
+            /// Every method, with its default settings, in the order of the table.
+            #[must_use]
+            pub fn all() -> Vec<Self> {
+                vec![$(Self::$method(<$settings>::default()),)*]
+            }
+
+            /// The name in scene files and on the command line.
+            #[must_use]
+            pub fn name(&self) -> &'static str {
+                match self { $(Self::$method(_) => <$settings>::NAME,)* }
+            }
+
+            /// What the method is, in one line, with its source.
+            #[must_use]
+            pub fn summary(&self) -> &'static str {
+                match self { $(Self::$method(_) => <$settings>::SUMMARY,)* }
+            }
+
+            /// The passes, in the order in which they run.
+            #[must_use]
+            pub fn stages(&self) -> &'static [Stage] {
+                match self { $(Self::$method(_) => <$settings>::STAGES,)* }
+            }
+
+            /// Whether triangles, ribbons and tubes are drawn beside surfels.
+            #[must_use]
+            pub fn draws_primitives(&self) -> bool {
+                match self { $(Self::$method(_) => <$settings>::DRAWS_PRIMITIVES,)* }
+            }
+
+            /// How surfels are divided into groups if nobody says; none: the method draws no groups.
+            #[must_use]
+            pub fn grouping(&self) -> Option<Grouping> {
+                match self { $(Self::$method(_) => <$settings>::GROUPING,)* }
+            }
+
+            /// Whether surfels are needed from back to front.
+            #[must_use]
+            pub fn needs_order(&self) -> bool {
+                match self { $(Self::$method(_) => <$settings>::BACK_TO_FRONT,)* }
+            }
+
+            /// Whether the numbers are in range.
+            ///
+            /// # Errors
+            /// [`Error::Invalid`] if one is not.
+            pub fn check(&self) -> Result<()> {
+                match self { $(Self::$method(settings) => settings.check(),)* }
+            }
+
+            /// What the settings come to in a scene: names and values as TOML.
+            #[must_use]
+            pub fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
+                match self { $(Self::$method(settings) => Algorithm::resolved(settings, scene, camera),)* }
+            }
+
+            pub(super) fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+                match self { $(Self::$method(settings) => settings.define(job, stages),)* }
+            }
+
+            pub(super) fn stage<R: Exact>(
+                &self,
+                job: &Job<'_>,
+                stage: &str,
+                from: &Frame<R>,
+            ) -> Result<Frame<R>> {
+                match self { $(Self::$method(settings) => settings.stage(job, stage, from),)* }
+            }
+
+            pub(super) fn explain<R: Exact>(&self, job: &Job<'_>, at: (u32, u32)) -> Result<String> {
+                match self { $(Self::$method(settings) => settings.explain::<R>(job, at),)* }
+            }
+
+            pub(super) fn memory(&self) -> Memory {
+                match self { $(Self::$method(_) => Memory::$method(Default::default()),)* }
+            }
+
+            pub(super) fn draw(
+                &self,
+                job: &Job<'_>,
+                memory: &mut Memory,
+                pool: &mut Pool,
+            ) -> Result<Picture<f32>> {
+                match (self, memory) {
+                    $((Self::$method(settings), Memory::$method(memory)) => {
+                        settings.draw(job, memory, pool)
+                    })*
+                    // A session makes its memory for its method.
+                    _ => self.define(job, false),
+                }
+            }
+        }
+    };
+}
+
+methods! {
+    /// EWA splatting in 2+1 passes.
+    Ewa(ewa::Settings),
+    /// Algorithm 1 of \[ZP06\].
+    SinglePass(single_pass::Settings),
+    /// Algorithm 2 of \[ZP06\].
+    Transparent(transparent::Settings),
+    /// Algorithm 3 of \[ZP06\].
+    TransparentHq(transparent_hq::Settings),
+    /// Depth peeling.
+    Peeling(peeling::Settings),
+    /// Pull-push interpolation \[MKC08\].
+    Pyramid(pyramid::Settings),
+    /// Reconstruction with templates \[MOC08\].
+    Template(template::Settings),
+}
+
+impl Default for Method {
+    /// The first of the table.
+    fn default() -> Self {
+        Self::Ewa(ewa::Settings::default())
+    }
+}
+
+impl Method {
+    /// The method of a name, with its default settings.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with the names there are.
+    pub fn by_name(name: &str) -> Result<Self> {
+        Self::all().into_iter().find(|method| method.name() == name).ok_or_else(|| {
+            let names: Vec<_> = Self::all().iter().map(Self::name).collect();
+            Error::Usage(format!("method `{name}`; give one of {}", names.join(", ")))
+        })
+    }
+
+    /// Whether the method can draw all of a scene.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the scene has primitives and the method draws surfels alone.
+    pub fn check_scene(&self, scene: &Scene) -> Result<()> {
+        if scene.primitives.is_empty() || self.draws_primitives() {
+            return Ok(());
+        }
+        let able = Self::all().into_iter().filter(Self::draws_primitives);
+        let able: Vec<_> = able.map(|method| format!("--method {}", method.name())).collect();
+        Err(Error::Invalid(format!(
+            "{} has triangles or lines, which the method {} does not draw; use {}",
+            scene.name,
+            self.name(),
+            able.join(" or ")
+        )))
+    }
+}
