@@ -14,7 +14,8 @@
 //! exchanging left with right or top with bottom changes no bit. Of 1, 2 or 4 terms of weight 1 it
 //! is the plain mean.
 
-use crate::number::Exact;
+use super::decide;
+use crate::number::{Exact, Real};
 
 /// The neighbours that take part, and their weights.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +26,7 @@ pub struct Mean<R> {
     scale: R,
 }
 
-impl<R: Exact> Mean<R> {
+impl<R: Real> Mean<R> {
     /// The weights of neighbours; those of which `takes` is false are ignored.
     #[inline(always)]
     #[must_use]
@@ -47,7 +48,7 @@ impl<R: Exact> Mean<R> {
     pub fn of(&self, a: [R; 4]) -> R {
         let term = |j: usize| if self.takes[j] { self.weights[j] * a[j] } else { R::ZERO };
         let mean = ((term(0) + term(1)) + (term(2) + term(3))) * self.scale;
-        mean.at_least(self.least(a)).at_most(self.greatest(a)) + R::ZERO
+        mean.clamped(self.least(a), self.greatest(a)) + R::ZERO
     }
 
     /// The least of those that take part; +inf if there are none.
@@ -81,11 +82,11 @@ pub fn foremost<R: Exact>(
 ) -> ([bool; 4], usize) {
     let (mut nearest, mut end, mut first) = (R::INFINITY, -R::INFINITY, 0);
     for j in 0..4 {
-        if candidates[j] & (front[j] < nearest) {
+        if candidates[j] & decide::before(front[j], nearest) {
             (nearest, end, first) = (front[j], back[j], j);
         }
     }
-    ([0, 1, 2, 3].map(|j| candidates[j] & (front[j] <= end)), first)
+    ([0, 1, 2, 3].map(|j| candidates[j] & decide::overlaps(front[j], end)), first)
 }
 
 #[cfg(test)]

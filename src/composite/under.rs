@@ -14,7 +14,7 @@
 //! colour unchanged and hides the rest; a = 0 changes nothing; blending the same layers from back
 //! to front gives the same up to rounding.
 
-use crate::number::Exact;
+use crate::number::Real;
 
 /// Layers that have been blended, and what they let through.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,15 @@ pub struct Under<R> {
     pub through: R,
 }
 
-impl<R: Exact> Under<R> {
+impl<R> Under<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> Under<S> {
+        Under { color: self.color.map(&f), alpha: f(self.alpha), through: f(self.through) }
+    }
+}
+
+impl<R: Real> Under<R> {
     /// Nothing: black and transparent.
     pub const CLEAR: Self = Self { color: [R::ZERO; 3], alpha: R::ZERO, through: R::ONE };
 
@@ -37,17 +45,12 @@ impl<R: Exact> Under<R> {
     pub fn under(self, alpha: R, color: [R; 3]) -> Self {
         let factor = self.through * alpha;
         let through = self.through * (R::ONE - alpha);
-        if !(factor > R::ZERO) {
-            return Self { through, ..self };
-        }
-        let [r, g, b] = color;
+        let adds = factor.gt(R::ZERO);
+        let part = |sum: R, value: R| R::select(adds, sum + factor * value, sum);
+        let [r, g, b] = self.color;
         Self {
-            color: [
-                self.color[0] + factor * r,
-                self.color[1] + factor * g,
-                self.color[2] + factor * b,
-            ],
-            alpha: self.alpha + factor,
+            color: [part(r, color[0]), part(g, color[1]), part(b, color[2])],
+            alpha: R::select(adds, self.alpha + factor, self.alpha),
             through,
         }
     }

@@ -3,7 +3,7 @@
 use super::{Disc, Fate, Footprint, Outline, Projector, Splat, project};
 use crate::frame::Rect;
 use crate::number::lanes::{LANES, Lanes, each, transposed, vectorized};
-use crate::number::{Exact, Vector2, Vector3};
+use crate::number::{Exact, Real, Vector2, Vector3};
 use crate::scene::Surfels;
 use std::ops::Range;
 
@@ -50,7 +50,7 @@ impl Tally {
 
 /// The surfel of index `i`, in the numbers of the arithmetic.
 #[must_use]
-pub fn disc<R: Exact>(surfels: &Surfels, i: usize) -> Disc<R> {
+pub fn disc<R: Real>(surfels: &Surfels, i: usize) -> Disc<R> {
     Disc {
         position: Vector3::from_glam(surfels.position()[i]),
         normal: Vector3::from_glam(surfels.normal()[i]),
@@ -68,7 +68,8 @@ pub fn splats<R: Exact>(
 ) -> Tally {
     let mut tally = Tally::default();
     for i in range {
-        let (splat, fate) = project(projector, &disc(surfels, i), i as u32);
+        let (splat, reasons) = project(projector, &disc(surfels, i), i as u32);
+        let fate = reasons.fate();
         tally.count(fate);
         if fate == Fate::Visible {
             draw(splat);
@@ -110,9 +111,9 @@ vectorized!(
             for i in 0..LANES {
                 let position = Vector3::new(input[0][i], input[1][i], input[2][i]);
                 let normal = Vector3::new(input[3][i], input[4][i], input[5][i]);
-                let (f, b, back, fate) = projector.affine_disc(position, normal, input[6][i]);
+                let (f, b, back, reasons) = projector.affine_disc(position, normal, input[6][i]);
                 splats.put(i, &f, &b, back);
-                fates[i] = fate as u32;
+                fates[i] = reasons.fate() as u32;
             }
             for i in 0..LANES {
                 counts[fates[i] as usize & 7] += 1;

@@ -1,13 +1,12 @@
 //! Every decision at one pixel, with its operands.
 
 use super::Settings;
-use super::plain::fragment;
-use crate::composite::epsilon;
+use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::Exact;
 use crate::scene::{Camera, Surfels};
-use crate::splat::{Projector, Shared, Splat, View, batch};
+use crate::splat::{Projector, Shared, Splat, View, batch, fragment};
 use std::fmt;
 use std::ops::Range;
 
@@ -77,17 +76,18 @@ pub fn explain<R: Exact>(
     let (mut nearest, mut id) = (shared.empty(), None);
     let mut touches = Vec::new();
     for splat in found.iter().flatten() {
-        let (q, w) = fragment(&shared, splat, x, y);
+        let (q, w) = fragment(&shared, &splat.footprint, (x, y));
         let t = shared.depth(w);
         touches.push(Touch { surfel: splat.surfel, q, t, w, before: nearest, weight: None });
-        if q <= shared.limit && w > nearest {
+        if decide::inside(q, shared.limit) && decide::nearer(w, nearest) {
             (nearest, id) = (w, Some(splat.surfel));
         }
     }
     // Attribute splatting.
     let nearest = shared.depth(nearest);
+    let limit = decide::limit(nearest, epsilon);
     for (touch, splat) in touches.iter_mut().zip(found.iter().flatten()) {
-        if touch.q <= shared.limit && epsilon::visible(touch.t, nearest, epsilon) {
+        if decide::inside(touch.q, shared.limit) && decide::visible(touch.t, limit) {
             touch.weight = Some(splat.footprint.weight(touch.q));
         }
     }
@@ -102,7 +102,7 @@ impl<R: Exact> fmt::Display for Explanation<R> {
         writeln!(f, "\nvisibility splatting: inside if q <= {}", n(self.limit))?;
         for t in &self.touches {
             let margin = t.q.ulps_to(self.limit);
-            let inside = t.q <= self.limit;
+            let inside = decide::inside(t.q, self.limit);
             let (sign, word) = if inside { ("<=", "inside ") } else { ("> ", "outside") };
             write!(
                 f,
@@ -113,7 +113,7 @@ impl<R: Exact> fmt::Display for Explanation<R> {
             )?;
             write!(f, "  (margin {margin} ulp)")?;
             if inside {
-                let wins = t.w > t.before;
+                let wins = decide::nearer(t.w, t.before);
                 let (sign, word) = if wins { ("> ", "nearest") } else { ("<=", "farther") };
                 write!(f, "   {word}  nearness {:.9} {sign} {:.9}", n(t.w), n(t.before))?;
                 write!(f, "  (margin {} ulp)  depth {}", t.w.ulps_to(t.before), n(t.t))?;
@@ -123,7 +123,7 @@ impl<R: Exact> fmt::Display for Explanation<R> {
         let Some(id) = self.id else {
             return writeln!(f, "\nthe pixel is empty");
         };
-        let limit = epsilon::limit(self.nearest, self.epsilon);
+        let limit = decide::limit(self.nearest, self.epsilon);
         writeln!(
             f,
             "\nattribute splatting: visible if depth <= {} (nearest {}, surfel {id}, + epsilon {})",
@@ -131,7 +131,7 @@ impl<R: Exact> fmt::Display for Explanation<R> {
             n(self.nearest),
             n(self.epsilon)
         )?;
-        for t in self.touches.iter().filter(|t| t.q <= self.limit) {
+        for t in self.touches.iter().filter(|t| decide::inside(t.q, self.limit)) {
             let margin = t.t.ulps_to(limit);
             let (sign, word) =
                 if t.weight.is_some() { ("<=", "visible") } else { ("> ", "hidden ") };

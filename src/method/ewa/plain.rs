@@ -1,17 +1,17 @@
 //! The definition: every pass, one fragment at a time, over any number.
 
 use super::Settings;
-use crate::composite::{epsilon, sum};
+use crate::composite::{decide, sum};
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, Plane, Rect, Wanted};
 use crate::method::prepare::Prepared;
-use crate::number::{Exact, Real, Vector2};
+use crate::number::{Exact, Real};
 use crate::scene::{Camera, Surfels};
-use crate::splat::{Shared, Splat, Tally};
+use crate::splat::{Shared, Splat, Tally, fragment};
 
 /// A picture between its passes.
 #[derive(Debug)]
-pub struct Plain<'a, R> {
+pub struct Plain<'a, R: Exact> {
     surfels: &'a Surfels,
     exec: &'a Exec,
     grid: Grid,
@@ -53,7 +53,7 @@ impl<'a, R: Exact> Plain<'a, R> {
         let shared = self.prepared.shared;
         self.each_fragment(|splat, (q, w), tile, (x, y)| {
             let nearest = &mut tile.depth.row(y)[x];
-            if q <= shared.limit && w > *nearest {
+            if decide::inside(q, shared.limit) && decide::nearer(w, *nearest) {
                 *nearest = w;
                 tile.id.row(y)[x] = splat.surfel;
             }
@@ -66,15 +66,15 @@ impl<'a, R: Exact> Plain<'a, R> {
         let (normals, colors) = (self.surfels.normal(), self.surfels.color());
         self.each_fragment(|splat, (q, w), tile, (x, y)| {
             let nearest = shared.depth(tile.depth.row(y)[x]);
+            let limit = decide::limit(nearest, epsilon);
             let t = shared.depth(w);
             if let Some(margin) = &mut tile.margin {
                 let margin = &mut margin.row(y)[x];
-                let limit = epsilon::limit(nearest, epsilon);
                 let is_nearest = tile.id.row(y)[x] == splat.surfel;
                 let decisions = Decisions { q, t, w, nearest: tile.depth.row(y)[x], limit };
                 *margin = margin.at_most(decisions.margin(&shared, is_nearest));
             }
-            if q <= shared.limit && epsilon::visible(t, nearest, epsilon) {
+            if decide::inside(q, shared.limit) && decide::visible(t, limit) {
                 let i = splat.surfel as usize;
                 let weight = splat.footprint.weight(q);
                 if let Some(sums) = &mut tile.normal {
@@ -130,7 +130,7 @@ impl<'a, R: Exact> Plain<'a, R> {
                 let Rect { x0, y0, x1, y1 } = splat.bounds.intersection(&tile.rect);
                 for y in y0..y1 {
                     for x in x0..x1 {
-                        let fragment = fragment(&shared, splat, x, y);
+                        let fragment = fragment(&shared, &splat.footprint, (x, y));
                         let at = ((x - tile.rect.x0) as usize, (y - tile.rect.y0) as usize);
                         draw(splat, fragment, &mut tile, at);
                     }
@@ -152,19 +152,6 @@ impl<'a, R: Exact> Plain<'a, R> {
     }
 }
 
-/// q and nearness of a splat at the centre of a pixel.
-pub(in crate::method) fn fragment<R: Exact>(
-    shared: &Shared<R>,
-    splat: &Splat<R>,
-    x: u32,
-    y: u32,
-) -> (R, R) {
-    let Vector2 { x: cx, y: cy } = splat.footprint.center;
-    let dx = R::from_f32(x as f32 + 0.5) - cx;
-    let dy = R::from_f32(y as f32 + 0.5) - cy;
-    splat.footprint.fragment(shared, dx, dy)
-}
-
 /// Runs `draw` for every fragment of a splat that is inside, in some pixels: the pixel, counted row
 /// by row in `rect`, q and nearness.
 #[inline(always)]
@@ -178,8 +165,8 @@ pub(in crate::method) fn each_inside<R: Exact>(
     let Rect { x0, y0, x1, y1 } = splat.bounds.intersection(rect);
     for y in y0..y1 {
         for x in x0..x1 {
-            let (q, w) = fragment(shared, splat, x, y);
-            if q <= shared.limit {
+            let (q, w) = fragment(shared, &splat.footprint, (x, y));
+            if decide::inside(q, shared.limit) {
                 draw(((y - rect.y0) * columns + (x - rect.x0)) as usize, q, w);
             }
         }
@@ -211,7 +198,8 @@ impl<R: Exact> Decisions<R> {
     /// against the limit, if it is inside. Depth: nearness against that of the nearest, if it is
     /// inside and another one.
     fn margin(&self, shared: &Shared<R>, is_nearest: bool) -> R {
-        let (inside, visible) = (self.q <= shared.limit, self.t <= self.limit);
+        let inside = decide::inside(self.q, shared.limit);
+        let visible = decide::visible(self.t, self.limit);
         let mut margin = f32::INFINITY;
         if visible {
             margin = margin.at_most(self.q.ulps_to(shared.limit));

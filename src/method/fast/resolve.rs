@@ -1,7 +1,7 @@
 //! Passes over the blocks of a tile that every method has, each compiled for every vector width.
 
 use super::tile::{PixelBlock, Tile};
-use crate::composite::{epsilon, sum};
+use crate::composite::{decide, sum};
 use crate::number::lanes::{LANES, components, vectorized};
 use crate::splat::Shared;
 
@@ -27,7 +27,7 @@ vectorized!(
         let shared = *shared;
         for block in blocks {
             for i in 0..LANES {
-                let limit = epsilon::limit(shared.depth(block.nearest[i]), epsilon);
+                let limit = decide::limit(shared.depth(block.nearest[i]), epsilon);
                 block.least[i] = least_nearness(&shared, limit);
             }
         }

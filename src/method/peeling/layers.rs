@@ -2,7 +2,7 @@
 
 use super::Settings;
 use crate::composite::under::Under;
-use crate::composite::{epsilon, sum};
+use crate::composite::{decide, sum};
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::frame::{Exec, Grid, NO_ID, Rect};
 use crate::method::ewa::plain::{each_inside, facing};
@@ -14,7 +14,7 @@ use crate::splat::{Splat, Tally, View};
 
 /// A picture whose splats are projected and sorted into tiles.
 #[derive(Debug)]
-pub struct Peeling<'a, R> {
+pub struct Peeling<'a, R: Exact> {
     surfels: &'a Surfels,
     grid: Grid,
     prepared: Prepared<R, Splat<R>>,
@@ -121,7 +121,9 @@ impl<'a, R: Exact> Peeling<'a, R> {
         // Visibility splatting.
         self.each_fragment(index, rect, |splat, (_, w), pixel| {
             let sums = &mut sums[pixel];
-            if shared.depth(w) > pixels[pixel].limit && w > sums.nearest {
+            if decide::beyond(shared.depth(w), pixels[pixel].limit)
+                && decide::nearer(w, sums.nearest)
+            {
                 sums.nearest = w;
                 sums.id = splat.surfel;
             }
@@ -134,7 +136,8 @@ impl<'a, R: Exact> Peeling<'a, R> {
         self.each_fragment(index, rect, |splat, (q, w), pixel| {
             let sums = &mut sums[pixel];
             let (t, nearest) = (shared.depth(w), shared.depth(sums.nearest));
-            if t > pixels[pixel].limit && epsilon::visible(t, nearest, self.prepared.epsilon) {
+            let limit = decide::limit(nearest, self.prepared.epsilon);
+            if decide::beyond(t, pixels[pixel].limit) && decide::visible(t, limit) {
                 self.accumulate(sums, splat, splat.footprint.weight(q));
             }
         });
@@ -203,7 +206,7 @@ impl<R: Exact> Pixel<R> {
         }
         self.blend = self.blend.under(layer.alpha, layer.color);
         self.layers += 1;
-        self.limit = epsilon::limit(layer.depth, epsilon);
+        self.limit = decide::limit(layer.depth, epsilon);
     }
 }
 

@@ -12,7 +12,7 @@
 //!    is -inf, so that layer 1 is of all fragments.
 //! 3. **Attribute splatting**: of the same fragments, each with `t <= limit_j` adds its weight, and
 //!    its weight times normal, times colour and times opacity, in ascending surfel index; `limit_j
-//!    = t_j + epsilon`, see [`crate::composite::epsilon`]. A surfel seen from behind adds its
+//!    = t_j + epsilon`, see [`crate::composite::decide`]. A surfel seen from behind adds its
 //!    normal reversed. In a scene without opacities each is 1.
 //! 4. **Normalization**: colour and opacity `a_j` = sum / weight, normal = direction of sum /
 //!    weight.

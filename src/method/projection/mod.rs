@@ -45,7 +45,7 @@ pub(in crate::method) use planes::planes;
 
 use crate::frame::raster::Snap;
 use crate::frame::{NO_ID, Plane};
-use crate::number::{Exact, Vector2, Vector3};
+use crate::number::{Exact, Real, Vector2, Vector3};
 use crate::scene::{Camera, Scene};
 use crate::splat::clip::Clip;
 use crate::splat::{Tally, View};
@@ -92,7 +92,25 @@ pub struct Sample<R> {
     pub color: [R; 3],
 }
 
-impl<R: Exact> Sample<R> {
+impl<R> Sample<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> Sample<S> {
+        Sample {
+            kind: self.kind,
+            id: self.id,
+            depth: f(self.depth),
+            radius: f(self.radius),
+            extent: f(self.extent),
+            center: self.center.map(&f),
+            normal: self.normal.map(&f),
+            tangent: self.tangent.map(&f),
+            color: self.color.map(&f),
+        }
+    }
+}
+
+impl<R: Real> Sample<R> {
     /// No sample.
     #[must_use]
     pub fn empty() -> Self {

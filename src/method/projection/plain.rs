@@ -2,6 +2,7 @@
 
 use super::primitives;
 use super::{Projected, Sample, Stage};
+use crate::composite::decide;
 use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
 use crate::frame::{Bins, Exec, Plane, Rect};
@@ -84,14 +85,14 @@ fn draw<R: Exact>(
             bins.for_each(index, |i| match &drawn[i as usize] {
                 Drawn::Pixel([x, y], sample) => {
                     let kept = &mut tile.row((y - rect.y0) as usize)[(x - rect.x0) as usize];
-                    if sample.depth < kept.depth {
+                    if decide::before(sample.depth, kept.depth) {
                         *kept = *sample;
                     }
                 }
                 Drawn::Piece(piece) => piece.for_each(&rect, |at| {
                     let row = tile.row((at.y - rect.y0) as usize);
                     let kept = &mut row[(at.x - rect.x0) as usize];
-                    if -at.p.z < kept.depth {
+                    if decide::before(-at.p.z, kept.depth) {
                         *kept = piece.sample(stage, &at);
                     }
                 }),
@@ -113,5 +114,5 @@ fn surfel<R: Exact>(stage: &Stage<'_, R>, i: usize, tally: &mut Tally, drawn: &m
     let color = if stage.has.color { color.to_array().map(R::from_f32) } else { [R::ZERO; 3] };
     let radius = R::from_f32(surfels.radius()[i]);
     let sample = lens.sample(&placed, (n, g), radius, (i as u32, color));
-    drawn.push(Drawn::Pixel([placed.center.x.to_pixel(), placed.center.y.to_pixel()], sample));
+    drawn.push(Drawn::Pixel(placed.pixel(), sample));
 }

@@ -1,8 +1,8 @@
 //! One surfel as one pixel, see the page of [`super`].
 
 use super::{Kind, Sample};
-use crate::number::{Exact, Vector2, Vector3};
-use crate::splat::{Fate, View, ellipse};
+use crate::number::{Exact, Real, Vector2, Vector3};
+use crate::splat::{Fate, Reasons, View, ellipse};
 
 /// What the projection of a picture's surfels shares.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,26 @@ pub struct Placed<R> {
     pub center: Vector2<R>,
 }
 
+impl<R: Real> Placed<R> {
+    /// The pixel that the point is drawn into: column and row, for a point in the picture.
+    #[must_use]
+    pub fn pixel(&self) -> [R::Pixel; 2] {
+        [self.center.x.to_pixel(), self.center.y.to_pixel()]
+    }
+}
+
 impl<R: Exact> Lens<R> {
+    /// [`Lens::reasons`] as a fate, without a branch, so that a loop over it vectorizes: where a
+    /// surfel is, g, fate.
+    #[inline(always)]
+    #[must_use]
+    pub fn fate(&self, position: Vector3<R>, n: Vector3<R>) -> (Placed<R>, R, Fate) {
+        let (placed, g, reasons) = self.reasons(position, n);
+        (placed, g, reasons.fate())
+    }
+}
+
+impl<R: Real> Lens<R> {
     /// The shared numbers of a picture.
     #[must_use]
     pub fn new(view: View<R>, cull: bool) -> Self {
@@ -64,22 +83,23 @@ impl<R: Exact> Lens<R> {
         }
     }
 
-    /// The fate of a surfel without a branch, so that a loop over it vectorizes: where it is, g,
-    /// fate.
+    /// Where a surfel is, g, and the reasons not to draw it; `n` is the normal in view space.
     #[inline(always)]
     #[must_use]
-    pub fn fate(&self, position: Vector3<R>, n: Vector3<R>) -> (Placed<R>, R, Fate) {
+    pub fn reasons(&self, position: Vector3<R>, n: Vector3<R>) -> (Placed<R>, R, Reasons<R>) {
         let view = &self.view;
         let placed = self.place(view.point(position));
         let g = self.facing(&placed, n);
         let Vector2 { x, y } = placed.center;
-        let inside = (x >= R::ZERO) & (x < view.width) & (y >= R::ZERO) & (y < view.height);
+        let inside = x.ge(R::ZERO) & x.lt(view.width) & y.ge(R::ZERO) & y.lt(view.height);
         let sound = x.is_finite() & y.is_finite() & placed.t.is_finite() & g.is_finite();
-        let fate = if inside { Fate::Visible } else { Fate::Outside };
-        let fate = if self.cull & (g >= R::ZERO) { Fate::BackFacing } else { fate };
-        let fate = if sound { fate } else { Fate::Degenerate };
-        let fate = if placed.t > view.near { fate } else { Fate::Behind };
-        (placed, g, fate)
+        let reasons = Reasons {
+            behind: !placed.t.gt(view.near),
+            degenerate: !sound,
+            back_facing: R::Truth::from(self.cull) & g.ge(R::ZERO),
+            outside: !inside,
+        };
+        (placed, g, reasons)
     }
 
     /// The sample of a surfel at a place; n in view space, g as [`Lens::facing`].
@@ -92,7 +112,8 @@ impl<R: Exact> Lens<R> {
         radius: R,
         (id, color): (u32, [R; 3]),
     ) -> Sample<R> {
-        let n = if g > R::ZERO { -n } else { n };
+        let away = g.gt(R::ZERO);
+        let n = n.map(|component| R::select(away, -component, component));
         Sample {
             kind: Kind::Surface,
             id,

@@ -33,7 +33,8 @@ use crate::frame::{Frame, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::projection::{Kind, Sample};
 use crate::method::{Picture, Stage};
-use crate::number::{Exact, Vector2, Vector3};
+use crate::number::{Exact, Real, Vector2, Vector3};
+use crate::splat::Ellipse;
 
 /// How the cells that a pixel is interpolated from are weighted \[MKC08, section 3.3, Fig. 4\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -114,7 +115,24 @@ pub struct Cell<R> {
     pub color: [R; 3],
 }
 
-impl<R: Exact> Cell<R> {
+impl<R> Cell<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> Cell<S> {
+        Cell {
+            kind: self.kind,
+            front: f(self.front),
+            back: f(self.back),
+            radius: f(self.radius),
+            displacement: self.displacement.map(&f),
+            normal: self.normal.map(&f),
+            tangent: self.tangent.map(&f),
+            color: self.color.map(&f),
+        }
+    }
+}
+
+impl<R: Real> Cell<R> {
     /// Nothing: kind [`Kind::Empty`], front +inf, back -inf, all else 0.
     #[must_use]
     pub fn empty() -> Self {
@@ -155,17 +173,14 @@ impl<R: Exact> Cell<R> {
         self.kind != Kind::Empty
     }
 
-    /// Of four cells those that take part, and which one is foremost.
-    ///
-    /// Candidates are the valid ones within whose ellipses the new cell's centre lies; see
-    /// [`crate::composite::mean::foremost`]; those that are not tubes if the foremost is one, or
-    /// tubes if it is none, take no part.
-    pub(super) fn foremost(cells: &[Self; 4], inside: [bool; 4]) -> ([bool; 4], usize) {
-        let candidates = [0, 1, 2, 3].map(|j| inside[j] & cells[j].is_valid());
-        let (fronts, backs) = (cells.map(|cell| cell.front), cells.map(|cell| cell.back));
-        let (takes, first) = crate::composite::mean::foremost(candidates, fronts, backs);
-        let tube = |j: usize| cells[j].kind == Kind::Tube;
-        ([0, 1, 2, 3].map(|j| takes[j] & (tube(j) == tube(first))), first)
+    /// Which of four cells are valid and hold the centre of a new cell, whose offsets from that
+    /// centre are given.
+    pub fn inside(cells: &[Self; 4], offsets: &[Vector2<R>; 4]) -> [R::Truth; 4] {
+        [0, 1, 2, 3].map(|j| {
+            let ellipse = Ellipse::new(cells[j].normal, cells[j].radius);
+            let holds = ellipse.holds(ellipse.form(offsets[j].x, offsets[j].y));
+            holds & R::Truth::from(cells[j].is_valid())
+        })
     }
 
     /// The average of the attributes; `displacements` are those from the new cell's centre.
@@ -192,6 +207,20 @@ impl<R: Exact> Cell<R> {
             tangent: vector(|cell| cell.tangent),
             color: [0, 1, 2].map(|c| mean.of(cells.map(|cell| cell.color[c]))),
         }
+    }
+}
+
+impl<R: Exact> Cell<R> {
+    /// Of four cells those that take part, and which one is foremost.
+    ///
+    /// Candidates are those that are [inside](Cell::inside), see
+    /// [`crate::composite::mean::foremost`]; those that are not tubes if the foremost is one, or
+    /// tubes if it is none, take no part.
+    pub(super) fn foremost(cells: &[Self; 4], inside: [bool; 4]) -> ([bool; 4], usize) {
+        let (fronts, backs) = (cells.map(|cell| cell.front), cells.map(|cell| cell.back));
+        let (takes, first) = crate::composite::mean::foremost(inside, fronts, backs);
+        let tube = |j: usize| cells[j].kind == Kind::Tube;
+        ([0, 1, 2, 3].map(|j| takes[j] & (tube(j) == tube(first))), first)
     }
 }
 

@@ -27,9 +27,10 @@
 //! it, and there would be a hole beside every silhouette.
 
 use super::{Cell, Occlusion, Settings, Weights};
+use crate::composite::decide;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
-use crate::number::{Exact, Vector2};
+use crate::number::{Exact, Real, Vector2};
 use crate::splat::Ellipse;
 
 /// The finer level, as [`super::pull`] left it, from the coarser one; `side` is that of the finer
@@ -73,40 +74,58 @@ fn beside(x: u32) -> i64 {
 }
 
 /// Whether a valid cell is occluded, see the module page.
-pub(super) fn occluded<R: Exact>(cell: &Cell<R>, parent: &Cell<R>, rule: Occlusion) -> bool {
-    let behind = cell.front > parent.back;
-    let before = cell.front < parent.front;
-    parent.is_valid() && (behind || (before && rule == Occlusion::Outside))
+pub fn occluded<R: Real>(cell: &Cell<R>, parent: &Cell<R>, rule: Occlusion) -> R::Truth {
+    let interval = [parent.front, parent.back];
+    R::Truth::from(parent.is_valid())
+        & decide::occluded(cell.front, interval, rule == Occlusion::Outside)
 }
 
 /// A cell from its parent and the three neighbours, if any holds its centre; see the module page.
 fn one<R: Exact>(
     coarser: &[Cell<R>; 4],
-    (even_x, even_y): (bool, bool),
+    even: (bool, bool),
     side: R,
     weights: Weights,
 ) -> Option<Cell<R>> {
+    let offsets = offsets(coarser, even, side);
+    let (takes, first) = Cell::foremost(coarser, Cell::inside(coarser, &offsets));
+    takes[first].then(|| merge(coarser, &offsets, weights, takes, first))
+}
+
+/// `v_j`: from the finer cell's centre to those of the coarser ellipses, in pixels; whether the
+/// column and the row of the finer cell are even, and the side of finer cells.
+pub fn offsets<R: Real>(
+    coarser: &[Cell<R>; 4],
+    (even_x, even_y): (bool, bool),
+    side: R,
+) -> [Vector2<R>; 4] {
     let shift = |neighbour: bool, even: bool| {
         let far = side * R::from_f32(if neighbour { 1.5 } else { 0.5 });
         if neighbour == even { -far } else { far }
     };
-    let centers = [0, 1, 2, 3].map(|j| {
+    [0, 1, 2, 3].map(|j| {
         let d = coarser[j].displacement;
         Vector2::new(d.x + shift(j % 2 == 1, even_x), d.y + shift(j / 2 == 1, even_y))
-    });
-    let ellipses = coarser.map(|cell| Ellipse::new(cell.normal, cell.radius));
-    let forms = [0, 1, 2, 3].map(|j| ellipses[j].form(centers[j].x, centers[j].y));
-    let inside = [0, 1, 2, 3].map(|j| ellipses[j].holds(forms[j]));
-    let (takes, first) = Cell::foremost(coarser, inside);
-    if !takes[first] {
-        return None;
-    }
+    })
+}
+
+/// The new cell, if of four cells at these [`offsets`] those in `takes` take part and `first` is the
+/// foremost of them.
+pub fn merge<R: Real>(
+    coarser: &[Cell<R>; 4],
+    offsets: &[Vector2<R>; 4],
+    weights: Weights,
+    takes: [bool; 4],
+    first: usize,
+) -> Cell<R> {
     let weight = |j: usize| match weights {
         Weights::Gaussian if takes[j] => {
-            (R::from_f32(-2.0) * (forms[j] / ellipses[j].square)).exp()
+            let ellipse = Ellipse::new(coarser[j].normal, coarser[j].radius);
+            let form = ellipse.form(offsets[j].x, offsets[j].y);
+            (R::from_f32(-2.0) * (form / ellipse.square)).exp()
         }
         _ => R::ONE,
     };
     let mean = Mean::new(takes, [0, 1, 2, 3].map(weight));
-    Some(Cell::average(coarser, centers, &mean, coarser[first].kind))
+    Cell::average(coarser, *offsets, &mean, coarser[first].kind)
 }

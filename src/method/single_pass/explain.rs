@@ -2,13 +2,13 @@
 
 use super::Settings;
 use super::plain::{Geometry, Kept};
-use crate::composite::epsilon;
+use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::{Exec, NO_ID};
-use crate::method::ewa::plain::fragment;
 use crate::number::Exact;
 use crate::scene::Groups;
 use crate::scene::{Camera, Surfels};
+use crate::splat::fragment;
 use std::fmt;
 
 /// What happened at one pixel.
@@ -92,9 +92,9 @@ pub fn explain<R: Exact>(
             found.insert(at, GroupAt { group, touches, kept, t, visible: false });
         }
         let state = &mut found[at];
-        let (q, nearness) = fragment(shared, splat, x, y);
+        let (q, nearness) = fragment(shared, &splat.footprint, (x, y));
         let (before, mut test) = (state.kept, None);
-        if q <= shared.limit {
+        if decide::inside(q, shared.limit) {
             let z = geometry.offer(splat, q, nearness, &mut state.kept);
             test = Some(match geometry.voronoi() {
                 true => [z, before.z],
@@ -113,8 +113,9 @@ pub fn explain<R: Exact>(
         nearest = nearest.at_most(state.t);
     }
     let band = geometry.epsilon();
+    let visible = decide::limit(nearest, band);
     for state in &mut found {
-        state.visible = state.kept.surfel != NO_ID && epsilon::visible(state.t, nearest, band);
+        state.visible = state.kept.surfel != NO_ID && decide::visible(state.t, visible);
     }
     let (limit, voronoi) = (shared.limit, geometry.voronoi());
     Ok(Explanation { pixel: (x, y), limit, epsilon: band, nearest, voronoi, groups: found })
@@ -156,7 +157,7 @@ impl<R: Exact> fmt::Display for Explanation<R> {
         if self.groups.iter().all(|state| state.kept.surfel == NO_ID) {
             return writeln!(f, "\nthe pixel is empty");
         }
-        let limit = epsilon::limit(self.nearest, self.epsilon);
+        let limit = decide::limit(self.nearest, self.epsilon);
         writeln!(
             f,
             "\ncompositing pass: visible if depth <= {} (nearest {} + epsilon {})",

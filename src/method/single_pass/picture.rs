@@ -2,7 +2,7 @@
 
 use super::plain::{Composite, Geometry, Images, store};
 use super::{Settings, fast};
-use crate::composite::groups::Sample;
+use crate::composite::groups::WeightedFragment;
 use crate::error::Result;
 use crate::frame::{Framebuffer, Grid, NO_ID, NamedPlane, Pool, Samples, Wanted};
 use crate::method::algorithm::Job;
@@ -101,7 +101,7 @@ fn sum_planes<R: Exact>(
     composites: &[Vec<Composite<R>>],
     color: bool,
 ) -> Vec<NamedPlane<R>> {
-    let sums = |tile: usize, pixel: usize| -> Sample<R> { composites[tile][pixel].sums };
+    let sums = |tile: usize, pixel: usize| -> WeightedFragment<R> { composites[tile][pixel].sums };
     let zero = [R::ZERO; 3];
     let mut planes = Vec::new();
     if color {

@@ -2,8 +2,8 @@
 
 use super::Settings;
 use crate::composite::bins::DepthBins;
-use crate::composite::groups::{Sample, compose};
-use crate::composite::sum;
+use crate::composite::groups::{WeightedFragment, compose};
+use crate::composite::{decide, sum};
 use crate::error::Result;
 use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, NO_ID, Rect};
 use crate::method::ewa::plain::{each_inside, facing};
@@ -15,7 +15,7 @@ use crate::splat::{Shared, Splat, Tally};
 
 /// The geometry pass of a picture: its splats, projected and sorted into tiles.
 #[derive(Debug)]
-pub struct Geometry<'a, R> {
+pub struct Geometry<'a, R: Exact> {
     surfels: &'a Surfels,
     groups: &'a Groups,
     grid: Grid,
@@ -39,6 +39,15 @@ pub struct Kept<R> {
     pub back: bool,
 }
 
+impl<R> Kept<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> Kept<S> {
+        let Self { z, nearness, weight, surfel, back } = self;
+        Kept { z: f(z), nearness: f(nearness), weight: f(weight), surfel, back }
+    }
+}
+
 /// The depth-images of all groups, in one tile.
 #[derive(Clone, Debug)]
 pub struct Images<R> {
@@ -52,7 +61,7 @@ pub struct Images<R> {
 #[derive(Clone, Copy, Debug)]
 pub struct Composite<R> {
     /// The sums, with the nearest depth.
-    pub sums: Sample<R>,
+    pub sums: WeightedFragment<R>,
     /// How many groups passed the epsilon-z test.
     pub count: u32,
     /// The surfel of the greatest nearness.
@@ -137,10 +146,10 @@ impl<'a, R: Exact> Geometry<'a, R> {
     pub(super) fn offer(&self, splat: &Splat<R>, q: R, nearness: R, kept: &mut Kept<R>) -> R {
         let shared = &self.prepared.shared;
         let (z, passes) = match &self.bins {
-            None => (R::ZERO, nearness > kept.nearness),
+            None => (R::ZERO, decide::nearer(nearness, kept.nearness)),
             Some(bins) => {
                 let z = bins.voronoi(shared.depth(nearness), (q / shared.limit).sqrt());
-                (z, z < kept.z)
+                (z, decide::nearer_bin(z, kept.z))
             }
         };
         if passes {
@@ -154,16 +163,16 @@ impl<'a, R: Exact> Geometry<'a, R> {
     ///
     /// A colour that the scene does not have is 0, an opacity 1.
     #[must_use]
-    pub fn sample(&self, kept: &Kept<R>) -> Sample<R> {
+    pub fn sample(&self, kept: &Kept<R>) -> WeightedFragment<R> {
         if kept.surfel == NO_ID {
-            return Sample::EMPTY;
+            return WeightedFragment::EMPTY;
         }
         let i = kept.surfel as usize;
         let normal = facing(self.surfels.normal()[i].to_array().map(R::from_f32), kept.back);
         let color = self.surfels.color().map_or([R::ZERO; 3], |c| c[i].to_array().map(R::from_f32));
         let opacity = self.surfels.opacity().map_or(R::ONE, |o| R::from_f32(o[i]));
         let depth = self.prepared.shared.depth(kept.nearness);
-        Sample::new(depth, kept.weight, normal, color, opacity)
+        WeightedFragment::new(depth, kept.weight, normal, color, opacity)
     }
 
     /// The compositing pass over one tile, row by row.
@@ -177,7 +186,7 @@ impl<'a, R: Exact> Geometry<'a, R> {
             for image in &images.groups {
                 let kept = &image[pixel];
                 samples.push(self.sample(kept));
-                if kept.nearness > nearness || (kept.nearness == nearness && kept.surfel < id) {
+                if decide::nearer_or_lower((kept.nearness, kept.surfel), (nearness, id)) {
                     (nearness, id) = (kept.nearness, kept.surfel);
                 }
             }

@@ -31,9 +31,9 @@
 //! closer to it, so nothing else changes.
 
 use super::{Center, Settings, levels};
-use crate::composite::sum;
+use crate::composite::{decide, sum};
 use crate::frame::{Exec, NO_ID, Plane};
-use crate::number::Exact;
+use crate::number::{Exact, Real};
 use crate::splat::Ellipse;
 
 /// What a pixel has gathered.
@@ -76,13 +76,13 @@ impl<R: Exact> Gathered<R> {
     /// A centre whose ellipse holds the pixel, with its weight; the ternary test of the module
     /// page.
     fn add(&mut self, center: &Center<R>, weight: R) {
-        let sum = center.radius + self.radius;
-        if self.id == NO_ID || self.depth - center.depth > sum {
+        let test = decide::ternary([center.depth, center.radius], [self.depth, self.radius]);
+        if self.id == NO_ID || test.before {
             *self = Self::empty();
-        } else if center.depth - self.depth > sum {
+        } else if test.behind {
             return;
         }
-        if center.depth < self.depth {
+        if decide::before(center.depth, self.depth) {
             (self.id, self.depth, self.radius) = (center.id, center.depth, center.radius);
         }
         self.weight = self.weight + weight;
@@ -96,9 +96,9 @@ impl<R: Exact> Gathered<R> {
 
 /// The weight of a form, see the module page; also for one that is outside or NaN.
 #[inline(always)]
-pub(in crate::method::template) fn weight<R: Exact>(form: R, square: R) -> R {
+pub(in crate::method::template) fn weight<R: Real>(form: R, square: R) -> R {
     let (weight, least) = (R::ONE - (form / square).sqrt(), R::from_f32(LEAST));
-    if weight > least { weight } else { least }
+    R::select(weight.gt(least), weight, least)
 }
 
 /// 2^-24, the least weight.

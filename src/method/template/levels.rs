@@ -18,10 +18,11 @@
 //! centre never stays at a level that it should have left.
 
 use super::{Center, Settings};
+use crate::composite::decide;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
 use crate::method::projection::Projected;
-use crate::number::{Exact, Vector2, Vector3};
+use crate::number::{Exact, Real, Vector2, Vector3};
 
 /// The level from which every cell is found: the first whose sides are at most h + 1.
 #[must_use]
@@ -50,8 +51,8 @@ pub fn propagate<R: Exact>(
 }
 
 /// Whether a centre of a level that is not the top moves on.
-pub(super) fn moves<R: Exact>(center: &Center<R>, reach: R) -> bool {
-    center.is_valid() && !(center.extent <= reach)
+pub fn moves<R: Real>(center: &Center<R>, reach: R) -> R::Truth {
+    R::Truth::from(center.is_valid()) & decide::moves(center.extent, reach)
 }
 
 /// The next level, from what does not stay within `reach`.
@@ -74,20 +75,30 @@ fn coarser<R: Exact>(fine: &Plane<Center<R>>, reach: R, exec: &Exec) -> Plane<Ce
 
 /// One centre from those that move, see the module page.
 fn merged<R: Exact>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Center<R> {
-    let mut front = Center::empty();
+    let (mut depth, mut first) = (R::INFINITY, None);
     for j in 0..4 {
-        if moving[j] && finer[j].depth < front.depth {
-            front = finer[j];
+        if moving[j] && decide::before(finer[j].depth, depth) {
+            (depth, first) = (finer[j].depth, Some(j));
         }
     }
-    if !front.is_valid() {
-        return front;
-    }
-    let near = |c: &Center<R>| c.depth - front.depth <= c.radius + front.radius;
-    let mean = Mean::plain([0, 1, 2, 3].map(|j| moving[j] && near(&finer[j])));
+    let Some(first) = first else { return Center::empty() };
+    let near = near(finer, first);
+    merge(finer, [0, 1, 2, 3].map(|j| moving[j] && near[j]), first)
+}
+
+/// Which of four centres are near enough to be merged with the foremost.
+pub fn near<R: Real>(finer: &[Center<R>; 4], first: usize) -> [R::Truth; 4] {
+    let front = &finer[first];
+    finer.map(|c| decide::meets([c.depth, c.radius], [front.depth, front.radius]))
+}
+
+/// The new centre, if of four centres those in `takes` take part and `first` is the foremost of
+/// them.
+pub fn merge<R: Real>(finer: &[Center<R>; 4], takes: [bool; 4], first: usize) -> Center<R> {
+    let mean = Mean::plain(takes);
     let number = |of: fn(&Center<R>) -> R| mean.of([0, 1, 2, 3].map(|j| of(&finer[j])));
     Center {
-        id: front.id,
+        id: finer[first].id,
         depth: number(|c| c.depth),
         radius: number(|c| c.radius),
         extent: number(|c| c.extent),

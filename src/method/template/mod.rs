@@ -26,7 +26,7 @@ use crate::frame::{Frame, NO_ID, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::projection::{Kind, Sample};
 use crate::method::{Picture, Stage};
-use crate::number::{Exact, Vector2, Vector3};
+use crate::number::{Exact, Real, Vector2, Vector3};
 
 /// The level at which a centre stays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -112,7 +112,23 @@ pub struct Center<R> {
     pub color: [R; 3],
 }
 
-impl<R: Exact> Center<R> {
+impl<R> Center<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> Center<S> {
+        Center {
+            id: self.id,
+            depth: f(self.depth),
+            radius: f(self.radius),
+            extent: f(self.extent),
+            place: self.place.map(&f),
+            normal: self.normal.map(&f),
+            color: self.color.map(&f),
+        }
+    }
+}
+
+impl<R: Real> Center<R> {
     /// An empty cell: all but depth and id is 0.
     #[must_use]
     pub fn empty() -> Self {

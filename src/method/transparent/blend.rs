@@ -2,7 +2,7 @@
 
 use super::{Holes, Settings};
 use crate::composite::bins::DepthBins;
-use crate::composite::epsilon;
+use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::{NO_ID, Rect};
@@ -12,11 +12,11 @@ use crate::method::prepare::Prepared;
 use crate::number::{Exact, Vector3};
 use crate::scene::Scene;
 use crate::shade::phong::Shader;
-use crate::splat::{Disc, Fate, Projector, Splat, Tally, View, batch, project};
+use crate::splat::{Disc, Fate, Projector, Reasons, Splat, Tally, View, batch, project};
 
 /// A surfel in one of its groups, on the screen.
 #[derive(Clone, Copy, Debug)]
-struct Drawn<R> {
+struct Drawn<R: Exact> {
     splat: Splat<R>,
     group: u8,
     /// Shaded at the centre.
@@ -57,7 +57,7 @@ impl<R: Exact> Layers<R> {
     /// Blends a fragment that passed the depth test.
     fn add(&mut self, drawn: &Drawn<R>, bin: R, depth: R) {
         let Drawn { alpha, color, .. } = *drawn;
-        let opaque = alpha >= R::ONE;
+        let opaque = decide::opaque(alpha);
         *self = Self {
             bin,
             blend: self.blend.over(alpha, color),
@@ -72,7 +72,7 @@ impl<R: Exact> Layers<R> {
 
 /// The splats of all groups, projected and sorted into tiles.
 #[derive(Debug)]
-pub(in crate::method) struct Blending<R> {
+pub(in crate::method) struct Blending<R: Exact> {
     prepared: Prepared<R, Drawn<R>>,
     bins: DepthBins<R>,
     groups: usize,
@@ -102,7 +102,8 @@ impl<R: Exact> Blending<R> {
                 let mut tally = Tally::default();
                 for &(surfel, group) in &items[range] {
                     let scale = groups.scale()[usize::from(group)];
-                    let (splat, fate) = place(scene, surfel, scale, projector);
+                    let (splat, reasons) = place(scene, surfel, scale, projector);
+                    let fate = reasons.fate();
                     tally.count(fate);
                     if fate == Fate::Visible {
                         let (color, alpha) = appearance(scene, &shader, &splat);
@@ -137,11 +138,11 @@ impl<R: Exact> Blending<R> {
             let image = &mut images[usize::from(drawn.group)];
             each_inside(shared, &drawn.splat, &rect, |i, _, nearness| {
                 let depth = shared.depth(nearness);
-                if mask.is_some_and(|mask| epsilon::visible(depth, mask[i], band)) {
+                if mask.is_some_and(|mask| decide::visible(depth, decide::limit(mask[i], band))) {
                     return;
                 }
                 let bin = self.bins.bin(depth);
-                if bin < image[i].bin {
+                if decide::nearer_bin(bin, image[i].bin) {
                     image[i].add(drawn, bin, depth);
                 }
             });
@@ -194,7 +195,7 @@ impl<R: Exact> Average<R> {
         self.opacity = self.opacity + layers.opacity;
         self.hidden = self.hidden + layers.hidden;
         self.layers = self.layers + R::from_f32(f32::from(layers.count));
-        if (layers.depth, layers.surfel) < (self.depth, self.surfel) {
+        if decide::before_or_lower((layers.depth, layers.surfel), (self.depth, self.surfel)) {
             (self.depth, self.surfel) = (layers.depth, layers.surfel);
         }
     }
@@ -219,7 +220,7 @@ fn place<R: Exact>(
     surfel: u32,
     scale: f32,
     projector: &Projector<R>,
-) -> (Splat<R>, Fate) {
+) -> (Splat<R>, Reasons<R>) {
     let scale = R::from_f32(scale);
     let disc: Disc<R> = batch::disc(&scene.surfels, surfel as usize);
     let disc = Disc {

@@ -12,7 +12,7 @@ use crate::method::transparent::blend::Average;
 use crate::method::transparent::picture::{At, blend};
 use crate::number::{Exact, Vector3};
 use crate::scene::Scene;
-use crate::shade::optics::{self, Behind, Nearest};
+use crate::shade::optics::{self, Behind, NearestLayer};
 use crate::splat::View;
 
 /// The definition of Algorithm 3, in any number; with `stages`, every stage leaves its planes.
@@ -68,7 +68,8 @@ impl<R: Exact> Tail<'_, R> {
         };
         let normal = first.target.normal.as_ref().map(|plane| *plane.at(x, y));
         let [nx, ny, nz] = normal.unwrap_or([R::ZERO; 3]);
-        let nearest = Nearest { color: near, opacity: alpha, normal: Vector3::new(nx, ny, nz) };
+        let nearest =
+            NearestLayer { color: near, opacity: alpha, normal: Vector3::new(nx, ny, nz) };
         let Average { blend, opacity, hidden, .. } = *others;
         let behind = Behind { color: blend.color, opacity, hidden };
         let view = -self.view.ray(x, y).normalized();

@@ -80,7 +80,7 @@ impl Refraction {
 
 /// The composited nearest layer of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest<R> {
+pub struct NearestLayer<R> {
     /// `C_F`: linear RGB after Phong shading.
     pub color: [R; 3],
     /// alpha, in [0, 1].
@@ -209,7 +209,7 @@ pub fn shade<R: Exact>(
     environment: &Environment,
     refraction: &Refraction,
     view: Vector3<R>,
-    nearest: &Nearest<R>,
+    nearest: &NearestLayer<R>,
     behind: &Behind<R>,
 ) -> [R; 3] {
     let alpha = nearest.opacity.at_least(R::ZERO).at_most(R::ONE);
