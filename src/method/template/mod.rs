@@ -1,99 +1,63 @@
 //! Image reconstruction with templates of k x k pixels \[MOC08\].
 //!
 //! 1. **Projection** to single pixels, see [`mod@super::projection`].
-//! 2. **Propagation** ([`mod@levels`]): each centre moves up the levels of a pyramid until k x k
-//!    cells of its level cover it; centres that meet in a cell are merged.
-//! 3. **Reconstruction** ([`mod@gather`]): each pixel searches k x k cells around it in every level
-//!    for ellipses that hold it, keeps the surface in front, and blends.
+//! 2. **Propagation** ([`mod@propagation`]): each centre moves up the levels of a pyramid until k x
+//!    k cells of its level cover it; centres that meet in a cell are merged.
+//! 3. **Reconstruction** ([`mod@reconstruction`]): each pixel searches k x k cells around it in
+//!    every level for ellipses that hold it, keeps the surface in front, and blends.
 //! 4. **Normalization**: depth, normal and colour are sums divided by the sum of weights, see
 //!    [`crate::composite::sum`]; the average normal is then turned to world space (down the columns
 //!    of the view matrix, (m0 x + m1 y) + m2 z) before it is divided by its length.
 //! 5. **Deferred shading**, see [`crate::shade`].
 //!
-//! The method draws surfels only, and refuses a scene with triangles or lines, which \[MOC08\] does not have. The template is k = 3, 5 or 7 cells wide, h = (k - 1) / 2.
-//! Levels are those of [`crate::frame::pyramid::sizes`]. The **top** level is the first whose sides are both at most h + 1: from any
-//! of its cells every other is found, so that (section 3.2) coarser ones are not needed.
+//! The method draws surfels only, and refuses a scene with triangles or lines, which \[MOC08\] does
+//! not have. The template is k = 3, 5 or 7 cells wide, h = (k - 1) / 2. Levels are those of
+//! [`crate::frame::pyramid::sizes`]. The **top** level is the first whose sides are both at most h +
+//! 1: from any of its cells every other is found, so that (section 3.2) coarser ones are not needed.
 //!
-//! [`gather`] is the definition, over any [`crate::number::Real`].
+//! The passes are the definition, over any [`crate::number::Real`]; [`planes`] has every plane that
+//! they leave.
 
+mod center;
+mod explain;
 pub mod fast;
-pub mod gather;
-pub mod levels;
+mod normalization;
 mod picture;
+pub mod planes;
+pub mod propagation;
+pub mod reconstruction;
 mod settings;
+#[cfg(test)]
+mod tests;
 
+pub use center::Center;
 pub use settings::{LevelRule, Settings};
 
-use crate::error::{Error, Result};
-use crate::frame::{Frame, NO_ID, Pool};
+use crate::error::Result;
+use crate::frame::{Frame, Pool};
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::projection::{Kind, Sample};
-use crate::method::{Picture, Stage};
-use crate::number::{Real, Vector2, Vector3};
-
-/// The centre of an ellipse in a cell of a level; view space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Center<R> {
-    /// The surfel, of several that were merged the foremost; [`NO_ID`] in an empty cell.
-    pub id: u32,
-    /// Depth t in world units; +inf in an empty cell.
-    pub depth: R,
-    /// Radius r in world units.
-    pub radius: R,
-    /// Radius rho in pixels.
-    pub extent: R,
-    /// Where it is in the picture, in pixels.
-    pub place: Vector2<R>,
-    /// Normal, of any length.
-    pub normal: Vector3<R>,
-    /// Linear RGB.
-    pub color: [R; 3],
-}
-
-impl<R: Real> Center<R> {
-    /// An empty cell: all but depth and id is 0.
-    #[must_use]
-    pub fn empty() -> Self {
-        Self {
-            id: NO_ID,
-            depth: R::INFINITY,
-            radius: R::ZERO,
-            extent: R::ZERO,
-            place: Vector2::new(R::ZERO, R::ZERO),
-            normal: Vector3::ZERO,
-            color: [R::ZERO; 3],
-        }
-    }
-
-    /// A centre of level 0.
-    #[must_use]
-    pub fn new(sample: &Sample<R>) -> Self {
-        if sample.kind == Kind::Empty {
-            return Self::empty();
-        }
-        Self {
-            id: sample.id,
-            depth: sample.depth,
-            radius: sample.radius,
-            extent: sample.extent,
-            place: sample.center,
-            normal: sample.normal,
-            color: sample.color,
-        }
-    }
-
-    /// Whether there is a centre.
-    #[must_use]
-    pub fn is_valid(&self) -> bool {
-        self.id != NO_ID
-    }
-}
+use crate::method::{Picture, Stage, projection};
+use crate::number::Real;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "template";
     const SUMMARY: &'static str =
         "one pixel a point, search with templates of k x k pixels in a pyramid [MOC08]";
-    const STAGES: &'static [Stage] = &[];
+    const STAGES: &'static [Stage] = &[
+        projection::planes::STAGE,
+        Stage { name: "propagation", reads: &["projection"], leaves: &planes::LEVELS },
+        Stage {
+            name: "reconstruction",
+            reads: &["projection", "propagation"],
+            leaves: &planes::GATHERED,
+        },
+        Stage { name: "normalization", reads: &["reconstruction"], leaves: &planes::NORMALIZATION },
+        Stage {
+            name: "shading",
+            reads: &["reconstruction", "normalization"],
+            leaves: &planes::SHADING,
+        },
+    ];
     type Memory = fast::Levels;
 
     fn check(&self) -> Result<()> {
@@ -114,12 +78,10 @@ impl Algorithm for Settings {
     }
 
     fn stage<R: Real>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
-        let _ = (job, from);
-        Err(crate::method::stage::unknown(stage))
+        picture::stage(job, self, stage, from)
     }
 
     fn explain<R: Real>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
-        let _ = (job, pixel);
-        Err(Error::Usage("there is no replay of this method".into()))
+        Ok(explain::explain::<R>(job, self, pixel)?.to_string())
     }
 }

@@ -7,7 +7,7 @@
 
 use super::{LANES, Lanes};
 use crate::frame::Exec;
-use crate::method::projection::surfel::Lens;
+use crate::method::projection::surfels::PointProjector;
 use crate::number::{Real, Vector3};
 use crate::scene::Surfels;
 use crate::scene::camera::MAX_EXTENT;
@@ -100,7 +100,7 @@ impl Points {
     pub(in crate::method) fn find(
         &mut self,
         surfels: &Surfels,
-        lens: &Lens<f32>,
+        lens: &PointProjector<f32>,
         exec: &Exec,
     ) -> Tally {
         let n = surfels.len();
@@ -219,7 +219,7 @@ impl Chunk {
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn points(
     surfels: &Surfels,
-    lens: &Lens<f32>,
+    lens: &PointProjector<f32>,
     range: Range<usize>,
     bands: Bands,
     chunk: &mut Chunk,
@@ -269,7 +269,7 @@ impl Block {
         &mut self,
         (p, n, radius): (&[Vec3; LANES], &[Vec3; LANES], &Lanes),
         index: usize,
-        lens: &Lens<f32>,
+        lens: &PointProjector<f32>,
         bands: Bands,
         fates: &mut Fates,
     ) -> [u32; LANES] {
@@ -285,7 +285,7 @@ impl Block {
             fates.behind[i] += u32::from(fate == Fate::Behind);
             fates.degenerate[i] += u32::from(fate == Fate::Degenerate);
             fates.back_facing[i] += u32::from(fate == Fate::BackFacing);
-            let sample = lens.sample(&placed, (n, g), radius[i], (0, [0.0; 3]));
+            let sample = lens.sample(0, &placed, n, g, radius[i], [0.0; 3]);
             let (x, y) = (sample.center.x.to_pixel(), sample.center.y.to_pixel());
             place[i] = ((y & row) * width + x) << 16 | (index * LANES + i) as u32;
             orders[i] = order(sample.depth);

@@ -1,4 +1,4 @@
-//! The fast path for `f32`: the bits of [`super::plain`], from another layout.
+//! The fast path for `f32`: the bits of [`super::pull`] and [`super::push`], from another layout.
 //!
 //! A level is rows of numbers, one number of all cells of a row after the other, so that 16 cells
 //! of a row are 16 neighbours in memory. The pull phase computes 16 coarser cells at a time, the
@@ -12,15 +12,15 @@ mod output;
 mod pull;
 mod push;
 
-use super::picture::Surface;
-use super::plain::side;
+use super::gbuffer::GBuffer;
+use super::pull::side;
 use super::{Cell, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, pyramid};
 use crate::method::projection::fast::{LANES, Lanes, Nearest, Points};
-use crate::method::projection::surfel::Lens;
-use crate::method::projection::{self, Has, Kind, Projected};
+use crate::method::projection::surfels::PointProjector;
+use crate::method::projection::{self, Has, Projected, SampleKind};
 use crate::scene::{Camera, Scene};
 use crate::splat::{Tally, View};
 use level::{BACK, FRONT, FURTHER, KIND, Level, NORMAL, RADIUS, Shape};
@@ -59,7 +59,7 @@ impl Levels {
         camera: &Camera,
         settings: &Settings,
         exec: &Exec,
-        surface: &mut Surface<f32>,
+        surface: &mut GBuffer<f32>,
     ) -> Result<(Tally, Timings)> {
         let start = Instant::now();
         self.reshape(camera, Has::of(scene));
@@ -105,12 +105,12 @@ impl Levels {
     ) -> Result<Tally> {
         let level = &mut self.levels[0];
         if !scene.primitives.is_empty() {
-            let how = (settings.cull, Snap::new(settings.subpixel_bits)?);
-            let projected = projection::project(scene, camera, how, exec)?;
+            let snap = Snap::new(settings.subpixel_bits)?;
+            let projected = projection::project(scene, camera, settings.cull, snap, exec)?;
             store(&projected, self.has, level, exec);
             return Ok(projected.tally);
         }
-        let lens = Lens::new(View::new(camera), settings.cull);
+        let lens = PointProjector::new(View::new(camera), settings.cull);
         let tally = self.points.find(&scene.surfels, &lens, exec);
         let (shape, from) = (level.shape, (&scene.surfels, &lens));
         self.points.each_row(from, level.rows_mut(), exec, |nearest, row| {
@@ -125,7 +125,7 @@ impl Levels {
         view: &View<f32>,
         settings: &Settings,
         exec: &Exec,
-        surface: &mut Surface<f32>,
+        surface: &mut GBuffer<f32>,
     ) {
         let (finest, coarser) = self.levels.split_at_mut(1);
         let (fine, outputs) = (&mut finest[0], output::rows(surface));
@@ -170,8 +170,8 @@ fn samples(nearest: &Nearest<'_>, row: &mut [f32], shape: &Shape) {
     }
 }
 
-/// [`Kind::Surface`] as a number.
-const SURFACE: f32 = Kind::Surface as u8 as f32;
+/// [`SampleKind::Surface`] as a number.
+const SURFACE: f32 = SampleKind::Surface as u8 as f32;
 
 /// The samples of a projected scene as level 0.
 fn store(projected: &Projected<f32>, has: Has, level: &mut Level, exec: &Exec) {
@@ -187,7 +187,7 @@ fn store(projected: &Projected<f32>, has: Has, level: &mut Level, exec: &Exec) {
                 }
             };
             let (n, t) = (cell.normal, cell.tangent);
-            put(KIND, &[f32::from(cell.kind as u8), cell.front, cell.back, cell.radius]);
+            put(KIND, &[f32::from(cell.kind as u8), cell.front, cell.back, cell.extent]);
             put(NORMAL, &[n.x, n.y, n.z]);
             if has.color {
                 put(FURTHER, &cell.color);

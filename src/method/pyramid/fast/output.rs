@@ -1,6 +1,6 @@
 //! Level 0 as a picture wants it, in lanes.
 
-use super::super::picture::Surface;
+use super::super::gbuffer::GBuffer;
 use super::level::{FRONT, FURTHER, KIND, NORMAL, Shape, lanes};
 use crate::frame::Plane;
 use crate::method::projection::fast::{LANES, any_above_0, put};
@@ -21,7 +21,7 @@ pub(super) struct Output<'a> {
 }
 
 /// The rows of a picture.
-pub(super) fn rows(surface: &mut Surface<f32>) -> impl Iterator<Item = Output<'_>> {
+pub(super) fn rows(surface: &mut GBuffer<f32>) -> impl Iterator<Item = Output<'_>> {
     let (kinds, depths) = (surface.kind.rows_mut(), surface.depth.rows_mut());
     let mut normal = surface.normal.as_mut().map(Plane::rows_mut);
     let mut tangent = surface.tangent.as_mut().map(Plane::rows_mut);

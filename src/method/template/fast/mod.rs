@@ -1,4 +1,4 @@
-//! The fast path for `f32`: the bits of [`super::gather`], from another layout.
+//! The fast path for `f32`: the bits of [`super::reconstruction`], from another layout.
 //!
 //! A level is rows of numbers, one number of all cells of a row after the other. Ellipses are found
 //! once a centre, not once a visit. 16 pixels of a row search together: at level 0 for centres that
@@ -12,11 +12,11 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-use super::{Settings, levels};
+use super::{Settings, propagation};
 use crate::frame::{Exec, Framebuffer, Plane, pyramid};
 use crate::method::projection::Has;
 use crate::method::projection::fast::{LANES, Lanes, Nearest, Points};
-use crate::method::projection::surfel::Lens;
+use crate::method::projection::surfels::PointProjector;
 use crate::scene::{Camera, Scene};
 use crate::splat::{Tally, View};
 use level::{COLOR, DEPTH, EXTENT, Level, NORMAL, PAD, PLACE, RADIUS, RowMut, Shape};
@@ -60,7 +60,7 @@ impl Levels {
         let start = Instant::now();
         let has = Has::of(scene);
         let sizes = pyramid::sizes(camera.width, camera.height);
-        let top = levels::top(settings, &sizes);
+        let top = propagation::top(settings, &sizes);
         let shapes = sizes[..=top].iter().map(|&size| level::shape(size, has.color));
         if !shapes.clone().eq(self.levels.iter().map(|level| level.shape)) {
             self.levels = shapes.map(Level::new).collect();
@@ -94,7 +94,7 @@ impl Levels {
         reach: f32,
         exec: &Exec,
     ) -> Tally {
-        let lens = Lens::new(View::new(camera), cull);
+        let lens = PointProjector::new(View::new(camera), cull);
         let tally = self.points.find(&scene.surfels, &lens, exec);
         let level = &mut self.levels[0];
         let (shape, from) = (level.shape, (&scene.surfels, &lens));
