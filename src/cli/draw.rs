@@ -2,13 +2,12 @@
 
 use super::progress;
 use splatref::Result;
-use splatref::frame::{Exec, Frame, Plane, Samples};
+use splatref::frame::Exec;
 use splatref::io::scene_file::{Number, Output, Ready, SceneFile};
 use splatref::method::session::Made;
 use splatref::method::{Picture, Session};
 use splatref::scene::Camera;
 use std::borrow::Cow;
-use std::path::Path;
 
 /// Loads a scene, with progress.
 pub(super) fn ready(file: &SceneFile, exec: &Exec) -> Result<Ready> {
@@ -38,27 +37,4 @@ pub(super) fn draw<'s>(
             Cow::Owned(Picture { frame: frame.to_f32(), tally, timings })
         }
     })
-}
-
-/// Writes the preview of a picture: its colour over its coverage.
-pub(super) fn write_png(path: &Path, frame: &Frame<f32>) -> Result<()> {
-    let alpha: Option<&Plane<f32>> = match frame.plane("A") {
-        Some(Samples::Scalar(alpha)) => Some(alpha),
-        _ => None,
-    };
-    match frame.plane("") {
-        Some(Samples::Color(color)) => {
-            let mut color = color.clone();
-            for (pixel, alpha) in
-                color.values_mut().iter_mut().zip(alpha.iter().flat_map(|p| p.values()))
-            {
-                // A PNG wants colours that are not multiplied by alpha.
-                if *alpha > 0.0 && *alpha < 1.0 {
-                    *pixel = pixel.map(|value| value / alpha);
-                }
-            }
-            splatref::io::png::write(path, &color, alpha)
-        }
-        _ => Ok(()),
-    }
 }

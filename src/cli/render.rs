@@ -3,7 +3,7 @@
 use super::options::{ExecOptions, Kind, SceneOptions, kind};
 use super::{Finding, Outcome, draw, progress, report};
 use splatref::io::scene_file::Ready;
-use splatref::io::{exr, provenance};
+use splatref::io::{exr, png, provenance};
 use splatref::method::Picture;
 use splatref::{Error, Result};
 use std::borrow::Cow;
@@ -76,7 +76,7 @@ pub(super) fn run(args: &Args) -> Finding {
     progress::during("writing", || {
         let text = provenance::text(scene, session.groups(), camera, method, file.output.number);
         exr::write(&picture, &drawing.frame, &text)?;
-        draw::write_png(&preview, &drawing.frame)
+        png::write_frame(&preview, &drawing.frame)
     })?;
     let writing = writing.elapsed();
 

@@ -3,7 +3,7 @@
 use super::algorithm::Job;
 use crate::composite::over::Blend;
 use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Pool, Samples, Wanted};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
@@ -19,11 +19,11 @@ pub struct Picture<R> {
     /// What became of the surfels.
     pub tally: Tally,
     /// The wall time of each stage, in order.
-    pub timings: Vec<(&'static str, Duration)>,
+    pub timings: Laps,
 }
 
 /// Deferred shading, and the planes of the picture.
-pub(super) fn finish<R: Real>(
+pub(super) fn finish<R: Exact>(
     target: Framebuffer<R>,
     mut planes: Vec<NamedPlane<R>>,
     tally: Tally,
@@ -48,7 +48,7 @@ pub(super) fn finish<R: Real>(
 }
 
 /// Colours multiplied by their opacity before the environment of the scene, if it has one.
-pub(super) fn before_environment<R: Real>(
+pub(super) fn before_environment<R: Exact>(
     scene: &Scene,
     camera: &Camera,
     mut color: Plane<[R; 3]>,
@@ -100,10 +100,13 @@ pub(super) fn named<R>(name: &str, samples: Samples<R>) -> NamedPlane<R> {
     NamedPlane { name: name.to_owned(), samples }
 }
 
-/// Wall times of stages.
+/// Stages, in order, and the wall time of each.
+pub type Laps = Vec<(&'static str, Duration)>;
+
+/// Takes the wall times of stages.
 pub(super) struct Clock {
     start: Instant,
-    laps: Vec<(&'static str, Duration)>,
+    laps: Laps,
 }
 
 impl Default for Clock {
@@ -114,7 +117,7 @@ impl Default for Clock {
 
 impl Clock {
     /// A clock whose stages have been timed elsewhere.
-    pub(super) fn of(laps: Vec<(&'static str, Duration)>) -> Self {
+    pub(super) fn of(laps: Laps) -> Self {
         Self { laps, ..Self::default() }
     }
 
@@ -123,7 +126,7 @@ impl Clock {
     }
 
     /// The stages and how long they took.
-    pub(super) fn into_laps(self) -> Vec<(&'static str, Duration)> {
+    pub(super) fn into_laps(self) -> Laps {
         self.laps
     }
 

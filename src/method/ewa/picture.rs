@@ -7,11 +7,11 @@ use crate::error::Result;
 use crate::frame::{Pool, Samples, Wanted};
 use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, finish, framebuffer, named};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::Scene;
 
 /// The definition, in any number; with `stages`, every stage leaves its planes.
-pub(super) fn define<R: Real>(
+pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
@@ -58,14 +58,8 @@ pub(super) fn define<R: Real>(
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
     let Job { scene, camera, exec, .. } = *job;
     let mut target = framebuffer(camera, wanted(scene, false), pool);
-    let (tally, times) = fast::render(&scene.surfels, camera, settings, exec, &mut target);
-    let clock = Clock::of(vec![
-        ("projection", times.project),
-        ("visibility", times.visibility),
-        ("attributes", times.attributes),
-        ("normalization", times.normalize),
-    ]);
-    Ok(finish(target, Vec::new(), tally, clock, job))
+    let (tally, laps) = fast::render(&scene.surfels, camera, settings, exec, &mut target);
+    Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 
 /// The planes that a scene needs.

@@ -4,7 +4,7 @@ use super::{SampleKind, SceneProjector, primitives};
 use crate::frame::Rect;
 use crate::frame::raster::Snap;
 use crate::method::algorithm::Job;
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::splat::Fate;
 use std::fmt;
 use std::ops::Range;
@@ -29,7 +29,7 @@ struct Contender<R> {
 }
 
 /// Asks every primitive of a scene.
-pub(in crate::method) fn replay<R: Real>(
+pub(in crate::method) fn replay<R: Exact>(
     job: &Job<'_>,
     cull: bool,
     snap: Snap,
@@ -60,12 +60,12 @@ pub(in crate::method) fn replay<R: Real>(
 }
 
 /// The depth that a pixel has.
-fn depth_of<R: Real>(kept: Option<(u32, R)>) -> R {
+fn depth_of<R: Exact>(kept: Option<(u32, R)>) -> R {
     kept.map_or(R::INFINITY, |(_, depth)| depth)
 }
 
 /// A surfel, if its centre is in the pixel.
-fn surfel<R: Real>(
+fn surfel<R: Exact>(
     projector: &SceneProjector<'_, R>,
     i: usize,
     (x, y): (u32, u32),
@@ -86,7 +86,7 @@ fn surfel<R: Real>(
 }
 
 /// The pieces of a primitive that cover the pixel.
-fn pieces<R: Real>(
+fn pieces<R: Exact>(
     projector: &SceneProjector<'_, R>,
     id: usize,
     (x, y): (u32, u32),
@@ -102,7 +102,7 @@ fn pieces<R: Real>(
     });
 }
 
-impl<R: Real> fmt::Display for PixelProjection<R> {
+impl<R: Exact> fmt::Display for PixelProjection<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let count = self.contenders.len();
         writeln!(
@@ -132,6 +132,12 @@ impl<R: Real> fmt::Display for PixelProjection<R> {
 }
 
 /// A comparison with its operands and its margin.
-pub(in crate::method) fn compared<R: Real>(a: R, sign: &str, b: R) -> String {
+pub(in crate::method) fn compared<R: Exact>(a: R, sign: &str, b: R) -> String {
     format!("{} {sign} {}  (margin {} ulp)", a.to_f64(), b.to_f64(), a.ulps_to(b))
+}
+
+/// How a form that an ellipse does not hold compares with the ellipse's square; an ellipse that is
+/// edge-on or a point holds nothing.
+pub(in crate::method) fn outside<R: Exact>(form: R, square: R) -> &'static str {
+    if form > square { ">" } else { "in no ellipse of" }
 }

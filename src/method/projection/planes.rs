@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Frame, NamedPlane, Plane, Samples};
 use crate::method::picture::named;
 use crate::method::{Holds, PlaneRow, Stage, When};
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 
 /// The stage, with which several methods begin.
 pub const STAGE: Stage = Stage { name: "projection", reads: &[], leaves: &PLANES };
@@ -41,7 +41,7 @@ pub const PLANES: [PlaneRow; 10] = {
 };
 
 /// The planes that leave the stage.
-pub(in crate::method) fn write<R: Real>(
+pub(in crate::method) fn write<R: Exact>(
     samples: &Plane<PixelSample<R>>,
     has: Has,
 ) -> Vec<NamedPlane<R>> {
@@ -71,7 +71,7 @@ pub(in crate::method) fn write<R: Real>(
 /// # Errors
 /// [`Error::Invalid`] if a plane is missing, of another type, or not of the size of the frame, or if
 /// a pixel has a kind that there is not.
-pub fn read<R: Real>(frame: &Frame<R>, has: Has) -> Result<Plane<PixelSample<R>>> {
+pub fn read<R: Exact>(frame: &Frame<R>, has: Has) -> Result<Plane<PixelSample<R>>> {
     let [id, kind, depth, normal, extent, radius, left, upper, color, tangent] =
         PLANES.map(|row| row.name);
     let given = GivenPlanes(frame);
@@ -101,40 +101,25 @@ pub fn read<R: Real>(frame: &Frame<R>, has: Has) -> Result<Plane<PixelSample<R>>
 /// Their values are taken as they are: a stage computes with what a client has stored.
 pub(in crate::method) struct GivenPlanes<'a, R>(pub(in crate::method) &'a Frame<R>);
 
-impl<'a, R: Real> GivenPlanes<'a, R> {
-    fn take<T>(
-        &self,
-        name: &str,
-        what: &str,
-        plane: impl Fn(&'a Samples<R>) -> Option<&'a Plane<T>>,
-    ) -> Result<&'a [T]> {
-        let Frame { width, height, .. } = *self.0;
-        let Some(samples) = self.0.plane(name) else {
-            return Err(Error::Invalid(format!("the plane `{name}` is missing")));
-        };
-        let Some(plane) = plane(samples) else {
-            return Err(Error::Invalid(format!("the plane `{name}` is not one of {what}")));
-        };
-        if (plane.width(), plane.height()) != (width, height) {
-            let own = format!("{} x {}", plane.width(), plane.height());
-            let what = format!("the plane `{name}` has {own} pixels; expected {width} x {height}");
-            return Err(Error::Invalid(what));
+impl<'a, R: Exact> GivenPlanes<'a, R> {
+    /// The values of a plane, which must be of the size of the frame.
+    fn values<T>(&self, name: &str, plane: &'a Plane<T>) -> Result<&'a [T]> {
+        let (found, frame) = ((plane.width(), plane.height()), self.0);
+        if found == (frame.width, frame.height) {
+            return Ok(plane.values());
         }
-        Ok(plane.values())
+        Err(Error::Invalid(format!(
+            "the plane `{name}` has {} x {} pixels; expected {} x {}",
+            found.0, found.1, frame.width, frame.height
+        )))
     }
 
     pub(in crate::method) fn scalar(&self, name: &str) -> Result<&'a [R]> {
-        self.take(name, "numbers", |samples| match samples {
-            Samples::Scalar(plane) => Some(plane),
-            _ => None,
-        })
+        self.values(name, self.0.scalar(name)?)
     }
 
     pub(in crate::method) fn vector(&self, name: &str) -> Result<&'a [[R; 3]]> {
-        self.take(name, "vectors", |samples| match samples {
-            Samples::Vector(plane) => Some(plane),
-            _ => None,
-        })
+        self.values(name, self.0.vector(name)?)
     }
 
     /// The vectors of a scene that has these.
@@ -152,25 +137,15 @@ impl<'a, R: Real> GivenPlanes<'a, R> {
         has: bool,
         name: &str,
     ) -> Result<Option<&'a [[R; 3]]>> {
-        let colors = |samples: &'a Samples<R>| match samples {
-            Samples::Color(plane) => Some(plane),
-            _ => None,
-        };
-        if has { self.take(name, "colours", colors).map(Some) } else { Ok(None) }
+        if has { self.values(name, self.0.color(name)?).map(Some) } else { Ok(None) }
     }
 
     pub(in crate::method) fn indices(&self, name: &str) -> Result<&'a [u32]> {
-        self.take(name, "indices", |samples| match samples {
-            Samples::Index(plane) => Some(plane),
-            _ => None,
-        })
+        self.values(name, self.0.index(name)?)
     }
 
     pub(in crate::method) fn counts(&self, name: &str) -> Result<&'a [u8]> {
-        self.take(name, "counts", |samples| match samples {
-            Samples::Count(plane) => Some(plane),
-            _ => None,
-        })
+        self.values(name, self.0.count(name)?)
     }
 
     /// What each pixel shows.
@@ -199,11 +174,11 @@ impl<'a, R: Real> GivenPlanes<'a, R> {
 }
 
 /// The components of a vector, as planes hold it.
-pub(in crate::method) fn components<R: Real>(v: Vector3<R>) -> [R; 3] {
+pub(in crate::method) fn components<R: Exact>(v: Vector3<R>) -> [R; 3] {
     [v.x, v.y, v.z]
 }
 
 /// The vector of these components.
-pub(in crate::method) fn vector<R: Real>([x, y, z]: [R; 3]) -> Vector3<R> {
+pub(in crate::method) fn vector<R: Exact>([x, y, z]: [R; 3]) -> Vector3<R> {
     Vector3::new(x, y, z)
 }

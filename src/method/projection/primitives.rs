@@ -35,7 +35,7 @@ use super::surfels::{PlacedPoint, PointProjector};
 use super::{PixelSample, SampleKind, SceneProjector};
 use crate::frame::Rect;
 use crate::frame::raster::{Line, Triangle};
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 use crate::scene::Vertices;
 use crate::scene::indexed::Indexed;
 use crate::splat::clip::Clipped;
@@ -74,7 +74,7 @@ pub(super) struct PiecePixel<R> {
 }
 
 /// Calls `draw` for each piece of a primitive that may be seen.
-pub(super) fn pieces<R: Real>(
+pub(super) fn pieces<R: Exact>(
     projector: &SceneProjector<'_, R>,
     id: usize,
     draw: impl FnMut(Piece<R>),
@@ -93,7 +93,7 @@ pub(super) fn pieces<R: Real>(
 }
 
 /// The corners of a primitive in view space.
-fn corners<R: Real, const N: usize>(
+fn corners<R: Exact, const N: usize>(
     of: &Indexed<N>,
     points: &PointProjector<R>,
     index: usize,
@@ -103,12 +103,12 @@ fn corners<R: Real, const N: usize>(
 }
 
 /// A corner of a piece: its place in fixed point, and m.
-fn placed<R: Real>(projector: &SceneProjector<'_, R>, p: Vector3<R>) -> ([i64; 2], R) {
+fn placed<R: Exact>(projector: &SceneProjector<'_, R>, p: Vector3<R>) -> ([i64; 2], R) {
     let PlacedPoint { m, center, .. } = projector.points.place(p);
     ([projector.snap.fixed(center.x), projector.snap.fixed(center.y)], m)
 }
 
-fn triangle<R: Real>(
+fn triangle<R: Exact>(
     of: &Indexed<3>,
     projector: &SceneProjector<'_, R>,
     id: u32,
@@ -135,7 +135,7 @@ fn triangle<R: Real>(
     }
 }
 
-fn line<R: Real>(
+fn line<R: Exact>(
     of: &Indexed<2>,
     kind: SampleKind,
     projector: &SceneProjector<'_, R>,
@@ -167,7 +167,7 @@ fn line<R: Real>(
     });
 }
 
-impl<R: Real> Piece<R> {
+impl<R: Exact> Piece<R> {
     /// Calls `visit` for every pixel of a rectangle that the piece covers.
     pub(super) fn for_each(&self, rect: &Rect, mut visit: impl FnMut(PiecePixel<R>)) {
         let rect = rect.intersection(&self.bounds);
@@ -238,7 +238,7 @@ impl<R: Real> Piece<R> {
 }
 
 /// Direction, radius and colour of a primitive where its corners have the weights c.
-fn attributes<R: Real, const N: usize>(
+fn attributes<R: Exact, const N: usize>(
     of: &Indexed<N>,
     index: usize,
     c: [R; 3],

@@ -5,7 +5,7 @@ use super::{PixelSample, Projected, SceneProjector};
 use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
 use crate::frame::{Bins, Exec, Plane, Rect};
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::{Camera, Scene};
 use crate::splat::{Fate, Tally};
 use std::ops::Range;
@@ -18,7 +18,7 @@ enum DrawnItem<R> {
     Piece(primitives::Piece<R>),
 }
 
-impl<R: Real> DrawnItem<R> {
+impl<R: Exact> DrawnItem<R> {
     fn bounds(&self) -> Rect {
         match self {
             Self::Pixel([x, y], _) => Rect { x0: *x, y0: *y, x1: x + 1, y1: y + 1 },
@@ -31,7 +31,7 @@ impl<R: Real> DrawnItem<R> {
 ///
 /// # Errors
 /// [`Error::Invalid`] if there are more primitives than ids.
-pub(in crate::method) fn project<R: Real>(
+pub(in crate::method) fn project<R: Exact>(
     scene: &Scene,
     camera: &Camera,
     cull: bool,
@@ -53,7 +53,7 @@ pub(in crate::method) fn project<R: Real>(
 }
 
 /// Draws the primitives of a range of ids over what is there, which has lower ids.
-fn draw<R: Real>(
+fn draw<R: Exact>(
     projector: &SceneProjector<'_, R>,
     exec: &Exec,
     ids: Range<usize>,
@@ -102,7 +102,7 @@ fn draw<R: Real>(
 }
 
 /// One surfel as a pixel, if it is seen.
-fn surfel<R: Real>(
+fn surfel<R: Exact>(
     projector: &SceneProjector<'_, R>,
     i: usize,
     tally: &mut Tally,

@@ -1,7 +1,7 @@
 //! One surfel as one pixel, see the page of [`super`].
 
 use super::{PixelSample, SampleKind};
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 use crate::splat::{Fate, View, ellipse};
 
 /// What the projection of a picture's surfels shares.
@@ -28,7 +28,7 @@ pub struct PlacedPoint<R> {
     pub center: Vector2<R>,
 }
 
-impl<R: Real> PointProjector<R> {
+impl<R: Exact> PointProjector<R> {
     /// The shared numbers of a picture.
     #[must_use]
     pub fn new(view: View<R>, cull: bool) -> Self {

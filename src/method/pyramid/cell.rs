@@ -2,7 +2,7 @@
 
 use crate::composite::mean::Mean;
 use crate::method::projection::{PixelSample, SampleKind};
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 use crate::splat::Ellipse;
 
 /// A pixel of a level; view space.
@@ -26,7 +26,7 @@ pub struct Cell<R> {
     pub color: [R; 3],
 }
 
-impl<R: Real> Cell<R> {
+impl<R: Exact> Cell<R> {
     /// Nothing: kind [`SampleKind::Empty`], front +inf, back -inf, all else 0.
     #[must_use]
     pub fn empty() -> Self {

@@ -6,9 +6,9 @@ use super::{Cell, Occlusion, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::method::algorithm::Job;
-use crate::method::projection::explain::{PixelProjection, compared, replay};
+use crate::method::projection::explain::{PixelProjection, compared, outside, replay};
 use crate::method::projection::{self, SampleKind};
-use crate::number::{Real, Vector2};
+use crate::number::{Exact, Vector2};
 use crate::splat::Ellipse;
 use std::fmt;
 
@@ -59,7 +59,7 @@ pub(super) struct Pushed<R> {
 ///
 /// # Errors
 /// As the projection.
-pub(super) fn explain<R: Real>(
+pub(super) fn explain<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     pixel: (u32, u32),
@@ -94,7 +94,7 @@ pub(super) fn explain<R: Real>(
 }
 
 /// A cell of the pull phase.
-fn pulled<R: Real>(level: usize, cell: (u32, u32), cells: [Cell<R>; 4]) -> Four<R> {
+fn pulled<R: Exact>(level: usize, cell: (u32, u32), cells: [Cell<R>; 4]) -> Four<R> {
     let offsets = pull::offsets(&cells, side(level - 1));
     let (takes, first) = Cell::foremost(&cells, Cell::inside(&cells, &offsets));
     let found =
@@ -103,7 +103,7 @@ fn pulled<R: Real>(level: usize, cell: (u32, u32), cells: [Cell<R>; 4]) -> Four<
 }
 
 /// A cell of the push phase from the parent and its neighbours.
-fn four_of_push<R: Real>(
+fn four_of_push<R: Exact>(
     level: usize,
     (x, y): (u32, u32),
     cells: [Cell<R>; 4],
@@ -121,7 +121,7 @@ fn four_of_push<R: Real>(
     Four { level, cell: (x, y), cells, offsets, takes, first, weights, found }
 }
 
-impl<R: Real> Four<R> {
+impl<R: Exact> Four<R> {
     /// What became of the cell j, in words.
     fn fate(&self, j: usize) -> String {
         let (cell, first) = (&self.cells[j], &self.cells[self.first]);
@@ -132,7 +132,10 @@ impl<R: Real> Four<R> {
         let ellipse = Ellipse::new(cell.normal, cell.extent);
         let (form, square) = (ellipse.form(self.offsets[j].x, self.offsets[j].y), ellipse.square);
         if !ellipse.holds(form) {
-            return format!("{kind:<8}  outside  form {}", compared(form, ">", square));
+            return format!(
+                "{kind:<8}  outside  form {}",
+                compared(form, outside(form, square), square)
+            );
         }
         let inside = format!("form {}", compared(form, "<=", square));
         let end = format!("the foremost's back, of {}", self.first);
@@ -149,7 +152,7 @@ impl<R: Real> Four<R> {
     }
 }
 
-impl<R: Real> fmt::Display for Four<R> {
+impl<R: Exact> fmt::Display for Four<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for j in 0..4 {
             writeln!(f, "    {j}  {}", self.fate(j))?;
@@ -161,7 +164,7 @@ impl<R: Real> fmt::Display for Four<R> {
 /// A cell in words.
 struct Words<'a, R>(&'a Cell<R>);
 
-impl<R: Real> fmt::Display for Words<'_, R> {
+impl<R: Exact> fmt::Display for Words<'_, R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Cell { kind, front, back, extent, .. } = self.0;
         if *kind == SampleKind::Empty {
@@ -172,7 +175,7 @@ impl<R: Real> fmt::Display for Words<'_, R> {
     }
 }
 
-impl<R: Real> fmt::Display for Pushed<R> {
+impl<R: Exact> fmt::Display for Pushed<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ((x, y), level) = (self.cell, self.level);
         write!(f, "  level {level}, cell ({x}, {y}): ")?;
@@ -205,7 +208,7 @@ impl<R: Real> fmt::Display for Pushed<R> {
     }
 }
 
-impl<R: Real> fmt::Display for Explanation<R> {
+impl<R: Exact> fmt::Display for Explanation<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = self.pixel;
         writeln!(f, "pixel ({x}, {y})\n\n{}", self.projection)?;

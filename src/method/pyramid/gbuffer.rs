@@ -5,7 +5,7 @@ use crate::frame::{Plane, Pool};
 use crate::method::algorithm::Job;
 use crate::method::picture::before_environment;
 use crate::method::projection::{Has, world};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
 use crate::splat::View;
@@ -44,7 +44,7 @@ impl GBuffer<f32> {
     }
 }
 
-impl<R: Real> GBuffer<R> {
+impl<R: Exact> GBuffer<R> {
     /// Level 0 as the push phase left it.
     pub(super) fn of(cells: &Plane<Cell<R>>, camera: &Camera, has: Has, normals: bool) -> Self {
         let view = View::new(camera);

@@ -1,6 +1,6 @@
 //! From a scene to named planes: all stages in one call, or one of them on somebody's planes.
 
-use super::fast::Levels;
+use super::fast::CellLevels;
 use super::gbuffer::GBuffer;
 use super::planes::{self, PULL, PUSH};
 use super::pull::{self, pull_all, side};
@@ -13,11 +13,11 @@ use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture};
 use crate::method::projection::{self, Has};
 use crate::method::stage::{check_size, unknown};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::splat::Tally;
 
 /// The definition, in any number; with `stages`, every stage leaves its planes.
-pub(super) fn define<R: Real>(
+pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
@@ -46,18 +46,17 @@ pub(super) fn define<R: Real>(
 pub(super) fn draw(
     job: &Job<'_>,
     settings: &Settings,
-    levels: &mut Levels,
+    levels: &mut CellLevels,
     pool: &mut Pool,
 ) -> Result<Picture<f32>> {
     let Job { scene, camera, exec, .. } = *job;
     let mut target = GBuffer::new(scene, camera, pool);
-    let (tally, times) = levels.draw(scene, camera, settings, exec, &mut target)?;
-    let laps = vec![("projection", times.project), ("pull", times.pull), ("push", times.push)];
+    let (tally, laps) = levels.draw(scene, camera, settings, exec, &mut target)?;
     Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 
 /// Deferred shading, and the planes of the picture.
-fn finish<R: Real>(
+fn finish<R: Exact>(
     target: GBuffer<R>,
     mut planes: Vec<NamedPlane<R>>,
     tally: Tally,
@@ -73,7 +72,7 @@ fn finish<R: Real>(
 }
 
 /// The planes of consecutive levels.
-fn write<R: Real>(
+fn write<R: Exact>(
     rows: &[crate::method::PlaneRow; 9],
     first: usize,
     levels: &[Plane<Cell<R>>],
@@ -93,7 +92,7 @@ fn write<R: Real>(
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] as [`crate::method::Algorithm::stage`].
-pub(super) fn stage<R: Real>(
+pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
@@ -126,12 +125,12 @@ pub(super) fn stage<R: Real>(
 }
 
 /// Level 0 before the pull, from the planes of the projection.
-fn samples<R: Real>(job: &Job<'_>, from: &Frame<R>) -> Result<Plane<Cell<R>>> {
+fn samples<R: Exact>(job: &Job<'_>, from: &Frame<R>) -> Result<Plane<Cell<R>>> {
     Ok(projection::planes::read(from, Has::of(job.scene))?.map(Cell::new))
 }
 
 /// A level of the pull phase as the planes have it.
-fn pulled_level<R: Real>(job: &Job<'_>, from: &Frame<R>, level: usize) -> Result<Plane<Cell<R>>> {
+fn pulled_level<R: Exact>(job: &Job<'_>, from: &Frame<R>, level: usize) -> Result<Plane<Cell<R>>> {
     if level == 0 {
         return samples(job, from);
     }
@@ -139,7 +138,7 @@ fn pulled_level<R: Real>(job: &Job<'_>, from: &Frame<R>, level: usize) -> Result
 }
 
 /// The planes of the pull phase.
-fn pulled<R: Real>(job: &Job<'_>, from: &Frame<R>) -> Result<Vec<NamedPlane<R>>> {
+fn pulled<R: Exact>(job: &Job<'_>, from: &Frame<R>) -> Result<Vec<NamedPlane<R>>> {
     let last = pyramid::sizes(from.width, from.height).len() - 1;
     let mut fine = samples(job, from)?;
     let mut planes = Vec::new();
@@ -153,7 +152,7 @@ fn pulled<R: Real>(job: &Job<'_>, from: &Frame<R>) -> Result<Vec<NamedPlane<R>>>
 }
 
 /// The planes of the push phase.
-fn pushed<R: Real>(
+fn pushed<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     from: &Frame<R>,

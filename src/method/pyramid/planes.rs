@@ -11,7 +11,7 @@ use crate::method::picture::named;
 use crate::method::projection::Has;
 use crate::method::projection::planes::{GivenPlanes, components, vector};
 use crate::method::{Holds, PlaneRow, When};
-use crate::number::{Real, Vector2};
+use crate::number::{Exact, Vector2};
 
 /// The planes of [`Cell`]s of a level: `##` is the level.
 macro_rules! level {
@@ -108,7 +108,7 @@ pub const SHADING: [PlaneRow; 6] = [
 ];
 
 /// The planes of a level that leave a stage, of the size of the picture.
-pub(super) fn write_level<R: Real>(
+pub(super) fn write_level<R: Exact>(
     rows: &[PlaneRow; 9],
     level: usize,
     cells: &Plane<Cell<R>>,
@@ -139,7 +139,7 @@ pub(super) fn write_level<R: Real>(
 }
 
 /// Whether a frame has a level.
-pub(super) fn has_level<R: Real>(frame: &Frame<R>, rows: &[PlaneRow; 9], level: usize) -> bool {
+pub(super) fn has_level<R: Exact>(frame: &Frame<R>, rows: &[PlaneRow; 9], level: usize) -> bool {
     frame.plane(&rows[0].numbered(level)).is_some()
 }
 
@@ -151,7 +151,7 @@ pub(super) fn has_level<R: Real>(frame: &Frame<R>, rows: &[PlaneRow; 9], level: 
 ///
 /// # Panics
 /// If a picture of the frame's size has no such level.
-pub fn read_level<R: Real>(
+pub fn read_level<R: Exact>(
     frame: &Frame<R>,
     rows: &[PlaneRow; 9],
     level: usize,
@@ -180,7 +180,7 @@ pub fn read_level<R: Real>(
 }
 
 /// The planes of the picture.
-pub(super) fn write_picture<R: Real>(shaded: GBuffer<R>) -> Vec<NamedPlane<R>> {
+pub(super) fn write_picture<R: Exact>(shaded: GBuffer<R>) -> Vec<NamedPlane<R>> {
     let [color, alpha, depth, normal, tangent, kind] = SHADING.map(|row| row.name);
     let mut planes = vec![
         named(color, Samples::Color(shaded.color)),

@@ -25,16 +25,16 @@ use super::Cell;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
 use crate::method::projection::PixelSample;
-use crate::number::{Real, Vector2};
+use crate::number::{Exact, Vector2};
 
 /// The side of a cell of a level in pixels, 2^level.
-pub(super) fn side<R: Real>(level: usize) -> R {
+pub(super) fn side<R: Exact>(level: usize) -> R {
     R::from_f32((1_u32 << level) as f32)
 }
 
 /// All levels from the projected scene, the finest first.
 #[must_use]
-pub fn pull_all<R: Real>(samples: &Plane<PixelSample<R>>, exec: &Exec) -> Vec<Plane<Cell<R>>> {
+pub fn pull_all<R: Exact>(samples: &Plane<PixelSample<R>>, exec: &Exec) -> Vec<Plane<Cell<R>>> {
     let mut fine = samples.map(Cell::new);
     let mut levels = Vec::new();
     while fine.width() > 1 || fine.height() > 1 {
@@ -47,7 +47,7 @@ pub fn pull_all<R: Real>(samples: &Plane<PixelSample<R>>, exec: &Exec) -> Vec<Pl
 
 /// The next coarser level; `side` is that of the finer cells in pixels.
 #[must_use]
-pub fn pull<R: Real>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell<R>> {
+pub fn pull<R: Exact>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell<R>> {
     let (width, height) = (fine.width().div_ceil(2), fine.height().div_ceil(2));
     let mut coarse = Plane::filled(width, height, Cell::empty());
     let rows = coarse.rows_mut();
@@ -60,7 +60,7 @@ pub fn pull<R: Real>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell<
 }
 
 /// The four finer cells of a cell.
-pub(super) fn four<R: Real>(fine: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
+pub(super) fn four<R: Exact>(fine: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
     [0, 1, 2, 3].map(|j| {
         let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
         let exists = x < fine.width() && y < fine.height();
@@ -69,7 +69,7 @@ pub(super) fn four<R: Real>(fine: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 
 }
 
 /// One cell from four, see the module page.
-fn one<R: Real>(finer: &[Cell<R>; 4], side: R) -> Cell<R> {
+fn one<R: Exact>(finer: &[Cell<R>; 4], side: R) -> Cell<R> {
     let offsets = offsets(finer, side);
     let (takes, first) = Cell::foremost(finer, Cell::inside(finer, &offsets));
     if takes[first] { merge(finer, &offsets, takes, first) } else { Cell::empty() }
@@ -77,7 +77,7 @@ fn one<R: Real>(finer: &[Cell<R>; 4], side: R) -> Cell<R> {
 
 /// `v_j`: from the new cell's centre to those of the finer ellipses, in pixels; `side` is that of
 /// the finer cells.
-pub fn offsets<R: Real>(finer: &[Cell<R>; 4], side: R) -> [Vector2<R>; 4] {
+pub fn offsets<R: Exact>(finer: &[Cell<R>; 4], side: R) -> [Vector2<R>; 4] {
     let half = side * R::from_f32(0.5);
     [0, 1, 2, 3].map(|j| {
         let d = finer[j].displacement;
@@ -89,7 +89,7 @@ pub fn offsets<R: Real>(finer: &[Cell<R>; 4], side: R) -> [Vector2<R>; 4] {
 
 /// The new cell, if of four cells at these [`offsets`] those in `takes` take part and `first` is the
 /// foremost of them.
-pub fn merge<R: Real>(
+pub fn merge<R: Exact>(
     finer: &[Cell<R>; 4],
     offsets: &[Vector2<R>; 4],
     takes: [bool; 4],

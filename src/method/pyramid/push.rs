@@ -30,12 +30,12 @@ use super::pull::side;
 use super::{Cell, Occlusion, Settings, Weights};
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
-use crate::number::{Real, Vector2};
+use crate::number::{Exact, Vector2};
 use crate::splat::Ellipse;
 
 /// All levels from those of the pull phase, the finest first.
 #[must_use]
-pub fn push_all<R: Real>(
+pub fn push_all<R: Exact>(
     pulled: &[Plane<Cell<R>>],
     settings: &Settings,
     exec: &Exec,
@@ -52,7 +52,7 @@ pub fn push_all<R: Real>(
 /// The finer level, as [`super::pull`] left it, from the coarser one; `side` is that of the finer
 /// cells in pixels.
 #[must_use]
-pub fn push<R: Real>(
+pub fn push<R: Exact>(
     fine: &Plane<Cell<R>>,
     coarse: &Plane<Cell<R>>,
     side: R,
@@ -77,7 +77,7 @@ pub fn push<R: Real>(
 }
 
 /// The parent of a cell and the three neighbours.
-pub(super) fn four<R: Real>(coarse: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
+pub(super) fn four<R: Exact>(coarse: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
     let exists = |x: i64, y: i64| {
         (0..i64::from(coarse.width())).contains(&x) && (0..i64::from(coarse.height())).contains(&y)
     };
@@ -94,14 +94,14 @@ fn beside(x: u32) -> i64 {
 }
 
 /// Whether a valid cell is occluded, see the module page.
-pub(super) fn occluded<R: Real>(cell: &Cell<R>, parent: &Cell<R>, rule: Occlusion) -> bool {
+pub(super) fn occluded<R: Exact>(cell: &Cell<R>, parent: &Cell<R>, rule: Occlusion) -> bool {
     let behind = cell.front > parent.back;
     let before = cell.front < parent.front;
     parent.is_valid() && (behind || (before && rule == Occlusion::Outside))
 }
 
 /// A cell from its parent and the three neighbours, if any holds its centre; see the module page.
-fn one<R: Real>(
+fn one<R: Exact>(
     coarser: &[Cell<R>; 4],
     even: (bool, bool),
     side: R,
@@ -114,7 +114,7 @@ fn one<R: Real>(
 
 /// `v_j`: from the finer cell's centre to those of the coarser ellipses, in pixels; whether the
 /// column and the row of the finer cell are even, and the side of finer cells.
-pub fn offsets<R: Real>(
+pub fn offsets<R: Exact>(
     coarser: &[Cell<R>; 4],
     (even_x, even_y): (bool, bool),
     side: R,
@@ -130,7 +130,7 @@ pub fn offsets<R: Real>(
 }
 
 /// The weight of a cell at this offset, see [`Weights`].
-pub(super) fn weight<R: Real>(cell: &Cell<R>, offset: Vector2<R>, weights: Weights) -> R {
+pub(super) fn weight<R: Exact>(cell: &Cell<R>, offset: Vector2<R>, weights: Weights) -> R {
     match weights {
         Weights::Box => R::ONE,
         Weights::Gaussian => {
@@ -143,7 +143,7 @@ pub(super) fn weight<R: Real>(cell: &Cell<R>, offset: Vector2<R>, weights: Weigh
 
 /// The new cell, if of four cells at these [`offsets`] those in `takes` take part and `first` is the
 /// foremost of them.
-pub fn merge<R: Real>(
+pub fn merge<R: Exact>(
     coarser: &[Cell<R>; 4],
     offsets: &[Vector2<R>; 4],
     weights: Weights,

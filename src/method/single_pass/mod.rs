@@ -61,7 +61,7 @@ use crate::frame::{Frame, Pool};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::{Picture, Stage};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene, Surfels};
 use crate::splat::SplatSettings;
 pub(super) use picture::image_planes;
@@ -150,7 +150,7 @@ impl Settings {
     }
 
     /// The bins of the Voronoi depth test; none for the plain one.
-    fn bins<R: Real>(&self, surfels: &Surfels, camera: &Camera) -> Result<Option<DepthBins<R>>> {
+    fn bins<R: Exact>(&self, surfels: &Surfels, camera: &Camera) -> Result<Option<DepthBins<R>>> {
         let DepthTest::Voronoi(bins) = &self.depth else { return Ok(None) };
         let epsilon = self.splats.epsilon.resolve(surfels);
         Ok(Some(DepthBins::new(&bins.resolve(surfels, camera, epsilon)?)))
@@ -190,7 +190,7 @@ impl Algorithm for Settings {
         Self::check(self)
     }
 
-    fn define<R: Real>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         picture::define(job, self, stages)
     }
 
@@ -198,12 +198,12 @@ impl Algorithm for Settings {
         picture::draw(job, self, pool)
     }
 
-    fn stage<R: Real>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
         let _ = (job, from);
         Err(crate::method::stage::unknown(stage))
     }
 
-    fn explain<R: Real>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
         let Job { scene, camera, exec, index } = *job;
         let groups = index.groups()?;
         let found = explain::explain::<R>(&scene.surfels, groups, camera, self, exec, pixel)?;

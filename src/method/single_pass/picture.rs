@@ -7,11 +7,11 @@ use crate::error::Result;
 use crate::frame::{Framebuffer, Grid, NO_ID, NamedPlane, Pool, Samples, Wanted};
 use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, finish, framebuffer, named};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::Scene;
 
 /// The definition, in any number; with `stages`, every stage leaves its planes.
-pub(super) fn define<R: Real>(
+pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
@@ -48,13 +48,8 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     let Job { scene, camera, exec, .. } = *job;
     let groups = job.index.groups()?;
     let mut target = framebuffer(camera, wanted(scene, false), pool);
-    let (tally, times) = fast::render(&scene.surfels, groups, camera, settings, exec, &mut target)?;
-    let clock = Clock::of(vec![
-        ("projection", times.project),
-        ("geometry", times.geometry),
-        ("compositing", times.compositing),
-    ]);
-    Ok(finish(target, Vec::new(), tally, clock, job))
+    let (tally, laps) = fast::render(&scene.surfels, groups, camera, settings, exec, &mut target)?;
+    Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 
 /// The planes that a scene needs.
@@ -67,7 +62,7 @@ fn wanted(scene: &Scene, stages: bool) -> Wanted {
 }
 
 /// The depth-image of each group.
-pub(in crate::method) fn image_planes<R: Real>(
+pub(in crate::method) fn image_planes<R: Exact>(
     prefix: &str,
     geometry: &Geometry<'_, R>,
     images: &[Images<R>],
@@ -101,7 +96,7 @@ pub(in crate::method) fn image_planes<R: Real>(
 }
 
 /// The sums of the compositing pass.
-fn sum_planes<R: Real>(
+fn sum_planes<R: Exact>(
     grid: &Grid,
     composites: &[Vec<Composite<R>>],
     color: bool,

@@ -2,7 +2,7 @@
 
 use crate::frame::NO_ID;
 use crate::method::projection::{PixelSample, SampleKind};
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 
 /// The centre of an ellipse in a cell of a level; view space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub struct Center<R> {
     pub color: [R; 3],
 }
 
-impl<R: Real> Center<R> {
+impl<R: Exact> Center<R> {
     /// An empty cell: all but depth and id is 0.
     #[must_use]
     pub fn empty() -> Self {

@@ -8,9 +8,9 @@ use crate::error::Result;
 use crate::frame::Plane;
 use crate::frame::raster::Snap;
 use crate::method::algorithm::Job;
-use crate::method::projection::explain::{PixelProjection, compared, replay};
+use crate::method::projection::explain::{PixelProjection, compared, outside, replay};
 use crate::method::projection::{self, Has};
-use crate::number::Real;
+use crate::number::Exact;
 use std::fmt;
 
 /// What happened to one pixel and to the cells over it.
@@ -63,7 +63,7 @@ struct Answer<R> {
 ///
 /// # Errors
 /// As the projection.
-pub(super) fn explain<R: Real>(
+pub(super) fn explain<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     pixel: (u32, u32),
@@ -98,7 +98,7 @@ pub(super) fn explain<R: Real>(
     })
 }
 
-impl<R: Real> Merged<R> {
+impl<R: Exact> Merged<R> {
     fn new(level: usize, cell: (u32, u32), finer: [Center<R>; 4], reach: R) -> Self {
         let moving = finer.map(|center| propagation::moves(&center, reach));
         let first = propagation::foremost(&finer, moving);
@@ -132,7 +132,7 @@ impl<R: Real> Merged<R> {
     }
 }
 
-impl<R: Real> fmt::Display for Merged<R> {
+impl<R: Exact> fmt::Display for Merged<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ((x, y), level) = (self.cell, self.level);
         writeln!(f, "  level {level}, cell ({x}, {y})")?;
@@ -148,11 +148,11 @@ impl<R: Real> fmt::Display for Merged<R> {
     }
 }
 
-impl<R: Real> fmt::Display for Answer<R> {
+impl<R: Exact> fmt::Display for Answer<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ((x, y), level, id) = (self.cell, self.level, self.center.id);
         write!(f, "  level {level}, cell ({x}, {y}), surfel {id}: ")?;
-        let sign = if self.holds { "<=" } else { ">" };
+        let sign = if self.holds { "<=" } else { outside(self.form, self.square) };
         let form = compared(self.form, sign, self.square);
         match (self.holds, self.own) {
             (true, _) => write!(f, "holds, form {form}")?,
@@ -183,7 +183,7 @@ impl<R: Real> fmt::Display for Answer<R> {
     }
 }
 
-impl<R: Real> fmt::Display for Explanation<R> {
+impl<R: Exact> fmt::Display for Explanation<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = self.pixel;
         writeln!(f, "pixel ({x}, {y})\n\n{}", self.projection)?;

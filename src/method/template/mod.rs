@@ -37,7 +37,7 @@ use crate::error::Result;
 use crate::frame::{Frame, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::{Picture, Stage, projection};
-use crate::number::Real;
+use crate::number::Exact;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "template";
@@ -58,30 +58,30 @@ impl Algorithm for Settings {
             leaves: &planes::SHADING,
         },
     ];
-    type Memory = fast::Levels;
+    type Memory = fast::CenterLevels;
 
     fn check(&self) -> Result<()> {
         Self::check(self)
     }
 
-    fn define<R: Real>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         picture::define(job, self, stages)
     }
 
     fn draw(
         &self,
         job: &Job<'_>,
-        memory: &mut fast::Levels,
+        memory: &mut fast::CenterLevels,
         pool: &mut Pool,
     ) -> Result<Picture<f32>> {
         picture::draw(job, self, memory, pool)
     }
 
-    fn stage<R: Real>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
         picture::stage(job, self, stage, from)
     }
 
-    fn explain<R: Real>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
         Ok(explain::explain::<R>(job, self, pixel)?.to_string())
     }
 }

@@ -4,12 +4,12 @@ use super::reconstruction::Gathered;
 use crate::composite::sum;
 use crate::frame::{Framebuffer, Plane};
 use crate::method::projection::{Has, world};
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::Camera;
 use crate::splat::View;
 
 /// What the picture is shaded from; with the normals if they are wanted.
-pub(super) fn normalize<R: Real>(
+pub(super) fn normalize<R: Exact>(
     gathered: &Plane<Gathered<R>>,
     camera: &Camera,
     has: Has,
@@ -30,12 +30,12 @@ pub(super) fn normalize<R: Real>(
 }
 
 /// The average depth; +inf where nothing was gathered.
-fn depth<R: Real>(pixel: &Gathered<R>) -> R {
+fn depth<R: Exact>(pixel: &Gathered<R>) -> R {
     if pixel.weight > R::ZERO { pixel.depths / pixel.weight } else { R::INFINITY }
 }
 
 /// The direction of the average normal, world space.
-fn normal<R: Real>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
+fn normal<R: Exact>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
     let [x, y, z] = sum::average(pixel.normals, pixel.weight);
     world(view, Vector3::new(x, y, z))
 }

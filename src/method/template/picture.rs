@@ -1,6 +1,6 @@
 //! From a scene to named planes: all stages in one call, or one of them on somebody's planes.
 
-use super::fast::Levels;
+use super::fast::CenterLevels;
 use super::normalization::normalize;
 use super::planes::{self, SHADING};
 use super::propagation::{self, propagate};
@@ -13,11 +13,11 @@ use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::projection::{self, Has};
 use crate::method::stage::{check_size, unknown};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::splat::Tally;
 
 /// The definition, in any number; with `stages`, every stage leaves its planes.
-pub(super) fn define<R: Real>(
+pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
@@ -48,24 +48,19 @@ pub(super) fn define<R: Real>(
 pub(super) fn draw(
     job: &Job<'_>,
     settings: &Settings,
-    levels: &mut Levels,
+    levels: &mut CenterLevels,
     pool: &mut Pool,
 ) -> Result<Picture<f32>> {
     let Job { scene, camera, exec, .. } = *job;
     let color = Has::of(scene).color;
     let wanted = Wanted { normal: !scene.lights.is_empty(), color, observed: false };
     let mut target = framebuffer(camera, wanted, pool);
-    let (tally, times) = levels.draw(scene, camera, settings, exec, &mut target);
-    let clock = Clock::of(vec![
-        ("projection", times.project),
-        ("propagation", times.propagate),
-        ("reconstruction", times.search),
-    ]);
-    Ok(finish(target, Vec::new(), tally, clock, job))
+    let (tally, laps) = levels.draw(scene, camera, settings, exec, &mut target);
+    Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 
 /// The planes of a level.
-fn write<R: Real>(level: usize, cells: &Plane<Center<R>>, job: &Job<'_>) -> Vec<NamedPlane<R>> {
+fn write<R: Exact>(level: usize, cells: &Plane<Center<R>>, job: &Job<'_>) -> Vec<NamedPlane<R>> {
     let size = [job.camera.width, job.camera.height];
     planes::write_level(level, cells, size, Has::of(job.scene))
 }
@@ -78,7 +73,7 @@ fn write<R: Real>(level: usize, cells: &Plane<Center<R>>, job: &Job<'_>) -> Vec<
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] as [`crate::method::Algorithm::stage`].
-pub(super) fn stage<R: Real>(
+pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
@@ -117,12 +112,12 @@ pub(super) fn stage<R: Real>(
 }
 
 /// The number of the top level.
-fn top<R: Real>(settings: &Settings, from: &Frame<R>) -> usize {
+fn top<R: Exact>(settings: &Settings, from: &Frame<R>) -> usize {
     propagation::top(settings, &pyramid::sizes(from.width, from.height))
 }
 
 /// All levels as the planes have them.
-fn levels<R: Real>(
+fn levels<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     from: &Frame<R>,
@@ -136,7 +131,7 @@ fn levels<R: Real>(
 }
 
 /// The planes of the propagation.
-fn propagated<R: Real>(
+fn propagated<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     from: &Frame<R>,

@@ -12,7 +12,7 @@ use crate::method::picture::named;
 use crate::method::projection::Has;
 use crate::method::projection::planes::{GivenPlanes, components, vector};
 use crate::method::{Holds, PlaneRow, When};
-use crate::number::{Real, Vector2};
+use crate::number::{Exact, Vector2};
 
 /// The planes of [`Center`]s of the levels 1 to the top; `##` is the level. Level 0 is the planes of
 /// the projection.
@@ -103,7 +103,7 @@ pub const SHADING: [PlaneRow; 2] = [
 ];
 
 /// The planes of a level that leave the propagation, of the size of the picture.
-pub(super) fn write_level<R: Real>(
+pub(super) fn write_level<R: Exact>(
     level: usize,
     cells: &Plane<Center<R>>,
     size: [u32; 2],
@@ -129,7 +129,7 @@ pub(super) fn write_level<R: Real>(
 }
 
 /// Whether a frame has a level.
-pub(super) fn has_level<R: Real>(frame: &Frame<R>, level: usize) -> bool {
+pub(super) fn has_level<R: Exact>(frame: &Frame<R>, level: usize) -> bool {
     frame.plane(&LEVELS[0].numbered(level)).is_some()
 }
 
@@ -141,7 +141,7 @@ pub(super) fn has_level<R: Real>(frame: &Frame<R>, level: usize) -> bool {
 ///
 /// # Panics
 /// If a picture of the frame's size has no such level.
-pub fn read_level<R: Real>(frame: &Frame<R>, level: usize, has: Has) -> Result<Plane<Center<R>>> {
+pub fn read_level<R: Exact>(frame: &Frame<R>, level: usize, has: Has) -> Result<Plane<Center<R>>> {
     let names = LEVELS.map(|row| row.numbered(level));
     let [id, depth, radius, extent, left, upper, normal, color] = &names;
     let given = GivenPlanes(frame);
@@ -163,7 +163,10 @@ pub fn read_level<R: Real>(frame: &Frame<R>, level: usize, has: Has) -> Result<P
 }
 
 /// The planes that leave the reconstruction, but for the id, which is a plane of the picture.
-pub(super) fn write_gathered<R: Real>(pixels: &Plane<Gathered<R>>, has: Has) -> Vec<NamedPlane<R>> {
+pub(super) fn write_gathered<R: Exact>(
+    pixels: &Plane<Gathered<R>>,
+    has: Has,
+) -> Vec<NamedPlane<R>> {
     let [count, weight, depths, depth, radius, normal, color, _] = GATHERED.map(|row| row.name);
     let mut planes = vec![
         named(count, Samples::Count(pixels.map(|pixel| pixel.count))),
@@ -180,7 +183,7 @@ pub(super) fn write_gathered<R: Real>(pixels: &Plane<Gathered<R>>, has: Has) -> 
 }
 
 /// The id of the nearest centre blended.
-pub(super) fn write_id<R: Real>(pixels: &Plane<Gathered<R>>) -> NamedPlane<R> {
+pub(super) fn write_id<R: Exact>(pixels: &Plane<Gathered<R>>) -> NamedPlane<R> {
     let [.., id] = GATHERED.map(|row| row.name);
     named(id, Samples::Index(pixels.map(|pixel| pixel.id)))
 }
@@ -190,7 +193,7 @@ pub(super) fn write_id<R: Real>(pixels: &Plane<Gathered<R>>) -> NamedPlane<R> {
 /// # Errors
 /// [`crate::Error::Invalid`] if a plane is missing, of another type, or not of the size of the
 /// frame.
-pub fn read_gathered<R: Real>(frame: &Frame<R>, has: Has) -> Result<Plane<Gathered<R>>> {
+pub fn read_gathered<R: Exact>(frame: &Frame<R>, has: Has) -> Result<Plane<Gathered<R>>> {
     let [count, weight, depths, depth, radius, normal, color, id] = GATHERED.map(|row| row.name);
     let given = GivenPlanes(frame);
     let (count, id) = (given.counts(count)?, given.indices(id)?);
@@ -211,7 +214,7 @@ pub fn read_gathered<R: Real>(frame: &Frame<R>, has: Has) -> Result<Plane<Gather
 }
 
 /// The planes that leave the normalization; the colour is shaded before it leaves.
-pub(super) fn write_normalized<R: Real>(target: Framebuffer<R>) -> Vec<NamedPlane<R>> {
+pub(super) fn write_normalized<R: Exact>(target: Framebuffer<R>) -> Vec<NamedPlane<R>> {
     let [depth, normal, weight] = NORMALIZATION.map(|row| row.name);
     let mut planes = vec![named(depth, Samples::Scalar(target.depth))];
     planes.extend(target.normal.map(|plane| named(normal, Samples::Vector(plane))));
@@ -223,7 +226,7 @@ pub(super) fn write_normalized<R: Real>(target: Framebuffer<R>) -> Vec<NamedPlan
 ///
 /// # Errors
 /// As [`read_gathered`].
-pub(super) fn read_normalized<R: Real>(frame: &Frame<R>, has: Has) -> Result<Framebuffer<R>> {
+pub(super) fn read_normalized<R: Exact>(frame: &Frame<R>, has: Has) -> Result<Framebuffer<R>> {
     let [depth, normal, weight] = NORMALIZATION.map(|row| row.name);
     let [.., colors, _] = GATHERED.map(|row| row.name);
     let given = GivenPlanes(frame);

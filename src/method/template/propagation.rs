@@ -21,7 +21,7 @@ use super::{Center, Settings};
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
 use crate::method::projection::PixelSample;
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 
 /// The level from which every cell is found: the first whose sides are at most h + 1.
 #[must_use]
@@ -34,7 +34,7 @@ pub fn top(settings: &Settings, sizes: &[[u32; 2]]) -> usize {
 
 /// All levels up to the top; a level holds what arrived there, both what stays and what moves on.
 #[must_use]
-pub fn propagate<R: Real>(
+pub fn propagate<R: Exact>(
     samples: &Plane<PixelSample<R>>,
     settings: &Settings,
     exec: &Exec,
@@ -49,12 +49,16 @@ pub fn propagate<R: Real>(
 }
 
 /// Whether a centre of a level that is not the top moves on.
-pub(super) fn moves<R: Real>(center: &Center<R>, reach: R) -> bool {
+pub(super) fn moves<R: Exact>(center: &Center<R>, reach: R) -> bool {
     center.is_valid() && !(center.extent <= reach)
 }
 
 /// The next level, from what does not stay within `reach`.
-pub(super) fn coarser<R: Real>(fine: &Plane<Center<R>>, reach: R, exec: &Exec) -> Plane<Center<R>> {
+pub(super) fn coarser<R: Exact>(
+    fine: &Plane<Center<R>>,
+    reach: R,
+    exec: &Exec,
+) -> Plane<Center<R>> {
     let (width, height) = (fine.width().div_ceil(2), fine.height().div_ceil(2));
     let mut coarse = Plane::filled(width, height, Center::empty());
     let rows = coarse.rows_mut();
@@ -68,7 +72,7 @@ pub(super) fn coarser<R: Real>(fine: &Plane<Center<R>>, reach: R, exec: &Exec) -
 }
 
 /// The four finer cells of a cell.
-pub(super) fn four<R: Real>(fine: &Plane<Center<R>>, x: u32, y: u32) -> [Center<R>; 4] {
+pub(super) fn four<R: Exact>(fine: &Plane<Center<R>>, x: u32, y: u32) -> [Center<R>; 4] {
     [0, 1, 2, 3].map(|j| {
         let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
         let exists = x < fine.width() && y < fine.height();
@@ -77,14 +81,14 @@ pub(super) fn four<R: Real>(fine: &Plane<Center<R>>, x: u32, y: u32) -> [Center<
 }
 
 /// One centre from those that move, see the module page.
-fn merged<R: Real>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Center<R> {
+fn merged<R: Exact>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Center<R> {
     let Some(first) = foremost(finer, moving) else { return Center::empty() };
     let near = near(finer, first);
     merge(finer, [0, 1, 2, 3].map(|j| moving[j] && near[j]), first)
 }
 
 /// The foremost of the centres that move; ties to the lower index.
-pub(super) fn foremost<R: Real>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Option<usize> {
+pub(super) fn foremost<R: Exact>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Option<usize> {
     let (mut depth, mut first) = (R::INFINITY, None);
     for j in 0..4 {
         if moving[j] && finer[j].depth < depth {
@@ -95,14 +99,14 @@ pub(super) fn foremost<R: Real>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Op
 }
 
 /// Which of four centres are near enough to be merged with the foremost.
-pub fn near<R: Real>(finer: &[Center<R>; 4], first: usize) -> [bool; 4] {
+pub fn near<R: Exact>(finer: &[Center<R>; 4], first: usize) -> [bool; 4] {
     let front = &finer[first];
     finer.map(|c| c.depth - front.depth <= c.radius + front.radius)
 }
 
 /// The new centre, if of four centres those in `takes` take part and `first` is the foremost of
 /// them.
-pub fn merge<R: Real>(finer: &[Center<R>; 4], takes: [bool; 4], first: usize) -> Center<R> {
+pub fn merge<R: Exact>(finer: &[Center<R>; 4], takes: [bool; 4], first: usize) -> Center<R> {
     let mean = Mean::plain(takes);
     let number = |of: fn(&Center<R>) -> R| mean.of([0, 1, 2, 3].map(|j| of(&finer[j])));
     Center {

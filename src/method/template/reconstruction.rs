@@ -33,7 +33,7 @@
 use super::{Center, Settings, propagation};
 use crate::composite::sum;
 use crate::frame::{Exec, NO_ID, Plane};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::splat::Ellipse;
 
 /// What a pixel has gathered.
@@ -57,7 +57,7 @@ pub struct Gathered<R> {
     pub count: u8,
 }
 
-impl<R: Real> Gathered<R> {
+impl<R: Exact> Gathered<R> {
     /// Nothing.
     #[must_use]
     pub fn empty() -> Self {
@@ -117,7 +117,7 @@ pub(super) enum Ternary {
 
 /// The weight of a form, see the module page; also for one that is outside or NaN.
 #[inline(always)]
-pub(in crate::method::template) fn weight<R: Real>(form: R, square: R) -> R {
+pub(in crate::method::template) fn weight<R: Exact>(form: R, square: R) -> R {
     let (weight, least) = (R::ONE - (form / square).sqrt(), R::from_f32(LEAST));
     if weight > least { weight } else { least }
 }
@@ -127,7 +127,7 @@ const LEAST: f32 = 1.0 / 16_777_216.0;
 
 /// Gathers every pixel.
 #[must_use]
-pub fn gather<R: Real>(
+pub fn gather<R: Exact>(
     levels: &[Plane<Center<R>>],
     settings: &Settings,
     exec: &Exec,
@@ -163,7 +163,7 @@ pub(super) struct Asked<'a, R> {
 }
 
 /// Calls `visit` for every centre that stays in the templates around a pixel, in their order.
-pub(super) fn each_asked<'a, R: Real>(
+pub(super) fn each_asked<'a, R: Exact>(
     levels: &'a [Plane<Center<R>>],
     settings: &Settings,
     pixel: (u32, u32),
@@ -175,7 +175,7 @@ pub(super) fn each_asked<'a, R: Real>(
 }
 
 /// The template of one level around a pixel.
-fn search<'a, R: Real>(
+fn search<'a, R: Exact>(
     levels: &'a [Plane<Center<R>>],
     level: usize,
     settings: &Settings,

@@ -7,6 +7,7 @@ use crate::frame::{Exec, NO_ID};
 use crate::method::projection::project;
 use crate::method::projection::surfels::PointProjector;
 use crate::method::tests::{cameras, scene, surfels};
+use crate::number::lanes::{LANES, Lanes};
 use crate::scene::{Camera, Cloud, Projection, Surfels};
 use crate::splat::View;
 

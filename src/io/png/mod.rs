@@ -1,0 +1,187 @@
+//! 8-bit previews for people, and PNG files of others, compared as they are stored.
+
+mod read;
+
+pub use read::{Stored, read};
+
+use crate::frame::{Frame, Plane};
+use crate::io::replace::write_atomically;
+use crate::io::srgb;
+use crate::{Error, Result};
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder, ImageError};
+use std::io;
+use std::path::Path;
+
+/// Writes the preview of a frame: the plane of colour with the empty name over the coverage `A`, if
+/// the frame has that; nothing if it has no colour.
+///
+/// A PNG wants colours that are not multiplied by alpha: where alpha is in (0, 1) the colour is
+/// divided by it.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_frame(path: &Path, frame: &Frame<f32>) -> Result<()> {
+    let Ok(color) = frame.color("") else { return Ok(()) };
+    let Ok(alpha) = frame.scalar("A") else { return write(path, color, None) };
+    let mut color = color.clone();
+    for (pixel, alpha) in color.values_mut().iter_mut().zip(alpha.values()) {
+        *pixel = pixel.map(|value| straight(value, *alpha));
+    }
+    write(path, &color, Some(alpha))
+}
+
+/// A colour over black as one that is not multiplied by alpha.
+fn straight(value: f32, alpha: f32) -> f32 {
+    if alpha > 0.0 && alpha < 1.0 { value / alpha } else { value }
+}
+
+/// Writes a plane of linear RGB to the PNG file at `path`, sRGB-encoded, 8 bits a channel.
+///
+/// With `alpha`, a plane of coverage in [0, 1] of the same size, the file is RGBA, not
+/// premultiplied, as PNG means it; alpha is stored linearly, `floor(255 a + 1/2)`. Values beyond
+/// [0, 1] are clipped, NaN is 0. The pixels of the file are a function of the arguments; its bytes
+/// also of the version of the `image` crate.
+///
+/// # Errors
+/// [`Error::Invalid`] if the planes have no pixel or are not of one size; [`Error::Io`] if the file
+/// cannot be written, and then nothing is left of it.
+pub fn write(path: &Path, color: &Plane<[f32; 3]>, alpha: Option<&Plane<f32>>) -> Result<()> {
+    let (width, height) = (color.width(), color.height());
+    if width == 0 || height == 0 {
+        return Err(Error::Invalid(format!(
+            "no PNG holds {width} x {height} pixels: render at least one"
+        )));
+    }
+    if alpha.is_some_and(|a| (a.width(), a.height()) != (width, height)) {
+        return Err(Error::Invalid(format!(
+            "the alpha of a PNG must be {width} x {height} pixels"
+        )));
+    }
+    let srgb = Srgb::new();
+    let (pixels, kind) = match alpha {
+        None => {
+            let pixels = color.values().as_flattened().iter().map(|&v| srgb.encode(v)).collect();
+            (pixels, ExtendedColorType::Rgb8)
+        }
+        Some(alpha) => {
+            let pixels = color.values().iter().zip(alpha.values()).flat_map(|(&[r, g, b], &a)| {
+                [srgb.encode(r), srgb.encode(g), srgb.encode(b), quantize(f64::from(a), 255) as u8]
+            });
+            (pixels.collect::<Vec<u8>>(), ExtendedColorType::Rgba8)
+        }
+    };
+    write_atomically(path, |file| {
+        PngEncoder::new(file).write_image(&pixels, width, height, kind).map_err(|error| match error
+        {
+            ImageError::IoError(error) => error,
+            other => io::Error::other(other),
+        })
+    })
+}
+
+/// The code `floor(most v + 1/2)` for v clipped to [0, 1]; 0 for NaN.
+fn quantize(value: f64, most: u16) -> u16 {
+    // The conversion truncates and saturates, and takes NaN to 0.
+    ((f64::from(most) * value + 0.5) as u16).min(most)
+}
+
+/// The 8-bit code of a linear value.
+fn exact(linear: f32) -> u8 {
+    quantize(srgb::from_linear(f64::from(linear)), 255) as u8
+}
+
+/// The function [`exact`] as the smallest `f32` of each code but 0.
+struct Srgb([f32; 255]);
+
+impl Srgb {
+    /// Each code's smallest value, by bisection over the `f32` in [0, 1], whose bits ascend.
+    fn new() -> Self {
+        Self(std::array::from_fn(|i| {
+            let (mut below, mut above) = (0.0_f32.to_bits(), 1.0_f32.to_bits());
+            while above - below > 1 {
+                let middle = below + (above - below) / 2;
+                if usize::from(exact(f32::from_bits(middle))) > i {
+                    above = middle;
+                } else {
+                    below = middle;
+                }
+            }
+            f32::from_bits(above)
+        }))
+    }
+
+    /// The code of a linear value.
+    fn encode(&self, linear: f32) -> u8 {
+        self.0.partition_point(|&smallest| smallest <= linear) as u8
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::elementary;
+
+    #[test]
+    fn codes_are_those_of_the_standard() {
+        let srgb = Srgb::new();
+        // Code, and linear values of published conversion tables: 18 % grey is 118, half is 188.
+        for (linear, code) in [(0.18, 118), (0.5, 188), (0.25, 137), (0.05, 63), (0.002, 7)] {
+            assert_eq!(srgb.encode(linear), code, "{linear}");
+        }
+        // The decoding formula, the standard's own inverse, leads back to every code.
+        for code in 0..=255_u8 {
+            let v = f64::from(code) / 255.0;
+            let linear =
+                if v <= 0.04045 { v / 12.92 } else { elementary::pow((v + 0.055) / 1.055, 2.4) };
+            assert_eq!(srgb.encode(linear as f32), code);
+        }
+    }
+
+    #[test]
+    fn what_lies_outside_is_clipped() {
+        let srgb = Srgb::new();
+        let outside = [-1.0, -0.0, f32::NEG_INFINITY, f32::NAN, 1.5, f32::INFINITY];
+        assert_eq!(outside.map(|v| srgb.encode(v)), [0, 0, 0, 0, 255, 255]);
+        assert_eq!(outside.map(|v| quantize(f64::from(v), 255)), [0, 0, 0, 0, 255, 255]);
+    }
+
+    #[test]
+    fn the_table_is_the_formula() {
+        let srgb = Srgb::new();
+        let sample = (0..=1.0_f32.to_bits()).step_by(9973);
+        let edges = srgb.0.iter().flat_map(|v| v.to_bits() - 2..=v.to_bits().min(0x3F7F_FFFE) + 1);
+        for bits in sample.chain(edges) {
+            let linear = f32::from_bits(bits);
+            assert_eq!(srgb.encode(linear), exact(linear), "{linear:e}");
+        }
+    }
+
+    #[test]
+    fn pixels_come_back_in_order() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let color = Plane::from_values(3, 1, vec![[0.0, 0.5, 1.0], [0.18, 2.0, -1.0], [0.25; 3]]);
+        write(&path, &color, None).unwrap();
+        let back = image::open(&path).unwrap();
+        assert_eq!(back.as_rgb8().unwrap().as_raw(), &[0, 188, 255, 118, 255, 0, 137, 137, 137]);
+        let alpha = Plane::from_values(3, 1, vec![0.0, 0.5, 7.0]);
+        write(&path, &color, Some(&alpha)).unwrap();
+        let back = image::open(&path).unwrap();
+        let expected = [0, 188, 255, 0, 118, 255, 0, 128, 137, 137, 137, 255];
+        assert_eq!(back.as_rgba8().unwrap().as_raw(), &expected);
+    }
+
+    #[test]
+    fn what_is_no_picture_is_refused_and_leaves_no_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        assert!(write(&path, &Plane::filled(0, 4, [0.0; 3]), None).is_err());
+        let alpha = Plane::filled(4, 2, 1.0);
+        assert!(write(&path, &Plane::filled(4, 4, [0.0; 3]), Some(&alpha)).is_err());
+        let missing = folder.path().join("no such folder").join("a.png");
+        let error = write(&missing, &Plane::filled(1, 1, [0.0; 3]), None).unwrap_err();
+        assert!(matches!(error, Error::Io { .. }), "{error}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,106 @@
+//! The fragments of one splat: what all of its passes do at the pixels of one block.
+
+use super::tile::{BlockGrid, Record, SIDE};
+use crate::frame::Rect;
+use crate::number::Real;
+use crate::number::lanes::{LANES, Lanes, each};
+use crate::splat::{Footprint, Shared};
+
+/// Calls `draw` for each block of a tile that a splat may touch: with the place of the block in the
+/// list of the tile, and with q and nearness of the splat at its pixels.
+#[inline(always)]
+pub(in crate::method) fn each_block<const RAY_CAST: bool>(
+    splat: &Record,
+    grid: &BlockGrid,
+    shared: &Shared<f32>,
+    mut draw: impl FnMut(usize, &Lanes, &Lanes),
+) {
+    let (rect, footprint) = (grid.rect, splat.footprint);
+    let blocks = splat.blocks(&rect);
+    for row in blocks.y0..blocks.y1 {
+        let (first, last) = columns::<RAY_CAST>(splat, &blocks, row, &rect, shared.limit);
+        for column in first..last {
+            let (x, y) = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
+            let (q, w) = fragments::<RAY_CAST>(shared, &footprint, x, y);
+            draw((row * grid.columns + column) as usize, &q, &w);
+        }
+    }
+}
+
+/// q and nearness of a splat at the pixels of a block whose first pixel is (x, y).
+#[inline(always)]
+fn fragments<const RAY_CAST: bool>(
+    shared: &Shared<f32>,
+    footprint: &Footprint<f32>,
+    x: u32,
+    y: u32,
+) -> (Lanes, Lanes) {
+    let shared = Shared { ray_cast: RAY_CAST, ..*shared };
+    let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
+    let (mut q, mut w) = ([0.0; LANES], [0.0; LANES]);
+    for i in 0..LANES {
+        let dx = (x + (i % SIDE as usize) as f32) - footprint.center.x;
+        let dy = (y + (i / SIDE as usize) as f32) - footprint.center.y;
+        (q[i], w[i]) = footprint.fragment(&shared, dx, dy);
+    }
+    (q, w)
+}
+
+/// The blocks of one row that a splat may touch: first column and column after the last.
+///
+/// Splats of few columns keep their bounds. For a wide one the ellipse is cut into bands of
+/// [`SIDE`] pixel rows: in the band, |v| is at least `v`, so |u| is at most sqrt(limit - v v), and
+/// dx lies within that over ux about -(uy/ux) dy. Widened for rounding, as the bounds are.
+#[inline(always)]
+fn columns<const RAY_CAST: bool>(
+    record: &Record,
+    blocks: &Rect,
+    row: u32,
+    tile: &Rect,
+    limit: f32,
+) -> (u32, u32) {
+    if RAY_CAST || blocks.x1 - blocks.x0 < WIDE {
+        return (blocks.x0, blocks.x1);
+    }
+    let f = &record.footprint;
+    let top = (tile.y0 + row * SIDE) as f32 + 0.5 - f.center.y;
+    let bottom = top + (SIDE - 1) as f32;
+    let closest = if top > 0.0 {
+        top
+    } else if bottom < 0.0 {
+        bottom
+    } else {
+        0.0
+    };
+    let v = f.vy * closest;
+    // Near the tip of the ellipse the difference is all rounding error, and its root is not small.
+    let reach = ((limit - v * v).at_least(0.0) + limit * (1.0 / 1_048_576.0)).sqrt() / f.ux;
+    let skew = -(f.uy / f.ux);
+    let (a, b) = (skew * top, skew * bottom);
+    let (left, right) = if a < b { (a, b) } else { (b, a) };
+    let slack = 1.0 / 64.0 + (reach + (a.abs() + b.abs())) * (1.0 / 65_536.0);
+    let origin = f.center.x - tile.x0 as f32;
+    let first = (origin + left - reach - slack - 0.5) * (1.0 / SIDE as f32);
+    let last = (origin + right + reach + slack - 0.5) * (1.0 / SIDE as f32) + 1.0;
+    let (start, end) = (blocks.x0 as f32, blocks.x1 as f32);
+    // Comparisons that NaN fails: such a row keeps its bounds.
+    let first = if first > start { first.at_most(end) } else { start };
+    let last = if last < end { last.at_least(0.0) } else { end };
+    (first.to_pixel(), last.to_pixel())
+}
+
+/// Columns of blocks from which on the rows of a splat are cut to its ellipse.
+const WIDE: u32 = 6;
+
+/// The nearness of the fragments that are inside; NaN, which fails every comparison, for the
+/// others.
+#[inline(always)]
+pub(in crate::method) fn inside(q: &Lanes, w: &Lanes, limit: f32) -> Lanes {
+    each(|i| if q[i] <= limit { w[i] } else { f32::NAN })
+}
+
+/// `sum + weight value` in each lane.
+#[inline(always)]
+pub(in crate::method) fn add(sum: &mut Lanes, weight: &Lanes, value: f32) {
+    *sum = each(|i| sum[i] + weight[i] * value);
+}
