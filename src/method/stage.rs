@@ -1,7 +1,8 @@
 //! Stages as values: the passes of a method, what each reads, and the planes that each leaves.
 
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::frame::{Frame, Samples};
+use crate::scene::Camera;
 
 /// A pass of a method.
 ///
@@ -80,6 +81,19 @@ impl PlaneRow {
         Self { name, holds, unit, meaning, when }
     }
 
+    /// The name, with a number in place of `#`.
+    #[must_use]
+    pub fn numbered(&self, number: usize) -> String {
+        let digits = self.name.bytes().filter(|&c| c == b'#').count();
+        let number = format!("{number:0digits$}");
+        match self.name.split_once('#') {
+            None => self.name.to_owned(),
+            Some((before, after)) => {
+                format!("{before}{number}{}", after.trim_start_matches('#'))
+            }
+        }
+    }
+
     /// Whether a plane of this name is of this row.
     #[must_use]
     pub fn is_called(&self, name: &str) -> bool {
@@ -114,6 +128,20 @@ impl Stage {
         let own = frame.planes.iter().filter(|plane| self.row(&plane.name).is_some());
         Frame { width: frame.width, height: frame.height, planes: own.cloned().collect() }
     }
+}
+
+/// Refuses planes that are not of the size of the camera's picture.
+pub(super) fn check_size<R>(frame: &Frame<R>, camera: &Camera) -> Result<()> {
+    let (found, expected) = ([frame.width, frame.height], [camera.width, camera.height]);
+    if found == expected {
+        return Ok(());
+    }
+    let size = |[width, height]: [u32; 2]| format!("{width} x {height}");
+    Err(Error::Invalid(format!(
+        "planes of {} pixels, but the camera's picture has {}",
+        size(found),
+        size(expected)
+    )))
 }
 
 /// There is no stage of this name, or none that runs on planes.

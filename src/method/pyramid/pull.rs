@@ -24,7 +24,26 @@
 use super::Cell;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
+use crate::method::projection::PixelSample;
 use crate::number::{Exact, Real, Vector2};
+
+/// The side of a cell of a level in pixels, 2^level.
+pub(super) fn side<R: Exact>(level: usize) -> R {
+    R::from_f32((1_u32 << level) as f32)
+}
+
+/// All levels from the projected scene, the finest first.
+#[must_use]
+pub fn pull_all<R: Exact>(samples: &Plane<PixelSample<R>>, exec: &Exec) -> Vec<Plane<Cell<R>>> {
+    let mut fine = samples.map(Cell::new);
+    let mut levels = Vec::new();
+    while fine.width() > 1 || fine.height() > 1 {
+        let coarse = pull(&fine, side(levels.len()), exec);
+        levels.push(std::mem::replace(&mut fine, coarse));
+    }
+    levels.push(fine);
+    levels
+}
 
 /// The next coarser level; `side` is that of the finer cells in pixels.
 #[must_use]
@@ -34,15 +53,19 @@ pub fn pull<R: Exact>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell
     let rows = coarse.rows_mut();
     exec.ordered((0..).zip(rows).collect(), |(y, row): (u32, &mut [Cell<R>])| {
         for (x, cell) in (0..).zip(row) {
-            let finer = [0, 1, 2, 3].map(|j| {
-                let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
-                let exists = x < fine.width() && y < fine.height();
-                if exists { *fine.at(x, y) } else { Cell::empty() }
-            });
-            *cell = one(&finer, side);
+            *cell = one(&four(fine, x, y), side);
         }
     });
     coarse
+}
+
+/// The four finer cells of a cell.
+pub(super) fn four<R: Exact>(fine: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
+    [0, 1, 2, 3].map(|j| {
+        let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
+        let exists = x < fine.width() && y < fine.height();
+        if exists { *fine.at(x, y) } else { Cell::empty() }
+    })
 }
 
 /// One cell from four, see the module page.

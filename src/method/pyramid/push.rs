@@ -26,12 +26,29 @@
 //! by the words of the paper the second becomes empty; but what does not cover a cell does not hide
 //! it, and there would be a hole beside every silhouette.
 
+use super::pull::side;
 use super::{Cell, Occlusion, Settings, Weights};
 use crate::composite::decide;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
 use crate::number::{Exact, Real, Vector2};
 use crate::splat::Ellipse;
+
+/// All levels from those of the pull phase, the finest first.
+#[must_use]
+pub fn push_all<R: Exact>(
+    pulled: &[Plane<Cell<R>>],
+    settings: &Settings,
+    exec: &Exec,
+) -> Vec<Plane<Cell<R>>> {
+    let mut pushed: Vec<Plane<Cell<R>>> = pulled.last().cloned().into_iter().collect();
+    for (level, fine) in pulled.iter().enumerate().rev().skip(1) {
+        let coarse = &pushed[pushed.len() - 1];
+        pushed.push(push(fine, coarse, side(level), settings, exec));
+    }
+    pushed.reverse();
+    pushed
+}
 
 /// The finer level, as [`super::pull`] left it, from the coarser one; `side` is that of the finer
 /// cells in pixels.
@@ -45,26 +62,30 @@ pub fn push<R: Exact>(
 ) -> Plane<Cell<R>> {
     let mut pushed = fine.clone();
     let rows = pushed.rows_mut();
-    let exists = |x: i64, y: i64| {
-        (0..i64::from(coarse.width())).contains(&x) && (0..i64::from(coarse.height())).contains(&y)
-    };
     exec.ordered((0_u32..).zip(rows).collect(), |(y, row): (u32, &mut [Cell<R>])| {
         for (x, cell) in (0_u32..).zip(row) {
             let parent = *coarse.at(x / 2, y / 2);
             if cell.is_valid() && !occluded(cell, &parent, settings.occlusion) {
                 continue;
             }
-            let (px, py) = (i64::from(x / 2), i64::from(y / 2));
-            let (nx, ny) = (beside(x), beside(y));
-            let coarser = [(px, py), (nx, py), (px, ny), (nx, ny)].map(|(x, y)| {
-                if exists(x, y) { *coarse.at(x as u32, y as u32) } else { Cell::empty() }
-            });
+            let coarser = four(coarse, x, y);
             if let Some(found) = one(&coarser, (x % 2 == 0, y % 2 == 0), side, settings.weights) {
                 *cell = found;
             }
         }
     });
     pushed
+}
+
+/// The parent of a cell and the three neighbours.
+pub(super) fn four<R: Exact>(coarse: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
+    let exists = |x: i64, y: i64| {
+        (0..i64::from(coarse.width())).contains(&x) && (0..i64::from(coarse.height())).contains(&y)
+    };
+    let (px, py) = (i64::from(x / 2), i64::from(y / 2));
+    let (nx, ny) = (beside(x), beside(y));
+    [(px, py), (nx, py), (px, ny), (nx, ny)]
+        .map(|(x, y)| if exists(x, y) { *coarse.at(x as u32, y as u32) } else { Cell::empty() })
 }
 
 /// The column or row of the parent's neighbour.
@@ -109,6 +130,18 @@ pub fn offsets<R: Real>(
     })
 }
 
+/// The weight of a cell at this offset, see [`Weights`].
+pub(super) fn weight<R: Real>(cell: &Cell<R>, offset: Vector2<R>, weights: Weights) -> R {
+    match weights {
+        Weights::Box => R::ONE,
+        Weights::Gaussian => {
+            let ellipse = Ellipse::new(cell.normal, cell.extent);
+            let form = ellipse.form(offset.x, offset.y);
+            (R::from_f32(-2.0) * (form / ellipse.square)).exp()
+        }
+    }
+}
+
 /// The new cell, if of four cells at these [`offsets`] those in `takes` take part and `first` is the
 /// foremost of them.
 pub fn merge<R: Real>(
@@ -118,14 +151,7 @@ pub fn merge<R: Real>(
     takes: [bool; 4],
     first: usize,
 ) -> Cell<R> {
-    let weight = |j: usize| match weights {
-        Weights::Gaussian if takes[j] => {
-            let ellipse = Ellipse::new(coarser[j].normal, coarser[j].radius);
-            let form = ellipse.form(offsets[j].x, offsets[j].y);
-            (R::from_f32(-2.0) * (form / ellipse.square)).exp()
-        }
-        _ => R::ONE,
-    };
-    let mean = Mean::new(takes, [0, 1, 2, 3].map(weight));
+    let of = |j: usize| if takes[j] { weight(&coarser[j], offsets[j], weights) } else { R::ONE };
+    let mean = Mean::new(takes, [0, 1, 2, 3].map(of));
     Cell::average(coarser, *offsets, &mean, coarser[first].kind)
 }

@@ -1,4 +1,4 @@
-//! The fast projection of surfels in `f32`: the samples of [`super::plain`], bit for bit.
+//! The fast projection of surfels in `f32`: the samples of [`super::project`], bit for bit.
 //!
 //! 1. **[`points`].** Every surfel that is seen becomes a point: pixel, depth, normal and radius,
 //!    so that those are not read again from random places. The scene is read once, in order,

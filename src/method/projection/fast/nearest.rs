@@ -7,7 +7,7 @@
 
 use super::points::{CHUNK, Points, depth};
 use crate::frame::{Exec, NO_ID};
-use crate::method::projection::surfel::Lens;
+use crate::method::projection::surfels::PointProjector;
 use crate::number::lanes::{LANES, Lanes, each, put_vector, transposed, vector};
 use crate::number::{Real, Vector3};
 use crate::scene::Surfels;
@@ -21,7 +21,7 @@ const NONE: u64 = u64::MAX;
 pub(in crate::method) struct NearestPoints<'a> {
     points: &'a Points,
     surfels: &'a Surfels,
-    lens: &'a Lens<f32>,
+    lens: &'a PointProjector<f32>,
     /// The order of the depth in the upper half, and the slot: the less, the nearer, and of two
     /// surfels equally near the one of the lower index, as the order of slots in a pixel is that of
     /// the surfels.
@@ -32,7 +32,7 @@ impl Points {
     /// Calls `draw` for every row of pixels with what the row is drawn into.
     pub(in crate::method) fn each_row<T: Send>(
         &self,
-        (surfels, lens): (&Surfels, &Lens<f32>),
+        (surfels, lens): (&Surfels, &PointProjector<f32>),
         rows: impl Iterator<Item = T>,
         exec: &Exec,
         draw: impl Fn(&NearestPoints<'_>, T) + Sync + Send,

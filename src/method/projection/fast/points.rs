@@ -6,7 +6,7 @@
 )]
 
 use crate::frame::Exec;
-use crate::method::projection::surfel::Lens;
+use crate::method::projection::surfels::PointProjector;
 use crate::number::lanes::{LANES, Lanes, vectorized};
 use crate::number::{Real, Vector3};
 use crate::scene::Surfels;
@@ -99,7 +99,7 @@ impl Points {
     pub(in crate::method) fn find(
         &mut self,
         surfels: &Surfels,
-        lens: &Lens<f32>,
+        lens: &PointProjector<f32>,
         exec: &Exec,
     ) -> Tally {
         let n = surfels.len();
@@ -218,7 +218,7 @@ vectorized!(
     /// seen.
     fn points(
         surfels: &Surfels,
-        lens: &Lens<f32>,
+        lens: &PointProjector<f32>,
         range: Range<usize>,
         bands: Bands,
         chunk: &mut Chunk,
@@ -270,7 +270,7 @@ impl PointBlock {
         &mut self,
         (p, n, radius): (&[Vec3; LANES], &[Vec3; LANES], &Lanes),
         index: usize,
-        lens: &Lens<f32>,
+        lens: &PointProjector<f32>,
         bands: Bands,
         fates: &mut Fates,
     ) -> [u32; LANES] {
@@ -286,7 +286,7 @@ impl PointBlock {
             fates.behind[i] += u32::from(fate == Fate::Behind);
             fates.degenerate[i] += u32::from(fate == Fate::Degenerate);
             fates.back_facing[i] += u32::from(fate == Fate::BackFacing);
-            let sample = lens.sample(&placed, (n, g), radius[i], (0, [0.0; 3]));
+            let sample = lens.sample(0, &placed, n, g, radius[i], [0.0; 3]);
             let (x, y) = (sample.center.x.to_pixel(), sample.center.y.to_pixel());
             place[i] = ((y & row) * width + x) << 16 | (index * LANES + i) as u32;
             orders[i] = order(sample.depth);

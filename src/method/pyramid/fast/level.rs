@@ -1,9 +1,9 @@
 //! A level in rows of numbers.
 
 use crate::method::projection::fast::RowLayout;
-use crate::method::projection::{Has, Kind};
+use crate::method::projection::{Has, SampleKind};
 
-/// The numbers of a cell, by their place in a row; [`KIND`] is the [`Kind`] as a number.
+/// The numbers of a cell, by their place in a row; [`KIND`] is the [`SampleKind`] as a number.
 pub(super) const KIND: usize = 0;
 pub(super) const FRONT: usize = 1;
 pub(super) const BACK: usize = 2;
@@ -19,8 +19,8 @@ pub(super) const TILT: usize = 9;
 /// The first number that not every scene has.
 pub(super) const FURTHER: usize = 11;
 
-/// [`Kind::Tube`] as a number.
-pub(super) const TUBE: f32 = Kind::Tube as u8 as f32;
+/// [`SampleKind::Tube`] as a number.
+pub(super) const TUBE: f32 = SampleKind::Tube as u8 as f32;
 
 /// The layout of a level of this size.
 pub(super) fn layout(size: [u32; 2], has: Has) -> RowLayout {

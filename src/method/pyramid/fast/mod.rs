@@ -1,4 +1,4 @@
-//! The fast path for `f32`: the bits of [`super::plain`], from another layout.
+//! The fast path for `f32`: the bits of [`super::pull`] and [`super::push`], from another layout.
 //!
 //! A level is rows of numbers, one number of all cells of a row after the other, so that 16 cells
 //! of a row are 16 neighbours in memory. The pull phase computes 16 coarser cells at a time, the
@@ -15,15 +15,15 @@ mod tests;
 mod write;
 
 use super::gbuffer::GBuffer;
-use super::plain::side;
+use super::pull::side;
 use super::{Cell, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, pyramid};
 use crate::method::picture::{Clock, Laps};
 use crate::method::projection::fast::{NearestPoints, Points, RowLayout};
-use crate::method::projection::surfel::Lens;
-use crate::method::projection::{self, Has, Kind, Projected};
+use crate::method::projection::surfels::PointProjector;
+use crate::method::projection::{self, Has, Projected, SampleKind};
 use crate::number::lanes::{LANES, Lanes, each, store, vectorized};
 use crate::scene::{Camera, Scene};
 use crate::splat::{Tally, View};
@@ -92,12 +92,12 @@ impl CellLevels {
     ) -> Result<Tally> {
         let level = &mut self.levels[0];
         if !scene.primitives.is_empty() {
-            let how = (settings.cull, Snap::new(settings.subpixel_bits)?);
-            let projected = projection::project(scene, camera, how, exec)?;
+            let snap = Snap::new(settings.subpixel_bits)?;
+            let projected = projection::project(scene, camera, settings.cull, snap, exec)?;
             fill(&projected, self.has, level, exec);
             return Ok(projected.tally);
         }
-        let lens = Lens::new(View::new(camera), settings.cull);
+        let lens = PointProjector::new(View::new(camera), settings.cull);
         let tally = self.points.find(&scene.surfels, &lens, exec);
         let (layout, from) = (level.layout, (&scene.surfels, &lens));
         self.points.each_row(from, level.rows_mut(), exec, |nearest, row| {
@@ -152,8 +152,8 @@ vectorized!(
     }
 );
 
-/// [`Kind::Surface`] as a number.
-const SURFACE: f32 = Kind::Surface as u8 as f32;
+/// [`SampleKind::Surface`] as a number.
+const SURFACE: f32 = SampleKind::Surface as u8 as f32;
 
 /// The samples of a projected scene as level 0.
 fn fill(projected: &Projected<f32>, has: Has, level: &mut CellLevel, exec: &Exec) {
@@ -169,7 +169,7 @@ fn fill(projected: &Projected<f32>, has: Has, level: &mut CellLevel, exec: &Exec
                 }
             };
             let (n, t) = (cell.normal, cell.tangent);
-            put(KIND, &[f32::from(cell.kind as u8), cell.front, cell.back, cell.radius]);
+            put(KIND, &[f32::from(cell.kind as u8), cell.front, cell.back, cell.extent]);
             put(NORMAL, &[n.x, n.y, n.z]);
             if has.color {
                 put(FURTHER, &cell.color);

@@ -1,4 +1,4 @@
-//! The fast path for `f32`: the bits of [`super::gather`], from another layout.
+//! The fast path for `f32`: the bits of [`super::reconstruction`], from another layout.
 //!
 //! A level is rows of numbers, one number of all cells of a row after the other. Ellipses are found
 //! once a centre, not once a visit. 16 pixels of a row search together: at level 0 for centres that
@@ -12,12 +12,12 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-use super::{Settings, levels};
+use super::{Settings, propagation};
 use crate::frame::{Exec, Framebuffer, Plane, pyramid};
 use crate::method::picture::{Clock, Laps};
 use crate::method::projection::Has;
 use crate::method::projection::fast::{NearestPoints, PAD, Points, RowLayout};
-use crate::method::projection::surfel::Lens;
+use crate::method::projection::surfels::PointProjector;
 use crate::number::lanes::{LANES, Lanes, store, vectorized};
 use crate::scene::{Camera, Scene};
 use crate::splat::{Tally, View};
@@ -49,7 +49,7 @@ impl CenterLevels {
         let mut clock = Clock::default();
         let has = Has::of(scene);
         let sizes = pyramid::sizes(camera.width, camera.height);
-        let top = levels::top(settings, &sizes);
+        let top = propagation::top(settings, &sizes);
         let layouts = sizes[..=top].iter().map(|&size| level::layout(size, has.color));
         if !layouts.clone().eq(self.levels.iter().map(|level| level.layout)) {
             self.levels = layouts.map(CenterLevel::new).collect();
@@ -79,7 +79,7 @@ impl CenterLevels {
         reach: f32,
         exec: &Exec,
     ) -> Tally {
-        let lens = Lens::new(View::new(camera), cull);
+        let lens = PointProjector::new(View::new(camera), cull);
         let tally = self.points.find(&scene.surfels, &lens, exec);
         let level = &mut self.levels[0];
         let (layout, from) = (level.layout, (&scene.surfels, &lens));

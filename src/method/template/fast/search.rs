@@ -1,4 +1,4 @@
-//! Reconstruction and normalization in lanes; see [`super::super::gather`].
+//! Reconstruction and normalization in lanes; see [`super::super::reconstruction`].
 //!
 //! [`LANES`] pixels of a row search together. At level 0 each has a template of its own: the
 //! centres beside one another are read as lanes. A cell of a coarser level belongs to the templates of many
@@ -15,7 +15,7 @@ use crate::composite::sum;
 use crate::frame::NO_ID;
 use crate::method::projection::fast::PAD;
 use crate::method::projection::world;
-use crate::method::template::gather::weight;
+use crate::method::template::reconstruction::weight;
 use crate::number::lanes::{
     LANES, Lanes, Mask, any, components, each, load, mask, store_first, vectorized,
 };

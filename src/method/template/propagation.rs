@@ -21,7 +21,7 @@ use super::{Center, Settings};
 use crate::composite::decide;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
-use crate::method::projection::Projected;
+use crate::method::projection::PixelSample;
 use crate::number::{Exact, Real, Vector2, Vector3};
 
 /// The level from which every cell is found: the first whose sides are at most h + 1.
@@ -36,11 +36,10 @@ pub fn top(settings: &Settings, sizes: &[[u32; 2]]) -> usize {
 /// All levels up to the top; a level holds what arrived there, both what stays and what moves on.
 #[must_use]
 pub fn propagate<R: Exact>(
-    projected: &Projected<R>,
+    samples: &Plane<PixelSample<R>>,
     settings: &Settings,
     exec: &Exec,
 ) -> Vec<Plane<Center<R>>> {
-    let samples = &projected.samples;
     let sizes = crate::frame::pyramid::sizes(samples.width(), samples.height());
     let mut levels = vec![samples.map(Center::new)];
     for level in 0..top(settings, &sizes) {
@@ -56,34 +55,48 @@ pub fn moves<R: Real>(center: &Center<R>, reach: R) -> R::Truth {
 }
 
 /// The next level, from what does not stay within `reach`.
-fn coarser<R: Exact>(fine: &Plane<Center<R>>, reach: R, exec: &Exec) -> Plane<Center<R>> {
+pub(super) fn coarser<R: Exact>(
+    fine: &Plane<Center<R>>,
+    reach: R,
+    exec: &Exec,
+) -> Plane<Center<R>> {
     let (width, height) = (fine.width().div_ceil(2), fine.height().div_ceil(2));
     let mut coarse = Plane::filled(width, height, Center::empty());
     let rows = coarse.rows_mut();
     exec.ordered((0..).zip(rows).collect(), |(y, row): (u32, &mut [Center<R>])| {
         for (x, center) in (0..).zip(row) {
-            let finer = [0, 1, 2, 3].map(|j| {
-                let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
-                let exists = x < fine.width() && y < fine.height();
-                if exists { *fine.at(x, y) } else { Center::empty() }
-            });
+            let finer = four(fine, x, y);
             *center = merged(&finer, finer.map(|center| moves(&center, reach)));
         }
     });
     coarse
 }
 
+/// The four finer cells of a cell.
+pub(super) fn four<R: Exact>(fine: &Plane<Center<R>>, x: u32, y: u32) -> [Center<R>; 4] {
+    [0, 1, 2, 3].map(|j| {
+        let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
+        let exists = x < fine.width() && y < fine.height();
+        if exists { *fine.at(x, y) } else { Center::empty() }
+    })
+}
+
 /// One centre from those that move, see the module page.
 fn merged<R: Exact>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Center<R> {
+    let Some(first) = foremost(finer, moving) else { return Center::empty() };
+    let near = near(finer, first);
+    merge(finer, [0, 1, 2, 3].map(|j| moving[j] && near[j]), first)
+}
+
+/// The foremost of the centres that move; ties to the lower index.
+pub(super) fn foremost<R: Exact>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Option<usize> {
     let (mut depth, mut first) = (R::INFINITY, None);
     for j in 0..4 {
         if moving[j] && decide::before(finer[j].depth, depth) {
             (depth, first) = (finer[j].depth, Some(j));
         }
     }
-    let Some(first) = first else { return Center::empty() };
-    let near = near(finer, first);
-    merge(finer, [0, 1, 2, 3].map(|j| moving[j] && near[j]), first)
+    first
 }
 
 /// Which of four centres are near enough to be merged with the foremost.
@@ -102,7 +115,7 @@ pub fn merge<R: Real>(finer: &[Center<R>; 4], takes: [bool; 4], first: usize) ->
         depth: number(|c| c.depth),
         radius: number(|c| c.radius),
         extent: number(|c| c.extent),
-        place: Vector2::new(number(|c| c.place.x), number(|c| c.place.y)),
+        center: Vector2::new(number(|c| c.center.x), number(|c| c.center.y)),
         normal: Vector3::new(
             number(|c| c.normal.x),
             number(|c| c.normal.y),

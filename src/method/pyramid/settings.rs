@@ -1,0 +1,62 @@
+//! What may change the picture.
+
+use crate::error::Result;
+use crate::frame::raster::Snap;
+
+/// How the cells that a pixel is interpolated from are weighted \[MKC08, section 3.3, Fig. 4\].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Weights {
+    /// 1 inside the ellipse.
+    Box,
+    /// exp(-2 d^2) inside the ellipse, d the elliptical distance. `Decided:` the rim is two
+    /// standard deviations from the centre, as it is by default for every splat of the crate.
+    #[default]
+    Gaussian,
+}
+
+/// When a cell that has something counts as occluded, by the interval [front, back] of its parent,
+/// the cell of the next coarser level that it is part of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Occlusion {
+    /// front > parent's back. `Departs:` by the words of the paper a cell in *front* of its
+    /// parent's interval is "occluded" too, so that a triangle or a thin ribbon, which takes no
+    /// part in the coarser level, is overwritten by the surface behind it, against section 5.1.
+    #[default]
+    Behind,
+    /// front > parent's back, or front < parent's front: the words of \[MKC08, section 3.3\].
+    Outside,
+}
+
+/// What is computed; everything here may change the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// See [`Weights`].
+    pub weights: Weights,
+    /// See [`Occlusion`].
+    pub occlusion: Occlusion,
+    /// Whether surfels and triangles seen from behind are dropped.
+    pub cull: bool,
+    /// Binary digits after the point of the corners of triangles and lines, see [`Snap`].
+    pub subpixel_bits: u32,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            weights: Weights::default(),
+            occlusion: Occlusion::default(),
+            cull: true,
+            subpixel_bits: 8,
+        }
+    }
+}
+
+impl Settings {
+    /// Whether the numbers are in range.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] as [`Snap::new`].
+    pub fn check(&self) -> Result<()> {
+        Snap::new(self.subpixel_bits).map(|_| ())
+    }
+}
