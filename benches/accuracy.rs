@@ -2,11 +2,11 @@
 //! took.
 //!
 //! `cargo bench --bench accuracy` prints Markdown tables, and with `--write` puts them into
-//! `docs/zp06.md`; an argument is a pattern that the names of scenes must contain. Scenes are the scans in the folder that `SPLATREF_MODELS` names
-//! (`../shared/models` if it is not set), those that are missing are skipped, and procedural ones.
-//! Pictures have 800 x 600 pixels, `f32`, lit by a headlight. RMSE and SSIM are of R, G and B
-//! against the picture named in the title; where both are background counts too. With `--pictures
-//! DIR` every picture is kept there.
+//! `docs/zp06.md`; an argument is a pattern that the names of scenes must contain. Scenes are the
+//! scans in the folder that `SPLATREF_MODELS` names (`../shared/models` if it is not set), those
+//! that are missing are skipped, and procedural ones. Pictures have 800 x 600 pixels, `f32`, lit by
+//! a headlight. RMSE and SSIM are of R, G and B against the picture named in the title; where both
+//! are background counts too. With `--pictures DIR` every picture is kept there.
 
 mod common;
 
@@ -75,6 +75,20 @@ const VARIANTS: [(f32, usize, Extension, Holes); 9] = [
     (2.0, 4, Extension::Enlarge, Holes::Skipped),
     (2.0, 8, ADD, Holes::Skipped),
     (2.0, 8, Extension::Enlarge, Holes::Skipped),
+];
+const COLUMNS: [&str; 12] = [
+    "scene",
+    "epsilon",
+    "K",
+    "groups cover it by",
+    "holes",
+    "Algorithm 2: RMSE",
+    "SSIM",
+    "ms",
+    "Algorithm 3: RMSE",
+    "SSIM",
+    "ms",
+    "peeling: ms",
 ];
 const ADD: Extension = Extension::Add { most: 0.5 };
 
@@ -160,20 +174,7 @@ impl Bench {
     /// Transparent: Algorithms 2 and 3 against depth peeling with the same epsilon.
     fn figure_12_and_13(&self, subjects: &[Subject]) -> Result<()> {
         println!("Fig. 12 and 13 (`balls`): Algorithms 2 and 3 against the picture of peeling");
-        let mut table = Table::new(&[
-            "scene",
-            "epsilon",
-            "K",
-            "groups cover it by",
-            "holes",
-            "Algorithm 2: RMSE",
-            "SSIM",
-            "ms",
-            "Algorithm 3: RMSE",
-            "SSIM",
-            "ms",
-            "peeling: ms",
-        ]);
+        let mut table = Table::new(&COLUMNS);
         for subject in subjects {
             let mut truth: Option<(f32, Shot)> = None;
             for (radii, count, extension, holes) in VARIANTS {

@@ -1,9 +1,10 @@
 //! Speed of EWA splatting: the table of `docs/ewa.md`.
 //!
 //! `cargo bench --bench ewa` prints Markdown, and with `--write` puts the table into that page; an
-//! argument is a pattern that the names of workloads must contain. Each row is the median over the frames of one run, the minimum in brackets, in
-//! milliseconds: both geometry passes and the normalization, `f32`, back faces culled, into a
-//! framebuffer that is kept from frame to frame: colour, weight, depth and id, or also normals.
+//! argument is a pattern that the names of workloads must contain. Each row is the median over the
+//! frames of one run, the minimum in brackets, in milliseconds: both geometry passes and the
+//! normalization, `f32`, back faces culled, into a framebuffer that is kept from frame to frame:
+//! colour, weight, depth and id, or also normals.
 
 mod common;
 

@@ -1,14 +1,14 @@
 //! Speed of the image-space methods: the timing tables of \[MKC08\] and \[MOC08\], measured again.
 //!
 //! `cargo bench --bench image_space` prints Markdown, and with `--write` puts the table into
-//! `docs/image-space.md`; an argument is a pattern that the names of rows must contain. The papers' models are stood for by samplings of the dragon with as many
-//! points (`SPLATREF_MODELS` names the folder of the scan; without it the sphere is sampled), each
-//! with the spacing as its radius, in a picture that it fills. One headlight, back faces culled,
-//! `f32`, as many threads as cores. Each number is the median over the pictures of one run in
-//! milliseconds, the minimum in brackets; `frame` is the whole call, from the scene to shaded
-//! planes in the memory of the picture before. `moving` is the time in which as many threads do no
-//! more than move what the projection moves: read 28 bytes of every surfel, write 24 for each that
-//! is seen, and read those again.
+//! `docs/image-space.md`; an argument is a pattern that the names of rows must contain. The papers'
+//! models are stood for by samplings of the dragon with as many points (`SPLATREF_MODELS` names the
+//! folder of the scan; without it the sphere is sampled), each with the spacing as its radius, in a
+//! picture that it fills. One headlight, back faces culled, `f32`, as many threads as cores. Each
+//! number is the median over the pictures of one run in milliseconds, the minimum in brackets;
+//! `frame` is the whole call, from the scene to shaded planes in the memory of the picture before.
+//! `moving` is the time in which as many threads do no more than move what the projection moves:
+//! read 28 bytes of every surfel, write 24 for each that is seen, and read those again.
 
 mod common;
 

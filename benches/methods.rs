@@ -50,7 +50,7 @@ fn main() -> Result<()> {
             let time = cell(&mut times);
             table.row(&format!("{label} | {name} | {time} | {:.4} | {ssim:.3}", found.rmse));
             let median = times[times.len() / 2].as_secs_f64() * 1e3;
-            series.points.push((median, found.rmse, label.to_owned()));
+            series.points.push([median, found.rmse]);
         }
     }
     table.publish_times(&arguments, "speed.md", "methods")?;
@@ -97,8 +97,8 @@ fn draw(
 /// Time across, error up: below and to the left is better.
 fn chart(series: &[Series]) -> String {
     let points = series.iter().flat_map(|series| &series.points);
-    let x = Axis::around("ms a frame", points.clone().map(|point| point.0));
-    let y = Axis::around("RMSE to the true picture, linear RGB", points.map(|point| point.1));
-    let title = format!("32 spheres, 800 x 600, by surfels; {}", machine());
-    svg(&title, [&x, &y], series)
+    let x = Axis::around("ms a frame", points.clone().map(|point| point[0]));
+    let y = Axis::around("RMSE to the true picture, linear RGB", points.map(|point| point[1]));
+    let title = format!("32 spheres, 800 x 600; {}", machine());
+    svg(&title, [&x, &y], series, ("surfels", &COUNTS.map(|(_, label)| label)))
 }

@@ -1,9 +1,10 @@
 //! Speed of single-pass rendering against the 2+1-pass method: the question of \[ZP06, Table 2\].
 //!
 //! `cargo bench --bench single_pass` prints Markdown, and with `--write` puts the table into
-//! `docs/zp06.md`; an argument is a pattern that the names of workloads must contain. Every round draws one frame of each row, so that all rows see the same
-//! machine. Times are the median over the rounds, the minimum in brackets, in milliseconds; the
-//! ratio is the median over the rounds of the time of the frame by that of the 2+1-pass method.
+//! `docs/zp06.md`; an argument is a pattern that the names of workloads must contain. Every round
+//! draws one frame of each row, so that all rows see the same machine. Times are the median over
+//! the rounds, the minimum in brackets, in milliseconds; the ratio is the median over the rounds of
+//! the time of the frame by that of the 2+1-pass method.
 //!
 //! The rows are groupings of this crate without relaxations, by c, and the c that gives 8 groups.
 
