@@ -192,6 +192,7 @@ pub mod io;
 pub mod method;
 pub mod number;
 pub mod scene;
+pub mod setting;
 pub mod shade;
 pub mod source;
 pub mod splat;

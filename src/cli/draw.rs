@@ -3,7 +3,7 @@
 use super::progress;
 use splatref::Result;
 use splatref::frame::Exec;
-use splatref::io::scene_file::{Number, Output, Ready, SceneFile};
+use splatref::io::scene_file::{Number, OutputSettings, Ready, SceneFile};
 use splatref::method::session::Made;
 use splatref::method::{Picture, Session};
 use splatref::scene::Camera;
@@ -25,14 +25,16 @@ pub(super) fn session<'a>(ready: &'a Ready, exec: &'a Exec) -> Result<(Session<'
 pub(super) fn draw<'s>(
     session: &'s mut Session<'_>,
     camera: &Camera,
-    output: Output,
+    output: OutputSettings,
 ) -> Result<Cow<'s, Picture<f32>>> {
     Ok(match output {
-        Output { number: Number::F32, stages: false } => Cow::Borrowed(session.render(camera)?),
-        Output { number: Number::F32, stages: true } => {
+        OutputSettings { number: Number::F32, stages: false } => {
+            Cow::Borrowed(session.render(camera)?)
+        }
+        OutputSettings { number: Number::F32, stages: true } => {
             Cow::Owned(session.define::<f32>(camera, true)?)
         }
-        Output { number: Number::F64, stages } => {
+        OutputSettings { number: Number::F64, stages } => {
             let Picture { frame, tally, timings } = session.define::<f64>(camera, stages)?;
             Cow::Owned(Picture { frame: frame.to_f32(), tally, timings })
         }

@@ -13,6 +13,7 @@ mod options;
 mod progress;
 mod render;
 mod report;
+mod rows;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};

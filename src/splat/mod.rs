@@ -27,6 +27,7 @@ pub mod view;
 pub use batch::Tally;
 pub use ellipse::Ellipse;
 pub use project::{Disc, Fate, Projector, Reasons, project};
+pub(crate) use settings::culling;
 pub use settings::{Epsilon, SplatSettings};
 pub use view::View;
 

@@ -71,6 +71,7 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
+use crate::setting::{Field, Fields, Slot, Visit};
 use crate::splat::SplatSettings;
 
 /// What is computed; everything here may change the picture.
@@ -90,6 +91,14 @@ impl Default for Settings {
     /// 64 layers, seen from both sides.
     fn default() -> Self {
         Self { splats: SplatSettings::BOTH_SIDES, layers: 64 }
+    }
+}
+
+impl Fields for Settings {
+    fn fields(&mut self, each: &mut Visit<'_>) {
+        self.splats.fields(each);
+        let help = "most layers that are peeled";
+        each(Field::new("peel", help, Slot::Count(&mut self.layers)).range("1 to 256"));
     }
 }
 

@@ -2,6 +2,8 @@
 
 use crate::error::Result;
 use crate::frame::raster::Snap;
+use crate::setting::{Field, Fields, Slot, Visit, Words};
+use crate::splat::culling;
 
 /// How the cells that a pixel is interpolated from are weighted \[MKC08, section 3.3, Fig. 4\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -49,6 +51,32 @@ impl Default for Settings {
             subpixel_bits: 8,
         }
     }
+}
+
+impl Fields for Settings {
+    fn fields(&mut self, each: &mut Visit<'_>) {
+        let weights = "weights of the interpolation within an ellipse";
+        each(Field::new("weights", weights, Slot::Word(&mut self.weights)));
+        let occluded = "which cells are occluded: those behind the depths of their parent, or \
+                        those outside";
+        each(Field::new("occluded", occluded, Slot::Word(&mut self.occlusion)));
+        each(culling(&mut self.cull));
+        let bits = "binary digits after the point of the corners of triangles and lines";
+        each(
+            Field::new("subpixel_bits", bits, Slot::Count(&mut self.subpixel_bits))
+                .range("0 to 12"),
+        );
+    }
+}
+
+impl Words for Weights {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("box", Self::Box), ("gaussian", Self::Gaussian)];
+}
+
+impl Words for Occlusion {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("behind", Self::Behind), ("outside", Self::Outside)];
 }
 
 impl Settings {

@@ -1,6 +1,8 @@
 //! What may change the picture.
 
 use crate::error::{Error, Result};
+use crate::setting::{Field, Fields, Slot, Visit, Words};
+use crate::splat::culling;
 
 /// The level at which a centre stays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -35,6 +37,25 @@ impl Default for Settings {
     fn default() -> Self {
         Self { size: 5, levels: LevelRule::default(), cull: true }
     }
+}
+
+impl Fields for Settings {
+    fn fields(&mut self, each: &mut Visit<'_>) {
+        let size = "width of the template";
+        each(
+            Field::new("template", size, Slot::Count(&mut self.size))
+                .unit("cells")
+                .range("3, 5 or 7"),
+        );
+        let levels = "the level of an ellipse: the one that covers it, or that of the paper";
+        each(Field::new("levels", levels, Slot::Word(&mut self.levels)));
+        each(culling(&mut self.cull));
+    }
+}
+
+impl Words for LevelRule {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("covering", Self::Covering), ("published", Self::Published)];
 }
 
 impl Settings {

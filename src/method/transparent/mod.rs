@@ -48,6 +48,7 @@ use crate::method::single_pass::BinCount;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
+use crate::setting::{Field, Fields, Slot, Visit, Words};
 use crate::splat::SplatSettings;
 
 /// What is computed; everything here may change the picture.
@@ -81,6 +82,21 @@ impl Default for Settings {
     }
 }
 
+impl Fields for Settings {
+    fn fields(&mut self, each: &mut Visit<'_>) {
+        self.splats.fields(each);
+        self.bins.field(each);
+        let help =
+            "what a group without fragments gives to the average: nothing, or the background";
+        each(Field::new("holes", help, Slot::Word(&mut self.holes)));
+    }
+}
+
+impl Words for Holes {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("skipped", Self::Skipped), ("background", Self::Background)];
+}
+
 impl Settings {
     /// Whether the numbers are in range.
     ///
@@ -93,7 +109,7 @@ impl Settings {
 }
 
 /// K = 4, which \[ZP06, section 6.2\] finds sufficient; groups are extended by adding surfels.
-pub(super) const GROUPING: Grouping = Grouping {
+pub(crate) const GROUPING: Grouping = Grouping {
     rules: Rules { overlap: 1.0, opposite: true, coplanar: None },
     count: Some(4),
     extension: Extension::Add { most: 0.5 },

@@ -39,6 +39,7 @@ mod tests;
 use crate::error::{Error, Result};
 use crate::number::{Exact, Vector3};
 use crate::scene::Environment;
+use crate::setting::Words;
 
 /// How many surfaces bend the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +48,11 @@ pub enum Layers {
     Single,
     /// As many as the accumulated opacity tells.
     Multiple,
+}
+
+impl Words for Layers {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("single", Self::Single), ("multiple", Self::Multiple)];
 }
 
 /// How a transparent surface bends light.
