@@ -156,27 +156,27 @@
 //!
 //! # Example
 //!
+//! From the name of a scene to a picture in memory, and to a verdict on somebody else's picture:
+//!
 //! ```
-//! use splatref::frame::{Exec, Samples};
-//! use splatref::method::ewa::{self, Settings};
-//! use splatref::scene::{Camera, Light, Phong, Scene};
-//! use splatref::source::Shape;
+//! use splatref::frame::Image;
+//! use splatref::verify::compare::{Criteria, Verdict, compare};
+//! use splatref::{Exec, SceneFile};
 //!
-//! let shape = Shape::Sphere;
-//! let scene = Scene {
-//!     name: "sphere".into(),
-//!     surfels: shape.surfels(5_000, 0)?,
-//!     lights: vec![Light::Headlight { towards: glam::Vec3::Z, color: glam::Vec3::ONE }],
-//!     material: Phong::default(),
-//!     primitives: Default::default(),
-//!     environment: None,
-//! };
-//! let camera = Camera::new(64, 64, shape.default_pose(), shape.default_lens())?;
-//! let picture = ewa::render_f32(&scene, &camera, &Settings::default(), &Exec::sequential())?;
+//! let exec = Exec::new(0, 32)?; // every core, tiles of 32 pixels
+//! let mut file = SceneFile::open("sphere")?; // a shape, "bunny.ply" or "scene.toml"
+//! file.camera.size = Some([64, 48]);
+//! let ready = file.ready(&exec, &|_step, _done, _of| ())?;
+//! let (mut session, _) = ready.session(&exec, &|_step, _done, _of| ())?;
+//! let picture = session.render(&ready.camera)?;
 //!
-//! let Some(Samples::Scalar(depth)) = picture.frame.plane("Z") else { unreachable!() };
-//! assert!(depth.at(32, 32).is_finite(), "the sphere is in the middle");
+//! let depth = picture.frame.scalar("Z")?;
+//! assert!(depth.at(32, 24).is_finite(), "the sphere is in the middle");
 //! assert!(depth.at(0, 0).is_infinite(), "and not in the corner");
+//!
+//! let theirs = Image::from(&picture.frame); // or io::exr::read, or a Frame of your own planes
+//! let found = compare(&Image::from(&picture.frame), &theirs, &Criteria::default())?;
+//! assert_eq!(found.verdict(), Verdict::Equal);
 //! # Ok::<(), splatref::Error>(())
 //! ```
 
@@ -199,3 +199,7 @@ pub mod splat;
 pub mod verify;
 
 pub use error::{Error, Result};
+pub use frame::{Exec, Frame};
+pub use io::scene_file::SceneFile;
+pub use method::{Method, Session};
+pub use scene::{Camera, Scene};
