@@ -198,3 +198,4 @@ pub mod splat;
 pub mod verify;
 
 pub use error::{Error, Result};
+pub use verify::laws;
