@@ -203,3 +203,4 @@ pub use frame::{Exec, Frame};
 pub use io::scene_file::SceneFile;
 pub use method::{Method, Session};
 pub use scene::{Camera, Scene};
+pub use verify::laws;

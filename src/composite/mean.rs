@@ -92,7 +92,16 @@ pub fn foremost<R: Exact>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::verify::laws::{Lawful, means};
     use proptest::prelude::*;
+
+    fn mean<R: Exact>(takes: [bool; 4], weights: [R; 4], a: [R; 4]) -> R {
+        Mean::new(takes, weights).of(a)
+    }
+
+    fn lawful(found: Lawful) -> Result<(), TestCaseError> {
+        found.map_err(|counterexample| TestCaseError::fail(counterexample.to_string()))
+    }
 
     proptest! {
         #[test]
@@ -102,9 +111,9 @@ mod tests {
             takes in proptest::array::uniform4(proptest::bool::ANY),
         ) {
             prop_assume!(takes.contains(&true));
-            prop_assert_eq!(Mean::new(takes, w).of([a; 4]), a);
-            let plain = Mean::plain(takes).of([f64::from(a); 4]);
-            prop_assert_eq!(plain, f64::from(a));
+            lawful(means::constant(&mean, takes, w, a))?;
+            let plain = |takes, _, a| Mean::<f64>::plain(takes).of(a);
+            lawful(means::constant(&plain, takes, [1.0; 4], f64::from(a)))?;
         }
 
         #[test]
@@ -114,14 +123,7 @@ mod tests {
             takes in proptest::array::uniform4(proptest::bool::ANY),
         ) {
             prop_assume!(takes.contains(&true));
-            let mean = Mean::new(takes, w);
-            let found = mean.of(a);
-            let taken = || (0..4).filter(|&j| takes[j]);
-            prop_assert!(taken().any(|j| a[j] <= found) && taken().any(|j| a[j] >= found));
-            let total: f64 = taken().map(|j| f64::from(w[j])).sum();
-            let sum: f64 = taken().map(|j| f64::from(w[j]) * f64::from(a[j])).sum();
-            // Nine roundings of numbers up to 8: products, sums, total, its inverse, the product.
-            prop_assert!((f64::from(found) - sum / total).abs() <= 9.0 * 8.0 * f64::from(f32::EPSILON) / 2.0);
+            lawful(means::hull(&mean, takes, w, a))?;
         }
 
         #[test]
@@ -131,11 +133,7 @@ mod tests {
             takes in proptest::array::uniform4(proptest::bool::ANY),
         ) {
             prop_assume!(takes.contains(&true));
-            let found = Mean::new(takes, w).of(a);
-            for order in [[1, 0, 3, 2], [2, 3, 0, 1]] {
-                let mirrored = Mean::new(order.map(|j| takes[j]), order.map(|j| w[j]));
-                prop_assert_eq!(mirrored.of(order.map(|j| a[j])), found);
-            }
+            lawful(means::mirror(&mean, takes, w, a))?;
         }
     }
 

@@ -59,18 +59,15 @@ impl<R: Real> Under<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::verify::laws::{Lawful, under};
     use proptest::prelude::*;
 
-    fn front_to_back(layers: &[(f64, [f64; 3])]) -> Under<f64> {
-        layers.iter().fold(Under::CLEAR, |below, &(alpha, color)| below.under(alpha, color))
+    fn operator(above: Under<f64>, alpha: f64, color: [f64; 3]) -> Under<f64> {
+        above.under(alpha, color)
     }
 
-    /// From back to front: each layer over what is there.
-    fn back_to_front(layers: &[(f64, [f64; 3])]) -> (f64, [f64; 3]) {
-        layers.iter().rev().fold((0.0, [0.0; 3]), |(below, behind), &(alpha, color)| {
-            let over = |front: f64, behind: f64| alpha * front + (1.0 - alpha) * behind;
-            (over(1.0, below), [0, 1, 2].map(|c| over(color[c], behind[c])))
-        })
+    fn lawful(found: Lawful) -> Result<(), TestCaseError> {
+        found.map_err(|counterexample| TestCaseError::fail(counterexample.to_string()))
     }
 
     fn layer() -> impl Strategy<Value = (f64, [f64; 3])> {
@@ -81,13 +78,7 @@ mod tests {
     proptest! {
         #[test]
         fn both_directions_agree(layers in prop::collection::vec(layer(), 0..12)) {
-            let found = front_to_back(&layers);
-            let (alpha, color) = back_to_front(&layers);
-            prop_assert!((found.alpha - alpha).abs() < 1e-14);
-            prop_assert!((found.alpha + found.through - 1.0).abs() < 1e-14);
-            for (found, expected) in found.color.iter().zip(color) {
-                prop_assert!((found - expected).abs() < 1e-14 * 4.0);
-            }
+            lawful(under::closed_form(&operator, &layers))?;
         }
 
         #[test]
@@ -95,12 +86,7 @@ mod tests {
             layers in prop::collection::vec(layer(), 0..6),
             (_, color) in layer(),
         ) {
-            let mut opaque = vec![(1.0, color)];
-            opaque.extend(&layers);
-            let found = front_to_back(&opaque);
-            prop_assert_eq!(found, Under { color, alpha: 1.0, through: 0.0 });
-            let before = front_to_back(&layers);
-            prop_assert_eq!(before.under(0.0, [f64::INFINITY; 3]), before);
+            lawful(under::ends(&operator, &layers, color))?;
         }
     }
 }

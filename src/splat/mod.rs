@@ -20,6 +20,7 @@ mod crossing;
 pub mod ellipse;
 pub mod frustum;
 pub mod project;
+pub mod record;
 pub mod settings;
 mod shape;
 pub mod view;

@@ -7,6 +7,7 @@ mod golden;
 mod groups;
 mod pictures;
 mod primitives;
+mod project;
 mod refusals;
 mod reports;
 
