@@ -1,14 +1,9 @@
 //! Reconstruction and normalization in lanes; see [`super::super::gather`].
 //!
 //! [`LANES`] pixels of a row search together. At level 0 each has a template of its own: the
-//! centres beside one another are read as lanes. A cell of a coarser level belongs to the templates of many
-//! of them: it is one centre for all lanes, those outside its template masked. Either way every
-//! lane meets its centres in the order of the definition.
-
-#![expect(
-    clippy::needless_range_loop,
-    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
-)]
+//! centres beside one another are read as lanes. A cell of a coarser level belongs to the templates
+//! of many of them: it is one centre for all lanes, those outside its template masked. Either way
+//! every lane meets its centres in the order of the definition.
 
 use super::level::{COLOR, CenterLevel, CenterRow, DEPTH, NORMAL, PLACE, RADIUS, SQUARE, TILT};
 use crate::composite::sum;
