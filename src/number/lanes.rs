@@ -5,6 +5,10 @@
 //! is inlined, and [`vectorized`] compiles each kernel for several widths. Lanes are read into local
 //! arrays, changed there and written back, because a loop that writes to memory that it may read
 //! again stays a loop. In every lane the operations are those of the definition, in its order.
+//!
+//! Nothing forces a closure to be inlined. One that a kernel itself makes is compiled for the
+//! kernel's vectors anyway; one that an inlined function makes is not, and once it is long enough to
+//! stay a function its loops are scalar. So such closures are short, or are functions.
 
 #![expect(
     clippy::needless_range_loop,

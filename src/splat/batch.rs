@@ -2,7 +2,7 @@
 
 use super::{Disc, Fate, Footprint, Outline, Projector, Splat, project};
 use crate::frame::Rect;
-use crate::number::lanes::{LANES, Lanes, each, transposed, vectorized};
+use crate::number::lanes::{LANES, Lanes, vectorized};
 use crate::number::{Exact, Real, Vector2, Vector3};
 use crate::scene::Surfels;
 use std::ops::Range;
@@ -105,7 +105,17 @@ vectorized!(
         let projector = *projector;
         let mut counts = [0_u64; 8];
         for first in range.step_by(LANES) {
-            let input = discs(surfels, first);
+            // -- The discs
+            let mut input = [[0.0_f32; LANES]; 7];
+            let (positions, normals) = (surfels.position(), surfels.normal());
+            for i in 0..LANES {
+                let (p, n) = (positions[first + i], normals[first + i]);
+                let values = [p.x, p.y, p.z, n.x, n.y, n.z, surfels.radius()[first + i]];
+                for (lanes, value) in input.iter_mut().zip(values) {
+                    lanes[i] = value;
+                }
+            }
+            // -- Their projections
             let mut splats = SplatLanes::new();
             let mut fates = [0_u32; LANES];
             for i in 0..LANES {
@@ -115,6 +125,7 @@ vectorized!(
                 splats.put(i, &f, &b, back);
                 fates[i] = reasons.fate() as u32;
             }
+            // -- The visible ones
             for i in 0..LANES {
                 counts[fates[i] as usize & 7] += 1;
                 if fates[i] == Fate::Visible as u32 {
@@ -131,16 +142,6 @@ vectorized!(
         }
     }
 );
-
-/// Positions, normals and radii of the surfels from `first` on.
-#[inline(always)]
-fn discs(surfels: &Surfels, first: usize) -> [Lanes; 7] {
-    let (positions, normals) = (surfels.position(), surfels.normal());
-    transposed(&each(|i| {
-        let (p, n) = (positions[first + i], normals[first + i]);
-        [p.x, p.y, p.z, n.x, n.y, n.z, surfels.radius()[first + i]]
-    }))
-}
 
 /// [`LANES`] splats, each of their numbers a vector.
 struct SplatLanes {
@@ -159,14 +160,13 @@ impl SplatLanes {
 
     #[inline(always)]
     fn put(&mut self, i: usize, f: &Footprint<f32>, b: &Rect, back: bool) {
-        let Footprint { center, ux, uy, vy, w0, wx, wy, w_far, w_near, amplitude } = *f;
-        let numbers = [center.x, center.y, ux, uy, vy, w0, wx, wy, w_far, w_near, amplitude];
-        for (lanes, number) in self.numbers.iter_mut().zip(numbers) {
-            lanes[i] = number;
-        }
-        for (lanes, pixel) in self.bounds.iter_mut().zip([b.x0, b.y0, b.x1, b.y1]) {
-            lanes[i] = pixel;
-        }
+        let n = &mut self.numbers;
+        (n[0][i], n[1][i]) = (f.center.x, f.center.y);
+        (n[2][i], n[3][i], n[4][i]) = (f.ux, f.uy, f.vy);
+        (n[5][i], n[6][i], n[7][i]) = (f.w0, f.wx, f.wy);
+        (n[8][i], n[9][i], n[10][i]) = (f.w_far, f.w_near, f.amplitude);
+        let pixels = &mut self.bounds;
+        (pixels[0][i], pixels[1][i], pixels[2][i], pixels[3][i]) = (b.x0, b.y0, b.x1, b.y1);
         self.back[i] = u32::from(back);
     }
 

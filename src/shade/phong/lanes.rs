@@ -60,12 +60,14 @@ fn group<R: Exact>(
         *pixels = [[R::ZERO; 3]; LANES];
         return;
     }
-    let surface = row.own.map_or_else(|| transposed(pixels), |own| own.map(|s| [s; LANES]));
+    let surface = match row.own {
+        Some(own) => own.map(|s| [s; LANES]),
+        None => transposed(pixels),
+    };
     let mut color = surface;
     if !shader.lights.is_empty() {
-        let from = |plane: Option<&[[R; 3]]>| plane.map(|p| gather(p, first));
-        let normal = from(row.normal).unwrap_or([[R::ZERO; LANES]; 3]);
-        color = match from(row.tangent) {
+        let normal = gather(row.normal, first).unwrap_or([[R::ZERO; LANES]; 3]);
+        color = match gather(row.tangent, first) {
             None => {
                 let turned = |i| shader.view.direction(vector(&normal, i));
                 let form = |i| Form { normal: turned(i), tangent: Vector3::ZERO };
@@ -144,10 +146,9 @@ fn highlights<R: Exact>(answer: &Answer<R>, gloss: &Lanes<R>) -> Lanes<R> {
     highlight
 }
 
-/// The vectors of the pixels from column `first` on.
+/// The vectors of the pixels from column `first` on, a multiple of [`LANES`].
 #[inline(always)]
-fn gather<R: Exact>(plane: &[[R; 3]], first: usize) -> [Lanes<R>; 3] {
-    let mut pixels = [[R::ZERO; 3]; LANES];
-    pixels.copy_from_slice(&plane[first..first + LANES]);
-    transposed(&pixels)
+fn gather<R: Exact>(plane: Option<&[[R; 3]]>, first: usize) -> Option<[Lanes<R>; 3]> {
+    let (groups, _) = plane?.as_chunks();
+    Some(transposed(&groups[first / LANES]))
 }

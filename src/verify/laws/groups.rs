@@ -3,7 +3,7 @@
 
 use super::inputs::{CASES, Inputs};
 use super::{Lawful, law, same, unit};
-use crate::composite::groups::Sample;
+use crate::composite::groups::WeightedFragment;
 use crate::number::Exact;
 
 /// Tries the laws of [`definition`], [`empty`], [`order`] and [`apart`] at up to 24 images, among
@@ -11,12 +11,14 @@ use crate::number::Exact;
 ///
 /// # Errors
 /// The first counterexample.
-pub fn groups<R: Exact>(compose: &impl Fn(&[Sample<R>], R) -> (Sample<R>, u32)) -> Lawful {
+pub fn groups<R: Exact>(
+    compose: &impl Fn(&[WeightedFragment<R>], R) -> (WeightedFragment<R>, u32),
+) -> Lawful {
     let mut inputs = Inputs::new(6);
     definition(compose, &[], R::ONE)?;
     let at = |t: f32| {
         let color = [R::from_f32(t); 3];
-        Sample::new(R::from_f32(t), R::ONE, [R::ZERO, R::ZERO, R::ONE], color, R::ONE)
+        WeightedFragment::new(R::from_f32(t), R::ONE, [R::ZERO, R::ZERO, R::ONE], color, R::ONE)
     };
     definition(compose, &[at(0.0), at(0.75), at(1.5)], R::ONE)?;
     definition(compose, &[at(1.5), at(0.75), at(0.0)], R::ONE)?;
@@ -32,30 +34,30 @@ pub fn groups<R: Exact>(compose: &impl Fn(&[Sample<R>], R) -> (Sample<R>, u32)) 
 }
 
 /// A sample; of few depths, so that there are ties.
-fn sample<R: Exact>(inputs: &mut Inputs) -> Sample<R> {
+fn sample<R: Exact>(inputs: &mut Inputs) -> WeightedFragment<R> {
     if inputs.below(6) == 0 {
-        return Sample::EMPTY;
+        return WeightedFragment::EMPTY;
     }
     let depth =
         if inputs.flag() { R::from_f32(inputs.of(&[1.0, 2.0, 2.5])) } else { inputs.depth() };
     let normal = [(); 3].map(|()| inputs.between(-1.0, 1.0));
-    Sample::new(depth, inputs.weight(), normal, inputs.color(), inputs.alpha())
+    WeightedFragment::new(depth, inputs.weight(), normal, inputs.color(), inputs.alpha())
 }
 
 /// What is summed: weight, normal, colour, opacity.
-fn attributes<R: Exact>(s: &Sample<R>) -> [R; 8] {
+fn attributes<R: Exact>(s: &WeightedFragment<R>) -> [R; 8] {
     let ([nx, ny, nz], [r, g, b]) = (s.normal, s.color);
     [s.weight, nx, ny, nz, r, g, b, s.opacity]
 }
 
 /// The samples that pass the epsilon-z test, by the definition in words.
-fn visible<R: Exact>(samples: &[Sample<R>], epsilon: R) -> Vec<Sample<R>> {
+fn visible<R: Exact>(samples: &[WeightedFragment<R>], epsilon: R) -> Vec<WeightedFragment<R>> {
     let full = || samples.iter().filter(|s| s.depth < R::INFINITY);
     let nearest = full().fold(R::INFINITY, |a, s| if s.depth < a { s.depth } else { a });
     full().filter(|s| s.depth <= nearest + epsilon).copied().collect()
 }
 
-fn equal<R: Exact>(a: &(Sample<R>, u32), b: &(Sample<R>, u32)) -> bool {
+fn equal<R: Exact>(a: &(WeightedFragment<R>, u32), b: &(WeightedFragment<R>, u32)) -> bool {
     same(attributes(&a.0), attributes(&b.0)) && same([a.0.depth], [b.0.depth]) && a.1 == b.1
 }
 
@@ -65,12 +67,12 @@ fn equal<R: Exact>(a: &(Sample<R>, u32), b: &(Sample<R>, u32)) -> bool {
 /// # Errors
 /// The first counterexample.
 pub fn definition<R: Exact>(
-    compose: &impl Fn(&[Sample<R>], R) -> (Sample<R>, u32),
-    samples: &[Sample<R>],
+    compose: &impl Fn(&[WeightedFragment<R>], R) -> (WeightedFragment<R>, u32),
+    samples: &[WeightedFragment<R>],
     epsilon: R,
 ) -> Lawful {
     let terms = visible(samples, epsilon);
-    let mut sums = Sample::<R>::EMPTY;
+    let mut sums = WeightedFragment::<R>::EMPTY;
     for s in &terms {
         let plus = |a: [R; 3], b: [R; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
         sums.depth = if s.depth < sums.depth { s.depth } else { sums.depth };
@@ -89,13 +91,13 @@ pub fn definition<R: Exact>(
 /// # Errors
 /// The first counterexample.
 pub fn empty<R: Exact>(
-    compose: &impl Fn(&[Sample<R>], R) -> (Sample<R>, u32),
-    samples: &[Sample<R>],
+    compose: &impl Fn(&[WeightedFragment<R>], R) -> (WeightedFragment<R>, u32),
+    samples: &[WeightedFragment<R>],
     place: usize,
     epsilon: R,
 ) -> Lawful {
     let mut with = samples.to_vec();
-    with.insert(place % (samples.len() + 1), Sample::EMPTY);
+    with.insert(place % (samples.len() + 1), WeightedFragment::EMPTY);
     let (expected, found) = (compose(samples, epsilon), compose(&with, epsilon));
     let inputs = format_args!("epsilon = {epsilon:?}, {with:?}");
     law("an empty image is neutral", equal(&found, &expected), &inputs, &expected, &found)
@@ -107,8 +109,8 @@ pub fn empty<R: Exact>(
 /// # Errors
 /// The first counterexample.
 pub fn order<R: Exact>(
-    compose: &impl Fn(&[Sample<R>], R) -> (Sample<R>, u32),
-    samples: &[Sample<R>],
+    compose: &impl Fn(&[WeightedFragment<R>], R) -> (WeightedFragment<R>, u32),
+    samples: &[WeightedFragment<R>],
     order: &[usize],
     epsilon: R,
 ) -> Lawful {
@@ -126,15 +128,15 @@ pub fn order<R: Exact>(
 /// # Errors
 /// The first counterexample.
 pub fn apart<R: Exact>(
-    compose: &impl Fn(&[Sample<R>], R) -> (Sample<R>, u32),
-    samples: &[Sample<R>],
+    compose: &impl Fn(&[WeightedFragment<R>], R) -> (WeightedFragment<R>, u32),
+    samples: &[WeightedFragment<R>],
     place: usize,
     epsilon: R,
 ) -> Lawful {
     let mut moved = samples.to_vec();
     let place = place % samples.len();
     moved.push(moved[place]);
-    moved[place] = Sample::EMPTY;
+    moved[place] = WeightedFragment::EMPTY;
     same_but_order("a sample may have an image of its own", compose, [samples, &moved], epsilon)
 }
 
@@ -142,8 +144,8 @@ pub fn apart<R: Exact>(
 /// magnitudes, so the two are within twice that.
 fn same_but_order<R: Exact>(
     what: &'static str,
-    compose: &impl Fn(&[Sample<R>], R) -> (Sample<R>, u32),
-    [samples, others]: [&[Sample<R>]; 2],
+    compose: &impl Fn(&[WeightedFragment<R>], R) -> (WeightedFragment<R>, u32),
+    [samples, others]: [&[WeightedFragment<R>]; 2],
     epsilon: R,
 ) -> Lawful {
     let (expected, found) = (compose(samples, epsilon), compose(others, epsilon));

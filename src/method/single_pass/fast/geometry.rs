@@ -3,7 +3,7 @@
 use super::images::{GroupImages, ImageBlock, NearestFragments};
 use crate::composite::bins::DepthBins;
 use crate::method::fast::fragments::{each_block, inside};
-use crate::method::fast::tile::{BlockGrid, Record, Tile};
+use crate::method::fast::tile::{Record, Tile};
 use crate::number::elementary::exp_f32_in_range;
 use crate::number::lanes::{LANES, Lanes, each, mask, select, select_u32, vectorized};
 use crate::splat::Shared;
@@ -63,8 +63,11 @@ vectorized!(
             // A bit for each block: a tile has at most 16 x 16.
             let mut touched = [0_u64; 4];
             for &index in &images.order[start..end] {
-                let (splat, grid) = ((index, &tile.splats[index as usize]), &tile.grid);
-                draw::<RAY_CAST, VORONOI>(&mut kept, &mut touched, grid, splat, &shared, bins);
+                let splat = &tile.splats[index as usize];
+                each_block::<RAY_CAST>(splat, &tile.grid, &shared, |block, q, w| {
+                    touched[block / 64] |= 1 << (block % 64);
+                    kept[block].meet::<VORONOI>((index, splat), (q, w), &shared, bins);
+                });
             }
             start = end;
             // -- What the group has left
@@ -85,35 +88,35 @@ vectorized!(
     }
 );
 
-/// Draws a splat, given with its place in the list of the tile.
-#[inline(always)]
-fn draw<const RAY_CAST: bool, const VORONOI: bool>(
-    kept: &mut [KeptFragments],
-    touched: &mut [u64; 4],
-    grid: &BlockGrid,
-    (index, splat): (u32, &Record),
-    shared: &Shared<f32>,
-    bins: Option<&DepthBins<f32>>,
-) {
-    each_block::<RAY_CAST>(splat, grid, shared, |block, q, w| {
-        touched[block / 64] |= 1 << (block % 64);
-        let kept = &mut kept[block];
+impl KeptFragments {
+    /// The depth test against the fragments of a splat, given with its place in the list of the
+    /// tile.
+    #[inline(always)]
+    fn meet<const VORONOI: bool>(
+        &mut self,
+        (index, splat): (u32, &Record),
+        (q, w): (&Lanes, &Lanes),
+        shared: &Shared<f32>,
+        bins: Option<&DepthBins<f32>>,
+    ) {
         let inside = inside(q, w, shared.limit);
         let wins = if VORONOI && let Some(bins) = bins {
-            // NaN, which fails, outside.
-            let depth = |i: usize| shared.depth(inside[i]);
-            let z = each(|i| bins.voronoi(depth(i), (q[i] / shared.limit).sqrt()));
-            let wins = mask(|i| z[i] < kept.z[i]);
-            kept.z = select(&wins, &z, &kept.z);
+            let mut z = [0.0; LANES];
+            for i in 0..LANES {
+                // NaN, which fails, outside.
+                z[i] = bins.voronoi(shared.depth(inside[i]), (q[i] / shared.limit).sqrt());
+            }
+            let wins = mask(|i| z[i] < self.z[i]);
+            self.z = select(&wins, &z, &self.z);
             wins
         } else {
-            mask(|i| inside[i] > kept.nearness[i])
+            mask(|i| inside[i] > self.nearness[i])
         };
-        kept.nearness = select(&wins, w, &kept.nearness);
-        kept.q = select(&wins, q, &kept.q);
-        kept.amplitude = select(&wins, &[splat.footprint.amplitude; LANES], &kept.amplitude);
-        kept.splat = select_u32(&wins, &[index; LANES], &kept.splat);
-    });
+        self.nearness = select(&wins, w, &self.nearness);
+        self.q = select(&wins, q, &self.q);
+        self.amplitude = select(&wins, &[splat.footprint.amplitude; LANES], &self.amplitude);
+        self.splat = select_u32(&wins, &[index; LANES], &self.splat);
+    }
 }
 
 /// Adds what a block has become to the images: a weight is computed once, for the fragment that is

@@ -2,7 +2,7 @@
 
 use crate::frame::NO_ID;
 use crate::method::projection::fast::{PAD, RowLayout};
-use crate::number::lanes::{LANES, load, store, vector};
+use crate::number::lanes::{LANES, Lanes, load, store, vector};
 use crate::splat::Ellipse;
 
 /// The numbers of a centre, by their place in a row: place in the picture, two numbers.
@@ -86,6 +86,24 @@ impl CenterLevel {
         let numbers = self.numbers.chunks_mut(self.layout.row());
         let rows = numbers.zip(self.ids.chunks_mut(self.layout.stride)).zip(&mut self.has);
         rows.map(|((numbers, ids), has)| CenterRowMut { numbers, ids, has })
+    }
+}
+
+impl CenterRow<'_> {
+    /// A number of [`LANES`] cells; `first` counts the [`PAD`].
+    #[inline(always)]
+    pub(super) fn load(&self, attribute: usize, first: usize) -> Lanes {
+        load(self.numbers, attribute * self.layout.stride + first)
+    }
+
+    /// Three numbers of [`LANES`] cells, likewise.
+    #[inline(always)]
+    pub(super) fn load_vectors(&self, attribute: usize, first: usize) -> [Lanes; 3] {
+        [
+            self.load(attribute, first),
+            self.load(attribute + 1, first),
+            self.load(attribute + 2, first),
+        ]
     }
 }
 

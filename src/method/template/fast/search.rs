@@ -1,14 +1,9 @@
 //! Reconstruction and normalization in lanes; see [`super::super::reconstruction`].
 //!
 //! [`LANES`] pixels of a row search together. At level 0 each has a template of its own: the
-//! centres beside one another are read as lanes. A cell of a coarser level belongs to the templates of many
-//! of them: it is one centre for all lanes, those outside its template masked. Either way every
-//! lane meets its centres in the order of the definition.
-
-#![expect(
-    clippy::needless_range_loop,
-    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
-)]
+//! centres beside one another are read as lanes. A cell of a coarser level belongs to the templates
+//! of many of them: it is one centre for all lanes, those outside its template masked. Either way
+//! every lane meets its centres in the order of the definition.
 
 use super::level::{COLOR, CenterLevel, CenterRow, DEPTH, NORMAL, PLACE, RADIUS, SQUARE, TILT};
 use crate::composite::sum;
@@ -91,26 +86,24 @@ fn beside<const COLORED: bool>(
 ) {
     for dx in 0..=2 * half {
         // -- Which centres a pixel is inside of, and its own
-        let number = |attribute: usize| load(row.numbers, row.layout.at(attribute, x + dx) - half);
+        let first = PAD + x + dx - half;
         let own = own_row && dx == half;
-        let (px, py, square) = (number(PLACE), number(PLACE + 1), number(SQUARE));
-        let (tx, ty) = (number(TILT), number(TILT + 1));
+        let [px, py] = [row.load(PLACE, first), row.load(PLACE + 1, first)];
+        let [tx, ty] = [row.load(TILT, first), row.load(TILT + 1, first)];
+        let square = row.load(SQUARE, first);
         let ellipse = |i: usize| Ellipse { tilt: Vector2::new(tx[i], ty[i]), square: square[i] };
-        let (dx_of, dy_of) =
-            (|i: usize| (x + i) as f32 + 0.5 - px[i], |i: usize| y as f32 + 0.5 - py[i]);
-        let form = each(|i| ellipse(i).form(dx_of(i), dy_of(i)));
+        let form = each(|i| ellipse(i).form((x + i) as f32 + 0.5 - px[i], y as f32 + 0.5 - py[i]));
         let inside = mask(|i| ellipse(i).holds(form[i]) | (own & !square[i].is_nan()));
         if !any(&inside) {
             continue;
         }
         // -- What those are
-        let three = |first: usize| [number(first), number(first + 1), number(first + 2)];
         let centers = CenterLanes {
-            id: load(row.ids, PAD + x + dx - half),
-            depth: number(DEPTH),
-            radius: number(RADIUS),
-            normal: three(NORMAL),
-            color: if COLORED { three(COLOR) } else { [[0.0; LANES]; 3] },
+            id: load(row.ids, first),
+            depth: row.load(DEPTH, first),
+            radius: row.load(RADIUS, first),
+            normal: row.load_vectors(NORMAL, first),
+            color: if COLORED { row.load_vectors(COLOR, first) } else { [[0.0; LANES]; 3] },
         };
         gathered.add::<COLORED>(&centers, &inside, &form, &square);
     }
@@ -185,44 +178,58 @@ impl GatheredLanes {
         form: &Lanes,
         square: &Lanes,
     ) {
-        // -- The ternary test: which sums start anew, and which take the centre
-        let mut kept = [0_u32; LANES];
-        let mut weights = [0.0; LANES];
-        let mut takes = [0_u32; LANES];
+        // -- The ternary test
+        let (mut anew, mut takes, mut weights) = ([0; LANES], [0; LANES], [0.0; LANES]);
         for i in 0..LANES {
             let (depth, radius) = (self.depth[i], self.radius[i]);
             let sum = c.radius[i] + radius;
             let before = (self.id[i] == NO_ID) | (depth - c.depth[i] > sum);
             let behind = !before & (c.depth[i] - depth > sum);
             let taken = (inside[i] != 0) & !behind;
-            let anew = (inside[i] != 0) & before;
+            let first = (inside[i] != 0) & before;
             weights[i] = weight(form[i], square[i]);
-            let front = taken & (anew | (c.depth[i] < depth));
+            let front = taken & (first | (c.depth[i] < depth));
             self.id[i] = if front { c.id[i] } else { self.id[i] };
             self.depth[i] = if front { c.depth[i] } else { depth };
             self.radius[i] = if front { c.radius[i] } else { radius };
-            kept[i] = u32::from(!anew);
-            takes[i] = u32::from(taken);
+            anew[i] = u32::from(first).wrapping_neg();
+            takes[i] = u32::from(taken).wrapping_neg();
         }
         // -- The sums
-        let add = |sum: &mut Lanes, value: &Lanes| {
-            let before = *sum;
-            *sum = each(|i| {
-                let old = if kept[i] != 0 { before[i] } else { 0.0 };
-                let new = old + weights[i] * value[i];
-                if takes[i] != 0 { new } else { old }
-            });
-        };
-        add(&mut self.weight, &[1.0; LANES]);
-        add(&mut self.depths, &c.depth);
+        let terms = TermLanes { anew, takes, weights };
+        terms.add(&mut self.weight, &[1.0; LANES]);
+        terms.add(&mut self.depths, &c.depth);
         for axis in 0..3 {
-            add(&mut self.normals[axis], &c.normal[axis]);
+            terms.add(&mut self.normals[axis], &c.normal[axis]);
         }
         if COLORED {
             for channel in 0..3 {
-                add(&mut self.colors[channel], &c.color[channel]);
+                terms.add(&mut self.colors[channel], &c.color[channel]);
             }
         }
+    }
+}
+
+/// What the ternary test has decided of one centre for each lane.
+struct TermLanes {
+    /// Where the sums start anew.
+    anew: Mask,
+    /// Where the centre is added.
+    takes: Mask,
+    weights: Lanes,
+}
+
+impl TermLanes {
+    /// Adds a number of the centres to its sum.
+    #[inline(always)]
+    fn add(&self, sum: &mut Lanes, value: &Lanes) {
+        let mut lanes = *sum;
+        for i in 0..LANES {
+            let old = if self.anew[i] != 0 { 0.0 } else { lanes[i] };
+            let new = old + self.weights[i] * value[i];
+            lanes[i] = if self.takes[i] != 0 { new } else { old };
+        }
+        *sum = lanes;
     }
 }
 
