@@ -11,7 +11,7 @@ use splatref::method::pyramid::{Occlusion, Weights};
 use splatref::method::template::LevelRule;
 use splatref::method::transparent::Holes;
 use splatref::scene::Lens;
-use splatref::shade::optics::Layers;
+use splatref::shade::optics::BendingLayers;
 use splatref::source::{Shape, plant};
 use splatref::splat::{Kernel, Outline};
 use splatref::{Error, Result};
@@ -142,7 +142,7 @@ pub(super) struct SceneOptions {
     refraction: Option<[f32; 3]>,
     /// How many layers bend light: single or multiple [default: multiple]
     #[arg(long, value_name = "NAME", value_parser = words::bends, help_heading = "Transparency")]
-    bends: Option<Layers>,
+    bends: Option<BendingLayers>,
     /// Most layers that are peeled, 1 to 256 [default: 64]
     #[arg(long, value_name = "N", help_heading = "Transparency")]
     peel: Option<u32>,

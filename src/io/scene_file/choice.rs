@@ -8,7 +8,7 @@ use crate::method::single_pass::{self, BinCount, DepthTest};
 use crate::method::template::{self, LevelRule};
 use crate::method::transparent::{self, Holes};
 use crate::method::{Method, peeling};
-use crate::shade::optics::{Layers, Refraction};
+use crate::shade::optics::{BendingLayers, Refraction};
 use crate::splat::{Kernel, Outline};
 
 /// A method by its name.
@@ -73,8 +73,8 @@ pub struct MethodChoice {
     pub holes: Option<Holes>,
     /// Ratios of refraction, see [`Refraction`]; none are bent by if absent.
     pub refraction: Option<[f32; 3]>,
-    /// How many layers bend; [`Layers::Multiple`] if absent.
-    pub bends: Option<Layers>,
+    /// How many layers bend; [`BendingLayers::Multiple`] if absent.
+    pub bends: Option<BendingLayers>,
     /// The most layers that are peeled, see [`peeling::Settings`].
     pub peel: Option<u32>,
     /// See [`pyramid::Settings`].
@@ -190,7 +190,7 @@ impl MethodChoice {
                     nearest: (name == TransparentHq).then(|| self.depth()),
                     refraction: self.refraction.map(|ratio| Refraction {
                         ratio,
-                        layers: self.bends.unwrap_or(Layers::Multiple),
+                        layers: self.bends.unwrap_or(BendingLayers::Multiple),
                     }),
                 })
             }

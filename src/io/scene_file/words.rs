@@ -5,7 +5,7 @@ use crate::method::pyramid::{Occlusion, Weights};
 use crate::method::single_pass::DepthTest;
 use crate::method::template::LevelRule;
 use crate::method::transparent::Holes;
-use crate::shade::optics::Layers;
+use crate::shade::optics::BendingLayers;
 use crate::source::Shape;
 use crate::splat::{Kernel, Outline};
 
@@ -113,19 +113,20 @@ pub fn of_holes(holes: Holes) -> &'static str {
     word_of(&HOLES, holes)
 }
 
-const BENDS: [(&str, Layers); 2] = [("single", Layers::Single), ("multiple", Layers::Multiple)];
+const BENDS: [(&str, BendingLayers); 2] =
+    [("single", BendingLayers::Single), ("multiple", BendingLayers::Multiple)];
 
 /// `single` or `multiple`: how many layers bend light.
 ///
 /// # Errors
 /// The words there are.
-pub fn bends(word: &str) -> Found<Layers> {
+pub fn bends(word: &str) -> Found<BendingLayers> {
     choose("bends", word, &BENDS)
 }
 
 /// The word for how many layers bend light.
 #[must_use]
-pub fn of_bends(layers: Layers) -> &'static str {
+pub fn of_bends(layers: BendingLayers) -> &'static str {
     word_of(&BENDS, layers)
 }
 
