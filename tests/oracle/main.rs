@@ -11,8 +11,8 @@
 //! - [`known`]: pictures whose numbers are known in closed form.
 //! - [`bounds`]: no pixel outside a splat's bounds is inside the splat.
 //! - [`counter`]: a third number runs every formula and counts its operations.
-//! - [`three`]: a number whose comparisons have three outcomes; [`three_outcomes`]: every decision and
-//!   every formula that it can be asked.
+//! - [`three`]: a number whose comparisons have three outcomes; [`three_outcomes`]: every decision
+//!   and every formula that it can be asked.
 //! - [`bits`]: fast and plain, threads and tiles, to the last bit.
 //! - [`laws`]: what compositing must keep; [`groups_laws`], [`bins_laws`], [`over_laws`]: the laws
 //!   of the operator over depth-images, of depth bins and of alpha-blending.

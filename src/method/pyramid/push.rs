@@ -109,8 +109,8 @@ pub fn offsets<R: Real>(
     })
 }
 
-/// The new cell, if of four cells at these [`offsets`] those in `takes` take part and `first` is the
-/// foremost of them.
+/// The new cell, if of four cells at these [`offsets`] those in `takes` take part and `first` is
+/// the foremost of them.
 pub fn merge<R: Real>(
     coarser: &[Cell<R>; 4],
     offsets: &[Vector2<R>; 4],
