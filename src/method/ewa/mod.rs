@@ -40,6 +40,10 @@ impl Algorithm for Settings {
     const STAGES: &'static [Stage] = &[];
     type Memory = ();
 
+    fn splats(&self) -> Option<&Settings> {
+        Some(self)
+    }
+
     fn check(&self) -> Result<()> {
         Self::check(self)
     }

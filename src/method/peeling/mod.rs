@@ -124,6 +124,10 @@ impl Algorithm for Settings {
     const STAGES: &'static [Stage] = &[];
     type Memory = ();
 
+    fn splats(&self) -> Option<&SplatSettings> {
+        Some(&self.splats)
+    }
+
     fn check(&self) -> Result<()> {
         Self::check(self)
     }

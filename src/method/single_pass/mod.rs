@@ -230,6 +230,10 @@ impl Algorithm for Settings {
     });
     type Memory = ();
 
+    fn splats(&self) -> Option<&SplatSettings> {
+        Some(&self.splats)
+    }
+
     fn check(&self) -> Result<()> {
         Self::check(self)
     }

@@ -35,7 +35,8 @@ use crate::method::{Picture, Stage, transparent};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use crate::setting::{Field, Fields, Slot, Visit};
-use crate::shade::optics::{Layers, Refraction};
+use crate::shade::optics::{BendingLayers, Refraction};
+use crate::splat::SplatSettings;
 
 /// What is computed; everything here may change the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +69,8 @@ impl Fields for Settings {
             *bins = self.layers.bins;
         }
         let mut ratio = self.refraction.map(|refraction| refraction.ratio);
-        let mut layers = self.refraction.map_or(Layers::Multiple, |refraction| refraction.layers);
+        let mut layers =
+            self.refraction.map_or(BendingLayers::Multiple, |refraction| refraction.layers);
         let help = "ratios of refraction for red, green and blue, the index outside over the index \
                     inside: 0.6667 from air to glass";
         each(Field::new("refraction", help, Slot::Ratios(&mut ratio)).range("above 0 to 4"));
@@ -100,6 +102,10 @@ impl Algorithm for Settings {
     const GROUPING: Option<Grouping> = Some(transparent::GROUPING);
     const BACK_TO_FRONT: bool = true;
     type Memory = ();
+
+    fn splats(&self) -> Option<&SplatSettings> {
+        Some(&self.layers.splats)
+    }
 
     fn check(&self) -> Result<()> {
         Self::check(self)
