@@ -1,7 +1,8 @@
 //! Bits: the fast path is the plain one, and neither threads nor tiles can be seen in a picture.
 
 use crate::ewa::cases::{self, KINDS, Kind};
-use crate::kit::draw::{Case, Drawing};
+use crate::kit::case::Case;
+use crate::kit::draw::Drawing;
 use crate::kit::planes::{bits, digest, number, unclean};
 use crate::kit::scene::{self, OUTLINES, change, scene, surfels};
 use glam::{DVec3, Vec3};

@@ -1,7 +1,8 @@
 //! A third number: f64 that counts its operations. Every formula of the crate runs on it.
 
 use crate::ewa::cases::{self, Kind};
-use crate::kit::draw::{Case, Drawing};
+use crate::kit::case::Case;
+use crate::kit::draw::Drawing;
 use crate::kit::planes::{bits, digest};
 use crate::kit::scene::{OUTLINES, groups};
 use glam::Vec3;

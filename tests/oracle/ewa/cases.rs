@@ -1,7 +1,7 @@
 //! Small scenes that are hard on purpose.
 
+use crate::kit::case::Case;
 use crate::kit::dice::Dice;
-use crate::kit::draw::Case;
 use crate::kit::scene::{OUTLINES, framed, lights, scene, straight, surfels, turned};
 use glam::Vec3;
 use splatref::method::ewa::{Epsilon, Settings};

@@ -1,7 +1,8 @@
 //! Laws of the 2+1-pass method, on whole pictures.
 
 use crate::ewa::cases::{self, Kind};
-use crate::kit::draw::{Case, explained};
+use crate::kit::case::Case;
+use crate::kit::draw::explained;
 use crate::kit::planes::numbers;
 use crate::kit::scene::{OUTLINES, change};
 use glam::{Mat4, Vec3, Vec4};

@@ -3,7 +3,7 @@
 use crate::ewa::cases;
 use crate::ewa::model::{Entry, Oracle, Pixel};
 use crate::ewa::tolerance::EWA;
-use crate::kit::draw::Case;
+use crate::kit::case::Case;
 use crate::kit::goldens;
 use crate::kit::planes::{at, index};
 use crate::kit::tolerance::{Arithmetic, Measured};

@@ -4,7 +4,7 @@
 //! not pile up, and a plane is compared in units of its running error bound. Where rounding may
 //! decide, any outcome is accepted, and such pixels are counted.
 
-use crate::kit::draw::Case;
+use crate::kit::case::Case;
 use crate::kit::number::{BITS, N3, Num};
 use crate::kit::planes::{at, value};
 use crate::kit::projection::{Candidate, Projected};

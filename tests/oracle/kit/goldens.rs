@@ -2,7 +2,7 @@
 //!
 //! Each is compared by the test of its method, beside that test's own scenes.
 
-use crate::kit::draw::Case;
+use crate::kit::case::Case;
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;
 use splatref::method::{Method, ewa, peeling, pyramid, single_pass, template, transparent};

@@ -1,5 +1,6 @@
 //! What every oracle shares.
 
+pub(crate) mod case;
 pub(crate) mod check;
 pub(crate) mod condition;
 pub(crate) mod dice;

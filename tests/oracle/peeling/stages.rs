@@ -1,8 +1,8 @@
 //! Every layer of depth peeling against the oracle.
 
 use crate::ewa::stages::oracle;
+use crate::kit::case::Case;
 use crate::kit::condition::Conditioned;
-use crate::kit::draw::Case;
 use crate::kit::goldens;
 use crate::kit::planes::index;
 use crate::kit::tolerance::{Arithmetic, Measured};

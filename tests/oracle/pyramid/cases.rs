@@ -1,7 +1,7 @@
 //! Scenes for the pull-push pyramid that are hard on purpose.
 
+use crate::kit::case::Case;
 use crate::kit::dice::Dice;
-use crate::kit::draw::Case;
 use crate::kit::goldens;
 use crate::kit::scene::{self, ahead, scene, turned};
 use glam::Vec3;

@@ -1,7 +1,8 @@
 //! What the pull-push pyramid must keep, whatever the scene.
 
+use crate::kit::case::Case;
 use crate::kit::dice::Dice;
-use crate::kit::draw::{Case, Drawing};
+use crate::kit::draw::Drawing;
 use crate::kit::planes::{pixels, value};
 use crate::kit::scene::{ahead, discs, surfels};
 use crate::pyramid::cases;

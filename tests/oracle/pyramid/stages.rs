@@ -5,8 +5,8 @@
 //! decide, any outcome is accepted, and such cells are counted. A third run computes in `f32`
 //! itself, where no decision is open: the documentation gives the bits.
 
+use crate::kit::case::Case;
 use crate::kit::check::{Check, FAR, Number, Open, PROJECTION, vector};
-use crate::kit::draw::Case;
 use crate::kit::number::{BITS, Num, exact};
 use crate::kit::planes::unclean;
 use crate::kit::projection::{Projected, Sight};

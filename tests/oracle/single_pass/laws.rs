@@ -3,8 +3,9 @@
 use crate::bits::case;
 use crate::composite::groups::unit;
 use crate::ewa::cases::{self, Kind};
+use crate::kit::case::Case;
 use crate::kit::dice::Dice;
-use crate::kit::draw::{Case, Drawing};
+use crate::kit::draw::Drawing;
 use crate::kit::planes::{at, bits, digest, index, pixels, unclean};
 use crate::kit::scene::{discs, groups, straight};
 use crate::single_pass::identity::lit;

@@ -3,8 +3,8 @@
 use crate::ewa::cases;
 use crate::ewa::model::Seen;
 use crate::ewa::stages::{measure, oracle};
+use crate::kit::case::Case;
 use crate::kit::dice::Dice;
-use crate::kit::draw::Case;
 use crate::kit::goldens;
 use crate::kit::planes::{at, index, plane};
 use crate::kit::scene::groups;

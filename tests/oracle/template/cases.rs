@@ -1,7 +1,7 @@
 //! Scenes for the reconstruction with templates, drawn by lot: discs placed by their pixels.
 
+use crate::kit::case::Case;
 use crate::kit::dice::Dice;
-use crate::kit::draw::Case;
 use crate::kit::scene::{discs, lights, scene, straight, surfels, turned};
 use glam::{Mat4, Vec3};
 use splatref::scene::{Camera, Cloud, Projection, Scene};

@@ -1,7 +1,8 @@
 //! Laws of the reconstruction with templates, on pictures of scenes drawn by lot.
 
+use crate::kit::case::Case;
 use crate::kit::dice::Dice;
-use crate::kit::draw::{Case, Drawing};
+use crate::kit::draw::Drawing;
 use crate::kit::number::Num;
 use crate::kit::planes::{at, plane};
 use crate::kit::scene::change;

@@ -1,7 +1,8 @@
 //! Every stage of the reconstruction with templates against the oracle.
 
+use crate::kit::case::Case;
 use crate::kit::check::{Check, Open, PROJECTION, vector};
-use crate::kit::draw::{Case, Drawing};
+use crate::kit::draw::Drawing;
 use crate::kit::goldens;
 use crate::kit::number::{N3, Num, exact};
 use crate::kit::planes::{at, plane};

@@ -1,8 +1,8 @@
 //! Scenes with opacities and an environment, their groups, and settings, all drawn by lot.
 
 use crate::ewa::cases::{self, Kind};
+use crate::kit::case::Case;
 use crate::kit::dice::Dice;
-use crate::kit::draw::Case;
 use crate::kit::scene::{OUTLINES, change};
 use crate::single_pass::range::by_definition;
 use splatref::composite::bins::Range;

@@ -1,7 +1,8 @@
 //! What transparency must keep, on pictures of scenes drawn by lot.
 
+use crate::kit::case::Case;
 use crate::kit::dice::Dice;
-use crate::kit::draw::{Case, Drawing, back_to_front};
+use crate::kit::draw::{Drawing, back_to_front};
 use crate::kit::planes::{pixels, plane, value};
 use crate::kit::scene::{change, groups};
 use crate::transparent::cases;

@@ -1,6 +1,7 @@
 //! What transparency refuses, in one line each.
 
-use crate::kit::draw::{Case, Drawing, in_order_of};
+use crate::kit::case::Case;
+use crate::kit::draw::{Drawing, in_order_of};
 use crate::kit::scene::groups;
 use crate::transparent::cases;
 use splatref::Result;

@@ -3,8 +3,9 @@
 
 use crate::ewa::model::Entry;
 use crate::ewa::stages::{measure, oracle};
+use crate::kit::case::Case;
 use crate::kit::condition::Conditioned;
-use crate::kit::draw::{Case, Drawing, back_to_front};
+use crate::kit::draw::{Drawing, back_to_front};
 use crate::kit::eye::V3;
 use crate::kit::goldens;
 use crate::kit::planes::{self, index, plane};
