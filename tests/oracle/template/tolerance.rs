@@ -56,5 +56,5 @@ pub(crate) const TEMPLATE: &[Row] = &[
     row("normal", F32, 1.0, "a quotient, a column of the view matrix, a length, a quotient"),
     row("normal", F64, 0.0, SAME),
     row("", F32, 1.0, "a quotient, then Phong's sums and products"),
-    row("", F64, 2.0, "as in f32"),
+    row("", F64, 0.5, "std's pow is off by a unit or so, the rest is the same"),
 ];
