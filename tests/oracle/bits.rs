@@ -1,53 +1,21 @@
 //! Bits: the fast path is the plain one, and neither threads nor tiles can be seen in a picture.
 
-use crate::ewa::cases::{Case, KINDS, Kind, OUTLINES};
+use crate::ewa::cases::{self, KINDS, Kind};
+use crate::kit::case::Case;
+use crate::kit::draw::Drawing;
+use crate::kit::planes::{bits, digest, number, unclean};
+use crate::kit::scene::{self, OUTLINES, change, scene, surfels};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
-use sha2::{Digest, Sha256};
 use splatref::composite::bins::MAX_BINS;
-use splatref::frame::{Exec, Frame, Samples};
-use splatref::method::ewa::{self, Epsilon, Settings};
+use splatref::frame::Exec;
+use splatref::method::ewa::Settings;
 use splatref::method::single_pass::{self, BinCount, DepthTest};
-use splatref::number::Exact;
 use splatref::number::random::unit;
 use splatref::scene::groups::{Groups, MAX_GROUPS};
-use splatref::scene::{Camera, Cloud, Lens, Phong, Pose, Scene, Surfels};
+use splatref::scene::{Camera, Lens, Pose, Surfels};
+use splatref::splat::Epsilon;
 use splatref::splat::Kernel;
-
-/// The bits of a plane; through f64, which keeps those of f32 apart.
-pub(crate) fn bits<R: Exact>(samples: &Samples<R>) -> Vec<u64> {
-    let number = |v: R| v.to_f64().to_bits();
-    match samples {
-        Samples::Scalar(plane) => plane.values().iter().map(|v| number(*v)).collect(),
-        Samples::Color(plane) | Samples::Vector(plane) => {
-            plane.values().iter().flatten().map(|v| number(*v)).collect()
-        }
-        Samples::Index(plane) => plane.values().iter().map(|v| u64::from(*v)).collect(),
-        Samples::Count(plane) => plane.values().iter().map(|v| u64::from(*v)).collect(),
-    }
-}
-
-/// One hash of all planes and their names.
-pub(crate) fn digest<R: Exact>(frame: &Frame<R>) -> Vec<u8> {
-    let mut hash = Sha256::new();
-    for plane in &frame.planes {
-        hash.update(plane.name.as_bytes());
-        for value in bits(&plane.samples) {
-            hash.update(value.to_le_bytes());
-        }
-    }
-    hash.finalize().to_vec()
-}
-
-/// A -0 or a NaN, which no plane may hold.
-pub(crate) fn unclean<R: Exact>(frame: &Frame<R>) -> Option<&str> {
-    let negative_zero = (-0.0_f64).to_bits();
-    let bad = |v: &u64| *v == negative_zero || f64::from_bits(*v).is_nan();
-    let floats = |s: &Samples<R>| !matches!(s, Samples::Index(_) | Samples::Count(_));
-    let plane =
-        frame.planes.iter().find(|p| floats(&p.samples) && bits(&p.samples).iter().any(bad));
-    plane.map(|p| p.name.as_str())
-}
 
 fn settings() -> impl Strategy<Value = Settings> {
     let kernel = (0..3_usize, prop_oneof![Just(2.0_f32), Just(1.0), 0.25_f32..4.0]);
@@ -75,14 +43,14 @@ fn depth_test() -> impl Strategy<Value = DepthTest> {
 /// Groups that know nothing of the surfels.
 fn groups(surfels: &Surfels, count: usize, seed: u64) -> Groups {
     let own = (0..surfels.len()).map(|i| (unit(seed, i as u64) * count as f32) as u8).collect();
-    Groups::new(own, Vec::new(), vec![1.0; count]).expect("groups in range")
+    scene::groups(own, count)
 }
 
-pub(crate) fn case() -> impl Strategy<Value = Case> {
+pub(crate) fn case() -> impl Strategy<Value = Case<Settings>> {
     let which = (0..KINDS.len(), any::<u32>(), any::<bool>());
     let size = (1_u32..70, 1_u32..50);
     (which, settings(), size).prop_map(|((kind, seed, orthographic), settings, (width, height))| {
-        let mut case = Case::new(KINDS[kind], seed.into(), settings, orthographic);
+        let mut case = cases::case(KINDS[kind], seed.into(), settings, orthographic);
         case.camera.width = width;
         case.camera.height = height;
         case
@@ -94,19 +62,17 @@ proptest! {
 
     #[test]
     fn the_fast_path_has_the_bits_of_the_plain_one(case in case(), tile in 0..4_usize) {
-        let Case { scene, camera, settings, .. } = &case;
-        let exec = Exec::new(1, 8 << tile).expect("a tile size");
-        let plain = ewa::render::<f32>(scene, camera, settings, &exec, true).expect("renders");
-        let fast = ewa::render_f32(scene, camera, settings, &Exec::sequential()).expect("renders");
+        let (drawing, exec) = (case.drawing(), Exec::new(1, 8 << tile).expect("a tile size"));
+        let (plain, fast) = (drawing.on(&exec).define::<f32>(), drawing.fast());
         prop_assert_eq!(plain.tally, fast.tally);
-        prop_assert_eq!(fast.frame.planes.len(), if scene.lights.is_empty() { 5 } else { 6 });
+        prop_assert_eq!(fast.frame.planes.len(), if case.scene.lights.is_empty() { 5 } else { 6 });
         for plane in &fast.frame.planes {
             let same = plain.frame.plane(&plane.name).expect("a shared plane");
             prop_assert!(bits(same) == bits(&plane.samples), "plane '{}' of {}", plane.name, case.name);
         }
         prop_assert_eq!(unclean(&plain.frame), None, "{}", case.name);
-        let wide = ewa::render::<f64>(scene, camera, settings, &exec, true).expect("renders");
-        prop_assert_eq!(unclean(&wide.frame), None, "{}", case.name);
+        let wide = drawing.on(&exec).frame::<f64>();
+        prop_assert_eq!(unclean(&wide), None, "{}", case.name);
     }
 
     #[test]
@@ -115,13 +81,12 @@ proptest! {
         tile in 0..4_usize,
         (count, seed) in (prop_oneof![1..9_usize, 1..=MAX_GROUPS], any::<u64>()),
     ) {
-        let Case { scene, camera, settings, .. } = &case;
         let exec = Exec::new(1, 8 << tile).expect("a tile size");
-        let settings = single_pass::Settings { splats: *settings, depth };
-        let groups = groups(&scene.surfels, count, seed);
-        let other = Exec::sequential();
-        let fast = single_pass::render_f32(scene, &groups, camera, &settings, &exec);
-        match single_pass::render::<f32>(scene, &groups, camera, &settings, &other, false) {
+        let settings = single_pass::Settings { splats: case.settings, depth };
+        let groups = groups(&case.scene.surfels, count, seed);
+        let drawing = Drawing::new(&case.scene, &case.camera, settings).grouped(&groups);
+        let fast = drawing.on(&exec).try_fast();
+        match drawing.try_define::<f32>(false) {
             Err(error) => prop_assert_eq!(error.to_string(), fast.expect_err("as plain").to_string()),
             Ok(plain) => {
                 let fast = fast.expect("renders");
@@ -151,25 +116,23 @@ fn threads_and_tiles_leave_no_trace() {
     {
         let kernel = Kernel { outline: OUTLINES[number % 3], ..Kernel::DEFAULT };
         let settings = Settings { kernel, ..Settings::default() };
-        let mut case = Case::new(kind, number as u64, settings, number % 2 == 1);
+        let mut case = cases::case(kind, number as u64, settings, number % 2 == 1);
         (case.camera.width, case.camera.height) = (131, 70);
-        let Case { scene, camera, settings, .. } = &case;
+        let groups = groups(&case.scene.surfels, 7, number as u64);
+        let depth = [DepthTest::Plain, DepthTest::Voronoi(BinCount::Count(64))][number / 2 % 2];
+        let single = single_pass::Settings { splats: settings, depth };
+        let single = Drawing::new(&case.scene, &case.camera, single).grouped(&groups);
         let mut seen = None;
         for exec in &execs {
             // Counts and margins are among the planes of the stages.
-            let fast = ewa::render_f32(scene, camera, settings, exec).expect("renders");
-            let plain = ewa::render::<f32>(scene, camera, settings, exec, true).expect("renders");
-            let wide = ewa::render::<f64>(scene, camera, settings, exec, true).expect("renders");
+            let drawing = case.drawing().on(exec);
+            let (fast, plain) = (drawing.fast().frame, drawing.frame::<f32>());
+            let wide = drawing.frame::<f64>();
             for name in ["attributes.count", "margin"] {
-                assert!(plain.frame.plane(name).is_some(), "no plane {name}");
+                assert!(plain.plane(name).is_some(), "no plane {name}");
             }
-            let groups = groups(&scene.surfels, 7, number as u64);
-            let depth = [DepthTest::Plain, DepthTest::Voronoi(BinCount::Count(64))][number / 2 % 2];
-            let single = single_pass::Settings { splats: *settings, depth };
-            let single = single_pass::render_f32(scene, &groups, camera, &single, exec);
-            let single = single.expect("renders");
-            let frames = [&fast.frame, &plain.frame, &single.frame];
-            let all = (frames.map(digest), digest(&wide.frame));
+            let single = single.on(exec).fast().frame;
+            let all = ([&fast, &plain, &single].map(digest), digest(&wide));
             let first = seen.get_or_insert_with(|| all.clone());
             assert!(*first == all, "{} threads, {exec:?}: {}", exec.threads(), case.name);
         }
@@ -183,30 +146,15 @@ fn the_tip_of_a_wide_ellipse_has_the_bits_of_the_plain_path() {
     let pose = Pose { eye: DVec3::new(0.0, 0.0, 4.0), target: DVec3::ZERO, up: DVec3::Y };
     let camera = Camera::new(64, 64, pose, Lens::Orthographic(64.0)).expect("one px a unit");
     for half_width in [64.0, 4096.0, 32_768.0, 1e6] {
-        let cloud = Cloud {
-            position: vec![Vec3::new(0.5, 0.5, 0.0)],
-            normal: Some(vec![Vec3::Z]),
-            radius: Some(vec![half_width]),
-            tangents: Some(vec![[Vec3::new(half_width, 0.0, 0.0), Vec3::new(0.0, 16.0, 0.0)]]),
-            ..Cloud::default()
-        };
-        let surfels = Surfels::new(cloud).expect("a surfel").0;
-        let (lights, material) = (Vec::new(), Phong::default());
-        let scene = Scene {
-            name: String::new(),
-            surfels,
-            lights,
-            material,
-            primitives: Default::default(),
-            environment: None,
-        };
+        let disc = (Vec3::new(0.5, 0.5, 0.0), Vec3::Z, half_width);
+        let axes = [Vec3::new(half_width, 0.0, 0.0), Vec3::new(0.0, 16.0, 0.0)];
+        let mut scene = scene(surfels(scene::discs([disc])));
+        change(&mut scene, |cloud| cloud.tangents = Some(vec![axes]));
         let kernel = Kernel { low_pass: 0.0, ..Kernel::DEFAULT };
-        let settings = Settings { kernel, ..Settings::default() };
-        let exec = Exec::sequential();
-        let plain = ewa::render::<f32>(&scene, &camera, &settings, &exec, false).expect("renders");
-        let fast = ewa::render_f32(&scene, &camera, &settings, &exec).expect("renders");
-        assert!(digest(&plain.frame) == digest(&fast.frame), "half width {half_width}");
-        let Some(Samples::Scalar(alpha)) = plain.frame.plane("A") else { unreachable!() };
-        assert_eq!((*alpha.at(32, 47), *alpha.at(32, 48)), (1.0, 0.0), "the tip is in row 47");
+        let drawing = Drawing::new(&scene, &camera, Settings { kernel, ..Settings::default() });
+        let (plain, fast) = (drawing.plain::<f32>(), drawing.fast().frame);
+        assert!(digest(&plain) == digest(&fast), "half width {half_width}");
+        let alpha = [47, 48].map(|y| number(&plain, "A", y * 64 + 32));
+        assert_eq!(alpha, [1.0, 0.0], "the tip is in row 47");
     }
 }

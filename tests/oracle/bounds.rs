@@ -3,25 +3,16 @@
 //! This is a property of the crate's own numbers, in each arithmetic; only the test of tightness
 //! takes extents from the oracle.
 
-use crate::ewa::cases::OUTLINES;
 use crate::ewa::splat::{Body, Figure, Optics};
 use crate::kit::eye::{Eye, wide};
-use glam::{DVec3, Mat4, Vec3};
+use crate::kit::scene::{OUTLINES, discs, near, surfels};
+use glam::Vec3;
 use proptest::prelude::*;
 use splatref::method::ewa::Settings;
 use splatref::number::{Exact, Vector3};
-use splatref::scene::{Camera, Cloud, Lens, Pose, Surfels};
+use splatref::scene::Camera;
 use splatref::splat::project::Disc;
 use splatref::splat::{Fate, Kernel, Outline, Projector, View, project};
-
-fn camera(orthographic: bool, size: (u32, u32)) -> Camera {
-    let lens = if orthographic { Lens::Orthographic(6.0) } else { Lens::Focal(28.0) };
-    let pose = Pose { eye: DVec3::ZERO, target: DVec3::NEG_Z, up: DVec3::Y };
-    let mut camera = Camera::new(size.0, size.1, pose, lens).expect("a plain camera");
-    camera.view_from_world = Mat4::IDENTITY;
-    camera.near = 0.0625;
-    camera
-}
 
 /// A surfel in view space before any number type.
 #[derive(Clone, Debug)]
@@ -138,7 +129,7 @@ fn leak<R: Exact>(given: &Given, kernel: &Kernel, camera: &Camera) -> Option<(u3
 
 #[test]
 fn a_giant_disc_through_the_near_plane_keeps_its_bounds() {
-    let camera = camera(false, (29, 23));
+    let camera = near(false, [29, 23]);
     let kernel = Kernel { outline: Outline::RayCast, cutoff: 3.0, low_pass: 0.0 };
     let normal = Vec3::new(0.5652968, 0.6663123, 0.4862792);
     let position = Vec3::new(0.011187125, 2.1883247, -4.322463);
@@ -159,8 +150,8 @@ proptest! {
         lean in prop_oneof![3 => Just(None), 1 => (-6.0_f32..0.0).prop_map(|e| Some(10.0_f32.powf(e)))],
         wide in 0..20_u32,
     ) {
-        let size = if wide == 0 { (1500, 2) } else { (29, 23) };
-        let camera = camera(orthographic, size);
+        let size = if wide == 0 { [1500, 2] } else { [29, 23] };
+        let camera = near(orthographic, size);
         let given = if let Some(lean) = lean { grazing(given, lean) } else { given };
         let found = leak::<f32>(&given, &kernel, &camera);
         prop_assert!(found.is_none(), "f32 {:?}", found);
@@ -175,7 +166,7 @@ proptest! {
         radius in 0.05_f32..0.75,
         (outline, orthographic) in (0..3_usize, any::<bool>()),
     ) {
-        let camera = camera(orthographic, (57, 49));
+        let camera = near(orthographic, [57, 49]);
         let kernel = Kernel { outline: OUTLINES[outline], ..Kernel::DEFAULT };
         let given = Given { position: Vec3::new(x, y, -t), normal, radius, tangents: None };
         let view = View::<f32>::new(&camera);
@@ -199,17 +190,7 @@ proptest! {
 
 /// The true extent of a splat on the screen, by the oracle, and how far it is from edge-on.
 fn extent(given: &Given, kernel: Kernel, camera: &Camera) -> ([[f64; 2]; 2], f64) {
-    let cloud = Cloud {
-        position: vec![given.position],
-        normal: Some(vec![given.normal]),
-        radius: Some(vec![given.radius]),
-        color: None,
-        opacity: None,
-        tangents: None,
-        groups: None,
-        ..Cloud::default()
-    };
-    let surfels = Surfels::new(cloud).expect("one surfel").0;
+    let surfels = surfels(discs([(given.position, given.normal, given.radius)]));
     let cast = kernel.outline == Outline::RayCast;
     let shape = if cast {
         Kernel { outline: Outline::Perspective, low_pass: 0.0, ..kernel }

@@ -1,12 +1,13 @@
 //! A third number: f64 that counts its operations. Every formula of the crate runs on it.
 
-use crate::bits::digest;
-use crate::ewa::cases::{Case, Kind, OUTLINES};
-use crate::single_pass::stages::groups;
+use crate::ewa::cases::{self, Kind};
+use crate::kit::case::Case;
+use crate::kit::draw::Drawing;
+use crate::kit::planes::{bits, digest};
+use crate::kit::scene::{OUTLINES, groups};
 use glam::Vec3;
 use splatref::composite::{decide, sum};
-use splatref::frame::{Exec, Samples};
-use splatref::method::ewa::{self, Settings};
+use splatref::method::ewa::Settings;
 use splatref::method::single_pass::{self, BinCount, DepthTest};
 use splatref::number::{Exact, Real, Vector3};
 use splatref::scene::Light;
@@ -173,10 +174,10 @@ fn count<T>(job: impl FnOnce() -> T) -> (T, [u64; 7]) {
     (value, std::array::from_fn(|i| COUNTS[i].load(Relaxed)))
 }
 
-fn scene(outline: Outline, orthographic: bool) -> Case {
+fn scene(outline: Outline, orthographic: bool) -> Case<Settings> {
     let settings =
         Settings { kernel: Kernel { outline, ..Kernel::DEFAULT }, ..Settings::default() };
-    let mut case = Case::new(Kind::Shape(0), 3, settings, orthographic);
+    let mut case = cases::case(Kind::Shape(0), 3, settings, orthographic);
     let color = Vec3::ONE;
     case.scene.lights = vec![
         Light::Headlight { towards: Vec3::new(0.25, 0.5, 1.0), color },
@@ -234,28 +235,12 @@ fn every_formula_runs_on_a_third_number_with_the_bits_of_the_second() {
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     for outline in OUTLINES {
         let case = scene(outline, false);
-        let exec = Exec::sequential();
-        let render =
-            || ewa::render::<Counted>(&case.scene, &case.camera, &case.settings, &exec, true);
-        let (picture, ops) = count(render);
+        let (counted, ops) = count(|| case.drawing().frame::<Counted>());
         assert!(ops.iter().all(|n| *n > 100), "{outline:?}: {ops:?}");
-        let counted = picture.expect("renders").frame;
-        let wide = ewa::render::<f64>(&case.scene, &case.camera, &case.settings, &exec, true);
-        let wide = wide.expect("renders").frame;
+        let wide = case.drawing().frame::<f64>();
         assert_eq!(counted.planes.len(), wide.planes.len());
         for (a, b) in counted.planes.iter().zip(&wide.planes) {
-            let same = match (&a.samples, &b.samples) {
-                (Samples::Scalar(a), Samples::Scalar(b)) => {
-                    a.values().iter().map(|v| v.0).eq(b.values().iter().copied())
-                }
-                (Samples::Color(a), Samples::Color(b))
-                | (Samples::Vector(a), Samples::Vector(b)) => {
-                    a.values().iter().map(|v| v.map(|v| v.0)).eq(b.values().iter().copied())
-                }
-                (Samples::Index(a), Samples::Index(b)) => a == b,
-                (Samples::Count(a), Samples::Count(b)) => a == b,
-                _ => false,
-            };
+            let same = a.name == b.name && bits(&a.samples) == bits(&b.samples);
             assert!(same, "{outline:?}: plane '{}'", a.name);
         }
     }
@@ -268,11 +253,9 @@ fn the_single_pass_runs_on_a_third_number_with_the_bits_of_the_second() {
     let depth = DepthTest::Voronoi(BinCount::Count(100));
     let settings = single_pass::Settings { splats: case.settings, depth };
     let own = (0..case.scene.surfels.len()).map(|i| (i % 5) as u8).collect();
-    let (groups, exec, camera) = (groups(own, 5), Exec::sequential(), &case.camera);
-    let wide = single_pass::render::<f64>(&case.scene, &groups, camera, &settings, &exec, true);
-    let (counted, ops) = count(|| {
-        single_pass::render::<Counted>(&case.scene, &groups, camera, &settings, &exec, true)
-    });
+    let groups = groups(own, 5);
+    let drawing = Drawing::new(&case.scene, &case.camera, settings).grouped(&groups);
+    let (counted, ops) = count(|| drawing.frame::<Counted>());
     assert!(ops.iter().all(|n| *n > 100), "{ops:?}");
-    assert!(digest(&counted.expect("renders").frame) == digest(&wide.expect("renders").frame));
+    assert!(digest(&counted) == digest(&drawing.frame::<f64>()));
 }

@@ -1,14 +1,36 @@
 //! The oracle: the picture by other means, known answers, laws, and bits.
 //!
-//! - [`kit`]: what every oracle shares.
-//! - [`ewa`], [`single_pass`], [`transparent`], [`peeling`], [`pyramid`], [`template`]: a folder for
-//!   each method.
-//! - [`composite`]: laws of the operators.
+//! Where a test goes: into the folder of its method; into the files beside the folders if it is of
+//! no one method. A scene, a camera, a picture and a plane come from [`kit`] alone.
+//!
+//! - [`kit`]: builders of scenes, the one place that draws, planes by name, numbers that carry their
+//!   error, the projection to pixels, tables of tolerances and goldens, for all oracles.
+//! - [`ewa`]: the 2+1-pass method by a renderer in f64 without tiles, bins or bounds, that shares no
+//!   formula with the crate.
+//! - [`single_pass`]: Algorithm 1 by brute force, and where it is the 2+1-pass method.
+//! - [`transparent`]: Algorithms 2 and 3 by every surfel in every group, environments and refraction
+//!   by angles.
+//! - [`peeling`]: depth peeling, all fragments of a pixel in one band of depth after the other.
+//! - [`pyramid`]: the pull-push pyramid, a cell at a time, over numbers that bound their rounding.
+//! - [`template`]: reconstruction with templates, a pixel that asks every centre of every level.
+//! - [`composite`]: laws of the operators: bins, groups, over, sums and the epsilon-z test.
+//! - [`bits`]: fast and plain, threads and tiles, to the last bit.
 //! - [`bounds`]: no pixel outside a splat's bounds is inside the splat.
 //! - [`counter`]: a third number runs every formula and counts its operations.
 //! - [`three`]: a number whose comparisons have three outcomes; [`three_outcomes`]: every decision
 //!   and every formula that it can be asked.
-//! - [`bits`]: fast and plain, threads and tiles, to the last bit.
+//!
+//! The files of a method have roles; a method has those that it needs, and further laws and known
+//! answers under names of their own.
+//!
+//! - `model`: the oracle's own computation.
+//! - `cases`: what is drawn.
+//! - `stages`: every plane of every stage of every case and golden against the model.
+//! - `tolerance`: the table of how far a plane may be from the model, and why.
+//! - `known`: pictures whose numbers are known in closed form.
+//! - `laws`: what a method must keep, whatever the scene.
+//!
+//! A new golden is entered in `kit::goldens`, which fails while no method takes it.
 #![expect(
     clippy::disallowed_methods,
     reason = "std's functions, so that the oracle shares no code with the crate; its bits are free"

@@ -3,14 +3,14 @@
 //! A decision of an interval must allow what f64 decides for any of the numbers in the interval,
 //! and each decision must meet all three outcomes, or the test would test nothing.
 
-use crate::scenes::OUTLINES;
+use crate::kit::scene::OUTLINES;
 use crate::three::{Interval, Three};
 use glam::DVec3;
 use splatref::composite::{bins, decide, groups, mean, sum, under};
-use splatref::method::projection::surfel::Lens;
-use splatref::method::projection::{Kind, Sample};
+use splatref::method::projection::surfels::PointProjector;
+use splatref::method::projection::{PixelSample, SampleKind};
 use splatref::method::pyramid::{self, Occlusion, Weights, pull, push};
-use splatref::method::template::{self, levels};
+use splatref::method::template::{self, propagation};
 use splatref::number::random::unit;
 use splatref::number::{Real, Vector2, Vector3};
 use splatref::scene::{self, Camera, Pose};
@@ -208,8 +208,8 @@ fn a_projected_interval_holds_what_is_projected_from_it() {
 fn the_projection_to_pixels_has_three_outcomes() {
     let (mut outcomes, mut dice) = (Outcomes::default(), Dice(0));
     let camera = camera(false);
-    let many = Lens::new(View::<Interval>::new(&camera), true);
-    let one = Lens::new(View::<f64>::new(&camera), true);
+    let many = PointProjector::new(View::<Interval>::new(&camera), true);
+    let one = PointProjector::new(View::<f64>::new(&camera), true);
     for _ in 0..5_000 {
         let (wide, disc) = discs(&mut dice);
         let (found, g, why) = many.reasons(wide.position, wide.normal);
@@ -223,8 +223,8 @@ fn the_projection_to_pixels_has_three_outcomes() {
                 assert!(splatref::number::Pixel::least(all) <= pixel);
                 assert!(pixel <= splatref::number::Pixel::greatest(all));
             }
-            let turned = many.sample(&found, (wide.normal, g), wide.radius, (0, [g; 3]));
-            let sample = one.sample(&placed, (disc.normal, facing), disc.radius, (0, [facing; 3]));
+            let turned = many.sample(0, &found, wide.normal, g, wide.radius, [g; 3]);
+            let sample = one.sample(0, &placed, disc.normal, facing, disc.radius, [facing; 3]);
             assert!(turned.normal.x.holds(sample.normal.x) && turned.extent.holds(sample.extent));
         }
     }
@@ -232,11 +232,11 @@ fn the_projection_to_pixels_has_three_outcomes() {
 }
 
 /// A sample of a pixel, and an interval about each of its numbers.
-fn sample(dice: &mut Dice) -> (Sample<Interval>, Sample<f64>) {
+fn sample(dice: &mut Dice) -> (PixelSample<Interval>, PixelSample<f64>) {
     let (color, radius) = ([0; 3].map(|_| dice.between(0.0, 1.0)), dice.between(0.1, 0.5));
     let [x, y] = [0; 2].map(|_| dice.between(-2.0, 2.0));
-    let sample = Sample {
-        kind: Kind::Surface,
+    let sample = PixelSample {
+        kind: SampleKind::Surface,
         id: 7,
         depth: dice.between(1.0, 2.0),
         radius,
@@ -280,20 +280,22 @@ fn cells_and_centers_have_three_outcomes() {
         }
         let merged = push::merge(&wide, &many, Weights::Gaussian, takes, first);
         let cell = push::merge(&cells, &one, Weights::Gaussian, takes, first);
-        assert!(merged.radius.holds(cell.radius) && merged.back.holds(cell.back));
+        assert!(merged.extent.holds(cell.extent) && merged.back.holds(cell.back));
         let truth = push::occluded(&wide[0], &wide[1], Occlusion::Outside);
         outcomes.note("occluded", truth, push::occluded(&cells[0], &cells[1], Occlusion::Outside));
 
         let wide = four.map(|(wide, _)| template::Center::new(&wide));
         let centers = four.map(|(_, s)| template::Center::new(&s));
-        for (truth, near) in levels::near(&wide, 0).into_iter().zip(levels::near(&centers, 0)) {
+        for (truth, near) in
+            propagation::near(&wide, 0).into_iter().zip(propagation::near(&centers, 0))
+        {
             outcomes.note("near", truth, near);
         }
         let reach = 1.5;
-        let truth = levels::moves(&wide[0], Interval::point(reach));
-        outcomes.note("moves", truth, levels::moves(&centers[0], reach));
-        let merged = levels::merge(&wide, takes, first);
-        assert!(merged.depth.holds(levels::merge(&centers, takes, first).depth));
+        let truth = propagation::moves(&wide[0], Interval::point(reach));
+        outcomes.note("moves", truth, propagation::moves(&centers[0], reach));
+        let merged = propagation::merge(&wide, takes, first);
+        assert!(merged.depth.holds(propagation::merge(&centers, takes, first).depth));
         let mean = mean::Mean::plain(takes);
         assert!(
             mean.of(wide.map(|c| c.extent))

@@ -15,13 +15,13 @@ fn integer(value: f64) -> i128 {
 
 /// A range in exact arithmetic: (t - low) n / extent.
 #[derive(Clone, Copy)]
-struct ExactBins {
+struct Rational {
     low: i128,
     extent: i128,
     n: i128,
 }
 
-impl ExactBins {
+impl Rational {
     fn new(range: &Range) -> Self {
         let low = integer(range.nearest.into());
         Self { low, extent: integer(range.farthest.into()) - low, n: range.count.into() }
@@ -80,7 +80,7 @@ fn at<R: Exact>(range: &Range, part: f64) -> R {
 /// The bin is that of exact arithmetic if the position is off by at most four roundings: of the
 /// difference, the extent, the quotient and the product.
 fn bin_is_floor<R: Exact>(range: &Range, part: f64) -> TestCaseResult {
-    let (bins, exact) = (DepthBins::<R>::new(range), ExactBins::new(range));
+    let (bins, exact) = (DepthBins::<R>::new(range), Rational::new(range));
     let t = at::<R>(range, part);
     let bin = bins.bin(t).to_f64();
     let bits = if unit::<R>() < 1e-10 { 51 } else { 22 };
@@ -104,7 +104,7 @@ fn apart<R: Exact>(range: &Range, parts: [f64; 2]) -> TestCaseResult {
     let [a, b] = parts.map(|part| at::<R>(range, part));
     let (near, far) = if a < b { (a, b) } else { (b, a) };
     let inside = near >= R::from_f32(range.nearest) && far <= R::from_f32(range.farthest);
-    if inside && ExactBins::new(range).apart([near.to_f64(), far.to_f64()]) >= 33 {
+    if inside && Rational::new(range).apart([near.to_f64(), far.to_f64()]) >= 33 {
         prop_assert!(bins.bin(near) < bins.bin(far), "{:?} {:?} in {:?}", near, far, range);
         let (worst, best) = (bins.voronoi(near, R::ONE), bins.voronoi(far, R::ZERO));
         prop_assert!(worst < best, "{:?} {:?} in {:?}", near, far, range);

@@ -1,5 +1,6 @@
 //! Laws of the operators.
 
-pub(crate) mod bins;
+mod bins;
 pub(crate) mod groups;
-pub(crate) mod over;
+mod over;
+mod sums;

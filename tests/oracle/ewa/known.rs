@@ -1,56 +1,33 @@
 //! Known answers: pictures whose numbers follow from closed forms or quadrature.
 
+use crate::kit::draw::Drawing;
 use crate::kit::eye::{Eye, dot, wide};
-use glam::{DVec3, Mat4, Vec3};
-use splatref::frame::{Exec, Frame, Samples};
-use splatref::method::ewa::{self, Epsilon, Settings};
+use crate::kit::planes::{plane, scalars};
+use crate::kit::scene::{self, ahead, change, discs, surfels};
+use glam::Vec3;
+use splatref::frame::{Frame, Samples};
+use splatref::method::ewa::Settings;
 use splatref::number::Exact;
-use splatref::scene::{Camera, Cloud, Lens, Phong, Pose, Scene, Surfels};
+use splatref::scene::{Camera, Cloud, Lens, Scene};
 use splatref::source::Shape;
+use splatref::splat::Epsilon;
 use splatref::splat::{Kernel, Outline};
 use std::f64::consts::PI;
 
 /// Discs of one radius, coloured or not.
-fn scene(discs: &[(Vec3, Vec3)], radius: f32, color: Option<Vec3>) -> Scene {
-    let cloud = Cloud {
-        position: discs.iter().map(|d| d.0).collect(),
-        normal: Some(discs.iter().map(|d| d.1).collect()),
-        radius: Some(vec![radius; discs.len()]),
-        color: color.map(|c| vec![c; discs.len()]),
-        opacity: None,
-        tangents: None,
-        groups: None,
-        ..Cloud::default()
-    };
-    let surfels = Surfels::new(cloud).expect("good discs").0;
-    Scene {
-        name: String::new(),
-        surfels,
-        lights: Vec::new(),
-        material: Phong::default(),
-        primitives: Default::default(),
-        environment: None,
-    }
+fn scene(all: &[(Vec3, Vec3)], radius: f32, color: Option<Vec3>) -> Scene {
+    let color = color.map(|c| vec![c; all.len()]);
+    let cloud = discs(all.iter().map(|(p, n)| (*p, *n, radius)));
+    scene::scene(surfels(Cloud { color, ..cloud }))
 }
 
 /// At the origin, looking along -z.
 fn camera(lens: Lens, size: u32) -> Camera {
-    let pose = Pose { eye: DVec3::ZERO, target: DVec3::NEG_Z, up: DVec3::Y };
-    let mut camera = Camera::new(size, size, pose, lens).expect("a plain camera");
-    camera.view_from_world = Mat4::IDENTITY;
-    camera
+    ahead(lens, [size; 2])
 }
 
 fn render<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) -> Frame<R> {
-    let exec = Exec::sequential();
-    ewa::render::<R>(scene, camera, settings, &exec, true).expect("renders").frame
-}
-
-fn scalars<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a [R] {
-    match frame.plane(name) {
-        Some(Samples::Scalar(plane)) => plane.values(),
-        _ => panic!("no plane {name}"),
-    }
+    Drawing::new(scene, camera, *settings).frame()
 }
 
 fn settings(outline: Outline, cutoff: f32, low_pass: f32) -> Settings {
@@ -193,7 +170,7 @@ fn a_dense_plane_is_a_partition_of_unity() {
                 "{outline:?}: {relative}"
             );
         }
-        let Some(Samples::Color(resolved)) = frame.plane("resolved") else { panic!("no colour") };
+        let Samples::Color(resolved) = plane(&frame, "resolved") else { panic!("no colour") };
         for value in resolved.values() {
             for (component, expected) in value.iter().zip(color.to_array()) {
                 // n terms a sum: n roundings at most, sqrt(n) likely; n is about 450.
@@ -210,14 +187,7 @@ fn the_depth_of_a_sphere_is_within_the_sagitta_of_its_discs() {
     // sqrt(1 + r^2). A ray at the distance b from the centre passes through that shell in
     // sqrt(1 + r r - b b) - sqrt(1 - b b) before it meets the sphere.
     let shape = Shape::by_name("sphere").expect("a shape");
-    let scene = Scene {
-        name: String::new(),
-        surfels: shape.surfels(2000, 1).expect("surfels"),
-        lights: Vec::new(),
-        material: Phong::default(),
-        primitives: Default::default(),
-        environment: None,
-    };
+    let scene = scene::scene(shape.surfels(2000, 1).expect("surfels"));
     let radius = f64::from(scene.surfels.radius()[0]);
     for lens in [shape.default_lens(), Lens::Orthographic(2.25)] {
         let camera = Camera::new(64, 64, shape.default_pose(), lens).expect("a camera");
@@ -309,10 +279,8 @@ fn an_ellipse_partly_in_sight_is_drawn() {
         [(-4.2, 1.0, [Vec3::X, Vec3::new(0.9, 0.3, 0.0)]), (-3.5, 0.01, [Vec3::X, Vec3::Y])]
     {
         let disc = [(Vec3::new(x, 0.0, -3.0), Vec3::Z)];
-        let mut cloud = scene(&disc, radius, None).surfels.into_cloud();
-        cloud.tangents = Some(vec![tangents]);
-        let surfels = Surfels::new(cloud).expect("an ellipse").0;
-        let one = Scene { surfels, ..scene(&disc, radius, None) };
+        let mut one = scene(&disc, radius, None);
+        change(&mut one, |cloud| cloud.tangents = Some(vec![tangents]));
         for outline in [Outline::Affine, Outline::Perspective, Outline::RayCast] {
             let frame = render::<f64>(&one, &camera, &settings(outline, 2.0, 0.0));
             let seen = scalars(&frame, "attributes.weight").iter().filter(|w| **w > 0.0).count();

@@ -1,8 +1,9 @@
-//! The 2+1-pass method: a renderer in f64 without tiles, bins or bounds.
+//! The 2+1-pass method.
 
 pub(crate) mod cases;
-pub(crate) mod known;
-pub(crate) mod laws;
+mod known;
+mod laws;
 pub(crate) mod model;
 pub(crate) mod splat;
 pub(crate) mod stages;
+mod tolerance;

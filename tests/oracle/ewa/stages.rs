@@ -1,36 +1,27 @@
 //! Every stage of every path against the oracle.
 
-use crate::ewa::cases::{self, Case};
+use crate::ewa::cases;
 use crate::ewa::model::{Entry, Oracle, Pixel};
+use crate::ewa::tolerance::EWA;
+use crate::kit::case::Case;
 use crate::kit::goldens;
-use crate::kit::tolerance::{self, Arithmetic, Measured};
-use splatref::frame::{Exec, Frame, NO_ID, Samples};
-use splatref::method::Method;
-use splatref::method::{Picture, ewa};
+use crate::kit::planes::{at, index};
+use crate::kit::tolerance::{Arithmetic, Measured};
+use splatref::frame::{Frame, NO_ID, Samples};
+use splatref::method::Picture;
+use splatref::method::ewa::Settings;
 use splatref::number::Exact;
 
 /// How many conditions of rounding leave a decision open.
 pub(crate) const GUARD: f64 = 4.0;
 
-pub(crate) fn oracle<'a>(case: &'a Case, arithmetic: Arithmetic) -> Oracle<'a> {
+pub(crate) fn oracle<'a, S>(
+    case: &'a Case<S>,
+    splats: &Settings,
+    arithmetic: Arithmetic,
+) -> Oracle<'a> {
     let (step, part) = arithmetic.step();
-    Oracle::new(&case.scene, &case.camera, &case.settings, [step, GUARD * part])
-}
-
-pub(crate) fn at<R: Exact>(samples: &Samples<R>, i: usize) -> [f64; 3] {
-    match samples {
-        Samples::Scalar(plane) => [plane.values()[i].to_f64(); 3],
-        Samples::Color(plane) | Samples::Vector(plane) => plane.values()[i].map(R::to_f64),
-        Samples::Index(plane) => [f64::from(plane.values()[i]); 3],
-        Samples::Count(plane) => [f64::from(plane.values()[i]); 3],
-    }
-}
-
-pub(crate) fn index<R: Exact>(frame: &Frame<R>, name: &str, i: usize) -> Option<u32> {
-    match frame.plane(name) {
-        Some(Samples::Index(plane)) => Some(plane.values()[i]),
-        _ => None,
-    }
+    Oracle::new(&case.scene, &case.camera, splats, [step, GUARD * part])
 }
 
 /// What an empty pixel holds.
@@ -56,12 +47,9 @@ fn check<R: Exact>(frame: &Frame<R>, truth: &Pixel, i: usize, place: &str) {
         return;
     }
     for name in ["visibility.id", "id"] {
-        if let Some(id) = index(frame, name, i) {
-            assert!(
-                truth.nearest.contains(&id),
-                "{place}: {name} {id}, not of {:?}",
-                truth.nearest
-            );
+        if frame.plane(name).is_some() {
+            let (id, nearest) = (index(frame, name, i), &truth.nearest);
+            assert!(nearest.contains(&id), "{place}: {name} {id}, not of {nearest:?}");
         }
     }
     if let Some(count) = frame.plane("attributes.count") {
@@ -94,38 +82,35 @@ pub(crate) fn measure<R: Exact>(
 
 /// Compares pictures of one arithmetic with the oracle; returns how many pixels were left out.
 fn compare<R: Exact>(
-    case: &Case,
+    case: &Case<Settings>,
     arithmetic: Arithmetic,
     pictures: &[Picture<R>],
     measured: &mut Measured,
 ) -> usize {
-    let oracle = oracle(case, arithmetic);
+    let oracle = oracle(case, &case.settings, arithmetic);
     for Picture { tally, .. } in pictures {
         let drawn = tally.visible + tally.outside;
         let expected = oracle.drawn().unwrap_or(drawn);
         assert_eq!(drawn, expected, "{arithmetic:?}: {tally:?} in {}", case.name);
     }
     let mut ambiguous = 0;
-    for y in 0..case.camera.height {
-        for x in 0..case.camera.width {
-            let truth = oracle.pixel(x, y);
-            if truth.ambiguous {
-                ambiguous += 1;
-                continue;
+    for (i, x, y) in case.pixels() {
+        let truth = oracle.pixel(x, y);
+        if truth.ambiguous {
+            ambiguous += 1;
+            continue;
+        }
+        let place = || format!("{arithmetic:?} pixel ({x}, {y}) of {}", case.name);
+        for Picture { frame, .. } in pictures {
+            check(frame, &truth, i, &place());
+            let mut planes = 0;
+            for entry in &truth.entries {
+                let Some(samples) = frame.plane(entry.plane) else { continue };
+                let (plane, place) = ((samples, entry.plane), (arithmetic, &*place()));
+                measure(plane, entry, i, place, measured);
+                planes += 1;
             }
-            let i = (y * case.camera.width + x) as usize;
-            let place = || format!("{arithmetic:?} pixel ({x}, {y}) of {}", case.name);
-            for Picture { frame, .. } in pictures {
-                check(frame, &truth, i, &place());
-                let mut planes = 0;
-                for entry in &truth.entries {
-                    let Some(samples) = frame.plane(entry.plane) else { continue };
-                    let (plane, place) = ((samples, entry.plane), (arithmetic, &*place()));
-                    measure(plane, entry, i, place, measured);
-                    planes += 1;
-                }
-                assert!(planes > 0 || truth.entries.is_empty(), "{}: no planes", place());
-            }
+            assert!(planes > 0 || truth.entries.is_empty(), "{}: no planes", place());
         }
     }
     ambiguous
@@ -133,21 +118,16 @@ fn compare<R: Exact>(
 
 #[test]
 fn every_stage_equals_the_oracle() {
-    let exec = Exec::sequential();
     let mut measured = Measured::default();
     let mut cases = cases::all();
-    let goldens = goldens::all().into_iter();
-    let goldens = goldens.filter(|golden| matches!(golden.method, Method::Ewa(_)));
-    cases.extend(goldens::at_least(10, goldens.map(|golden| golden.case).collect()));
+    cases.extend(goldens::of());
     let mut worst = [0.0_f64; 3];
     for case in &cases {
-        let Case { scene, camera, settings, .. } = case;
-        let pixels = f64::from(camera.width * camera.height);
-        let plain = ewa::render::<f32>(scene, camera, settings, &exec, true).expect("renders");
-        let fast = ewa::render_f32(scene, camera, settings, &exec).expect("renders");
-        let truth = ewa::render::<f64>(scene, camera, settings, &exec, true).expect("renders");
+        let drawing = case.drawing();
+        let pixels = f64::from(case.camera.width * case.camera.height);
+        let narrow = [drawing.define::<f32>(), drawing.fast()];
+        let truth = drawing.define::<f64>();
         let wide = if case.exact { Arithmetic::F64 } else { Arithmetic::F64Rounded };
-        let narrow = [plain, fast];
         let left = compare(case, Arithmetic::F32, &narrow, &mut measured) as f64 / pixels;
         worst[0] = worst[0].max(left);
         assert!(
@@ -169,9 +149,5 @@ fn every_stage_equals_the_oracle() {
         worst[1],
         worst[2]
     );
-    for (key, (worst, place)) in &measured.0 {
-        println!("{key:?}: {worst:.3} {place}");
-    }
-    let complaints = measured.complaints(tolerance::EWA);
-    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+    measured.check(EWA);
 }

@@ -2,45 +2,107 @@
 //!
 //! Each is compared by the test of its method, beside that test's own scenes.
 
-use crate::ewa::cases::Case;
+use crate::kit::case::Case;
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;
-use splatref::method::Method;
-use splatref::scene::Groups;
-use std::path::Path;
+use splatref::method::{Method, Session, ewa, peeling, pyramid, single_pass, template};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
-/// A golden's scene, ready to be drawn.
-pub(crate) struct Golden {
-    pub(crate) case: Case,
-    pub(crate) method: Method,
-    /// For methods that draw groups.
-    pub(crate) groups: Option<Groups>,
+/// A method that the goldens of some name are of, and whose stages an oracle takes.
+pub(crate) trait Taken: Sized {
+    /// The goldens, by the names of their files, in their order.
+    const NAMES: &[&str];
+
+    /// The settings, if a method is this one.
+    fn of(method: Method) -> Option<Self>;
 }
 
-/// All of them.
-pub(crate) fn all() -> Vec<Golden> {
-    let folder = std::fs::read_dir("golden").expect("golden/ beside the tests");
-    let mut paths: Vec<_> = folder.map(|entry| entry.expect("an entry").path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|kind| kind == "toml"));
-    paths.sort();
-    paths.iter().map(|path| golden(path)).collect()
+macro_rules! taken {
+    ($($settings:ty, $($variant:ident)|+: $names:expr;)*) => {
+        $(impl Taken for $settings {
+            const NAMES: &[&str] = &$names;
+
+            fn of(method: Method) -> Option<Self> {
+                match method {
+                    $(Method::$variant(settings) => Some(settings.into()),)+
+                    _ => None,
+                }
+            }
+        })*
+
+        /// Every golden that an oracle takes.
+        const ALL: &[&[&str]] = &[$(<$settings>::NAMES),*];
+    };
 }
 
-fn golden(path: &Path) -> Golden {
-    let exec = Exec::sequential();
-    let file = SceneFile::read(path).expect("a scene file");
+taken! {
+    ewa::Settings, Ewa: [
+        "ewa_affine_sphere",
+        "ewa_cull_off_unoriented",
+        "ewa_ellipses",
+        "ewa_epsilon_zero",
+        "ewa_f64",
+        "ewa_near_plane",
+        "ewa_odd_size",
+        "ewa_ortho_torus",
+        "ewa_perspective_close",
+        "ewa_raycast_sheets",
+    ];
+    single_pass::Settings, SinglePass: [
+        "zp06_identity_sphere",
+        "zp06_voronoi_cluster",
+    ];
+    crate::transparent::Settings, Transparent | TransparentHq: [
+        "zp06_algorithm2_background",
+        "zp06_algorithm2_sheets",
+        "zp06_algorithm3_mixed",
+        "zp06_groups_of_a_file",
+        "zp06_refraction",
+    ];
+    peeling::Settings, Peeling: ["zp06_peeling"];
+    pyramid::Settings, Pyramid: [
+        "mkc08_f64_ortho",
+        "mkc08_hybrid",
+        "mkc08_odd_size_box",
+        "mkc08_sphere",
+    ];
+    template::Settings, Template: ["moc08_f64_7", "moc08_odd_size_published", "moc08_sphere_3"];
+}
+
+/// The goldens of a method, ready to be drawn; a test that takes them has them all.
+pub(crate) fn of<S: Taken>() -> Vec<Case<S>> {
+    S::NAMES.iter().map(|name| golden(name)).collect()
+}
+
+fn golden<S: Taken>(name: &str) -> Case<S> {
+    let (exec, path) = (Exec::sequential(), Path::new("golden").join(name).with_extension("toml"));
+    let file = SceneFile::read(&path).expect("a scene file");
     let method = file.method.method().expect("a method");
     let scene = file.load(&exec, &|_, _, _| ()).expect("loads").scene;
-    let groups = file.groups(&scene.surfels, &method, &exec, &|_, _, _| ()).expect("groups");
-    let groups = groups.map(|(groups, _)| groups);
     let camera = file.camera(&scene).expect("a camera");
-    let (name, settings) =
-        (path.display().to_string(), method.splats().copied().unwrap_or_default());
-    Golden { case: Case { name, camera, settings, scene, exact: false }, method, groups }
+    let grouping = file.grouping(&method).expect("a grouping");
+    let prepared = Session::prepare(&scene, method, grouping, &exec, &|_, _, _| ());
+    let groups = prepared.expect("a session").0.groups().cloned();
+    let settings = S::of(method).unwrap_or_else(|| panic!("{name} is of another method"));
+    Case { name: path.display().to_string(), scene, camera, settings, groups, exact: false }
 }
 
-/// At least so many were found: a test whose goldens are gone would pass.
-pub(crate) fn at_least<T>(count: usize, goldens: Vec<T>) -> Vec<T> {
-    assert!(goldens.len() >= count, "the goldens are gone: {} are left", goldens.len());
-    goldens
+#[test]
+fn every_golden_is_taken_by_an_oracle() {
+    let stems = |kind: &str| -> BTreeSet<String> {
+        let folder = std::fs::read_dir("golden").expect("golden/ beside the tests");
+        let paths = folder.map(|entry| entry.expect("an entry").path());
+        let those = paths.filter(|path| path.extension().is_some_and(|end| end == kind));
+        let stem = |path: PathBuf| path.file_stem().and_then(|s| s.to_str()).map(str::to_owned);
+        those.map(|path| stem(path).expect("a name")).collect()
+    };
+    let taken: BTreeSet<_> = ALL.iter().flat_map(|names| *names).map(|s| s.to_string()).collect();
+    assert_eq!(
+        taken.len(),
+        ALL.iter().map(|names| names.len()).sum::<usize>(),
+        "one is taken twice"
+    );
+    assert_eq!(stems("toml"), taken, "the scenes under golden/, and those that an oracle takes");
+    assert_eq!(stems("exr"), taken, "the pictures under golden/, and the scenes");
 }

@@ -49,90 +49,9 @@ pub(crate) const fn row(
     Row { plane, arithmetic, bound, reason }
 }
 
-use Arithmetic::{F32, F64, F64Rounded};
-
-/// The 2+1-pass method.
-pub(crate) const EWA: &[Row] = &[
-    row("visibility.Z", F32, 4.0, "three roundings of the nearness, one reciprocal"),
-    row("visibility.Z", F64, 4.0, "as in f32"),
-    row("visibility.Z", F64Rounded, 1.0, "half the range of depth takes the normal for a unit"),
-    row("attributes.weight", F32, 4.0, "sqrt and quotients of the conic, exp, one rounding a term"),
-    row("attributes.weight", F64, 4.0, "as in f32; the oracle's determinant cancels as much"),
-    row(
-        "attributes.weight",
-        F64Rounded,
-        0.5,
-        "area takes the normal for a unit, the covariance not",
-    ),
-    row("attributes.normal", F32, 4.0, "a product more than the weight"),
-    row("attributes.normal", F64, 4.0, "as in f32"),
-    row("attributes.normal", F64Rounded, 0.5, "as the weight"),
-    row("attributes", F32, 4.0, "a product more than the weight"),
-    row("attributes", F64, 4.0, "as in f32"),
-    row("attributes", F64Rounded, 0.5, "as the weight"),
-    row("resolved", F32, 4.0, "errors of sum and weight partly cancel, a quotient rounds"),
-    row("resolved", F64, 4.0, "as in f32"),
-    row("resolved", F64Rounded, 0.25, "a common factor of the amplitudes cancels"),
-    row("Z", F32, 4.0, "the same numbers as visibility.Z"),
-    row("Z", F64, 4.0, "the same numbers as visibility.Z"),
-    row("Z", F64Rounded, 1.0, "the same numbers as visibility.Z"),
-    row("weight", F32, 4.0, "the same numbers as attributes.weight"),
-    row("weight", F64, 4.0, "the same numbers as attributes.weight"),
-    row("weight", F64Rounded, 0.5, "the same numbers as attributes.weight"),
-    row("normal", F32, 2.0, "three components share one condition, the largest"),
-    row("normal", F64, 2.0, "as in f32"),
-    row("normal", F64Rounded, 0.25, "a common factor of the amplitudes cancels"),
-    row("", F32, 4.0, "without lights the resolved colour; else Phong's own condition is larger"),
-    row("", F64, 4.0, "as in f32"),
-    row("", F64Rounded, 0.25, "as the resolved colour"),
-];
-
-/// Algorithm 1: `group` stands for the depth-image of any group.
-pub(crate) const SINGLE_PASS: &[Row] = &[
-    row("group.Z", F32, 4.0, "as visibility.Z: the same fragment"),
-    row("group.Z", F64, 4.0, "as in f32"),
-    row("group.Z", F64Rounded, 1.0, "as visibility.Z"),
-    row("group.weight", F32, 4.0, "as attributes.weight, of one fragment"),
-    row("group.weight", F64, 4.0, "as in f32"),
-    row("group.weight", F64Rounded, 0.5, "as attributes.weight"),
-    row("group.normal", F32, 4.0, "a product more than the weight"),
-    row("group.normal", F64, 4.0, "as in f32"),
-    row("group.normal", F64Rounded, 0.5, "as the weight"),
-    row("group", F32, 4.0, "a product more than the weight"),
-    row("group", F64, 4.0, "as in f32"),
-    row("group", F64Rounded, 0.5, "as the weight"),
-    row("group.voronoi", F32, 4.0, "the bin is exact; a root, a quotient, and the sum rounds at n"),
-    row("group.voronoi", F64, 4.0, "as in f32"),
-    row("group.voronoi", F64Rounded, 1.0, "q takes the normal for a unit"),
-    row("sums.weight", F32, 4.0, "one rounding more for each group"),
-    row("sums.weight", F64, 4.0, "as in f32"),
-    row("sums.weight", F64Rounded, 0.5, "as group.weight"),
-    row("sums.normal", F32, 4.0, "one rounding more for each group"),
-    row("sums.normal", F64, 4.0, "as in f32"),
-    row("sums.normal", F64Rounded, 0.5, "as group.weight"),
-    row("sums", F32, 4.0, "one rounding more for each group"),
-    row("sums", F64, 4.0, "as in f32"),
-    row("sums", F64Rounded, 0.5, "as group.weight"),
-    row("resolved", F32, 4.0, "errors of sum and weight partly cancel, a quotient rounds"),
-    row("resolved", F64, 4.0, "as in f32"),
-    row("resolved", F64Rounded, 0.25, "a common factor of the amplitudes cancels"),
-    row("Z", F32, 4.0, "the same numbers as group.Z"),
-    row("Z", F64, 4.0, "the same numbers as group.Z"),
-    row("Z", F64Rounded, 1.0, "the same numbers as group.Z"),
-    row("weight", F32, 4.0, "the same numbers as sums.weight"),
-    row("weight", F64, 4.0, "the same numbers as sums.weight"),
-    row("weight", F64Rounded, 0.5, "the same numbers as sums.weight"),
-    row("normal", F32, 2.0, "three components share one condition, the largest"),
-    row("normal", F64, 2.0, "as in f32"),
-    row("normal", F64Rounded, 0.25, "a common factor of the amplitudes cancels"),
-    row("", F32, 4.0, "without lights the resolved colour; else Phong's own condition is larger"),
-    row("", F64, 4.0, "as in f32"),
-    row("", F64Rounded, 0.25, "as the resolved colour"),
-];
-
 /// The worst deviation of each plane in each arithmetic so far.
 #[derive(Default)]
-pub(crate) struct Measured(pub(crate) BTreeMap<(&'static str, Arithmetic), (f64, String)>);
+pub(crate) struct Measured(BTreeMap<(&'static str, Arithmetic), (f64, String)>);
 
 impl Measured {
     pub(crate) fn add(
@@ -148,8 +67,17 @@ impl Measured {
         }
     }
 
+    /// Prints what was measured, and asserts that there is no complaint.
+    pub(crate) fn check(&self, table: &[Row]) {
+        for (key, (worst, place)) in &self.0 {
+            println!("{key:?}: {worst:.3e} {place}");
+        }
+        let complaints = self.complaints(table);
+        assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+    }
+
     /// Every complaint: a plane beyond its bound or without a row, a row too loose or unused.
-    pub(crate) fn complaints(&self, table: &[Row]) -> Vec<String> {
+    fn complaints(&self, table: &[Row]) -> Vec<String> {
         let mut all = Vec::new();
         for (&(plane, arithmetic), (worst, place)) in &self.0 {
             let row = table.iter().find(|r| r.plane == plane && r.arithmetic == arithmetic);

@@ -1,3 +1,5 @@
 //! Depth peeling.
 
-pub(crate) mod stages;
+mod model;
+mod stages;
+mod tolerance;

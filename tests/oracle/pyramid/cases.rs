@@ -1,22 +1,13 @@
 //! Scenes for the pull-push pyramid that are hard on purpose.
 
-use crate::ewa::cases::{Case as Other, Dice};
+use crate::kit::case::Case;
+use crate::kit::dice::Dice;
 use crate::kit::goldens;
-use glam::{DVec3, Mat4, Vec3};
-use splatref::method::Method;
+use crate::kit::scene::{self, ahead, scene, turned};
+use glam::Vec3;
 use splatref::method::pyramid::{Occlusion, Settings, Weights};
 use splatref::scene::indexed::{Indexed, Primitives, Vertices};
-use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Pose, Scene, Surfels};
-
-/// How many goldens of this method there are at least.
-const GOLDENS: usize = 4;
-
-pub(crate) struct Case {
-    pub(crate) name: String,
-    pub(crate) scene: Scene,
-    pub(crate) camera: Camera,
-    pub(crate) settings: Settings,
-}
+use splatref::scene::{Camera, Cloud, Lens, Light, Scene, Surfels};
 
 pub(crate) const SIZES: [[u32; 2]; 6] = [[64, 48], [31, 33], [16, 16], [13, 9], [1, 7], [1, 1]];
 
@@ -102,14 +93,9 @@ fn surfels(discs: Discs, dice: &mut Dice, pixels: u32, colored: bool) -> Surfels
         _ => 12 + pixels as usize / 8,
     };
     let drawn: Vec<_> = (0..count).map(|_| surfel(discs, dice)).collect();
-    let cloud = Cloud {
-        position: drawn.iter().map(|s| s.0).collect(),
-        normal: Some(drawn.iter().map(|s| s.1).collect()),
-        radius: Some(drawn.iter().map(|s| s.2).collect()),
-        color: colored.then(|| drawn.iter().map(|_| dice.vector(Vec3::ZERO, Vec3::ONE)).collect()),
-        ..Cloud::default()
-    };
-    Surfels::new(cloud).expect("good surfels").0
+    let color = || drawn.iter().map(|_| dice.vector(Vec3::ZERO, Vec3::ONE)).collect();
+    let color = colored.then(color);
+    scene::surfels(Cloud { color, ..scene::discs(drawn.iter().copied()) })
 }
 
 /// Vertices at points, with everything else by lot.
@@ -215,13 +201,10 @@ pub(crate) fn camera(dice: &mut Dice, orthographic: bool, [width, height]: [u32;
     } else {
         Lens::Focal(0.625 * f64::from(width.max(height)))
     };
-    let pose = Pose { eye: DVec3::ZERO, target: DVec3::NEG_Z, up: DVec3::Y };
-    let mut camera = Camera::new(width, height, pose, lens).expect("a plain camera");
+    let mut camera = ahead(lens, [width, height]);
     camera.near = 0.0625;
-    camera.view_from_world = Mat4::IDENTITY;
     if dice.below(2) == 0 {
-        let turn = Mat4::from_rotation_x(0.1) * Mat4::from_rotation_z(dice.within(-3.0, 3.0));
-        camera.view_from_world = turn;
+        camera.view_from_world = turned(dice);
         camera.fx *= 1.125;
         camera.cx += 0.25;
     }
@@ -238,28 +221,25 @@ fn lights(dice: &mut Dice) -> Vec<Light> {
     all[..dice.below(4)].to_vec()
 }
 
-impl Case {
-    pub(crate) fn new(
-        (discs, others): (Discs, Others),
-        seed: u64,
-        settings: Settings,
-        (orthographic, size): (bool, [u32; 2]),
-    ) -> Self {
-        let mut dice = Dice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x1234_5678);
-        dice.below(2);
-        let colored = dice.below(4) > 0;
-        let own = colored && dice.below(8) > 0;
-        let surfels = surfels(discs, &mut dice, size[0] * size[1], own);
-        let primitives = primitives(others, &mut dice, colored);
-        let camera = camera(&mut dice, orthographic, size);
-        let name = format!(
-            "{discs:?} {others:?} seed {seed} orthographic {orthographic} {size:?} {settings:?}"
-        );
-        let (lights, material) = (lights(&mut dice), Phong::default());
-        let scene =
-            Scene { name: String::new(), surfels, lights, material, primitives, environment: None };
-        Self { name, scene, camera, settings }
-    }
+/// The case of a seed.
+pub(crate) fn case(
+    (discs, others): (Discs, Others),
+    seed: u64,
+    settings: Settings,
+    (orthographic, size): (bool, [u32; 2]),
+) -> Case<Settings> {
+    let mut dice = Dice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x1234_5678);
+    dice.below(2);
+    let colored = dice.below(4) > 0;
+    let own = colored && dice.below(8) > 0;
+    let surfels = surfels(discs, &mut dice, size[0] * size[1], own);
+    let primitives = primitives(others, &mut dice, colored);
+    let camera = camera(&mut dice, orthographic, size);
+    let name = format!(
+        "{discs:?} {others:?} seed {seed} orthographic {orthographic} {size:?} {settings:?}"
+    );
+    let scene = Scene { lights: lights(&mut dice), primitives, ..scene(surfels) };
+    Case { name, scene, camera, settings, groups: None, exact: false }
 }
 
 /// Settings by number: every combination, with several grids.
@@ -273,7 +253,7 @@ pub(crate) fn settings(number: usize) -> Settings {
 }
 
 /// Every mixture in every size, with settings and cameras by turns.
-pub(crate) fn all() -> Vec<Case> {
+pub(crate) fn all() -> Vec<Case<Settings>> {
     let mut cases = Vec::new();
     for (s, size) in SIZES.into_iter().enumerate() {
         for (d, discs) in DISCS.into_iter().enumerate() {
@@ -282,19 +262,16 @@ pub(crate) fn all() -> Vec<Case> {
                 let number = d * 7 + o * 5 + s * 3 + usize::from(o > 2) * 16;
                 let orthographic = (d + o + s) % 3 == 1;
                 let optics = (orthographic, size);
-                cases.push(Case::new((discs, others), seed, settings(number), optics));
+                cases.push(case((discs, others), seed, settings(number), optics));
             }
         }
     }
     cases
 }
 
-/// The goldens of this method.
-pub(crate) fn golden() -> Vec<Case> {
-    let mine = goldens::all().into_iter().filter_map(|golden| {
-        let Method::Pyramid(settings) = golden.method else { return None };
-        let Other { name, scene, camera, .. } = golden.case;
-        Some(Case { name, scene, camera, settings })
-    });
-    goldens::at_least(GOLDENS, mine.collect())
+/// Those, and the goldens.
+pub(crate) fn with_goldens() -> Vec<Case<Settings>> {
+    let mut cases = all();
+    cases.extend(goldens::of());
+    cases
 }

@@ -1,10 +1,11 @@
 //! Pictures of the pull-push pyramid that are known otherwise: one disc, mirrors, rims, lines,
 //! rays.
 
-use crate::ewa::cases::Dice;
+use crate::kit::dice::Dice;
 use crate::kit::eye::wide;
+use crate::kit::planes::value;
 use crate::pyramid::cases;
-use crate::pyramid::laws::{Disc, filled, plan, render, scene, value};
+use crate::pyramid::laws::{Colored, filled, plan, render, scene};
 use glam::Vec3;
 use splatref::frame::Frame;
 use splatref::method::pyramid::Settings;
@@ -26,7 +27,7 @@ fn in_ellipse(normal: Vec3, radius: f64, [x, y]: [f64; 2]) -> bool {
 
 /// How much of its ellipse a disc alone reaches in the middle of an empty picture, and nothing
 /// beyond.
-fn reached(disc: Disc, side: u32, settings: &Settings) -> f64 {
+fn reached(disc: Colored, side: u32, settings: &Settings) -> f64 {
     let (position, normal, radius, _) = disc;
     let frame: Frame<f32> = render(&scene(&[disc]), &plan([side, side]), settings);
     let middle = f64::from(side) / 2.0;
@@ -85,7 +86,7 @@ fn pyramid_disc_stays_in_its_ellipse() {
 }
 
 /// Discs that do not lie on borders of pixels and have depths of their own.
-fn discs(dice: &mut Dice, [width, height]: [u32; 2], count: usize) -> Vec<Disc> {
+fn discs(dice: &mut Dice, [width, height]: [u32; 2], count: usize) -> Vec<Colored> {
     (0..count)
         .map(|i| {
             let at = |dice: &mut Dice, size: u32| {
@@ -106,7 +107,7 @@ fn discs(dice: &mut Dice, [width, height]: [u32; 2], count: usize) -> Vec<Disc> 
 }
 
 /// Whether the picture of a mirrored scene is the mirrored picture, in every plane but ids.
-fn mirrors(discs: &[Disc], size: [u32; 2], axis: usize, settings: &Settings) -> bool {
+fn mirrors(discs: &[Colored], size: [u32; 2], axis: usize, settings: &Settings) -> bool {
     let flip =
         |v: Vec3| if axis == 0 { Vec3::new(-v.x, v.y, v.z) } else { Vec3::new(v.x, -v.y, v.z) };
     let other: Vec<_> = discs.iter().map(|(p, n, r, c)| (flip(*p), flip(*n), *r, *c)).collect();

@@ -1,58 +1,39 @@
 //! What the pull-push pyramid must keep, whatever the scene.
 
-use crate::ewa::cases::Dice;
-use crate::ewa::stages::at;
-use crate::pyramid::cases::{self, Case};
+use crate::kit::case::Case;
+use crate::kit::dice::Dice;
+use crate::kit::draw::Drawing;
+use crate::kit::planes::{pixels, value};
+use crate::kit::scene::{ahead, discs, surfels};
+use crate::pyramid::cases;
 use crate::pyramid::model::{Cell, Level, occluded};
-use glam::{DVec3, Mat4, Vec3};
-use splatref::frame::{Exec, Frame};
-use splatref::method::pyramid::{self, Settings, Weights};
+use glam::Vec3;
+use splatref::frame::Frame;
+use splatref::method::pyramid::{Settings, Weights};
 use splatref::number::Exact;
-use splatref::scene::{Camera, Cloud, Lens, Phong, Pose, Scene, Surfels};
+use splatref::scene::{Camera, Cloud, Lens, Scene};
 
 /// A surfel: position, normal, radius, colour.
-pub(crate) type Disc = (Vec3, Vec3, f32, Vec3);
+pub(crate) type Colored = (Vec3, Vec3, f32, Vec3);
 
 /// An unlit scene of discs.
-pub(crate) fn scene(discs: &[Disc]) -> Scene {
-    let cloud = Cloud {
-        position: discs.iter().map(|d| d.0).collect(),
-        normal: Some(discs.iter().map(|d| d.1).collect()),
-        radius: Some(discs.iter().map(|d| d.2).collect()),
-        color: Some(discs.iter().map(|d| d.3).collect()),
-        ..Cloud::default()
-    };
-    Scene {
-        name: String::new(),
-        surfels: Surfels::new(cloud).expect("good discs").0,
-        lights: Vec::new(),
-        material: Phong::default(),
-        primitives: Default::default(),
-        environment: None,
-    }
+pub(crate) fn scene(all: &[Colored]) -> Scene {
+    let cloud = discs(all.iter().map(|(p, n, r, _)| (*p, *n, *r)));
+    let color = Some(all.iter().map(|d| d.3).collect());
+    crate::kit::scene::scene(surfels(Cloud { color, ..cloud }))
 }
 
 /// Orthographic, one pixel a unit: the point (x, y, -t) is at (width/2 + x, height/2 - y).
 pub(crate) fn plan([width, height]: [u32; 2]) -> Camera {
-    let pose = Pose { eye: DVec3::ZERO, target: DVec3::NEG_Z, up: DVec3::Y };
-    let lens = Lens::Orthographic(height.into());
-    let mut camera = Camera::new(width, height, pose, lens).expect("a plain camera");
-    camera.view_from_world = Mat4::IDENTITY;
-    camera
+    ahead(Lens::Orthographic(height.into()), [width, height])
 }
 
 pub(crate) fn render<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) -> Frame<R> {
-    let exec = Exec::sequential();
-    pyramid::render(scene, camera, settings, &exec, true).expect("renders").frame
-}
-
-pub(crate) fn value<R: Exact>(frame: &Frame<R>, name: &str, i: usize) -> [f64; 3] {
-    at(frame.plane(name).unwrap_or_else(|| panic!("no plane {name}")), i)
+    Drawing::new(scene, camera, *settings).frame()
 }
 
 pub(crate) fn filled<R: Exact>(frame: &Frame<R>) -> Vec<usize> {
-    let all = 0..(frame.width * frame.height) as usize;
-    all.filter(|i| value(frame, "kind", *i)[0] != 0.0).collect()
+    pixels(frame).filter(|i| value(frame, "kind", *i)[0] != 0.0).collect()
 }
 
 /// The sizes of all levels.
@@ -119,8 +100,8 @@ fn pyramid_reproduces_a_constant() {
 fn pyramid_push_leaves_what_is_seen() {
     let (mut kept, mut changed) = (0, 0);
     for case in cases::all().iter().step_by(3) {
-        let Case { scene, camera, settings, name } = case;
-        let frame: Frame<f32> = render(scene, camera, settings);
+        let Case { settings, name, .. } = case;
+        let frame = case.drawing().frame::<f32>();
         let (pulls, mut pushes) = levels(&frame);
         // The coarsest level is its own result.
         pushes.push(Level { size: [1, 1], cells: pulls[pulls.len() - 1].cells.clone() });

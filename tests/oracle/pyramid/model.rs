@@ -3,13 +3,12 @@
 //! Whether a point is inside an ellipse is decided by its axes, as the paper puts it, and by the
 //! form of the documentation; they must not contradict each other. Depths are compared exactly.
 
-use crate::ewa::stages::at;
 use crate::kit::number::{BITS, N3, Num, exact, ways};
+use crate::kit::planes::at;
+use crate::kit::projection::{TUBE, and};
 use splatref::frame::Frame;
 use splatref::method::pyramid::{Occlusion, Settings, Weights};
 use splatref::number::Exact;
-
-pub(crate) const TUBE: u8 = 3;
 
 /// A cell as the crate left it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -154,8 +153,7 @@ impl<const P: u32> Neighbour<P> {
         let square = Num::exact(cell.radius) * Num::exact(cell.radius);
         let e = nx / nz * v[0] - ny / nz * v[1];
         let form = (v[0] * v[0] + v[1] * v[1]) + e * e;
-        let holds =
-            crate::pyramid::projection::and(Num::ZERO.less(square), form.at_most_as(square));
+        let holds = and(Num::ZERO.less(square), form.at_most_as(square));
         if let (Some(a), Some(b)) = (holds, by_axes(&cell, v.map(|v| Num::near(v.v, v.e)))) {
             assert!(a == b || P == BITS, "axes and form disagree: {cell:?} at {v:?}");
         }

@@ -6,9 +6,9 @@
 //! out.
 
 use crate::kit::eye::{Eye, V3, cross, dot, sub, wide};
-use crate::pyramid::cases::{Case, Discs, Others};
-use crate::pyramid::laws::{render, value};
-use splatref::frame::{Frame, NO_ID};
+use crate::kit::planes::value;
+use crate::pyramid::cases::{Discs, Others, case};
+use splatref::frame::NO_ID;
 use splatref::method::pyramid::Settings;
 
 /// What a ray through a triangle says: depth, radius, and the barycentric coordinates.
@@ -81,7 +81,7 @@ fn pyramid_triangles_are_where_rays_meet_them() {
         let bits = [8, 12, 4][seed % 3];
         let settings = Settings { cull: false, subpixel_bits: bits, ..Settings::default() };
         let optics = (seed % 4 > 1, [[31, 33], [64, 48]][seed / 4 % 2]);
-        let case = Case::new((Discs::None, others), seed as u64 + 900, settings, optics);
+        let case = case((Discs::None, others), seed as u64 + 900, settings, optics);
         let eye = Eye::new(&case.camera);
         let list = &case.scene.primitives.triangles;
         let triangle = |corners: &[u32; 3]| Triangle {
@@ -91,7 +91,7 @@ fn pyramid_triangles_are_where_rays_meet_them() {
         let triangles: Vec<_> = list.corners().iter().map(triangle).collect();
         let sight =
             |t: &Triangle, square| if t.is_flat() { Ok(None) } else { t.seen(&eye, square) };
-        let frame: Frame<f64> = render(&case.scene, &case.camera, &case.settings);
+        let frame = case.drawing().frame::<f64>();
         // Half a unit of the grid, and what rounding adds.
         let half = 0.5 / f64::from(1 << bits) * (1.0 + 1e-6);
         for i in 0..(frame.width * frame.height) as usize {

@@ -4,19 +4,21 @@
 //! The groups are coloured here, from the definition. Which fragments a pixel has is the oracle's
 //! word; the two pictures are the crate's.
 
-use crate::ewa::cases::{Dice, framed, straight};
 use crate::ewa::model::{Oracle, Seen};
-use crate::ewa::stages::at;
+use crate::kit::dice::Dice;
+use crate::kit::draw::Drawing;
 use crate::kit::eye::{dot, wide};
+use crate::kit::planes::value;
+use crate::kit::scene::{discs, framed, groups, scene, straight, surfels};
 use crate::kit::tolerance::Arithmetic;
-use crate::single_pass::stages::groups;
 use glam::Vec3;
 use proptest::prelude::*;
-use splatref::frame::{Exec, Frame};
-use splatref::method::ewa::{self, Epsilon};
+use splatref::frame::Frame;
+use splatref::method::ewa;
 use splatref::method::single_pass::{self, DepthTest};
-use splatref::scene::{Camera, Cloud, Light, Phong, Scene, Surfels};
+use splatref::scene::{Camera, Cloud, Light, Scene, Surfels};
 use splatref::source::Shape;
+use splatref::splat::Epsilon;
 use splatref::splat::{Kernel, Outline};
 
 /// The spacing of `f64` at 1: two roundings, one for either method.
@@ -39,17 +41,10 @@ fn colored(surfels: &Surfels) -> Vec<u8> {
     own
 }
 
-pub(crate) fn scene(cloud: Cloud) -> Scene {
-    let surfels = Surfels::new(cloud).expect("good surfels").0;
+/// Surfels before a headlight.
+pub(crate) fn lit(cloud: Cloud) -> Scene {
     let light = Light::Headlight { towards: Vec3::new(0.25, 0.5, 1.0), color: Vec3::ONE };
-    Scene {
-        name: String::new(),
-        surfels,
-        lights: vec![light],
-        material: Phong::default(),
-        primitives: Default::default(),
-        environment: None,
-    }
+    Scene { lights: vec![light], ..scene(surfels(cloud)) }
 }
 
 /// Discs in the view of [`straight`]: anywhere, or on two bent sheets that face the camera.
@@ -116,24 +111,18 @@ struct Pair<'a> {
 
 impl<'a> Pair<'a> {
     fn new(scene: &'a Scene, camera: &Camera, splats: ewa::Settings) -> Self {
-        let exec = Exec::sequential();
         let own = colored(&scene.surfels);
         let count = usize::from(own.iter().copied().fold(0, u8::max)) + 1;
         let settings = single_pass::Settings { splats, depth: DepthTest::Plain };
         let groups = groups(own.clone(), count);
-        let single = single_pass::render::<f64>(scene, &groups, camera, &settings, &exec, true);
-        let ewa = ewa::render::<f64>(scene, camera, &splats, &exec, true);
+        let single = Drawing::new(scene, camera, settings).grouped(&groups).frame();
+        let ewa = Drawing::new(scene, camera, splats).frame();
         let (step, part) = Arithmetic::F64Rounded.step();
         let oracle = Oracle::new(scene, camera, &splats, [step, 4.0 * part]);
         let kernel = Kernel { cutoff: splats.kernel.cutoff, ..PAPER };
         let bare = ewa::Settings { kernel, ..splats };
         let discs = Oracle::new(scene, camera, &bare, [step, 4.0 * part]);
-        let (ewa, single) = (ewa.expect("renders").frame, single.expect("renders").frame);
         Self { scene, oracle, discs, own, ewa, single }
-    }
-
-    fn value(frame: &Frame<f64>, name: &str, i: usize) -> [f64; 3] {
-        at(frame.plane(name).unwrap_or_else(|| panic!("no plane '{name}'")), i)
     }
 
     /// The sums of m fragments in two orders, and what follows from them, with derived bounds.
@@ -143,8 +132,7 @@ impl<'a> Pair<'a> {
     /// is within (2 (m - 1) + 1) u, two differ by (2 m - 1) ulp. A direction adds four roundings in
     /// either method, and a short average magnifies.
     fn check_same(&self, i: usize, m: usize, census: &mut Census, place: &str) {
-        let both =
-            |ewa, single| (Self::value(&self.ewa, ewa, i), Self::value(&self.single, single, i));
+        let both = |ewa, single| (value(&self.ewa, ewa, i), value(&self.single, single, i));
         let (weight, count) = (both("attributes.weight", "sums.weight").0[0], m as f64);
         let average = both("attributes.normal", "sums.normal").0.map(|v| v / weight);
         let length = dot(average, average).sqrt();
@@ -207,7 +195,7 @@ impl<'a> Pair<'a> {
             if nearest == f64::INFINITY {
                 continue;
             }
-            let id = Self::value(&self.single, &format!("group{group:02}.id"), i)[0] as usize;
+            let id = value(&self.single, &format!("group{group:02}.id"), i)[0] as usize;
             let kept = members().find(|s| s.0.index == id);
             let t = kept.map(|s| s.1.value.t - self.oracle.slack(&s.1));
             assert!(t.is_some_and(|t| t <= nearest), "{place}: group {group} keeps {id}");
@@ -224,8 +212,8 @@ impl<'a> Pair<'a> {
             let place = format!("pixel ({x}, {y}) of {name}");
             let center = [f64::from(x) + 0.5, f64::from(y) + 0.5];
             let [fragments, kept] = [
-                Self::value(&self.ewa, "attributes.count", i)[0] as usize,
-                Self::value(&self.single, "sums.count", i)[0] as usize,
+                value(&self.ewa, "attributes.count", i)[0] as usize,
+                value(&self.single, "sums.count", i)[0] as usize,
             ];
             // Nothing else than the order of the sums is different where no fragment was dropped.
             if fragments == kept && fragments > 0 {
@@ -233,7 +221,7 @@ impl<'a> Pair<'a> {
             }
             // The nearest of all is never dropped.
             for plane in ["id", "Z"] {
-                let [a, b] = [&self.ewa, &self.single].map(|f| Self::value(f, plane, i));
+                let [a, b] = [&self.ewa, &self.single].map(|f| value(f, plane, i));
                 assert_eq!(a, b, "{place}: {plane}");
             }
             let all = self.oracle.fragments(center);
@@ -271,7 +259,7 @@ proptest! {
         [sheets, orthographic, cull] in any::<[bool; 3]>(),
         epsilon in prop_oneof![Just(0.0_f32), 0.0_f32..0.5, 0.5_f32..2.0, Just(f32::INFINITY)],
     ) {
-        let scene = scene(cloud(seed.into(), sheets));
+        let scene = lit(cloud(seed.into(), sheets));
         let camera = straight(orthographic, [40, 31]);
         let epsilon = Epsilon::World(epsilon);
         let splats = ewa::Settings { kernel: PAPER, epsilon, cull };
@@ -325,7 +313,7 @@ fn whole_surfaces_are_exact_but_for_the_causes_that_are_listed() {
 impl Whole {
     fn check(&self) {
         let Self { shape, epsilon, kernel, orthographic, cull, .. } = *self;
-        let scene = scene(shape.surfels(600, 1).expect("few surfels").into_cloud());
+        let scene = lit(shape.surfels(600, 1).expect("few surfels").into_cloud());
         let camera = framed(&shape, orthographic, [64, 48]);
         let splats = ewa::Settings { kernel, epsilon, cull };
         let name = format!("{shape:?} {epsilon:?} {kernel:?} ortho {orthographic} cull {cull}");
@@ -343,14 +331,8 @@ impl Whole {
 /// is linearized at the centre of the nearer reaches over the other, and so does a filter's skirt.
 #[test]
 fn footprints_beside_their_discs_are_a_cause_where_discs_touch() {
-    let cloud = Cloud {
-        position: vec![Vec3::new(0.0, -1.0, -2.0), Vec3::new(0.0, -1.0, -4.0)],
-        normal: Some(vec![Vec3::Y; 2]),
-        radius: Some(vec![1.0; 2]),
-        color: Some(vec![Vec3::X, Vec3::Z]),
-        ..Cloud::default()
-    };
-    let scene = scene(cloud);
+    let pair = [-2.0, -4.0].map(|z| (Vec3::new(0.0, -1.0, z), Vec3::Y, 1.0));
+    let scene = lit(Cloud { color: Some(vec![Vec3::X, Vec3::Z]), ..discs(pair) });
     let kernel = |outline, low_pass| Kernel { outline, cutoff: 2.0, low_pass };
     let rows = [
         (kernel(Outline::RayCast, 0.0), ""),

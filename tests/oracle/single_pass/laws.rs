@@ -1,49 +1,55 @@
 //! Laws of Algorithm 1 as a whole: what groups may and may not change in a picture.
 
-use crate::bits::{bits, case, digest, unclean};
+use crate::bits::case;
 use crate::composite::groups::unit;
-use crate::ewa::cases::{Case, Dice};
-use crate::ewa::stages::{at, index};
-use crate::single_pass::identity::scene;
-use crate::single_pass::stages::groups;
+use crate::ewa::cases::{self, Kind};
+use crate::kit::case::Case;
+use crate::kit::dice::Dice;
+use crate::kit::draw::Drawing;
+use crate::kit::planes::{at, bits, digest, index, pixels, unclean};
+use crate::kit::scene::{discs, groups, straight};
+use crate::single_pass::identity::lit;
 use glam::Vec3;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use splatref::composite::decide;
 use splatref::composite::groups::{WeightedFragment, compose};
 use splatref::frame::{Exec, Frame, NO_ID};
-use splatref::method::ewa::{self, Epsilon};
-use splatref::method::single_pass::{self, BinCount, DepthTest, Settings};
+use splatref::method::ewa;
+use splatref::method::single_pass::{BinCount, DepthTest, Settings};
 use splatref::number::Exact;
 use splatref::scene::Groups;
 use splatref::scene::{Cloud, Scene};
+use splatref::splat::Epsilon;
 use splatref::splat::{Kernel, Outline};
+
+/// A case by lot; which surfel is in which group is another matter.
+type Splats = Case<ewa::Settings>;
 
 const PLAIN: DepthTest = DepthTest::Plain;
 
-fn render<R: Exact>(case: &Case, groups: &Groups, depth: DepthTest) -> Frame<R> {
-    let (settings, exec) = (Settings { splats: case.settings, depth }, Exec::sequential());
-    let picture =
-        single_pass::render::<R>(&case.scene, groups, &case.camera, &settings, &exec, true);
-    picture.expect("renders").frame
+fn drawing<'a>(case: &'a Splats, groups: &'a Groups, depth: DepthTest) -> Drawing<'a> {
+    let settings = Settings { splats: case.settings, depth };
+    Drawing::new(&case.scene, &case.camera, settings).grouped(groups)
 }
 
-fn pixels<R>(frame: &Frame<R>) -> std::ops::Range<usize> {
-    0..(frame.width * frame.height) as usize
+fn render<R: Exact>(case: &Splats, groups: &Groups, depth: DepthTest) -> Frame<R> {
+    drawing(case, groups, depth).frame()
 }
 
+/// The number at a pixel, 0 of a plane that is not there.
 fn value<R: Exact>(frame: &Frame<R>, name: &str, i: usize) -> [f64; 3] {
     frame.plane(name).map_or([0.0; 3], |plane| at(plane, i))
 }
 
 /// A group for each surfel by lot.
-fn lot(case: &Case, seed: u64, count: usize) -> Vec<u8> {
+fn lot(case: &Splats, seed: u64, count: usize) -> Vec<u8> {
     let mut dice = Dice(seed ^ 0x0123_4567_89AB_CDEF);
     (0..case.scene.surfels.len()).map(|_| dice.below(count) as u8).collect()
 }
 
 /// Any case with a depth test that it can have.
-fn depth(case: &Case, number: usize) -> DepthTest {
+fn depth(case: &Splats, number: usize) -> DepthTest {
     let camera = &case.camera;
     let epsilon = case.settings.epsilon.resolve(&case.scene.surfels);
     match number {
@@ -72,11 +78,10 @@ fn same_but_order<R: Exact>(a: &Frame<R>, b: &Frame<R>, i: usize, place: &str) -
 }
 
 /// A group for each surfel, in their order: nothing is dropped and the sums have EWA's order.
-fn apart_is_ewa<R: Exact>(case: &Case) -> TestCaseResult {
+fn apart_is_ewa<R: Exact>(case: &Splats) -> TestCaseResult {
     let n = case.scene.surfels.len();
     let single = render::<R>(case, &groups((0..n as u8).collect(), n), PLAIN);
-    let (camera, settings, exec) = (&case.camera, &case.settings, Exec::sequential());
-    let ewa = ewa::render::<R>(&case.scene, camera, settings, &exec, true).expect("renders").frame;
+    let ewa = case.drawing().frame::<R>();
     let stages = [
         ("sums", "attributes"),
         ("sums.weight", "attributes.weight"),
@@ -97,7 +102,7 @@ fn apart_is_ewa<R: Exact>(case: &Case) -> TestCaseResult {
 
 /// Groups under other names: the same images under other names, and the sums in another order.
 fn relabelled<R: Exact>(
-    case: &Case,
+    case: &Splats,
     own: &[u8],
     names: &[usize],
     test: DepthTest,
@@ -168,7 +173,7 @@ fn shown<R: Exact>(frame: &Frame<R>, i: usize, count: usize, band: R) -> Vec<u32
     let groups = (0..count).filter_map(|group| {
         let t = value(frame, &format!("group{group:02}.Z"), i)[0];
         let visible = decide::visible(exactly::<R>(t), decide::limit(exactly(nearest), band));
-        let id = index(frame, &format!("group{group:02}.id"), i).expect("an id");
+        let id = index(frame, &format!("group{group:02}.id"), i);
         (visible && id != NO_ID).then_some(id)
     });
     groups.collect()
@@ -178,16 +183,15 @@ fn shown<R: Exact>(frame: &Frame<R>, i: usize, count: usize, band: R) -> Vec<u32
 /// that was shown is the nearest of its part too, and so is still shown; fragments may appear that
 /// were behind another of their group within epsilon, and where none does, nothing changes but the
 /// order of the sums.
-fn splitting_shows_more<R: Exact>(case: &Case, own: &[u8], finer: &[u8]) -> TestCaseResult {
+fn splitting_shows_more<R: Exact>(case: &Splats, own: &[u8], finer: &[u8]) -> TestCaseResult {
     let whole = render::<R>(case, &groups(own.to_vec(), 4), PLAIN);
     let split = render::<R>(case, &groups(finer.to_vec(), 32), PLAIN);
     for name in ["Z", "A", "id"] {
         let [a, b] = [&whole, &split].map(|frame| frame.plane(name).map(bits));
         prop_assert!(a.is_some() && a == b, "plane '{}' of {}", name, case.name);
     }
-    let (camera, settings, exec) = (&case.camera, &case.settings, Exec::sequential());
-    let ewa = ewa::render::<R>(&case.scene, camera, settings, &exec, true).expect("renders").frame;
-    let band = R::from_f32(settings.epsilon.resolve(&case.scene.surfels));
+    let ewa = case.drawing().frame::<R>();
+    let band = R::from_f32(case.settings.epsilon.resolve(&case.scene.surfels));
     for i in pixels(&whole) {
         let [few, many] = [&whole, &split].map(|frame| value(frame, "sums.count", i)[0]);
         let all = value(&ewa, "attributes.count", i)[0];
@@ -236,15 +240,12 @@ proptest! {
         case in case(), seed: u64, number in 0..4_usize, count in 1..=64_usize, tile in 0..4_usize,
     ) {
         let (own, test) = (groups(lot(&case, seed, count), count), depth(&case, number));
-        let settings = Settings { splats: case.settings, depth: test };
-        let Case { scene, camera, .. } = &case;
         let exec = Exec::new(3, 8 << tile).expect("a tile size");
         let plain = render::<f32>(&case, &own, test);
-        let other = single_pass::render::<f32>(scene, &own, camera, &settings, &exec, true);
-        prop_assert!(digest(&plain) == digest(&other.expect("renders").frame), "{}", case.name);
+        let other = drawing(&case, &own, test).on(&exec);
+        prop_assert!(digest(&plain) == digest(&other.frame::<f32>()), "{}", case.name);
         prop_assert_eq!(unclean(&plain), None, "{}", case.name);
-        let fast = single_pass::render_f32(scene, &own, camera, &settings, &exec);
-        for plane in &fast.expect("renders").frame.planes {
+        for plane in &other.fast().frame.planes {
             let same = plain.plane(&plane.name).expect("a shared plane");
             prop_assert!(bits(same) == bits(&plane.samples), "'{}' of {}", plane.name, case.name);
         }
@@ -252,14 +253,10 @@ proptest! {
 }
 
 /// Discs that face an orthographic camera, one pixel a unit of the picture.
-fn facing(discs: &[(f32, f32)], epsilon: f32) -> (Scene, ewa::Settings) {
-    let scene = scene(Cloud {
-        position: discs.iter().map(|(x, t)| Vec3::new(*x, 0.0, -t)).collect(),
-        normal: Some(vec![Vec3::Z; discs.len()]),
-        radius: Some(vec![2.0; discs.len()]),
-        color: Some([Vec3::X, Vec3::Y, Vec3::Z].into_iter().cycle().take(discs.len()).collect()),
-        ..Cloud::default()
-    });
+fn facing(all: &[(f32, f32)], epsilon: f32) -> (Scene, ewa::Settings) {
+    let colors = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().cycle().take(all.len()).collect();
+    let cloud = discs(all.iter().map(|(x, t)| (Vec3::new(*x, 0.0, -t), Vec3::Z, 2.0)));
+    let scene = lit(Cloud { color: Some(colors), ..cloud });
     let kernel = Kernel { outline: Outline::RayCast, cutoff: 2.0, low_pass: 0.0 };
     (scene, ewa::Settings { kernel, epsilon: Epsilon::World(epsilon), cull: true })
 }
@@ -267,13 +264,11 @@ fn facing(discs: &[(f32, f32)], epsilon: f32) -> (Scene, ewa::Settings) {
 /// The pixel in the middle of a picture of discs in groups: the frame and the pixel's index.
 fn middle(discs: &[(f32, f32)], epsilon: f32, own: &[u8], depth: DepthTest) -> (Frame<f64>, usize) {
     let (scene, splats) = facing(discs, epsilon);
-    let mut camera = crate::ewa::cases::straight(true, [9, 9]);
+    let mut camera = straight(true, [9, 9]);
     (camera.fx, camera.fy, camera.cx, camera.cy) = (2.0, 2.0, 4.5, 4.5);
-    let settings = Settings { splats, depth };
-    let groups = groups(own.to_vec(), 3);
-    let exec = Exec::sequential();
-    let picture = single_pass::render::<f64>(&scene, &groups, &camera, &settings, &exec, true);
-    (picture.expect("renders").frame, 4 * 9 + 4)
+    let (settings, groups) = (Settings { splats, depth }, groups(own.to_vec(), 3));
+    let frame = Drawing::new(&scene, &camera, settings).grouped(&groups).frame();
+    (frame, 4 * 9 + 4)
 }
 
 /// The counterexample to "splitting a group never changes the result": the depth test of the group
@@ -323,7 +318,7 @@ fn ties_go_to_the_lower_surfel() {
         assert_eq!(value(&frame, "group01.id", i)[0], 0.0, "in a group: {depth:?}");
         assert_eq!(value(&frame, "group00.id", i)[0], 2.0);
         assert_eq!(value(&frame, "id", i)[0], 0.0, "among the groups: {depth:?}");
-        assert_eq!(index(&frame, "group02.id", i), Some(NO_ID));
+        assert_eq!(index(&frame, "group02.id", i), NO_ID);
     }
     // At the rim of both discs the ratio ends at 255/256, although the second is nearer to its
     // centre.
@@ -336,7 +331,7 @@ fn ties_go_to_the_lower_surfel() {
 /// What an extension adds is for transparency.
 #[test]
 fn extensions_of_groups_leave_the_single_pass_alone() {
-    let case = Case::new(crate::ewa::cases::Kind::Discs, 5, ewa::Settings::default(), false);
+    let case = cases::case(Kind::Discs, 5, ewa::Settings::default(), false);
     let own = lot(&case, 1, 3);
     let added = (0..40).map(|surfel| (surfel, (surfel % 3) as u8)).collect();
     let extended = Groups::new(own.clone(), added, vec![1.5, 2.0, 1.0]).expect("good groups");

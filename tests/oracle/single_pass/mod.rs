@@ -1,7 +1,8 @@
 //! Algorithm 1 of \[ZP06\].
 
 pub(crate) mod identity;
-pub(crate) mod laws;
+mod laws;
 pub(crate) mod model;
 pub(crate) mod range;
-pub(crate) mod stages;
+mod stages;
+mod tolerance;

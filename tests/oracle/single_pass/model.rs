@@ -1,6 +1,6 @@
 //! \[ZP06, Algorithm 1\] by brute force: every fragment of every surfel of a group, at one pixel.
 //!
-//! Which fragment a depth-image keeps can hang on rounding. So an [`Image`] is the list of all that
+//! Which fragment a depth-image keeps can hang on rounding. So an [`Kept`] is the list of all that
 //! may be kept: whoever compares asks which of them was, and goes on from there.
 
 use crate::ewa::model::{Entry, Oracle, Seen};
@@ -8,7 +8,7 @@ use crate::ewa::splat::Fragment;
 use splatref::composite::bins::Range;
 
 /// A fragment that a depth-image may keep.
-pub(crate) struct Candidate<'a> {
+pub(crate) struct KeptFragment<'a> {
     pub(crate) seen: Seen<'a>,
     /// What the depth test compares, from its least to its greatest value under rounding.
     order: [f64; 2],
@@ -17,14 +17,14 @@ pub(crate) struct Candidate<'a> {
 }
 
 /// A depth-image at a pixel.
-pub(crate) struct Image<'a> {
+pub(crate) struct Kept<'a> {
     /// Every fragment that may be kept: none is certainly before it.
-    pub(crate) candidates: Vec<Candidate<'a>>,
+    pub(crate) candidates: Vec<KeptFragment<'a>>,
     /// Whether there may be none.
     pub(crate) may_be_empty: bool,
 }
 
-impl Image<'_> {
+impl Kept<'_> {
     /// Whether rounding decides what is kept.
     pub(crate) fn undecided(&self) -> bool {
         self.candidates.len() + usize::from(self.may_be_empty) > 1
@@ -43,12 +43,12 @@ pub(crate) struct Algorithm1<'a> {
 
 impl Algorithm1<'_> {
     /// The depth-images of all groups at a point of the picture.
-    pub(crate) fn images(&self, at: [f64; 2]) -> Vec<Image<'_>> {
+    pub(crate) fn images(&self, at: [f64; 2]) -> Vec<Kept<'_>> {
         let fragments = self.oracle.fragments(at);
         (0..self.count).map(|group| self.image(&fragments, group)).collect()
     }
 
-    fn image<'b>(&self, fragments: &[Seen<'b>], group: usize) -> Image<'b> {
+    fn image<'b>(&self, fragments: &[Seen<'b>], group: usize) -> Kept<'b> {
         let oracle = &self.oracle;
         let limit = oracle.limit();
         let members = fragments.iter().filter(|(s, _)| usize::from(self.own[s.index]) == group);
@@ -57,13 +57,13 @@ impl Algorithm1<'_> {
             .filter(|(_, f)| f.value.q - limit <= oracle.margin(f))
             .map(|seen| {
                 let sure = !oracle.unsure(seen);
-                Candidate { seen: *seen, order: self.order(&seen.1), sure }
+                KeptFragment { seen: *seen, order: self.order(&seen.1), sure }
             })
             .collect();
         let certain = candidates.iter().filter(|c| c.sure).map(|c| c.order[1]);
         let first = certain.fold(f64::INFINITY, f64::min);
         candidates.retain(|c| c.order[0] <= first);
-        Image { candidates, may_be_empty: first == f64::INFINITY }
+        Kept { candidates, may_be_empty: first == f64::INFINITY }
     }
 
     /// What the depth test compares.

@@ -1,31 +1,29 @@
 //! `d_min` and `d_max` of \[ZP06, eq. 6\]: no fragment is outside.
 
-use crate::ewa::cases::{Case, Dice, KINDS, OUTLINES, straight};
+use crate::ewa::cases::{self, KINDS};
+use crate::kit::dice::Dice;
+use crate::kit::draw::Drawing;
 use crate::kit::eye::{Eye, dot, sub, wide};
-use crate::single_pass::identity::scene;
-use crate::single_pass::stages::groups;
+use crate::kit::planes::scalars;
+use crate::kit::scene::{self, OUTLINES, groups, straight};
+use crate::single_pass::identity::lit;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
-use splatref::frame::{Exec, Samples};
 use splatref::method::ewa;
-use splatref::method::single_pass::{self, BinCount, DepthTest, Settings, depth_range};
-use splatref::scene::{Camera, Cloud, Lens, Pose, Scene, Surfels};
+use splatref::method::single_pass::{BinCount, DepthTest, Settings, depth_range};
+use splatref::scene::{Camera, Lens, Pose, Scene, Surfels};
 use splatref::source::Shape;
 use splatref::splat::Kernel;
 
 /// The depths of all fragments that the groups of a scene keep.
 fn depths(scene: &Scene, camera: &Camera, splats: ewa::Settings, own: Vec<u8>) -> Vec<f64> {
     let settings = Settings { splats, depth: DepthTest::Plain };
-    let exec = Exec::sequential();
     let groups = groups(own, 64);
-    let picture = single_pass::render::<f64>(scene, &groups, camera, &settings, &exec, true);
-    let frame = picture.expect("renders").frame;
+    let frame = Drawing::new(scene, camera, settings).grouped(&groups).frame::<f64>();
     let planes = frame.planes.iter().filter(|p| p.name.starts_with("group"));
-    let depths = planes.filter(|p| p.name.ends_with(".Z")).map(|plane| match &plane.samples {
-        Samples::Scalar(plane) => plane.values().to_vec(),
-        _ => panic!("Z is a scalar"),
-    });
-    depths.flatten().filter(|t| t.is_finite()).collect()
+    let names = planes.map(|p| p.name.as_str()).filter(|name| name.ends_with(".Z"));
+    let depths = names.flat_map(|name| scalars(&frame, name).to_vec());
+    depths.filter(|t| t.is_finite()).collect()
 }
 
 /// By definition: the middle of the box around all positions, the greatest distance from there with
@@ -88,7 +86,7 @@ proptest! {
     ) {
         let kernel = Kernel { outline: OUTLINES[outline], cutoff: 2.0, low_pass };
         let splats = ewa::Settings { kernel, cull, ..ewa::Settings::default() };
-        let case = Case::new(KINDS[kind], seed.into(), splats, orthographic);
+        let case = cases::case(KINDS[kind], seed.into(), splats, orthographic);
         let (low, high) = check(&case.scene.surfels, &case.camera);
         let mut dice = Dice(seed.into());
         let own = (0..case.scene.surfels.len()).map(|_| dice.below(64) as u8).collect();
@@ -99,17 +97,15 @@ proptest! {
 }
 
 const SKIRT: Kernel = Kernel { low_pass: 1.0, ..Kernel::DEFAULT };
-const SPLATS: ewa::Settings =
-    ewa::Settings { kernel: SKIRT, epsilon: ewa::Epsilon::MedianRadii(1.0), cull: false };
+const SPLATS: ewa::Settings = ewa::Settings {
+    kernel: SKIRT,
+    epsilon: splatref::splat::Epsilon::MedianRadii(1.0),
+    cull: false,
+};
 
 /// Discs of these places, normals and radii.
 fn discs(all: &[(Vec3, Vec3, f32)]) -> Scene {
-    scene(Cloud {
-        position: all.iter().map(|d| d.0).collect(),
-        normal: Some(all.iter().map(|d| d.1).collect()),
-        radius: Some(all.iter().map(|d| d.2).collect()),
-        ..Cloud::default()
-    })
+    lit(scene::discs(all.iter().copied()))
 }
 
 /// Renders with the range in use, and says it: fragments are inside, and with one group to each
@@ -119,11 +115,9 @@ fn range_in_use(scene: &Scene, camera: &Camera) -> (f32, f32) {
     let own: Vec<u8> = (0..scene.surfels.len()).map(|i| (i % 64) as u8).collect();
     let all = depths(scene, camera, SPLATS, own.clone());
     assert!(all.iter().all(|t| inside([low, high], *t)), "{low} {high}");
-    let exec = Exec::sequential();
     let pictures = [DepthTest::Plain, DepthTest::Voronoi(BinCount::Epsilon)].map(|depth| {
         let (settings, groups) = (Settings { splats: SPLATS, depth }, groups(own.clone(), 64));
-        let picture = single_pass::render_f32(scene, &groups, camera, &settings, &exec);
-        picture.expect("renders").frame
+        Drawing::new(scene, camera, settings).grouped(&groups).fast().frame
     });
     if own.len() <= 64 {
         assert!(pictures[0] == pictures[1], "{low} {high}");
@@ -154,7 +148,7 @@ fn surfels_at_one_point_have_a_range() {
 #[test]
 fn inside_the_scene_the_range_starts_at_the_near_plane() {
     let surfels = Shape::Sphere.surfels(300, 1).expect("few surfels");
-    let scene = scene(surfels.into_cloud());
+    let scene = lit(surfels.into_cloud());
     for eye in [DVec3::ZERO, DVec3::new(0.5, 0.25, 0.0), DVec3::new(0.0, 0.0, 0.99)] {
         let pose = Pose { eye, target: eye + DVec3::NEG_Z, up: DVec3::Y };
         let camera = Camera::new(24, 24, pose, Lens::Focal(28.0)).expect("a camera");

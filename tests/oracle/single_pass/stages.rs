@@ -1,23 +1,27 @@
 //! Every stage of Algorithm 1 against the oracle, for groups drawn by lot.
 
-use crate::ewa::cases::{self, Case, Dice};
+use crate::ewa::cases;
 use crate::ewa::model::Seen;
-use crate::ewa::stages::{at, index, measure, oracle};
+use crate::ewa::stages::{measure, oracle};
+use crate::kit::case::Case;
+use crate::kit::dice::Dice;
 use crate::kit::goldens;
-use crate::kit::tolerance::{self, Arithmetic, Measured};
+use crate::kit::planes::{at, index, plane};
+use crate::kit::scene::groups;
+use crate::kit::tolerance::{Arithmetic, Measured};
 use crate::single_pass::model::Algorithm1;
-use splatref::frame::{Exec, Frame, NO_ID, Samples};
-use splatref::method::Method;
-use splatref::method::ewa::Epsilon;
-use splatref::method::single_pass::{self, BinCount, DepthTest, Settings};
+use crate::single_pass::tolerance::SINGLE_PASS;
+use splatref::frame::{Frame, NO_ID, Samples};
+use splatref::method::ewa;
+use splatref::method::single_pass::{BinCount, DepthTest, Settings};
 use splatref::number::Exact;
-use splatref::scene::Groups;
+use splatref::splat::Epsilon;
 
 /// A plane of a depth-image: the end of its name, the row of the table that holds for all groups,
 /// and what it holds where the image is empty.
-type Kind = (&'static str, &'static str, f64);
+type PlaneRow = (&'static str, &'static str, f64);
 
-const PLANES: [Kind; 5] = [
+const PLANES: [PlaneRow; 5] = [
     (".Z", "group.Z", f64::INFINITY),
     (".weight", "group.weight", 0.0),
     (".normal", "group.normal", 0.0),
@@ -26,12 +30,12 @@ const PLANES: [Kind; 5] = [
 ];
 
 /// A depth-image: its surfels, and those of [`PLANES`] that are there.
-struct Layer<'a, R> {
+struct DepthImage<'a, R> {
     id: &'a Samples<R>,
-    planes: Vec<(&'a Samples<R>, Kind)>,
+    planes: Vec<(&'a Samples<R>, PlaneRow)>,
 }
 
-impl<'a, R: Exact> Layer<'a, R> {
+impl<'a, R: Exact> DepthImage<'a, R> {
     fn new(frame: &'a Frame<R>, group: usize) -> Self {
         let named = |end: &str| frame.plane(&format!("group{group:02}{end}"));
         let planes = PLANES.into_iter().filter_map(|p| named(p.0).map(|samples| (samples, p)));
@@ -41,7 +45,7 @@ impl<'a, R: Exact> Layer<'a, R> {
 
 /// What was left open, in pixels.
 #[derive(Clone, Copy, Debug, Default)]
-struct Open {
+struct Left {
     pixels: usize,
     /// Rounding decides what some group keeps: the crate's choice among the candidates was taken.
     undecided: usize,
@@ -50,19 +54,14 @@ struct Open {
 }
 
 /// A picture's place in the test.
-struct Subject<'a> {
+struct GroupStages<'a> {
     algorithm: Algorithm1<'a>,
     arithmetic: Arithmetic,
-    case: &'a Case,
+    case: &'a Case<Settings>,
 }
 
-/// Groups without any extension.
-pub(crate) fn groups(own: Vec<u8>, count: usize) -> Groups {
-    Groups::new(own, Vec::new(), vec![1.0; count]).expect("groups below the count")
-}
-
-/// The colouring by lot, and the depth test.
-fn variant(case: &Case, number: usize) -> (Groups, DepthTest) {
+/// A case with a colouring by lot, and a depth test.
+fn variant(case: Case<ewa::Settings>, number: usize) -> Case<Settings> {
     let mut dice = Dice(number as u64 * 77 + 5);
     dice.below(1);
     let count = [1, 2, 5, 16, 64][number % 5];
@@ -77,7 +76,8 @@ fn variant(case: &Case, number: usize) -> (Groups, DepthTest) {
         _ if none => DepthTest::Plain,
         _ => DepthTest::Voronoi(BinCount::Epsilon),
     };
-    (groups(own, count), depth)
+    let settings = Settings { splats: case.settings, depth };
+    Case { groups: Some(groups(own, count)), ..case.with(settings) }
 }
 
 /// What the stages hold where no image has a fragment.
@@ -87,15 +87,15 @@ fn check_empty<R: Exact>(frame: &Frame<R>, i: usize, place: &str) {
         let Some(samples) = frame.plane(name) else { continue };
         assert_eq!(at(samples, i), [0.0; 3], "{place}: empty, plane '{name}'");
     }
-    assert_eq!(at(frame.plane("Z").expect("a plane Z"), i), [f64::INFINITY; 3], "{place}: Z");
-    assert_eq!(index(frame, "id", i), Some(NO_ID), "{place}: id");
+    assert_eq!(at(plane(frame, "Z"), i), [f64::INFINITY; 3], "{place}: Z");
+    assert_eq!(index(frame, "id", i), NO_ID, "{place}: id");
 }
 
-impl Subject<'_> {
+impl GroupStages<'_> {
     /// What every group keeps at a pixel, each checked against the candidates.
     fn kept<R: Exact>(
         &self,
-        layers: &[Layer<'_, R>],
+        layers: &[DepthImage<'_, R>],
         (i, center): (usize, [f64; 2]),
         place: &str,
         measured: &mut Measured,
@@ -139,10 +139,10 @@ impl Subject<'_> {
         if let Some(count) = frame.plane("sums.count") {
             assert_eq!(at(count, i), [seen.len() as f64; 3], "{place}: groups in the band");
         }
-        let (nearest, id) = (oracle.nearest(kept), index(frame, "id", i).expect("a plane id"));
+        let (nearest, id) = (oracle.nearest(kept), index(frame, "id", i));
         assert!(nearest.contains(&id) || kept.is_empty(), "{place}: id {id}, not of {nearest:?}");
         let covered = if kept.is_empty() { 0.0 } else { 1.0 };
-        assert_eq!(at(frame.plane("A").expect("a plane A"), i), [covered; 3], "{place}: A");
+        assert_eq!(at(plane(frame, "A"), i), [covered; 3], "{place}: A");
         if kept.is_empty() {
             check_empty(frame, i, place);
         }
@@ -159,13 +159,11 @@ impl Subject<'_> {
     }
 
     /// Compares pictures of one arithmetic, the first with its stages.
-    fn compare<R: Exact>(&self, frames: &[&Frame<R>], measured: &mut Measured) -> Open {
-        let (mut open, camera) = (Open::default(), &self.case.camera);
+    fn compare<R: Exact>(&self, frames: &[&Frame<R>], measured: &mut Measured) -> Left {
+        let mut open = Left::default();
         let groups = 0..self.algorithm.count;
-        let layers: Vec<_> = groups.map(|k| Layer::new(frames[0], k)).collect();
-        for (i, (y, x)) in
-            (0..camera.height).flat_map(|y| (0..camera.width).map(move |x| (y, x))).enumerate()
-        {
+        let layers: Vec<_> = groups.map(|k| DepthImage::new(frames[0], k)).collect();
+        for (i, x, y) in self.case.pixels() {
             let place = format!("{:?} pixel ({x}, {y}) of {}", self.arithmetic, self.case.name);
             let pixel = (i, [f64::from(x) + 0.5, f64::from(y) + 0.5]);
             let (kept, undecided) = self.kept(&layers, pixel, &place, measured);
@@ -185,51 +183,39 @@ impl Subject<'_> {
 
 #[test]
 fn every_stage_of_the_single_pass_equals_the_oracle() {
-    let exec = Exec::sequential();
-    let (mut measured, mut all) = (Measured::default(), [Open::default(); 2]);
-    let mut cases: Vec<_> = cases::all()
-        .into_iter()
-        .enumerate()
-        .map(|(number, case)| {
-            let (groups, depth) = variant(&case, number);
-            (case, groups, depth)
-        })
-        .collect();
-    let goldens = goldens::all().into_iter().filter_map(|golden| match golden.method {
-        Method::SinglePass(settings) => Some((golden.case, golden.groups?, settings.depth)),
-        _ => None,
-    });
-    cases.extend(goldens::at_least(2, goldens.collect()));
-    for (case, groups, depth) in &cases {
-        let (scene, camera, depth) = (&case.scene, &case.camera, *depth);
-        let settings = Settings { splats: case.settings, depth };
-        let epsilon = case.settings.epsilon.resolve(&scene.surfels);
+    let (mut measured, mut all) = (Measured::default(), [Left::default(); 2]);
+    let by_lot = cases::all().into_iter().enumerate();
+    let mut cases: Vec<_> = by_lot.map(|(number, case)| variant(case, number)).collect();
+    cases.extend(goldens::of());
+    for case in &cases {
+        let (drawing, groups) = (case.drawing(), case.groups());
+        let Settings { splats, depth } = &case.settings;
+        let epsilon = splats.epsilon.resolve(&case.scene.surfels);
         let range = match depth {
             DepthTest::Plain => None,
-            DepthTest::Voronoi(bins) => match bins.resolve(&scene.surfels, camera, epsilon) {
-                Ok(range) => Some(range),
-                Err(error) => {
-                    let refused = single_pass::render_f32(scene, groups, camera, &settings, &exec);
-                    assert_eq!(refused.err().map(|e| e.to_string()), Some(error.to_string()));
-                    continue;
+            DepthTest::Voronoi(bins) => {
+                match bins.resolve(&case.scene.surfels, &case.camera, epsilon) {
+                    Ok(range) => Some(range),
+                    Err(error) => {
+                        let refused = drawing.try_fast().err().map(|e| e.to_string());
+                        assert_eq!(refused, Some(error.to_string()));
+                        continue;
+                    }
                 }
-            },
+            }
         };
-        let plain = single_pass::render::<f32>(scene, groups, camera, &settings, &exec, true);
-        let fast = single_pass::render_f32(scene, groups, camera, &settings, &exec);
-        let truth = single_pass::render::<f64>(scene, groups, camera, &settings, &exec, true);
-        let (plain, fast, truth) =
-            (plain.expect("renders"), fast.expect("renders"), truth.expect("renders"));
+        let (plain, fast) = (drawing.frame::<f32>(), drawing.fast().frame);
+        let truth = drawing.frame::<f64>();
         let subject = |arithmetic| {
             let (own, count) = (groups.own(), groups.len());
-            let algorithm = Algorithm1 { oracle: oracle(case, arithmetic), own, count, range };
-            Subject { algorithm, arithmetic, case }
+            let oracle = oracle(case, splats, arithmetic);
+            GroupStages { algorithm: Algorithm1 { oracle, own, count, range }, arithmetic, case }
         };
-        let narrow = subject(Arithmetic::F32).compare(&[&plain.frame, &fast.frame], &mut measured);
+        let narrow = subject(Arithmetic::F32).compare(&[&plain, &fast], &mut measured);
         let wide = if case.exact { Arithmetic::F64 } else { Arithmetic::F64Rounded };
-        let wide = subject(wide).compare(&[&truth.frame], &mut measured);
+        let wide = subject(wide).compare(&[&truth], &mut measured);
         for (slot, open) in [narrow, wide].into_iter().enumerate() {
-            let Open { pixels, ambiguous, .. } = open;
+            let Left { pixels, ambiguous, .. } = open;
             assert!(ambiguous * 200 <= pixels, "{open:?} in {}", case.name);
             all[slot].pixels += pixels;
             all[slot].undecided += open.undecided;
@@ -239,9 +225,5 @@ fn every_stage_of_the_single_pass_equals_the_oracle() {
     println!("{} scenes; f32 and f64: {all:?}", cases.len());
     // Sheets and plates, where depths of one plane differ by rounding alone, are most of them.
     assert!(all.iter().all(|open| open.undecided * 20 <= open.pixels), "{all:?}");
-    for (key, (worst, place)) in &measured.0 {
-        println!("{key:?}: {worst:.3} {place}");
-    }
-    let complaints = measured.complaints(tolerance::SINGLE_PASS);
-    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+    measured.check(SINGLE_PASS);
 }

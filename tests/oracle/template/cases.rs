@@ -1,9 +1,10 @@
 //! Scenes for the reconstruction with templates, drawn by lot: discs placed by their pixels.
 
-use crate::ewa::cases::{Case, Dice, straight};
+use crate::kit::case::Case;
+use crate::kit::dice::Dice;
+use crate::kit::scene::{discs, lights, scene, straight, surfels, turned};
 use glam::{Mat4, Vec3};
-use splatref::method::ewa::Settings;
-use splatref::scene::{Camera, Cloud, Light, Phong, Projection, Scene, Surfels};
+use splatref::scene::{Camera, Cloud, Projection, Scene};
 
 pub(crate) const SIZES: [[u32; 2]; 7] =
     [[1, 1], [1, 7], [2, 2], [13, 9], [16, 16], [31, 33], [64, 48]];
@@ -88,10 +89,10 @@ fn cloud(dice: &mut Dice, camera: &Camera, count: usize) -> Cloud {
     Cloud { position, normal: Some(all_normals), radius: Some(radii), color, ..Cloud::default() }
 }
 
-/// A disc where all numbers are those of the picture: before [`exact_camera`], at a place in
+/// A disc of which all numbers are those of the picture: before [`exact_camera`], at a place in
 /// pixels.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Disc {
+pub(crate) struct Dot {
     pub(crate) place: [f32; 2],
     pub(crate) depth: f32,
     /// In pixels and in world units.
@@ -100,7 +101,7 @@ pub(crate) struct Disc {
     pub(crate) color: Vec3,
 }
 
-impl Disc {
+impl Dot {
     /// White, facing the camera at depth 4.
     pub(crate) fn new(x: f32, y: f32, radius: f32) -> Self {
         Self { place: [x, y], depth: 4.0, radius, normal: Vec3::Z, color: Vec3::ONE }
@@ -119,62 +120,29 @@ pub(crate) fn exact_camera([width, height]: [u32; 2]) -> Camera {
 }
 
 /// Discs before [`exact_camera`], coloured, unlit.
-pub(crate) fn exact_scene(discs: &[Disc]) -> Scene {
-    let cloud = Cloud {
-        position: discs.iter().map(|d| Vec3::new(d.place[0], -d.place[1], -d.depth)).collect(),
-        normal: Some(discs.iter().map(|d| d.normal).collect()),
-        radius: Some(discs.iter().map(|d| d.radius).collect()),
-        color: Some(discs.iter().map(|d| d.color).collect()),
-        ..Cloud::default()
-    };
-    let surfels = if discs.is_empty() {
-        Surfels::none()
-    } else {
-        Surfels::new(cloud).expect("good surfels").0
-    };
-    assert_eq!(surfels.len(), discs.len(), "no disc is dropped");
-    scene(surfels, Vec::new())
-}
-
-/// Without an environment, of the default material.
-pub(crate) fn scene(surfels: Surfels, lights: Vec<Light>) -> Scene {
-    Scene {
-        name: String::new(),
-        surfels,
-        lights,
-        material: Phong::default(),
-        primitives: Default::default(),
-        environment: None,
-    }
-}
-
-fn lights(dice: &mut Dice) -> Vec<Light> {
-    let color = dice.vector(Vec3::splat(0.25), Vec3::ONE);
-    let all = [
-        Light::Headlight { towards: Vec3::new(0.25, 0.5, 1.0), color },
-        Light::Directional { towards: Vec3::new(-1.0, 2.0, 3.0), color },
-        Light::Point { position: Vec3::new(2.0, 3.0, 4.0), color },
-    ];
-    all[..dice.below(4)].to_vec()
+pub(crate) fn exact_scene(all: &[Dot]) -> Scene {
+    let place = |d: &Dot| Vec3::new(d.place[0], -d.place[1], -d.depth);
+    let cloud = discs(all.iter().map(|d| (place(d), d.normal, d.radius)));
+    let surfels = surfels(Cloud { color: Some(all.iter().map(|d| d.color).collect()), ..cloud });
+    assert_eq!(surfels.len(), all.len(), "no disc is dropped");
+    scene(surfels)
 }
 
 /// The case of a number: every size, few and many discs, both cameras, turned or not.
-pub(crate) fn case(number: usize) -> Case {
+pub(crate) fn case(number: usize) -> Case<()> {
     let mut dice = Dice(number as u64 * 7919 + 11);
     dice.below(1);
     let size = SIZES[number % SIZES.len()];
     let orthographic = number / SIZES.len() % 2 == 1;
     let mut camera = straight(orthographic, size);
     if dice.below(2) == 0 {
-        camera.view_from_world =
-            Mat4::from_rotation_x(0.1) * Mat4::from_rotation_z(dice.within(-3.0, 3.0));
+        camera.view_from_world = turned(&mut dice);
     }
     let pixels = (size[0] * size[1]) as usize;
     let many = [pixels / 4, pixels / 2, pixels][dice.below(3)] + 3;
     let count = [1, 3, 12, 40, many, many][dice.below(6)];
-    let cloud = cloud(&mut dice, &camera, count);
-    let surfels = Surfels::new(cloud).expect("good surfels").0;
-    let scene = scene(surfels, lights(&mut dice));
+    let surfels = surfels(cloud(&mut dice, &camera, count));
+    let scene = Scene { lights: lights(&mut dice), ..scene(surfels) };
     let name = format!("number {number}, {count} discs, orthographic {orthographic}");
-    Case { name, scene, camera, settings: Settings::default(), exact: false }
+    Case { name, scene, camera, settings: (), groups: None, exact: false }
 }

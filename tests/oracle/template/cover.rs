@@ -1,15 +1,15 @@
 //! One disc alone: which of its pixels find it, under either rule of levels.
 
-use crate::ewa::cases::{Dice, straight};
-use crate::kit::tolerance::Arithmetic;
-use crate::template::cases::scene;
+use crate::kit::dice::Dice;
+use crate::kit::draw::Drawing;
+use crate::kit::scene::{discs, scene, straight, surfels};
 use crate::template::known::id;
-use crate::template::model::{Cell, Template};
-use crate::template::stages::{GUARD, grid, unit};
+use crate::template::model::{Center, Template};
+use crate::template::stages::grid;
 use glam::Vec3;
-use splatref::frame::{Exec, NO_ID};
-use splatref::method::template::{self, LevelRule, Settings};
-use splatref::scene::{Camera, Cloud, Projection, Scene, Surfels};
+use splatref::frame::NO_ID;
+use splatref::method::template::{LevelRule, Settings};
+use splatref::scene::{Camera, Projection, Scene};
 
 const SIZES: [[u32; 2]; 8] =
     [[16, 16], [31, 33], [64, 48], [1, 7], [97, 61], [128, 128], [200, 3], [255, 129]];
@@ -29,25 +29,18 @@ fn single(dice: &mut Dice) -> (Scene, Camera) {
         _ => dice.direction(),
     };
     let [x, y] = [(x - camera.cx) / camera.fx * far, (camera.cy - y) / camera.fy * far];
-    let cloud = Cloud {
-        position: vec![Vec3::new(x, y, -t)],
-        normal: Some(vec![normal]),
-        radius: Some(vec![radius * far / (camera.fx * camera.fy).sqrt()]),
-        color: None,
-        ..Cloud::default()
-    };
-    let scene = scene(Surfels::new(cloud).expect("a good surfel").0, Vec::new());
-    (scene, camera)
+    let radius = radius * far / (camera.fx * camera.fy).sqrt();
+    (scene(surfels(discs([(Vec3::new(x, y, -t), normal, radius)]))), camera)
 }
 
 /// The least level at which so many cells reach as far as the radius, but not beyond the top.
-fn level(template: &Template, cells: f64, radius: f64) -> usize {
+fn level(template: &Template<24>, cells: f64, radius: f64) -> usize {
     (0..template.top()).find(|l| radius <= cells * (*l as f64).exp2()).unwrap_or(template.top())
 }
 
 /// What a disc does to a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Seen {
+enum Reach {
     Outside,
     Missed,
     Found,
@@ -57,15 +50,15 @@ enum Seen {
 
 /// What a disc that stays at a level does to every pixel, row by row; `own`: where it was projected
 /// to.
-fn seen(template: &Template, disc: &Cell, own: [u32; 2], level: usize) -> Vec<Seen> {
+fn seen(template: &Template<24>, disc: &Center, own: [u32; 2], level: usize) -> Vec<Reach> {
     let [width, height] = template.sizes[0];
     let cell = own.map(|v| v >> level);
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
     let one = |pixel| match template.weight(disc, pixel, level == 0 && own == pixel) {
-        Err(()) => Seen::Open,
-        Ok(None) => Seen::Outside,
-        Ok(Some(_)) if template.finds(level, cell, pixel) => Seen::Found,
-        Ok(Some(_)) => Seen::Missed,
+        Err(()) => Reach::Open,
+        Ok(None) => Reach::Outside,
+        Ok(Some(_)) if template.finds(level, cell, pixel) => Reach::Found,
+        Ok(Some(_)) => Reach::Missed,
     };
     pixels.map(one).collect()
 }
@@ -80,9 +73,9 @@ struct Losses {
 }
 
 impl Losses {
-    fn add(&mut self, all: &[Seen]) {
+    fn add(&mut self, all: &[Reach]) {
         let count = |seen| all.iter().filter(|s| **s == seen).count() as f64;
-        let [missed, found] = [Seen::Missed, Seen::Found].map(count);
+        let [missed, found] = [Reach::Missed, Reach::Found].map(count);
         if missed + found > 0.0 {
             let lost = missed / (missed + found);
             self.discs += 1.0;
@@ -102,7 +95,6 @@ impl Losses {
 #[test]
 fn a_disc_alone_paints_the_pixels_that_find_it() {
     let mut dice = Dice(2008);
-    let exec = Exec::sequential();
     let mut published = [Losses::default(); 3];
     let mut diameter = [Losses::default(); 3];
     let (mut open, mut pixels) = (0, 0);
@@ -111,10 +103,9 @@ fn a_disc_alone_paints_the_pixels_that_find_it() {
         for (i, size) in [3, 5, 7].into_iter().enumerate() {
             for levels in [LevelRule::Covering, LevelRule::Published] {
                 let settings = Settings { size, levels, cull: false };
-                let picture = template::render::<f32>(&scene, &camera, &settings, &exec, true);
-                let frame = picture.expect("renders").frame;
+                let frame = Drawing::new(&scene, &camera, settings).frame::<f32>();
                 let shape = [camera.width, camera.height];
-                let template = Template::new(settings, shape, unit(Arithmetic::F32) * GUARD);
+                let template = Template::new(settings, shape);
                 let sample = grid(&frame, 0, shape);
                 let Some(own) = sample.positions().find(|[x, y]| sample.at(*x, *y).is_some())
                 else {
@@ -130,16 +121,16 @@ fn a_disc_alone_paints_the_pixels_that_find_it() {
                 let all = seen(&template, disc, own, level(&template, reach, disc.extent));
                 for (pixel, seen) in sample.positions().zip(&all) {
                     let painted = id(&frame, "id", pixel) != NO_ID;
-                    let expected = *seen == Seen::Found;
+                    let expected = *seen == Reach::Found;
                     assert!(
-                        *seen == Seen::Open || painted == expected,
+                        *seen == Reach::Open || painted == expected,
                         "{pixel:?} of {disc:?}, {settings:?}: {seen:?}"
                     );
                 }
-                open += all.iter().filter(|seen| **seen == Seen::Open).count();
-                pixels += all.iter().filter(|seen| **seen == Seen::Found).count();
+                open += all.iter().filter(|seen| **seen == Reach::Open).count();
+                pixels += all.iter().filter(|seen| **seen == Reach::Found).count();
                 if levels == LevelRule::Covering {
-                    assert!(!all.contains(&Seen::Missed), "{disc:?}, {settings:?}: cut");
+                    assert!(!all.contains(&Reach::Missed), "{disc:?}, {settings:?}: cut");
                 } else {
                     published[i].add(&all);
                     let least = level(&template, k / 2.0, disc.extent);

@@ -1,40 +1,41 @@
 //! Laws of the reconstruction with templates, on pictures of scenes drawn by lot.
 
-use crate::ewa::cases::{Case, Dice};
-use crate::ewa::stages::at;
-use crate::kit::tolerance::Arithmetic;
-use crate::template::cases::{self, Disc, exact_camera, exact_scene};
+use crate::kit::case::Case;
+use crate::kit::dice::Dice;
+use crate::kit::draw::Drawing;
+use crate::kit::number::Num;
+use crate::kit::planes::{at, plane};
+use crate::kit::scene::change;
+use crate::template::cases::{self, Dot, exact_camera, exact_scene};
 use crate::template::model::{Grid, Template};
-use crate::template::rounded::Rounded;
-use crate::template::stages::{GUARD, all_settings, grid, plane, unit};
+use crate::template::stages::{all_settings, grid};
 use glam::Vec3;
 use splatref::Error;
-use splatref::frame::{Exec, Frame, NO_ID};
+use splatref::frame::{Frame, NO_ID};
 use splatref::method::Method;
-use splatref::method::template::{self, LevelRule, Settings};
-use splatref::scene::{Camera, Scene, Surfels};
+use splatref::method::template::{LevelRule, Settings};
+use splatref::scene::{Camera, Scene};
 use std::collections::BTreeMap;
 
 fn drawn(scene: &Scene, camera: &Camera, settings: &Settings) -> Frame<f32> {
-    let exec = Exec::sequential();
-    template::render(scene, camera, settings, &exec, true).expect("renders").frame
+    Drawing::new(scene, camera, *settings).frame()
 }
 
 /// All levels of a picture.
-fn levels(template: &Template, frame: &Frame<f32>) -> Vec<Grid> {
+fn levels(template: &Template<24>, frame: &Frame<f32>) -> Vec<Grid> {
     let sizes = template.sizes.iter().enumerate();
     sizes.map(|(level, size)| grid(frame, level, *size)).collect()
 }
 
-fn oracle(settings: Settings, camera: &Camera) -> Template {
+fn oracle(settings: Settings, camera: &Camera) -> Template<24> {
     let size = [camera.width, camera.height];
-    Template::new(settings, size, unit(Arithmetic::F32) * GUARD)
+    Template::new(settings, size)
 }
 
 #[test]
 fn an_empty_scene_stays_empty() {
-    let behind = Disc::new(4.5, 4.5, 3.0).at_depth(-4.0);
-    let beside = Disc::new(-0.5, 4.5, 3.0);
+    let behind = Dot::new(4.5, 4.5, 3.0).at_depth(-4.0);
+    let beside = Dot::new(-0.5, 4.5, 3.0);
     for (size, discs) in [([9, 7], vec![]), ([9, 7], vec![behind, beside]), ([1, 1], vec![])] {
         for settings in all_settings(true) {
             let frame = drawn(&exact_scene(&discs), &exact_camera(size), &settings);
@@ -59,9 +60,7 @@ fn a_surface_of_one_colour_has_that_colour() {
     let mut pixels = 0;
     for number in 0..84 {
         let mut case = cases::case(number);
-        let mut cloud = case.scene.surfels.clone().into_cloud();
-        cloud.color = Some(vec![color; cloud.position.len()]);
-        case.scene.surfels = Surfels::new(cloud).expect("good surfels").0;
+        change(&mut case.scene, |cloud| cloud.color = Some(vec![color; cloud.position.len()]));
         case.scene.lights.clear();
         for settings in all_settings(false) {
             let frame = drawn(&case.scene, &case.camera, &settings);
@@ -69,7 +68,7 @@ fn a_surface_of_one_colour_has_that_colour() {
                 let terms = at(plane(&frame, "gathered.count"), i)[0];
                 let found = at(plane(&frame, ""), i);
                 // Of n products of a weight two roundings each, in the sums of both; a quotient.
-                let bound = (2.0 * terms + 2.0) * unit(Arithmetic::F32);
+                let bound = (2.0 * terms + 2.0) * Num::<24>::unit();
                 let expected = if terms > 0.0 { color.to_array().map(f64::from) } else { [0.0; 3] };
                 for (found, expected) in found.into_iter().zip(expected) {
                     assert!((found - expected).abs() <= bound * expected, "{found} in {case:?}");
@@ -92,7 +91,7 @@ struct Account {
 }
 
 /// Follows every sample up the levels of a picture; `None` if rounding decides.
-fn account(template: &Template, grids: &[Grid], case: &str) -> Option<Account> {
+fn account(template: &Template<24>, grids: &[Grid], case: &str) -> Option<Account> {
     let mut account = Account::default();
     // Which samples each centre consists of, by its id; nothing else may have two.
     let mut holds: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
@@ -149,17 +148,17 @@ fn every_sample_is_in_one_place_or_lost_by_the_rule() {
 }
 
 /// Discs by lot, of many sizes and depths.
-fn crowd(dice: &mut Dice, size: u32, count: usize) -> Vec<Disc> {
+fn crowd(dice: &mut Dice, size: u32, count: usize) -> Vec<Dot> {
     let by_lot = |dice: &mut Dice| {
         let [x, y] = [(); 2].map(|()| dice.below(2 * size as usize) as f32 / 2.0 + 0.25);
         let radius = [0.5, 1.5, 2.5, 3.5, 5.0, 7.0, 10.0, 20.0, 40.0][dice.below(9)];
-        Disc::new(x, y, radius).at_depth([4.0, 8.0, 16.0, 64.0, 256.0][dice.below(5)])
+        Dot::new(x, y, radius).at_depth([4.0, 8.0, 16.0, 64.0, 256.0][dice.below(5)])
     };
     (0..count).map(|_| by_lot(dice)).collect()
 }
 
 /// How many centres are left of discs; `None` if rounding decides.
-fn centers(discs: &[Disc], size: u32, settings: Settings) -> Option<usize> {
+fn centers(discs: &[Dot], size: u32, settings: Settings) -> Option<usize> {
     let (scene, camera) = (exact_scene(discs), exact_camera([size, size]));
     let template = oracle(settings, &camera);
     let grids = levels(&template, &drawn(&scene, &camera, &settings));
@@ -193,12 +192,12 @@ fn larger_templates_tend_to_merge_less() {
 #[test]
 fn a_larger_template_can_merge_more() {
     let group = |x: f32, y: f32| {
-        let small = Disc::new(x + 0.5, y + 0.5, 2.5);
-        let huge = Disc::new(x + 1.5, y + 0.5, 100.0).at_depth(200.0);
-        [small, huge, Disc::new(x + 2.5, y + 2.5, 7.0).at_depth(400.0)]
+        let small = Dot::new(x + 0.5, y + 0.5, 2.5);
+        let huge = Dot::new(x + 1.5, y + 0.5, 100.0).at_depth(200.0);
+        [small, huge, Dot::new(x + 2.5, y + 2.5, 7.0).at_depth(400.0)]
     };
     let discs = [[8.0, 8.0], [12.0, 8.0], [8.0, 12.0], [12.0, 12.0]].map(|[x, y]| group(x, y));
-    let discs: Vec<Disc> = discs.into_iter().flatten().collect();
+    let discs: Vec<Dot> = discs.into_iter().flatten().collect();
     let left = [5, 7].map(|size| {
         centers(&discs, 64, Settings { size, levels: LevelRule::Covering, cull: false })
     });
@@ -207,11 +206,10 @@ fn a_larger_template_can_merge_more() {
 
 #[test]
 fn templates_that_are_not_3_5_or_7_wide_are_refused() {
-    let (scene, camera) = (exact_scene(&[Disc::new(0.5, 0.5, 1.0)]), exact_camera([2, 1]));
+    let (scene, camera) = (exact_scene(&[Dot::new(0.5, 0.5, 1.0)]), exact_camera([2, 1]));
     for size in [0, 1, 2, 4, 6, 8, 9, u32::MAX] {
         let settings = Settings { size, ..Settings::default() };
-        let refused =
-            template::render::<f32>(&scene, &camera, &settings, &Exec::sequential(), true);
+        let refused = Drawing::new(&scene, &camera, settings).try_define::<f32>(true);
         let error = refused.expect_err("refused");
         assert!(matches!(error, Error::Invalid(..)), "{error:?}");
         assert!(!error.to_string().is_empty() && !error.to_string().contains('\n'), "{error}");
@@ -221,7 +219,6 @@ fn templates_that_are_not_3_5_or_7_wide_are_refused() {
         let settings = Settings { size, ..Settings::default() };
         let frame = drawn(&scene, &camera, &settings);
         assert_eq!(at(plane(&frame, "weight"), 0), [1.0; 3], "wider than the picture");
-        let rim = Rounded::exact(at(plane(&frame, "weight"), 1)[0]);
-        assert_eq!(rim.value, (-24.0_f64).exp2(), "on the rim");
+        assert_eq!(at(plane(&frame, "weight"), 1), [(-24.0_f64).exp2(); 3], "on the rim");
     }
 }

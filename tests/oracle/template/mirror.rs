@@ -4,26 +4,26 @@
 //! so that rounding differs, and the ternary test depends on which is found first, so that a pixel
 //! can even show other discs. That is the documented order, and the paper's method.
 
-use crate::ewa::cases::Dice;
-use crate::ewa::stages::at;
-use crate::kit::tolerance::Arithmetic;
-use crate::template::cases::{Disc, exact_camera, exact_scene};
+use crate::kit::dice::Dice;
+use crate::kit::draw::Drawing;
+use crate::kit::number::Num;
+use crate::kit::planes::value;
+use crate::template::cases::{Dot, exact_camera, exact_scene};
 use crate::template::known::{id, number};
-use crate::template::stages::{all_settings, plane, unit};
+use crate::template::stages::all_settings;
 use glam::Vec3;
-use splatref::frame::{Exec, Frame, NO_ID};
-use splatref::method::template::{self, LevelRule, Settings};
+use splatref::frame::{Frame, NO_ID};
+use splatref::method::template::{LevelRule, Settings};
 
 /// Left and right exchanged (0), or top and bottom (1).
 const AXES: [usize; 2] = [0, 1];
 
-fn drawn(size: [u32; 2], discs: &[Disc], settings: &Settings) -> Frame<f32> {
-    let (scene, camera, exec) = (exact_scene(discs), exact_camera(size), Exec::sequential());
-    template::render(&scene, &camera, settings, &exec, true).expect("renders").frame
+fn drawn(size: [u32; 2], discs: &[Dot], settings: &Settings) -> Frame<f32> {
+    Drawing::new(&exact_scene(discs), &exact_camera(size), *settings).frame()
 }
 
-fn mirrored(size: [u32; 2], discs: &[Disc], axis: usize) -> Vec<Disc> {
-    let mirror = |disc: &Disc| {
+fn mirrored(size: [u32; 2], discs: &[Dot], axis: usize) -> Vec<Dot> {
+    let mirror = |disc: &Dot| {
         let mut other = *disc;
         other.place[axis] = size[axis] as f32 - disc.place[axis];
         other.normal[axis] = -disc.normal[axis];
@@ -41,12 +41,12 @@ fn pairs(size: [u32; 2], axis: usize) -> impl Iterator<Item = [[u32; 2]; 2]> {
     })
 }
 
-fn disc(dice: &mut Dice, size: [u32; 2], radius: f32) -> Disc {
+fn disc(dice: &mut Dice, size: [u32; 2], radius: f32) -> Dot {
     // Not on an edge between pixels: that belongs to one of them.
     let [x, y] = size.map(|side| dice.below(32 * side as usize) as f32 / 32.0 + 1.0 / 64.0);
     let normal = if dice.below(2) == 0 { Vec3::Z } else { dice.direction() };
     let color = dice.vector(Vec3::ZERO, Vec3::ONE);
-    Disc { normal, color, ..Disc::new(x, y, radius) }
+    Dot { normal, color, ..Dot::new(x, y, radius) }
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn one_disc_mirrors_bit_for_bit() {
                 for pair in pairs(size, axis) {
                     let [a, b] = [0, 1].map(|i| {
                         let [x, y] = pair[i];
-                        let at = |name| at(plane(&frames[i], name), (y * size[0] + x) as usize);
+                        let at = |name| value(&frames[i], name, (y * size[0] + x) as usize);
                         let mut normal = at("normal");
                         normal[axis] *= [1.0, -1.0][i];
                         (at(""), at("Z"), at("weight"), at("id"), normal)
@@ -86,12 +86,12 @@ fn a_surface_mirrors_up_to_rounding_and_not_bit_for_bit() {
     let (mut dice, size) = (Dice(6), [32, 32]);
     let (mut same, mut rounded, mut rims, mut worst) = (0, 0, 0, 0.0_f64);
     for _ in 0..20 {
-        let discs: Vec<Disc> = (0..150)
+        let discs: Vec<Dot> = (0..150)
             .map(|_| {
                 let radius = [1.5, 2.5, 5.0][dice.below(3)];
                 let depth = dice.within(4.0, 6.0);
                 let disc = disc(&mut dice, size, radius);
-                Disc { normal: Vec3::Z, ..disc }.at_depth(depth)
+                Dot { normal: Vec3::Z, ..disc }.at_depth(depth)
             })
             .collect();
         for settings in all_settings(false) {
@@ -114,7 +114,7 @@ fn a_surface_mirrors_up_to_rounding_and_not_bit_for_bit() {
                         // Weights near the rim are differences of numbers near 1.
                         let terms =
                             f64::from(count) * if name == "gathered.depths" { 6.0 } else { 1.0 };
-                        let units = (a - b).abs() / (unit(Arithmetic::F32) * terms.max(1.0));
+                        let units = (a - b).abs() / (Num::<24>::unit() * terms.max(1.0));
                         worst = worst.max(units);
                     }
                 }
@@ -133,8 +133,8 @@ fn a_surface_mirrors_up_to_rounding_and_not_bit_for_bit() {
 #[test]
 fn the_ternary_test_does_not_mirror() {
     let row = [(7.5, 4.0), (8.5, 5.75), (9.5, 7.5)];
-    let discs = row.map(|(x, depth)| Disc::new(x, 8.5, 1.0).at_depth(depth));
-    let upright = discs.map(|d| Disc { place: [d.place[1], d.place[0]], ..d });
+    let discs = row.map(|(x, depth)| Dot::new(x, 8.5, 1.0).at_depth(depth));
+    let upright = discs.map(|d| Dot { place: [d.place[1], d.place[0]], ..d });
     for settings in all_settings(false) {
         for (axis, discs) in [discs, upright].into_iter().enumerate() {
             let frame = drawn([16, 16], &discs, &settings);
@@ -150,7 +150,7 @@ fn the_ternary_test_does_not_mirror() {
 
 #[test]
 fn cells_mirror_for_powers_of_two_only() {
-    let discs = [Disc::new(1.5, 4.5, 3.0), Disc::new(2.5, 4.5, 3.0)];
+    let discs = [Dot::new(1.5, 4.5, 3.0), Dot::new(2.5, 4.5, 3.0)];
     let settings = Settings { size: 3, levels: LevelRule::Covering, cull: false };
     for (width, merged) in [(16, 0), (13, 1)] {
         let size = [width, 16];

@@ -5,13 +5,14 @@
 //! pixel are found by asking every centre of every level, not by visiting cells.
 
 use crate::kit::eye::V3;
-use crate::template::rounded::{Rounded, unit};
+use crate::kit::number::{N3, Num, exact, normalized};
+use crate::kit::projection::Sight;
 use splatref::frame::NO_ID;
 use splatref::method::template::{LevelRule, Settings};
 
 /// What a cell of a level holds.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Cell {
+pub(crate) struct Center {
     pub(crate) id: u32,
     pub(crate) depth: f64,
     pub(crate) radius: f64,
@@ -26,11 +27,11 @@ pub(crate) struct Cell {
 pub(crate) struct Grid {
     pub(crate) width: u32,
     pub(crate) height: u32,
-    pub(crate) cells: Vec<Option<Cell>>,
+    pub(crate) cells: Vec<Option<Center>>,
 }
 
 impl Grid {
-    pub(crate) fn at(&self, x: u32, y: u32) -> Option<&Cell> {
+    pub(crate) fn at(&self, x: u32, y: u32) -> Option<&Center> {
         let inside = x < self.width && y < self.height;
         self.cells.get((y * self.width + x) as usize).filter(|_| inside)?.as_ref()
     }
@@ -43,15 +44,15 @@ impl Grid {
 }
 
 /// What becomes of the centres that move into one cell.
-pub(crate) struct Merged {
+pub(crate) struct Merged<const P: u32> {
     pub(crate) id: u32,
-    /// In the order of the fields of [`Cell`].
-    pub(crate) depth: Rounded,
-    pub(crate) radius: Rounded,
-    pub(crate) extent: Rounded,
-    pub(crate) place: [Rounded; 2],
-    pub(crate) normal: [Rounded; 3],
-    pub(crate) color: [Rounded; 3],
+    /// In the order of the fields of [`Center`].
+    pub(crate) depth: Num<P>,
+    pub(crate) radius: Num<P>,
+    pub(crate) extent: Num<P>,
+    pub(crate) place: [Num<P>; 2],
+    pub(crate) normal: N3<P>,
+    pub(crate) color: N3<P>,
     /// The ids that take part, and those that are lost.
     pub(crate) members: Vec<u32>,
     pub(crate) lost: Vec<u32>,
@@ -62,11 +63,11 @@ pub(crate) struct Merged {
 pub(crate) struct Staying {
     pub(crate) level: usize,
     pub(crate) cell: [u32; 2],
-    pub(crate) center: Cell,
+    pub(crate) center: Center,
 }
 
 /// What a pixel gathers.
-pub(crate) struct Sums {
+pub(crate) struct Sums<const P: u32> {
     pub(crate) id: u32,
     pub(crate) depth: f64,
     pub(crate) radius: f64,
@@ -74,26 +75,24 @@ pub(crate) struct Sums {
     /// How many were behind, and how often the sums started anew.
     pub(crate) hidden: u32,
     pub(crate) anew: u32,
-    pub(crate) weight: Rounded,
-    pub(crate) depths: Rounded,
-    pub(crate) normal: [Rounded; 3],
-    pub(crate) color: [Rounded; 3],
+    pub(crate) weight: Num<P>,
+    pub(crate) depths: Num<P>,
+    pub(crate) normal: N3<P>,
+    pub(crate) color: N3<P>,
 }
 
-/// The method for pictures of one size.
-pub(crate) struct Template {
+/// The method for pictures of one size, in an arithmetic of so many digits.
+pub(crate) struct Template<const P: u32> {
     pub(crate) settings: Settings,
     /// Sizes of the levels from 0 to the top.
     pub(crate) sizes: Vec<[u32; 2]>,
-    /// The rounding of the arithmetic, times the guard of decisions.
-    pub(crate) unit: f64,
 }
 
 /// The least weight.
 const LEAST: f64 = 1.0 / 16_777_216.0;
 
-impl Template {
-    pub(crate) fn new(settings: Settings, [width, height]: [u32; 2], unit: f64) -> Self {
+impl<const P: u32> Template<P> {
+    pub(crate) fn new(settings: Settings, [width, height]: [u32; 2]) -> Self {
         let reached = (settings.size - 1) / 2 + 1;
         let mut sizes = vec![[width, height]];
         while let Some(&[w, h]) = sizes.last()
@@ -101,7 +100,7 @@ impl Template {
         {
             sizes.push([w.div_ceil(2), h.div_ceil(2)]);
         }
-        Self { settings, sizes, unit }
+        Self { settings, sizes }
     }
 
     pub(crate) fn top(&self) -> usize {
@@ -109,7 +108,7 @@ impl Template {
     }
 
     /// Whether a centre at a level goes no further.
-    pub(crate) fn stays(&self, level: usize, center: &Cell) -> bool {
+    pub(crate) fn stays(&self, level: usize, center: &Center) -> bool {
         let k = f64::from(self.settings.size);
         let cells = match self.settings.levels {
             LevelRule::Covering => (k - 1.0) / 2.0,
@@ -136,7 +135,7 @@ impl Template {
         level: usize,
         finer: &Grid,
         [x, y]: [u32; 2],
-    ) -> Result<Option<Merged>, ()> {
+    ) -> Result<Option<Merged<P>>, ()> {
         let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| finer.at(2 * x + i, 2 * y + j));
         let mut four = four.map(|cell| cell.filter(|center| !self.stays(level, center)));
         // The first of the least: ties go to the earlier.
@@ -146,14 +145,14 @@ impl Template {
         let mut lost = Vec::new();
         for place in &mut four {
             let Some(center) = place.filter(|center| center.id != front.id) else { continue };
-            let apart = Rounded::exact(center.depth) - Rounded::exact(front.depth);
-            let near = Rounded::exact(center.radius) + Rounded::exact(front.radius);
-            if apart.above(near, self.unit).ok_or(())? {
+            let apart = Num::<P>::exact(center.depth) - Num::exact(front.depth);
+            let near = Num::exact(center.radius) + Num::exact(front.radius);
+            if near.less(apart).ok_or(())? {
                 lost.push(center.id);
                 *place = None;
             }
         }
-        let mean = |field: &dyn Fn(&Cell) -> f64| mean(four.map(|cell| cell.map(field)));
+        let mean = |field: &dyn Fn(&Center) -> f64| mean(four.map(|cell| cell.map(field)));
         Ok(Some(Merged {
             id: front.id,
             depth: mean(&|c| c.depth),
@@ -175,22 +174,22 @@ impl Template {
 
     /// What a pixel gathers of all centres that stay, in the order of levels and rows; `Err` if
     /// rounding decides.
-    pub(crate) fn gathered(&self, all: &[Staying], pixel: [u32; 2]) -> Result<Option<Sums>, ()> {
-        let mut sums: Option<Sums> = None;
+    pub(crate) fn gathered(&self, all: &[Staying], pixel: [u32; 2]) -> Result<Option<Sums<P>>, ()> {
+        let mut sums: Option<Sums<P>> = None;
         for Staying { level, cell, center } in all {
             if !self.finds(*level, *cell, pixel) {
                 continue;
             }
             let own = *level == 0 && *cell == pixel;
             let Some(weight) = self.weight(center, pixel, own)? else { continue };
-            let [t, r] = [center.depth, center.radius].map(Rounded::exact);
+            let [t, r] = [center.depth, center.radius].map(Num::<P>::exact);
             if let Some(front) = &mut sums {
-                let [t_front, r_front] = [front.depth, front.radius].map(Rounded::exact);
-                if (t - t_front).above(r + r_front, self.unit).ok_or(())? {
+                let [t_front, r_front] = [front.depth, front.radius].map(Num::exact);
+                if (r + r_front).less(t - t_front).ok_or(())? {
                     front.hidden += 1;
                     continue;
                 }
-                if (t_front - t).above(r + r_front, self.unit).ok_or(())? {
+                if (r + r_front).less(t_front - t).ok_or(())? {
                     *front = Sums { hidden: front.hidden, anew: front.anew + 1, ..Sums::NONE };
                 }
             }
@@ -207,46 +206,45 @@ impl Template {
     /// rounding decides.
     pub(crate) fn weight(
         &self,
-        center: &Cell,
+        center: &Center,
         pixel: [u32; 2],
         own: bool,
-    ) -> Result<Option<Rounded>, ()> {
-        let rim = Rounded::exact(LEAST);
+    ) -> Result<Option<Num<P>>, ()> {
+        let rim = Num::exact(LEAST);
         let outside = Ok(own.then_some(rim));
-        let [nx, ny, nz] = Rounded::vector(center.normal);
-        let square = Rounded::exact(center.extent) * Rounded::exact(center.extent);
-        if center.normal[2] == 0.0 || square.value == 0.0 {
+        let [nx, ny, nz] = exact(center.normal);
+        let square = Num::exact(center.extent) * Num::exact(center.extent);
+        if center.normal[2] == 0.0 || square.v == 0.0 {
             return outside;
         }
         let form = {
-            let [x, y] = [0, 1].map(|i| {
-                Rounded::exact(f64::from(pixel[i]) + 0.5) - Rounded::exact(center.place[i])
-            });
+            let [x, y] =
+                [0, 1].map(|i| Num::exact(f64::from(pixel[i]) + 0.5) - Num::exact(center.place[i]));
             let behind = nx / nz * x - ny / nz * y;
             x * x + y * y + behind * behind
         };
-        match form.above(square, self.unit) {
+        match square.less(form) {
             None => Err(()),
             Some(true) => outside,
-            Some(false) => Ok(Some((Rounded::ONE - (form / square).sqrt()).at_least(LEAST))),
+            Some(false) => Ok(Some((Num::exact(1.0) - (form / square).sqrt()).at_least(LEAST))),
         }
     }
 }
 
 /// The plain mean of those that are there, within their bounds.
-fn mean(four: [Option<f64>; 4]) -> Rounded {
+fn mean<const P: u32>(four: [Option<f64>; 4]) -> Num<P> {
     let there = four.into_iter().flatten();
     let [least, greatest] =
         [there.clone().fold(f64::INFINITY, f64::min), there.clone().fold(-f64::INFINITY, f64::max)];
-    let [a, b, c, d] = four.map(|v| v.map_or(Rounded::ZERO, Rounded::exact));
+    let [a, b, c, d] = four.map(|v| v.map_or(Num::ZERO, Num::exact));
     let sum = (a + b) + (c + d);
     let count = there.count();
-    let scale = Rounded::exact(1.0) / Rounded::exact(count as f64);
+    let scale = Num::exact(1.0) / Num::exact(count as f64);
     let mean = if count == 1 { sum } else { sum * scale };
     mean.at_least(least).at_most(greatest)
 }
 
-impl Sums {
+impl<const P: u32> Sums<P> {
     const NONE: Self = Self {
         id: NO_ID,
         depth: f64::INFINITY,
@@ -254,41 +252,35 @@ impl Sums {
         count: 0,
         hidden: 0,
         anew: 0,
-        weight: Rounded::ZERO,
-        depths: Rounded::ZERO,
-        normal: [Rounded::ZERO; 3],
-        color: [Rounded::ZERO; 3],
+        weight: Num::ZERO,
+        depths: Num::ZERO,
+        normal: [Num::ZERO; 3],
+        color: [Num::ZERO; 3],
     };
 
-    fn add(&mut self, center: &Cell, weight: Rounded) {
-        let more = |sum: [Rounded; 3], value: V3| {
-            [0, 1, 2].map(|i| sum[i] + weight * Rounded::exact(value[i]))
-        };
+    fn add(&mut self, center: &Center, weight: Num<P>) {
+        let more =
+            |sum: N3<P>, value: V3| [0, 1, 2].map(|i| sum[i] + weight * Num::exact(value[i]));
         self.count += 1;
         self.weight = self.weight + weight;
-        self.depths = self.depths + weight * Rounded::exact(center.depth);
+        self.depths = self.depths + weight * Num::exact(center.depth);
         self.normal = more(self.normal, center.normal);
         self.color = more(self.color, center.color);
     }
 }
 
 /// A sum divided by its weight, which is > 0.
-pub(crate) fn average(sum: V3, weight: f64) -> [Rounded; 3] {
-    sum.map(|v| Rounded::exact(v) / Rounded::exact(weight))
+pub(crate) fn average<const P: u32>(sum: V3, weight: f64) -> N3<P> {
+    sum.map(|v| Num::exact(v) / Num::exact(weight))
 }
 
 /// The direction of a sum of view-space normals in world space; none if they cancel.
-pub(crate) fn direction(view: &[V3; 3], sum: V3, weight: f64) -> Option<[Rounded; 3]> {
+pub(crate) fn direction<const P: u32>(sight: &Sight<P>, sum: V3, weight: f64) -> Option<N3<P>> {
     if sum == [0.0; 3] {
-        return Some([Rounded::ZERO; 3]);
+        return Some(exact([0.0; 3]));
     }
-    let mean = average(sum, weight);
-    let world = [0, 1, 2].map(|i| {
-        let term = |j: usize| Rounded::exact(view[j][i]) * mean[j];
-        term(0) + term(1) + term(2)
-    });
-    let size = |v: [Rounded; 3]| v.map(|c| c.value.abs()).into_iter().fold(0.0, f64::max);
-    let worst = world.map(|c| c.units).into_iter().fold(0.0, f64::max);
-    // First-order bounds mean nothing beyond that.
-    (worst < 1e3 * size(world)).then(|| unit(world))
+    let world = sight.turned(average(sum, weight));
+    let size = world.map(|c| c.v.abs()).into_iter().fold(0.0, f64::max);
+    let worst = world.map(|c| c.e).into_iter().fold(0.0, f64::max);
+    (worst < 1e3 * Num::<P>::unit() * size).then(|| normalized(world))
 }

@@ -1,10 +1,10 @@
 //! Environments behind transparent layers and through glass, in closed form.
 
-use crate::ewa::cases::Dice;
-use crate::ewa::stages::index;
+use crate::kit::dice::Dice;
 use crate::kit::eye::{Eye, dot, unit};
+use crate::kit::planes::{index, value};
 use crate::transparent::known::{
-    PIXELS, SIZE, Sheet, TESTS, assert_near, camera, over, render, settings, sheet, sheets, value,
+    PIXELS, SIZE, Sheet, TESTS, assert_near, camera, over, render, settings, sheet, sheets,
 };
 use crate::transparent::surroundings::{radiance, world_ray};
 use glam::{DVec3, Vec3};
@@ -41,7 +41,7 @@ fn an_empty_picture_is_the_environment_along_its_rays() {
                 let alpha = if environment.is_some() { 1.0 } else { 0.0 };
                 assert_eq!(value(&frame, "A", i), [alpha; 3]);
                 assert_eq!(value(&frame, "Z", i), [f64::INFINITY; 3]);
-                assert_eq!(index(&frame, "id", i), Some(NO_ID));
+                assert_eq!(index(&frame, "id", i), NO_ID);
                 assert_eq!(value(&frame, "layers", i), [0.0; 3]);
             }
         }

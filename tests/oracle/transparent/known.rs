@@ -1,18 +1,20 @@
 //! Transparent pictures whose numbers are known in closed form.
 
-use crate::ewa::cases::{Dice, OUTLINES};
-use crate::ewa::stages::at;
-use crate::single_pass::stages::groups;
-use glam::{DVec3, Vec3};
-use splatref::frame::{Exec, Frame};
-use splatref::index::order::BackToFront;
-use splatref::method::ewa::{self, Epsilon};
+use crate::kit::dice::Dice;
+use crate::kit::draw::{Drawing, back_to_front};
+use crate::kit::planes::value;
+use crate::kit::scene::{OUTLINES, ahead, change, discs, groups, scene, surfels};
+use crate::transparent::Settings;
+use glam::Vec3;
+use splatref::frame::Frame;
+use splatref::method::ewa;
 use splatref::method::peeling;
 use splatref::method::single_pass::{BinCount, DepthTest};
-use splatref::method::transparent::{self, Holes, Settings};
+use splatref::method::transparent::Holes;
 use splatref::number::Exact;
 use splatref::scene::Groups;
-use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Pose, Scene, Surfels};
+use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Scene};
+use splatref::splat::Epsilon;
 use splatref::splat::Kernel;
 
 pub(crate) const SIZE: u32 = 24;
@@ -33,46 +35,25 @@ pub(crate) fn sheet(depth: f32, color: [f32; 3], alpha: f32) -> Sheet {
 
 /// A scene of layers, of as many discs each as there are groups; every disc covers the picture.
 pub(crate) fn sheets(layers: &[Sheet], count: usize) -> (Scene, Groups) {
-    let mut cloud = Cloud {
-        position: Vec::new(),
-        normal: Some(Vec::new()),
-        radius: Some(Vec::new()),
-        color: Some(Vec::new()),
-        opacity: Some(Vec::new()),
-        ..Cloud::default()
+    let all = || layers.iter().flat_map(|layer| (0..count).map(move |k| (layer, k)));
+    let cloud = discs(all().map(|(layer, k)| {
+        // Within the plane of the layer, and closer to each other than layers: centres are sorted
+        // along the axis of their largest extent.
+        let aside = layer.normal.cross(Vec3::Y) * (0.0625 * k as f32);
+        (Vec3::new(0.0, 0.0, -layer.depth) + aside, layer.normal, 8.0)
+    }));
+    let cloud = Cloud {
+        color: Some(all().map(|(layer, _)| layer.color.into()).collect()),
+        opacity: Some(all().map(|(layer, _)| layer.alpha).collect()),
+        ..cloud
     };
-    let mut own = Vec::new();
-    for layer in layers {
-        for k in 0..count {
-            // Within the plane of the layer, and closer to each other than layers: centres are
-            // sorted along the axis of their largest extent.
-            let aside = layer.normal.cross(Vec3::Y) * (0.0625 * k as f32);
-            cloud.position.push(Vec3::new(0.0, 0.0, -layer.depth) + aside);
-            cloud.normal.as_mut().into_iter().for_each(|all| all.push(layer.normal));
-            cloud.radius.as_mut().into_iter().for_each(|all| all.push(8.0));
-            cloud.color.as_mut().into_iter().for_each(|all| all.push(layer.color.into()));
-            cloud.opacity.as_mut().into_iter().for_each(|all| all.push(layer.alpha));
-            own.push(k as u8);
-        }
-    }
-    let surfels = Surfels::new(cloud).expect("good discs").0;
-    let (lights, material) = (Vec::new(), Phong::default());
-    let scene = Scene {
-        name: String::new(),
-        surfels,
-        lights,
-        material,
-        primitives: Default::default(),
-        environment: None,
-    };
-    (scene, groups(own, count))
+    (scene(surfels(cloud)), groups(all().map(|(_, k)| k as u8).collect(), count))
 }
 
 /// At the origin, looking along -z.
 pub(crate) fn camera(orthographic: bool) -> Camera {
     let lens = if orthographic { Lens::Orthographic(6.0) } else { Lens::Focal(28.0) };
-    let pose = Pose { eye: DVec3::ZERO, target: DVec3::NEG_Z, up: DVec3::Y };
-    Camera::new(SIZE, SIZE, pose, lens).expect("a plain camera")
+    ahead(lens, [SIZE; 2])
 }
 
 pub(crate) fn settings(outline: usize, nearest: Option<DepthTest>) -> Settings {
@@ -86,14 +67,7 @@ pub(crate) fn render<R: Exact>(
     camera: &Camera,
     settings: &Settings,
 ) -> Frame<R> {
-    let exec = Exec::sequential();
-    let order = BackToFront::new(&scene.surfels, &exec);
-    let picture = transparent::render(scene, (groups, &order), camera, settings, &exec, true);
-    picture.expect("renders").frame
-}
-
-pub(crate) fn value<R: Exact>(frame: &Frame<R>, name: &str, i: usize) -> [f64; 3] {
-    at(frame.plane(name).unwrap_or_else(|| panic!("no plane {name}")), i)
+    Drawing::new(scene, camera, *settings).grouped(groups).frame()
 }
 
 pub(crate) fn assert_near(found: [f64; 3], expected: [f64; 3], part: f64, name: &str) {
@@ -150,12 +124,10 @@ fn sheets_blend_in_closed_form() {
             given.0.lights = vec![Light::Headlight { towards: Vec3::Z, color }];
             given.0.material =
                 Phong { ambient: 0.25, diffuse: 0.75, specular: 0.0, ..Phong::default() };
-            given.0.surfels = {
-                let mut cloud = given.0.surfels.into_cloud();
+            change(&mut given.0, |cloud| {
                 let normals = cloud.normal.iter_mut().flatten();
                 normals.for_each(|n| *n = Vec3::Z * n.z.signum());
-                Surfels::new(cloud).expect("good discs").0
-            };
+            });
         }
         let camera = camera(number % 2 == 1);
         let (color, alpha) = over(&layers);
@@ -166,10 +138,8 @@ fn sheets_blend_in_closed_form() {
             let splats = settings.splats;
             let name = format!("{layers:?} {settings:?}");
             let frame = render::<R>(&given, &camera, &settings);
-            let exec = Exec::sequential();
             let peeling = peeling::Settings { splats, layers: 64 };
-            let peeled = peeling::render::<R>(&given.0, &camera, &peeling, &exec, false);
-            let peeled = peeled.expect("renders").frame;
+            let peeled = Drawing::new(&given.0, &camera, peeling).plain();
             for i in 0..PIXELS {
                 for frame in [&frame, &peeled] {
                     assert_near(value(frame, "", i), color, part, &name);
@@ -245,7 +215,7 @@ fn surfels_at_one_place_are_one_layer() {
         let camera = camera(orthographic);
         let settings = settings(0, test);
         let frame = render::<f64>(&given, &camera, &settings);
-        let order = BackToFront::new(&given.0.surfels, &Exec::sequential()).walk(&camera);
+        let order = back_to_front(&given.0.surfels, &camera);
         let first = order.iter().find(|i| **i != 1).expect("two others");
         // The nearest layer takes the lower surfel, and drops the other.
         let kept = if test.is_some() { 0 } else { *first as usize };
@@ -260,19 +230,13 @@ fn surfels_at_one_place_are_one_layer() {
 
 #[test]
 fn one_surfel_is_itself() {
-    let mut cloud = sheets(&[sheet(5.0, [0.5, 0.25, 0.75], 0.5)], 1).0.surfels.into_cloud();
-    cloud.radius = Some(vec![1.0]);
-    let surfels = Surfels::new(cloud).expect("a disc").0;
-    let (scene, groups) =
-        (Scene { surfels, ..sheets(&[sheet(5.0, [0.0; 3], 0.5)], 1).0 }, groups(vec![0], 1));
+    let mut given = sheets(&[sheet(5.0, [0.5, 0.25, 0.75], 0.5)], 1);
+    change(&mut given.0, |cloud| cloud.radius = Some(vec![1.0]));
     let camera = camera(false);
     for outline in 0..3 {
-        let exec = Exec::sequential();
         let splats = settings(outline, None).splats;
-        let whole =
-            ewa::render::<f32>(&scene, &camera, &splats, &exec, false).expect("renders").frame;
+        let whole = Drawing::new(&given.0, &camera, splats).plain::<f32>();
         for test in TESTS {
-            let given = (scene.clone(), groups.clone());
             let frame = render::<f32>(&given, &camera, &settings(outline, test));
             let mut covered = 0;
             for i in 0..PIXELS {
@@ -298,9 +262,7 @@ fn an_enlarged_disc_is_not_behind_itself() {
     for (outline, orthographic) in [(0, false), (1, false), (2, false), (0, true), (1, true)] {
         let layer = Sheet { normal: Vec3::new(0.6, 0.48, 0.64), ..sheet(5.0, [1.0; 3], 0.5) };
         let mut given = sheets(&[layer], 1);
-        let mut cloud = given.0.surfels.into_cloud();
-        cloud.radius = Some(vec![1.5]);
-        given.0.surfels = Surfels::new(cloud).expect("a disc").0;
+        change(&mut given.0, |cloud| cloud.radius = Some(vec![1.5]));
         let camera = camera(orthographic);
         let mut pictures = [1.0, 1.25].into_iter().map(|scale| {
             given.1 = Groups::new(vec![0], vec![], vec![scale]).expect("a group");

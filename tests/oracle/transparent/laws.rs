@@ -1,51 +1,32 @@
 //! What transparency must keep, on pictures of scenes drawn by lot.
 
-use crate::ewa::cases::{Case, Dice};
-use crate::ewa::stages::at;
-use crate::single_pass::stages::groups;
-use crate::transparent::cases::Subject;
+use crate::kit::case::Case;
+use crate::kit::dice::Dice;
+use crate::kit::draw::{Drawing, back_to_front};
+use crate::kit::planes::{pixels, plane, value};
+use crate::kit::scene::{change, groups};
+use crate::transparent::Settings;
+use crate::transparent::cases;
 use glam::Vec3;
 use splatref::composite::bins::DepthBins;
-use splatref::frame::{Exec, Frame, NO_ID, Plane, Samples};
-use splatref::index::order::BackToFront;
-use splatref::method::ewa;
+use splatref::frame::{Frame, NO_ID, Plane, Samples};
 use splatref::method::single_pass::{self, BinCount};
-use splatref::method::transparent::{self, Holes};
+use splatref::method::transparent::Holes;
 use splatref::number::Exact;
 use splatref::scene::Groups;
 use splatref::scene::environment::Map;
-use splatref::scene::{Cloud, Environment, Light, Scene, Surfels};
+use splatref::scene::{Environment, Light, Scene};
 use splatref::shade::optics::{BendingLayers, Refraction};
 
 /// How many scenes a law is tried on.
 const SCENES: usize = 48;
 
-fn render<R: Exact>(subject: &Subject, stages: bool) -> Frame<R> {
-    let exec = Exec::sequential();
-    let Case { scene, camera, .. } = &subject.case;
-    let order = BackToFront::new(&scene.surfels, &exec);
-    let given = (&subject.groups, &order);
-    let picture = transparent::render::<R>(scene, given, camera, &subject.settings, &exec, stages);
-    picture.expect("renders").frame
+fn render<R: Exact>(subject: &Case<Settings>, stages: bool) -> Frame<R> {
+    subject.drawing().try_define(stages).expect("renders").frame
 }
 
-/// The surfels of a case, changed.
-fn change(case: &mut Case, change: impl FnOnce(&mut Cloud)) {
-    let mut cloud = case.scene.surfels.clone().into_cloud();
-    change(&mut cloud);
-    case.scene.surfels = Surfels::new(cloud).expect("still good").0;
-}
-
-fn opacities(case: &mut Case, alpha: f32) {
-    change(case, |cloud| cloud.opacity = Some(vec![alpha; cloud.position.len()]));
-}
-
-fn pixels<R>(frame: &Frame<R>) -> std::ops::Range<usize> {
-    0..(frame.width * frame.height) as usize
-}
-
-fn value<R: Exact>(frame: &Frame<R>, name: &str, i: usize) -> [f64; 3] {
-    at(frame.plane(name).unwrap_or_else(|| panic!("no plane {name}")), i)
+fn opacities(scene: &mut Scene, alpha: f32) {
+    change(scene, |cloud| cloud.opacity = Some(vec![alpha; cloud.position.len()]));
 }
 
 /// Asserts that two frames hold the same bits in these planes.
@@ -76,27 +57,25 @@ fn white() -> Environment {
 /// extended by.
 #[test]
 fn opaque_surfels_make_the_picture_of_the_single_pass() {
-    fn check<R: Exact>(subject: &Subject, alone: &Groups) {
-        let Case { scene, camera, name, .. } = &subject.case;
+    fn check<R: Exact>(subject: &Case<Settings>, alone: &Groups) {
+        let Case { scene, camera, name, .. } = subject;
         let depth = subject.settings.nearest.expect("Algorithm 3");
         let settings = single_pass::Settings { splats: subject.settings.splats, depth };
-        let exec = Exec::sequential();
-        let one = single_pass::render::<R>(scene, alone, camera, &settings, &exec, false);
-        let frame = render::<R>(subject, false);
-        same(&frame, &one.expect("renders").frame, &["", "A", "Z", "id", "weight"], name);
+        let one = Drawing::new(scene, camera, settings).grouped(alone).plain::<R>();
+        same(&render(subject, false), &one, &["", "A", "Z", "id", "weight"], name);
     }
     let mut tried = 0;
     for number in 0..2 * SCENES {
-        let mut subject = Subject::new(number);
+        let mut subject = cases::case(number);
         // A surface of a colour and no opacity is opaque, and so is one of opacity 1.
         match number % 2 {
-            0 => opacities(&mut subject.case, 1.0),
-            _ => change(&mut subject.case, |cloud| cloud.opacity = None),
+            0 => opacities(&mut subject.scene, 1.0),
+            _ => change(&mut subject.scene, |cloud| cloud.opacity = None),
         }
         // Light is bent by the part 1 - alpha alone.
         subject.settings.refraction = subject.settings.refraction.filter(|_| number % 3 == 0);
         if subject.settings.nearest.is_some() {
-            let alone = groups(subject.groups.own().to_vec(), subject.groups.len());
+            let alone = groups(subject.groups().own().to_vec(), subject.groups().len());
             check::<f32>(&subject, &alone);
             check::<f64>(&subject, &alone);
             tried += 1;
@@ -108,21 +87,20 @@ fn opaque_surfels_make_the_picture_of_the_single_pass() {
 /// Of opaque surfels Algorithm 2 shows the mean of the groups, each a surfel of its nearest bin.
 #[test]
 fn opaque_surfels_show_the_nearest_bin_of_each_group() {
-    fn check<R: Exact>(mut subject: Subject) {
+    fn check<R: Exact>(mut subject: Case<Settings>) {
         subject.settings.nearest = None;
         subject.settings.refraction = None;
-        subject.case.scene.environment = None;
-        subject.case.scene.lights.clear();
-        opacities(&mut subject.case, 1.0);
-        let surfels = subject.case.scene.surfels.len();
-        subject.groups = groups(vec![0; surfels], 1);
-        let Case { scene, camera, settings, name, .. } = &subject.case;
+        subject.scene.environment = None;
+        subject.scene.lights.clear();
+        opacities(&mut subject.scene, 1.0);
+        let surfels = subject.scene.surfels.len();
+        subject.groups = Some(groups(vec![0; surfels], 1));
+        let Case { scene, camera, settings, name, .. } = &subject;
         let frame = render::<R>(&subject, true);
-        let exec = Exec::sequential();
-        let whole = ewa::render::<R>(scene, camera, settings, &exec, true).expect("renders").frame;
+        let whole = Drawing::new(scene, camera, settings.splats).frame::<R>();
         let bins = DepthBins::<R>::new(&subject.range(subject.settings.bins));
         for i in pixels(&frame) {
-            let Some(Samples::Scalar(depth)) = whole.plane("Z") else { panic!("no plane Z") };
+            let Samples::Scalar(depth) = plane(&whole, "Z") else { panic!("no scalar Z") };
             let nearest = depth.values()[i];
             let [id, ..] = value(&frame, "blended.group00.id", i);
             if !nearest.is_finite() {
@@ -142,24 +120,24 @@ fn opaque_surfels_show_the_nearest_bin_of_each_group() {
         }
     }
     for number in 0..SCENES {
-        check::<f32>(Subject::new(number));
-        check::<f64>(Subject::new(number));
+        check::<f32>(cases::case(number));
+        check::<f64>(cases::case(number));
     }
 }
 
 /// Clear surfels leave no light, and do not change the environment by a bit.
 #[test]
 fn an_opacity_of_0_is_not_seen() {
-    fn check<R: Exact>(mut subject: Subject) {
-        opacities(&mut subject.case, 0.0);
+    fn check<R: Exact>(mut subject: Case<Settings>) {
+        opacities(&mut subject.scene, 0.0);
         subject.settings.refraction = None;
         let frame = render::<R>(&subject, false);
-        let name = subject.case.name.clone();
-        if subject.case.scene.environment.is_some() {
+        let name = subject.name.clone();
+        if subject.scene.environment.is_some() {
             // The same surfels, behind the camera.
-            let camera = &subject.case.camera;
+            let camera = &subject.camera;
             let back = camera.view_from_world.row(2).truncate() * 1e4;
-            change(&mut subject.case, |cloud| {
+            change(&mut subject.scene, |cloud| {
                 cloud.position.iter_mut().for_each(|p| *p += back);
             });
             same(&frame, &render::<R>(&subject, false), &["", "A"], &name);
@@ -174,17 +152,17 @@ fn an_opacity_of_0_is_not_seen() {
         assert!(covered > 0 || subject.settings.splats.cull, "nothing there: {name}");
     }
     for number in 0..SCENES {
-        check::<f32>(Subject::new(number));
-        check::<f64>(Subject::new(number));
+        check::<f32>(cases::case(number));
+        check::<f64>(cases::case(number));
     }
 }
 
 #[test]
 fn the_names_of_the_groups_do_not_matter() {
     fn check<R: Exact>(number: usize, part: f64) {
-        let mut subject = Subject::new(number);
+        let mut subject = cases::case(number);
         let before = render::<R>(&subject, true);
-        let (old, count) = (subject.groups.clone(), subject.groups.len());
+        let (old, count) = (subject.groups().clone(), subject.groups().len());
         let mut dice = Dice(number as u64);
         let mut names: Vec<u8> = (0..count as u8).collect();
         (1..count).rev().for_each(|i| names.swap(i, dice.below(i + 1)));
@@ -192,9 +170,9 @@ fn the_names_of_the_groups_do_not_matter() {
         let added = old.added().iter().map(|&(s, g)| (s, names[usize::from(g)])).collect();
         let mut scale = vec![0.0; count];
         (0..count).for_each(|g| scale[usize::from(names[g])] = old.scale()[g]);
-        subject.groups = Groups::new(own, added, scale).expect("the same groups");
+        subject.groups = Some(Groups::new(own, added, scale).expect("the same groups"));
         let after = render::<R>(&subject, true);
-        let name = subject.case.name.as_str();
+        let name = subject.name.as_str();
         same(&before, &after, &["Z", "id"], name);
         for (g, other) in names.iter().enumerate() {
             for end in ["", ".A", ".opacity", ".bin", ".count", ".id"] {
@@ -219,11 +197,11 @@ fn the_names_of_the_groups_do_not_matter() {
 #[test]
 fn a_white_furnace_is_white() {
     fn check<R: Exact>(number: usize, part: f64) {
-        let mut subject = Subject::new(number);
-        let case = &mut subject.case;
+        let mut subject = cases::case(number);
+        let case = &mut subject;
         case.scene.environment = Some(white());
         case.scene.lights.clear();
-        change(case, |cloud| cloud.color = Some(vec![Vec3::ONE; cloud.position.len()]));
+        change(&mut case.scene, |cloud| cloud.color = Some(vec![Vec3::ONE; cloud.position.len()]));
         let name = case.name.clone();
         // With one layer whatever is not reflected or covered comes from the environment.
         let layers = BendingLayers::Single;
@@ -250,15 +228,15 @@ fn a_white_furnace_is_white() {
 #[test]
 fn holes_are_skipped_or_dark() {
     for number in 0..SCENES {
-        let mut subject = Subject::new(number);
-        let name = subject.case.name.clone();
+        let mut subject = cases::case(number);
+        let name = subject.name.clone();
         subject.settings.holes = Holes::Skipped;
         let skipped = render::<f32>(&subject, true);
         subject.settings.holes = Holes::Background;
         let counted = render::<f32>(&subject, true);
         for i in pixels(&skipped) {
             let [a, b] = [&skipped, &counted].map(|frame| value(frame, "blended.A", i)[0]);
-            let groups: Vec<bool> = (0..subject.groups.len())
+            let groups: Vec<bool> = (0..subject.groups().len())
                 .map(|k| value(&skipped, &format!("blended.group{k:02}.bin"), i)[0].is_finite())
                 .collect();
             let covered = groups.iter().filter(|covers| **covers).count() as f64;
@@ -272,20 +250,19 @@ fn holes_are_skipped_or_dark() {
 #[test]
 fn in_one_bin_there_is_one_layer() {
     for number in 0..SCENES {
-        let mut subject = Subject::new(number);
+        let mut subject = cases::case(number);
         subject.settings.nearest = None;
         subject.settings.refraction = None;
         subject.settings.bins = BinCount::Count(1);
         // Enlarged surfels leave the bins.
-        subject.groups = groups(subject.groups.own().to_vec(), subject.groups.len());
+        subject.groups = Some(groups(subject.groups().own().to_vec(), subject.groups().len()));
         let frame = render::<f64>(&subject, true);
-        let order = BackToFront::new(&subject.case.scene.surfels, &Exec::sequential());
-        let order = order.walk(&subject.case.camera);
+        let order = back_to_front(&subject.scene.surfels, &subject.camera);
         let place = |id: f64| order.iter().position(|&i| f64::from(i) == id);
         subject.settings.bins = BinCount::Count(65_535);
         let many = render::<f64>(&subject, true);
-        let name = &subject.case.name;
-        for k in 0..subject.groups.len() {
+        let name = &subject.name;
+        for k in 0..subject.groups().len() {
             let layer = |end: &str| format!("blended.group{k:02}.{end}");
             for i in pixels(&frame) {
                 let [count, ..] = value(&frame, &layer("count"), i);
@@ -301,16 +278,16 @@ fn in_one_bin_there_is_one_layer() {
 #[test]
 fn light_does_not_change_what_is_seen() {
     for number in 0..SCENES / 2 {
-        let mut subject = Subject::new(number);
+        let mut subject = cases::case(number);
         subject.settings.refraction = None;
         let lit = render::<f32>(&subject, true);
-        subject.case.scene.lights = match subject.case.scene.lights.len() {
+        subject.scene.lights = match subject.scene.lights.len() {
             0 => vec![Light::DEFAULT],
             _ => Vec::new(),
         };
         let other = render::<f32>(&subject, true);
         let planes = ["A", "Z", "id", "layers", "blended.A", "blended.opacity", "blended.hidden"];
-        same(&lit, &other, &planes, &subject.case.name);
+        same(&lit, &other, &planes, &subject.name);
     }
 }
 
@@ -319,13 +296,13 @@ fn light_does_not_change_what_is_seen() {
 fn without_an_environment_it_is_black() {
     let black = Map::new(Plane::filled(4, 2, [0.0; 3])).expect("twice as wide as high");
     for number in 0..SCENES {
-        let mut subject = Subject::new(number);
+        let mut subject = cases::case(number);
         subject.settings.refraction = None;
-        subject.case.scene.environment = None;
+        subject.scene.environment = None;
         let without = render::<f32>(&subject, false);
         let environment = Some(Environment::Map(black.clone()));
-        subject.case.scene = Scene { environment, ..subject.case.scene.clone() };
+        subject.scene = Scene { environment, ..subject.scene.clone() };
         let frame = render::<f32>(&subject, false);
-        same(&frame, &without, &["", "Z", "id", "layers"], &subject.case.name);
+        same(&frame, &without, &["", "Z", "id", "layers"], &subject.name);
     }
 }

@@ -1,11 +1,14 @@
 //! Algorithms 2 and 3 of \[ZP06\].
 
 pub(crate) mod cases;
-pub(crate) mod glass;
-pub(crate) mod known;
-pub(crate) mod laws;
+mod glass;
+mod known;
+mod laws;
 pub(crate) mod model;
-pub(crate) mod refused;
+mod refused;
+pub(crate) mod settings;
 pub(crate) mod stages;
 pub(crate) mod surroundings;
-pub(crate) mod tolerance;
+mod tolerance;
+
+pub(crate) use settings::Settings;

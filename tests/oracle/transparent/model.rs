@@ -6,11 +6,12 @@
 
 use crate::ewa::model::{Oracle, Seen};
 use crate::ewa::splat::{Fragment, Splat};
-use crate::kit::condition::Num;
+use crate::kit::condition::Conditioned;
 use crate::kit::eye::{Eye, V3, cross, dot, scaled, wide};
 use crate::single_pass::model::Algorithm1;
+use crate::transparent::Settings;
 use splatref::composite::bins::Range;
-use splatref::method::transparent::{Holes, Settings};
+use splatref::method::transparent::Holes;
 use splatref::scene::Groups;
 use splatref::scene::{Camera, Surfels};
 use splatref::splat::Outline;
@@ -72,18 +73,18 @@ struct Drawn {
     splat: Splat,
     scale: f64,
     alpha: f64,
-    color: [Num; 3],
+    color: [Conditioned; 3],
 }
 
 /// The image of a group at a pixel, or the average of all.
 #[derive(Clone, Copy)]
 pub(crate) struct Image {
-    pub(crate) color: [Num; 3],
-    pub(crate) alpha: Num,
+    pub(crate) color: [Conditioned; 3],
+    pub(crate) alpha: Conditioned,
     /// The sum of opacities.
-    pub(crate) opacity: Num,
-    pub(crate) hidden: Num,
-    pub(crate) layers: Num,
+    pub(crate) opacity: Conditioned,
+    pub(crate) hidden: Conditioned,
+    pub(crate) layers: Conditioned,
     /// +inf while it is empty.
     pub(crate) bin: f64,
     /// The surfel that was blended last.
@@ -92,30 +93,30 @@ pub(crate) struct Image {
 
 impl Image {
     const EMPTY: Self = Self {
-        color: [Num::ZERO; 3],
-        alpha: Num::ZERO,
-        opacity: Num::ZERO,
-        hidden: Num::ZERO,
-        layers: Num::ZERO,
+        color: [Conditioned::ZERO; 3],
+        alpha: Conditioned::ZERO,
+        opacity: Conditioned::ZERO,
+        hidden: Conditioned::ZERO,
+        layers: Conditioned::ZERO,
         bin: f64::INFINITY,
         last: u32::MAX,
     };
 
     /// One more layer, in front.
     fn blend(&mut self, drawn: &Drawn) {
-        let alpha = Num::exact(drawn.alpha);
-        let through = Num::exact(1.0 - drawn.alpha);
+        let alpha = Conditioned::exact(drawn.alpha);
+        let through = Conditioned::exact(1.0 - drawn.alpha);
         for (below, own) in self.color.iter_mut().zip(drawn.color) {
             *below = alpha * own + through * *below;
         }
         self.alpha = alpha + through * self.alpha;
         if drawn.alpha == 1.0 {
-            self.opacity = Num::ZERO;
-            self.hidden = Num::exact(1.0);
+            self.opacity = Conditioned::ZERO;
+            self.hidden = Conditioned::exact(1.0);
         } else {
             self.opacity = self.opacity + alpha;
         }
-        self.layers = self.layers + Num::exact(1.0);
+        self.layers = self.layers + Conditioned::exact(1.0);
         self.last = drawn.splat.index as u32;
     }
 
@@ -125,9 +126,9 @@ impl Image {
         if count == 0 {
             return mean;
         }
-        let share = Num::exact(1.0 / count as f64);
-        let of = |f: &dyn Fn(&Self) -> Num| {
-            images.iter().fold(Num::ZERO, |sum, image| sum + f(image)) * share
+        let share = Conditioned::exact(1.0 / count as f64);
+        let of = |f: &dyn Fn(&Self) -> Conditioned| {
+            images.iter().fold(Conditioned::ZERO, |sum, image| sum + f(image)) * share
         };
         mean.color = [0, 1, 2].map(|c| of(&|image| image.color[c]));
         mean.alpha = of(&|image| image.alpha);
@@ -142,10 +143,10 @@ impl Image {
 pub(crate) struct Near {
     pub(crate) depth: f64,
     slack: f64,
-    pub(crate) color: [Num; 3],
-    pub(crate) alpha: Num,
-    pub(crate) normal: [Num; 3],
-    pub(crate) weight: Num,
+    pub(crate) color: [Conditioned; 3],
+    pub(crate) alpha: Conditioned,
+    pub(crate) normal: [Conditioned; 3],
+    pub(crate) weight: Conditioned,
     surfels: Vec<u32>,
 }
 
@@ -157,18 +158,18 @@ pub(crate) struct Truth {
     pub(crate) images: Vec<Image>,
     pub(crate) average: Image,
     /// Depth of the nearest fragment, +inf if there is none, and its condition.
-    pub(crate) depth: Num,
+    pub(crate) depth: Conditioned,
     /// The surfels that may be the nearest.
     pub(crate) nearest: Vec<u32>,
 }
 
 impl Truth {
     /// The layer count of eq. 11 and 12.
-    pub(crate) fn count(&self) -> Num {
+    pub(crate) fn count(&self) -> Conditioned {
         match &self.near {
-            None => Num::ZERO,
-            Some(near) if near.alpha.value == 0.0 => Num::ZERO,
-            Some(near) => Num::exact(1.0) + self.average.opacity / near.alpha,
+            None => Conditioned::ZERO,
+            Some(near) if near.alpha.value == 0.0 => Conditioned::ZERO,
+            Some(near) => Conditioned::exact(1.0) + self.average.opacity / near.alpha,
         }
     }
 }
@@ -217,7 +218,7 @@ impl<'a> Transparent<'a> {
             near: None,
             images: vec![Image::EMPTY; self.one.count],
             average: Image::EMPTY,
-            depth: Num::exact(f64::INFINITY),
+            depth: Conditioned::exact(f64::INFINITY),
             nearest: Vec::new(),
         };
         if self.settings.nearest.is_some() {
@@ -234,7 +235,7 @@ impl<'a> Transparent<'a> {
             truth.nearest = self.one.oracle.nearest(&all);
             let spreads = all.iter().filter(|seen| truth.nearest.contains(&(seen.0.index as u32)));
             let spread = spreads.fold(0.0, |most, seen| seen.1.spread.t.max(most));
-            truth.depth = Num { value: first, condition: spread };
+            truth.depth = Conditioned { value: first, condition: spread };
         }
         let covered = truth.images.iter().filter(|image| image.bin.is_finite()).count();
         let count = match self.settings.holes {
@@ -294,7 +295,7 @@ impl<'a> Transparent<'a> {
         let entries = oracle.entries(at, &kept, &seen);
         let find = |plane| {
             let entry = entries.iter().find(|e| e.plane == plane).expect("of every pixel");
-            [0, 1, 2].map(|c| Num { value: entry.value[c], condition: entry.condition[c] })
+            [0, 1, 2].map(|c| Conditioned { value: entry.value[c], condition: entry.condition[c] })
         };
         if kept.is_empty() {
             return;
@@ -312,18 +313,18 @@ impl<'a> Transparent<'a> {
 }
 
 /// The weighted average of the opacities of fragments, of their sum of weights.
-pub(crate) fn opacity(oracle: &Oracle<'_>, seen: &[Seen<'_>], weight: Num) -> Num {
+pub(crate) fn opacity(oracle: &Oracle<'_>, seen: &[Seen<'_>], weight: Conditioned) -> Conditioned {
     let opacity = oracle.scene.surfels.opacity();
     let terms = seen.iter().map(|(splat, f)| {
         let condition = f.spread.weight + oracle.step * f.value.weight;
         let alpha = opacity.map_or(1.0, |all| all[splat.index].into());
-        Num { value: f.value.weight, condition } * Num::exact(alpha)
+        Conditioned { value: f.value.weight, condition } * Conditioned::exact(alpha)
     });
-    terms.fold(Num::ZERO, |sum, term| sum + term) / weight
+    terms.fold(Conditioned::ZERO, |sum, term| sum + term) / weight
 }
 
 /// The colour of a surfel, shaded at its centre, and its change with every input.
-fn shaded(oracle: &Oracle<'_>, splat: &Splat) -> [Num; 3] {
+fn shaded(oracle: &Oracle<'_>, splat: &Splat) -> [Conditioned; 3] {
     let (scene, eye) = (oracle.scene, &oracle.optics.eye);
     let own = scene.surfels.color().map(|all| all[splat.index]);
     let surface = wide(own.unwrap_or(scene.material.color));
@@ -344,5 +345,5 @@ fn shaded(oracle: &Oracle<'_>, splat: &Splat) -> [Num; 3] {
             }
         }
     }
-    [0, 1, 2].map(|c| Num { value: value[c], condition: condition[c] })
+    [0, 1, 2].map(|c| Conditioned { value: value[c], condition: condition[c] })
 }

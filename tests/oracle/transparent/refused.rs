@@ -1,29 +1,29 @@
 //! What transparency refuses, in one line each.
 
-use crate::single_pass::stages::groups;
-use crate::transparent::cases::Subject;
+use crate::kit::case::Case;
+use crate::kit::draw::Drawing;
+use crate::kit::scene::groups;
+use crate::transparent::Settings;
+use crate::transparent::cases;
+use splatref::Result;
 use splatref::composite::bins::MAX_BINS;
 use splatref::error::Error;
 use splatref::frame::Exec;
+use splatref::index::Index;
 use splatref::index::order::BackToFront;
-use splatref::method::ewa::Epsilon;
 use splatref::method::single_pass::{BinCount, DepthTest};
-use splatref::method::transparent::{self, Settings};
 use splatref::method::{Picture, peeling};
 use splatref::scene::Environment;
 use splatref::scene::Groups;
 use splatref::shade::optics::{BendingLayers, Refraction};
+use splatref::splat::Epsilon;
 
-fn render(subject: &Subject) -> Result<Picture<f32>, Error> {
-    let exec = Exec::sequential();
-    let order = BackToFront::new(&subject.case.scene.surfels, &exec);
-    let given = (&subject.groups, &order);
-    let (scene, camera) = (&subject.case.scene, &subject.case.camera);
-    transparent::render(scene, given, camera, &subject.settings, &exec, false)
+fn render(case: &Case<Settings>) -> Result<Picture<f32>> {
+    case.drawing().try_define(false)
 }
 
 /// Asserts one line that holds these words.
-fn refused(result: Result<Picture<f32>, Error>, words: &[&str]) {
+fn refused(result: Result<Picture<f32>>, words: &[&str]) {
     let line = match result {
         Err(Error::Invalid(line)) => line,
         Err(other) => panic!("{other:?}"),
@@ -36,26 +36,24 @@ fn refused(result: Result<Picture<f32>, Error>, words: &[&str]) {
 }
 
 /// Discs about 4 away, coloured.
-fn subject(settings: impl FnOnce(&mut Settings)) -> Subject {
-    let mut subject = Subject::new(0);
-    subject.settings = Settings::default();
-    settings(&mut subject.settings);
-    subject
+fn subject(settings: impl FnOnce(&mut Settings)) -> Case<Settings> {
+    let mut case = cases::case(0).with(Settings::default());
+    settings(&mut case.settings);
+    case
 }
 
 #[test]
 fn settings_out_of_range_are_refused() {
     assert!(render(&subject(|_| ())).is_ok());
     let bend = Refraction { ratio: [0.75; 3], layers: BendingLayers::Multiple };
-    refused(render(&subject(|s| s.refraction = Some(bend))), &["refraction", "nearest layer"]);
     let settings = |s: &mut Settings| {
         s.nearest = Some(DepthTest::Plain);
         s.refraction = Some(bend);
     };
     let mut black = subject(settings);
-    black.case.scene.environment = None;
+    black.scene.environment = None;
     refused(render(&black), &["refraction", "environment"]);
-    black.case.scene.environment = Some(Environment::Sky);
+    black.scene.environment = Some(Environment::Sky);
     assert!(render(&black).is_ok());
     for bad in [0.0, -1.0, 4.5, f32::NAN, f32::INFINITY] {
         let ratio = [0.75, bad, 0.75];
@@ -104,9 +102,8 @@ fn layers_out_of_range_are_refused() {
     let subject = subject(|_| ());
     for layers in [0, peeling::MAX_LAYERS + 1, u32::MAX] {
         let settings = peeling::Settings { splats: subject.settings.splats, layers };
-        let (scene, camera) = (&subject.case.scene, &subject.case.camera);
-        let result = peeling::render(scene, camera, &settings, &Exec::sequential(), false);
-        refused(result, &["layers", &layers.to_string()]);
+        let drawing = Drawing::new(&subject.scene, &subject.camera, settings);
+        refused(drawing.try_define(false), &["layers", &layers.to_string()]);
     }
 }
 
@@ -130,21 +127,19 @@ fn groups_that_cannot_be_are_refused() {
 
 #[test]
 fn groups_and_orders_of_other_surfels_are_refused() {
-    let there = subject(|_| ()).case.scene.surfels.len();
+    let there = subject(|_| ()).scene.surfels.len();
     for count in [there - 1, there + 1] {
         let mut subject = subject(|_| ());
-        subject.groups = groups(vec![0; count], 1);
+        subject.groups = Some(groups(vec![0; count], 1));
         refused(render(&subject), &["groups", &count.to_string(), &there.to_string()]);
     }
     for count in [8, 500] {
-        let subject = subject(|_| ());
-        let exec = Exec::sequential();
         let other = splatref::source::Shape::Sphere.surfels(count, 0).expect("few surfels");
-        let order = BackToFront::new(&other, &exec);
-        let (scene, camera) = (&subject.case.scene, &subject.case.camera);
-        let given = (&subject.groups, &order);
-        let result =
-            transparent::render::<f32>(scene, given, camera, &subject.settings, &exec, false);
-        refused(result, &["order", &there.to_string()]);
+        let order = Some(BackToFront::new(&other, &Exec::sequential()));
+        let index = Index { groups: None, order };
+        let line = index.check(&subject(|_| ()).scene.surfels).expect_err("other surfels");
+        assert!(
+            line.to_string().contains("order") && line.to_string().contains(&there.to_string())
+        );
     }
 }

@@ -1,23 +1,23 @@
 //! Every stage of Algorithms 2 and 3 against the oracle, for groups, extensions and opacities drawn
 //! by lot.
 
-use crate::ewa::cases::Case;
 use crate::ewa::model::Entry;
-use crate::ewa::stages::{at, index, measure, oracle};
-use crate::kit::condition::Num;
+use crate::ewa::stages::{measure, oracle};
+use crate::kit::case::Case;
+use crate::kit::condition::Conditioned;
+use crate::kit::draw::{Drawing, back_to_front};
 use crate::kit::eye::V3;
 use crate::kit::goldens;
+use crate::kit::planes::{self, index, plane};
+use crate::kit::scene::groups;
 use crate::kit::tolerance::{Arithmetic, Measured};
-use crate::single_pass::stages::groups;
-use crate::transparent::cases::Subject;
-use crate::transparent::model::{Image, Transparent, Truth, back_to_front};
+use crate::transparent::Settings;
+use crate::transparent::cases;
+use crate::transparent::model::{self, Image, Transparent, Truth};
 use crate::transparent::surroundings::{radiance, refracted, world_ray};
 use crate::transparent::tolerance::TRANSPARENT;
-use splatref::frame::{Exec, Frame, NO_ID, Samples};
-use splatref::index::order::BackToFront;
-use splatref::method::Method;
+use splatref::frame::{Frame, NO_ID, Samples};
 use splatref::method::single_pass::{self, DepthTest};
-use splatref::method::transparent;
 use splatref::number::Exact;
 use splatref::scene::{Environment, Scene};
 
@@ -31,37 +31,40 @@ pub(crate) struct Compare<'a, R> {
 }
 
 impl<R: Exact> Compare<'_, R> {
-    pub(crate) fn color(&mut self, name: &str, key: &'static str, numbers: [Num; 3]) {
+    pub(crate) fn color(&mut self, name: &str, key: &'static str, numbers: [Conditioned; 3]) {
         let (step, _) = self.arithmetic.step();
         let value: V3 = numbers.map(|n| n.value);
         let condition = numbers.map(|n| n.condition + step * n.value.abs());
         let entry = Entry { plane: key, value, condition };
         let to = (self.arithmetic, self.place);
-        let found = self.frame.plane(name).unwrap_or_else(|| panic!("no plane {name}"));
-        measure((found, key), &entry, self.i, to, self.measured);
+        measure((plane(self.frame, name), key), &entry, self.i, to, self.measured);
     }
 
     /// As [`Self::color`], of a plane that does not ask whether normals are unit vectors: in f64 it
     /// owes the digits of f64 whatever the scene.
-    fn sharp(&mut self, name: &str, key: &'static str, numbers: [Num; 3]) {
+    fn sharp(&mut self, name: &str, key: &'static str, numbers: [Conditioned; 3]) {
         let own = self.arithmetic;
         let mut numbers = numbers;
         if own == Arithmetic::F64Rounded {
             let finer = Arithmetic::F64.step().0 / own.step().0;
-            numbers = numbers.map(|n| Num { condition: n.condition * finer, ..n });
+            numbers = numbers.map(|n| Conditioned { condition: n.condition * finer, ..n });
             self.arithmetic = Arithmetic::F64;
         }
         self.color(name, key, numbers);
         self.arithmetic = own;
     }
 
-    pub(crate) fn number(&mut self, name: &str, key: &'static str, number: Num) {
+    pub(crate) fn number(&mut self, name: &str, key: &'static str, number: Conditioned) {
         self.color(name, key, [number; 3]);
     }
 
     pub(crate) fn exact(&self, name: &str, value: f64) {
-        let found = self.frame.plane(name).unwrap_or_else(|| panic!("no plane {name}"));
-        assert_eq!(at(found, self.i), [value; 3], "plane {name}: {}", self.place);
+        assert_eq!(
+            planes::value(self.frame, name, self.i),
+            [value; 3],
+            "plane {name}: {}",
+            self.place
+        );
     }
 
     fn image(&mut self, layer: &str, image: &Image) {
@@ -102,18 +105,18 @@ impl<R: Exact> Compare<'_, R> {
     }
 }
 
-impl Subject {
+impl Case<Settings> {
     /// The last step: colour, opacity, and whether rounding decides about total reflection.
     fn light(
         &self,
         oracle: &Transparent<'_>,
         truth: &Truth,
         at: [f64; 2],
-    ) -> ([Num; 3], Num, bool) {
-        let environment = self.case.scene.environment.as_ref();
+    ) -> ([Conditioned; 3], Conditioned, bool) {
+        let environment = self.scene.environment.as_ref();
         let (step, guard) = (oracle.one.oracle.step, oracle.one.oracle.guard);
         let ray = world_ray(&oracle.one.oracle.optics.eye, at);
-        let one = Num::exact(1.0);
+        let one = Conditioned::exact(1.0);
         let (mut color, mut alpha) = (truth.average.color, truth.average.alpha);
         if let Some(near) = &truth.near {
             if let (Some(environment), Some(refraction)) = (environment, &self.settings.refraction)
@@ -123,14 +126,14 @@ impl Subject {
                 return (color, one, doubt);
             }
             // alpha C_F + (1 - alpha) C_O: one alpha, so its errors act on the difference.
-            let blend = |front: Num, behind: Num| {
+            let blend = |front: Conditioned, behind: Conditioned| {
                 let alpha = near.alpha;
                 let value = alpha.value * front.value + (1.0 - alpha.value) * behind.value;
                 let condition = alpha.value * front.condition
                     + (1.0 - alpha.value) * behind.condition
                     + (front.value - behind.value).abs() * alpha.condition
                     + step * behind.value.abs();
-                Num { value, condition }
+                Conditioned { value, condition }
             };
             color = [0, 1, 2].map(|c| blend(near.color[c], color[c]));
             alpha = blend(one, alpha);
@@ -153,17 +156,16 @@ impl Subject {
         arithmetic: Arithmetic,
         measured: &mut Measured,
     ) -> usize {
-        let Case { camera, scene, .. } = &self.case;
-        let voronoi = match self.settings.nearest {
+        let Self { camera, scene, settings, .. } = self;
+        let voronoi = match settings.nearest {
             Some(DepthTest::Voronoi(bins)) => Some(self.range(bins)),
             _ => None,
         };
-        let ranges = [Some(self.range(self.settings.bins)), voronoi];
-        let rounding = oracle(&self.case, arithmetic);
-        let oracle = Transparent::new(rounding, camera, &self.groups, &self.settings, ranges);
+        let ranges = [Some(self.range(settings.bins)), voronoi];
+        let rounding = oracle(self, &settings.splats, arithmetic);
+        let oracle = Transparent::new(rounding, camera, self.groups(), settings, ranges);
         let mut left_out = 0;
-        for i in 0..(camera.width * camera.height) {
-            let (x, y) = (i % camera.width, i / camera.width);
+        for (i, x, y) in self.pixels() {
             let center = [f64::from(x) + 0.5, f64::from(y) + 0.5];
             let truth = oracle.at(center);
             let (color, alpha, doubt) = self.light(&oracle, &truth, center);
@@ -171,12 +173,12 @@ impl Subject {
                 left_out += 1;
                 continue;
             }
-            let place = format!("{arithmetic:?} pixel ({x}, {y}) of {}", self.case.name);
-            let (place, i) = (place.as_str(), i as usize);
+            let place = format!("{arithmetic:?} pixel ({x}, {y}) of {}", self.name);
+            let place = place.as_str();
             let mut compare = Compare { frame, i, place, arithmetic, measured: &mut *measured };
-            let nearest = self.settings.nearest.is_some();
+            let nearest = settings.nearest.is_some();
             compare.stages(&truth, nearest);
-            let key = match (&scene.environment, &self.settings.refraction) {
+            let key = match (&scene.environment, &settings.refraction) {
                 (None, _) => "",
                 (Some(_), None) => "before an environment",
                 (Some(Environment::Sky), Some(_)) => "refracted sky",
@@ -189,7 +191,7 @@ impl Subject {
                 compare.sharp("", key, color);
                 compare.sharp("A", "A", [alpha; 3]);
             }
-            let id = index(frame, "id", i).expect("a plane id");
+            let id = index(frame, "id", i);
             if truth.nearest.is_empty() {
                 compare.exact("Z", f64::INFINITY);
                 assert_eq!(id, NO_ID, "{place}");
@@ -197,7 +199,7 @@ impl Subject {
                 compare.number("Z", "Z", truth.depth);
                 assert!(truth.nearest.contains(&id), "{place}: {id} of {:?}", truth.nearest);
             }
-            let layer = Num::exact(if truth.near.is_some() { 1.0 } else { 0.0 });
+            let layer = Conditioned::exact(if truth.near.is_some() { 1.0 } else { 0.0 });
             compare.sharp("layers", "layers", [truth.average.layers + layer; 3]);
             if let Some(near) = &truth.near {
                 compare.number("weight", "weight", near.weight);
@@ -212,24 +214,13 @@ impl Subject {
 
 #[test]
 fn every_stage_of_transparency_equals_the_oracle() {
-    let exec = Exec::sequential();
     let (mut measured, mut worst) = (Measured::default(), [0.0_f64; 2]);
     let count: usize = std::env::var("ORACLE_CASES").map_or(96, |n| n.parse().expect("a number"));
-    let goldens = goldens::all().into_iter().filter_map(|golden| match golden.method {
-        Method::Transparent(settings) => {
-            Some(Subject { case: golden.case, groups: golden.groups?, settings })
-        }
-        _ => None,
-    });
-    let goldens = goldens::at_least(4, goldens.collect());
-    for subject in (0..count).map(Subject::new).chain(goldens) {
-        let Case { scene, camera, exact, .. } = &subject.case;
-        let order = BackToFront::new(&scene.surfels, &exec);
-        assert_eq!(order.walk(camera), back_to_front(&scene.surfels, camera), "the order");
-        let (given, settings) = ((&subject.groups, &order), &subject.settings);
-        let narrow = transparent::render::<f32>(scene, given, camera, settings, &exec, true);
-        let wide = transparent::render::<f64>(scene, given, camera, settings, &exec, true);
-        let (narrow, wide) = (narrow.expect("renders").frame, wide.expect("renders").frame);
+    for subject in (0..count).map(cases::case).chain(goldens::of()) {
+        let Case { scene, camera, exact, .. } = &subject;
+        let order = back_to_front(&scene.surfels, camera);
+        assert_eq!(order, model::back_to_front(&scene.surfels, camera), "the order");
+        let (narrow, wide) = (subject.drawing().frame::<f32>(), subject.drawing().frame::<f64>());
         let rounded = if *exact { Arithmetic::F64 } else { Arithmetic::F64Rounded };
         let pixels = f64::from(camera.width * camera.height);
         let left = [
@@ -238,52 +229,44 @@ fn every_stage_of_transparency_equals_the_oracle() {
         ];
         for (slot, left) in left.into_iter().enumerate() {
             worst[slot] = worst[slot].max(left);
-            assert!(left <= 0.01, "{} % left out of {}", left * 100.0, subject.case.name);
+            assert!(left <= 0.01, "{} % left out of {}", left * 100.0, subject.name);
         }
     }
     println!("{count} scenes; most left out: f32 {:.4}, f64 {:.4}", worst[0], worst[1]);
-    for (key, (worst, place)) in &measured.0 {
-        println!("{key:?}: {worst:.3e} {place}");
-    }
-    let complaints = measured.complaints(TRANSPARENT);
-    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+    measured.check(TRANSPARENT);
 }
 
 /// The nearest layer is Algorithm 1 of the groups without their extensions, to the last bit.
 #[test]
 fn the_images_of_the_nearest_layer_are_those_of_the_single_pass() {
-    fn check<R: Exact>(subject: &Subject, depth: DepthTest) {
-        let exec = Exec::sequential();
-        let Case { scene, camera, .. } = &subject.case;
-        let order = BackToFront::new(&scene.surfels, &exec);
-        let given = (&subject.groups, &order);
-        let found = transparent::render::<R>(scene, given, camera, &subject.settings, &exec, true);
-        let plain = groups(subject.groups.own().to_vec(), subject.groups.len());
+    fn check<R: Exact>(subject: &Case<Settings>, depth: DepthTest) {
+        let found = subject.drawing().frame::<R>();
+        let plain = groups(subject.groups().own().to_vec(), subject.groups().len());
         let settings = single_pass::Settings { splats: subject.settings.splats, depth };
-        let alone = Scene { environment: None, ..scene.clone() };
-        let one = single_pass::render::<R>(&alone, &plain, camera, &settings, &exec, true);
-        let (found, one) = (found.expect("renders").frame, one.expect("renders").frame);
+        let alone = Scene { environment: None, ..subject.scene.clone() };
+        let one = Drawing::new(&alone, &subject.camera, settings).grouped(&plain).frame::<R>();
         let mut compared = 0;
         for plane in one.planes.iter().filter(|plane| plane.name.starts_with("group")) {
             let name = format!("nearest.{}", plane.name);
-            assert!(found.plane(&name) == Some(&plane.samples), "{name}: {}", subject.case.name);
+            assert!(found.plane(&name) == Some(&plane.samples), "{name}: {}", subject.name);
             compared += 1;
         }
         for name in ["Z", "id", "weight", "normal"] {
             if let (Some(a), Some(b)) = (found.plane(name), one.plane(name)) {
-                assert!(a == b, "{name}: {}", subject.case.name);
+                assert!(a == b, "{name}: {}", subject.name);
                 compared += 1;
             }
         }
-        let color = match found.plane("nearest") {
-            Some(Samples::Color(plane)) => plane,
-            _ => panic!("no plane nearest"),
-        };
-        assert!(one.plane("") == Some(&Samples::Color(color.clone())), "{}", subject.case.name);
-        assert!(compared >= 4 * subject.groups.len() + 3);
+        let color = plane(&found, "nearest");
+        assert!(
+            matches!(color, Samples::Color(_)) && one.plane("") == Some(color),
+            "{}",
+            subject.name
+        );
+        assert!(compared >= 4 * subject.groups().len() + 3);
     }
     let mut count = 0;
-    for subject in (0..48).map(Subject::new) {
+    for subject in (0..48).map(cases::case) {
         if let Some(depth) = subject.settings.nearest {
             check::<f32>(&subject, depth);
             check::<f64>(&subject, depth);

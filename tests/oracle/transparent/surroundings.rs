@@ -1,6 +1,6 @@
 //! An environment and what a thin sheet of glass makes of it, by angles and std's functions.
 
-use crate::kit::condition::Num;
+use crate::kit::condition::Conditioned;
 use crate::kit::eye::{Eye, V3, cross, dot, scaled, sub, unit};
 use crate::transparent::model::{Near, Truth};
 use splatref::scene::Environment;
@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 /// Light from a direction, and its change with the rounding of the direction and of what the lookup
 /// computes on the way; with a step of 0 the light alone.
-pub(crate) fn radiance(environment: &Environment, direction: V3, step: f64) -> [Num; 3] {
+pub(crate) fn radiance(environment: &Environment, direction: V3, step: f64) -> [Conditioned; 3] {
     let d = unit(direction);
     let (look, own): (Box<dyn Fn(V3) -> V3 + '_>, V3) = match environment {
         Environment::Sky => (Box::new(sky), pattern_rounding(d, step)),
@@ -22,7 +22,7 @@ pub(crate) fn radiance(environment: &Environment, direction: V3, step: f64) -> [
     };
     let value = look(d);
     if step == 0.0 {
-        return value.map(Num::exact);
+        return value.map(Conditioned::exact);
     }
     let mut condition = own;
     for axis in 0..3 {
@@ -32,7 +32,7 @@ pub(crate) fn radiance(environment: &Environment, direction: V3, step: f64) -> [
             *sum += change.abs();
         }
     }
-    [0, 1, 2].map(|c| Num { value: value[c], condition: condition[c] + step * value[c] })
+    [0, 1, 2].map(|c| Conditioned { value: value[c], condition: condition[c] + step * value[c] })
 }
 
 /// Bilinear lookup by longitude and polar angle; columns and rows moved by `shift`.
@@ -95,7 +95,7 @@ fn pattern_rounding(d: V3, step: f64) -> V3 {
             error = 4.0 * f64::abs(a) * error + step * (2.0 * a * a + 1.0);
             a = 2.0 * a * a - 1.0;
         }
-        Num { value: a, condition: error }
+        Conditioned { value: a, condition: error }
     });
     let product = rings[0] * rings[1] * rings[2];
     scaled(ground_and_sky(d[1]), 0.5 * product.condition)
@@ -113,7 +113,7 @@ pub(crate) fn world_ray(eye: &Eye, [x, y]: [f64; 2]) -> V3 {
 type Inputs = [f64; 15];
 
 /// One channel of a refracting pixel; `None` for T is total reflection.
-struct Sheet<'a> {
+struct Refracting<'a> {
     environment: &'a Environment,
     ratio: f64,
     layers: BendingLayers,
@@ -121,9 +121,9 @@ struct Sheet<'a> {
     step: f64,
 }
 
-impl Sheet<'_> {
+impl Refracting<'_> {
     /// The light, and whether T exists. The condition is that of the lookups alone.
-    fn light(&self, x: &Inputs) -> (Num, bool) {
+    fn light(&self, x: &Inputs) -> (Conditioned, bool) {
         let (front, alpha) = (x[self.channel], x[3]);
         let view = unit([x[12], x[13], x[14]]);
         let mut normal = unit([x[4], x[5], x[6]]);
@@ -143,17 +143,18 @@ impl Sheet<'_> {
         let mirror = sub(scaled(normal, 2.0 * dot(normal, view)), view);
         let look = |d: V3| radiance(self.environment, d, self.step)[self.channel];
         let bent = self.ratio.powf(l) * sine;
-        let front = Num::exact(alpha * front);
-        let open = Num::exact(1.0 - alpha);
+        let front = Conditioned::exact(alpha * front);
+        let open = Conditioned::exact(1.0 - alpha);
         if bent > 1.0 {
             return (front + open * look(mirror), false);
         }
         let along = if sine > 0.0 { scaled(tangent, bent / sine) } else { [0.0; 3] };
         let seen = sub(along, scaled(normal, bent.asin().cos()));
         let share = fresnel(angle, self.ratio);
-        let absorbed = Num::exact((1.0 - hidden) * (1.0 - alpha).powf(l));
-        let rest = open * Num::exact(behind) + absorbed * look(seen);
-        let light = open * Num::exact(share) * look(mirror) + Num::exact(1.0 - share) * rest;
+        let absorbed = Conditioned::exact((1.0 - hidden) * (1.0 - alpha).powf(l));
+        let rest = open * Conditioned::exact(behind) + absorbed * look(seen);
+        let light = open * Conditioned::exact(share) * look(mirror)
+            + Conditioned::exact(1.0 - share) * rest;
         (front + light, true)
     }
 }
@@ -181,8 +182,8 @@ pub(crate) fn refracted(
     refraction: &Refraction,
     ray: V3,
     [step, guard]: [f64; 2],
-) -> ([Num; 3], bool) {
-    let view = unit(scaled(ray, -1.0)).map(|value| Num { value, condition: step });
+) -> ([Conditioned; 3], bool) {
+    let view = unit(scaled(ray, -1.0)).map(|value| Conditioned { value, condition: step });
     let behind = &truth.average;
     let mut all = near.color.to_vec();
     all.push(near.alpha);
@@ -194,7 +195,7 @@ pub(crate) fn refracted(
     let mut doubt = false;
     let light = [0, 1, 2].map(|channel| {
         let (ratio, layers) = (f64::from(refraction.ratio[channel]), refraction.layers);
-        let sheet = Sheet { environment, ratio, layers, channel, step };
+        let sheet = Refracting { environment, ratio, layers, channel, step };
         let (mut light, bends) = sheet.light(&inputs);
         for (i, input) in all.iter().enumerate() {
             let moved = |by: f64| {
@@ -204,7 +205,7 @@ pub(crate) fn refracted(
                 if i == 3 || i == 11 {
                     x[i] = x[i].clamp(0.0, 1.0);
                 }
-                Sheet { step: 0.0, ..sheet }.light(&x)
+                Refracting { step: 0.0, ..sheet }.light(&x)
             };
             let [up, down] = [moved(1.0), moved(-1.0)].map(|(other, _)| other.value);
             light.condition += (up - light.value).abs().max((down - light.value).abs());

@@ -1,16 +1,16 @@
-//! Deferred shading by other means: the picture from level 0 as the push phase left it.
+//! Deferred shading by other means: the picture from what reconstruction left of every pixel.
 
 use crate::kit::eye::wide;
 use crate::kit::number::{N3, Num, dot, exact, negated, normalized, ways};
-use crate::pyramid::projection::Sight;
+use crate::kit::projection::Sight;
 use splatref::scene::{Light, Scene};
 
-/// What light falls on, as the crate left it: vectors in world space.
-pub(crate) struct Surface {
+/// What light falls on, as the crate left it but for the colour: vectors in world space.
+pub(crate) struct Surface<const P: u32> {
     pub(crate) depth: f64,
     pub(crate) normal: [f64; 3],
     pub(crate) tangent: [f64; 3],
-    pub(crate) color: [f64; 3],
+    pub(crate) color: N3<P>,
 }
 
 /// The colours that a pixel may have: whether a light is above the surface may be open.
@@ -18,9 +18,9 @@ pub(crate) fn shaded<const P: u32>(
     scene: &Scene,
     sight: &Sight<P>,
     (x, y): (u32, u32),
-    surface: &Surface,
+    surface: &Surface<P>,
 ) -> Vec<N3<P>> {
-    let color: N3<P> = exact(surface.color);
+    let color = surface.color;
     if scene.lights.is_empty() {
         return vec![color];
     }

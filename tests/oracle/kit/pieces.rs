@@ -5,7 +5,7 @@
 //! outcome is a piece of its own.
 
 use crate::kit::number::{N3, Num};
-use crate::pyramid::projection::Sight;
+use crate::kit::projection::Sight;
 
 /// A corner after clipping: where it is, and how much of each original corner is in it.
 #[derive(Clone, Copy)]

@@ -5,11 +5,13 @@
 
 use crate::kit::eye::wide;
 use crate::kit::number::{N3, Num, dot, exact, negated, normalized};
-use crate::pyramid::model::TUBE;
-use crate::pyramid::pieces::{Piece, pieces};
-use splatref::method::pyramid::Settings;
+use crate::kit::pieces::{Piece, pieces};
 use splatref::scene::{Camera, Projection, Scene};
+use splatref::splat::Tally;
 use std::collections::BTreeSet;
+
+/// The number of this kind of primitive among the planes.
+pub(crate) const TUBE: u8 = 3;
 
 /// What one pixel may keep.
 #[derive(Clone, Copy, Debug)]
@@ -27,14 +29,47 @@ pub(crate) struct Candidate<const P: u32> {
     pub(crate) radius: Num<P>,
     pub(crate) center: [Num<P>; 2],
     pub(crate) color: N3<P>,
+    /// The position of a surfel: two at one place have one depth.
+    place: Option<glam::Vec3>,
 }
 
-/// What became of surfels: visible, behind, degenerate, back-facing, outside; and whether any is in
-/// doubt.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+impl<const P: u32> Candidate<P> {
+    /// Whether it is certainly drawn, and in front of another: nearer, or of equal depth and a
+    /// lower id.
+    pub(crate) fn is_before(&self, other: &Self) -> bool {
+        let known =
+            self.t.e + other.t.e == 0.0 || (self.place.is_some() && self.place == other.place);
+        let tie = known && self.t.v == other.t.v && (self.id, self.group) < (other.id, other.group);
+        self.certain && (tie || self.t.less(other.t) == Some(true))
+    }
+
+    /// Whether all outcomes of another are in front.
+    pub(crate) fn is_hidden(&self, all: &[Self]) -> bool {
+        let others = all.iter().filter(|k| k.group != self.group && k.is_before(self));
+        others
+            .into_iter()
+            .any(|k| all.iter().filter(|j| j.group == k.group).all(|j| j.is_before(self)))
+    }
+}
+
+/// What became of surfels: visible, behind, degenerate, back-facing, outside; and of how many that
+/// is in doubt.
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Fates {
-    pub(crate) counts: [u64; 5],
-    pub(crate) doubt: bool,
+    counts: [u64; 5],
+    open: u64,
+}
+
+impl Fates {
+    /// Asserts that every surfel has the fate it should have, if no rounding decides one.
+    pub(crate) fn check(&self, tally: &Tally, surfels: usize, name: &str) {
+        let Tally { visible, behind, degenerate, back_facing, outside } = *tally;
+        let found = [visible, behind, degenerate, back_facing, outside];
+        for (found, sure) in found.into_iter().zip(self.counts) {
+            assert!((sure..=sure + self.open).contains(&found), "{tally:?} for {self:?} in {name}");
+        }
+        assert_eq!(found.iter().sum::<u64>(), surfels as u64, "{tally:?} in {name}");
+    }
 }
 
 /// The camera in the arithmetic.
@@ -46,7 +81,7 @@ pub(crate) struct Sight<const P: u32> {
     pub(crate) cx: Num<P>,
     pub(crate) cy: Num<P>,
     pub(crate) near: Num<P>,
-    pub(crate) size: [u32; 2],
+    size: [u32; 2],
 }
 
 /// A point before the camera: m, (a, b), and where it is in the picture.
@@ -84,8 +119,12 @@ impl<const P: u32> Sight<P> {
 
     /// From view space to world space, divided by its length.
     pub(crate) fn outwards(&self, n: N3<P>) -> N3<P> {
-        let column = |i: usize| dot(self.rows.map(|m| m[i]), n);
-        normalized([column(0), column(1), column(2)])
+        normalized(self.turned(n))
+    }
+
+    /// From view space to world space.
+    pub(crate) fn turned(&self, n: N3<P>) -> N3<P> {
+        [0, 1, 2].map(|i| dot(self.rows.map(|m| m[i]), n))
     }
 
     pub(crate) fn place(&self, p: N3<P>) -> Placed<P> {
@@ -117,7 +156,7 @@ fn floors<const P: u32>(x: Num<P>) -> Vec<i64> {
 
 /// All candidates of every pixel.
 pub(crate) struct Projected<const P: u32> {
-    pub(crate) sight: Sight<P>,
+    sight: Sight<P>,
     pub(crate) pixels: Vec<Vec<Candidate<P>>>,
     pub(crate) fates: Fates,
     /// Primitives of which rounding decides too much.
@@ -126,26 +165,26 @@ pub(crate) struct Projected<const P: u32> {
 }
 
 impl<const P: u32> Projected<P> {
-    pub(crate) fn new(scene: &Scene, camera: &Camera, settings: &Settings) -> Self {
+    /// `bits`: of the grid that primitives are snapped to.
+    pub(crate) fn new(scene: &Scene, camera: &Camera, cull: bool, bits: u32) -> Self {
         let pixels = vec![Vec::new(); (camera.width * camera.height) as usize];
         let (sight, fates) = (Sight::new(camera), Fates::default());
         let mut all = Self { sight, pixels, fates, loose: Vec::new(), groups: 0 };
         for i in 0..scene.surfels.len() {
-            all.surfel(scene, i, settings.cull);
+            all.surfel(scene, i, cull);
         }
         all.groups = scene.surfels.len();
-        let bits = settings.subpixel_bits;
         let mut id = scene.surfels.len() as u32;
         for i in 0..scene.primitives.triangles.len() {
             let primitive =
                 Primitive::new(&all.sight, scene, &scene.primitives.triangles, (i, id, 4));
-            all.primitive(&primitive, bits, settings.cull);
+            all.primitive(&primitive, bits, cull);
             id += 1;
         }
         for (list, kind) in [(&scene.primitives.ribbons, 2), (&scene.primitives.tubes, 3)] {
             for i in 0..list.len() {
                 let primitive = Primitive::new(&all.sight, scene, list, (i, id, kind));
-                all.primitive(&primitive, bits, settings.cull);
+                all.primitive(&primitive, bits, cull);
                 id += 1;
             }
         }
@@ -185,8 +224,8 @@ impl<const P: u32> Projected<P> {
                 Some(true) => return,
                 Some(false) => {}
                 None => {
+                    self.fates.open += u64::from(certain);
                     certain = false;
-                    self.fates.doubt = true;
                 }
             }
         }
@@ -208,6 +247,7 @@ impl<const P: u32> Projected<P> {
             radius,
             center: [x, y],
             color: exact(color),
+            place: Some(surfels.position()[i]),
         };
         let (columns, rows) = (floors(x), floors(y));
         let certain = certain && columns.len() * rows.len() == 1;
@@ -343,6 +383,7 @@ impl<const P: u32, const N: usize> Primitive<P, N> {
             radius,
             center: [x, y].map(|v| Num::exact(v as f64 + 0.5)),
             color: self.colors.as_ref().map_or(self.colorless, vector),
+            place: None,
         };
         normals.into_iter().map(candidate).collect()
     }

@@ -1,0 +1,67 @@
+//! Laws of the epsilon-z test and of weighted sums.
+
+use proptest::prelude::*;
+use splatref::composite::{decide, sum};
+
+/// A depth: ordinary, a few ulp from another, huge, tiny.
+fn depth() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        4 => 0.01_f32..100.0,
+        4 => (-3_i32..=3).prop_map(|ulps| f32::from_bits((3.0_f32.to_bits() as i32 + ulps) as u32)),
+        1 => 1e-38_f32..1e-30,
+        1 => 1e30_f32..3e38,
+    ]
+}
+
+fn band() -> impl Strategy<Value = f32> {
+    prop_oneof![Just(0.0_f32), Just(f32::INFINITY), 0.0_f32..1e-6, 0.0_f32..10.0, 1e-44_f32..1e-38]
+}
+
+/// A weight that the pipeline can make: at least 2^-96 times the kernel at its rim.
+fn weight() -> impl Strategy<Value = f32> {
+    prop_oneof![4 => 1e-4_f32..1.0, 1 => 1e-30_f32..1e-20]
+}
+
+proptest! {
+    #[test]
+    fn the_epsilon_test_is_an_interval_that_grows(t in depth(), nearest in depth(), a in band(), b in band()) {
+        let (small, large) = if a < b { (a, b) } else { (b, a) };
+        prop_assert!(decide::visible(nearest, decide::limit(nearest, a)), "the nearest passes");
+        prop_assert!(decide::visible(t, decide::limit(nearest, f32::INFINITY)), "inf keeps everything");
+        prop_assert!(!decide::visible(t, decide::limit(nearest, small)) || decide::visible(t, decide::limit(nearest, large)));
+        let (near, far) = if t < nearest { (t, nearest) } else { (nearest, t) };
+        prop_assert_eq!(decide::visible(far, decide::limit(near, 0.0)), far == near, "0 keeps ties alone");
+        // Nearer never fails where farther passes; in f64 f32 operands add without rounding here.
+        prop_assert!(!decide::visible(far, decide::limit(nearest, a)) || decide::visible(near, decide::limit(nearest, a)));
+    }
+
+    #[test]
+    fn the_average_of_a_constant_is_the_constant(
+        weights in prop::collection::vec(weight(), 1..300),
+        value in (0.0_f32..1.0, 1e-3_f32..1e3).prop_map(|(a, b)| [a, b, 1.0]),
+    ) {
+        let (mut total, mut colors) = (0.0_f32, [0.0_f32; 3]);
+        for w in &weights {
+            total += w;
+            colors = sum::add(colors, *w, value);
+        }
+        let average = sum::average(colors, total);
+        for (a, v) in average.into_iter().zip(value) {
+            // Each sum of n terms >= 0 is off by n roundings, each product by one, the quotient by one.
+            let bound = (2 * weights.len() + 2) as f32 * 2.0_f32.powi(-24) * v;
+            prop_assert!((a - v).abs() <= bound + 1e-37, "{} for {}", a, v);
+        }
+        prop_assert_eq!(average[2], 1.0, "weights themselves average to 1 exactly");
+        let direction = sum::direction(colors.map(|c| c + total), total);
+        let length = direction.iter().map(|c| f64::from(*c).powi(2)).sum::<f64>().sqrt();
+        prop_assert!((length - 1.0).abs() < 4e-7, "length {}", length);
+    }
+
+    #[test]
+    fn without_weight_there_is_nothing(a: f32, b: f32, c: f32) {
+        prop_assert_eq!(sum::average([a, b, c], 0.0).map(f32::to_bits), [0; 3]);
+        prop_assert_eq!(sum::direction([a, b, c], 0.0).map(f32::to_bits), [0; 3]);
+        // Opposite normals cancel to nothing, not to NaN.
+        prop_assert_eq!(sum::direction([0.0, -0.0, 0.0], 1.0).map(f32::to_bits), [0; 3]);
+    }
+}

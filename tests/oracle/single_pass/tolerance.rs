@@ -1,0 +1,47 @@
+//! How far each plane of Algorithm 1 may be from the oracle, and why.
+
+use crate::kit::tolerance::Arithmetic::{F32, F64, F64Rounded};
+use crate::kit::tolerance::{Row, row};
+
+/// `group` stands for the depth-image of any group.
+pub(crate) const SINGLE_PASS: &[Row] = &[
+    row("group.Z", F32, 4.0, "as visibility.Z: the same fragment"),
+    row("group.Z", F64, 4.0, "as in f32"),
+    row("group.Z", F64Rounded, 1.0, "as visibility.Z"),
+    row("group.weight", F32, 4.0, "as attributes.weight, of one fragment"),
+    row("group.weight", F64, 4.0, "as in f32"),
+    row("group.weight", F64Rounded, 0.5, "as attributes.weight"),
+    row("group.normal", F32, 4.0, "a product more than the weight"),
+    row("group.normal", F64, 4.0, "as in f32"),
+    row("group.normal", F64Rounded, 0.5, "as the weight"),
+    row("group", F32, 4.0, "a product more than the weight"),
+    row("group", F64, 4.0, "as in f32"),
+    row("group", F64Rounded, 0.5, "as the weight"),
+    row("group.voronoi", F32, 4.0, "the bin is exact; a root, a quotient, and the sum rounds at n"),
+    row("group.voronoi", F64, 4.0, "as in f32"),
+    row("group.voronoi", F64Rounded, 1.0, "q takes the normal for a unit"),
+    row("sums.weight", F32, 4.0, "one rounding more for each group"),
+    row("sums.weight", F64, 4.0, "as in f32"),
+    row("sums.weight", F64Rounded, 0.5, "as group.weight"),
+    row("sums.normal", F32, 4.0, "one rounding more for each group"),
+    row("sums.normal", F64, 4.0, "as in f32"),
+    row("sums.normal", F64Rounded, 0.5, "as group.weight"),
+    row("sums", F32, 4.0, "one rounding more for each group"),
+    row("sums", F64, 4.0, "as in f32"),
+    row("sums", F64Rounded, 0.5, "as group.weight"),
+    row("resolved", F32, 4.0, "errors of sum and weight partly cancel, a quotient rounds"),
+    row("resolved", F64, 4.0, "as in f32"),
+    row("resolved", F64Rounded, 0.25, "a common factor of the amplitudes cancels"),
+    row("Z", F32, 4.0, "the same numbers as group.Z"),
+    row("Z", F64, 4.0, "the same numbers as group.Z"),
+    row("Z", F64Rounded, 1.0, "the same numbers as group.Z"),
+    row("weight", F32, 4.0, "the same numbers as sums.weight"),
+    row("weight", F64, 4.0, "the same numbers as sums.weight"),
+    row("weight", F64Rounded, 0.5, "the same numbers as sums.weight"),
+    row("normal", F32, 2.0, "three components share one condition, the largest"),
+    row("normal", F64, 2.0, "as in f32"),
+    row("normal", F64Rounded, 0.25, "a common factor of the amplitudes cancels"),
+    row("", F32, 4.0, "without lights the resolved colour; else Phong's own condition is larger"),
+    row("", F64, 4.0, "as in f32"),
+    row("", F64Rounded, 0.25, "as the resolved colour"),
+];
