@@ -172,13 +172,22 @@ impl SplatLanes {
 
     #[inline(always)]
     fn get(&self, i: usize, surfel: u32) -> Splat<f32> {
-        let [x, y, ux, uy, vy, w0, wx, wy, w_far, w_near, amplitude] =
-            self.numbers.each_ref().map(|lanes| lanes[i]);
-        let [x0, y0, x1, y1] = self.bounds.each_ref().map(|lanes| lanes[i]);
-        let center = Vector2::new(x, y);
+        let n = |field: usize| self.numbers[field][i];
+        let pixel = |field: usize| self.bounds[field][i];
         Splat {
-            footprint: Footprint { center, ux, uy, vy, w0, wx, wy, w_far, w_near, amplitude },
-            bounds: Rect { x0, y0, x1, y1 },
+            footprint: Footprint {
+                center: Vector2::new(n(0), n(1)),
+                ux: n(2),
+                uy: n(3),
+                vy: n(4),
+                w0: n(5),
+                wx: n(6),
+                wy: n(7),
+                w_far: n(8),
+                w_near: n(9),
+                amplitude: n(10),
+            },
+            bounds: Rect { x0: pixel(0), y0: pixel(1), x1: pixel(2), y1: pixel(3) },
             surfel,
             back: self.back[i] != 0,
         }

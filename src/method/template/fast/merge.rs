@@ -59,10 +59,11 @@ vectorized!(
             let ids = [a, b, c, d];
             // -- Which of their centres move on
             let extents = number(EXTENT);
-            let moves = [0, 1, 2, 3].map(|j: usize| {
+            let mut moves = [[0; LANES]; 4];
+            for (j, moves) in moves.iter_mut().enumerate() {
                 let there = exists | (j < 2);
-                mask(|i| (ids[j][i] != NO_ID) & !(extents[j][i] <= reach) & there)
-            });
+                *moves = mask(|i| (ids[j][i] != NO_ID) & !(extents[j][i] <= reach) & there);
+            }
             // -- What becomes of them
             if moves.iter().any(any) {
                 FourCenters { moves, ids }.meet(number, coarse, layout, x);
