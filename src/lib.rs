@@ -64,7 +64,8 @@
 //!                      index::order ◀───────┘                                      ▼
 //!   method::ewa            visibility ─▶ attributes ─▶ normalization ────────────┐
 //!   method::single_pass    depth-images of groups ─▶ compositing ────────────────┤
-//!   method::transparent    (nearest layer,) blended groups ─▶ average ───────────┤
+//!   method::transparent    blended groups ─▶ average ────────────────────────────┤
+//!   method::transparent_hq nearest layer ─▶ blended groups ─▶ average ───────────┤
 //!   method::peeling        layer after layer ────────────────────────────────────┤
 //!   without splats, from surfels, triangles, ribbons and tubes:                  │
 //!   method::pyramid        projection ─▶ pull ─▶ push ───────────────────────────┤
@@ -83,9 +84,11 @@
 //!   *To know:* surfels of one group must not overlap, or little; [`index::grouping`] makes the
 //!   groups, and c says how little.
 //! - [`method::transparent`]: layers blended from back to front within each group, and the groups
-//!   averaged \[ZP06, Algorithms 2 and 3\]. *To know:* every group has to cover the surface alone,
-//!   so groups are extended; what a hole counts as is a setting. Algorithm 3 puts a nearest layer in
-//!   high quality before the others.
+//!   averaged \[ZP06, Algorithm 2\]. *To know:* every group has to cover the surface alone, so groups
+//!   are extended; what a hole counts as is a setting.
+//! - [`method::transparent_hq`]: the same behind a nearest layer in high quality, with reflection and
+//!   refraction \[ZP06, Algorithm 3\]. *To know:* the nearest layer is drawn as by the single pass,
+//!   the layers behind it as by Algorithm 2.
 //! - [`method::peeling`]: depth peeling, layer after layer from the front \[Mam89, Eve02\]. *To
 //!   know:* peeling is the slow truth of transparency with the same epsilon, by which the averages of
 //!   [`method::transparent`] are judged.
@@ -93,11 +96,12 @@
 //!   a pyramid \[MKC08\]. *To know:* no splats are drawn; triangles, ribbons and tubes take part; an
 //!   ellipse stands around the centre of a pixel.
 //! - [`method::template`]: one pixel a point, and a search in k x k cells of each level for the
-//!   ellipses that hold a pixel \[MOC08\]. *To know:* the rule of levels decides how much of an ellipse
-//!   is reached, and what merges.
+//!   ellipses that hold a pixel \[MOC08\]. *To know:* the rule of levels decides how much of an
+//!   ellipse is reached, and what merges.
 //!
-//! The last two begin with [`mod@method::projection`]. What each paper claims is measured in the
-//! pages under `docs/`.
+//! The last two begin with [`mod@method::projection`]. [`method::Method`] is any of them as a value,
+//! and [`method::Session`] is a scene that one of them draws from as many cameras as one likes. What
+//! each paper claims is measured in the pages under `docs/`.
 //!
 //! # Glossary
 //!
