@@ -39,58 +39,17 @@
 
 pub(super) mod blend;
 pub(super) mod picture;
+mod settings;
+
+pub use settings::{Holes, Settings};
 
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::single_pass::BinCount;
 use crate::method::{Picture, Stage};
 use crate::number::Real;
 use crate::scene::{Camera, Scene};
-use crate::splat::SplatSettings;
-
-/// What is computed; everything here may change the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Footprints, epsilon, culling.
-    pub splats: SplatSettings,
-    /// The bins of the low-precision depth.
-    pub bins: BinCount,
-    /// What a group that has nothing at a pixel gives to the average.
-    pub holes: Holes,
-}
-
-/// What a group that has no fragment at a pixel gives to the average.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Holes {
-    /// `Decided:` nothing: the average is over the other groups.
-    #[default]
-    Skipped,
-    /// The background, as averaging all images does to the letter \[ZP06, Algorithm 2\].
-    Background,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            splats: SplatSettings::BOTH_SIDES,
-            bins: BinCount::default(),
-            holes: Holes::default(),
-        }
-    }
-}
-
-impl Settings {
-    /// Whether the numbers are in range.
-    ///
-    /// # Errors
-    /// [`crate::Error::Invalid`] if one is not.
-    pub fn check(&self) -> Result<()> {
-        self.splats.check()?;
-        self.bins.check()
-    }
-}
 
 /// K = 4, which \[ZP06, section 6.2\] finds sufficient; groups are extended by adding surfels.
 pub(super) const GROUPING: Grouping = Grouping {
