@@ -1,27 +1,31 @@
 //! Accuracy of \[ZP06\]: its figures 8, 9, 12 and 13 as numbers, with the time that each picture
 //! took.
 //!
-//! `cargo bench --bench accuracy` prints Markdown tables; an argument is a pattern that the names
-//! of scenes must contain. Scenes are the scans in the folder that `SPLATREF_MODELS` names
+//! `cargo bench --bench accuracy` prints Markdown tables, and with `--write` puts them into
+//! `docs/zp06.md`; an argument is a pattern that the names of scenes must contain. Scenes are the scans in the folder that `SPLATREF_MODELS` names
 //! (`../shared/models` if it is not set), those that are missing are skipped, and procedural ones.
 //! Pictures have 800 x 600 pixels, `f32`, lit by a headlight. RMSE and SSIM are of R, G and B
 //! against the picture named in the title; where both are background counts too. With `--pictures
 //! DIR` every picture is kept there.
 
+mod common;
+
+use common::draw::Renderer;
+use common::models;
+use common::report::{Arguments, Table};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::frame::image::Image;
 use splatref::index::grouping::Grouping;
 use splatref::index::grouping::{Extension, Rules};
 use splatref::io::scene_file::SceneFile;
-use splatref::io::{exr, provenance};
 use splatref::method::ewa::{self, Epsilon};
 use splatref::method::single_pass::{self, BinCount, DepthTest};
 use splatref::method::transparent::{self, Holes};
-use splatref::method::{Method, Preparation, peeling, render_f32};
+use splatref::method::{Method, peeling};
 use splatref::scene::{Camera, Scene};
 use splatref::verify::metrics::summary;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 /// A scene before a camera.
@@ -39,57 +43,16 @@ struct Shot {
 }
 
 fn main() -> Result<()> {
-    let mut arguments = std::env::args().skip(1);
-    let (mut pattern, mut pictures) = (String::new(), None);
-    while let Some(argument) = arguments.next() {
-        match argument.as_str() {
-            "--pictures" => pictures = arguments.next().map(PathBuf::from),
-            // cargo passes --bench.
-            option if option.starts_with('-') => {}
-            other => pattern = other.to_owned(),
-        }
-    }
-    let exec = Exec::new(0, 32)?;
-    let opaque = subjects(&OPAQUE, &pattern, &exec)?;
-    let glass = subjects(&TRANSPARENT, &pattern, &exec)?;
-    let bench = Bench { exec, pictures };
-    bench.figure_8_and_9(&opaque)?;
-    bench.figure_12_and_13(&glass)
+    let bench = Bench { arguments: Arguments::parse()?, exec: Exec::new(0, 32)? };
+    bench.figure_8_and_9(&bench.subjects(&OPAQUE)?)?;
+    bench.figure_12_and_13(&bench.subjects(&TRANSPARENT)?)
 }
 
 const OPAQUE: [&str; 4] = ["bunny", "dragon", "igea", "cluster"];
 const TRANSPARENT: [&str; 5] = ["bunny", "dragon", "igea", "cluster", "balls"];
 
-/// The scenes whose names contain a pattern, loaded; scans that are missing are skipped.
-fn subjects(names: &[&str], pattern: &str, exec: &Exec) -> Result<Vec<Subject>> {
-    let models = std::env::var("SPLATREF_MODELS").unwrap_or_else(|_| "../shared/models".into());
-    let mut subjects = Vec::new();
-    for name in names.iter().filter(|name| name.contains(pattern)) {
-        let model = Path::new(&models).join(format!("{name}.ply"));
-        let text = match *name {
-            "cluster" => "[[model]]\nshape = \"cluster\"\nopacity = 0.4\n".to_owned(),
-            "balls" => BALLS.replace("MODELS", &models),
-            _ => format!("[[model]]\nfile = \"{}\"\nopacity = 0.4\n", model.display()),
-        };
-        let needed = if *name == "balls" { Path::new(&models).join("bunny.ply") } else { model };
-        if *name != "cluster" && !needed.exists() {
-            println!("{name}: skipped, there is no {}\n", needed.display());
-            continue;
-        }
-        let text = format!("{text}[camera]\nsize = [800, 600]\n");
-        let file = SceneFile::parse(&text, Path::new("bench.toml"))?;
-        let scene = file.load(exec, &|_, _, _| ())?.scene;
-        let camera = file.camera(&scene)?;
-        subjects.push(Subject { name: (*name).to_owned(), scene, camera });
-    }
-    Ok(subjects)
-}
-
-/// Fig. 13: opaque balls inside and around a transparent scan.
+/// Fig. 13: opaque balls inside and around a transparent scan, whose table this goes on with.
 const BALLS: &str = "
-[[model]]
-file = \"MODELS/bunny.ply\"
-opacity = 0.4
 color = [0.4, 0.6, 0.8]
 [[model]]
 shape = \"cluster\"
@@ -114,18 +77,52 @@ const VARIANTS: [(f32, usize, Extension, Holes); 9] = [
 const ADD: Extension = Extension::Add { most: 0.5 };
 
 struct Bench {
+    arguments: Arguments,
     exec: Exec,
-    pictures: Option<PathBuf>,
 }
 
 impl Bench {
+    /// The scenes of these names that contain the pattern, loaded; scans that are missing are
+    /// skipped.
+    fn subjects(&self, names: &[&str]) -> Result<Vec<Subject>> {
+        let mut subjects = Vec::new();
+        for name in names.iter().filter(|name| name.contains(&self.arguments.pattern)) {
+            let model = models::path(if *name == "balls" { "bunny" } else { name });
+            if *name != "cluster" && !model.exists() {
+                self.arguments.without(&model)?;
+                continue;
+            }
+            let file = match *name {
+                "cluster" => "shape = \"cluster\"".to_owned(),
+                _ => format!("file = \"{}\"", model.display()),
+            };
+            let more = if *name == "balls" { BALLS } else { "" };
+            let text =
+                format!("[[model]]\n{file}\nopacity = 0.4\n{more}[camera]\nsize = [800, 600]\n");
+            let file = SceneFile::parse(&text, Path::new("bench.toml"))?;
+            let scene = file.load(&self.exec, &|_, _, _| ())?.scene;
+            let camera = file.camera(&scene)?;
+            subjects.push(Subject { name: (*name).to_owned(), scene, camera });
+        }
+        Ok(subjects)
+    }
+
     /// Opaque: the single pass against 2+1 passes as c falls, with and without Voronoi depth.
     fn figure_8_and_9(&self, subjects: &[Subject]) -> Result<()> {
-        println!("Fig. 8 and 9: the single pass against the picture of the 2+1 passes\n");
-        println!(
-            "| scene | surfels | c | K | plain: RMSE | SSIM | ms | Voronoi: RMSE | SSIM | ms | 2+1: ms |"
-        );
-        println!("|---|---|---|---|---|---|---|---|---|---|---|");
+        println!("Fig. 8 and 9: the single pass against the picture of the 2+1 passes");
+        let mut table = Table::new(&[
+            "scene",
+            "surfels",
+            "c",
+            "K",
+            "plain: RMSE",
+            "SSIM",
+            "ms",
+            "Voronoi: RMSE",
+            "SSIM",
+            "ms",
+            "2+1: ms",
+        ]);
         let splats = ewa::Settings::default();
         for subject in subjects {
             let truth = self.shoot(subject, "ewa", None, &Method::Ewa(splats))?;
@@ -145,29 +142,36 @@ impl Bench {
                         Err(error) => cells.push(format!("{error} | | ")),
                     }
                 }
-                println!(
-                    "| {} | {} | {c} | {} | {} | {:.1} |",
+                table.row(&format!(
+                    "{} | {} | {c} | {} | {} | {:.1}",
                     subject.name,
                     subject.scene.surfels.len(),
                     k.map_or_else(|| "-".into(), |k| k.to_string()),
                     cells.join(" | "),
                     truth.milliseconds
-                );
+                ));
             }
         }
-        println!();
-        Ok(())
+        table.publish_times(&self.arguments, "zp06.md", "opaque")
     }
 
     /// Transparent: Algorithms 2 and 3 against depth peeling with the same epsilon.
     fn figure_12_and_13(&self, subjects: &[Subject]) -> Result<()> {
-        println!(
-            "Fig. 12 and 13 (`balls`): Algorithms 2 and 3 against the picture of depth peeling\n"
-        );
-        println!(
-            "| scene | epsilon | K | groups cover it by | holes | Algorithm 2: RMSE | SSIM | ms | Algorithm 3: RMSE | SSIM | ms | peeling: ms |"
-        );
-        println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
+        println!("Fig. 12 and 13 (`balls`): Algorithms 2 and 3 against the picture of peeling");
+        let mut table = Table::new(&[
+            "scene",
+            "epsilon",
+            "K",
+            "groups cover it by",
+            "holes",
+            "Algorithm 2: RMSE",
+            "SSIM",
+            "ms",
+            "Algorithm 3: RMSE",
+            "SSIM",
+            "ms",
+            "peeling: ms",
+        ]);
         for subject in subjects {
             let mut truth: Option<(f32, Shot)> = None;
             for (radii, count, extension, holes) in VARIANTS {
@@ -204,17 +208,17 @@ impl Bench {
                     k = shot.groups.unwrap_or(0);
                     cells.push(against(&shot, peeled));
                 }
-                println!(
-                    "| {} | {radii} r | {k} | {} | {} | {} | {:.0} |",
+                table.row(&format!(
+                    "{} | {radii} r | {k} | {} | {} | {} | {:.0}",
                     subject.name,
                     word(extension),
                     format!("{holes:?}").to_lowercase(),
                     cells.join(" | "),
                     peeled.milliseconds
-                );
+                ));
             }
         }
-        Ok(())
+        table.publish_times(&self.arguments, "zp06.md", "transparent")
     }
 
     /// Draws a picture, and again five times for the median of the time.
@@ -230,26 +234,19 @@ impl Bench {
             .map(|grouping| grouping.groups(&scene.surfels, &self.exec, &|_, _, _| ()))
             .transpose()?;
         let groups = groups.map(|(groups, ..)| groups);
-        let preparation = Preparation::new(&scene.surfels, groups, method, &self.exec);
-        let draw = || render_f32(scene, &preparation, camera, method, &self.exec, None);
-        let picture = draw()?;
+        let mut renderer = Renderer::new(scene, groups, method, &self.exec);
+        let image = Image::from(&renderer.draw(camera)?.frame);
         let mut times = Vec::new();
         for _ in 0..5 {
             let start = Instant::now();
-            draw()?;
+            renderer.draw(camera)?;
             times.push(start.elapsed().as_secs_f64() * 1e3);
         }
         times.sort_by(f64::total_cmp);
-        if let Some(folder) = &self.pictures {
-            let text = provenance::text(scene, &preparation, camera, method, Default::default());
-            let file = folder.join(format!("{}-{name}.exr", subject.name));
-            exr::write(&file, &picture.frame, &text)?;
+        if let Some(folder) = &self.arguments.pictures {
+            renderer.keep(camera, &folder.join(format!("{}-{name}.exr", subject.name)))?;
         }
-        Ok(Shot {
-            image: Image::from(&picture.frame),
-            milliseconds: times[times.len() / 2],
-            groups: preparation.groups().map(splatref::scene::Groups::len),
-        })
+        Ok(Shot { image, milliseconds: times[times.len() / 2], groups: renderer.groups() })
     }
 }
 

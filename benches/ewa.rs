@@ -1,14 +1,15 @@
-//! Speed and memory of EWA splatting: the tables of the README.
+//! Speed of EWA splatting: the table of `docs/ewa.md`.
 //!
-//! `cargo bench --bench ewa` prints Markdown; an argument is a pattern that the names of workloads
-//! must contain. Each row is the median over the frames of one run, the minimum in brackets, in
+//! `cargo bench --bench ewa` prints Markdown, and with `--write` puts the table into that page; an
+//! argument is a pattern that the names of workloads must contain. Each row is the median over the frames of one run, the minimum in brackets, in
 //! milliseconds: both geometry passes and the normalization, `f32`, back faces culled, into a
 //! framebuffer that is kept from frame to frame: colour, weight, depth and id, or also normals.
 
-#[path = "common/sphere.rs"]
-mod sphere;
+mod common;
 
-use sphere::{STANDARD, Workload, camera, cell, sphere};
+use common::report::{Arguments, Table};
+use common::sphere::{STANDARD, Workload, camera, cell, sphere};
+use splatref::Result;
 use splatref::frame::{Exec, Framebuffer, Wanted};
 use splatref::method::ewa::{Settings, fast};
 use splatref::scene::Surfels;
@@ -24,15 +25,21 @@ const MORE: [Workload; 4] = [
     Workload { name: "1 M of 1 px", count: 1_000_000, radius: 0.0015 },
 ];
 
-fn main() {
-    // cargo passes --bench.
-    let pattern = std::env::args().skip(1).find(|a| !a.starts_with('-')).unwrap_or_default();
-    println!(
-        "| workload | kernel | planes | threads | frame | projection | visibility | attributes | normalization |"
-    );
-    println!("|---|---|---|---|---|---|---|---|---|");
+fn main() -> Result<()> {
+    let arguments = Arguments::parse()?;
+    let mut table = Table::new(&[
+        "workload",
+        "kernel",
+        "planes",
+        "threads",
+        "frame",
+        "projection",
+        "visibility",
+        "attributes",
+        "normalization",
+    ]);
     let workloads = STANDARD.iter().chain(&MORE);
-    for workload in workloads.filter(|w| w.name.contains(&pattern)) {
+    for workload in workloads.filter(|w| w.name.contains(&arguments.pattern)) {
         let surfels = sphere(workload);
         for (name, kernel, normal) in VARIANTS {
             for threads in [1, 2] {
@@ -40,10 +47,11 @@ fn main() {
                 let planes = if normal { "colour, normal" } else { "colour" };
                 let cells: Vec<_> = times.iter_mut().map(|column| cell(column)).collect();
                 let cells = cells.join(" | ");
-                println!("| {} | {name} | {planes} | {threads} | {cells} |", workload.name);
+                table.row(&format!("{} | {name} | {planes} | {threads} | {cells}", workload.name));
             }
         }
     }
+    table.publish_times(&arguments, "ewa.md", "ewa")
 }
 
 /// Kernel, and whether normals are wanted.

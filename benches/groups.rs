@@ -1,14 +1,16 @@
 //! Table 1 of Zhang and Pajarola 2006, measured again, and what covering the surface takes.
 //!
-//! `cargo bench --bench groups` prints Markdown; an argument is a pattern that the names of models
-//! must contain, a number after it the largest count of points. Of each model there are the
-//! vertices, and the same surface sampled at random with the counts of the paper's models. Radii
+//! `cargo bench --bench groups` prints Markdown, and with `--write` puts the tables into
+//! `docs/zp06.md`; an argument is a pattern that the names of models must contain. Of each model
+//! there are the vertices, and the same surface sampled at random with the counts of the paper's models. Radii
 //! are those that this crate derives, which overlap more than the paper's; in the rows marked with
 //! the factor they are scaled until the average degree at c = 1 is that of the paper's model.
 
 mod common;
 
-use common::{models, resample};
+use common::models::{models, resample};
+use common::report::{Arguments, Table};
+use splatref::Result;
 use splatref::frame::Exec;
 use splatref::index::grouping::{Extension, GroupingReport, Rules, extend, group, group_into};
 use splatref::scene::{Cloud, Surfels};
@@ -34,37 +36,51 @@ const PAPER: [(&str, usize, [&str; 4], f64); 4] = [
 ];
 const OVERLAPS: [f32; 4] = [1.0, 0.8, 0.6, 0.4];
 
-fn main() {
-    // cargo passes --bench.
-    let mut words = std::env::args().skip(1).filter(|a| !a.starts_with('-'));
-    let pattern = words.next().unwrap_or_default();
-    let most = words.next().and_then(|word| word.parse().ok()).unwrap_or(usize::MAX);
-    let exec = Exec::new(0, 32).expect("threads");
-    println!("K / most / average degree at each c; {} threads\n", exec.threads());
-    println!(
-        "| model | points | radii | c = 1.0 | c = 0.8 | c = 0.6 | c = 0.4 | time at c = 1 | all four |"
-    );
-    println!("|---|---|---|---|---|---|---|---|---|");
+fn main() -> Result<()> {
+    let arguments = Arguments::parse()?;
+    let exec = Exec::new(0, 32)?;
+    let models = models(&arguments.pattern, &arguments)?;
+    let mut table = Table::new(&[
+        "model",
+        "points",
+        "radii",
+        "c = 1.0",
+        "c = 0.8",
+        "c = 0.6",
+        "c = 0.4",
+        "time at c = 1",
+        "all four",
+    ]);
     for (name, points, cells, _) in PAPER {
-        println!("| {name} (the paper) | {points} | | {} | | |", cells.join(" | "));
+        table.row(&format!("{name} (the paper) | {points} | | {} | | ", cells.join(" | ")));
     }
-    let models = models(&pattern);
     for (name, cloud) in &models {
-        rows(name, &surfels(cloud.clone(), &exec), 17.5, &exec);
-        for (_, count, _, degree) in PAPER.iter().filter(|paper| paper.1 <= most) {
-            rows(name, &surfels(resample(cloud, *count, 1), &exec), *degree, &exec);
+        rows(&mut table, name, &surfels(cloud.clone(), &exec), 17.5, &exec);
+        for (_, count, _, degree) in PAPER {
+            let sampled = surfels(resample(cloud, count, 1), &exec);
+            rows(&mut table, name, &sampled, degree, &exec);
         }
     }
-    println!("\nAdded so that K groups cover the surface, scaled radii\n");
-    println!("| model | points | K | c | most | added | coverage before | after | time |");
-    println!("|---|---|---|---|---|---|---|---|---|");
+    table.publish_times(&arguments, "zp06.md", "groups")?;
+    let mut table = Table::new(&[
+        "model",
+        "points",
+        "K",
+        "c",
+        "most",
+        "added",
+        "coverage before",
+        "after",
+        "time",
+    ]);
     for (name, cloud) in &models {
-        let (_, count, _, degree) = PAPER[if most < PAPER[2].1 { 0 } else { 2 }];
+        let (_, count, _, degree) = PAPER[2];
         let (scene, _) = scaled(&surfels(resample(cloud, count, 1), &exec), degree, &exec);
         for most in [0.25, 0.5, 0.75] {
-            covering(name, &scene, most, &exec);
+            table.row(&covering(name, &scene, most, &exec));
         }
     }
+    table.publish_times(&arguments, "zp06.md", "covering")
 }
 
 fn surfels(cloud: Cloud, exec: &Exec) -> Surfels {
@@ -72,13 +88,14 @@ fn surfels(cloud: Cloud, exec: &Exec) -> Surfels {
 }
 
 /// One row with the derived radii, one with those of the paper's degree.
-fn rows(name: &str, surfels: &Surfels, degree: f64, exec: &Exec) {
-    row(name, surfels, "derived", exec);
+fn rows(table: &mut Table, name: &str, surfels: &Surfels, degree: f64, exec: &Exec) {
+    table.row(&row(name, surfels, "derived", exec));
     let (scaled, factor) = scaled(surfels, degree, exec);
-    row(name, &scaled, &format!("{factor:.3}"), exec);
+    table.row(&row(name, &scaled, &format!("{factor:.3}"), exec));
 }
 
-fn row(name: &str, surfels: &Surfels, radii: &str, exec: &Exec) {
+/// K / most / average degree at each c, and the times.
+fn row(name: &str, surfels: &Surfels, radii: &str, exec: &Exec) -> String {
     let mut cells = Vec::new();
     let mut times = Vec::new();
     for overlap in OVERLAPS {
@@ -93,7 +110,7 @@ fn row(name: &str, surfels: &Surfels, radii: &str, exec: &Exec) {
     let all: Duration = times.iter().sum();
     let [first, all] = [times[0], all].map(|time| format!("{:.2} s", time.as_secs_f64()));
     let cells = cells.join(" | ");
-    println!("| {name} | {} | {radii} | {cells} | {first} | {all} |", surfels.len());
+    format!("{name} | {} | {radii} | {cells} | {first} | {all}", surfels.len())
 }
 
 fn divide(surfels: &Surfels, overlap: f32, exec: &Exec) -> Option<GroupingReport> {
@@ -119,7 +136,8 @@ fn times(surfels: &Surfels, factor: f64) -> Surfels {
     Surfels::new(cloud).expect("surfels").0
 }
 
-fn covering(name: &str, surfels: &Surfels, most: f32, exec: &Exec) {
+/// Surfels added so that four groups cover the surface.
+fn covering(name: &str, surfels: &Surfels, most: f32, exec: &Exec) -> String {
     let silent = |_: &str, _, _| ();
     let (groups, report) =
         group_into(surfels, &Rules::default(), 4, exec, &silent).expect("four groups");
@@ -130,8 +148,8 @@ fn covering(name: &str, surfels: &Surfels, most: f32, exec: &Exec) {
         let parts = extended.groups.iter().map(|g| format!("{:.0} %", 100.0 * of(g)));
         parts.collect::<Vec<_>>().join(", ")
     };
-    println!(
-        "| {name} | {} | {} | {} | {most} | {:.0} % | {} | {} | {:.1} s |",
+    format!(
+        "{name} | {} | {} | {} | {most} | {:.0} % | {} | {} | {:.1} s",
         surfels.len(),
         report.groups,
         report.overlap,
@@ -139,5 +157,5 @@ fn covering(name: &str, surfels: &Surfels, most: f32, exec: &Exec) {
         percents(|g| g.before),
         percents(|g| g.after),
         start.elapsed().as_secs_f64()
-    );
+    )
 }

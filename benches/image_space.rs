@@ -1,7 +1,7 @@
 //! Speed of the image-space methods: the timing tables of \[MKC08\] and \[MOC08\], measured again.
 //!
-//! `cargo bench --bench image_space` prints Markdown; an argument is a pattern that the names of
-//! rows must contain. The papers' models are stood for by samplings of the dragon with as many
+//! `cargo bench --bench image_space` prints Markdown, and with `--write` puts the table into
+//! `docs/image-space.md`; an argument is a pattern that the names of rows must contain. The papers' models are stood for by samplings of the dragon with as many
 //! points (`SPLATREF_MODELS` names the folder of the scan; without it the sphere is sampled), each
 //! with the spacing as its radius, in a picture that it fills. One headlight, back faces culled,
 //! `f32`, as many threads as cores. Each number is the median over the pictures of one run in
@@ -10,13 +10,16 @@
 //! more than move what the projection moves: read 28 bytes of every surfel, write 24 for each that
 //! is seen, and read those again.
 
-#[path = "common/mod.rs"]
 mod common;
 
+use common::draw::Renderer;
+use common::models::{models, resample};
+use common::report::{Arguments, Table};
+use common::sphere::cell;
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::method::pyramid::{self, Weights};
-use splatref::method::{Method, Preparation, render_f32, template};
+use splatref::method::{Method, template};
 use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Scene, Surfels};
 use splatref::source::Shape;
 use std::time::{Duration, Instant};
@@ -69,9 +72,8 @@ const TEMPLATE_5: [Row; 5] = [
 ];
 
 fn main() -> Result<()> {
-    // cargo passes --bench.
-    let pattern = std::env::args().skip(1).find(|a| !a.starts_with('-')).unwrap_or_default();
-    let dragon = common::models("dragon").pop();
+    let arguments = Arguments::parse()?;
+    let dragon = models("dragon", &arguments)?.pop();
     let scans = dragon.map(|(_, cloud)| cloud);
     let pyramid = Method::Pyramid(pyramid::Settings::default());
     let boxed = pyramid::Settings { weights: Weights::Box, ..pyramid::Settings::default() };
@@ -83,10 +85,18 @@ fn main() -> Result<()> {
         ("template 3 x 3", of(3), &TEMPLATE_3, 768, false),
         ("template 5 x 5", of(5), &TEMPLATE_5, 768, false),
     ];
-    println!("| method | model of the paper | points | paper | frame | ratio | stages | moving |");
-    println!("|---|---|---|---|---|---|---|---|");
+    let mut table = Table::new(&[
+        "method",
+        "model of the paper",
+        "points",
+        "paper",
+        "frame",
+        "ratio",
+        "stages",
+        "moving",
+    ]);
     for (name, method, rows, side, colored) in tables {
-        for row in rows.iter().filter(|_| name.contains(&pattern)) {
+        for row in rows.iter().filter(|_| name.contains(&arguments.pattern)) {
             let scene = scene(scans.as_ref(), row.count, colored)?;
             let (center, radius) = scene.surfels.bounding_sphere();
             let side_on = glam::DVec3::new(0.25, 0.25, 1.0);
@@ -100,8 +110,8 @@ fn main() -> Result<()> {
             let frame = median(&mut frames);
             let stages: Vec<String> =
                 stages.into_iter().map(|(n, mut t)| format!("{n} {}", cell(&mut t))).collect();
-            println!(
-                "| {name} | {} | {} k | {:.1} | {} | {:.2} | {} | {} |",
+            table.row(&format!(
+                "{name} | {} | {} k | {:.1} | {} | {:.2} | {} | {}",
                 row.model,
                 row.count / 1000,
                 row.paper,
@@ -109,10 +119,10 @@ fn main() -> Result<()> {
                 frame / row.paper,
                 stages.join(", "),
                 cell(&mut moving)
-            );
+            ));
         }
     }
-    Ok(())
+    table.publish_times(&arguments, "image-space.md", "image-space")
 }
 
 /// A sampling of the dragon, or of the sphere; the radius is the spacing.
@@ -125,7 +135,7 @@ fn scene(scan: Option<&Cloud>, count: usize, colored: bool) -> Result<Scene> {
                 .map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0)
                 .sum();
             let radius = (area / count as f64).sqrt() as f32;
-            Cloud { radius: Some(vec![radius; count]), ..common::resample(mesh, count, 1) }
+            Cloud { radius: Some(vec![radius; count]), ..resample(mesh, count, 1) }
         }
     };
     let paint =
@@ -182,14 +192,14 @@ fn moving(surfels: &Surfels, seen: u64, exec: &Exec, points: &mut [[u32; 6]]) ->
 }
 
 fn measure(scene: &Scene, camera: &Camera, method: &Method, exec: &Exec) -> Result<Times> {
-    let preparation = Preparation::new(&scene.surfels, None, method, exec);
+    let mut renderer = Renderer::new(scene, None, method, exec);
     let (mut frames, mut stages) = (Vec::new(), Vec::<(&str, Vec<Duration>)>::new());
-    let mut earlier = None;
+    let mut seen = 0;
     let begin = Instant::now();
     // At least 9 pictures, then up to 101 within two seconds; the first fills the memory.
     while frames.len() < 9 || (frames.len() < 101 && begin.elapsed().as_secs() < 2) {
         let start = Instant::now();
-        let picture = render_f32(scene, &preparation, camera, method, exec, earlier.take())?;
+        let picture = renderer.draw(camera)?;
         let time = start.elapsed();
         if !frames.is_empty() || !stages.is_empty() {
             frames.push(time);
@@ -200,19 +210,12 @@ fn measure(scene: &Scene, camera: &Camera, method: &Method, exec: &Exec) -> Resu
             let laps = stages.iter_mut().zip(&picture.timings);
             laps.for_each(|((_, all), &(_, lap))| all.push(lap));
         }
-        earlier = Some(picture);
+        seen = picture.tally.visible;
     }
-    let seen = earlier.map_or(0, |picture| picture.tally.visible);
     Ok((frames, stages, seen))
 }
 
 fn median(times: &mut [Duration]) -> f64 {
     times.sort();
     times[times.len() / 2].as_secs_f64() * 1e3
-}
-
-/// Median and minimum in milliseconds, the minimum in brackets.
-fn cell(times: &mut [Duration]) -> String {
-    let median = median(times);
-    format!("{median:.1} ({:.1})", times[0].as_secs_f64() * 1e3)
 }

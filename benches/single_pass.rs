@@ -1,16 +1,17 @@
 //! Speed of single-pass rendering against the 2+1-pass method: the question of \[ZP06, Table 2\].
 //!
-//! `cargo bench --bench single_pass` prints Markdown; an argument is a pattern that the names of
-//! workloads must contain. Every round draws one frame of each row, so that all rows see the same
+//! `cargo bench --bench single_pass` prints Markdown, and with `--write` puts the table into
+//! `docs/zp06.md`; an argument is a pattern that the names of workloads must contain. Every round draws one frame of each row, so that all rows see the same
 //! machine. Times are the median over the rounds, the minimum in brackets, in milliseconds; the
 //! ratio is the median over the rounds of the time of the frame by that of the 2+1-pass method.
 //!
 //! The rows are groupings of this crate without relaxations, by c, and the c that gives 8 groups.
 
-#[path = "common/sphere.rs"]
-mod sphere;
+mod common;
 
-use sphere::{STANDARD, camera, cell, sphere};
+use common::report::{Arguments, Table};
+use common::sphere::{STANDARD, camera, cell, sphere};
+use splatref::Result;
 use splatref::frame::{Exec, Framebuffer, Wanted};
 use splatref::index::grouping::{GroupingReport, Rules, group, group_into};
 use splatref::method::ewa;
@@ -28,14 +29,20 @@ enum Method<'a> {
 /// The time of a frame, and of projection, geometry and what comes after it.
 type Times = [Duration; 4];
 
-fn main() {
-    // cargo passes --bench.
-    let pattern = std::env::args().skip(1).find(|a| !a.starts_with('-')).unwrap_or_default();
-    println!(
-        "| workload | planes | threads | method | frame | ratio | projection | geometry | compositing |"
-    );
-    println!("|---|---|---|---|---|---|---|---|---|");
-    for workload in STANDARD.iter().filter(|w| w.name.contains(&pattern)) {
+fn main() -> Result<()> {
+    let arguments = Arguments::parse()?;
+    let mut table = Table::new(&[
+        "workload",
+        "planes",
+        "threads",
+        "method",
+        "frame",
+        "ratio",
+        "projection",
+        "geometry",
+        "compositing",
+    ]);
+    for workload in STANDARD.iter().filter(|w| w.name.contains(&arguments.pattern)) {
         let surfels = sphere(workload);
         let groupings = groupings(&surfels);
         let mut methods = vec![("2+1 passes".to_owned(), Method::TwoPass)];
@@ -53,14 +60,16 @@ fn main() {
                         |i: usize| -> Vec<_> { rows[index].iter().map(|t| t[i]).collect() };
                     let [frame, project, geometry, rest] =
                         [0, 1, 2, 3].map(|i| cell(&mut column(i)));
-                    println!(
-                        "| {} | {planes} | {threads} | {name} | {frame} | {ratio:.2} | {project} | {geometry} | {rest} |",
+                    table.row(&format!(
+                        "{} | {planes} | {threads} | {name} | {frame} | {ratio:.2} | {project} | \
+                         {geometry} | {rest}",
                         workload.name
-                    );
+                    ));
                 }
             }
         }
     }
+    table.publish_times(&arguments, "zp06.md", "single-pass")
 }
 
 /// Groups that do not overlap, that do more and more, and 8 of them.
@@ -69,7 +78,7 @@ fn groupings(surfels: &Surfels) -> Vec<(String, Groups)> {
     let by_c = |overlap| group(surfels, &Rules { overlap, ..Rules::default() }, &exec, &silent);
     let eight = group_into(surfels, &Rules::default(), 8, &exec, &silent);
     let all = [1.0, 0.8, 0.6, 0.4].map(by_c).into_iter().chain([eight]);
-    let named = |result: splatref::Result<(Groups, GroupingReport)>| {
+    let named = |result: Result<(Groups, GroupingReport)>| {
         let (groups, report) = result.expect("groups");
         (format!("K = {}, c = {:.3}", report.groups, report.overlap), groups)
     };

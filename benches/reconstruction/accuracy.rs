@@ -10,10 +10,12 @@
 //!   painted and one that is not, by that number of the reference; above 1 a silhouette is rougher,
 //!   or there are holes.
 
-use super::{Bench, EWA, Shot, Subject, methods, splatting};
+use super::common::report::Table;
+use super::common::shot::Shot;
+use super::{Bench, EWA, Subject, methods, splatting};
 use splatref::Result;
 use splatref::frame::image::Image;
-use splatref::frame::{Frame, NO_ID, NamedPlane, Samples};
+use splatref::frame::{Frame, NO_ID, Samples};
 use splatref::method::Method;
 use splatref::scene::Projection;
 use splatref::verify::metrics::{Region, coverage, regions, summary};
@@ -32,10 +34,10 @@ struct Measures {
     outline: f64,
 }
 
-/// A table: its title and what a cell shows.
-type Table = (&'static str, fn(&Measures) -> String);
+/// A title, and what a cell under it shows.
+type Shown = (&'static str, fn(&Measures) -> String);
 
-const TABLES: [Table; 3] = [
+const TABLES: [Shown; 3] = [
     ("RMSE, SSIM", |m| format!("{:.4}, {:.3}", m.rmse, m.ssim)),
     ("Holes (per mille), spill (per mille), edge (per cent), outline", |m| {
         format!("{:.2}, {:.2}, {:.0}, {:.2}", m.holes, m.spill, m.edge, m.outline)
@@ -43,6 +45,18 @@ const TABLES: [Table; 3] = [
     ("RMSE inside, behind (per mille), before (per mille)", |m| {
         format!("{:.4}, {:.2}, {:.2}", m.inside, m.behind, m.before)
     }),
+];
+
+/// Rows of the means: against EWA, over all scenes, and against the truth, over the shapes.
+const BY_EWA: [Shown; 3] = [
+    ("RMSE to EWA", |m| format!("{:.4}", m.rmse)),
+    ("SSIM to EWA", |m| format!("{:.3}", m.ssim)),
+    ("holes, spill", |m| format!("{:.1}, {:.1}", m.holes, m.spill)),
+];
+const BY_TRUTH: [Shown; 3] = [
+    ("RMSE to the truth", |m| format!("{:.4}", m.rmse)),
+    ("SSIM to the truth", |m| format!("{:.3}", m.ssim)),
+    ("outline to the truth", |m| format!("{:.2}", m.outline)),
 ];
 
 /// A scene's row: its name, surfels, median radius in pixels, and the measures of each method.
@@ -76,11 +90,12 @@ impl Bench {
             by_ewa.push(Row { title: title.clone(), cells: first });
             by_truth.extend(truth.is_some().then_some(Row { title, cells: second }));
         }
-        let mut names: Vec<_> = methods().iter().map(|method| method.0).collect();
-        print("against EWA", &names, &by_ewa);
-        names.insert(0, EWA);
-        print("against the true picture", &names, &by_truth);
-        Ok(())
+        let methods = methods();
+        let names: Vec<_> = methods.iter().map(|method| method.0).collect();
+        let with_ewa: Vec<_> = [EWA].into_iter().chain(names.iter().copied()).collect();
+        self.scenes("by-ewa", "EWA", &names, &by_ewa)?;
+        self.scenes("by-truth", "the true picture", &with_ewa, &by_truth)?;
+        self.means(&names, &by_ewa, &by_truth)
     }
 
     fn shoot(&self, subject: &Subject, name: &str, method: &Method) -> Result<Shot> {
@@ -112,11 +127,8 @@ fn radius_in_pixels(subject: &Subject, frame: &Frame<f32>) -> f32 {
 
 /// The measures of a picture against a reference.
 fn measure(subject: &Subject, shot: &Shot, reference: &Shot) -> Measures {
-    let (width, height) = (shot.alpha.width() as usize, shot.alpha.height());
-    let [a, b] = [shot, reference].map(|shot| {
-        let color = NamedPlane { name: String::new(), samples: Samples::Color(shot.color.clone()) };
-        Image::from(&Frame { width: width as u32, height, planes: vec![color] })
-    });
+    let width = shot.alpha.width() as usize;
+    let [a, b] = [shot, reference].map(|shot| Image::from(&shot.to_frame()));
     let (rmse, ssim) =
         summary(&a, &b).map_or((0.0, 0.0), |found| (found.rmse, found.ssim.unwrap_or(0.0)));
     let (alpha, expected) = (shot.alpha.values(), reference.alpha.values());
@@ -157,17 +169,41 @@ fn outline(alpha: &[f32], width: usize) -> u64 {
         + below.map(|(a, b)| differ(a, b)).sum::<u64>()
 }
 
-fn print(reference: &str, names: &[&str], rows: &[Row]) {
-    for (title, show) in TABLES.iter().filter(|_| !rows.is_empty()) {
-        println!("\n{title}, {reference}\n");
-        println!("| scene | surfels | radius, px | {} |", names.join(" | "));
-        println!("|---|---|---|{}", "---|".repeat(names.len()));
-        for row in rows {
-            let cells: Vec<_> = row.cells.iter().map(show).collect();
-            println!("| {} | {} |", row.title, cells.join(" | "));
+impl Bench {
+    /// The tables of all scenes; the first of them is published in `block`.
+    fn scenes(&self, block: &str, reference: &str, names: &[&str], rows: &[Row]) -> Result<()> {
+        for (index, (title, show)) in TABLES.iter().enumerate().filter(|_| !rows.is_empty()) {
+            println!("\n{title}, against {reference}");
+            let columns = ["scene", "surfels", "radius, px"];
+            let columns: Vec<_> = columns.iter().chain(names).copied().collect();
+            let mut table = Table::new(&columns);
+            for row in rows {
+                let cells: Vec<_> = row.cells.iter().map(show).collect();
+                table.row(&format!("{} | {}", row.title, cells.join(" | ")));
+            }
+            let means: Vec<_> = (0..names.len()).map(|i| show(&mean(rows, i))).collect();
+            table.row(&format!("mean | | | {}", means.join(" | ")));
+            if index == 0 {
+                table.publish(&self.arguments, "image-space.md", block)?;
+            }
         }
-        let means: Vec<_> = (0..names.len()).map(|i| show(&mean(rows, i))).collect();
-        println!("| mean | | | {} |", means.join(" | "));
+        Ok(())
+    }
+
+    /// The means over the scenes, a row a measure; EWA is not measured against itself.
+    fn means(&self, names: &[&str], by_ewa: &[Row], by_truth: &[Row]) -> Result<()> {
+        let columns: Vec<_> = ["", EWA].iter().chain(names).copied().collect();
+        println!("\nMeans");
+        let mut table = Table::new(&columns);
+        for (title, show) in BY_EWA.iter().filter(|_| !by_ewa.is_empty()) {
+            let cells: Vec<_> = (0..names.len()).map(|i| show(&mean(by_ewa, i))).collect();
+            table.row(&format!("{title} | | {}", cells.join(" | ")));
+        }
+        for (title, show) in BY_TRUTH.iter().filter(|_| !by_truth.is_empty()) {
+            let cells: Vec<_> = (0..=names.len()).map(|i| show(&mean(by_truth, i))).collect();
+            table.row(&format!("{title} | {}", cells.join(" | ")));
+        }
+        table.publish(&self.arguments, "image-space.md", "means")
     }
 }
 

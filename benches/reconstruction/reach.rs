@@ -7,11 +7,14 @@
 //! falls into, so a share below 1 is that too where discs are small. Painted pixels that are none
 //! of the disc's: `beyond`.
 
-use super::{Bench, lit, methods};
+use super::common::draw::Renderer;
+use super::common::report::Table;
+use super::common::shot::lit;
+use super::{Bench, methods};
 use glam::{DVec3, Vec3};
 use splatref::Result;
 use splatref::frame::Samples;
-use splatref::method::{Method, Preparation, render_f32};
+use splatref::method::Method;
 use splatref::number::Vector3;
 use splatref::number::elementary::{cos, sin};
 use splatref::number::random::unit;
@@ -23,7 +26,7 @@ const PLACES: u64 = 64;
 const TILTS: [f64; 3] = [0.0, 45.0, 75.0];
 const RADII: [f32; 10] = [0.25, 0.5, 1.0, 1.5, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 const METHODS: [&str; 7] =
-    ["pyramid", "3 x 3", "5 x 5", "7 x 7", "3, published", "5, published", "7, published"];
+    ["pyramid", "3 x 3", "5 x 5", "7 x 7", "3, covering", "5, covering", "7, covering"];
 
 /// Pixels of discs, and how many of them are painted; and painted ones beyond.
 #[derive(Default)]
@@ -38,12 +41,9 @@ struct Count {
 impl Bench {
     /// The table.
     pub(super) fn reach(&self) -> Result<()> {
-        println!(
-            "\nReach: painted pixels of a single disc by all its pixels, per cent: the mean of"
-        );
-        println!("{PLACES} places, the least in brackets, painted pixels beyond it after a plus\n");
-        println!("| tilt | radius, px | {} |", METHODS.join(" | "));
-        println!("|---|---|{}", "---|".repeat(METHODS.len()));
+        println!("\nReach: painted pixels of a single disc by all its pixels, per cent");
+        let columns: Vec<_> = ["tilt, degrees", "radius, px"].into_iter().chain(METHODS).collect();
+        let mut table = Table::new(&columns);
         let found = methods();
         let chosen: Vec<_> = found.iter().filter(|m| METHODS.contains(&m.0)).collect();
         for tilt in TILTS {
@@ -56,18 +56,18 @@ impl Bench {
                     Ok(format!("{mean:.1} ({:.0}) + {beyond:.1}", 100.0 * counted.least))
                 };
                 let cells: Vec<_> = chosen.iter().map(count).collect::<Result<_>>()?;
-                println!("| {tilt} | {radius} | {} |", cells.join(" | "));
+                table.row(&format!("{tilt} | {radius} | {}", cells.join(" | ")));
             }
         }
-        Ok(())
+        table.publish(&self.arguments, "image-space.md", "reach")
     }
 
     fn count(&self, radius: f32, tilt: f64, method: &Method) -> Result<Count> {
         let mut count = Count { least: 1.0, ..Count::default() };
-        let preparation = Preparation::new(&Surfels::none(), None, method, &self.exec);
         for place in 0..PLACES {
             let (scene, camera) = disc(radius, tilt, place)?;
-            let drawn = render_f32(&scene, &preparation, &camera, method, &self.exec, None)?;
+            let mut renderer = Renderer::new(&scene, None, method, &self.exec);
+            let drawn = renderer.draw(&camera)?;
             let Some(Samples::Scalar(alpha)) = drawn.frame.plane("A") else { continue };
             let surfels = &scene.surfels;
             let (p, n) = (surfels.position()[0].as_dvec3(), surfels.normal()[0].as_dvec3());

@@ -14,7 +14,9 @@
 //! each as the mean over the shifts and the worst. `a pixel` leaves out the column that comes in;
 //! what it finds comes from the coarser grids of the method alone.
 
-use super::{Bench, EWA, Shot, Subject, methods, splatting};
+use super::common::report::Table;
+use super::common::shot::Shot;
+use super::{Bench, EWA, Subject, methods, splatting};
 use splatref::Result;
 use splatref::frame::Plane;
 use splatref::scene::Camera;
@@ -33,14 +35,15 @@ const SCENES: [&str; 9] = [
     "igea",
     "koala",
 ];
-const METHODS: [&str; 6] = ["pyramid", "outside", "3 x 3", "5 x 5", "7 x 7", "5, published"];
+const METHODS: [&str; 6] =
+    ["pyramid", "occluded = outside", "5 x 5", "3, covering", "5, covering", "7, covering"];
 
 impl Bench {
     /// The table.
     pub(super) fn stability(&self, subjects: &[Subject]) -> Result<()> {
         println!("\nMoved by 1/8 pixel eight times: RMSE, mean and worst\n");
-        println!("| scene | reference | method | change | error | flicker | a pixel |");
-        println!("|---|---|---|---|---|---|---|");
+        let mut table =
+            Table::new(&["scene", "reference", "method", "change", "error", "flicker", "a pixel"]);
         for subject in subjects.iter().filter(|s| SCENES.contains(&s.name.as_str())) {
             let ewa = self.pictures(
                 |camera| Ok(Shot::of(self.draw(subject, camera, &splatting())?).color),
@@ -57,8 +60,9 @@ impl Bench {
                 Some(truth) => (truth, "truth"),
                 None => (&ewa, EWA),
             };
-            let row = |method: &str, shots: &[Plane<[f32; 3]>]| {
-                println!("| {} | {name} | {method} | {} |", subject.name, cells(shots, reference));
+            let mut row = |method: &str, shots: &[Plane<[f32; 3]>]| {
+                let cells = cells(shots, reference);
+                table.row(&format!("{} | {name} | {method} | {cells}", subject.name));
             };
             if let Some(truth) = &truth {
                 row("truth", truth);
@@ -70,7 +74,7 @@ impl Bench {
                 row(name, &self.pictures(draw, subject)?);
             }
         }
-        Ok(())
+        table.publish(&self.arguments, "image-space.md", "stability")
     }
 
     /// The pictures of all shifts.

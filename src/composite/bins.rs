@@ -26,7 +26,7 @@
 //!   all from 255/256 on do.
 
 use crate::error::{Error, Result};
-use crate::number::Real;
+use crate::number::Exact;
 
 /// The most bins: z then still tells 256 ratios apart in `f32`.
 pub const MAX_BINS: u32 = 65_535;
@@ -72,7 +72,7 @@ pub struct DepthBins<R> {
     count: R,
 }
 
-impl<R: Real> DepthBins<R> {
+impl<R: Exact> DepthBins<R> {
     /// The bins of a range.
     #[must_use]
     pub fn new(range: &Range) -> Self {

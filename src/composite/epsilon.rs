@@ -1,13 +1,13 @@
 //! The epsilon-z test: which fragments belong to the visible surface.
 
-use crate::number::Real;
+use crate::number::Exact;
 
 /// The greatest depth that still belongs to the surface whose nearest fragment lies at `nearest`:
 /// `nearest + epsilon`.
 ///
 /// Depths are > 0 under a perspective camera; `epsilon` is >= 0 and may be +inf.
 #[inline(always)]
-pub fn limit<R: Real>(nearest: R, epsilon: R) -> R {
+pub fn limit<R: Exact>(nearest: R, epsilon: R) -> R {
     nearest + epsilon
 }
 
@@ -19,6 +19,6 @@ pub fn limit<R: Real>(nearest: R, epsilon: R) -> R {
 /// alone; epsilon = +inf keeps everything; a greater epsilon never drops a fragment that a smaller
 /// kept.
 #[inline(always)]
-pub fn visible<R: Real>(t: R, nearest: R, epsilon: R) -> bool {
+pub fn visible<R: Exact>(t: R, nearest: R, epsilon: R) -> bool {
     t <= limit(nearest, epsilon)
 }

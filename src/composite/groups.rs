@@ -25,7 +25,7 @@
 //!   nearest was known. So a backend may not composite images as they come.
 
 use super::{epsilon, sum};
-use crate::number::Real;
+use crate::number::Exact;
 
 /// What a depth-image holds at a pixel: the attributes of one fragment, times its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ pub struct Sample<R> {
     pub opacity: R,
 }
 
-impl<R: Real> Sample<R> {
+impl<R: Exact> Sample<R> {
     /// An empty pixel.
     pub const EMPTY: Self = Self {
         depth: R::INFINITY,
@@ -66,7 +66,7 @@ impl<R: Real> Sample<R> {
 ///
 /// Gives the sums, with the nearest depth, and how many samples passed the epsilon-z test.
 /// `epsilon` is >= 0 and may be +inf.
-pub fn compose<R: Real>(samples: &[Sample<R>], epsilon: R) -> (Sample<R>, u32) {
+pub fn compose<R: Exact>(samples: &[Sample<R>], epsilon: R) -> (Sample<R>, u32) {
     let mut sums = Sample::<R>::EMPTY;
     for sample in samples {
         sums.depth = sums.depth.at_most(sample.depth);

@@ -14,7 +14,7 @@
 //! exchanging left with right or top with bottom changes no bit. Of 1, 2 or 4 terms of weight 1 it
 //! is the plain mean.
 
-use crate::number::Real;
+use crate::number::Exact;
 
 /// The neighbours that take part, and their weights.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +25,7 @@ pub struct Mean<R> {
     scale: R,
 }
 
-impl<R: Real> Mean<R> {
+impl<R: Exact> Mean<R> {
     /// The weights of neighbours; those of which `takes` is false are ignored.
     #[inline(always)]
     #[must_use]
@@ -74,7 +74,11 @@ impl<R: Real> Mean<R> {
 /// second result is which one is in front, 0 if there is no candidate.
 #[inline(always)]
 #[must_use]
-pub fn foremost<R: Real>(candidates: [bool; 4], front: [R; 4], back: [R; 4]) -> ([bool; 4], usize) {
+pub fn foremost<R: Exact>(
+    candidates: [bool; 4],
+    front: [R; 4],
+    back: [R; 4],
+) -> ([bool; 4], usize) {
     let (mut nearest, mut end, mut first) = (R::INFINITY, -R::INFINITY, 0);
     for j in 0..4 {
         if candidates[j] & (front[j] < nearest) {

@@ -4,7 +4,7 @@
 //! is blended in at the end by what the layers let through.
 
 use super::sum;
-use crate::number::Real;
+use crate::number::Exact;
 
 /// Layers that have been blended: their colour over black, and their opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub struct Blend<R> {
     pub alpha: R,
 }
 
-impl<R: Real> Blend<R> {
+impl<R: Exact> Blend<R> {
     /// Nothing: black and transparent.
     pub const CLEAR: Self = Self { color: [R::ZERO; 3], alpha: R::ZERO };
 

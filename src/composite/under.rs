@@ -14,7 +14,7 @@
 //! colour unchanged and hides the rest; a = 0 changes nothing; blending the same layers from back
 //! to front gives the same up to rounding.
 
-use crate::number::Real;
+use crate::number::Exact;
 
 /// Layers that have been blended, and what they let through.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub struct Under<R> {
     pub through: R,
 }
 
-impl<R: Real> Under<R> {
+impl<R: Exact> Under<R> {
     /// Nothing: black and transparent.
     pub const CLEAR: Self = Self { color: [R::ZERO; 3], alpha: R::ZERO, through: R::ONE };
 

@@ -3,7 +3,7 @@
 //! - [`environment`]: environment maps from EXR files.
 //! - [`exr`]: every plane of a frame, exactly; reading guards against lying files.
 //! - [`ply`]: point clouds and meshes, in and out.
-//! - [`png`]: an 8-bit preview.
+//! - `png`: an 8-bit preview; needs the feature `cli`.
 //! - [`provenance`]: the text that a picture carries.
 //! - [`replace`]: output files that are whole or not there.
 //! - [`scene_file`]: scenes as TOML: models, lights, camera, settings.
@@ -12,6 +12,7 @@
 pub mod environment;
 pub mod exr;
 pub mod ply;
+#[cfg(feature = "cli")]
 pub mod png;
 pub mod provenance;
 pub mod replace;

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::frame::{Exec, Frame, Pool};
 use crate::index::Index;
 use crate::index::grouping::Grouping;
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use std::fmt::Debug;
 
@@ -53,7 +53,7 @@ pub trait Algorithm: Copy + Debug + Default + PartialEq + Send + Sync + 'static 
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if the method cannot draw the scene with these settings.
-    fn define<R: Real>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>>;
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>>;
 
     /// The picture in `f32`, by the fast path where there is one: the bits of the definition.
     ///
@@ -75,13 +75,13 @@ pub trait Algorithm: Copy + Debug + Default + PartialEq + Send + Sync + 'static 
     /// # Errors
     /// [`crate::Error::Invalid`] if a plane is missing, of another type or size, or if no stage of
     /// this name can be run so.
-    fn stage<R: Real>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>>;
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>>;
 
     /// Every decision at one pixel, with its operands, in words.
     ///
     /// # Errors
     /// [`crate::Error::Usage`] if the pixel is outside the picture; else as [`Algorithm::define`].
-    fn explain<R: Real>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String>;
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String>;
 
     /// What the settings come to in a scene: names and values as TOML, for the text of a picture.
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {

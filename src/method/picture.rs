@@ -3,7 +3,7 @@
 use super::algorithm::Job;
 use crate::composite::over::Blend;
 use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Pool, Samples, Wanted};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
@@ -23,7 +23,7 @@ pub struct Picture<R> {
 }
 
 /// Deferred shading, and the planes of the picture.
-pub(super) fn finish<R: Real>(
+pub(super) fn finish<R: Exact>(
     target: Framebuffer<R>,
     mut planes: Vec<NamedPlane<R>>,
     tally: Tally,
@@ -48,7 +48,7 @@ pub(super) fn finish<R: Real>(
 }
 
 /// Colours multiplied by their opacity before the environment of the scene, if it has one.
-pub(super) fn before_environment<R: Real>(
+pub(super) fn before_environment<R: Exact>(
     scene: &Scene,
     camera: &Camera,
     mut color: Plane<[R; 3]>,

@@ -1,7 +1,7 @@
 //! Projection and binning: what every method does first.
 
 use crate::frame::{Bins, Exec, Grid, Rect};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Surfels};
 use crate::splat::SplatSettings;
 use crate::splat::{Projector, Shared, Splat, Tally, View, batch};
@@ -18,7 +18,7 @@ pub(super) struct Prepared<R, S> {
     batches: Vec<(Vec<S>, Bins)>,
 }
 
-impl<R: Real, S: Send> Prepared<R, S> {
+impl<R: Exact, S: Send> Prepared<R, S> {
     /// Projects `count` items and sorts the splats into tiles.
     ///
     /// `project` makes the records of a range of items; `bounds` gives the pixels of a record.
@@ -66,7 +66,7 @@ impl<R: Real, S: Send> Prepared<R, S> {
     }
 }
 
-impl<R: Real> Prepared<R, Splat<R>> {
+impl<R: Exact> Prepared<R, Splat<R>> {
     /// Every surfel as the splat it is, in ascending index.
     pub(super) fn splats(
         surfels: &Surfels,

@@ -8,7 +8,7 @@ use crate::frame::{Exec, Frame, Pool};
 use crate::index::Index;
 use crate::index::grouping::{Extended, Grouping, GroupingReport};
 use crate::index::order::BackToFront;
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Groups, Scene};
 
 /// A scene, a method, what the method prepared of the scene, and memory that is used again.
@@ -147,7 +147,7 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// As [`Session::render`].
-    pub fn define<R: Real>(&self, camera: &Camera, stages: bool) -> Result<Picture<R>> {
+    pub fn define<R: Exact>(&self, camera: &Camera, stages: bool) -> Result<Picture<R>> {
         self.method.define(&self.job(camera)?, stages)
     }
 
@@ -157,7 +157,7 @@ impl<'a> Session<'a> {
     /// # Errors
     /// [`crate::Error::Invalid`] if a plane is missing, or of another type or size than the
     /// stage's; if there is no such stage; else as [`Session::render`].
-    pub fn stage<R: Real>(
+    pub fn stage<R: Exact>(
         &self,
         camera: &Camera,
         stage: &str,
@@ -170,7 +170,7 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// [`crate::Error::Usage`] if the pixel is outside the picture; else as [`Session::render`].
-    pub fn explain<R: Real>(&self, camera: &Camera, pixel: (u32, u32)) -> Result<String> {
+    pub fn explain<R: Exact>(&self, camera: &Camera, pixel: (u32, u32)) -> Result<String> {
         let job = self.job(camera)?;
         camera.check_pixel(pixel.0, pixel.1)?;
         self.method.explain::<R>(&job, pixel)
@@ -181,3 +181,6 @@ impl<'a> Session<'a> {
         Ok(Job { scene: self.scene, index: &self.index, camera, exec: self.exec })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -7,7 +7,7 @@ use super::{
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Pool};
 use crate::index::grouping::Grouping;
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 
 /// Makes the enum of methods, and hands every question on to the settings of the method that is
@@ -89,11 +89,11 @@ macro_rules! methods {
                 match self { $(Self::$method(settings) => Algorithm::resolved(settings, scene, camera),)* }
             }
 
-            pub(super) fn define<R: Real>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+            pub(super) fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
                 match self { $(Self::$method(settings) => settings.define(job, stages),)* }
             }
 
-            pub(super) fn stage<R: Real>(
+            pub(super) fn stage<R: Exact>(
                 &self,
                 job: &Job<'_>,
                 stage: &str,
@@ -102,7 +102,7 @@ macro_rules! methods {
                 match self { $(Self::$method(settings) => settings.stage(job, stage, from),)* }
             }
 
-            pub(super) fn explain<R: Real>(&self, job: &Job<'_>, at: (u32, u32)) -> Result<String> {
+            pub(super) fn explain<R: Exact>(&self, job: &Job<'_>, at: (u32, u32)) -> Result<String> {
                 match self { $(Self::$method(settings) => settings.explain::<R>(job, at),)* }
             }
 

@@ -191,7 +191,7 @@ pub fn exp_f32_in_range(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::Real;
+    use crate::number::Exact;
     use crate::number::random::unit;
 
     /// Every `step`-th float of [-110, 100], and how many of them are not correctly rounded.

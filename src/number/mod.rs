@@ -4,7 +4,7 @@
 //! the executable specification, the bits that a GPU gets from the same IEEE operations in the same
 //! order; with `f64` it is the truth of the same problem.
 //!
-//! - [`real`]: the trait and its two implementations.
+//! - [`real`]: the trait, its comparisons, and the numbers with two outcomes, [`Exact`].
 //! - [`vector`]: two- and three-component vectors whose order of operations is written out.
 //! - [`elementary`]: the only home of exp, pow, sin ... in the crate.
 //! - [`random`]: random values as functions of a seed and an index.
@@ -14,5 +14,5 @@ pub mod random;
 pub mod real;
 pub mod vector;
 
-pub use real::Real;
+pub use real::{Exact, Pixel, Real, Truth};
 pub use vector::{Vector2, Vector3};

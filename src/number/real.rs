@@ -2,18 +2,74 @@
 
 use super::elementary::{self, LANES};
 use std::fmt::Debug;
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// The outcome of a comparison.
+///
+/// A number that is exact answers with a `bool`. A number that stands for all values in an interval
+/// has a third answer, "undecided", where some of these values say yes and others no: `&`, `|` and
+/// `!` are then those of Kleene's logic. Only a truth that is a `bool` can steer an `if`; what a
+/// formula chooses by another truth goes through [`Real::select`], and a decision about a fragment
+/// or a cell is handed to the caller.
+pub trait Truth:
+    Copy
+    + Debug
+    + PartialEq
+    + From<bool>
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + Not<Output = Self>
+    + Send
+    + Sync
+    + 'static
+{
+    /// Whether every value says yes.
+    fn certainly(self) -> bool;
+    /// Whether some value says yes.
+    fn possibly(self) -> bool;
+}
+
+impl Truth for bool {
+    #[inline(always)]
+    fn certainly(self) -> bool {
+        self
+    }
+    #[inline(always)]
+    fn possibly(self) -> bool {
+        self
+    }
+}
+
+/// The integer part of a coordinate: one column or row, or the least and the greatest that the
+/// coordinate may lie in.
+pub trait Pixel: Copy + Debug + Send + Sync + 'static {
+    /// The least.
+    fn least(self) -> u32;
+    /// The greatest.
+    fn greatest(self) -> u32;
+}
+
+impl Pixel for u32 {
+    #[inline(always)]
+    fn least(self) -> u32 {
+        self
+    }
+    #[inline(always)]
+    fn greatest(self) -> u32 {
+        self
+    }
+}
 
 /// A number that the formulas of the crate can be evaluated in.
 ///
 /// An operation rounds once, to nearest, ties to even, and is never fused with another.
-/// Comparisons are the operators of [`PartialOrd`]. There are no `min`, `max` or `clamp`: their
-/// treatment of zeros and NaN is not portable, [`Real::at_least`] and [`Real::at_most`] are.
+/// Comparisons give a [`Truth`], not a `bool`. So a formula over any `Real` has no control flow
+/// that depends on a value; what has is over [`Exact`] numbers. A comparison with NaN is false.
+/// There are no `min` and `max`: their treatment of zeros and NaN is not portable,
+/// [`Real::at_least`] and [`Real::at_most`] are.
 pub trait Real:
     Copy
     + Debug
-    + PartialEq
-    + PartialOrd
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
@@ -23,6 +79,11 @@ pub trait Real:
     + Sync
     + 'static
 {
+    /// What a comparison of two numbers gives.
+    type Truth: Truth;
+    /// What the integer part of a number is.
+    type Pixel: Pixel;
+
     /// 0.
     const ZERO: Self;
     /// 1.
@@ -39,9 +100,7 @@ pub trait Real:
     /// The `f64` nearest to this number; exact for `f32` and `f64`.
     fn to_f64(self) -> f64;
     /// The integer part of a number in [0, 2^22].
-    fn to_pixel(self) -> u32;
-    /// The integer part, towards 0; the nearest `i64` if out of range, 0 for NaN.
-    fn to_i64(self) -> i64;
+    fn to_pixel(self) -> Self::Pixel;
     /// The largest integer that is not greater, exactly.
     fn floor(self) -> Self;
     /// The square root, correctly rounded.
@@ -50,9 +109,46 @@ pub trait Real:
     fn abs(self) -> Self;
     /// e to this power, see [`elementary`].
     fn exp(self) -> Self;
+    /// Whether this number is neither infinite nor NaN.
+    fn is_finite(self) -> Self::Truth;
+
+    /// `self < other`.
+    fn lt(self, other: Self) -> Self::Truth;
+    /// `self <= other`.
+    fn le(self, other: Self) -> Self::Truth;
+    /// `self > other`.
+    fn gt(self, other: Self) -> Self::Truth;
+    /// `self >= other`.
+    fn ge(self, other: Self) -> Self::Truth;
+    /// `yes` or `no`, as the truth says. A number that stands for an interval gives the hull of
+    /// both where the truth is undecided.
+    #[must_use]
+    fn select(truth: Self::Truth, yes: Self, no: Self) -> Self;
+    /// `self`, or `low` if `self < low`. No comparison of intervals is undecided here: the bound is
+    /// continuous.
+    #[must_use]
+    fn at_least(self, low: Self) -> Self;
+    /// `self`, or `high` if `self > high`; continuous as well.
+    #[must_use]
+    fn at_most(self, high: Self) -> Self;
+    /// `self.at_least(low).at_most(high)` in one step.
+    ///
+    /// The same number. One step, since a midpoint and a radius cannot hold the lopsided interval
+    /// that the first of two bounds leaves.
+    #[must_use]
+    fn clamped(self, low: Self, high: Self) -> Self;
+}
+
+/// A number whose comparisons have two outcomes: what code with control flow is generic over.
+///
+/// `f32` and `f64`, whose operators of [`PartialOrd`] are the comparisons of [`Real`]. The methods
+/// are those that no number with three outcomes needs.
+pub trait Exact: Real<Truth = bool, Pixel = u32> + PartialOrd {
+    /// The integer part, towards 0; the nearest `i64` if out of range, 0 for NaN.
+    fn to_i64(self) -> i64;
     /// This number to the power of `exponent`, see [`elementary`]; `self` is not negative.
     fn pow(self, exponent: Self) -> Self;
-    /// [`Real::pow`] of several numbers.
+    /// [`Exact::pow`] of several numbers.
     #[inline(always)]
     #[must_use]
     fn powers(bases: &[Self; LANES], exponent: Self) -> [Self; LANES] {
@@ -60,29 +156,56 @@ pub trait Real:
     }
     /// The angle of the point (x, `self`) from the x axis, in radians, see [`elementary::atan2`].
     fn atan2(self, x: Self) -> Self;
-    /// Whether this number is neither infinite nor NaN.
-    fn is_finite(self) -> bool;
     /// How many representable numbers lie between this one and `other`, 0 if they are equal.
     ///
     /// -0 and +0 are equal. The count is rounded to `f32`; +inf if either is NaN.
     fn ulps_to(self, other: Self) -> f32;
+}
 
-    /// `self`, or `low` if `self < low`.
-    #[inline(always)]
-    #[must_use]
-    fn at_least(self, low: Self) -> Self {
-        if self < low { low } else { self }
-    }
+/// The comparisons of a number that has operators for them.
+macro_rules! compared_by_operators {
+    () => {
+        type Truth = bool;
+        type Pixel = u32;
 
-    /// `self`, or `high` if `self > high`.
-    #[inline(always)]
-    #[must_use]
-    fn at_most(self, high: Self) -> Self {
-        if self > high { high } else { self }
-    }
+        #[inline(always)]
+        fn lt(self, other: Self) -> bool {
+            self < other
+        }
+        #[inline(always)]
+        fn le(self, other: Self) -> bool {
+            self <= other
+        }
+        #[inline(always)]
+        fn gt(self, other: Self) -> bool {
+            self > other
+        }
+        #[inline(always)]
+        fn ge(self, other: Self) -> bool {
+            self >= other
+        }
+        #[inline(always)]
+        fn select(truth: bool, yes: Self, no: Self) -> Self {
+            if truth { yes } else { no }
+        }
+        #[inline(always)]
+        fn at_least(self, low: Self) -> Self {
+            if self < low { low } else { self }
+        }
+        #[inline(always)]
+        fn at_most(self, high: Self) -> Self {
+            if self > high { high } else { self }
+        }
+        #[inline(always)]
+        fn clamped(self, low: Self, high: Self) -> Self {
+            self.at_least(low).at_most(high)
+        }
+    };
 }
 
 impl Real for f32 {
+    compared_by_operators!();
+
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
     const INFINITY: Self = Self::INFINITY;
@@ -113,10 +236,6 @@ impl Real for f32 {
         shifted.to_bits() & 0x007F_FFFF
     }
     #[inline(always)]
-    fn to_i64(self) -> i64 {
-        self as i64
-    }
-    #[inline(always)]
     fn floor(self) -> Self {
         self.floor()
     }
@@ -133,6 +252,17 @@ impl Real for f32 {
         elementary::exp_f32(self)
     }
     #[inline(always)]
+    fn is_finite(self) -> bool {
+        self.is_finite()
+    }
+}
+
+impl Exact for f32 {
+    #[inline(always)]
+    fn to_i64(self) -> i64 {
+        self as i64
+    }
+    #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
         elementary::pow_f32(self, exponent)
     }
@@ -144,10 +274,6 @@ impl Real for f32 {
     fn atan2(self, x: Self) -> Self {
         elementary::atan2(f64::from(self), f64::from(x)) as Self
     }
-    #[inline(always)]
-    fn is_finite(self) -> bool {
-        self.is_finite()
-    }
     #[inline]
     fn ulps_to(self, other: Self) -> f32 {
         if self.is_nan() || other.is_nan() {
@@ -158,6 +284,8 @@ impl Real for f32 {
 }
 
 impl Real for f64 {
+    compared_by_operators!();
+
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
     const INFINITY: Self = Self::INFINITY;
@@ -183,10 +311,6 @@ impl Real for f64 {
         self as u32
     }
     #[inline(always)]
-    fn to_i64(self) -> i64 {
-        self as i64
-    }
-    #[inline(always)]
     fn floor(self) -> Self {
         self.floor()
     }
@@ -203,16 +327,23 @@ impl Real for f64 {
         elementary::exp(self)
     }
     #[inline(always)]
+    fn is_finite(self) -> bool {
+        self.is_finite()
+    }
+}
+
+impl Exact for f64 {
+    #[inline(always)]
+    fn to_i64(self) -> i64 {
+        self as i64
+    }
+    #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
         elementary::pow(self, exponent)
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
         elementary::atan2(self, x)
-    }
-    #[inline(always)]
-    fn is_finite(self) -> bool {
-        self.is_finite()
     }
     #[inline]
     fn ulps_to(self, other: Self) -> f32 {
@@ -284,8 +415,8 @@ mod tests {
             <f32 as Real>::from_i64((1 << 60) + (1 << 36) + 1),
             f32::next_up((1_i64 << 60) as f32)
         );
-        assert_eq!([-2.75_f32, 2.75, f32::NAN].map(Real::to_i64), [-2, 2, 0]);
-        assert_eq!([-2.75, 2.75, f64::INFINITY].map(Real::to_i64), [-2, 2, i64::MAX]);
+        assert_eq!([-2.75_f32, 2.75, f32::NAN].map(Exact::to_i64), [-2, 2, 0]);
+        assert_eq!([-2.75, 2.75, f64::INFINITY].map(Exact::to_i64), [-2, 2, i64::MAX]);
     }
 
     #[test]
@@ -297,15 +428,15 @@ mod tests {
         for (i, (y, x)) in
             [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (1.0, -1.0), (0.0, -1.0)].into_iter().enumerate()
         {
-            assert_eq!(Real::atan2(y, x), i as f64 * eighth);
-            assert_eq!(Real::atan2(y as f32, x as f32), (i as f64 * eighth) as f32);
-            assert_eq!(Real::atan2(-y, x), -(i as f64 * eighth));
+            assert_eq!(Exact::atan2(y, x), i as f64 * eighth);
+            assert_eq!(Exact::atan2(y as f32, x as f32), (i as f64 * eighth) as f32);
+            assert_eq!(Exact::atan2(-y, x), -(i as f64 * eighth));
         }
         let mut worst = 0.0;
         for i in 0..10_000 {
             let angle = (crate::number::random::unit(1, i) - 0.5) * 6.25;
             let (y, x) = (core_math::sinf(angle), core_math::cosf(angle));
-            let ulps = Real::atan2(y, x).ulps_to(core_math::atan2f(y, x));
+            let ulps = Exact::atan2(y, x).ulps_to(core_math::atan2f(y, x));
             if ulps > worst {
                 worst = ulps;
             }
@@ -318,5 +449,13 @@ mod tests {
         assert_eq!(2.0_f32.at_least(3.0), 3.0);
         assert_eq!(2.0_f32.at_most(3.0), 2.0);
         assert!(f32::NAN.at_least(0.0).is_nan(), "a comparison with NaN is false");
+        let odd = [-0.0, 0.0, 1.0, -1.0, 3.5, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+        for [x, low, high] in odd
+            .iter()
+            .flat_map(|&x| odd.iter().flat_map(move |&low| odd.map(move |high| [x, low, high])))
+        {
+            let two_steps = x.at_least(low).at_most(high);
+            assert_eq!(x.clamped(low, high).to_bits(), two_steps.to_bits(), "{x} {low} {high}");
+        }
     }
 }

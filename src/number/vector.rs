@@ -83,11 +83,9 @@ impl<R: Real> Vector3<R> {
     #[must_use]
     pub fn normalized(self) -> Self {
         let length = self.length();
-        if length > R::ZERO && length.is_finite() {
-            Self::new(self.x / length, self.y / length, self.z / length)
-        } else {
-            Self::ZERO
-        }
+        let some = length.gt(R::ZERO) & length.is_finite();
+        let part = |component: R| R::select(some, component / length, R::ZERO);
+        Self::new(part(self.x), part(self.y), part(self.z))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Disc, Fate, Footprint, Outline, Projector, Splat, project};
 use crate::frame::Rect;
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 use crate::scene::Surfels;
 use multiversion::multiversion;
 use std::ops::Range;
@@ -50,7 +50,7 @@ impl Tally {
 
 /// The surfel of index `i`, in the numbers of the arithmetic.
 #[must_use]
-pub fn disc<R: Real>(surfels: &Surfels, i: usize) -> Disc<R> {
+pub fn disc<R: Exact>(surfels: &Surfels, i: usize) -> Disc<R> {
     Disc {
         position: Vector3::from_glam(surfels.position()[i]),
         normal: Vector3::from_glam(surfels.normal()[i]),
@@ -60,7 +60,7 @@ pub fn disc<R: Real>(surfels: &Surfels, i: usize) -> Disc<R> {
 }
 
 /// Calls `draw` for each visible splat of a range of surfels, in ascending order.
-pub fn splats<R: Real>(
+pub fn splats<R: Exact>(
     projector: &Projector<R>,
     surfels: &Surfels,
     range: Range<usize>,

@@ -2,10 +2,10 @@
 
 use super::shape::Placed;
 use super::{Disc, View};
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 
 /// Two half axes of a disc or ellipse in view space.
-fn basis<R: Real>(view: &View<R>, placed: &Placed<R>, disc: &Disc<R>) -> [Vector3<R>; 2] {
+fn basis<R: Exact>(view: &View<R>, placed: &Placed<R>, disc: &Disc<R>) -> [Vector3<R>; 2] {
     if let Some(tangents) = disc.tangents {
         return tangents.map(|t| view.direction(t));
     }
@@ -28,7 +28,7 @@ fn basis<R: Real>(view: &View<R>, placed: &Placed<R>, disc: &Disc<R>) -> [Vector
 ///
 /// A point of the rim is exact to a few roundings of the radius, which the near plane magnifies by
 /// f/near; the box is widened by 2^-20 radii there, and by 1 px and a thousandth of its size.
-pub(super) fn corners<R: Real>(
+pub(super) fn corners<R: Exact>(
     view: &View<R>,
     placed: &Placed<R>,
     disc: &Disc<R>,
@@ -67,12 +67,12 @@ pub(super) fn corners<R: Real>(
 }
 
 /// The equation of the points of the rim where x/t is stationary: the terms of second order cancel.
-fn tangent<R: Real>(x: [R; 3], t: [R; 3]) -> [R; 3] {
+fn tangent<R: Exact>(x: [R; 3], t: [R; 3]) -> [R; 3] {
     [x[2] * t[1] - x[1] * t[2], x[2] * t[0] - x[0] * t[2], x[0] * t[1] - x[1] * t[0]]
 }
 
 /// The points (c, s) of the unit circle with `f[0] + f[1] c + f[2] s = 0`.
-fn on_circle<R: Real>(f: [R; 3]) -> Option<[Vector2<R>; 2]> {
+fn on_circle<R: Exact>(f: [R; 3]) -> Option<[Vector2<R>; 2]> {
     let length = (f[1] * f[1] + f[2] * f[2]).sqrt();
     let (a, b, c) = (f[1] / length, f[2] / length, f[0] / length);
     let rest = R::ONE - c * c;

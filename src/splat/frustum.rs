@@ -1,7 +1,7 @@
 //! The sides of the view.
 
 use super::{Kernel, View};
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 
 /// The four sides of what a picture shows, moved out by the reach of the low-pass filter.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,7 @@ struct Side<R> {
     slope: R,
 }
 
-impl<R: Real> Frustum<R> {
+impl<R: Exact> Frustum<R> {
     /// The sides for a camera and a kernel.
     #[must_use]
     pub fn new(view: &View<R>, kernel: &Kernel) -> Self {

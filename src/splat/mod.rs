@@ -32,7 +32,7 @@ pub use view::View;
 
 use crate::error::{Error, Result};
 use crate::frame::Rect;
-use crate::number::{Real, Vector2};
+use crate::number::{Exact, Vector2};
 
 /// How a disc becomes a shape on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -153,7 +153,7 @@ pub struct Shared<R> {
     pub w_clip: R,
 }
 
-impl<R: Real> Shared<R> {
+impl<R: Exact> Shared<R> {
     /// The shared numbers of a picture.
     #[must_use]
     pub fn new(view: &View<R>, kernel: &Kernel) -> Self {
@@ -180,7 +180,7 @@ impl<R: Real> Shared<R> {
     }
 }
 
-impl<R: Real> Footprint<R> {
+impl<R: Exact> Footprint<R> {
     /// The form f at an offset from the centre.
     #[inline(always)]
     pub fn form(&self, dx: R, dy: R) -> R {
@@ -213,7 +213,7 @@ impl<R: Real> Footprint<R> {
 
 /// q of the disc by ray casting, or of the low-pass filter where that is smaller.
 #[inline(always)]
-fn ray_cast<R: Real>(shared: &Shared<R>, form: R, w: R, dx: R, dy: R) -> R {
+fn ray_cast<R: Exact>(shared: &Shared<R>, form: R, w: R, dx: R, dy: R) -> R {
     let q = if shared.perspective { form / (w * w) } else { form };
     let hits = w <= shared.w_clip && (w > R::ZERO || !shared.perspective);
     let q = if hits { q } else { R::INFINITY };

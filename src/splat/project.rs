@@ -98,7 +98,7 @@ use super::frustum::Frustum;
 use super::shape::{Placed, Shape};
 use super::{Footprint, Kernel, Outline, Splat, View, bounds, crossing};
 use crate::frame::Rect;
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 
 /// What became of a surfel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,7 +129,7 @@ pub struct Disc<R> {
     pub tangents: Option<[Vector3<R>; 2]>,
 }
 
-impl<R: Real> Disc<R> {
+impl<R: Exact> Disc<R> {
     /// The radius of a sphere that holds it: r, or sqrt(U . U + V . V) of an ellipse, whose half
     /// axes need not be perpendicular.
     pub(super) fn reach(&self) -> R {
@@ -159,7 +159,11 @@ pub struct Projector<R> {
 
 /// Projects one surfel; see the module page. The splat is meaningless unless its fate is `Visible`.
 #[must_use]
-pub fn project<R: Real>(projector: &Projector<R>, disc: &Disc<R>, surfel: u32) -> (Splat<R>, Fate) {
+pub fn project<R: Exact>(
+    projector: &Projector<R>,
+    disc: &Disc<R>,
+    surfel: u32,
+) -> (Splat<R>, Fate) {
     let placed = projector.place(disc.position, disc.normal);
     let shape = match disc.tangents {
         None => projector.disc(&placed, disc.radius),
@@ -175,7 +179,7 @@ pub fn project<R: Real>(projector: &Projector<R>, disc: &Disc<R>, surfel: u32) -
     (Splat { footprint, bounds, surfel, back }, fate)
 }
 
-impl<R: Real> Projector<R> {
+impl<R: Exact> Projector<R> {
     /// The shared numbers of a picture.
     #[must_use]
     pub fn new(view: View<R>, kernel: &Kernel, cull: bool) -> Self {

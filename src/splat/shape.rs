@@ -1,7 +1,7 @@
 //! Placing and shape: the first two steps of [`mod@super::project`].
 
 use super::Projector;
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 
 /// A surfel in view space, and the Jacobian there.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ pub(super) struct Shape<R> {
     pub(super) tilt: Vector2<R>,
 }
 
-impl<R: Real> Projector<R> {
+impl<R: Exact> Projector<R> {
     /// A surfel in view space, and the Jacobian there.
     #[inline(always)]
     pub(super) fn place(&self, position: Vector3<R>, normal: Vector3<R>) -> Placed<R> {

@@ -1,6 +1,6 @@
 //! Bits: the fast path is the plain one, and neither threads nor tiles can be seen in a picture.
 
-use crate::scenes::{Case, KINDS, Kind, OUTLINES};
+use crate::ewa::cases::{Case, KINDS, Kind, OUTLINES};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
@@ -8,14 +8,14 @@ use splatref::composite::bins::MAX_BINS;
 use splatref::frame::{Exec, Frame, Samples};
 use splatref::method::ewa::{self, Epsilon, Settings};
 use splatref::method::single_pass::{self, BinCount, DepthTest};
-use splatref::number::Real;
+use splatref::number::Exact;
 use splatref::number::random::unit;
 use splatref::scene::groups::{Groups, MAX_GROUPS};
 use splatref::scene::{Camera, Cloud, Lens, Phong, Pose, Scene, Surfels};
 use splatref::splat::Kernel;
 
 /// The bits of a plane; through f64, which keeps those of f32 apart.
-pub(crate) fn bits<R: Real>(samples: &Samples<R>) -> Vec<u64> {
+pub(crate) fn bits<R: Exact>(samples: &Samples<R>) -> Vec<u64> {
     let number = |v: R| v.to_f64().to_bits();
     match samples {
         Samples::Scalar(plane) => plane.values().iter().map(|v| number(*v)).collect(),
@@ -28,7 +28,7 @@ pub(crate) fn bits<R: Real>(samples: &Samples<R>) -> Vec<u64> {
 }
 
 /// One hash of all planes and their names.
-pub(crate) fn digest<R: Real>(frame: &Frame<R>) -> Vec<u8> {
+pub(crate) fn digest<R: Exact>(frame: &Frame<R>) -> Vec<u8> {
     let mut hash = Sha256::new();
     for plane in &frame.planes {
         hash.update(plane.name.as_bytes());
@@ -40,7 +40,7 @@ pub(crate) fn digest<R: Real>(frame: &Frame<R>) -> Vec<u8> {
 }
 
 /// A -0 or a NaN, which no plane may hold.
-pub(crate) fn unclean<R: Real>(frame: &Frame<R>) -> Option<&str> {
+pub(crate) fn unclean<R: Exact>(frame: &Frame<R>) -> Option<&str> {
     let negative_zero = (-0.0_f64).to_bits();
     let bad = |v: &u64| *v == negative_zero || f64::from_bits(*v).is_nan();
     let floats = |s: &Samples<R>| !matches!(s, Samples::Index(_) | Samples::Count(_));

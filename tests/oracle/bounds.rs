@@ -3,13 +3,13 @@
 //! This is a property of the crate's own numbers, in each arithmetic; only the test of tightness
 //! takes extents from the oracle.
 
-use crate::eye::{Eye, wide};
-use crate::naive::{Body, Figure, Optics};
-use crate::scenes::OUTLINES;
+use crate::ewa::cases::OUTLINES;
+use crate::ewa::splat::{Body, Figure, Optics};
+use crate::kit::eye::{Eye, wide};
 use glam::{DVec3, Mat4, Vec3};
 use proptest::prelude::*;
 use splatref::method::ewa::Settings;
-use splatref::number::{Real, Vector3};
+use splatref::number::{Exact, Vector3};
 use splatref::scene::{Camera, Cloud, Lens, Pose, Surfels};
 use splatref::splat::project::Disc;
 use splatref::splat::{Fate, Kernel, Outline, Projector, View, project};
@@ -33,7 +33,7 @@ struct Given {
 }
 
 impl Given {
-    fn disc<R: Real>(&self) -> Disc<R> {
+    fn disc<R: Exact>(&self) -> Disc<R> {
         Disc {
             position: Vector3::from_glam(self.position),
             normal: Vector3::from_glam(self.normal),
@@ -103,7 +103,7 @@ fn grazing(mut given: Given, lean: f32) -> Given {
 }
 
 /// The first pixel outside the bounds that is inside the splat, and its q.
-fn leak<R: Real>(given: &Given, kernel: &Kernel, camera: &Camera) -> Option<(u32, u32, R)> {
+fn leak<R: Exact>(given: &Given, kernel: &Kernel, camera: &Camera) -> Option<(u32, u32, R)> {
     let view = View::<R>::new(camera);
     let shared = splatref::splat::Shared::new(&view, kernel);
     let (splat, fate) = project(&Projector::new(view, kernel, false), &given.disc(), 0);

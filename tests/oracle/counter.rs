@@ -1,14 +1,14 @@
 //! A third number: f64 that counts its operations. Every formula of the crate runs on it.
 
 use crate::bits::digest;
-use crate::scenes::{Case, Kind, OUTLINES};
-use crate::single_pass_stages::groups;
+use crate::ewa::cases::{Case, Kind, OUTLINES};
+use crate::single_pass::stages::groups;
 use glam::Vec3;
 use splatref::composite::{epsilon, sum};
 use splatref::frame::{Exec, Samples};
 use splatref::method::ewa::{self, Settings};
 use splatref::method::single_pass::{self, BinCount, DepthTest};
-use splatref::number::{Real, Vector3};
+use splatref::number::{Exact, Real, Vector3};
 use splatref::scene::Light;
 use splatref::splat::project::Disc;
 use splatref::splat::{Kernel, Outline, Projector, Shared, View, project};
@@ -88,6 +88,9 @@ impl Neg for Counted {
 }
 
 impl Real for Counted {
+    type Truth = bool;
+    type Pixel = u32;
+
     const ZERO: Self = Self(0.0);
     const ONE: Self = Self(1.0);
     const INFINITY: Self = Self(f64::INFINITY);
@@ -107,9 +110,6 @@ impl Real for Counted {
     fn to_pixel(self) -> u32 {
         Real::to_pixel(self.0)
     }
-    fn to_i64(self) -> i64 {
-        Real::to_i64(self.0)
-    }
     fn floor(self) -> Self {
         Self(self.0.floor())
     }
@@ -122,14 +122,44 @@ impl Real for Counted {
     fn exp(self) -> Self {
         tick(Op::Exp, Real::exp(self.0))
     }
-    fn pow(self, exponent: Self) -> Self {
-        tick(Op::Pow, Real::pow(self.0, exponent.0))
-    }
-    fn atan2(self, x: Self) -> Self {
-        Self(Real::atan2(self.0, x.0))
-    }
     fn is_finite(self) -> bool {
         self.0.is_finite()
+    }
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    fn le(self, other: Self) -> bool {
+        self <= other
+    }
+    fn gt(self, other: Self) -> bool {
+        self > other
+    }
+    fn ge(self, other: Self) -> bool {
+        self >= other
+    }
+    fn select(truth: bool, yes: Self, no: Self) -> Self {
+        if truth { yes } else { no }
+    }
+    fn at_least(self, low: Self) -> Self {
+        if self < low { low } else { self }
+    }
+    fn at_most(self, high: Self) -> Self {
+        if self > high { high } else { self }
+    }
+    fn clamped(self, low: Self, high: Self) -> Self {
+        self.at_least(low).at_most(high)
+    }
+}
+
+impl Exact for Counted {
+    fn to_i64(self) -> i64 {
+        Exact::to_i64(self.0)
+    }
+    fn pow(self, exponent: Self) -> Self {
+        tick(Op::Pow, Exact::pow(self.0, exponent.0))
+    }
+    fn atan2(self, x: Self) -> Self {
+        Self(Exact::atan2(self.0, x.0))
     }
     fn ulps_to(self, other: Self) -> f32 {
         self.0.ulps_to(other.0)

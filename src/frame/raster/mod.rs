@@ -32,7 +32,7 @@ pub use triangle::Triangle;
 
 use crate::error::{Error, Result};
 use crate::frame::Rect;
-use crate::number::Real;
+use crate::number::Exact;
 
 /// How far coordinates may reach in either direction, in pixels: 2^17.
 pub const GUARD_BAND: u32 = 1 << 17;
@@ -71,7 +71,7 @@ impl Snap {
     /// This is floor(s + 1/2) without the rounding of the sum: the numbers below 1/2 must not
     /// become 1, nor odd numbers above 2^23 even. NaN gives 0.
     #[inline]
-    pub fn fixed<R: Real>(&self, x: R) -> i64 {
+    pub fn fixed<R: Exact>(&self, x: R) -> i64 {
         let guard = R::from_f32(GUARD_BAND as f32);
         let scaled = x.at_least(-guard).at_most(guard) * R::from_f32((1_u32 << self.bits) as f32);
         let below = scaled.floor();

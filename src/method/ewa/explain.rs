@@ -5,7 +5,7 @@ use super::plain::fragment;
 use crate::composite::epsilon;
 use crate::error::Result;
 use crate::frame::Exec;
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Surfels};
 use crate::splat::{Projector, Shared, Splat, View, batch};
 use std::fmt;
@@ -49,7 +49,7 @@ pub struct Touch<R> {
 ///
 /// # Errors
 /// [`crate::Error::Usage`] if the pixel is outside the picture.
-pub fn explain<R: Real>(
+pub fn explain<R: Exact>(
     surfels: &Surfels,
     camera: &Camera,
     settings: &Settings,
@@ -94,7 +94,7 @@ pub fn explain<R: Real>(
     Ok(Explanation { pixel: (x, y), limit: shared.limit, epsilon, nearest, id, touches })
 }
 
-impl<R: Real> fmt::Display for Explanation<R> {
+impl<R: Exact> fmt::Display for Explanation<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = self.pixel;
         let n = |value: R| value.to_f64();

@@ -14,11 +14,11 @@
 //!    weight. A pixel without weight is empty.
 //! 5. **Deferred shading**, see [`crate::shade`].
 //!
-//! [`plain`] is the definition, over any [`Real`] and one fragment at a time; [`fast`] gives the
-//! same bits for `f32`. [`explain`] lists every decision at one pixel.
+//! [`plain`] is the definition, over any [`Exact`] number and one fragment at a time; [`fast`] gives
+//! the same bits for `f32`. [`explain`] lists every decision at one pixel.
 //!
 //! [`Splat`]: crate::splat::Splat
-//! [`Real`]: crate::number::Real
+//! [`Exact`]: crate::number::Exact
 
 pub mod explain;
 pub mod fast;
@@ -31,7 +31,7 @@ use crate::error::Result;
 use crate::frame::{Frame, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::{Picture, Stage};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 
 impl Algorithm for Settings {
@@ -44,7 +44,7 @@ impl Algorithm for Settings {
         Self::check(self)
     }
 
-    fn define<R: Real>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         picture::define(job, self, stages)
     }
 
@@ -52,12 +52,12 @@ impl Algorithm for Settings {
         picture::draw(job, self, pool)
     }
 
-    fn stage<R: Real>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
         let _ = (job, from);
         Err(crate::method::stage::unknown(stage))
     }
 
-    fn explain<R: Real>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
         let Job { scene, camera, exec, .. } = *job;
         let found = explain::explain::<R>(&scene.surfels, camera, self, exec, pixel)?;
         Ok(found.to_string())

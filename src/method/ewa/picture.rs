@@ -7,11 +7,11 @@ use crate::error::Result;
 use crate::frame::{Pool, Samples, Wanted};
 use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, finish, framebuffer, named};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::Scene;
 
 /// The definition, in any number; with `stages`, every stage leaves its planes.
-pub(super) fn define<R: Real>(
+pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,

@@ -5,7 +5,7 @@ use crate::composite::{epsilon, sum};
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, Plane, Rect, Wanted};
 use crate::method::prepare::Prepared;
-use crate::number::{Real, Vector2};
+use crate::number::{Exact, Real, Vector2};
 use crate::scene::{Camera, Surfels};
 use crate::splat::{Shared, Splat, Tally};
 
@@ -20,7 +20,7 @@ pub struct Plain<'a, R> {
     pub target: Framebuffer<R>,
 }
 
-impl<'a, R: Real> Plain<'a, R> {
+impl<'a, R: Exact> Plain<'a, R> {
     /// Projection. `wanted` chooses the planes; colours need a scene that has them.
     #[must_use]
     pub fn project(
@@ -153,7 +153,7 @@ impl<'a, R: Real> Plain<'a, R> {
 }
 
 /// q and nearness of a splat at the centre of a pixel.
-pub(in crate::method) fn fragment<R: Real>(
+pub(in crate::method) fn fragment<R: Exact>(
     shared: &Shared<R>,
     splat: &Splat<R>,
     x: u32,
@@ -168,7 +168,7 @@ pub(in crate::method) fn fragment<R: Real>(
 /// Runs `draw` for every fragment of a splat that is inside, in some pixels: the pixel, counted row
 /// by row in `rect`, q and nearness.
 #[inline(always)]
-pub(in crate::method) fn each_inside<R: Real>(
+pub(in crate::method) fn each_inside<R: Exact>(
     shared: &Shared<R>,
     splat: &Splat<R>,
     rect: &Rect,
@@ -188,7 +188,7 @@ pub(in crate::method) fn each_inside<R: Real>(
 
 /// The normal, reversed if the back is seen.
 #[inline(always)]
-pub(in crate::method) fn facing<R: Real>(normal: [R; 3], back: bool) -> [R; 3] {
+pub(in crate::method) fn facing<R: Exact>(normal: [R; 3], back: bool) -> [R; 3] {
     if back { normal.map(|component| -component) } else { normal }
 }
 
@@ -204,7 +204,7 @@ pub(super) struct Decisions<R> {
     pub(super) limit: R,
 }
 
-impl<R: Real> Decisions<R> {
+impl<R: Exact> Decisions<R> {
     /// How far the closest decision on this fragment is from flipping, in units of the last place.
     ///
     /// Inside: q against k^2, if the fragment is visible; a hidden one changes nothing. Epsilon: t

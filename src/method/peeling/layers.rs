@@ -7,7 +7,7 @@ use crate::frame::stencil::{Outcome, Stencil};
 use crate::frame::{Exec, Grid, NO_ID, Rect};
 use crate::method::ewa::plain::{each_inside, facing};
 use crate::method::prepare::Prepared;
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::{Camera, Scene, Surfels};
 use crate::shade::phong::Shader;
 use crate::splat::{Splat, Tally, View};
@@ -65,7 +65,7 @@ struct Sums<R> {
     opacity: R,
 }
 
-impl<'a, R: Real> Peeling<'a, R> {
+impl<'a, R: Exact> Peeling<'a, R> {
     /// Projection.
     #[must_use]
     pub fn project(scene: &'a Scene, camera: &Camera, settings: &Settings, exec: &Exec) -> Self {
@@ -186,7 +186,7 @@ impl<'a, R: Real> Peeling<'a, R> {
     }
 }
 
-impl<R: Real> Pixel<R> {
+impl<R: Exact> Pixel<R> {
     /// No layer yet, and every fragment beyond the last.
     fn new() -> Self {
         let (depth, limit) = (R::INFINITY, -R::INFINITY);
@@ -207,7 +207,7 @@ impl<R: Real> Pixel<R> {
     }
 }
 
-impl<R: Real> Sums<R> {
+impl<R: Exact> Sums<R> {
     fn new(empty: R) -> Self {
         let (weight, opacity, zero) = (R::ZERO, R::ZERO, [R::ZERO; 3]);
         Self { nearest: empty, id: NO_ID, count: 0, weight, normal: zero, color: zero, opacity }

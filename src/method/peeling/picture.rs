@@ -5,13 +5,13 @@ use crate::error::Result;
 use crate::frame::{Frame, Grid, NO_ID, NamedPlane, Samples};
 use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, before_environment, named};
-use crate::number::Real;
+use crate::number::Exact;
 
 /// How many layers leave planes.
 pub const STAGES: u32 = 8;
 
 /// The definition, in any number; with `stages`, the first [`STAGES`] layers leave their planes.
-pub(super) fn define<R: Real>(
+pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
@@ -46,7 +46,7 @@ pub(super) fn define<R: Real>(
 }
 
 /// The planes of the first layers: `layers[tile][layer][pixel]`, fewer where a tile has fewer.
-fn layer_planes<R: Real>(
+fn layer_planes<R: Exact>(
     grid: &Grid,
     layers: &[Vec<Vec<Layer<R>>>],
     count: usize,

@@ -3,7 +3,7 @@ use crate::composite::sum;
 use crate::frame::{Exec, NO_ID, Plane, Samples};
 use crate::method::Picture;
 use crate::method::ewa::Epsilon;
-use crate::number::Real;
+use crate::number::Exact;
 use crate::number::random::unit;
 use crate::scene::{Camera, Cloud, Lens, Light, Phong, Pose, Scene, Surfels};
 use crate::shade::phong::Shader;
@@ -46,21 +46,21 @@ fn peel(scene: &Scene, camera: &Camera, settings: &Settings) -> Picture<f64> {
     render(scene, camera, settings, &Exec::sequential(), true).unwrap()
 }
 
-fn scalar<'a, R: Real>(picture: &'a Picture<R>, name: &str) -> &'a [R] {
+fn scalar<'a, R: Exact>(picture: &'a Picture<R>, name: &str) -> &'a [R] {
     match picture.frame.plane(name) {
         Some(Samples::Scalar(plane)) => plane.values(),
         other => panic!("{name}: {other:?}"),
     }
 }
 
-fn color<'a, R: Real>(picture: &'a Picture<R>, name: &str) -> &'a [[R; 3]] {
+fn color<'a, R: Exact>(picture: &'a Picture<R>, name: &str) -> &'a [[R; 3]] {
     match picture.frame.plane(name) {
         Some(Samples::Color(plane)) => plane.values(),
         other => panic!("{name}: {other:?}"),
     }
 }
 
-fn count<'a, R: Real>(picture: &'a Picture<R>, name: &str) -> &'a [u8] {
+fn count<'a, R: Exact>(picture: &'a Picture<R>, name: &str) -> &'a [u8] {
     match picture.frame.plane(name) {
         Some(Samples::Count(plane)) => plane.values(),
         other => panic!("{name}: {other:?}"),
@@ -74,7 +74,7 @@ type Fragment<R> = (u32, R, R, R, bool);
 type Expected<R> = (Vec<[R; 3]>, Vec<R>, Vec<R>, Vec<u32>, Vec<u8>);
 
 /// The fragments that are inside, of every pixel: no tiles, no bins, no bounds.
-fn fragments<R: Real>(
+fn fragments<R: Exact>(
     scene: &Scene,
     camera: &Camera,
     settings: &Settings,
@@ -102,7 +102,7 @@ fn fragments<R: Real>(
 }
 
 /// The average of the fragments of one layer: normal, colour, opacity.
-fn average<R: Real>(surfels: &Surfels, layer: &[Fragment<R>]) -> ([R; 3], Option<[R; 3]>, R) {
+fn average<R: Exact>(surfels: &Surfels, layer: &[Fragment<R>]) -> ([R; 3], Option<[R; 3]>, R) {
     let mean = |value: &dyn Fn(usize) -> f32, sign: bool| {
         let (mut sum, mut total) = (R::ZERO, R::ZERO);
         for &(i, _, _, weight, back) in layer {
@@ -120,7 +120,7 @@ fn average<R: Real>(surfels: &Surfels, layer: &[Fragment<R>]) -> ([R; 3], Option
 }
 
 /// Depth peeling from its page: every pixel has the list of all its fragments.
-fn by_the_page<R: Real>(scene: &Scene, camera: &Camera, settings: &Settings) -> Expected<R> {
+fn by_the_page<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) -> Expected<R> {
     let (width, height) = (camera.width, camera.height);
     let epsilon = R::from_f32(settings.splats.epsilon.resolve(&scene.surfels));
     let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
@@ -166,7 +166,7 @@ fn by_the_page<R: Real>(scene: &Scene, camera: &Camera, settings: &Settings) -> 
     (colors, alphas, depths, ids, counts)
 }
 
-fn agrees_with_the_page<R: Real>(scene: &Scene, camera: &Camera, settings: &Settings) {
+fn agrees_with_the_page<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) {
     let (colors, alphas, depths, ids, counts) = by_the_page::<R>(scene, camera, settings);
     for (threads, tile) in [(1, 32), (3, 8)] {
         let exec = Exec::new(threads, tile).unwrap();
@@ -229,7 +229,7 @@ proptest! {
     }
 }
 
-fn opaque_is_ewa<R: Real>(scene: &Scene, camera: &Camera, settings: &Settings) {
+fn opaque_is_ewa<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) {
     let exec = Exec::sequential();
     let peeled = render::<R>(scene, camera, settings, &exec, true).unwrap();
     let ewa = ewa::render::<R>(scene, camera, &settings.splats, &exec, true).unwrap();

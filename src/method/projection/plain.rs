@@ -5,7 +5,7 @@ use super::{Projected, Sample, Stage};
 use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
 use crate::frame::{Bins, Exec, Plane, Rect};
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::{Camera, Scene};
 use crate::splat::{Fate, Tally};
 use std::ops::Range;
@@ -18,7 +18,7 @@ enum Drawn<R> {
     Piece(primitives::Piece<R>),
 }
 
-impl<R: Real> Drawn<R> {
+impl<R: Exact> Drawn<R> {
     fn bounds(&self) -> Rect {
         match self {
             Self::Pixel([x, y], _) => Rect { x0: *x, y0: *y, x1: x + 1, y1: y + 1 },
@@ -31,7 +31,7 @@ impl<R: Real> Drawn<R> {
 ///
 /// # Errors
 /// [`Error::Invalid`] if there are more primitives than ids.
-pub(in crate::method) fn project<R: Real>(
+pub(in crate::method) fn project<R: Exact>(
     scene: &Scene,
     camera: &Camera,
     (cull, snap): (bool, Snap),
@@ -52,7 +52,7 @@ pub(in crate::method) fn project<R: Real>(
 }
 
 /// Draws the primitives of a range of ids over what is there, which has lower ids.
-fn draw<R: Real>(
+fn draw<R: Exact>(
     stage: &Stage<'_, R>,
     exec: &Exec,
     ids: Range<usize>,
@@ -101,7 +101,7 @@ fn draw<R: Real>(
 }
 
 /// One surfel as a pixel, if it is seen.
-fn surfel<R: Real>(stage: &Stage<'_, R>, i: usize, tally: &mut Tally, drawn: &mut Vec<Drawn<R>>) {
+fn surfel<R: Exact>(stage: &Stage<'_, R>, i: usize, tally: &mut Tally, drawn: &mut Vec<Drawn<R>>) {
     let (surfels, lens) = (&stage.scene.surfels, &stage.lens);
     let n = lens.view.direction(Vector3::from_glam(surfels.normal()[i]));
     let (placed, g, fate) = lens.fate(Vector3::from_glam(surfels.position()[i]), n);

@@ -3,10 +3,13 @@
 use super::{Has, Projected};
 use crate::frame::{NamedPlane, Samples};
 use crate::method::picture::{color, named, scalar};
-use crate::number::Real;
+use crate::number::Exact;
 
 /// The planes of the stage, see the page of [`super`].
-pub(in crate::method) fn planes<R: Real>(projected: &Projected<R>, has: Has) -> Vec<NamedPlane<R>> {
+pub(in crate::method) fn planes<R: Exact>(
+    projected: &Projected<R>,
+    has: Has,
+) -> Vec<NamedPlane<R>> {
     let samples = &projected.samples;
     let mut planes = vec![
         named("projection.id", Samples::Index(samples.map(|s| s.id))),

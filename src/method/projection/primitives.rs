@@ -35,7 +35,7 @@ use super::surfel::{Lens, Placed};
 use super::{Kind, Sample, Stage};
 use crate::frame::Rect;
 use crate::frame::raster::{Line, Triangle};
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 use crate::scene::Vertices;
 use crate::scene::indexed::Indexed;
 use crate::splat::clip::Clipped;
@@ -74,7 +74,7 @@ pub(super) struct Fragment<R> {
 }
 
 /// Calls `draw` for each piece of a primitive that may be seen.
-pub(super) fn pieces<R: Real>(stage: &Stage<'_, R>, id: usize, draw: impl FnMut(Piece<R>)) {
+pub(super) fn pieces<R: Exact>(stage: &Stage<'_, R>, id: usize, draw: impl FnMut(Piece<R>)) {
     let of = &stage.scene.primitives;
     let index = id - stage.scene.surfels.len();
     if index < of.triangles.len() {
@@ -89,7 +89,7 @@ pub(super) fn pieces<R: Real>(stage: &Stage<'_, R>, id: usize, draw: impl FnMut(
 }
 
 /// The corners of a primitive in view space.
-fn corners<R: Real, const N: usize>(
+fn corners<R: Exact, const N: usize>(
     of: &Indexed<N>,
     lens: &Lens<R>,
     index: usize,
@@ -99,12 +99,12 @@ fn corners<R: Real, const N: usize>(
 }
 
 /// A corner of a piece: its place in fixed point, and m.
-fn placed<R: Real>(stage: &Stage<'_, R>, p: Vector3<R>) -> ([i64; 2], R) {
+fn placed<R: Exact>(stage: &Stage<'_, R>, p: Vector3<R>) -> ([i64; 2], R) {
     let Placed { m, center, .. } = stage.lens.place(p);
     ([stage.snap.fixed(center.x), stage.snap.fixed(center.y)], m)
 }
 
-fn triangle<R: Real>(
+fn triangle<R: Exact>(
     of: &Indexed<3>,
     stage: &Stage<'_, R>,
     (id, index): (u32, usize),
@@ -130,7 +130,7 @@ fn triangle<R: Real>(
     }
 }
 
-fn line<R: Real>(
+fn line<R: Exact>(
     (of, kind): (&Indexed<2>, Kind),
     stage: &Stage<'_, R>,
     (id, index): (u32, usize),
@@ -159,7 +159,7 @@ fn line<R: Real>(
     });
 }
 
-impl<R: Real> Piece<R> {
+impl<R: Exact> Piece<R> {
     /// Calls `visit` for every pixel of a rectangle that the piece covers.
     pub(super) fn for_each(&self, rect: &Rect, mut visit: impl FnMut(Fragment<R>)) {
         let rect = rect.intersection(&self.bounds);
@@ -226,7 +226,7 @@ impl<R: Real> Piece<R> {
 }
 
 /// Direction, radius and colour of a primitive where its corners have the weights c.
-fn attributes<R: Real, const N: usize>(
+fn attributes<R: Exact, const N: usize>(
     of: &Indexed<N>,
     index: usize,
     c: [R; 3],

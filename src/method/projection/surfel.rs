@@ -1,7 +1,7 @@
 //! One surfel as one pixel, see the page of [`super`].
 
 use super::{Kind, Sample};
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 use crate::splat::{Fate, View, ellipse};
 
 /// What the projection of a picture's surfels shares.
@@ -28,7 +28,7 @@ pub struct Placed<R> {
     pub center: Vector2<R>,
 }
 
-impl<R: Real> Lens<R> {
+impl<R: Exact> Lens<R> {
     /// The shared numbers of a picture.
     #[must_use]
     pub fn new(view: View<R>, cull: bool) -> Self {

@@ -32,7 +32,7 @@ use crate::frame::{Frame, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::projection::{Kind, Sample};
 use crate::method::{Picture, Stage};
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 
 /// How the cells that a pixel is interpolated from are weighted \[MKC08, section 3.3, Fig. 4\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -113,7 +113,7 @@ pub struct Cell<R> {
     pub color: [R; 3],
 }
 
-impl<R: Real> Cell<R> {
+impl<R: Exact> Cell<R> {
     /// Nothing: kind [`Kind::Empty`], front +inf, back -inf, all else 0.
     #[must_use]
     pub fn empty() -> Self {
@@ -206,7 +206,7 @@ impl Algorithm for Settings {
         Self::check(self)
     }
 
-    fn define<R: Real>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         picture::define(job, self, stages)
     }
 
@@ -219,12 +219,12 @@ impl Algorithm for Settings {
         picture::draw(job, self, memory, pool)
     }
 
-    fn stage<R: Real>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
         let _ = (job, from);
         Err(crate::method::stage::unknown(stage))
     }
 
-    fn explain<R: Real>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
         let _ = (job, pixel);
         Err(crate::Error::Usage("there is no replay of this method".into()))
     }

@@ -9,13 +9,13 @@ use crate::frame::{Frame, NamedPlane, Plane, Pool, Samples, pyramid};
 use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, before_environment, color, named, scalar};
 use crate::method::projection::{self, Has, Kind, world};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
 
 /// The definition, in any number; with `stages`, every stage leaves its planes.
-pub(super) fn define<R: Real>(
+pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
@@ -106,7 +106,7 @@ impl Surface<f32> {
 }
 
 /// Deferred shading, and the planes of the picture.
-fn finish<R: Real>(
+fn finish<R: Exact>(
     surface: Surface<R>,
     mut planes: Vec<NamedPlane<R>>,
     tally: Tally,
@@ -131,7 +131,7 @@ fn finish<R: Real>(
 }
 
 /// The planes of a level, of the size of the picture.
-fn level_planes<R: Real>(
+fn level_planes<R: Exact>(
     name: &str,
     cells: &Plane<Cell<R>>,
     camera: &Camera,

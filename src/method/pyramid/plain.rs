@@ -3,7 +3,7 @@
 use super::{Cell, Settings, pull, push};
 use crate::frame::{Exec, Plane};
 use crate::method::projection::Projected;
-use crate::number::Real;
+use crate::number::Exact;
 
 /// The levels of a picture, the finest first.
 #[derive(Clone, Debug)]
@@ -15,13 +15,13 @@ pub struct Pyramid<R> {
 }
 
 /// The side of a cell of a level in pixels, 2^level.
-pub(super) fn side<R: Real>(level: usize) -> R {
+pub(super) fn side<R: Exact>(level: usize) -> R {
     R::from_f32((1_u32 << level) as f32)
 }
 
 /// Pulls all levels from the projected scene.
 #[must_use]
-pub fn pull_all<R: Real>(projected: &Projected<R>, exec: &Exec) -> Vec<Plane<Cell<R>>> {
+pub fn pull_all<R: Exact>(projected: &Projected<R>, exec: &Exec) -> Vec<Plane<Cell<R>>> {
     let mut fine = projected.samples.map(Cell::new);
     let mut levels = Vec::new();
     while fine.width() > 1 || fine.height() > 1 {
@@ -34,7 +34,7 @@ pub fn pull_all<R: Real>(projected: &Projected<R>, exec: &Exec) -> Vec<Plane<Cel
 
 /// Pushes from the coarsest level to the finest.
 #[must_use]
-pub fn push_all<R: Real>(
+pub fn push_all<R: Exact>(
     pulled: &[Plane<Cell<R>>],
     settings: &Settings,
     exec: &Exec,

@@ -24,12 +24,12 @@
 use super::Cell;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
-use crate::number::{Real, Vector2};
+use crate::number::{Exact, Vector2};
 use crate::splat::Ellipse;
 
 /// The next coarser level; `side` is that of the finer cells in pixels.
 #[must_use]
-pub fn pull<R: Real>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell<R>> {
+pub fn pull<R: Exact>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell<R>> {
     let (width, height) = (fine.width().div_ceil(2), fine.height().div_ceil(2));
     let mut coarse = Plane::filled(width, height, Cell::empty());
     let rows = coarse.rows_mut();
@@ -47,7 +47,7 @@ pub fn pull<R: Real>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell<
 }
 
 /// One cell from four, see the module page.
-fn one<R: Real>(finer: &[Cell<R>; 4], side: R) -> Cell<R> {
+fn one<R: Exact>(finer: &[Cell<R>; 4], side: R) -> Cell<R> {
     let half = side * R::from_f32(0.5);
     let centers = [0, 1, 2, 3].map(|j| {
         let d = finer[j].displacement;

@@ -29,13 +29,13 @@
 use super::{Cell, Occlusion, Settings, Weights};
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
-use crate::number::{Real, Vector2};
+use crate::number::{Exact, Vector2};
 use crate::splat::Ellipse;
 
 /// The finer level, as [`super::pull`] left it, from the coarser one; `side` is that of the finer
 /// cells in pixels.
 #[must_use]
-pub fn push<R: Real>(
+pub fn push<R: Exact>(
     fine: &Plane<Cell<R>>,
     coarse: &Plane<Cell<R>>,
     side: R,
@@ -73,14 +73,14 @@ fn beside(x: u32) -> i64 {
 }
 
 /// Whether a valid cell is occluded, see the module page.
-pub(super) fn occluded<R: Real>(cell: &Cell<R>, parent: &Cell<R>, rule: Occlusion) -> bool {
+pub(super) fn occluded<R: Exact>(cell: &Cell<R>, parent: &Cell<R>, rule: Occlusion) -> bool {
     let behind = cell.front > parent.back;
     let before = cell.front < parent.front;
     parent.is_valid() && (behind || (before && rule == Occlusion::Outside))
 }
 
 /// A cell from its parent and the three neighbours, if any holds its centre; see the module page.
-fn one<R: Real>(
+fn one<R: Exact>(
     coarser: &[Cell<R>; 4],
     (even_x, even_y): (bool, bool),
     side: R,

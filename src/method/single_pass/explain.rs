@@ -6,7 +6,7 @@ use crate::composite::epsilon;
 use crate::error::Result;
 use crate::frame::{Exec, NO_ID};
 use crate::method::ewa::plain::fragment;
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::Groups;
 use crate::scene::{Camera, Surfels};
 use std::fmt;
@@ -64,7 +64,7 @@ pub struct Touch<R> {
 /// # Errors
 /// [`crate::Error::Usage`] if the pixel is outside the picture; [`crate::Error::Invalid`] as
 /// [`super::render`].
-pub fn explain<R: Real>(
+pub fn explain<R: Exact>(
     surfels: &Surfels,
     groups: &Groups,
     camera: &Camera,
@@ -120,7 +120,7 @@ pub fn explain<R: Real>(
     Ok(Explanation { pixel: (x, y), limit, epsilon: band, nearest, voronoi, groups: found })
 }
 
-impl<R: Real> fmt::Display for Explanation<R> {
+impl<R: Exact> fmt::Display for Explanation<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = self.pixel;
         let n = |value: R| value.to_f64();

@@ -63,7 +63,7 @@ use crate::frame::{Frame, Pool};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::{Picture, Stage};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 pub(super) use picture::image_planes;
 
@@ -83,7 +83,7 @@ impl Algorithm for Settings {
         Self::check(self)
     }
 
-    fn define<R: Real>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         picture::define(job, self, stages)
     }
 
@@ -91,12 +91,12 @@ impl Algorithm for Settings {
         picture::draw(job, self, pool)
     }
 
-    fn stage<R: Real>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
         let _ = (job, from);
         Err(crate::method::stage::unknown(stage))
     }
 
-    fn explain<R: Real>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
         let Job { scene, camera, exec, index } = *job;
         let groups = index.groups()?;
         let found = explain::explain::<R>(&scene.surfels, groups, camera, self, exec, pixel)?;

@@ -7,11 +7,11 @@ use crate::error::Result;
 use crate::frame::{Framebuffer, Grid, NO_ID, NamedPlane, Pool, Samples, Wanted};
 use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, finish, framebuffer, named};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::Scene;
 
 /// The definition, in any number; with `stages`, every stage leaves its planes.
-pub(super) fn define<R: Real>(
+pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
@@ -67,7 +67,7 @@ fn wanted(scene: &Scene, stages: bool) -> Wanted {
 }
 
 /// The depth-image of each group.
-pub(in crate::method) fn image_planes<R: Real>(
+pub(in crate::method) fn image_planes<R: Exact>(
     prefix: &str,
     geometry: &Geometry<'_, R>,
     images: &[Images<R>],
@@ -101,7 +101,7 @@ pub(in crate::method) fn image_planes<R: Real>(
 }
 
 /// The sums of the compositing pass.
-fn sum_planes<R: Real>(
+fn sum_planes<R: Exact>(
     grid: &Grid,
     composites: &[Vec<Composite<R>>],
     color: bool,

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::frame::{Exec, Framebuffer, FramebufferTile, Grid, NO_ID, Rect};
 use crate::method::ewa::plain::{each_inside, facing};
 use crate::method::prepare::Prepared;
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::Groups;
 use crate::scene::{Camera, Surfels};
 use crate::splat::{Shared, Splat, Tally};
@@ -59,7 +59,7 @@ pub struct Composite<R> {
     pub id: u32,
 }
 
-impl<'a, R: Real> Geometry<'a, R> {
+impl<'a, R: Exact> Geometry<'a, R> {
     /// Projection.
     ///
     /// # Errors
@@ -200,7 +200,7 @@ impl<'a, R: Real> Geometry<'a, R> {
 }
 
 /// Normalization: writes what the compositing pass made of a tile.
-pub fn store<R: Real>(composites: &[Composite<R>], tile: &mut FramebufferTile<'_, R>) {
+pub fn store<R: Exact>(composites: &[Composite<R>], tile: &mut FramebufferTile<'_, R>) {
     let columns = (tile.rect.x1 - tile.rect.x0) as usize;
     for (y, row) in composites.chunks(columns).enumerate() {
         for (x, Composite { sums, count, id }) in row.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use crate::composite::bins::{DepthBins, MAX_BINS, Range};
 use crate::error::{Error, Result};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene, Surfels};
 use crate::splat::SplatSettings;
 
@@ -90,7 +90,7 @@ impl Settings {
     }
 
     /// The bins of the Voronoi depth test; none for the plain one.
-    pub(super) fn bins<R: Real>(
+    pub(super) fn bins<R: Exact>(
         &self,
         surfels: &Surfels,
         camera: &Camera,

@@ -33,7 +33,7 @@
 use super::{Center, Settings, levels};
 use crate::composite::sum;
 use crate::frame::{Exec, NO_ID, Plane};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::splat::Ellipse;
 
 /// What a pixel has gathered.
@@ -57,7 +57,7 @@ pub struct Gathered<R> {
     pub count: u8,
 }
 
-impl<R: Real> Gathered<R> {
+impl<R: Exact> Gathered<R> {
     /// Nothing.
     #[must_use]
     pub fn empty() -> Self {
@@ -96,7 +96,7 @@ impl<R: Real> Gathered<R> {
 
 /// The weight of a form, see the module page; also for one that is outside or NaN.
 #[inline(always)]
-pub(in crate::method::template) fn weight<R: Real>(form: R, square: R) -> R {
+pub(in crate::method::template) fn weight<R: Exact>(form: R, square: R) -> R {
     let (weight, least) = (R::ONE - (form / square).sqrt(), R::from_f32(LEAST));
     if weight > least { weight } else { least }
 }
@@ -106,7 +106,7 @@ const LEAST: f32 = 1.0 / 16_777_216.0;
 
 /// Gathers every pixel.
 #[must_use]
-pub fn gather<R: Real>(
+pub fn gather<R: Exact>(
     levels: &[Plane<Center<R>>],
     settings: &Settings,
     exec: &Exec,
@@ -125,7 +125,7 @@ pub fn gather<R: Real>(
 }
 
 /// The template of one level around a pixel.
-fn search<R: Real>(
+fn search<R: Exact>(
     levels: &[Plane<Center<R>>],
     level: usize,
     settings: &Settings,

@@ -21,7 +21,7 @@ use super::{Center, Settings};
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
 use crate::method::projection::Projected;
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 
 /// The level from which every cell is found: the first whose sides are at most h + 1.
 #[must_use]
@@ -34,7 +34,7 @@ pub fn top(settings: &Settings, sizes: &[[u32; 2]]) -> usize {
 
 /// All levels up to the top; a level holds what arrived there, both what stays and what moves on.
 #[must_use]
-pub fn propagate<R: Real>(
+pub fn propagate<R: Exact>(
     projected: &Projected<R>,
     settings: &Settings,
     exec: &Exec,
@@ -50,12 +50,12 @@ pub fn propagate<R: Real>(
 }
 
 /// Whether a centre of a level that is not the top moves on.
-pub(super) fn moves<R: Real>(center: &Center<R>, reach: R) -> bool {
+pub(super) fn moves<R: Exact>(center: &Center<R>, reach: R) -> bool {
     center.is_valid() && !(center.extent <= reach)
 }
 
 /// The next level, from what does not stay within `reach`.
-fn coarser<R: Real>(fine: &Plane<Center<R>>, reach: R, exec: &Exec) -> Plane<Center<R>> {
+fn coarser<R: Exact>(fine: &Plane<Center<R>>, reach: R, exec: &Exec) -> Plane<Center<R>> {
     let (width, height) = (fine.width().div_ceil(2), fine.height().div_ceil(2));
     let mut coarse = Plane::filled(width, height, Center::empty());
     let rows = coarse.rows_mut();
@@ -73,7 +73,7 @@ fn coarser<R: Real>(fine: &Plane<Center<R>>, reach: R, exec: &Exec) -> Plane<Cen
 }
 
 /// One centre from those that move, see the module page.
-fn merged<R: Real>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Center<R> {
+fn merged<R: Exact>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Center<R> {
     let mut front = Center::empty();
     for j in 0..4 {
         if moving[j] && finer[j].depth < front.depth {

@@ -26,7 +26,7 @@ use crate::frame::{Frame, NO_ID, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::projection::{Kind, Sample};
 use crate::method::{Picture, Stage};
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::{Exact, Vector2, Vector3};
 
 /// The level at which a centre stays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -112,7 +112,7 @@ pub struct Center<R> {
     pub color: [R; 3],
 }
 
-impl<R: Real> Center<R> {
+impl<R: Exact> Center<R> {
     /// An empty cell: all but depth and id is 0.
     #[must_use]
     pub fn empty() -> Self {
@@ -162,7 +162,7 @@ impl Algorithm for Settings {
         Self::check(self)
     }
 
-    fn define<R: Real>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         picture::define(job, self, stages)
     }
 
@@ -175,12 +175,12 @@ impl Algorithm for Settings {
         picture::draw(job, self, memory, pool)
     }
 
-    fn stage<R: Real>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
         let _ = (job, from);
         Err(crate::method::stage::unknown(stage))
     }
 
-    fn explain<R: Real>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
         let _ = (job, pixel);
         Err(Error::Usage("there is no replay of this method".into()))
     }

@@ -10,12 +10,12 @@ use crate::frame::{Framebuffer, NamedPlane, Plane, Pool, Samples, Wanted, pyrami
 use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, color, finish, framebuffer, named, scalar};
 use crate::method::projection::{self, Has, world};
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::Camera;
 use crate::splat::View;
 
 /// The definition, in any number; with `stages`, every stage leaves its planes.
-pub(super) fn define<R: Real>(
+pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
@@ -77,18 +77,18 @@ pub(super) fn draw(
 }
 
 /// The average depth; +inf where nothing was gathered.
-fn depth<R: Real>(pixel: &Gathered<R>) -> R {
+fn depth<R: Exact>(pixel: &Gathered<R>) -> R {
     if pixel.weight > R::ZERO { pixel.depths / pixel.weight } else { R::INFINITY }
 }
 
 /// The direction of the average normal, world space.
-fn normal<R: Real>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
+fn normal<R: Exact>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
     let [x, y, z] = sum::average(pixel.normals, pixel.weight);
     world(view, Vector3::new(x, y, z))
 }
 
 /// The planes of a level, of the size of the picture.
-fn level_planes<R: Real>(
+fn level_planes<R: Exact>(
     name: &str,
     cells: &Plane<Center<R>>,
     camera: &Camera,
@@ -113,7 +113,7 @@ fn level_planes<R: Real>(
 }
 
 /// The planes of the sums.
-fn sums<R: Real>(gathered: &Plane<Gathered<R>>, has: Has) -> Vec<NamedPlane<R>> {
+fn sums<R: Exact>(gathered: &Plane<Gathered<R>>, has: Has) -> Vec<NamedPlane<R>> {
     let mut planes = vec![
         named("gathered.count", Samples::Count(gathered.map(|pixel| pixel.count))),
         scalar("gathered.weight", gathered.map(|pixel| pixel.weight)),

@@ -9,7 +9,7 @@ use crate::frame::{NO_ID, Rect};
 use crate::method::algorithm::Job;
 use crate::method::ewa::plain::{each_inside, facing};
 use crate::method::prepare::Prepared;
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::Scene;
 use crate::shade::phong::Shader;
 use crate::splat::{Disc, Fate, Projector, Splat, Tally, View, batch, project};
@@ -43,7 +43,7 @@ pub(in crate::method) struct Layers<R> {
     pub(in crate::method) surfel: u32,
 }
 
-impl<R: Real> Layers<R> {
+impl<R: Exact> Layers<R> {
     const EMPTY: Self = Self {
         bin: R::INFINITY,
         blend: Blend::CLEAR,
@@ -79,7 +79,7 @@ pub(in crate::method) struct Blending<R> {
     holes: Holes,
 }
 
-impl<R: Real> Blending<R> {
+impl<R: Exact> Blending<R> {
     /// Order, projection and shading.
     pub(in crate::method) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
         let Job { scene, index, camera, exec } = *job;
@@ -179,7 +179,7 @@ pub(in crate::method) struct Average<R> {
     pub(in crate::method) surfel: u32,
 }
 
-impl<R: Real> Average<R> {
+impl<R: Exact> Average<R> {
     pub(in crate::method) const EMPTY: Self = Self {
         blend: Blend::CLEAR,
         opacity: R::ZERO,
@@ -214,7 +214,7 @@ impl<R: Real> Average<R> {
 }
 
 /// Projects a surfel that is enlarged.
-fn place<R: Real>(
+fn place<R: Exact>(
     scene: &Scene,
     surfel: u32,
     scale: f32,
@@ -231,7 +231,7 @@ fn place<R: Real>(
 }
 
 /// The shaded colour and the opacity of a surfel.
-fn appearance<R: Real>(scene: &Scene, shader: &Shader<R>, splat: &Splat<R>) -> ([R; 3], R) {
+fn appearance<R: Exact>(scene: &Scene, shader: &Shader<R>, splat: &Splat<R>) -> ([R; 3], R) {
     let (surfels, i) = (&scene.surfels, splat.surfel as usize);
     let color = surfels.color().map_or(scene.material.color, |colors| colors[i]);
     let normal = surfels.normal()[i].to_array().map(R::from_f32);

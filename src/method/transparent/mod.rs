@@ -48,7 +48,7 @@ use crate::frame::Frame;
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::{Picture, Stage};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 
 /// K = 4, which \[ZP06, section 6.2\] finds sufficient; groups are extended by adding surfels.
@@ -71,16 +71,16 @@ impl Algorithm for Settings {
         Self::check(self)
     }
 
-    fn define<R: Real>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         picture::define(job, self, stages)
     }
 
-    fn stage<R: Real>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
         let _ = (job, from);
         Err(crate::method::stage::unknown(stage))
     }
 
-    fn explain<R: Real>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
         let _ = (job, pixel);
         Err(crate::Error::Usage("there is no replay of this method".into()))
     }

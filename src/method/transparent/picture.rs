@@ -7,11 +7,11 @@ use crate::error::Result;
 use crate::frame::{Frame, Grid, NO_ID, NamedPlane, Rect, Samples};
 use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Picture, before_environment, color, named, scalar};
-use crate::number::Real;
+use crate::number::Exact;
 use crate::splat::Tally;
 
 /// The definition of Algorithm 2, in any number; with `stages`, every stage leaves its planes.
-pub(super) fn define<R: Real>(
+pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
@@ -55,7 +55,7 @@ pub(in crate::method) struct Blended<R> {
 ///
 /// `mask` gives the depths of the nearest layer in a rectangle, if fragments up to epsilon behind
 /// it are dropped; `show` makes the colour of a pixel from the average of its groups.
-pub(in crate::method) fn blend<R: Real>(
+pub(in crate::method) fn blend<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
@@ -87,7 +87,7 @@ pub(in crate::method) fn blend<R: Real>(
     Ok(Blended { grid, groups, images, averages, shown, tally })
 }
 
-impl<R: Real> Blended<R> {
+impl<R: Exact> Blended<R> {
     /// A plane of the averages.
     pub(in crate::method) fn plane<T: Clone>(
         &self,
@@ -123,7 +123,7 @@ impl<R: Real> Blended<R> {
 }
 
 /// The image of each group.
-fn image_planes<R: Real>(
+fn image_planes<R: Exact>(
     grid: &Grid,
     images: &[Vec<Vec<Layers<R>>>],
     groups: usize,
@@ -147,7 +147,7 @@ fn image_planes<R: Real>(
 }
 
 /// The averages of the compositing pass.
-fn average_planes<'a, R: Real>(
+fn average_planes<'a, R: Exact>(
     grid: &Grid,
     at: impl Fn(usize, usize) -> &'a Average<R>,
 ) -> Vec<NamedPlane<R>> {

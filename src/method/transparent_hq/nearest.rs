@@ -10,7 +10,7 @@ use crate::method::picture::{color, named, scalar};
 use crate::method::single_pass;
 use crate::method::single_pass::plain::{Composite, Geometry, store};
 use crate::method::transparent::blend::Average;
-use crate::number::Real;
+use crate::number::Exact;
 use crate::shade::optics;
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
@@ -28,7 +28,7 @@ pub(super) struct First<R> {
     pub(super) tally: Tally,
 }
 
-impl<R: Real> First<R> {
+impl<R: Exact> First<R> {
     /// Both passes and the shading; with `stages` their planes too.
     pub(super) fn new(
         job: &Job<'_>,
@@ -108,7 +108,7 @@ impl<R: Real> First<R> {
 }
 
 /// The average opacity of the nearest layer.
-fn opacity<R: Real>(composite: &Composite<R>) -> R {
+fn opacity<R: Exact>(composite: &Composite<R>) -> R {
     let sums = &composite.sums;
     let [alpha, ..] = sum::average([sums.opacity, R::ZERO, R::ZERO], sums.weight);
     // The quotient of two sums may exceed 1 by their rounding.

@@ -10,13 +10,13 @@ use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, scalar};
 use crate::method::transparent::blend::Average;
 use crate::method::transparent::picture::{At, blend};
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::Scene;
 use crate::shade::optics::{self, Behind, Nearest};
 use crate::splat::View;
 
 /// The definition of Algorithm 3, in any number; with `stages`, every stage leaves its planes.
-pub(super) fn define<R: Real>(
+pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
@@ -53,7 +53,7 @@ struct Tail<'a, R> {
     first: &'a First<R>,
 }
 
-impl<R: Real> Tail<'_, R> {
+impl<R: Exact> Tail<'_, R> {
     /// The colour and the opacity of a pixel.
     fn pixel(&self, at: At, others: &Average<R>) -> Blend<R> {
         let (first, At { tile, pixel, x, y }) = (self.first, at);

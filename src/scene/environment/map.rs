@@ -17,7 +17,7 @@
 
 use crate::error::{Error, Result};
 use crate::frame::Plane;
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::camera::MAX_EXTENT;
 use crate::scene::light::MAX_RADIANCE;
 
@@ -75,7 +75,7 @@ impl Map {
     /// the light depends on the side one comes from. A vertical direction has u = 0, whatever the
     /// signs of its zeros. With columns of one colour that colour is given exactly.
     #[must_use]
-    pub fn radiance<R: Real>(&self, direction: Vector3<R>) -> [R; 3] {
+    pub fn radiance<R: Exact>(&self, direction: Vector3<R>) -> [R; 3] {
         let Vector3 { x, y, z } = direction;
         let half = R::from_f32(0.5);
         let width = R::from_f32(self.0.width() as f32);

@@ -8,7 +8,7 @@ pub mod sky;
 
 pub use map::Map;
 
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 
 /// Light from all directions.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +27,7 @@ impl Environment {
     /// of the three, so that no square leaves the range; then [`Vector3::normalized`]. Decided: the
     /// null vector and a direction that is not finite look straight up.
     #[must_use]
-    pub fn radiance<R: Real>(&self, direction: Vector3<R>) -> [R; 3] {
+    pub fn radiance<R: Exact>(&self, direction: Vector3<R>) -> [R; 3] {
         let direction = unit(direction);
         match self {
             Self::Sky => sky::radiance(direction),
@@ -37,7 +37,7 @@ impl Environment {
 }
 
 /// The unit direction, see [`Environment::radiance`].
-fn unit<R: Real>(d: Vector3<R>) -> Vector3<R> {
+fn unit<R: Exact>(d: Vector3<R>) -> Vector3<R> {
     let largest = d.x.abs().at_least(d.y.abs()).at_least(d.z.abs());
     let scaled = Vector3::new(d.x / largest, d.y / largest, d.z / largest).normalized();
     // 0/0 and inf/inf are NaN, whose vector has no length.

@@ -37,7 +37,7 @@
 mod tests;
 
 use crate::error::{Error, Result};
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::Environment;
 
 /// How many surfaces bend the light.
@@ -105,7 +105,7 @@ pub struct Behind<R> {
 /// `view` points from the surface to the eye; both are unit vectors.
 #[inline]
 #[must_use]
-pub fn reflect<R: Real>(view: Vector3<R>, normal: Vector3<R>) -> Vector3<R> {
+pub fn reflect<R: Exact>(view: Vector3<R>, normal: Vector3<R>) -> Vector3<R> {
     let cosine = normal.dot(view);
     normal * (cosine + cosine) - view
 }
@@ -128,7 +128,7 @@ pub fn reflect<R: Real>(view: Vector3<R>, normal: Vector3<R>) -> Vector3<R> {
 /// The two forms of k are equal; each is taken where it does not cancel. Where s = 0 the direction
 /// is -n for every ratio. With m = 1, as for no layers, T is -v up to the rounding of t.
 #[must_use]
-pub fn refract<R: Real>(
+pub fn refract<R: Exact>(
     view: Vector3<R>,
     normal: Vector3<R>,
     ratio: R,
@@ -156,7 +156,7 @@ pub fn refract<R: Real>(
 /// `alpha` is brought into [0, 1]; `layers` >= 0. No layers let everything through, opaque or not.
 #[inline]
 #[must_use]
-pub fn absorption<R: Real>(alpha: R, layers: R) -> R {
+pub fn absorption<R: Exact>(alpha: R, layers: R) -> R {
     (R::ONE - alpha).at_least(R::ZERO).at_most(R::ONE).pow(layers)
 }
 
@@ -174,7 +174,7 @@ pub fn absorption<R: Real>(alpha: R, layers: R) -> R {
 ///
 /// At grazing incidence everything is reflected, but by a ratio of 1, which is no surface: nothing.
 #[must_use]
-pub fn fresnel<R: Real>(cosine: R, ratio: R) -> R {
+pub fn fresnel<R: Exact>(cosine: R, ratio: R) -> R {
     let scaled = ratio * cosine;
     let k = (R::ONE - ratio) * (R::ONE + ratio) + scaled * scaled;
     if k < R::ZERO {
@@ -193,7 +193,7 @@ pub fn fresnel<R: Real>(cosine: R, ratio: R) -> R {
 /// where `alpha` is 0. \[ZP06 5.2.3\]
 #[inline]
 #[must_use]
-pub fn layers<R: Real>(total: R, alpha: R) -> R {
+pub fn layers<R: Exact>(total: R, alpha: R) -> R {
     if alpha > R::ZERO { total / alpha } else { R::ZERO }
 }
 
@@ -205,7 +205,7 @@ pub fn layers<R: Real>(total: R, alpha: R) -> R {
 /// round if n . v < 0; the cosine is at most 1, alpha at least 0 and at most 1. A normal of no
 /// length sees straight through the surface.
 #[must_use]
-pub fn shade<R: Real>(
+pub fn shade<R: Exact>(
     environment: &Environment,
     refraction: &Refraction,
     view: Vector3<R>,

@@ -1,11 +1,11 @@
 //! Pixels side by side: in every lane the operations of the definition, in its order.
 //!
 //! Pixels are gathered into arrays, shaded in straight loops, and scattered. A branch of the
-//! definition becomes a choice between two results; only the powers differ, see [`Real::powers`].
+//! definition becomes a choice between two results; only the powers differ, see [`Exact::powers`].
 
 use super::{Answer, Form, Shader, mirrored};
 use crate::number::elementary::LANES;
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use multiversion::multiversion;
 
 /// One number of each pixel.
@@ -27,7 +27,7 @@ pub(super) struct Row<'a, R> {
 
 /// Shades a row, as [`Shader::pixel`] does pixel by pixel.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub(super) fn shade<R: Real>(shader: &Shader<R>, row: &Row<'_, R>, pixels: &mut [[R; 3]]) {
+pub(super) fn shade<R: Exact>(shader: &Shader<R>, row: &Row<'_, R>, pixels: &mut [[R; 3]]) {
     let (groups, rest) = pixels.as_chunks_mut();
     let whole = groups.len() * LANES;
     for (first, pixels) in (0..whole).step_by(LANES).zip(groups) {
@@ -43,7 +43,7 @@ pub(super) fn shade<R: Real>(shader: &Shader<R>, row: &Row<'_, R>, pixels: &mut 
 
 /// Shades the pixels from column `first` on.
 #[inline(always)]
-fn group<R: Real>(
+fn group<R: Exact>(
     shader: &Shader<R>,
     row: &Row<'_, R>,
     first: usize,
@@ -81,7 +81,7 @@ fn group<R: Real>(
 
 /// The colours of the pixels from (first, y) on, at these depths, before the lights of a scene.
 #[inline(always)]
-fn lit<R: Real>(
+fn lit<R: Exact>(
     shader: &Shader<R>,
     (first, y): (usize, usize),
     depth: &Lanes<R>,
@@ -123,7 +123,7 @@ fn lit<R: Real>(
 
 /// specular (r . v)^shininess where r . v, here `gloss`, is above 0, else 0.
 #[inline(always)]
-fn highlights<R: Real>(answer: &Answer<R>, gloss: &Lanes<R>) -> Lanes<R> {
+fn highlights<R: Exact>(answer: &Answer<R>, gloss: &Lanes<R>) -> Lanes<R> {
     let mut highlight = [R::ZERO; LANES];
     if !(answer.specular > R::ZERO) || !any(|i| gloss[i] > R::ZERO) {
         return highlight;
@@ -150,13 +150,13 @@ fn any(holds: impl Fn(usize) -> bool) -> bool {
     found
 }
 
-fn vector<R: Real>([x, y, z]: [R; 3]) -> Vector3<R> {
+fn vector<R: Exact>([x, y, z]: [R; 3]) -> Vector3<R> {
     Vector3::new(x, y, z)
 }
 
 /// The vectors of consecutive pixels, component by component.
 #[inline(always)]
-fn gather<R: Real>(pixels: &[[R; 3]]) -> [Lanes<R>; 3] {
+fn gather<R: Exact>(pixels: &[[R; 3]]) -> [Lanes<R>; 3] {
     let mut lanes = [[R::ZERO; LANES]; 3];
     for i in 0..LANES {
         for c in 0..3 {
@@ -167,11 +167,11 @@ fn gather<R: Real>(pixels: &[[R; 3]]) -> [Lanes<R>; 3] {
 }
 
 #[inline(always)]
-fn at<R: Real>(lanes: &[Lanes<R>; 3], i: usize) -> Vector3<R> {
+fn at<R: Exact>(lanes: &[Lanes<R>; 3], i: usize) -> Vector3<R> {
     Vector3::new(lanes[0][i], lanes[1][i], lanes[2][i])
 }
 
 #[inline(always)]
-fn put<R: Real>(lanes: &mut [Lanes<R>; 3], i: usize, v: Vector3<R>) {
+fn put<R: Exact>(lanes: &mut [Lanes<R>; 3], i: usize, v: Vector3<R>) {
     (lanes[0][i], lanes[1][i], lanes[2][i]) = (v.x, v.y, v.z);
 }

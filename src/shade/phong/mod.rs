@@ -40,7 +40,7 @@ mod lanes;
 mod tests;
 
 use crate::frame::{Exec, Plane};
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 use crate::scene::{Light, Phong};
 use crate::splat::View;
 
@@ -53,7 +53,7 @@ enum Placed<R> {
     At(Vector3<R>),
 }
 
-impl<R: Real> Placed<R> {
+impl<R: Exact> Placed<R> {
     /// l: the direction towards the light from p.
     #[inline(always)]
     fn from(&self, p: Vector3<R>) -> Vector3<R> {
@@ -72,7 +72,7 @@ pub struct Shader<R> {
     material: Phong,
 }
 
-impl<R: Real> Shader<R> {
+impl<R: Exact> Shader<R> {
     /// Places the lights before a camera.
     #[must_use]
     pub fn new(view: View<R>, lights: &[Light], material: Phong) -> Self {
@@ -216,7 +216,7 @@ struct Form<R> {
     tangent: Vector3<R>,
 }
 
-impl<R: Real> Form<R> {
+impl<R: Exact> Form<R> {
     /// n and n . l for the direction l towards a light.
     #[inline(always)]
     fn towards(&self, l: Vector3<R>) -> (Vector3<R>, R) {
@@ -232,7 +232,7 @@ impl<R: Real> Form<R> {
 
 /// r . v: how far the mirrored light goes towards the eye.
 #[inline(always)]
-fn mirrored<R: Real>(n: Vector3<R>, cosine: R, l: Vector3<R>, v: Vector3<R>) -> R {
+fn mirrored<R: Exact>(n: Vector3<R>, cosine: R, l: Vector3<R>, v: Vector3<R>) -> R {
     (n * (cosine + cosine) - l).dot(v)
 }
 
@@ -245,7 +245,7 @@ struct Answer<R> {
     shininess: R,
 }
 
-impl<R: Real> Answer<R> {
+impl<R: Exact> Answer<R> {
     fn new(material: &Phong) -> Self {
         Self {
             ambient: R::from_f32(material.ambient),

@@ -18,7 +18,7 @@ fn direction(seed: u64, i: u64) -> Vec3 {
 }
 
 /// A vector of each pixel; some are null, some have no length to divide by.
-fn vectors<R: Real>(seed: u64, width: u32) -> Plane<[R; 3]> {
+fn vectors<R: Exact>(seed: u64, width: u32) -> Plane<[R; 3]> {
     let vector = |i: u64| match (unit(seed + 1, i) * 16.0) as u32 {
         0..4 => Vec3::ZERO,
         4 => direction(seed, i) * 1e-30,
@@ -31,7 +31,7 @@ fn vectors<R: Real>(seed: u64, width: u32) -> Plane<[R; 3]> {
 }
 
 /// Depths; a third of the pixels and one long run of them are empty.
-fn depths<R: Real>(seed: u64, width: u32) -> Plane<R> {
+fn depths<R: Exact>(seed: u64, width: u32) -> Plane<R> {
     let depth = |i: u64| {
         let empty = unit(seed, i) < 0.33 || (40..75).contains(&i);
         if empty { R::INFINITY } else { R::from_f32(0.125 + 8.0 * unit(seed + 1, i)) }
@@ -50,7 +50,7 @@ fn lights(seed: u64) -> Vec<Light> {
 }
 
 /// Shades planes as good as random, and compares every pixel with the definition.
-fn lanes_are_the_definition<R: Real>() {
+fn lanes_are_the_definition<R: Exact>() {
     let shininess = [1.0, 2.0, 5.0, 10.0, 32.0, 100.0, 64.5, 0.0, 65_536.0, 0.5];
     for seed in 0..400_u64 {
         let width = 1 + (unit(seed, 0) * 70.0) as u32;
@@ -91,7 +91,7 @@ fn lanes_have_the_bits_of_the_definition() {
 }
 
 /// The first component of a white tube in white light from one direction, both in world space.
-fn tube<R: Real>(material: Phong, tangent: Vec3, towards: Vec3, lens: Lens) -> f64 {
+fn tube<R: Exact>(material: Phong, tangent: Vec3, towards: Vec3, lens: Lens) -> f64 {
     let light = Light::Directional { towards, color: Vec3::ONE };
     let material = Phong { color: Vec3::ONE, ambient: 0.0, ..material };
     let camera = camera(64, lens);

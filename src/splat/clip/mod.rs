@@ -51,7 +51,7 @@ mod tests;
 
 use super::View;
 use crate::frame::raster::GUARD_BAND;
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Vector3};
 
 /// What a view keeps of a triangle or a segment.
 #[derive(Clone, Debug)]
@@ -86,7 +86,7 @@ pub struct Clipped<R, const N: usize> {
     pub weights: [R; N],
 }
 
-impl<R: Real> Plane<R> {
+impl<R: Exact> Plane<R> {
     fn distance(&self, p: &Vector3<R>) -> R {
         let coordinate = match self.axis {
             Axis::X => p.x,
@@ -107,7 +107,7 @@ impl<R: Real> Plane<R> {
     }
 }
 
-impl<R: Real> Clip<R> {
+impl<R: Exact> Clip<R> {
     /// The planes of a camera.
     #[must_use]
     pub fn new(view: &View<R>) -> Self {
@@ -206,13 +206,13 @@ impl<R: Real> Clip<R> {
 }
 
 /// The corners as they are.
-fn whole<R: Real, const N: usize>(corners: [Vector3<R>; N]) -> [Clipped<R, N>; N] {
+fn whole<R: Exact, const N: usize>(corners: [Vector3<R>; N]) -> [Clipped<R, N>; N] {
     std::array::from_fn(|i| {
         let weights = std::array::from_fn(|k| if k == i { R::ONE } else { R::ZERO });
         Clipped { position: corners[i], weights }
     })
 }
 
-fn is_finite<R: Real>(p: &Vector3<R>) -> bool {
+fn is_finite<R: Exact>(p: &Vector3<R>) -> bool {
     p.x.is_finite() && p.y.is_finite() && p.z.is_finite()
 }

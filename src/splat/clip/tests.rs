@@ -6,7 +6,7 @@ use crate::number::random::unit;
 
 const NEAR: f32 = 0.125;
 
-fn view<R: Real>(perspective: bool, focal: f32) -> View<R> {
+fn view<R: Exact>(perspective: bool, focal: f32) -> View<R> {
     let [fx, fy, cx, cy] = [focal, focal * 1.25, 300.0, 170.5].map(R::from_f32);
     let [o, width, height] = [0.0, 640.0, 360.0].map(R::from_f32);
     let near = R::from_f32(NEAR);
@@ -20,15 +20,15 @@ fn corner(seed: u64, i: u64) -> Vector3<f32> {
     Vector3::new((u(0) - 0.5) * scale, (u(1) - 0.5) * scale, (u(2) - 0.75) * scale)
 }
 
-fn in_r<R: Real>(p: Vector3<f32>) -> Vector3<R> {
+fn in_r<R: Exact>(p: Vector3<f32>) -> Vector3<R> {
     Vector3::new(R::from_f32(p.x), R::from_f32(p.y), R::from_f32(p.z))
 }
 
-fn wide<R: Real>(p: Vector3<R>) -> [f64; 3] {
+fn wide<R: Exact>(p: Vector3<R>) -> [f64; 3] {
     [p.x.to_f64(), p.y.to_f64(), p.z.to_f64()]
 }
 
-fn screen<R: Real>(view: &View<R>, p: Vector3<R>) -> [f64; 2] {
+fn screen<R: Exact>(view: &View<R>, p: Vector3<R>) -> [f64; 2] {
     let [x, y, z] = wide(p);
     let s = if view.perspective { -z } else { 1.0 };
     let [fx, fy, cx, cy] = [view.fx, view.fy, view.cx, view.cy].map(R::to_f64);
@@ -39,7 +39,7 @@ const VIEWS: [(bool, f32); 4] =
     [(true, 300.0), (true, 30_000.0), (false, 300.0), (false, 30_000.0)];
 
 /// Checks every vertex of many triangles; how far beyond the guard band they are, in pixels.
-fn vertices_are_sound<R: Real>(epsilon: f64) -> f64 {
+fn vertices_are_sound<R: Exact>(epsilon: f64) -> f64 {
     let (mut worst, mut cuts) = (0.0, 0);
     for (seed, (perspective, focal)) in (0..).zip(VIEWS) {
         let view = view::<R>(perspective, focal);

@@ -3,6 +3,7 @@
 use super::super::shade;
 use super::*;
 use crate::frame::Plane;
+use crate::number::Real;
 use crate::scene::environment::Map;
 
 fn even(radiance: f32) -> Environment {

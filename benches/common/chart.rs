@@ -1,0 +1,122 @@
+//! A chart with two logarithmic axes, as an SVG that reads on light and dark pages.
+
+use std::fmt::Write;
+
+/// One line of the chart: what it is called, and its points (x, y, what is written at the point).
+pub(crate) struct Series {
+    pub(crate) name: String,
+    pub(crate) points: Vec<(f64, f64, String)>,
+}
+
+/// An axis: its title with the unit, and the values at its ticks, of which the first and the last
+/// are its ends.
+pub(crate) struct Axis {
+    pub(crate) title: &'static str,
+    pub(crate) ticks: Vec<f64>,
+}
+
+const WIDTH: f64 = 760.0;
+const HEIGHT: f64 = 440.0;
+/// Left, top, right and bottom of the plot.
+const PLOT: [f64; 4] = [70.0, 40.0, 570.0, 385.0];
+/// Colours that differ in lightness as well as in hue [Okabe, Ito 2008].
+const COLORS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+const STYLE: &str = "\
+.page { fill: #ffffff } .text { fill: #24292f; font: 13px sans-serif } .grid { stroke: #d0d7de }
+@media (prefers-color-scheme: dark) {
+  .page { fill: #0d1117 } .text { fill: #e6edf3 } .grid { stroke: #30363d }
+}";
+
+impl Axis {
+    /// An axis from 1, 2 or 5 times a power of ten to another, around all values.
+    pub(crate) fn around(title: &'static str, values: impl Iterator<Item = f64> + Clone) -> Self {
+        let least = values.clone().fold(f64::INFINITY, |a, b| if b < a { b } else { a });
+        let greatest = values.fold(0.0, |a, b| if b > a { b } else { a });
+        let steps: Vec<f64> = (-6..=6)
+            .flat_map(|power| ["1", "2", "5"].map(|digit| format!("{digit}e{power}")))
+            .filter_map(|step| step.parse().ok())
+            .collect();
+        let first = steps.partition_point(|&step| step <= least).saturating_sub(1);
+        let last = steps.partition_point(|&step| step < greatest).min(steps.len() - 1);
+        Self { title, ticks: steps[first..=last].to_vec() }
+    }
+
+    /// Where a value lies, from 0 at the first tick to 1 at the last.
+    fn at(&self, value: f64) -> f64 {
+        let [first, last] = [self.ticks[0], self.ticks[self.ticks.len() - 1]];
+        log(value / first) / log(last / first)
+    }
+}
+
+fn log(value: f64) -> f64 {
+    splatref::number::elementary::ln(value)
+}
+
+/// The chart; marks of a series are joined in their order.
+pub(crate) fn svg(title: &str, [x, y]: [&Axis; 2], series: &[Series]) -> String {
+    let [left, top, right, bottom] = PLOT;
+    let across = |v: f64| left + x.at(v) * (right - left);
+    let up = |v: f64| bottom - y.at(v) * (bottom - top);
+    let mut out = Svg(String::new());
+    out.element(&format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\">\n\
+         <title>{title}</title>\n<style>\n{STYLE}\n</style>\n\
+         <rect class=\"page\" width=\"{WIDTH}\" height=\"{HEIGHT}\" rx=\"6\"/>"
+    ));
+    out.text(left, 22.0, "start", title);
+    for &tick in &x.ticks {
+        out.line([across(tick), top, across(tick), bottom]);
+        out.text(across(tick), bottom + 18.0, "middle", &tick.to_string());
+    }
+    for &tick in &y.ticks {
+        out.line([left, up(tick), right, up(tick)]);
+        out.text(left - 6.0, up(tick) + 4.0, "end", &tick.to_string());
+    }
+    out.text((left + right) / 2.0, bottom + 42.0, "middle", x.title);
+    let middle = (top + bottom) / 2.0;
+    out.element(&format!(
+        "<text class=\"text\" text-anchor=\"middle\" transform=\"translate(16 {middle}) rotate(-90)\">{}</text>",
+        y.title
+    ));
+    for ((index, Series { name, points }), color) in series.iter().enumerate().zip(COLORS) {
+        let places: Vec<_> = points.iter().map(|p| (across(p.0), up(p.1), &p.2)).collect();
+        let joined: Vec<_> = places.iter().map(|(x, y, _)| format!("{x:.1},{y:.1}")).collect();
+        out.element(&format!(
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"2\"/>",
+            joined.join(" ")
+        ));
+        for (x, y, label) in &places {
+            out.disc(*x, *y, color);
+            out.text(x + 6.0, y - 7.0, "start", label);
+        }
+        let row = top + 8.0 + 22.0 * index as f64;
+        out.disc(right + 18.0, row, color);
+        out.text(right + 30.0, row + 4.0, "start", name);
+    }
+    out.0 + "</svg>\n"
+}
+
+/// The elements so far, one a line.
+struct Svg(String);
+
+impl Svg {
+    fn element(&mut self, text: &str) {
+        self.0.push_str(text);
+        self.0.push('\n');
+    }
+
+    fn line(&mut self, [x1, y1, x2, y2]: [f64; 4]) {
+        let _ = writeln!(self.0, "<path class=\"grid\" d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\"/>");
+    }
+
+    fn text(&mut self, x: f64, y: f64, anchor: &str, text: &str) {
+        let _ = writeln!(
+            self.0,
+            "<text class=\"text\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>"
+        );
+    }
+
+    fn disc(&mut self, x: f64, y: f64, color: &str) {
+        let _ = writeln!(self.0, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{color}\"/>");
+    }
+}

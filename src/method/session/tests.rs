@@ -1,0 +1,133 @@
+//! A session refuses what it cannot draw, and its memory shows nothing of earlier pictures.
+
+use super::*;
+use crate::index::grouping::{Extension, Rules};
+use crate::method::tests::{cameras, scene, surfels};
+use crate::scene::{Light, Surfels, Triangles, Vertices};
+use crate::source::Shape;
+use glam::Vec3;
+
+/// A few surfels of a sphere, and a camera.
+fn sphere() -> (Scene, Camera) {
+    let shape = Shape::Sphere;
+    let scene = Scene::lit("sphere", shape.surfels(40, 0).unwrap());
+    (scene, Camera::new(8, 8, shape.default_pose(), shape.default_lens()).unwrap())
+}
+
+#[test]
+fn primitives_are_refused_by_methods_that_draw_surfels_alone() {
+    let (mut scene, _) = sphere();
+    let vertices = Vertices {
+        position: vec![Vec3::X, Vec3::Y, Vec3::Z],
+        direction: vec![Vec3::ONE; 3],
+        radius: vec![0.0; 3],
+        color: None,
+    };
+    scene.primitives.triangles = Triangles::new(vertices, vec![[0, 1, 2]]).unwrap().0;
+    let exec = Exec::sequential();
+    for method in Method::all() {
+        let found = Session::new(&scene, method, &exec);
+        if method.draws_primitives() {
+            assert!(found.is_ok());
+            continue;
+        }
+        let line = found.unwrap_err().to_string();
+        assert!(line.starts_with("sphere has triangles or lines, which the method "), "{line}");
+        assert!(line.ends_with(" does not draw; use --method pyramid"), "{line}");
+    }
+}
+
+#[test]
+fn a_scene_of_nothing_is_an_empty_picture_or_refused() {
+    let (mut scene, camera) = sphere();
+    scene.surfels = Surfels::none();
+    let exec = Exec::sequential();
+    for method in Method::all() {
+        let groups = Groups::new(vec![], vec![], vec![1.0]).unwrap();
+        let mut session = Session::with_groups(&scene, method, Some(groups), &exec).unwrap();
+        match session.render(&camera) {
+            Ok(picture) => assert_eq!(picture.tally.visible, 0),
+            Err(error) => assert!(error.to_string().contains("an epsilon of 0"), "{error}"),
+        }
+    }
+    for extension in [Extension::None, Extension::Add { most: 0.5 }, Extension::Enlarge] {
+        for count in [None, Some(2)] {
+            let grouping = Grouping { rules: Rules::default(), count, extension };
+            let found = grouping.groups(&scene.surfels, &exec, &|_, _, _| ());
+            assert!(found.is_ok_and(|(groups, ..)| groups.own().is_empty()));
+        }
+    }
+}
+
+#[test]
+fn groups_that_are_missing_or_of_another_scene_are_refused() {
+    let (scene, _) = sphere();
+    let exec = Exec::sequential();
+    let others = Groups::new(vec![0; 3], vec![], vec![1.0]).unwrap();
+    for method in Method::all().into_iter().filter(|method| method.grouping().is_some()) {
+        let refused =
+            |groups| Session::with_groups(&scene, method, groups, &exec).unwrap_err().to_string();
+        assert!(refused(None).contains("prepared for another method, without groups"));
+        assert_eq!(refused(Some(others.clone())), "groups of 3 surfels for a scene of 40");
+    }
+}
+
+#[test]
+fn groups_come_from_the_scene_unless_a_grouping_is_chosen() {
+    let (mut scene, _) = sphere();
+    let exec = Exec::sequential();
+    let mut cloud = scene.surfels.into_cloud();
+    let own: Vec<u8> = (0..40).map(|i| i % 3).collect();
+    cloud.groups = Some(Groups::new(own.clone(), vec![], vec![1.0; 3]).unwrap());
+    scene.surfels = Surfels::new(cloud).unwrap().0;
+    let method = Method::by_name("single-pass").unwrap();
+    let prepare = |grouping| {
+        let (session, made) =
+            Session::prepare(&scene, method, grouping, &exec, &|_, _, _| ()).unwrap();
+        (session.groups().unwrap().own().to_vec(), made.is_some())
+    };
+    assert_eq!(prepare(None), (own, false));
+    let one = Grouping { rules: Rules::default(), count: Some(1), extension: Extension::None };
+    assert_eq!(prepare(Some(one)), (vec![0; 40], true));
+    let ewa = Session::new(&scene, Method::default(), &exec).unwrap();
+    assert!(ewa.groups().is_none(), "a method that draws none has none");
+}
+
+#[test]
+fn every_method_has_a_name_of_its_own_and_is_found_by_it() {
+    for method in Method::all() {
+        assert_eq!(Method::by_name(method.name()).unwrap(), method);
+    }
+    let line = Method::by_name("evva").unwrap_err().to_string();
+    let names = "ewa, single-pass, transparent, transparent-hq, peeling, pyramid, template";
+    assert_eq!(line, format!("method `evva`; give one of {names}"));
+}
+
+/// Whatever an earlier picture had, its memory shows nothing of it; and what a session draws is
+/// what the definition says.
+#[test]
+fn the_memory_of_an_earlier_picture_changes_no_bit() {
+    let exec = Exec::new(2, 16).unwrap();
+    let [small, large] = [6, 8].map(|i| cameras()[i]);
+    // Light, colours.
+    for (i, (lit, color)) in
+        [(true, true), (false, false), (true, false), (false, true)].into_iter().enumerate()
+    {
+        let lights = if lit { vec![Light::DEFAULT] } else { vec![] };
+        let scene = Scene { lights, ..scene(surfels(500, 0.1, color, i as u64)) };
+        let groups = Groups::new(vec![0; 500], vec![], vec![1.0]).unwrap();
+        for method in Method::all() {
+            let session =
+                || Session::with_groups(&scene, method, Some(groups.clone()), &exec).unwrap();
+            let mut again = session();
+            for camera in [large, small, large, large] {
+                let after = again.render(&camera).unwrap();
+                assert!(after.tally.visible > 50, "{after:?}");
+                let defined = session().define::<f32>(&camera, false).unwrap();
+                // The shortest decimals of floats tell them apart to the last bit.
+                let same = format!("{:?}", after.frame) == format!("{:?}", defined.frame);
+                assert!(same, "{method:?}, scene {i}");
+            }
+        }
+    }
+}

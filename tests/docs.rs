@@ -1,0 +1,89 @@
+//! The pages that people read: their links lead somewhere, and each bench finds its block.
+
+#[path = "../benches/common/block.rs"]
+mod block;
+
+use block::replaced;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const PAGE: &str = "\
+before
+<!-- bench: a -->
+
+old
+
+<!-- end -->
+between
+<!-- bench: b -->
+<!-- end -->
+after
+";
+
+/// The README and every page under `docs/`.
+fn pages() -> Vec<(PathBuf, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let docs = fs::read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let markdown = docs.filter(|path| path.extension().is_some_and(|end| end == "md"));
+    let paths = markdown.chain([root.join("README.md")]);
+    paths.map(|path| (path.clone(), fs::read_to_string(path).unwrap())).collect()
+}
+
+#[test]
+fn a_block_is_replaced_and_nothing_else() {
+    let new = replaced(PAGE, "a", "| 1 |\n").unwrap();
+    assert_eq!(new, PAGE.replace("old", "| 1 |"));
+    assert_eq!(replaced(&new, "a", "old").unwrap(), PAGE, "and back");
+    let new = replaced(PAGE, "b", "| 2 |\n| 3 |\n").unwrap();
+    assert_eq!(new, PAGE.replace("b -->\n", "b -->\n\n| 2 |\n| 3 |\n\n"));
+}
+
+#[test]
+fn a_block_that_is_not_whole_or_not_one_is_refused() {
+    assert!(replaced(PAGE, "c", "").is_err(), "no such block");
+    assert!(replaced(&PAGE.repeat(2), "a", "").is_err(), "two of them");
+    assert!(replaced(&PAGE.replacen("<!-- end -->\n", "", 1), "a", "").is_err(), "no end");
+    assert!(replaced("<!-- bench: a -->\n", "a", "").is_err(), "the end of the page");
+}
+
+#[test]
+fn every_link_to_a_file_leads_to_one() {
+    for (path, text) in pages() {
+        for target in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let file = target.split('#').next().unwrap_or_default();
+            if file.is_empty() || file.contains("://") {
+                continue;
+            }
+            let found = path.parent().unwrap().join(file);
+            assert!(found.exists(), "{}: no {}", path.display(), found.display());
+        }
+    }
+}
+
+#[test]
+fn every_block_is_written_by_a_bench_and_every_bench_finds_its_block() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches");
+    let mut sources = String::new();
+    for folder in [root.clone(), root.join("reconstruction")] {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_file() {
+                sources += &fs::read_to_string(path).unwrap();
+            }
+        }
+    }
+    let pages = pages();
+    for (path, text) in &pages {
+        for name in text.split("<!-- bench: ").skip(1).filter_map(|rest| rest.split(' ').next()) {
+            let block = replaced(text, name, "");
+            assert!(block.is_ok(), "{}: {}", path.display(), block.unwrap_err());
+            assert!(sources.contains(&format!("\"{name}\"")), "{}: {name}", path.display());
+        }
+    }
+    let published = sources.split(".md\", \"").skip(1).filter_map(|rest| rest.split('"').next());
+    for name in published {
+        let line = format!("<!-- bench: {name} -->\n");
+        let holders = pages.iter().filter(|(_, text)| text.contains(&line)).count();
+        assert_eq!(holders, 1, "{line}");
+    }
+}

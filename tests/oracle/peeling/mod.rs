@@ -1,0 +1,3 @@
+//! Depth peeling.
+
+pub(crate) mod stages;

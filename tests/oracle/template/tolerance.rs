@@ -1,0 +1,52 @@
+//! How far each plane of the reconstruction with templates may be from the oracle, and why.
+//!
+//! The unit is what [`crate::template::rounded::Rounded`] counts: the sum of all roundings on the way, which
+//! the same operations cannot exceed. In f64 the oracle rounds too: as the documentation says, so
+//! that no bit may differ, but in Phong's formula, where it is free and both errors make 2 units.
+
+use crate::kit::tolerance::Arithmetic::{F32, F64};
+use crate::kit::tolerance::{Row, row};
+
+const SAME: &str = "the documented operations in the documented order";
+
+pub(crate) const TEMPLATE: &[Row] = &[
+    row("projection.Z", F32, 1.0, "a row of the view matrix"),
+    row("projection.Z", F64, 0.0, SAME),
+    row("projection.normal", F32, 1.0, "a row of the view matrix"),
+    row("projection.normal", F64, 0.0, SAME),
+    row("projection.extent", F32, 1.0, "a root, three products, and a quotient by a depth"),
+    row("projection.extent", F64, 0.0, SAME),
+    row("projection.centre", F32, 1.0, "two rows of the view matrix, a quotient, a product, a sum"),
+    row("projection.centre", F64, 0.0, SAME),
+    row("level.Z", F32, 1.0, "up to three sums, and a quotient where there are three"),
+    row("level.Z", F64, 0.0, SAME),
+    row("level.radius", F32, 1.0, "as level.Z"),
+    row("level.radius", F64, 0.0, SAME),
+    row("level.extent", F32, 1.0, "as level.Z"),
+    row("level.extent", F64, 0.0, SAME),
+    row("level.place", F32, 1.0, "as level.Z"),
+    row("level.place", F64, 0.0, SAME),
+    row("level.normal", F32, 1.0, "as level.Z"),
+    row("level.normal", F64, 0.0, SAME),
+    row("level", F32, 1.0, "as level.Z"),
+    row("level", F64, 0.0, SAME),
+    row(
+        "gathered.weight",
+        F32,
+        1.0,
+        "the form, a quotient, a root, a difference, one sum a centre",
+    ),
+    row("gathered.weight", F64, 0.0, SAME),
+    row("gathered.depths", F32, 1.0, "a product more than the weight"),
+    row("gathered.depths", F64, 0.0, SAME),
+    row("gathered.normal", F32, 1.0, "a product more than the weight"),
+    row("gathered.normal", F64, 0.0, SAME),
+    row("gathered", F32, 1.0, "a product more than the weight"),
+    row("gathered", F64, 0.0, SAME),
+    row("Z", F32, 1.0, "one quotient"),
+    row("Z", F64, 0.0, SAME),
+    row("normal", F32, 1.0, "a quotient, a column of the view matrix, a length, a quotient"),
+    row("normal", F64, 0.0, SAME),
+    row("", F32, 1.0, "a quotient, then Phong's sums and products"),
+    row("", F64, 2.0, "as in f32"),
+];
