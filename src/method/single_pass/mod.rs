@@ -43,17 +43,19 @@
 //!
 //! There the group keeps the nearer fragment alone.
 //!
-//! [`plain`] is the definition, over any [`Real`]; [`fast`] gives the same bits for `f32`.
-//! [`explain`] lists every decision at one pixel.
+//! The definition is over any [`Exact`] number; [`fast`] gives the same bits for `f32`. [`explain`]
+//! lists every decision at one pixel. What each stage leaves: [`Algorithm::STAGES`].
 //!
 //! [`Splat`]: crate::splat::Splat
-//! [`Real`]: crate::number::Real
+//! [`Exact`]: crate::number::Exact
 //! [`Groups`]: crate::scene::Groups
 
+pub(super) mod compositing;
 pub mod explain;
 pub mod fast;
-mod picture;
-pub mod plain;
+pub(super) mod geometry;
+pub(super) mod picture;
+pub(super) mod planes;
 mod settings;
 
 pub use settings::{BinCount, DepthTest, Settings, depth_range};
@@ -62,15 +64,15 @@ use crate::error::Result;
 use crate::frame::{Frame, Pool};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::algorithm::{Algorithm, Job};
+use crate::method::tiled::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
-pub(super) use picture::image_planes;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "single-pass";
     const SUMMARY: &'static str = "one geometry pass into the depth-images of groups, epsilon-z compositing [ZP06, Algorithm 1]";
-    const STAGES: &'static [Stage] = &[];
+    const STAGES: &'static [Stage] = planes::STAGES;
     /// c = 0.4, which \[ZP06, section 6.1\] finds acceptable; opposite normals relaxed.
     const GROUPING: Option<Grouping> = Some(Grouping {
         rules: Rules { overlap: 0.4, opposite: true, coplanar: None },
@@ -92,15 +94,11 @@ impl Algorithm for Settings {
     }
 
     fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
-        let _ = (job, from);
-        Err(crate::method::stage::unknown(stage))
+        Ok(job.frame(picture::stage(job, self, stage, &Given::new(from, job))?))
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
-        let Job { scene, camera, exec, index } = *job;
-        let groups = index.groups()?;
-        let found = explain::explain::<R>(&scene.surfels, groups, camera, self, exec, pixel)?;
-        Ok(found.to_string())
+        Ok(explain::explain::<R>(job, self, pixel)?.to_string())
     }
 
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {

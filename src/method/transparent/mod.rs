@@ -37,8 +37,11 @@
 //!
 //! [`Groups`]: crate::scene::Groups
 
-pub(super) mod blend;
+pub(super) mod averaging;
+pub(super) mod blending;
+pub mod explain;
 pub(super) mod picture;
+pub(super) mod planes;
 mod settings;
 
 pub use settings::{Holes, Settings};
@@ -47,6 +50,7 @@ use crate::error::Result;
 use crate::frame::Frame;
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::algorithm::{Algorithm, Job};
+use crate::method::tiled::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
@@ -62,7 +66,7 @@ impl Algorithm for Settings {
     const NAME: &'static str = "transparent";
     const SUMMARY: &'static str =
         "layers alpha-blended within groups, averaged [ZP06, Algorithm 2]";
-    const STAGES: &'static [Stage] = &[];
+    const STAGES: &'static [Stage] = planes::STAGES;
     const GROUPING: Option<Grouping> = Some(GROUPING);
     const BACK_TO_FRONT: bool = true;
     type Memory = ();
@@ -76,13 +80,11 @@ impl Algorithm for Settings {
     }
 
     fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
-        let _ = (job, from);
-        Err(crate::method::stage::unknown(stage))
+        Ok(job.frame(picture::stage(job, self, stage, &Given::new(from, job))?))
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
-        let _ = (job, pixel);
-        Err(crate::Error::Usage("there is no replay of this method".into()))
+        Ok(explain::explain::<R>(job, self, pixel)?.to_string())
     }
 
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {

@@ -23,8 +23,11 @@
 //! [`mod@crate::splat::project`]) and epsilon < (scale - 1) r, and, as depths of another radius
 //! round otherwise, anywhere with an epsilon of 0.
 
+mod compositing;
+pub mod explain;
 mod nearest;
 mod picture;
+mod planes;
 mod settings;
 
 pub use settings::Settings;
@@ -33,6 +36,7 @@ use crate::error::Result;
 use crate::frame::Frame;
 use crate::index::grouping::Grouping;
 use crate::method::algorithm::{Algorithm, Job};
+use crate::method::tiled::Given;
 use crate::method::{Picture, Stage, transparent};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
@@ -41,7 +45,7 @@ impl Algorithm for Settings {
     const NAME: &'static str = "transparent-hq";
     const SUMMARY: &'static str = "layers behind a smoothly interpolated nearest one; reflection, \
          refraction, dispersion [ZP06, Algorithm 3]";
-    const STAGES: &'static [Stage] = &[];
+    const STAGES: &'static [Stage] = planes::STAGES;
     const GROUPING: Option<Grouping> = Some(transparent::GROUPING);
     const BACK_TO_FRONT: bool = true;
     type Memory = ();
@@ -55,13 +59,11 @@ impl Algorithm for Settings {
     }
 
     fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
-        let _ = (job, from);
-        Err(crate::method::stage::unknown(stage))
+        Ok(job.frame(picture::stage(job, self, stage, &Given::new(from, job))?))
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
-        let _ = (job, pixel);
-        Err(crate::Error::Usage("there is no replay of this method".into()))
+        Ok(explain::explain::<R>(job, self, pixel)?.to_string())
     }
 
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
