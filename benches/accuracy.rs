@@ -2,15 +2,14 @@
 //! took.
 //!
 //! `cargo bench --bench accuracy` prints Markdown tables, and with `--write` puts them into
-//! `docs/zp06.md`; an argument is a pattern that the names of scenes must contain. Scenes are the scans in the folder that `SPLATREF_MODELS` names
-//! (`../shared/models` if it is not set), those that are missing are skipped, and procedural ones.
-//! Pictures have 800 x 600 pixels, `f32`, lit by a headlight. RMSE and SSIM are of R, G and B
-//! against the picture named in the title; where both are background counts too. With `--pictures
-//! DIR` every picture is kept there.
+//! `docs/zp06.md`; an argument is a pattern that the names of scenes must contain. Scenes are the
+//! scans in the folder that `SPLATREF_MODELS` names (`../shared/models` if it is not set), those
+//! that are missing are skipped, and procedural ones. Pictures have 800 x 600 pixels, `f32`, lit by
+//! a headlight. RMSE and SSIM are of R, G and B against the picture named in the title; where both
+//! are background counts too. With `--pictures DIR` every picture is kept there.
 
 mod common;
 
-use common::draw::Renderer;
 use common::models;
 use common::report::{Arguments, Table};
 use splatref::Result;
@@ -19,11 +18,14 @@ use splatref::frame::image::Image;
 use splatref::index::grouping::Grouping;
 use splatref::index::grouping::{Extension, Rules};
 use splatref::io::scene_file::SceneFile;
-use splatref::method::ewa::{self, Epsilon};
+use splatref::io::{exr, provenance};
+use splatref::method::ewa;
 use splatref::method::single_pass::{self, BinCount, DepthTest};
 use splatref::method::transparent::{self, Holes};
-use splatref::method::{Method, peeling};
-use splatref::scene::{Camera, Scene};
+use splatref::method::transparent_hq;
+use splatref::method::{Method, Session, peeling};
+use splatref::scene::{Camera, Groups, Scene};
+use splatref::splat::Epsilon;
 use splatref::verify::metrics::summary;
 use std::path::Path;
 use std::time::Instant;
@@ -73,6 +75,20 @@ const VARIANTS: [(f32, usize, Extension, Holes); 9] = [
     (2.0, 4, Extension::Enlarge, Holes::Skipped),
     (2.0, 8, ADD, Holes::Skipped),
     (2.0, 8, Extension::Enlarge, Holes::Skipped),
+];
+const COLUMNS: [&str; 12] = [
+    "scene",
+    "epsilon",
+    "K",
+    "groups cover it by",
+    "holes",
+    "Algorithm 2: RMSE",
+    "SSIM",
+    "ms",
+    "Algorithm 3: RMSE",
+    "SSIM",
+    "ms",
+    "peeling: ms",
 ];
 const ADD: Extension = Extension::Add { most: 0.5 };
 
@@ -158,20 +174,7 @@ impl Bench {
     /// Transparent: Algorithms 2 and 3 against depth peeling with the same epsilon.
     fn figure_12_and_13(&self, subjects: &[Subject]) -> Result<()> {
         println!("Fig. 12 and 13 (`balls`): Algorithms 2 and 3 against the picture of peeling");
-        let mut table = Table::new(&[
-            "scene",
-            "epsilon",
-            "K",
-            "groups cover it by",
-            "holes",
-            "Algorithm 2: RMSE",
-            "SSIM",
-            "ms",
-            "Algorithm 3: RMSE",
-            "SSIM",
-            "ms",
-            "peeling: ms",
-        ]);
+        let mut table = Table::new(&COLUMNS);
         for subject in subjects {
             let mut truth: Option<(f32, Shot)> = None;
             for (radii, count, extension, holes) in VARIANTS {
@@ -190,20 +193,12 @@ impl Bench {
                 let grouping = Grouping { rules, count: Some(count), extension };
                 let mut cells = Vec::new();
                 let mut k = 0;
-                for nearest in [None, Some(DepthTest::Voronoi(BinCount::Epsilon))] {
-                    let default = transparent::Settings::default();
-                    let method = Method::Transparent(transparent::Settings {
-                        splats,
-                        holes,
-                        nearest,
-                        ..default
-                    });
-                    let name = format!(
-                        "{}-{radii}-{}-{}-{holes:?}",
-                        if nearest.is_none() { "algorithm2" } else { "algorithm3" },
-                        count,
-                        word(extension)
-                    );
+                let layers =
+                    transparent::Settings { splats, holes, ..transparent::Settings::default() };
+                let behind = transparent_hq::Settings { layers, ..Default::default() };
+                for (algorithm, method) in [(2, layers.into()), (3, behind.into())] {
+                    let word = word(extension);
+                    let name = format!("algorithm{algorithm}-{radii}-{count}-{word}-{holes:?}");
                     let shot = self.shoot(subject, &name, Some(&grouping), &method)?;
                     k = shot.groups.unwrap_or(0);
                     cells.push(against(&shot, peeled));
@@ -234,19 +229,26 @@ impl Bench {
             .map(|grouping| grouping.groups(&scene.surfels, &self.exec, &|_, _, _| ()))
             .transpose()?;
         let groups = groups.map(|(groups, ..)| groups);
-        let mut renderer = Renderer::new(scene, groups, method, &self.exec);
-        let image = Image::from(&renderer.draw(camera)?.frame);
+        let mut session = Session::with_groups(scene, *method, groups, &self.exec)?;
+        let image = Image::from(&session.render(camera)?.frame);
         let mut times = Vec::new();
         for _ in 0..5 {
             let start = Instant::now();
-            renderer.draw(camera)?;
+            session.render(camera)?;
             times.push(start.elapsed().as_secs_f64() * 1e3);
         }
         times.sort_by(f64::total_cmp);
         if let Some(folder) = &self.arguments.pictures {
-            renderer.keep(camera, &folder.join(format!("{}-{name}.exr", subject.name)))?;
+            let path = folder.join(format!("{}-{name}.exr", subject.name));
+            let text =
+                provenance::text(scene, session.groups(), camera, method, Default::default());
+            exr::write(&path, &session.render(camera)?.frame, &text)?;
         }
-        Ok(Shot { image, milliseconds: times[times.len() / 2], groups: renderer.groups() })
+        Ok(Shot {
+            image,
+            milliseconds: times[times.len() / 2],
+            groups: session.groups().map(Groups::len),
+        })
     }
 }
 

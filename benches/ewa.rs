@@ -1,18 +1,19 @@
 //! Speed of EWA splatting: the table of `docs/ewa.md`.
 //!
 //! `cargo bench --bench ewa` prints Markdown, and with `--write` puts the table into that page; an
-//! argument is a pattern that the names of workloads must contain. Each row is the median over the frames of one run, the minimum in brackets, in
-//! milliseconds: both geometry passes and the normalization, `f32`, back faces culled, into a
-//! framebuffer that is kept from frame to frame: colour, weight, depth and id, or also normals.
+//! argument is a pattern that the names of workloads must contain. Each row is the median over the
+//! frames of one run, the minimum in brackets, in milliseconds: both geometry passes and the
+//! normalization, `f32`, back faces culled, in the memory of a session: colour, weight, depth and
+//! id, or also normals, which a lit scene needs. The shading that follows is not in the times.
 
 mod common;
 
 use common::report::{Arguments, Table};
 use common::sphere::{STANDARD, Workload, camera, cell, sphere};
 use splatref::Result;
-use splatref::frame::{Exec, Framebuffer, Wanted};
-use splatref::method::ewa::{Settings, fast};
-use splatref::scene::Surfels;
+use splatref::frame::Exec;
+use splatref::method::{Session, ewa};
+use splatref::scene::{Light, Scene};
 use splatref::splat::Kernel;
 use std::time::{Duration, Instant};
 
@@ -40,10 +41,11 @@ fn main() -> Result<()> {
     ]);
     let workloads = STANDARD.iter().chain(&MORE);
     for workload in workloads.filter(|w| w.name.contains(&arguments.pattern)) {
-        let surfels = sphere(workload);
+        let mut scene = Scene::unlit(workload.name, sphere(workload));
         for (name, kernel, normal) in VARIANTS {
+            scene.lights = if normal { vec![Light::DEFAULT] } else { Vec::new() };
             for threads in [1, 2] {
-                let mut times = measure(&surfels, kernel, normal, threads);
+                let mut times = measure(&scene, kernel, threads)?;
                 let planes = if normal { "colour, normal" } else { "colour" };
                 let cells: Vec<_> = times.iter_mut().map(|column| cell(column)).collect();
                 let cells = cells.join(" | ");
@@ -61,22 +63,20 @@ const VARIANTS: [(&str, Kernel, bool); 3] = [
     ("default", Kernel::DEFAULT, true),
 ];
 
-/// The times of the frames, and of each stage.
-fn measure(surfels: &Surfels, kernel: Kernel, normal: bool, threads: usize) -> [Vec<Duration>; 5] {
+/// The times of the frames without shading, and of each stage.
+fn measure(scene: &Scene, kernel: Kernel, threads: usize) -> Result<[Vec<Duration>; 5]> {
     let camera = camera();
-    let settings = Settings { kernel, ..Settings::default() };
-    let exec = Exec::new(threads, 32).expect("threads");
-    let wanted = Wanted { normal, color: true, observed: false };
-    let mut target = Framebuffer::new(1024, 1024, 0.0, wanted);
+    let settings = ewa::Settings { kernel, ..ewa::Settings::default() };
+    let exec = Exec::new(threads, 32)?;
+    let mut session = Session::new(scene, settings.into(), &exec)?;
     let mut columns = [const { Vec::new() }; 5];
     let start = Instant::now();
     // At least 9 frames, then up to 101 within two seconds.
     while columns[0].len() < 9 || (columns[0].len() < 101 && start.elapsed().as_secs() < 2) {
-        let frame = Instant::now();
-        let (_, times) = fast::render(surfels, &camera, &settings, &exec, &mut target);
-        let all =
-            [frame.elapsed(), times.project, times.visibility, times.attributes, times.normalize];
+        let laps = session.render(&camera)?.timings.iter().filter(|(stage, _)| *stage != "shading");
+        let laps: Vec<Duration> = laps.map(|(_, time)| *time).collect();
+        let all = std::iter::once(laps.iter().sum()).chain(laps);
         columns.iter_mut().zip(all).for_each(|(column, time)| column.push(time));
     }
-    columns
+    Ok(columns)
 }

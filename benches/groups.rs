@@ -2,9 +2,10 @@
 //!
 //! `cargo bench --bench groups` prints Markdown, and with `--write` puts the tables into
 //! `docs/zp06.md`; an argument is a pattern that the names of models must contain. Of each model
-//! there are the vertices, and the same surface sampled at random with the counts of the paper's models. Radii
-//! are those that this crate derives, which overlap more than the paper's; in the rows marked with
-//! the factor they are scaled until the average degree at c = 1 is that of the paper's model.
+//! there are the vertices, and the same surface sampled at random with the counts of the paper's
+//! models. Radii are those that this crate derives, which overlap more than the paper's; in the
+//! rows marked with the factor they are scaled until the average degree at c = 1 is that of the
+//! paper's model.
 
 mod common;
 

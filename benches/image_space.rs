@@ -1,25 +1,24 @@
 //! Speed of the image-space methods: the timing tables of \[MKC08\] and \[MOC08\], measured again.
 //!
 //! `cargo bench --bench image_space` prints Markdown, and with `--write` puts the table into
-//! `docs/image-space.md`; an argument is a pattern that the names of rows must contain. The papers' models are stood for by samplings of the dragon with as many
-//! points (`SPLATREF_MODELS` names the folder of the scan; without it the sphere is sampled), each
-//! with the spacing as its radius, in a picture that it fills. One headlight, back faces culled,
-//! `f32`, as many threads as cores. Each number is the median over the pictures of one run in
-//! milliseconds, the minimum in brackets; `frame` is the whole call, from the scene to shaded
-//! planes in the memory of the picture before. `moving` is the time in which as many threads do no
-//! more than move what the projection moves: read 28 bytes of every surfel, write 24 for each that
-//! is seen, and read those again.
+//! `docs/image-space.md`; an argument is a pattern that the names of rows must contain. The papers'
+//! models are stood for by samplings of the dragon with as many points (`SPLATREF_MODELS` names the
+//! folder of the scan; without it the sphere is sampled), each with the spacing as its radius, in a
+//! picture that it fills. One headlight, back faces culled, `f32`, as many threads as cores. Each
+//! number is the median over the pictures of one run in milliseconds, the minimum in brackets;
+//! `frame` is the whole call, from the scene to shaded planes in the memory of the picture before.
+//! `moving` is the time in which as many threads do no more than move what the projection moves:
+//! read 28 bytes of every surfel, write 24 for each that is seen, and read those again.
 
 mod common;
 
-use common::draw::Renderer;
 use common::models::{models, resample};
 use common::report::{Arguments, Table};
 use common::sphere::cell;
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::method::pyramid::{self, Weights};
-use splatref::method::{Method, template};
+use splatref::method::{Method, Session, template};
 use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Scene, Surfels};
 use splatref::source::Shape;
 use std::time::{Duration, Instant};
@@ -192,14 +191,14 @@ fn moving(surfels: &Surfels, seen: u64, exec: &Exec, points: &mut [[u32; 6]]) ->
 }
 
 fn measure(scene: &Scene, camera: &Camera, method: &Method, exec: &Exec) -> Result<Times> {
-    let mut renderer = Renderer::new(scene, None, method, exec);
+    let mut session = Session::with_groups(scene, *method, None, exec)?;
     let (mut frames, mut stages) = (Vec::new(), Vec::<(&str, Vec<Duration>)>::new());
     let mut seen = 0;
     let begin = Instant::now();
     // At least 9 pictures, then up to 101 within two seconds; the first fills the memory.
     while frames.len() < 9 || (frames.len() < 101 && begin.elapsed().as_secs() < 2) {
         let start = Instant::now();
-        let picture = renderer.draw(camera)?;
+        let picture = session.render(camera)?;
         let time = start.elapsed();
         if !frames.is_empty() || !stages.is_empty() {
             frames.push(time);

@@ -12,13 +12,12 @@
 mod common;
 
 use common::chart::{Axis, Series, svg};
-use common::draw::Renderer;
 use common::report::{Arguments, Table, machine};
 use common::shot::{Shot, lit};
 use common::sphere::cell;
 use splatref::frame::{Exec, Image};
 use splatref::index::grouping::{Rules, group};
-use splatref::method::{Method, ewa, pyramid, single_pass, template};
+use splatref::method::{Method, Session, ewa, pyramid, single_pass, template};
 use splatref::scene::{Camera, Scene};
 use splatref::source::Shape;
 use splatref::verify::metrics::summary;
@@ -51,7 +50,7 @@ fn main() -> Result<()> {
             let time = cell(&mut times);
             table.row(&format!("{label} | {name} | {time} | {:.4} | {ssim:.3}", found.rmse));
             let median = times[times.len() / 2].as_secs_f64() * 1e3;
-            series.points.push((median, found.rmse, label.to_owned()));
+            series.points.push([median, found.rmse]);
         }
     }
     table.publish_times(&arguments, "speed.md", "methods")?;
@@ -83,13 +82,13 @@ fn draw(
         Method::SinglePass(_) => Some(group(&scene.surfels, &rules, exec, &|_, _, _| ())?.0),
         _ => None,
     };
-    let mut renderer = Renderer::new(scene, groups, method, exec);
-    let image = Image::from(&renderer.draw(camera)?.frame);
+    let mut session = Session::with_groups(scene, *method, groups, exec)?;
+    let image = Image::from(&session.render(camera)?.frame);
     let (mut times, begin) = (Vec::new(), Instant::now());
     // At least 9 pictures, then up to 101 within two seconds.
     while times.len() < 9 || (times.len() < 101 && begin.elapsed().as_secs() < 2) {
         let start = Instant::now();
-        renderer.draw(camera)?;
+        session.render(camera)?;
         times.push(start.elapsed());
     }
     Ok((image, times))
@@ -98,8 +97,8 @@ fn draw(
 /// Time across, error up: below and to the left is better.
 fn chart(series: &[Series]) -> String {
     let points = series.iter().flat_map(|series| &series.points);
-    let x = Axis::around("ms a frame", points.clone().map(|point| point.0));
-    let y = Axis::around("RMSE to the true picture, linear RGB", points.map(|point| point.1));
-    let title = format!("32 spheres, 800 x 600, by surfels; {}", machine());
-    svg(&title, [&x, &y], series)
+    let x = Axis::around("ms a frame", points.clone().map(|point| point[0]));
+    let y = Axis::around("RMSE to the true picture, linear RGB", points.map(|point| point[1]));
+    let title = format!("32 spheres, 800 x 600; {}", machine());
+    svg(&title, [&x, &y], series, ("surfels", &COUNTS.map(|(_, label)| label)))
 }

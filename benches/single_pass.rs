@@ -1,9 +1,10 @@
 //! Speed of single-pass rendering against the 2+1-pass method: the question of \[ZP06, Table 2\].
 //!
 //! `cargo bench --bench single_pass` prints Markdown, and with `--write` puts the table into
-//! `docs/zp06.md`; an argument is a pattern that the names of workloads must contain. Every round draws one frame of each row, so that all rows see the same
-//! machine. Times are the median over the rounds, the minimum in brackets, in milliseconds; the
-//! ratio is the median over the rounds of the time of the frame by that of the 2+1-pass method.
+//! `docs/zp06.md`; an argument is a pattern that the names of workloads must contain. Every round
+//! draws one frame of each row, so that all rows see the same machine. Times are the median over
+//! the rounds, the minimum in brackets, in milliseconds; the ratio is the median over the rounds of
+//! the time of the frame by that of the 2+1-pass method.
 //!
 //! The rows are groupings of this crate without relaxations, by c, and the c that gives 8 groups.
 
@@ -12,19 +13,15 @@ mod common;
 use common::report::{Arguments, Table};
 use common::sphere::{STANDARD, camera, cell, sphere};
 use splatref::Result;
-use splatref::frame::{Exec, Framebuffer, Wanted};
+use splatref::frame::Exec;
 use splatref::index::grouping::{GroupingReport, Rules, group, group_into};
-use splatref::method::ewa;
-use splatref::method::single_pass::{BinCount, DepthTest, Settings, fast};
-use splatref::scene::Groups;
-use splatref::scene::{Camera, Surfels};
+use splatref::method::single_pass::{BinCount, DepthTest, Settings};
+use splatref::method::{Method, Session};
+use splatref::scene::{Camera, Groups, Light, Scene, Surfels};
 use std::time::{Duration, Instant};
 
-/// What one row draws: the 2+1-pass method, or groups and a depth test.
-enum Method<'a> {
-    TwoPass,
-    SinglePass(&'a Groups, DepthTest),
-}
+/// What one row draws: its name, a method, and the groups if the method draws groups.
+type Row = (String, Method, Option<Groups>);
 
 /// The time of a frame, and of projection, geometry and what comes after it.
 type Times = [Duration; 4];
@@ -43,18 +40,19 @@ fn main() -> Result<()> {
         "compositing",
     ]);
     for workload in STANDARD.iter().filter(|w| w.name.contains(&arguments.pattern)) {
-        let surfels = sphere(workload);
-        let groupings = groupings(&surfels);
-        let mut methods = vec![("2+1 passes".to_owned(), Method::TwoPass)];
-        for (name, groups) in &groupings {
-            methods.push((name.clone(), Method::SinglePass(groups, DepthTest::Plain)));
-            let voronoi = DepthTest::Voronoi(BinCount::Epsilon);
-            methods.push((format!("{name}, Voronoi"), Method::SinglePass(groups, voronoi)));
+        let mut scene = Scene::unlit(workload.name, sphere(workload));
+        let mut methods: Vec<Row> = vec![("2+1 passes".to_owned(), Method::default(), None)];
+        for (name, groups) in groupings(&scene.surfels) {
+            let by = |depth| Method::from(Settings { depth, ..Settings::default() });
+            methods.push((name.clone(), by(DepthTest::Plain), Some(groups.clone())));
+            let voronoi = by(DepthTest::Voronoi(BinCount::Epsilon));
+            methods.push((format!("{name}, Voronoi"), voronoi, Some(groups)));
         }
-        for (planes, normal) in [("colour", false), ("colour, normal", true)] {
+        for (planes, light) in [("colour", None), ("colour, normal", Some(Light::DEFAULT))] {
+            scene.lights = light.into_iter().collect();
             for threads in [1, 2] {
-                let rows = measure(&surfels, &methods, normal, threads);
-                for (index, (name, _)) in methods.iter().enumerate() {
+                let rows = measure(&scene, &methods, threads)?;
+                for (index, (name, ..)) in methods.iter().enumerate() {
                     let ratio = ratio(&rows[index], &rows[0]);
                     let column =
                         |i: usize| -> Vec<_> { rows[index].iter().map(|t| t[i]).collect() };
@@ -85,50 +83,34 @@ fn groupings(surfels: &Surfels) -> Vec<(String, Groups)> {
     all.map(named).collect()
 }
 
-/// For each method the times of its frames.
-fn measure(
-    surfels: &Surfels,
-    methods: &[(String, Method<'_>)],
-    normal: bool,
-    threads: usize,
-) -> Vec<Vec<Times>> {
+/// For each method the times of its frames, without shading.
+fn measure(scene: &Scene, methods: &[Row], threads: usize) -> Result<Vec<Vec<Times>>> {
     let camera = camera();
-    let exec = Exec::new(threads, 32).expect("threads");
-    let wanted = Wanted { normal, color: true, observed: false };
-    let mut target = Framebuffer::new(1024, 1024, 0.0, wanted);
+    let exec = Exec::new(threads, 32)?;
+    let sessions = methods
+        .iter()
+        .map(|(_, method, groups)| Session::with_groups(scene, *method, groups.clone(), &exec));
+    let mut sessions = sessions.collect::<Result<Vec<_>>>()?;
     let mut rows = vec![Vec::new(); methods.len()];
     let start = Instant::now();
     // At least 9 rounds, then up to 51 within four seconds.
     while rows[0].len() < 9 || (rows[0].len() < 51 && start.elapsed().as_secs() < 4) {
-        for ((_, method), row) in methods.iter().zip(&mut rows) {
-            row.push(frame(surfels, method, &camera, &exec, &mut target));
+        for (session, row) in sessions.iter_mut().zip(&mut rows) {
+            row.push(frame(session, &camera)?);
         }
     }
-    rows
+    Ok(rows)
 }
 
-fn frame(
-    surfels: &Surfels,
-    method: &Method<'_>,
-    camera: &Camera,
-    exec: &Exec,
-    target: &mut Framebuffer<f32>,
-) -> Times {
-    let start = Instant::now();
-    match method {
-        Method::TwoPass => {
-            let settings = ewa::Settings::default();
-            let (_, times) = ewa::fast::render(surfels, camera, &settings, exec, target);
-            let geometry = times.visibility + times.attributes;
-            [start.elapsed(), times.project, geometry, times.normalize]
-        }
-        Method::SinglePass(groups, depth) => {
-            let settings = Settings { depth: *depth, ..Settings::default() };
-            let (_, times) = fast::render(surfels, groups, camera, &settings, exec, target)
-                .expect("few enough bins");
-            [start.elapsed(), times.project, times.geometry, times.compositing]
-        }
-    }
+fn frame(session: &mut Session<'_>, camera: &Camera) -> Result<Times> {
+    let laps = &session.render(camera)?.timings;
+    let time = |stages: &[&str]| -> Duration {
+        laps.iter().filter(|(name, _)| stages.contains(name)).map(|(_, time)| *time).sum()
+    };
+    let projection = time(&["projection"]);
+    let geometry = time(&["geometry", "visibility", "attributes"]);
+    let rest = time(&["compositing", "normalization"]);
+    Ok([projection + geometry + rest, projection, geometry, rest])
 }
 
 /// The median of the ratios of two rows, round by round.

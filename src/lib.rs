@@ -40,13 +40,28 @@
 //! - Colours are linear RGB, not premultiplied. EXR holds the numbers, PNG previews are sRGB.
 //! - Every tie: the lower surfel index wins. Every threshold states < or <=.
 //!
+//! # Read in this order
+//!
+//! 1. This page: the contract above, the pipeline and the glossary below.
+//! 2. [`scene`], what is given: surfels, camera, lights. [`source`] makes scenes; [`index`] is built
+//!    once and asked for every view.
+//! 3. [`splat`], from a surfel to its footprint on the screen: all methods but two stand on it.
+//! 4. [`method::ewa`], the method that the others refer to, then the method you came for: each is a
+//!    chapter below.
+//! 5. [`composite`], the algebra of fragments, and its laws.
+//! 6. [`verify`], what is equal and what is not. [`backends`], if the other picture is a GPU's.
+//!
+//! The rest is read when it is needed: [`frame`] (planes and tiles), [`number`] (what a number must
+//! be able to do), [`shade`] (lighting of finished planes), [`io`] (files). In the pages of the
+//! modules `Decided:` marks what a source leaves open, and `Departs:` where this crate differs.
+//!
 //! # The pipeline
 //!
 //! ```text
-//!   io::ply ─▶ Cloud ─▶ scene::derive ─▶ Surfels ──▶ splat::project ─▶ Splat ─▶ frame::Bins
-//!                       Shape::surfels ──┘ │                                      │
-//!   before any view:  scene::group ◀───────┤                                tiles │
-//!                     scene::order ◀───────┘                                      ▼
+//!   io::ply ─▶ Cloud ─▶ source::derive ─▶ Scene ──▶ splat::project ─▶ Splat ─▶ frame::Bins
+//!                        Shape::surfels ──┘ │                                      │
+//!   before any view:   index::grouping ◀────┤                                tiles │
+//!                      index::order ◀───────┘                                      ▼
 //!   method::ewa            visibility ─▶ attributes ─▶ normalization ────────────┐
 //!   method::single_pass    depth-images of groups ─▶ compositing ────────────────┤
 //!   method::transparent    (nearest layer,) blended groups ─▶ average ───────────┤
@@ -57,6 +72,32 @@
 //!                                                                                ▼
 //!   verify::compare ◀─ io::exr ◀─ Frame ◀─ scene::environment ◀─ shade::{phong, optics}
 //! ```
+//!
+//! # The methods, a chapter each
+//!
+//! - [`method::ewa`]: EWA surface splatting \[ZPvBG01, GP03\]. The first geometry pass finds the
+//!   nearest surface, the second adds the fragments within epsilon of that surface. *To know:* the
+//!   visible surface is a band of depth; its width epsilon is a setting, in world units or in median
+//!   radii.
+//! - [`method::single_pass`]: one geometry pass into a depth-image a group \[ZP06, Algorithm 1\].
+//!   *To know:* surfels of one group must not overlap, or little; [`index::grouping`] makes the
+//!   groups, and c says how little.
+//! - [`method::transparent`]: layers blended from back to front within each group, and the groups
+//!   averaged \[ZP06, Algorithms 2 and 3\]. *To know:* every group has to cover the surface alone,
+//!   so groups are extended; what a hole counts as is a setting. Algorithm 3 puts a nearest layer in
+//!   high quality before the others.
+//! - [`method::peeling`]: depth peeling, layer after layer from the front \[Mam89, Eve02\]. *To
+//!   know:* peeling is the slow truth of transparency with the same epsilon, by which the averages of
+//!   [`method::transparent`] are judged.
+//! - [`method::pyramid`]: one pixel a point, gaps filled by pulling averages up and pushing them down
+//!   a pyramid \[MKC08\]. *To know:* no splats are drawn; triangles, ribbons and tubes take part; an
+//!   ellipse stands around the centre of a pixel.
+//! - [`method::template`]: one pixel a point, and a search in k x k cells of each level for the
+//!   ellipses that hold a pixel \[MOC08\]. *To know:* the rule of levels decides how much of an ellipse
+//!   is reached, and what merges.
+//!
+//! The last two begin with [`mod@method::projection`]. What each paper claims is measured in the
+//! pages under `docs/`.
 //!
 //! # Glossary
 //!
@@ -90,53 +131,59 @@
 //! | tile, bin | a square of pixels that one thread owns; the list of its splats |
 //! | margin | how far a decision was from flipping, in units of the last place |
 //!
-//! Sources: \[ZPvBG01\] Zwicker, Pfister, van Baar, Gross: Surface Splatting, SIGGRAPH 2001.
-//! \[GP03\] Guennebaud, Paulin: Efficient screen space approach for hardware accelerated surfel
-//! rendering, VMV
-//! 2003. \[GBP04\] Guennebaud, Barthe, Paulin: Deferred Splatting, Eurographics 2004. \[ZRB+04\]
-//! Zwicker, Räsänen, Botsch, Dachsbacher, Pauly: Perspective Accurate Splatting, Graphics Interface
-//! 2004. \[BHZK05\] Botsch, Hornung, Zwicker, Kobbelt: High-Quality Surface Splatting on Today's
-//!       GPUs, PBG 2005. \[ZP06\] Zhang, Pajarola: Single-Pass Point Rendering and Transparent
-//!       Shading, PBG 2006. \[TCH05\] Talton, Carr, Hart: Voronoi Rasterization of Sparse Point
-//!       Sets, PBG 2005. \[Lei79\] Leighton: A Graph Coloring Algorithm for Large Scheduling
-//!       Problems, J. Res. NBS 84, 1979. \[Sam89\] Samet: The Design and Analysis of Spatial Data
-//!       Structures, 1989. \[Eve02\] Everitt: Interactive Order-Independent Transparency, 2002.
-//!       \[Mam89\] Mammen: Transparency and Antialiasing Algorithms, IEEE CG&A 9(4), 1989.
-//!       \[MKC08\] Marroquim, Kraus, Cavalcanti: Efficient Image Reconstruction for Point-Based and
-//!       Line-Based Rendering, Computers & Graphics 32, 2008. \[MOC08\] Marroquim, Oliveira,
-//!       Cavalcanti: High Quality Image Reconstruction of Point Models, SIBGRAPI 2008. \[WBSS04\]
-//!       Wang, Bovik, Sheikh, Simoncelli: Image Quality Assessment, IEEE TIP 2004. In the pages of
-//!       the modules, `Decided:` marks what a source leaves open, `Departs:` where this crate
-//!       differs.
+//! # Sources
+//!
+//! - \[BHZK05\] Botsch, Hornung, Zwicker, Kobbelt: High-Quality Surface Splatting on Today's GPUs,
+//!   PBG 2005.
+//! - \[Eve02\] Everitt: Interactive Order-Independent Transparency, 2002.
+//! - \[GBP04\] Guennebaud, Barthe, Paulin: Deferred Splatting, Eurographics 2004.
+//! - \[GP03\] Guennebaud, Paulin: Efficient screen space approach for hardware accelerated surfel
+//!   rendering, VMV 2003.
+//! - \[Lei79\] Leighton: A Graph Coloring Algorithm for Large Scheduling Problems, J. Res. NBS 84,
+//!   1979.
+//! - \[Mam89\] Mammen: Transparency and Antialiasing Algorithms, IEEE CG&A 9(4), 1989.
+//! - \[MKC08\] Marroquim, Kraus, Cavalcanti: Efficient Image Reconstruction for Point-Based and
+//!   Line-Based Rendering, Computers & Graphics 32, 2008.
+//! - \[MOC08\] Marroquim, Oliveira, Cavalcanti: High Quality Image Reconstruction of Point Models,
+//!   SIBGRAPI 2008.
+//! - \[Sam89\] Samet: The Design and Analysis of Spatial Data Structures, 1989.
+//! - \[TCH05\] Talton, Carr, Hart: Voronoi Rasterization of Sparse Point Sets, PBG 2005.
+//! - \[WBSS04\] Wang, Bovik, Sheikh, Simoncelli: Image Quality Assessment, IEEE TIP 2004.
+//! - \[ZP06\] Zhang, Pajarola: Single-Pass Point Rendering and Transparent Shading, PBG 2006.
+//! - \[ZPvBG01\] Zwicker, Pfister, van Baar, Gross: Surface Splatting, SIGGRAPH 2001.
+//! - \[ZRB+04\] Zwicker, Räsänen, Botsch, Dachsbacher, Pauly: Perspective Accurate Splatting,
+//!   Graphics Interface 2004.
 //!
 //! # Example
 //!
+//! From the name of a scene to a picture in memory, and to a verdict on somebody else's picture:
+//!
 //! ```
-//! use splatref::frame::{Exec, Samples};
-//! use splatref::method::ewa::{self, Settings};
-//! use splatref::scene::{Camera, Light, Phong, Scene};
-//! use splatref::source::Shape;
+//! use splatref::frame::Image;
+//! use splatref::verify::compare::{Criteria, Verdict, compare};
+//! use splatref::{Exec, SceneFile};
 //!
-//! let shape = Shape::Sphere;
-//! let scene = Scene {
-//!     name: "sphere".into(),
-//!     surfels: shape.surfels(5_000, 0)?,
-//!     lights: vec![Light::Headlight { towards: glam::Vec3::Z, color: glam::Vec3::ONE }],
-//!     material: Phong::default(),
-//!     primitives: Default::default(),
-//!     environment: None,
-//! };
-//! let camera = Camera::new(64, 64, shape.default_pose(), shape.default_lens())?;
-//! let picture = ewa::render_f32(&scene, &camera, &Settings::default(), &Exec::sequential())?;
+//! let exec = Exec::new(0, 32)?; // every core, tiles of 32 pixels
+//! let mut file = SceneFile::open("sphere")?; // a shape, "bunny.ply" or "scene.toml"
+//! file.camera.size = Some([64, 48]);
+//! let ready = file.ready(&exec, &|_step, _done, _of| ())?;
+//! let (mut session, _) = ready.session(&exec, &|_step, _done, _of| ())?;
+//! let picture = session.render(&ready.camera)?;
 //!
-//! let Some(Samples::Scalar(depth)) = picture.frame.plane("Z") else { unreachable!() };
-//! assert!(depth.at(32, 32).is_finite(), "the sphere is in the middle");
+//! let depth = picture.frame.scalar("Z")?;
+//! assert!(depth.at(32, 24).is_finite(), "the sphere is in the middle");
 //! assert!(depth.at(0, 0).is_infinite(), "and not in the corner");
+//!
+//! let theirs = Image::from(&picture.frame); // or io::exr::read, or a Frame of your own planes
+//! let found = compare(&Image::from(&picture.frame), &theirs, &Criteria::default())?;
+//! assert_eq!(found.verdict(), Verdict::Equal);
 //! # Ok::<(), splatref::Error>(())
 //! ```
 
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
+#[doc = include_str!("../docs/backends.md")]
+pub mod backends {}
 pub mod composite;
 pub mod error;
 pub mod frame;
@@ -145,9 +192,15 @@ pub mod io;
 pub mod method;
 pub mod number;
 pub mod scene;
+pub mod setting;
 pub mod shade;
 pub mod source;
 pub mod splat;
 pub mod verify;
 
 pub use error::{Error, Result};
+pub use frame::{Exec, Frame};
+pub use io::scene_file::SceneFile;
+pub use method::{Method, Session};
+pub use scene::{Camera, Scene};
+pub use verify::laws;

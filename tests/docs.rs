@@ -23,10 +23,11 @@ after
 /// The README and every page under `docs/`.
 fn pages() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let docs = fs::read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let docs =
+        fs::read_dir(root.join("docs")).expect("a page").map(|entry| entry.expect("a page").path());
     let markdown = docs.filter(|path| path.extension().is_some_and(|end| end == "md"));
     let paths = markdown.chain([root.join("README.md")]);
-    paths.map(|path| (path.clone(), fs::read_to_string(path).unwrap())).collect()
+    paths.map(|path| (path.clone(), fs::read_to_string(path).expect("a page"))).collect()
 }
 
 #[test]

@@ -6,13 +6,11 @@
 #![cfg(target_os = "linux")]
 
 use glam::DVec3;
-use splatref::frame::{Exec, Framebuffer, Wanted};
-use splatref::method::ewa::{self, Settings};
-use splatref::method::single_pass;
-use splatref::scene::Groups;
-use splatref::scene::{Camera, Lens, Pose};
+use splatref::frame::Exec;
+use splatref::method::{Method, Session, single_pass};
+use splatref::scene::{Camera, Groups, Lens, Pose, Scene};
 use splatref::source::Shape;
-use splatref::splat::Tally;
+use splatref::splat::SplatSettings;
 
 /// A line of /proc/self/status, in bytes.
 fn status(key: &str) -> Option<u64> {
@@ -28,35 +26,32 @@ fn a_render_stays_within_its_budget() {
     const GROUPS: usize = 16;
     // Nothing is culled and everything is in sight: the worst case for the records of splats.
     let surfels = Shape::Sphere.surfels(SURFELS, 0).expect("a sphere");
+    let scene = Scene::lit("sphere", surfels);
     let pose = Pose { eye: DVec3::new(0.0, 0.0, 4.0), target: DVec3::ZERO, up: DVec3::Y };
     let camera = Camera::new(SIDE, SIDE, pose, Lens::Focal(3000.0)).expect("a camera");
-    let wanted = Wanted { normal: true, color: true, observed: false };
-    let settings = Settings { cull: false, ..Settings::default() };
+    let splats = SplatSettings { cull: false, ..SplatSettings::default() };
     let exec = Exec::new(2, 32).expect("threads");
+    // Neighbours are in different groups, so that every block of every image is touched.
+    let own = (0..SURFELS).map(|i| (i % GROUPS) as u8).collect();
+    let groups = Groups::new(own, Vec::new(), vec![1.0; GROUPS]).expect("groups");
+    let single_pass = single_pass::Settings { splats, ..single_pass::Settings::default() };
     let budget = 100 * SURFELS as u64 + 64 * u64::from(SIDE) * u64::from(SIDE);
-    let before = status("VmRSS").expect("a resident size");
-    let check = |name: &str, render: &dyn Fn(&mut Framebuffer<f32>) -> Tally| {
+    let methods: [(Method, _); 2] = [(splats.into(), None), (single_pass.into(), Some(groups))];
+    for (method, groups) in methods {
+        let name = method.name();
+        let before = status("VmRSS").expect("a resident size");
+        let mut session = Session::with_groups(&scene, method, groups, &exec).expect("a session");
         // Writing 5 resets the peak of the process to what it holds now.
         if std::fs::write("/proc/self/clear_refs", "5").is_err() {
             println!("skipped: this kernel does not let the peak be reset");
             return;
         }
-        let mut target = Framebuffer::new(SIDE, SIDE, 0.0, wanted);
-        let tally = render(&mut target);
+        let tally = session.render(&camera).expect("renders").tally;
         let peak = status("VmHWM").expect("a peak").saturating_sub(before);
         assert_eq!(tally.visible, SURFELS as u64);
         println!("{name}: peak {peak} bytes of {budget}");
         assert!(peak <= budget, "{name}: peak {peak} bytes, budget {budget}");
         // The least that it can be: the planes themselves. A smaller figure measures nothing.
         assert!(peak >= 36 * u64::from(SIDE) * u64::from(SIDE), "{name}: peak {peak} bytes");
-    };
-    check("2+1 passes", &|target| ewa::fast::render(&surfels, &camera, &settings, &exec, target).0);
-    // Neighbours are in different groups, so that every block of every image is touched.
-    let own = (0..SURFELS).map(|i| (i % GROUPS) as u8).collect();
-    let groups = Groups::new(own, Vec::new(), vec![1.0; GROUPS]).expect("groups");
-    let settings = single_pass::Settings { splats: settings, ..single_pass::Settings::default() };
-    check("single pass", &|target| {
-        let drawn = single_pass::fast::render(&surfels, &groups, &camera, &settings, &exec, target);
-        drawn.expect("the plain depth test takes no bins").0
-    });
+    }
 }

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-/// One line of the chart: what it is called, and its points (x, y, what is written at the point).
+/// One line of the chart: what it is called, and its points (x, y), one a step.
 pub(crate) struct Series {
     pub(crate) name: String,
-    pub(crate) points: Vec<(f64, f64, String)>,
+    pub(crate) points: Vec<[f64; 2]>,
 }
 
 /// An axis: its title with the unit, and the values at its ticks, of which the first and the last
@@ -28,12 +28,14 @@ const STYLE: &str = "\
 }";
 
 impl Axis {
-    /// An axis from 1, 2 or 5 times a power of ten to another, around all values.
+    /// An axis of round numbers around all values.
     pub(crate) fn around(title: &'static str, values: impl Iterator<Item = f64> + Clone) -> Self {
         let least = values.clone().fold(f64::INFINITY, |a, b| if b < a { b } else { a });
         let greatest = values.fold(0.0, |a, b| if b > a { b } else { a });
         let steps: Vec<f64> = (-6..=6)
-            .flat_map(|power| ["1", "2", "5"].map(|digit| format!("{digit}e{power}")))
+            .flat_map(|power| {
+                ["1", "1.5", "2", "3", "5", "7"].map(|digit| format!("{digit}e{power}"))
+            })
             .filter_map(|step| step.parse().ok())
             .collect();
         let first = steps.partition_point(|&step| step <= least).saturating_sub(1);
@@ -52,8 +54,14 @@ fn log(value: f64) -> f64 {
     splatref::number::elementary::ln(value)
 }
 
-/// The chart; marks of a series are joined in their order.
-pub(crate) fn svg(title: &str, [x, y]: [&Axis; 2], series: &[Series]) -> String {
+/// The chart. The marks of a series are joined in their order and grow from step to step; `steps`
+/// are a title and the names of the steps.
+pub(crate) fn svg(
+    title: &str,
+    [x, y]: [&Axis; 2],
+    series: &[Series],
+    steps: (&str, &[&str]),
+) -> String {
     let [left, top, right, bottom] = PLOT;
     let across = |v: f64| left + x.at(v) * (right - left);
     let up = |v: f64| bottom - y.at(v) * (bottom - top);
@@ -75,25 +83,37 @@ pub(crate) fn svg(title: &str, [x, y]: [&Axis; 2], series: &[Series]) -> String 
     out.text((left + right) / 2.0, bottom + 42.0, "middle", x.title);
     let middle = (top + bottom) / 2.0;
     out.element(&format!(
-        "<text class=\"text\" text-anchor=\"middle\" transform=\"translate(16 {middle}) rotate(-90)\">{}</text>",
+        "<text class=\"text\" text-anchor=\"middle\" \
+         transform=\"translate(16 {middle}) rotate(-90)\">{}</text>",
         y.title
     ));
     for ((index, Series { name, points }), color) in series.iter().enumerate().zip(COLORS) {
-        let places: Vec<_> = points.iter().map(|p| (across(p.0), up(p.1), &p.2)).collect();
-        let joined: Vec<_> = places.iter().map(|(x, y, _)| format!("{x:.1},{y:.1}")).collect();
+        let places: Vec<_> = points.iter().map(|&[x, y]| (across(x), up(y))).collect();
+        let joined: Vec<_> = places.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
         out.element(&format!(
             "<polyline points=\"{}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"2\"/>",
             joined.join(" ")
         ));
-        for (x, y, label) in &places {
-            out.disc(*x, *y, color);
-            out.text(x + 6.0, y - 7.0, "start", label);
+        for (step, (x, y)) in places.iter().enumerate() {
+            out.disc(*x, *y, radius(step), color);
         }
         let row = top + 8.0 + 22.0 * index as f64;
-        out.disc(right + 18.0, row, color);
-        out.text(right + 30.0, row + 4.0, "start", name);
+        out.disc(right + 22.0, row, 4.0, color);
+        out.text(right + 36.0, row + 4.0, "start", name);
+    }
+    let first = top + 30.0 + 22.0 * series.len() as f64;
+    out.text(right + 14.0, first, "start", steps.0);
+    for (step, name) in steps.1.iter().enumerate() {
+        let row = first + 22.0 * (step + 1) as f64;
+        out.disc(right + 22.0, row - 4.0, radius(step), "#808080");
+        out.text(right + 36.0, row, "start", name);
     }
     out.0 + "</svg>\n"
+}
+
+/// The radius of a mark, in px.
+fn radius(step: usize) -> f64 {
+    2.5 + 1.5 * step as f64
 }
 
 /// The elements so far, one a line.
@@ -116,7 +136,8 @@ impl Svg {
         );
     }
 
-    fn disc(&mut self, x: f64, y: f64, color: &str) {
-        let _ = writeln!(self.0, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{color}\"/>");
+    fn disc(&mut self, x: f64, y: f64, r: f64, color: &str) {
+        let _ =
+            writeln!(self.0, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{r}\" fill=\"{color}\"/>");
     }
 }

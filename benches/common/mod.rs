@@ -2,7 +2,6 @@
 //!
 //! - [`block`]: marked blocks of the pages under `docs/`.
 //! - [`chart`]: a chart as an SVG.
-//! - [`draw`]: the one place where whole pictures are drawn.
 //! - [`models`]: scans, and denser samplings of their surfaces.
 //! - [`report`]: arguments, and tables on stdout and in `docs/`.
 //! - [`shot`]: the planes that are measured, drawn or true.
@@ -12,7 +11,6 @@
 
 pub(crate) mod block;
 pub(crate) mod chart;
-pub(crate) mod draw;
 pub(crate) mod models;
 pub(crate) mod report;
 pub(crate) mod shot;

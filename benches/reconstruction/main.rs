@@ -20,7 +20,6 @@ mod common;
 mod reach;
 mod stability;
 
-use common::draw::Renderer;
 use common::models::{models, resample};
 use common::report::Arguments;
 use common::shot::{Shot, lit};
@@ -29,7 +28,7 @@ use splatref::frame::{Exec, Frame};
 use splatref::io::{png, scene_file};
 use splatref::method::pyramid::{self, Occlusion, Weights};
 use splatref::method::template::{self, LevelRule};
-use splatref::method::{Method, ewa};
+use splatref::method::{Method, Session, ewa};
 use splatref::number::elementary::tan;
 use splatref::scene::{Camera, Cloud, Lens, Scene, Surfels};
 use splatref::source::Shape;
@@ -171,7 +170,7 @@ impl Bench {
     /// A picture.
     fn draw(&self, subject: &Subject, camera: &Camera, method: &Method) -> Result<Frame<f32>> {
         let scene = &subject.scene;
-        Ok(Renderer::new(scene, None, method, &self.exec).draw(camera)?.frame.clone())
+        Ok(Session::with_groups(scene, *method, None, &self.exec)?.render(camera)?.frame.clone())
     }
 
     /// The true picture of a shape.

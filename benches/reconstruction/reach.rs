@@ -7,14 +7,13 @@
 //! falls into, so a share below 1 is that too where discs are small. Painted pixels that are none
 //! of the disc's: `beyond`.
 
-use super::common::draw::Renderer;
 use super::common::report::Table;
 use super::common::shot::lit;
 use super::{Bench, methods};
 use glam::{DVec3, Vec3};
 use splatref::Result;
 use splatref::frame::Samples;
-use splatref::method::Method;
+use splatref::method::{Method, Session};
 use splatref::number::Vector3;
 use splatref::number::elementary::{cos, sin};
 use splatref::number::random::unit;
@@ -66,8 +65,8 @@ impl Bench {
         let mut count = Count { least: 1.0, ..Count::default() };
         for place in 0..PLACES {
             let (scene, camera) = disc(radius, tilt, place)?;
-            let mut renderer = Renderer::new(&scene, None, method, &self.exec);
-            let drawn = renderer.draw(&camera)?;
+            let mut session = Session::with_groups(&scene, *method, None, &self.exec)?;
+            let drawn = session.render(&camera)?;
             let Some(Samples::Scalar(alpha)) = drawn.frame.plane("A") else { continue };
             let surfels = &scene.surfels;
             let (p, n) = (surfels.position()[0].as_dvec3(), surfels.normal()[0].as_dvec3());

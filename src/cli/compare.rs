@@ -1,43 +1,66 @@
-//! `splatref compare`: two EXR files, plane by plane.
+//! `splatref compare`: two pictures, plane by plane.
 
 use super::{Finding, Outcome, report, say};
-use splatref::io::exr;
-use splatref::verify::compare::{Tolerance, Verdict, compare};
+use splatref::frame::Image;
+use splatref::io::{exr, npy, png};
+use splatref::verify::compare::{Criteria, Tolerance, Verdict, compare};
 use splatref::verify::metrics;
 use splatref::{Error, Result};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 #[command(after_help = "\
+A NAME stands for a channel (Z), for the three of a colour or a vector (normal), or, with a * at its
+end, for all that start so (visibility.*); the colour of the picture is R,G,B. An EXR, a PNG (as it
+is stored, sRGB) and an NPY (h x w or h x w x 3, floats or integers; it is called as its file, or
+--as, and RGB.npy is R,G,B) are compared in the planes that both kinds can hold. A plane `margin`
+that only the first picture has is left out.
+
 Examples:
   splatref compare out/a.exr out/b.exr
   splatref compare truth.exr gpu.exr --max-ulp 4 --max-abs 1e-6
+  splatref compare truth.exr gpu.exr --planes Z,id,normal --tolerance Z:ulp=4,pixels=3
+      --tolerance id:pixels=20
+  splatref compare truth.exr Z.npy
+  splatref compare truth.exr screen.png --max-abs 0.004
 
 Exit codes: 0 equal or within the tolerance, 1 different.")]
 pub(super) struct Args {
-    /// The picture that is right
+    /// The picture that is right: an .exr, .png or .npy
     first: PathBuf,
     /// The picture in question
     second: PathBuf,
+    /// Compare only these planes
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    planes: Option<Vec<String>>,
     /// Let floats pass that are so many representable numbers apart
     #[arg(long, value_name = "N")]
     max_ulp: Option<u32>,
     /// Let floats pass that differ by so much
-    #[arg(long, value_name = "X", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X", value_parser = bound, allow_hyphen_values = true)]
     max_abs: Option<f32>,
+    /// The tolerance of a plane, instead of that of all: ulp=N, abs=X, and pixels=N that may differ
+    /// by more, of indices at all; repeatable
+    #[arg(long, value_name = "NAME:BOUNDS", value_parser = tolerance)]
+    tolerance: Vec<(String, Tolerance)>,
+    /// The name of the plane that an NPY holds
+    #[arg(long = "as", value_name = "NAME")]
+    name: Option<String>,
 }
 
 pub(super) fn run(args: &Args) -> Finding {
-    let tolerance = tolerance(args)?;
-    let (first, second) = (exr::read(&args.first)?, exr::read(&args.second)?);
-    let found = compare(&first, &second, tolerance);
+    let pair = [File::read(&args.first, args)?, File::read(&args.second, args)?];
+    let stored = pair.iter().any(|file| matches!(file, File::Png(_)));
+    let (first, second) = alike(pair)?;
+    let found = compare(&first, &second, &args.criteria())?;
     let lines = found.lines();
     let (verdict, planes) = lines.split_last().map_or(("", [].as_slice()), |(v, p)| (v, p));
     planes.iter().for_each(say);
     if let Some(metrics::Summary { rmse, psnr, ssim }) = metrics::summary(&first, &second) {
         let ssim = ssim.map_or_else(|| "too small for SSIM".into(), |s| format!("SSIM {s:.6}"));
         let rmse = report::short(rmse);
-        say(format!("R, G, B: RMSE {rmse}, PSNR {psnr:.3} dB, {ssim}"));
+        let encoding = if stored { " as sRGB" } else { "" };
+        say(format!("R, G, B{encoding}: RMSE {rmse}, PSNR {psnr:.3} dB, {ssim}"));
     }
     say(verdict);
     Ok(match found.verdict() {
@@ -46,9 +69,101 @@ pub(super) fn run(args: &Args) -> Finding {
     })
 }
 
-fn tolerance(args: &Args) -> Result<Tolerance> {
-    if let Some(most) = args.max_abs.filter(|most| most.is_nan() || *most < 0.0) {
-        return Err(Error::Usage(format!("--max-abs {most}; give a number >= 0")));
+impl Args {
+    fn criteria(&self) -> Criteria {
+        Criteria {
+            planes: self.planes.clone(),
+            tolerance: Tolerance { max_ulp: self.max_ulp, max_abs: self.max_abs, pixels: 0 },
+            named: self.tolerance.clone(),
+            skip_observations: true,
+        }
     }
-    Ok(Tolerance { max_ulp: args.max_ulp, max_abs: args.max_abs })
+}
+
+/// A picture as its kind of file holds it.
+enum File {
+    Exr(Image),
+    Png(png::Stored),
+    /// One plane, and where it is from.
+    Npy(Image, PathBuf),
+}
+
+impl File {
+    fn read(path: &Path, args: &Args) -> Result<Self> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+        match extension.as_deref() {
+            Some("png") => png::read(path).map(Self::Png),
+            Some("npy") => {
+                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+                let name = args.name.as_deref().unwrap_or(&stem);
+                Ok(Self::Npy(npy::read(path, name)?, path.to_owned()))
+            }
+            _ => exr::read(path).map(Self::Exr),
+        }
+    }
+
+    fn image(self) -> Image {
+        match self {
+            Self::Exr(image) | Self::Npy(image, _) => image,
+            Self::Png(stored) => stored.image,
+        }
+    }
+}
+
+/// Two pictures with what both kinds of files can hold: an NPY one plane, a PNG encoded colours.
+fn alike(pair: [File; 2]) -> Result<(Image, Image)> {
+    Ok(match pair {
+        [File::Png(first), second @ (File::Exr(_) | File::Npy(..))] => {
+            let second = first.encode(&second.image());
+            (first.image, second)
+        }
+        [first @ (File::Exr(_) | File::Npy(..)), File::Png(second)] => {
+            (second.encode(&first.image()), second.image)
+        }
+        [File::Npy(plane, path), File::Exr(all)] => {
+            let all = part_of(all, &plane, &path)?;
+            (plane, all)
+        }
+        [File::Exr(all), File::Npy(plane, path)] => (part_of(all, &plane, &path)?, plane),
+        [first, second] => (first.image(), second.image()),
+    })
+}
+
+/// The channels of a picture that an NPY has too.
+fn part_of(mut all: Image, plane: &Image, path: &Path) -> Result<Image> {
+    let names = |image: &Image| -> Vec<String> {
+        image.channels.iter().map(|(name, _)| name.clone()).collect()
+    };
+    let (there, held) = (names(&all), names(plane));
+    all.channels.retain(|(name, _)| held.contains(name));
+    if all.channels.is_empty() {
+        let (held, there) = (held.join(", "), there.join(", "));
+        return Err(Error::format(
+            path,
+            format!("holds {held}, which the other picture has not; give --as one of: {there}"),
+        ));
+    }
+    Ok(all)
+}
+
+/// `Z:ulp=4,abs=1e-6,pixels=3`.
+fn tolerance(text: &str) -> std::result::Result<(String, Tolerance), String> {
+    let form = "give a NAME, a colon and bounds, such as Z:ulp=4,abs=1e-6,pixels=3";
+    let (name, bounds) = text.rsplit_once(':').ok_or(form)?;
+    let mut tolerance = Tolerance::default();
+    for part in bounds.split(',') {
+        let number = |text: &str| text.parse().map_err(|_| format!("{text}: {form}"));
+        match part.split_once('=') {
+            Some(("ulp", most)) => tolerance.max_ulp = Some(number(most)?),
+            Some(("abs", most)) => tolerance.max_abs = Some(bound(most)?),
+            Some(("pixels", most)) => tolerance.pixels = number(most)? as usize,
+            _ => return Err(form.into()),
+        }
+    }
+    Ok((name.to_owned(), tolerance))
+}
+
+/// A number >= 0.
+fn bound(text: &str) -> std::result::Result<f32, String> {
+    text.parse().ok().filter(|most| *most >= 0.0).ok_or_else(|| "give a number >= 0".into())
 }

@@ -2,13 +2,12 @@
 
 use super::progress;
 use splatref::Result;
-use splatref::frame::{Exec, Frame, Plane, Samples};
-use splatref::io::scene_file::{Number, Output, Ready, SceneFile};
+use splatref::frame::Exec;
+use splatref::io::scene_file::{Number, OutputSettings, Ready, SceneFile};
 use splatref::method::session::Made;
 use splatref::method::{Picture, Session};
 use splatref::scene::Camera;
 use std::borrow::Cow;
-use std::path::Path;
 
 /// Loads a scene, with progress.
 pub(super) fn ready(file: &SceneFile, exec: &Exec) -> Result<Ready> {
@@ -26,39 +25,18 @@ pub(super) fn session<'a>(ready: &'a Ready, exec: &'a Exec) -> Result<(Session<'
 pub(super) fn draw<'s>(
     session: &'s mut Session<'_>,
     camera: &Camera,
-    output: Output,
+    output: OutputSettings,
 ) -> Result<Cow<'s, Picture<f32>>> {
     Ok(match output {
-        Output { number: Number::F32, stages: false } => Cow::Borrowed(session.render(camera)?),
-        Output { number: Number::F32, stages: true } => {
+        OutputSettings { number: Number::F32, stages: false } => {
+            Cow::Borrowed(session.render(camera)?)
+        }
+        OutputSettings { number: Number::F32, stages: true } => {
             Cow::Owned(session.define::<f32>(camera, true)?)
         }
-        Output { number: Number::F64, stages } => {
+        OutputSettings { number: Number::F64, stages } => {
             let Picture { frame, tally, timings } = session.define::<f64>(camera, stages)?;
             Cow::Owned(Picture { frame: frame.to_f32(), tally, timings })
         }
     })
-}
-
-/// Writes the preview of a picture: its colour over its coverage.
-pub(super) fn write_png(path: &Path, frame: &Frame<f32>) -> Result<()> {
-    let alpha: Option<&Plane<f32>> = match frame.plane("A") {
-        Some(Samples::Scalar(alpha)) => Some(alpha),
-        _ => None,
-    };
-    match frame.plane("") {
-        Some(Samples::Color(color)) => {
-            let mut color = color.clone();
-            for (pixel, alpha) in
-                color.values_mut().iter_mut().zip(alpha.iter().flat_map(|p| p.values()))
-            {
-                // A PNG wants colours that are not multiplied by alpha.
-                if *alpha > 0.0 && *alpha < 1.0 {
-                    *pixel = pixel.map(|value| value / alpha);
-                }
-            }
-            splatref::io::png::write(path, &color, alpha)
-        }
-        _ => Ok(()),
-    }
 }

@@ -38,7 +38,7 @@ pub(super) fn run(args: &Args) -> Finding {
     let Ready { loaded, camera, method, .. } = &ready;
     report::camera(camera);
     report::picture(camera, file.output);
-    report::method(method, &loaded.scene.surfels);
+    report::method(method, &loaded.scene, camera);
     report::groups(session.groups(), made.as_ref());
     say("");
     say(text.trim_end());

@@ -3,11 +3,10 @@
 use super::options::ExecOptions;
 use super::{Finding, Outcome, draw, say};
 use splatref::frame::image::{Image, Values};
-use splatref::frame::{Exec, Frame, NamedPlane, Plane, Samples};
-use splatref::io::exr;
-use splatref::io::provenance;
+use splatref::frame::{Exec, Frame, Plane, Samples};
 use splatref::io::scene_file::{Ready, SceneFile};
-use splatref::verify::compare::{Finding as PlaneFinding, Report, Tolerance, Verdict, compare};
+use splatref::io::{exr, png, provenance};
+use splatref::verify::compare::{Comparison, Criteria, Relation, Verdict, compare};
 use splatref::verify::digest;
 use splatref::{Error, Result};
 use std::collections::BTreeSet;
@@ -92,7 +91,11 @@ fn check(args: &Args, exec: &Exec, name: &str) -> Result<(Image, bool)> {
         Ok(false) => Err("there is no picture yet".to_owned()),
         _ => exr::read(&case.picture).map_err(|error| error.to_string()),
     };
-    let report = stored.as_ref().map(|stored| compare(stored, &actual, Tolerance::default()));
+    let exact = Criteria::default();
+    let report = match &stored {
+        Ok(stored) => Ok(compare(stored, &actual, &exact)?),
+        Err(why) => Err(why),
+    };
     if report.as_ref().is_ok_and(|report| report.verdict() == Verdict::Equal) {
         say(format!("equal      {name}"));
         return Ok((actual, true));
@@ -123,16 +126,16 @@ fn render(dir: &Path, exec: &Exec, name: &str) -> Result<Case> {
 }
 
 /// The first planes that differ, and how to look into the first pixel.
-fn differences(name: &str, case: &Case, report: &Report) {
+fn differences(name: &str, case: &Case, report: &Comparison) {
     let lines = report.lines();
     let (verdict, planes) = lines.split_last().map_or(("", [].as_slice()), |(v, p)| (v, p));
     say(format!("different  {name}: {}", verdict.trim_start_matches("different: ")));
-    let different = |i: &usize| report.planes[*i].verdict() != Verdict::Equal;
+    let different = |i: &usize| report.channels[*i].verdict() != Some(Verdict::Equal);
     for i in (0..planes.len()).filter(different).take(4) {
         say(format!("  {}", planes[i]));
     }
-    let pixel = report.planes.iter().find_map(|plane| match &plane.finding {
-        PlaneFinding::Values(values) => values.first,
+    let pixel = report.channels.iter().find_map(|channel| match &channel.relation {
+        Relation::Values(values) => values.first,
         _ => None,
     });
     if let Some(at) = pixel {
@@ -146,32 +149,30 @@ fn keep(name: &str, case: &Case, stored: Option<&Image>) -> Result<()> {
     fs::create_dir_all(&folder).map_err(|source| Error::io(&folder, source))?;
     let place = |what: &str| folder.join(format!("{name}.{what}"));
     exr::write(&place("actual.exr"), &case.frame, &case.text)?;
-    draw::write_png(&place("actual.png"), &case.frame)?;
+    png::write_frame(&place("actual.png"), &case.frame)?;
     if let Some(stored) = stored {
         let to = place("expected.exr");
         fs::copy(&case.picture, &to).map_err(|source| Error::io(&to, source))?;
-        draw::write_png(&place("expected.png"), &preview(stored))?;
+        png::write_frame(&place("expected.png"), &preview(stored)?)?;
     }
     say(format!("  see {}", folder.join(format!("{name}.*")).display()));
     Ok(())
 }
 
 /// The colour and the coverage of a stored picture, as far as it has them.
-fn preview(image: &Image) -> Frame<f32> {
+fn preview(image: &Image) -> Result<Frame<f32>> {
     let (width, height) = (image.width, image.height);
     let channel = |name: &str| match image.channel(name) {
         Some(Values::Float(values)) => Some(values.clone()),
         _ => None,
     };
-    let mut planes = Vec::new();
+    let mut frame = Frame::new(width, height);
     if let (Some(r), Some(g), Some(b)) = (channel("R"), channel("G"), channel("B")) {
         let color = (0..r.len()).map(|i| [r[i], g[i], b[i]]).collect();
-        let samples = Samples::Color(Plane::from_values(width, height, color));
-        planes.push(NamedPlane { name: String::new(), samples });
+        frame.push("", Samples::Color(Plane::from_values(width, height, color)))?;
     }
     if let Some(alpha) = channel("A") {
-        let samples = Samples::Scalar(Plane::from_values(width, height, alpha));
-        planes.push(NamedPlane { name: "A".into(), samples });
+        frame.push("A", Samples::Scalar(Plane::from_values(width, height, alpha)))?;
     }
-    Frame { width, height, planes }
+    Ok(frame)
 }

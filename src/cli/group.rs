@@ -1,11 +1,12 @@
 //! `splatref group`: a scene divided into groups, into a PLY.
 
-use super::options::{Kind, kind, named};
+use super::options::named;
+use super::rows::{OfGroupsAlone, RowOptions};
 use super::{Finding, Outcome, progress, report};
 use splatref::frame::Exec;
-use splatref::index::grouping::{Coplanar, Extended, Grouping, GroupingReport, Rules};
+use splatref::index::grouping::{Extended, Extension, Grouping, GroupingReport};
 use splatref::io::ply;
-use splatref::io::scene_file::{ExtensionChoice, words};
+use splatref::io::scene_file::{FileKind, GroupChoice};
 use splatref::scene::Groups;
 use splatref::scene::Scene;
 use splatref::{Error, Result};
@@ -25,27 +26,8 @@ pub(super) struct Args {
     /// Where the surfels go with their groups
     #[arg(short, long, value_name = "FILE.ply")]
     output: PathBuf,
-    /// c: splats nearer than c times their radii may not share a group, 0 to 1
-    #[arg(long, value_name = "C", default_value_t = 1.0, allow_hyphen_values = true)]
-    overlap: f32,
-    /// Most groups, 1 to 64; c is the largest up to --overlap that gives so few
-    #[arg(long, value_name = "K")]
-    groups: Option<usize>,
-    /// Splats whose normals are opposite may share a group
-    #[arg(long)]
-    opposite: bool,
-    /// So may those in one plane: least cosine of the normals, most distance from each other's
-    /// plane in sums of their radii, most difference of colours
-    #[arg(long, value_name = "COSINE,OFFSET,COLOR", value_parser = coplanar,
-        allow_hyphen_values = true)]
-    coplanar: Option<Coplanar>,
-    /// How groups are made to cover the surface: none, add or enlarge
-    #[arg(long, value_name = "NAME", value_parser = words::extension, default_value = "none")]
-    extend: ExtensionChoice,
-    /// The most of a splat that is covered already if it is added, as a part of its area, 0 to 1
-    /// [default: 0.5]
-    #[arg(long, value_name = "PART", allow_hyphen_values = true)]
-    most: Option<f32>,
+    #[command(flatten)]
+    groups: RowOptions<OfGroupsAlone>,
     /// Surfels of a procedural shape [default: 200000]
     #[arg(long, value_name = "N")]
     count: Option<usize>,
@@ -59,7 +41,7 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Finding {
     let grouping = args.grouping()?;
-    if !matches!(kind(&args.output), Ok(Kind::Ply)) {
+    if !matches!(FileKind::of(&args.output), Ok(FileKind::Ply)) {
         let path = args.output.display();
         return Err(Error::Usage(format!("{path}: groups go into a PLY; give a name in .ply")));
     }
@@ -90,15 +72,14 @@ pub(super) fn run(args: &Args) -> Finding {
 
 impl Args {
     fn grouping(&self) -> Result<Grouping> {
-        if self.most.is_some() && self.extend != ExtensionChoice::Add {
-            return Err(Error::Usage("--most is of --extend add".into()));
+        let chosen = GroupChoice { settings: self.groups.chosen.clone() };
+        if chosen.settings.has("most") {
+            let extension = chosen.settings.on(GroupChoice::ALONE, "groups").map(|g| g.extension);
+            if !matches!(extension, Ok(Extension::Add { .. })) {
+                return Err(Error::Usage("--most is of --extend add".into()));
+            }
         }
-        let rules =
-            Rules { overlap: self.overlap, opposite: self.opposite, coplanar: self.coplanar };
-        let extension = self.extend.extension(self.most);
-        let grouping = Grouping { rules, count: self.groups, extension };
-        grouping.check()?;
-        Ok(grouping)
+        chosen.grouping(GroupChoice::ALONE)
     }
 }
 
@@ -126,14 +107,5 @@ fn table(found: &GroupingReport, groups: &Groups, extended: Option<&Extended>) {
         let [before, after] = [group.before, group.after].map(|part| 100.0 * part);
         let covered = format!("covers {before:.2} %, then {after:.2} %");
         report::line(&format!("  group {k}"), format!("{own} surfels, {change}; {covered}"));
-    }
-}
-
-/// `0.9,0.1,0.01`.
-fn coplanar(text: &str) -> std::result::Result<Coplanar, String> {
-    let numbers: Option<Vec<f32>> = text.split(',').map(|v| v.trim().parse().ok()).collect();
-    match numbers.as_deref() {
-        Some(&[cosine, offset, color]) => Ok(Coplanar { cosine, offset, color }),
-        _ => Err("give three numbers, such as 0.98,0.05,0.01".into()),
     }
 }

@@ -1,12 +1,11 @@
 //! `splatref info`: what a file holds.
 
-use super::options::{Kind, kind};
 use super::report::{self, line};
 use super::{Finding, Outcome, progress, say};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
-use splatref::io::scene_file::{Draw, EnvironmentChoice, SceneFile, Source};
+use splatref::io::scene_file::{Draw, EnvironmentChoice, FileKind, SceneFile, Source};
 use splatref::io::{ply, scene_file::Loaded};
 use splatref::scene::Light;
 use splatref::source::derive::{self, Derive};
@@ -23,10 +22,10 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Finding {
-    match kind(&args.file)? {
-        Kind::Ply => points(&args.file)?,
-        Kind::Toml => scene(&args.file)?,
-        Kind::Exr => picture(&args.file)?,
+    match FileKind::of(&args.file)? {
+        FileKind::Ply => points(&args.file)?,
+        FileKind::Toml => scene(&args.file)?,
+        FileKind::Exr => picture(&args.file)?,
     }
     Ok(Outcome::Good)
 }
@@ -117,7 +116,7 @@ fn scene(path: &Path) -> Result<()> {
     let camera = file.camera(&loaded.scene)?;
     report::camera(&camera);
     report::picture(&camera, file.output);
-    report::method(&file.method.method()?, &loaded.scene.surfels);
+    report::method(&file.method.method()?, &loaded.scene, &camera);
     Ok(())
 }
 

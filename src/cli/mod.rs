@@ -11,8 +11,10 @@ mod group;
 mod info;
 mod options;
 mod progress;
+mod project;
 mod render;
 mod report;
+mod rows;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
@@ -44,12 +46,14 @@ enum Command {
     Render(render::Args),
     /// Check that the pictures under golden/ are reproduced bit for bit
     Golden(golden::Args),
-    /// Compare two EXR files, plane by plane
+    /// Compare two pictures, plane by plane: EXR, PNG or NPY
     Compare(compare::Args),
     /// Print every decision at one pixel
     Explain(explain::Args),
     /// Divide a scene into groups that do not overlap, into a PLY
     Group(group::Args),
+    /// Write the visible splats as records, for a backend to upload
+    Project(project::Args),
     /// Describe a PLY, a scene file or an EXR
     Info(info::Args),
 }
@@ -66,6 +70,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Compare(args) => compare::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Group(args) => group::run(&args),
+        Command::Project(args) => project::run(&args),
         Command::Info(args) => info::run(&args),
     };
     match outcome {

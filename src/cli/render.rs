@@ -1,9 +1,10 @@
 //! `splatref render`: a scene into an EXR and a PNG.
 
-use super::options::{ExecOptions, Kind, SceneOptions, kind};
+use super::options::{ExecOptions, SceneOptions};
+use super::rows::{OfStages, RowOptions};
 use super::{Finding, Outcome, draw, progress, report};
-use splatref::io::scene_file::Ready;
-use splatref::io::{exr, provenance};
+use splatref::io::scene_file::{FileKind, Ready};
+use splatref::io::{exr, png, provenance};
 use splatref::method::Picture;
 use splatref::{Error, Result};
 use std::borrow::Cow;
@@ -27,9 +28,8 @@ pub(super) struct Args {
     /// Where the EXR goes, the PNG beside it [default: out/NAME.exr]
     #[arg(short, long, value_name = "FILE.exr")]
     output: Option<PathBuf>,
-    /// Keep the planes of every stage
-    #[arg(long)]
-    stages: bool,
+    #[command(flatten)]
+    stages: RowOptions<OfStages>,
     /// Render N times; print the minimum and the median of each stage
     #[arg(long, value_name = "N", default_value_t = 1,
         value_parser = clap::value_parser!(u32).range(1..))]
@@ -43,7 +43,7 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args) -> Finding {
     let start = Instant::now();
     let mut file = args.options.scene_file(&args.scene)?;
-    file.output.stages |= args.stages;
+    file.output = args.stages.chosen.on(file.output, "the output")?;
     let exec = args.exec.exec()?;
     if let Some(path) = &args.output {
         check_place(path)?;
@@ -53,6 +53,7 @@ pub(super) fn run(args: &Args) -> Finding {
     let loading = start.elapsed();
     let Ready { loaded, camera, method, .. } = &ready;
     let scene = &loaded.scene;
+    let text = provenance::text(scene, session.groups(), camera, method, file.output.number);
 
     let mut times = Vec::new();
     let drawing = progress::during("rendering", || -> Result<_> {
@@ -60,8 +61,7 @@ pub(super) fn run(args: &Args) -> Finding {
             timed(&mut times, || draw::draw(&mut session, camera, file.output))?;
         }
         timed(&mut times, || draw::draw(&mut session, camera, file.output))
-    })?
-    .into_owned();
+    })?;
 
     let writing = Instant::now();
     let picture = match &args.output {
@@ -74,18 +74,18 @@ pub(super) fn run(args: &Args) -> Finding {
     };
     let preview = picture.with_extension("png");
     progress::during("writing", || {
-        let text = provenance::text(scene, session.groups(), camera, method, file.output.number);
         exr::write(&picture, &drawing.frame, &text)?;
-        draw::write_png(&preview, &drawing.frame)
+        png::write_frame(&preview, &drawing.frame)
     })?;
-    let writing = writing.elapsed();
+    let (writing, tally) = (writing.elapsed(), drawing.tally);
+    drop(drawing);
 
     report::scene(loaded);
     report::camera(camera);
     report::picture(camera, file.output);
-    report::method(method, &scene.surfels);
+    report::method(method, scene, camera);
     report::groups(session.groups(), made.as_ref());
-    report::tally(&drawing.tally);
+    report::tally(&tally);
     print_times(&exec, loading, times, writing);
     report::time("total", vec![start.elapsed()]);
     report::line("files", picture.display());
@@ -95,7 +95,7 @@ pub(super) fn run(args: &Args) -> Finding {
 
 /// Whether a file could be written there, before much is computed for it.
 fn check_place(path: &Path) -> Result<()> {
-    if !matches!(kind(path), Ok(Kind::Exr)) {
+    if !matches!(FileKind::of(path), Ok(FileKind::Exr)) {
         let path = path.display();
         return Err(Error::Usage(format!("{path}: the picture is an EXR; give a name in .exr")));
     }

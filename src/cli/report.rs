@@ -3,14 +3,13 @@
 use super::say;
 use glam::Vec3;
 use splatref::index::grouping::GroupCoverage;
-use splatref::io::provenance;
-use splatref::io::scene_file::{Loaded, MethodName, ModelReport, Output, words};
+use splatref::io::scene_file::{Loaded, ModelReport, OutputSettings};
 use splatref::method::Method;
 use splatref::method::session::Made;
-use splatref::scene::Groups;
-use splatref::scene::{Camera, Counts, Dropped, Projection, Surfels};
+use splatref::scene::{Camera, Counts, Dropped, Groups, Projection, Scene, Surfels};
+use splatref::setting::{Fields, Word};
 use splatref::source::derive::Origin;
-use splatref::splat::{Epsilon, Tally};
+use splatref::splat::Tally;
 use std::time::Duration;
 
 /// A line with its label.
@@ -132,26 +131,13 @@ pub(super) fn camera(camera: &Camera) {
     line("camera", format!("{kind}, at {eye} looking along {towards}"));
 }
 
-pub(super) fn method(method: &Method, surfels: &Surfels) {
-    let splats = provenance::splats(method).map_or(String::new(), |splats| {
-        let kernel = splats.kernel;
-        let depth = short(f64::from(splats.epsilon.resolve(surfels)));
-        let epsilon = match splats.epsilon {
-            Epsilon::World(_) => depth,
-            Epsilon::MedianRadii(count) => format!("{count} median radii = {depth}"),
-        };
-        let outline = words::of_outline(kernel.outline);
-        let (cutoff, low_pass) = (kernel.cutoff, kernel.low_pass);
-        format!(
-            ", {outline} outline, cut-off {cutoff}, low-pass {low_pass} px^2, epsilon {epsilon}"
-        )
-    });
-    let name = words::of_method(MethodName::of(method));
-    let sides = if provenance::culls(method) { "back faces culled" } else { "both sides" };
-    line("method", format!("{name}{splats}, {sides}"));
-    let further = provenance::further(method);
-    if !further.is_empty() {
-        line("", further.trim().replace('\n', ", ").replace('"', ""));
+/// The method, its settings, and what these come to in a scene.
+pub(super) fn method(method: &Method, scene: &Scene, camera: &Camera) {
+    let values = method.values().into_iter().map(|(name, value)| (name, value.text()));
+    let settings: Vec<String> = values.map(|(name, value)| format!("{name} = {value}")).collect();
+    line("method", format!("{}, {}", method.name(), settings.join(", ")));
+    for (name, value) in method.resolved(scene, camera) {
+        line("", format!("{name} = {value}"));
     }
 }
 
@@ -184,8 +170,8 @@ pub(super) fn groups(groups: Option<&Groups>, made: Option<&Made>) {
     }
 }
 
-pub(super) fn picture(camera: &Camera, output: Output) {
-    let number = words::of_number(output.number);
+pub(super) fn picture(camera: &Camera, output: OutputSettings) {
+    let number = output.number.word();
     let stages = if output.stages { ", with the planes of every stage" } else { "" };
     line("picture", format!("{} x {} pixels, {number}{stages}", camera.width, camera.height));
 }

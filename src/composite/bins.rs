@@ -26,7 +26,7 @@
 //!   all from 255/256 on do.
 
 use crate::error::{Error, Result};
-use crate::number::Exact;
+use crate::number::Real;
 
 /// The most bins: z then still tells 256 ratios apart in `f32`.
 pub const MAX_BINS: u32 = 65_535;
@@ -72,7 +72,7 @@ pub struct DepthBins<R> {
     count: R,
 }
 
-impl<R: Exact> DepthBins<R> {
+impl<R: Real> DepthBins<R> {
     /// The bins of a range.
     #[must_use]
     pub fn new(range: &Range) -> Self {
@@ -86,7 +86,7 @@ impl<R: Exact> DepthBins<R> {
     #[inline(always)]
     pub fn bin(&self, t: R) -> R {
         let position = ((t - self.nearest) / self.extent) * self.count;
-        position.floor().at_least(R::ZERO).at_most(self.count)
+        position.floor().clamped(R::ZERO, self.count)
     }
 
     /// The Voronoi-enhanced depth \[ZP06, eq. 10\], times n; `ratio` >= 0.

@@ -24,12 +24,12 @@
 //!   three if the pair is represented by its nearest depth, 0.75 - the pair was blended before the
 //!   nearest was known. So a backend may not composite images as they come.
 
-use super::{epsilon, sum};
-use crate::number::Exact;
+use super::{decide, sum};
+use crate::number::{Exact, Real};
 
 /// What a depth-image holds at a pixel: the attributes of one fragment, times its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample<R> {
+pub struct WeightedFragment<R> {
     /// Depth t of the fragment; +inf where the image is empty.
     pub depth: R,
     /// Its weight.
@@ -42,7 +42,21 @@ pub struct Sample<R> {
     pub opacity: R,
 }
 
-impl<R: Exact> Sample<R> {
+impl<R> WeightedFragment<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> WeightedFragment<S> {
+        WeightedFragment {
+            depth: f(self.depth),
+            weight: f(self.weight),
+            normal: self.normal.map(&f),
+            color: self.color.map(&f),
+            opacity: f(self.opacity),
+        }
+    }
+}
+
+impl<R: Real> WeightedFragment<R> {
     /// An empty pixel.
     pub const EMPTY: Self = Self {
         depth: R::INFINITY,
@@ -66,15 +80,19 @@ impl<R: Exact> Sample<R> {
 ///
 /// Gives the sums, with the nearest depth, and how many samples passed the epsilon-z test.
 /// `epsilon` is >= 0 and may be +inf.
-pub fn compose<R: Exact>(samples: &[Sample<R>], epsilon: R) -> (Sample<R>, u32) {
-    let mut sums = Sample::<R>::EMPTY;
+pub fn compose<R: Exact>(
+    samples: &[WeightedFragment<R>],
+    epsilon: R,
+) -> (WeightedFragment<R>, u32) {
+    let mut sums = WeightedFragment::<R>::EMPTY;
     for sample in samples {
         sums.depth = sums.depth.at_most(sample.depth);
     }
+    let limit = decide::limit(sums.depth, epsilon);
     let mut count = 0;
     for sample in samples {
         // An empty sample passes where epsilon or the nearest depth is infinite, and adds nothing.
-        if sample.depth < R::INFINITY && epsilon::visible(sample.depth, sums.depth, epsilon) {
+        if sample.depth < R::INFINITY && decide::visible(sample.depth, limit) {
             sums.weight = sums.weight + sample.weight;
             sums.normal = sum::plus(sums.normal, sample.normal);
             sums.color = sum::plus(sums.color, sample.color);

@@ -14,7 +14,8 @@
 //! exchanging left with right or top with bottom changes no bit. Of 1, 2 or 4 terms of weight 1 it
 //! is the plain mean.
 
-use crate::number::Exact;
+use super::decide;
+use crate::number::{Exact, Real};
 
 /// The neighbours that take part, and their weights.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +26,7 @@ pub struct Mean<R> {
     scale: R,
 }
 
-impl<R: Exact> Mean<R> {
+impl<R: Real> Mean<R> {
     /// The weights of neighbours; those of which `takes` is false are ignored.
     #[inline(always)]
     #[must_use]
@@ -47,7 +48,7 @@ impl<R: Exact> Mean<R> {
     pub fn of(&self, a: [R; 4]) -> R {
         let term = |j: usize| if self.takes[j] { self.weights[j] * a[j] } else { R::ZERO };
         let mean = ((term(0) + term(1)) + (term(2) + term(3))) * self.scale;
-        mean.at_least(self.least(a)).at_most(self.greatest(a)) + R::ZERO
+        mean.clamped(self.least(a), self.greatest(a)) + R::ZERO
     }
 
     /// The least of those that take part; +inf if there are none.
@@ -81,17 +82,26 @@ pub fn foremost<R: Exact>(
 ) -> ([bool; 4], usize) {
     let (mut nearest, mut end, mut first) = (R::INFINITY, -R::INFINITY, 0);
     for j in 0..4 {
-        if candidates[j] & (front[j] < nearest) {
+        if candidates[j] & decide::before(front[j], nearest) {
             (nearest, end, first) = (front[j], back[j], j);
         }
     }
-    ([0, 1, 2, 3].map(|j| candidates[j] & (front[j] <= end)), first)
+    ([0, 1, 2, 3].map(|j| candidates[j] & decide::overlaps(front[j], end)), first)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::verify::laws::{Lawful, means};
     use proptest::prelude::*;
+
+    fn mean<R: Exact>(takes: [bool; 4], weights: [R; 4], a: [R; 4]) -> R {
+        Mean::new(takes, weights).of(a)
+    }
+
+    fn lawful(found: Lawful) -> Result<(), TestCaseError> {
+        found.map_err(|counterexample| TestCaseError::fail(counterexample.to_string()))
+    }
 
     proptest! {
         #[test]
@@ -101,9 +111,9 @@ mod tests {
             takes in proptest::array::uniform4(proptest::bool::ANY),
         ) {
             prop_assume!(takes.contains(&true));
-            prop_assert_eq!(Mean::new(takes, w).of([a; 4]), a);
-            let plain = Mean::plain(takes).of([f64::from(a); 4]);
-            prop_assert_eq!(plain, f64::from(a));
+            lawful(means::constant(&mean, takes, w, a))?;
+            let plain = |takes, _, a| Mean::<f64>::plain(takes).of(a);
+            lawful(means::constant(&plain, takes, [1.0; 4], f64::from(a)))?;
         }
 
         #[test]
@@ -113,14 +123,7 @@ mod tests {
             takes in proptest::array::uniform4(proptest::bool::ANY),
         ) {
             prop_assume!(takes.contains(&true));
-            let mean = Mean::new(takes, w);
-            let found = mean.of(a);
-            let taken = || (0..4).filter(|&j| takes[j]);
-            prop_assert!(taken().any(|j| a[j] <= found) && taken().any(|j| a[j] >= found));
-            let total: f64 = taken().map(|j| f64::from(w[j])).sum();
-            let sum: f64 = taken().map(|j| f64::from(w[j]) * f64::from(a[j])).sum();
-            // Nine roundings of numbers up to 8: products, sums, total, its inverse, the product.
-            prop_assert!((f64::from(found) - sum / total).abs() <= 9.0 * 8.0 * f64::from(f32::EPSILON) / 2.0);
+            lawful(means::hull(&mean, takes, w, a))?;
         }
 
         #[test]
@@ -130,11 +133,7 @@ mod tests {
             takes in proptest::array::uniform4(proptest::bool::ANY),
         ) {
             prop_assume!(takes.contains(&true));
-            let found = Mean::new(takes, w).of(a);
-            for order in [[1, 0, 3, 2], [2, 3, 0, 1]] {
-                let mirrored = Mean::new(order.map(|j| takes[j]), order.map(|j| w[j]));
-                prop_assert_eq!(mirrored.of(order.map(|j| a[j])), found);
-            }
+            lawful(means::mirror(&mean, takes, w, a))?;
         }
     }
 

@@ -1,7 +1,7 @@
 //! The algebra of fragments, as plain functions with laws.
 //!
 //! - [`bins`]: low-precision and Voronoi-enhanced depth.
-//! - [`epsilon`]: which fragments belong to the visible surface.
+//! - [`decide`]: every decision on fragments and cells, by its name.
 //! - [`groups`]: the n-ary operator over the depth-images of groups.
 //! - [`mod@mean`]: the average of neighbours in a pyramid.
 //! - [`over`]: alpha-blending of layers.
@@ -9,7 +9,7 @@
 //! - [`under`]: alpha-blending from front to back.
 
 pub mod bins;
-pub mod epsilon;
+pub mod decide;
 pub mod groups;
 pub mod mean;
 pub mod over;

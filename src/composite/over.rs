@@ -4,7 +4,7 @@
 //! is blended in at the end by what the layers let through.
 
 use super::sum;
-use crate::number::Exact;
+use crate::number::Real;
 
 /// Layers that have been blended: their colour over black, and their opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +15,15 @@ pub struct Blend<R> {
     pub alpha: R,
 }
 
-impl<R: Exact> Blend<R> {
+impl<R> Blend<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> Blend<S> {
+        Blend { color: self.color.map(&f), alpha: f(self.alpha) }
+    }
+}
+
+impl<R: Real> Blend<R> {
     /// Nothing: black and transparent.
     pub const CLEAR: Self = Self { color: [R::ZERO; 3], alpha: R::ZERO };
 

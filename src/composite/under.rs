@@ -14,7 +14,7 @@
 //! colour unchanged and hides the rest; a = 0 changes nothing; blending the same layers from back
 //! to front gives the same up to rounding.
 
-use crate::number::Exact;
+use crate::number::Real;
 
 /// Layers that have been blended, and what they let through.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,15 @@ pub struct Under<R> {
     pub through: R,
 }
 
-impl<R: Exact> Under<R> {
+impl<R> Under<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> Under<S> {
+        Under { color: self.color.map(&f), alpha: f(self.alpha), through: f(self.through) }
+    }
+}
+
+impl<R: Real> Under<R> {
     /// Nothing: black and transparent.
     pub const CLEAR: Self = Self { color: [R::ZERO; 3], alpha: R::ZERO, through: R::ONE };
 
@@ -37,17 +45,12 @@ impl<R: Exact> Under<R> {
     pub fn under(self, alpha: R, color: [R; 3]) -> Self {
         let factor = self.through * alpha;
         let through = self.through * (R::ONE - alpha);
-        if !(factor > R::ZERO) {
-            return Self { through, ..self };
-        }
-        let [r, g, b] = color;
+        let adds = factor.gt(R::ZERO);
+        let part = |sum: R, value: R| R::select(adds, sum + factor * value, sum);
+        let [r, g, b] = self.color;
         Self {
-            color: [
-                self.color[0] + factor * r,
-                self.color[1] + factor * g,
-                self.color[2] + factor * b,
-            ],
-            alpha: self.alpha + factor,
+            color: [part(r, color[0]), part(g, color[1]), part(b, color[2])],
+            alpha: R::select(adds, self.alpha + factor, self.alpha),
             through,
         }
     }
@@ -56,18 +59,15 @@ impl<R: Exact> Under<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::verify::laws::{Lawful, under};
     use proptest::prelude::*;
 
-    fn front_to_back(layers: &[(f64, [f64; 3])]) -> Under<f64> {
-        layers.iter().fold(Under::CLEAR, |below, &(alpha, color)| below.under(alpha, color))
+    fn operator(above: Under<f64>, alpha: f64, color: [f64; 3]) -> Under<f64> {
+        above.under(alpha, color)
     }
 
-    /// From back to front: each layer over what is there.
-    fn back_to_front(layers: &[(f64, [f64; 3])]) -> (f64, [f64; 3]) {
-        layers.iter().rev().fold((0.0, [0.0; 3]), |(below, behind), &(alpha, color)| {
-            let over = |front: f64, behind: f64| alpha * front + (1.0 - alpha) * behind;
-            (over(1.0, below), [0, 1, 2].map(|c| over(color[c], behind[c])))
-        })
+    fn lawful(found: Lawful) -> Result<(), TestCaseError> {
+        found.map_err(|counterexample| TestCaseError::fail(counterexample.to_string()))
     }
 
     fn layer() -> impl Strategy<Value = (f64, [f64; 3])> {
@@ -78,13 +78,7 @@ mod tests {
     proptest! {
         #[test]
         fn both_directions_agree(layers in prop::collection::vec(layer(), 0..12)) {
-            let found = front_to_back(&layers);
-            let (alpha, color) = back_to_front(&layers);
-            prop_assert!((found.alpha - alpha).abs() < 1e-14);
-            prop_assert!((found.alpha + found.through - 1.0).abs() < 1e-14);
-            for (found, expected) in found.color.iter().zip(color) {
-                prop_assert!((found - expected).abs() < 1e-14 * 4.0);
-            }
+            lawful(under::closed_form(&operator, &layers))?;
         }
 
         #[test]
@@ -92,12 +86,7 @@ mod tests {
             layers in prop::collection::vec(layer(), 0..6),
             (_, color) in layer(),
         ) {
-            let mut opaque = vec![(1.0, color)];
-            opaque.extend(&layers);
-            let found = front_to_back(&opaque);
-            prop_assert_eq!(found, Under { color, alpha: 1.0, through: 0.0 });
-            let before = front_to_back(&layers);
-            prop_assert_eq!(before.under(0.0, [f64::INFINITY; 3]), before);
+            lawful(under::ends(&operator, &layers, color))?;
         }
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! - [`environment`]: environment maps from EXR files.
 //! - [`exr`]: every plane of a frame, exactly; reading guards against lying files.
+//! - [`npy`]: arrays of NumPy as planes.
 //! - [`ply`]: point clouds and meshes, in and out.
 //! - `png`: an 8-bit preview; needs the feature `cli`.
 //! - [`provenance`]: the text that a picture carries.
@@ -11,6 +12,7 @@
 
 pub mod environment;
 pub mod exr;
+pub mod npy;
 pub mod ply;
 #[cfg(feature = "cli")]
 pub mod png;

@@ -1,11 +1,9 @@
 //! The text that a picture carries: what it is a picture of, and by which settings.
 
-use crate::io::scene_file::{MethodName, Number, words};
-use crate::method::single_pass::{BinCount, DepthTest};
-use crate::method::{Method, transparent, transparent_hq};
+use crate::io::scene_file::Number;
+use crate::method::Method;
 use crate::scene::{Camera, Counts, Groups, Projection, Scene};
-use crate::shade::optics::Refraction;
-use crate::splat::{Kernel, SplatSettings};
+use crate::setting::{Fields, Word};
 
 /// The text as TOML, for the attribute [`super::exr::ATTRIBUTE`].
 ///
@@ -25,8 +23,11 @@ pub fn text(
     let groups = groups.map_or(String::new(), |groups| {
         format!("[groups]\ncount = {}\nsha256 = \"{}\"\n\n", groups.len(), groups.sha256())
     });
+    let settings: String =
+        method.values().iter().map(|(name, value)| format!("{name} = {value}\n")).collect();
     let resolved = method.resolved(scene, camera);
-    let resolved = resolved.into_iter().map(|(name, value)| format!("{name} = {value}\n"));
+    let resolved: String =
+        resolved.into_iter().map(|(name, value)| format!("{name} = {value}\n")).collect();
     let primitives = if scene.primitives.is_empty() {
         String::new()
     } else {
@@ -42,19 +43,16 @@ pub fn text(
     format!(
         "splatref = \"{version}\"\nnumber = \"{number}\"\n\n\
          [scene]\nname = {name}\nsurfels = {surfels}\n{primitives}sha256 = \"{hash}\"\n\n\
-         [method]\nname = \"{method}\"\n{splats}cull = {cull}\n{further}\n{groups}\
+         [method]\nname = \"{method}\"\n{settings}{resolved}\n{groups}\
          [camera]\nsize = [{width}, {height}]\nprojection = \"{projection}\"\n\
          f = [{fx:?}, {fy:?}]\nc = [{cx:?}, {cy:?}]\nnear = {near:?}\n\
          view_from_world = [\n{rows}]\n",
         version = env!("CARGO_PKG_VERSION"),
-        number = words::of_number(number),
+        number = number.word(),
         name = toml::Value::String(scene.name.clone()),
         surfels = scene.surfels.len(),
         hash = scene.sha256(),
-        method = words::of_method(MethodName::of(method)),
-        further = further(method) + &resolved.collect::<String>(),
-        splats = splats(method).map_or(String::new(), footprints),
-        cull = culls(method),
+        method = method.name(),
         width = camera.width,
         height = camera.height,
         fx = camera.fx,
@@ -66,80 +64,13 @@ pub fn text(
     )
 }
 
-/// What of a method is about splats.
-pub fn splats(method: &Method) -> Option<&SplatSettings> {
-    match method {
-        Method::Ewa(settings) => Some(settings),
-        Method::SinglePass(settings) => Some(&settings.splats),
-        Method::Transparent(settings) => Some(&settings.splats),
-        Method::TransparentHq(settings) => Some(&settings.layers.splats),
-        Method::Peeling(settings) => Some(&settings.splats),
-        Method::Pyramid(_) | Method::Template(_) => None,
-    }
-}
-
-/// Whether a method drops what is seen from behind.
-pub fn culls(method: &Method) -> bool {
-    match method {
-        Method::Pyramid(settings) => settings.cull,
-        Method::Template(settings) => settings.cull,
-        _ => splats(method).is_some_and(|splats| splats.cull),
-    }
-}
-
-/// Kernel and epsilon, as lines of TOML.
-fn footprints(splats: &SplatSettings) -> String {
-    let Kernel { outline, cutoff, low_pass } = splats.kernel;
-    format!(
-        "outline = \"{}\"\ncutoff = {cutoff:?}\nlow_pass = {low_pass:?}\nepsilon = \"{}\"\n",
-        words::of_outline(outline),
-        words::of_epsilon(splats.epsilon),
-    )
-}
-
-/// The settings that only some methods have, as lines of TOML.
-#[must_use]
-pub fn further(method: &Method) -> String {
-    let bins = |bins: &BinCount| match bins {
-        BinCount::Epsilon => "bins = \"epsilon\"\n".to_owned(),
-        BinCount::Count(count) => format!("bins = {count}\n"),
-    };
-    let depth = |test: DepthTest| format!("depth = \"{}\"\n", words::of_depth(test));
-    let blending = |settings: &transparent::Settings| {
-        format!("{}holes = \"{}\"\n", bins(&settings.bins), words::of_holes(settings.holes))
-    };
-    match method {
-        Method::Ewa(_) => String::new(),
-        Method::Peeling(settings) => format!("peel = {}\n", settings.layers),
-        Method::Pyramid(settings) => format!(
-            "weights = \"{}\"\noccluded = \"{}\"\nsubpixel_bits = {}\n",
-            words::of_weights(settings.weights),
-            words::of_occluded(settings.occlusion),
-            settings.subpixel_bits
-        ),
-        Method::Template(settings) => {
-            let levels = words::of_levels(settings.levels);
-            format!("template = {}\nlevels = \"{levels}\"\n", settings.size)
-        }
-        Method::SinglePass(settings) => match &settings.depth {
-            DepthTest::Plain => depth(settings.depth),
-            DepthTest::Voronoi(count) => depth(settings.depth) + &bins(count),
-        },
-        Method::Transparent(settings) => blending(settings),
-        Method::TransparentHq(transparent_hq::Settings { layers, nearest, refraction }) => {
-            let refraction = refraction.map_or(String::new(), |Refraction { ratio, layers }| {
-                format!("refraction = {ratio:?}\nbends = \"{}\"\n", words::of_bends(layers))
-            });
-            format!("{}{}{refraction}", blending(layers), depth(*nearest))
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::{Lens, Light, Phong, Pose};
+    use crate::setting::Value;
     use crate::source::Shape;
+    use crate::splat::{Epsilon, SplatSettings};
     use glam::DVec3;
 
     #[test]
@@ -168,10 +99,10 @@ mod tests {
         assert_eq!(table["number"].as_str(), Some("f64"));
         assert_eq!(table["scene"]["name"].as_str(), Some(name.as_str()));
         assert_eq!(table["scene"]["sha256"].as_str(), Some(scene.sha256().as_str()));
-        assert_eq!(
-            words::epsilon(table["method"]["epsilon"].as_str().unwrap()),
-            Ok(settings.epsilon)
-        );
+        let epsilon = Value::Text(table["method"]["epsilon"].as_str().unwrap().into());
+        let mut read = SplatSettings { epsilon: Epsilon::World(0.0), ..settings };
+        assert_eq!(read.set("epsilon", &epsilon), Ok(()));
+        assert_eq!(read.epsilon, settings.epsilon);
         let f = table["camera"]["f"][0].as_float().unwrap();
         assert_eq!((f as f32).to_bits(), camera.fx.to_bits());
         for i in 0..4 {

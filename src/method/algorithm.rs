@@ -7,6 +7,7 @@ use crate::index::Index;
 use crate::index::grouping::Grouping;
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
+use crate::setting::Fields;
 use std::fmt::Debug;
 
 /// What a picture is made of, and how.
@@ -29,11 +30,12 @@ impl Job<'_> {
     }
 }
 
-/// A method, implemented by its settings: everything in the settings may change the picture.
+/// A method, implemented by its settings: everything in the settings may change the picture, and
+/// [`Fields`] lists all of them.
 ///
 /// The settings have been checked and the scene is one that the method draws when a picture is
 /// asked for: [`super::Session`] sees to both.
-pub trait Algorithm: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
+pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'static {
     /// The name in scene files and on the command line.
     const NAME: &'static str;
     /// What the method is, in one line, with its source.

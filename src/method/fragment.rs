@@ -1,13 +1,14 @@
 //! The fragments of splats: what every method that draws splats does with one.
 
 use super::prepare::Prepared;
+use crate::composite::decide;
 use crate::frame::Rect;
-use crate::number::{Exact, Vector2};
-use crate::splat::{Shared, Splat};
+use crate::number::Exact;
+use crate::splat::{Shared, Splat, fragment};
 
 /// The splats that may touch some pixels, all of one tile.
 #[derive(Debug)]
-pub(super) struct TileSplats<'a, R> {
+pub(super) struct TileSplats<'a, R: Exact> {
     prepared: &'a Prepared<R, Splat<R>>,
     tile: usize,
     /// The pixels.
@@ -51,15 +52,6 @@ impl<'a, R: Exact> TileSplats<'a, R> {
     }
 }
 
-/// q and nearness of a splat at the centre of a pixel.
-#[inline(always)]
-fn fragment<R: Exact>(shared: &Shared<R>, splat: &Splat<R>, x: u32, y: u32) -> (R, R) {
-    let Vector2 { x: cx, y: cy } = splat.footprint.center;
-    let dx = R::from_f32(x as f32 + 0.5) - cx;
-    let dy = R::from_f32(y as f32 + 0.5) - cy;
-    splat.footprint.fragment(shared, dx, dy)
-}
-
 /// Runs `draw` for the pixels of `rect` in the bounds of a splat: the pixel, counted row by row, q
 /// and nearness.
 #[inline(always)]
@@ -73,7 +65,7 @@ pub(super) fn each_in_bounds<R: Exact>(
     let Rect { x0, y0, x1, y1 } = splat.bounds.intersection(rect);
     for y in y0..y1 {
         for x in x0..x1 {
-            let (q, w) = fragment(shared, splat, x, y);
+            let (q, w) = fragment(shared, &splat.footprint, (x, y));
             draw(((y - rect.y0) * columns + (x - rect.x0)) as usize, q, w);
         }
     }
@@ -88,23 +80,10 @@ pub(super) fn each_inside<R: Exact>(
     mut draw: impl FnMut(usize, R, R),
 ) {
     each_in_bounds(shared, splat, rect, |pixel, q, w| {
-        if inside(shared, q) {
+        if decide::inside(q, shared.limit) {
             draw(pixel, q, w);
         }
     });
-}
-
-/// Whether a fragment is inside the cut-off: q <= k^2.
-#[inline(always)]
-pub(super) fn inside<R: Exact>(shared: &Shared<R>, q: R) -> bool {
-    q <= shared.limit
-}
-
-/// Whether a fragment of nearness `w` is nearer than what a pixel holds; a tie is not, so that the
-/// lower surfel index wins.
-#[inline(always)]
-pub(super) fn nearer<R: Exact>(w: R, held: R) -> bool {
-    w > held
 }
 
 /// The normal, reversed if the back is seen.

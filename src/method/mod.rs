@@ -47,7 +47,7 @@ pub mod transparent;
 pub mod transparent_hq;
 
 pub use algorithm::{Algorithm, Job};
-pub use picture::Picture;
+pub use picture::{Laps, Picture};
 pub use session::Session;
 pub use stage::{Holds, PlaneRow, Stage, When};
 pub use table::Method;

@@ -19,7 +19,7 @@ pub struct Picture<R> {
     /// What became of the surfels.
     pub tally: Tally,
     /// The wall time of each stage, in order.
-    pub timings: Vec<(&'static str, Duration)>,
+    pub timings: Laps,
 }
 
 /// Deferred shading, and the planes of the picture.
@@ -111,10 +111,13 @@ pub(super) fn named<R>(name: &str, samples: Samples<R>) -> NamedPlane<R> {
     NamedPlane { name: name.to_owned(), samples }
 }
 
-/// Wall times of stages.
+/// Stages, in order, and the wall time of each.
+pub type Laps = Vec<(&'static str, Duration)>;
+
+/// Takes the wall times of stages.
 pub(super) struct Clock {
     start: Instant,
-    laps: Vec<(&'static str, Duration)>,
+    laps: Laps,
 }
 
 impl Default for Clock {
@@ -125,7 +128,7 @@ impl Default for Clock {
 
 impl Clock {
     /// A clock whose stages have been timed elsewhere.
-    pub(super) fn of(laps: Vec<(&'static str, Duration)>) -> Self {
+    pub(super) fn of(laps: Laps) -> Self {
         Self { laps, ..Self::default() }
     }
 
@@ -134,7 +137,7 @@ impl Clock {
     }
 
     /// The stages and how long they took.
-    pub(super) fn into_laps(self) -> Vec<(&'static str, Duration)> {
+    pub(super) fn into_laps(self) -> Laps {
         self.laps
     }
 

@@ -1,9 +1,9 @@
 //! Explanations: the fragments that reach a pixel, and each decision on them with its operands.
 
 use super::algorithm::Job;
-use super::fragment::{TileSplats, inside, nearer};
+use super::fragment::TileSplats;
 use super::prepare::Prepared;
-use crate::composite::epsilon;
+use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::number::Exact;
@@ -43,24 +43,24 @@ impl<R: Exact> Decision<R> {
     /// Whether a fragment is inside the cut-off.
     pub(super) fn inside(shared: &Shared<R>, q: R) -> Self {
         let words = ["inside ", "outside"];
-        Self::new("q", [q, shared.limit], inside(shared, q), ["<=", "> "], words)
+        Self::new("q", [q, shared.limit], decide::inside(q, shared.limit), ["<=", "> "], words)
     }
 
     /// Whether a fragment is nearer than what the pixel holds.
     pub(super) fn nearer(w: R, held: R, words: [&'static str; 2]) -> Self {
-        Self::new("nearness", [w, held], nearer(w, held), ["> ", "<="], words)
+        Self::new("nearness", [w, held], decide::nearer(w, held), ["> ", "<="], words)
     }
 
     /// Whether a fragment belongs to the visible surface.
     pub(super) fn visible(t: R, nearest: R, epsilon: R) -> Self {
-        let holds = epsilon::visible(t, nearest, epsilon);
-        let operands = [t, epsilon::limit(nearest, epsilon)];
-        Self::new("depth", operands, holds, ["<=", "> "], ["visible", "hidden "])
+        let limit = decide::limit(nearest, epsilon);
+        let holds = decide::visible(t, limit);
+        Self::new("depth", [t, limit], holds, ["<=", "> "], ["visible", "hidden "])
     }
 
     /// Whether a fragment lies strictly beyond a depth.
     pub(super) fn beyond(t: R, limit: R, words: [&'static str; 2]) -> Self {
-        Self::new("depth", [t, limit], t > limit, ["> ", "<="], words)
+        Self::new("depth", [t, limit], decide::beyond(t, limit), ["> ", "<="], words)
     }
 
     /// How far the decision is from flipping, in units of the last place.

@@ -9,6 +9,7 @@ use crate::frame::{Frame, Pool};
 use crate::index::grouping::Grouping;
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
+use crate::setting::{Fields, Visit};
 
 /// Makes the enum of methods, and hands every question on to the settings of the method that is
 /// asked.
@@ -31,6 +32,12 @@ macro_rules! methods {
                 Self::$method(settings)
             }
         })*
+
+        impl Fields for Method {
+            fn fields(&mut self, each: &mut Visit<'_>) {
+                match self { $(Self::$method(settings) => settings.fields(each),)* }
+            }
+        }
 
         impl Method {
             /// Every method, with its default settings, in the order of the table.

@@ -9,6 +9,8 @@
 //!   an ignored test against a correctly rounded oracle; the others through `libm`, or to the bits
 //!   of `libm` by another way ([`powers_f32`]).
 
+use super::lanes::{LANES, any, each, mask};
+
 /// e^x in f64.
 #[must_use]
 pub fn exp(x: f64) -> f64 {
@@ -26,9 +28,6 @@ pub fn ln(x: f64) -> f64 {
 pub fn pow(x: f64, y: f64) -> f64 {
     libm::pow(x, y)
 }
-
-/// How many numbers are raised to a power side by side.
-pub const LANES: usize = 16;
 
 /// The bits of [`pow`], rounded to `f32` once, of numbers that are not negative (nor -0).
 ///
@@ -55,16 +54,9 @@ pub fn powers_f32(x: &[f32; LANES], y: f32) -> [f32; LANES] {
     }
     let product = product(x, whole as u32, parts as u32);
     let error = (f64::from(whole) + 128.0) * f64::EPSILON;
-    let (mut low, mut high) = ([0.0; LANES], [0.0; LANES]);
-    for i in 0..LANES {
-        low[i] = (product[i] * (1.0 - error)) as f32;
-        high[i] = (product[i] * (1.0 + error)) as f32;
-    }
-    let mut apart = false;
-    for i in 0..LANES {
-        apart |= low[i] != high[i];
-    }
-    if apart {
+    let mut low = each(|i| (product[i] * (1.0 - error)) as f32);
+    let high = each(|i| (product[i] * (1.0 + error)) as f32);
+    if any(&mask(|i| low[i] != high[i])) {
         for i in 0..LANES {
             if low[i] != high[i] {
                 low[i] = pow_f32(x[i], y);
@@ -78,10 +70,9 @@ pub fn powers_f32(x: &[f32; LANES], y: f32) -> [f32; LANES] {
 #[inline(always)]
 fn product(x: &[f32; LANES], mut whole: u32, mut parts: u32) -> [f64; LANES] {
     let mut product = [1.0; LANES];
-    let (mut square, mut root) = ([0.0_f64; LANES], [0.0_f64; LANES]);
-    for i in 0..LANES {
-        (square[i], root[i]) = (x[i].into(), x[i].into());
-    }
+    let mut square: [f64; LANES] = each(|i| x[i].into());
+    let mut root = square;
+    // -- The squares of the whole part
     while whole != 0 {
         for i in 0..LANES {
             product[i] = if whole & 1 == 1 { product[i] * square[i] } else { product[i] };
@@ -89,6 +80,7 @@ fn product(x: &[f32; LANES], mut whole: u32, mut parts: u32) -> [f64; LANES] {
         }
         whole >>= 1;
     }
+    // -- The roots of the rest
     while parts != 0 {
         parts <<= 1;
         for i in 0..LANES {

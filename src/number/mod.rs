@@ -5,14 +5,19 @@
 //! order; with `f64` it is the truth of the same problem.
 //!
 //! - [`real`]: the trait, its comparisons, and the numbers with two outcomes, [`Exact`].
+//! - [`truth`]: what comparisons and integer parts of numbers are.
 //! - [`vector`]: two- and three-component vectors whose order of operations is written out.
+//! - [`lanes`]: values side by side, and kernels for every width of vectors.
 //! - [`elementary`]: the only home of exp, pow, sin ... in the crate.
 //! - [`random`]: random values as functions of a seed and an index.
 
 pub mod elementary;
+pub mod lanes;
 pub mod random;
 pub mod real;
+pub mod truth;
 pub mod vector;
 
-pub use real::{Exact, Pixel, Real, Truth};
+pub use real::{Exact, Real};
+pub use truth::{Pixel, Truth};
 pub use vector::{Vector2, Vector3};

@@ -1,64 +1,10 @@
 //! The number that every formula is generic over.
 
-use super::elementary::{self, LANES};
+use super::elementary;
+use super::lanes::LANES;
+use super::{Pixel, Truth};
 use std::fmt::Debug;
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
-
-/// The outcome of a comparison.
-///
-/// A number that is exact answers with a `bool`. A number that stands for all values in an interval
-/// has a third answer, "undecided", where some of these values say yes and others no: `&`, `|` and
-/// `!` are then those of Kleene's logic. Only a truth that is a `bool` can steer an `if`; what a
-/// formula chooses by another truth goes through [`Real::select`], and a decision about a fragment
-/// or a cell is handed to the caller.
-pub trait Truth:
-    Copy
-    + Debug
-    + PartialEq
-    + From<bool>
-    + BitAnd<Output = Self>
-    + BitOr<Output = Self>
-    + Not<Output = Self>
-    + Send
-    + Sync
-    + 'static
-{
-    /// Whether every value says yes.
-    fn certainly(self) -> bool;
-    /// Whether some value says yes.
-    fn possibly(self) -> bool;
-}
-
-impl Truth for bool {
-    #[inline(always)]
-    fn certainly(self) -> bool {
-        self
-    }
-    #[inline(always)]
-    fn possibly(self) -> bool {
-        self
-    }
-}
-
-/// The integer part of a coordinate: one column or row, or the least and the greatest that the
-/// coordinate may lie in.
-pub trait Pixel: Copy + Debug + Send + Sync + 'static {
-    /// The least.
-    fn least(self) -> u32;
-    /// The greatest.
-    fn greatest(self) -> u32;
-}
-
-impl Pixel for u32 {
-    #[inline(always)]
-    fn least(self) -> u32 {
-        self
-    }
-    #[inline(always)]
-    fn greatest(self) -> u32 {
-        self
-    }
-}
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number that the formulas of the crate can be evaluated in.
 ///
@@ -120,7 +66,7 @@ pub trait Real:
     fn gt(self, other: Self) -> Self::Truth;
     /// `self >= other`.
     fn ge(self, other: Self) -> Self::Truth;
-    /// `yes` or `no`, as the truth says. A number that stands for an interval gives the hull of
+    /// `yes` if the truth is yes, else `no`. A number that stands for an interval gives the hull of
     /// both where the truth is undecided.
     #[must_use]
     fn select(truth: Self::Truth, yes: Self, no: Self) -> Self;

@@ -32,6 +32,13 @@ impl<R> Vector2<R> {
     pub const fn new(x: R, y: R) -> Self {
         Self { x, y }
     }
+
+    /// Each component in another number.
+    #[inline(always)]
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> Vector2<S> {
+        Vector2::new(f(self.x), f(self.y))
+    }
 }
 
 impl<R> Vector3<R> {
@@ -39,6 +46,13 @@ impl<R> Vector3<R> {
     #[inline(always)]
     pub const fn new(x: R, y: R, z: R) -> Self {
         Self { x, y, z }
+    }
+
+    /// Each component in another number.
+    #[inline(always)]
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> Vector3<S> {
+        Vector3::new(f(self.x), f(self.y), f(self.z))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::View;
 use crate::frame::Rect;
-use crate::number::{Exact, Vector2};
+use crate::number::{Pixel, Real, Vector2};
 
 /// The pixels of the picture whose centres lie in `center` +- `extent`, widened for rounding.
 ///
@@ -11,12 +11,7 @@ use crate::number::{Exact, Vector2};
 /// at the rim of an ellipse whose axes are skewed by `stretch`, and those of a column below 65,536.
 /// So an ellipse that ends at a pixel centre keeps that pixel.
 #[inline(always)]
-pub fn around<R: Exact>(
-    view: &View<R>,
-    center: Vector2<R>,
-    extent: Vector2<R>,
-    stretch: R,
-) -> Rect {
+pub fn around<R: Real>(view: &View<R>, center: Vector2<R>, extent: Vector2<R>, stretch: R) -> Rect {
     let grow = R::ONE + stretch * R::from_f32(1.0 / 262_144.0);
     let slack = R::from_f32(1.0 / 128.0);
     let (ex, ey) = (extent.x * grow + slack, extent.y * grow + slack);
@@ -27,22 +22,22 @@ pub fn around<R: Exact>(
     )
 }
 
-/// The pixels of the picture whose centres lie between two corners.
+/// The pixels of the picture whose centres lie, or may lie, between two corners.
 #[inline(always)]
-pub fn between<R: Exact>(view: &View<R>, low: Vector2<R>, high: Vector2<R>) -> Rect {
+pub fn between<R: Real>(view: &View<R>, low: Vector2<R>, high: Vector2<R>) -> Rect {
     Rect {
-        x0: first_pixel(low.x, view.width),
-        y0: first_pixel(low.y, view.height),
-        x1: first_pixel(high.x, view.width),
-        y1: first_pixel(high.y, view.height),
+        x0: first_pixel(low.x, view.width).least(),
+        y0: first_pixel(low.y, view.height).least(),
+        x1: first_pixel(high.x, view.width).greatest(),
+        y1: first_pixel(high.y, view.height).greatest(),
     }
 }
 
 /// The first pixel whose centre lies after `position`, at most `count`; 0 for NaN.
 #[inline(always)]
-fn first_pixel<R: Exact>(position: R, count: R) -> u32 {
+fn first_pixel<R: Real>(position: R, count: R) -> R::Pixel {
     let position = position + R::from_f32(0.5);
     // A comparison that NaN fails.
-    let position = if position > R::ZERO { position } else { R::ZERO };
+    let position = R::select(position.gt(R::ZERO), position, R::ZERO);
     position.at_most(count).to_pixel()
 }

@@ -1,17 +1,17 @@
 //! Bounds of a disc that reaches the near plane: its projection is no ellipse.
 
-use super::shape::Placed;
+use super::shape::PlacedDisc;
 use super::{Disc, View};
-use crate::number::{Exact, Vector2, Vector3};
+use crate::number::{Real, Truth, Vector2, Vector3};
 
 /// Two half axes of a disc or ellipse in view space.
-fn basis<R: Exact>(view: &View<R>, placed: &Placed<R>, disc: &Disc<R>) -> [Vector3<R>; 2] {
+fn basis<R: Real>(view: &View<R>, placed: &PlacedDisc<R>, disc: &Disc<R>) -> [Vector3<R>; 2] {
     if let Some(tangents) = disc.tangents {
         return tangents.map(|t| view.direction(t));
     }
     let n = placed.n;
     // Any axis that is not along the normal gives a basis of the plane.
-    let axis = if n.x.abs() < n.y.abs() {
+    let axis = if n.x.abs().lt(n.y.abs()).certainly() {
         Vector3::new(R::ONE, R::ZERO, R::ZERO)
     } else {
         Vector3::new(R::ZERO, R::ONE, R::ZERO)
@@ -27,10 +27,11 @@ fn basis<R: Exact>(view: &View<R>, placed: &Placed<R>, disc: &Disc<R>) -> [Vecto
 /// these points are solutions of A c + B s + C = 0 on the unit circle.
 ///
 /// A point of the rim is exact to a few roundings of the radius, which the near plane magnifies by
-/// f/near; the box is widened by 2^-20 radii there, and by 1 px and a thousandth of its size.
-pub(super) fn corners<R: Exact>(
+/// f/near; the box is widened by 2^-20 radii there, and by 1 px and a thousandth of its size. A
+/// point that may be a solution is in the box too: bounds are a guarantee.
+pub(super) fn corners<R: Real>(
     view: &View<R>,
-    placed: &Placed<R>,
+    placed: &PlacedDisc<R>,
     disc: &Disc<R>,
 ) -> (Vector2<R>, Vector2<R>) {
     let (p, near) = (placed.p, view.near);
@@ -55,7 +56,7 @@ pub(super) fn corners<R: Exact>(
     let tangents = [on_circle(tangent(x, t)), on_circle(tangent(y, t))];
     for point in tangents.iter().flatten().flatten() {
         let depth = at(t, *point);
-        if depth > near {
+        if depth.gt(near).possibly() {
             include(*point, depth);
         }
     }
@@ -67,19 +68,19 @@ pub(super) fn corners<R: Exact>(
 }
 
 /// The equation of the points of the rim where x/t is stationary: the terms of second order cancel.
-fn tangent<R: Exact>(x: [R; 3], t: [R; 3]) -> [R; 3] {
+fn tangent<R: Real>(x: [R; 3], t: [R; 3]) -> [R; 3] {
     [x[2] * t[1] - x[1] * t[2], x[2] * t[0] - x[0] * t[2], x[0] * t[1] - x[1] * t[0]]
 }
 
 /// The points (c, s) of the unit circle with `f[0] + f[1] c + f[2] s = 0`.
-fn on_circle<R: Exact>(f: [R; 3]) -> Option<[Vector2<R>; 2]> {
+fn on_circle<R: Real>(f: [R; 3]) -> Option<[Vector2<R>; 2]> {
     let length = (f[1] * f[1] + f[2] * f[2]).sqrt();
     let (a, b, c) = (f[1] / length, f[2] / length, f[0] / length);
     let rest = R::ONE - c * c;
-    if !(rest >= R::ZERO) {
+    if !rest.ge(R::ZERO).possibly() {
         return None;
     }
-    let root = rest.sqrt();
+    let root = rest.at_least(R::ZERO).sqrt();
     Some([
         Vector2::new(-(c * a) - root * b, -(c * b) + root * a),
         Vector2::new(-(c * a) + root * b, -(c * b) - root * a),

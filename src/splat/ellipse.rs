@@ -21,7 +21,8 @@
 //! one without a normal or with rho = 0: the form is then infinite or NaN, or the square is not >
 //! 0.
 
-use crate::number::{Exact, Vector2, Vector3};
+use crate::composite::decide;
+use crate::number::{Real, Vector2, Vector3};
 
 /// The largest radius in pixels, 2^48; a larger one counts as this. Its square is finite in `f32`.
 pub const LARGEST_RADIUS: f32 = 281_474_976_710_656.0;
@@ -35,7 +36,15 @@ pub struct Ellipse<R> {
     pub square: R,
 }
 
-impl<R: Exact> Ellipse<R> {
+impl<R> Ellipse<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> Ellipse<S> {
+        Ellipse { tilt: self.tilt.map(&f), square: f(self.square) }
+    }
+}
+
+impl<R: Real> Ellipse<R> {
     /// The ellipse of a disc of radius `radius` pixels.
     #[inline(always)]
     #[must_use]
@@ -58,18 +67,18 @@ impl<R: Exact> Ellipse<R> {
         (x * x + y * y) + e * e
     }
 
-    /// Whether an offset with this form is inside.
+    /// Whether an offset with this form is inside, see [`decide::holds`].
     #[inline(always)]
     #[must_use]
-    pub fn holds(&self, form: R) -> bool {
-        (self.square > R::ZERO) & (form <= self.square)
+    pub fn holds(&self, form: R) -> R::Truth {
+        decide::holds(form, self.square)
     }
 }
 
 /// The radius in pixels of a disc of radius `radius` world units: `(radius (focal m))`, at most
 /// [`LARGEST_RADIUS`]; m is 1/t under a perspective camera, else 1.
 #[inline(always)]
-pub(crate) fn radius_in_pixels<R: Exact>(radius: R, focal: R, m: R) -> R {
+pub(crate) fn radius_in_pixels<R: Real>(radius: R, focal: R, m: R) -> R {
     (radius * (focal * m)).at_most(R::from_f32(LARGEST_RADIUS))
 }
 

@@ -1,12 +1,12 @@
 //! The sides of the view.
 
 use super::{Kernel, View};
-use crate::number::{Exact, Vector3};
+use crate::number::{Real, Vector3};
 
 /// The four sides of what a picture shows, moved out by the reach of the low-pass filter.
 #[derive(Clone, Copy, Debug)]
 pub struct Frustum<R> {
-    sides: [Side<R>; 4],
+    sides: [FrustumSide<R>; 4],
     /// k sqrt(h), in px.
     skirt: R,
     perspective: bool,
@@ -14,7 +14,7 @@ pub struct Frustum<R> {
 
 /// A side of the view: a point (x, y) at depth t is `along x + across y + past t` px t inside.
 #[derive(Clone, Copy, Debug)]
-struct Side<R> {
+struct FrustumSide<R> {
     along: R,
     across: R,
     past: R,
@@ -22,7 +22,7 @@ struct Side<R> {
     slope: R,
 }
 
-impl<R: Exact> Frustum<R> {
+impl<R: Real> Frustum<R> {
     /// The sides for a camera and a kernel.
     #[must_use]
     pub fn new(view: &View<R>, kernel: &Kernel) -> Self {
@@ -30,7 +30,7 @@ impl<R: Exact> Frustum<R> {
             let scale = along + across;
             let slope =
                 if view.perspective { (scale * scale + past * past).sqrt() } else { scale.abs() };
-            Side { along, across, past, slope }
+            FrustumSide { along, across, past, slope }
         };
         let (o, &View { fx, fy, cx, cy, .. }) = (R::ZERO, view);
         let sides = [
@@ -46,14 +46,14 @@ impl<R: Exact> Frustum<R> {
         }
     }
 
-    /// Whether a sphere about a point p of view space, at depth t, reaches into the view; the
-    /// condition of [`mod@super::project`], fate `Outside`.
+    /// Whether a sphere about a point p of view space, at depth t, reaches into the view: the
+    /// condition of [`mod@super::project`], reason `outside`.
     #[inline(always)]
-    pub fn touches(&self, p: Vector3<R>, t: R, radius: R) -> bool {
+    pub fn touches(&self, p: Vector3<R>, t: R, radius: R) -> R::Truth {
         let t = if self.perspective { t } else { R::ONE };
-        let inside = |side: &Side<R>| {
+        let inside = |side: &FrustumSide<R>| {
             let distance = (side.along * p.x + side.across * p.y) + side.past * t;
-            distance >= -(radius * side.slope + self.skirt * t)
+            distance.ge(-(radius * side.slope + self.skirt * t))
         };
         let [left, right, top, bottom] = &self.sides;
         inside(left) & inside(right) & inside(top) & inside(bottom)

@@ -20,19 +20,21 @@ mod crossing;
 pub mod ellipse;
 pub mod frustum;
 pub mod project;
+pub mod record;
 pub mod settings;
 mod shape;
 pub mod view;
 
 pub use batch::Tally;
 pub use ellipse::Ellipse;
-pub use project::{Disc, Fate, Projector, project};
+pub use project::{Disc, Fate, Projector, Reasons, project};
+pub(crate) use settings::culling;
 pub use settings::{Epsilon, SplatSettings};
 pub use view::View;
 
 use crate::error::{Error, Result};
 use crate::frame::Rect;
-use crate::number::{Exact, Vector2};
+use crate::number::{Exact, Real, Truth, Vector2};
 
 /// How a disc becomes a shape on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -141,7 +143,7 @@ pub struct Footprint<R> {
 /// What the fragments of every splat of a picture share.
 #[derive(Clone, Copy, Debug)]
 pub struct Shared<R> {
-    /// k^2: a fragment is inside if q <= this.
+    /// k^2, what q is compared with, see [`crate::composite::decide::inside`].
     pub limit: R,
     /// Whether q comes from ray casting.
     pub ray_cast: bool,
@@ -153,7 +155,21 @@ pub struct Shared<R> {
     pub w_clip: R,
 }
 
-impl<R: Exact> Shared<R> {
+impl<R> Shared<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> Shared<S> {
+        Shared {
+            limit: f(self.limit),
+            ray_cast: self.ray_cast,
+            perspective: self.perspective,
+            low_pass: f(self.low_pass),
+            w_clip: f(self.w_clip),
+        }
+    }
+}
+
+impl<R: Real> Shared<R> {
     /// The shared numbers of a picture.
     #[must_use]
     pub fn new(view: &View<R>, kernel: &Kernel) -> Self {
@@ -180,7 +196,26 @@ impl<R: Exact> Shared<R> {
     }
 }
 
-impl<R: Exact> Footprint<R> {
+impl<R> Footprint<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> Footprint<S> {
+        Footprint {
+            center: self.center.map(&f),
+            ux: f(self.ux),
+            uy: f(self.uy),
+            vy: f(self.vy),
+            w0: f(self.w0),
+            wx: f(self.wx),
+            wy: f(self.wy),
+            w_far: f(self.w_far),
+            w_near: f(self.w_near),
+            amplitude: f(self.amplitude),
+        }
+    }
+}
+
+impl<R: Real> Footprint<R> {
     /// The form f at an offset from the centre.
     #[inline(always)]
     pub fn form(&self, dx: R, dy: R) -> R {
@@ -201,7 +236,7 @@ impl<R: Exact> Footprint<R> {
         let form = self.form(dx, dy);
         let w = self.plane(dx, dy);
         let q = if shared.ray_cast { ray_cast(shared, form, w, dx, dy) } else { form };
-        (q, w.at_least(self.w_far).at_most(self.w_near))
+        (q, w.clamped(self.w_far, self.w_near))
     }
 
     /// The weight of a fragment whose q is inside.
@@ -213,16 +248,34 @@ impl<R: Exact> Footprint<R> {
 
 /// q of the disc by ray casting, or of the low-pass filter where that is smaller.
 #[inline(always)]
-fn ray_cast<R: Exact>(shared: &Shared<R>, form: R, w: R, dx: R, dy: R) -> R {
+fn ray_cast<R: Real>(shared: &Shared<R>, form: R, w: R, dx: R, dy: R) -> R {
     let q = if shared.perspective { form / (w * w) } else { form };
-    let hits = w <= shared.w_clip && (w > R::ZERO || !shared.perspective);
-    let q = if hits { q } else { R::INFINITY };
-    if shared.low_pass > R::ZERO { q.at_most((dx * dx + dy * dy) / shared.low_pass) } else { q }
+    let hits = w.le(shared.w_clip) & (w.gt(R::ZERO) | R::Truth::from(!shared.perspective));
+    let q = R::select(hits, q, R::INFINITY);
+    // h is an input, and so the same in every number.
+    if shared.low_pass.gt(R::ZERO).certainly() {
+        q.at_most((dx * dx + dy * dy) / shared.low_pass)
+    } else {
+        q
+    }
+}
+
+/// q and nearness of the fragment of a splat at the centre of a pixel:
+/// [`Footprint::fragment`] at the offset ((x + 1/2) - `center.x`, (y + 1/2) - `center.y`).
+#[inline(always)]
+pub fn fragment<R: Real>(
+    shared: &Shared<R>,
+    footprint: &Footprint<R>,
+    (x, y): (u32, u32),
+) -> (R, R) {
+    let dx = R::from_f32(x as f32 + 0.5) - footprint.center.x;
+    let dy = R::from_f32(y as f32 + 0.5) - footprint.center.y;
+    footprint.fragment(shared, dx, dy)
 }
 
 /// A surfel on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Splat<R> {
+pub struct Splat<R: Real> {
     /// Its kernel.
     pub footprint: Footprint<R>,
     /// The pixels that can be inside.
@@ -230,5 +283,14 @@ pub struct Splat<R> {
     /// The index of the surfel in its scene.
     pub surfel: u32,
     /// Whether the back of the surfel is seen; its normal then counts reversed.
-    pub back: bool,
+    pub back: R::Truth,
+}
+
+impl<R: Exact> Splat<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S: Real>(&self, f: impl Fn(R) -> S) -> Splat<S> {
+        let Self { footprint, bounds, surfel, back } = *self;
+        Splat { footprint: footprint.map(f), bounds, surfel, back: back.into() }
+    }
 }

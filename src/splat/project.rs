@@ -11,9 +11,8 @@
 //!   g = (n.x d.x + n.y d.y) - n.z               < 0: the front is seen
 //! ```
 //!
-//! **Shape.** The covariance V0 in px^2 of the disc, a Gaussian of standard deviation s = r/k on
-//! its plane, needs no tangent basis: with c = (1, 0, d.x) x n, e = (0, 1, d.y) x n, rx = s sx, ry
-//! = s sy
+//! **Covariance.** V0 in px^2 of the disc, a Gaussian of standard deviation s = r/k on its plane,
+//! needs no tangent basis: with c = (1, 0, d.x) x n, e = (0, 1, d.y) x n, rx = s sx, ry = s sy
 //!
 //! ```text
 //!   xx = (rx rx) c.c      xy = -((rx ry) c.e)      yy = (ry ry) e.e      area = |(rx ry) g|
@@ -74,14 +73,14 @@
 //! Bounds: those of the exact outline and of the filter's circle of radius k sqrt(h), both; a disc
 //! that reaches the near plane has those of its visible part.
 //!
-//! **Fate**, in this arithmetic: it may differ between `f32` and `f64`. In this order: a surfel
-//! whose centre is not farther than the near plane is `Behind`; one whose amplitude is below 2^-96,
-//! whose gradient of nearness exceeds 2^96 a pixel, or of which any number is not finite is
-//! `Degenerate` (seen edge-on, or astronomically large or small); with culling, one with g >= 0 is
-//! `BackFacing`; one that cannot be seen is `Outside`: no pixel of the picture is in its bounds, or
-//! the sphere about p that holds it, of radius r or, for an ellipse, sqrt(k U . k U + k V . k V),
-//! lies beyond a side of the view by more than the reach of the low-pass filter, k sqrt(h) px. For
-//! the left side that is
+//! **Fate**, the first of the [`Reasons`] in this arithmetic: `f32` and `f64` may differ. In this
+//! order: a surfel whose centre is not farther than the near plane is `Behind`; one whose amplitude
+//! is below 2^-96, whose gradient of nearness exceeds 2^96 a pixel, or of which any number is not
+//! finite is `Degenerate` (seen edge-on, or astronomically large or small); with culling, one with
+//! g >= 0 is `BackFacing`; one that cannot be seen is `Outside`: no pixel of the picture is in its
+//! bounds, or the sphere about p that holds it, of radius r or, for an ellipse,
+//! sqrt(k U . k U + k V . k V), lies beyond a side of the view by more than the reach of the
+//! low-pass filter, k sqrt(h) px. For the left side that is
 //!
 //! ```text
 //!   fx p.x + cx t < -(r sqrt(fx fx + cx cx) + (k sqrt(h)) t)      orthographic: t = 1, and fx r
@@ -95,10 +94,10 @@
 //! the textbook xx yy - xy xy cancels.
 
 use super::frustum::Frustum;
-use super::shape::{Placed, Shape};
+use super::shape::{Covariance, PlacedDisc};
 use super::{Footprint, Kernel, Outline, Splat, View, bounds, crossing};
 use crate::frame::Rect;
-use crate::number::{Exact, Vector2, Vector3};
+use crate::number::{Exact, Real, Vector2, Vector3};
 
 /// What became of a surfel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,7 +128,7 @@ pub struct Disc<R> {
     pub tangents: Option<[Vector3<R>; 2]>,
 }
 
-impl<R: Exact> Disc<R> {
+impl<R: Real> Disc<R> {
     /// The radius of a sphere that holds it: r, or sqrt(U . U + V . V) of an ellipse, whose half
     /// axes need not be perpendicular.
     pub(super) fn reach(&self) -> R {
@@ -157,29 +156,58 @@ pub struct Projector<R> {
     frustum: Frustum<R>,
 }
 
-/// Projects one surfel; see the module page. The splat is meaningless unless its fate is `Visible`.
+/// Why a surfel is not drawn, in the order of the fates; see the module page.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reasons<R: Real> {
+    /// The centre is not farther than the near plane: not t > near.
+    pub behind: R::Truth,
+    /// The surfel has no footprint in this arithmetic.
+    pub degenerate: R::Truth,
+    /// The back is seen, g >= 0, and culling is on.
+    pub back_facing: R::Truth,
+    /// The surfel cannot be seen in the picture.
+    pub outside: R::Truth,
+}
+
+impl<R: Exact> Reasons<R> {
+    /// The first reason there is; without a branch, so that a loop over surfels vectorizes.
+    #[inline(always)]
+    #[must_use]
+    pub fn fate(&self) -> Fate {
+        let fate = if self.outside { Fate::Outside } else { Fate::Visible };
+        let fate = if self.back_facing { Fate::BackFacing } else { fate };
+        let fate = if self.degenerate { Fate::Degenerate } else { fate };
+        if self.behind { Fate::Behind } else { fate }
+    }
+}
+
+/// Projects one surfel; see the module page. The splat is meaningless unless there is no reason not
+/// to draw it.
 #[must_use]
 pub fn project<R: Exact>(
     projector: &Projector<R>,
     disc: &Disc<R>,
     surfel: u32,
-) -> (Splat<R>, Fate) {
-    let placed = projector.place(disc.position, disc.normal);
-    let shape = match disc.tangents {
-        None => projector.disc(&placed, disc.radius),
-        Some(tangents) => projector.ellipse(&placed, tangents),
-    };
-    let (footprint, bounds) = match projector.outline {
-        Outline::Affine => projector.affine(&placed, &shape),
-        Outline::Perspective => projector.perspective(&placed, &shape),
-        Outline::RayCast => projector.ray_cast(&placed, &shape, disc),
-    };
-    let fate = projector.fate(&placed, disc.reach(), &footprint, &bounds);
-    let back = placed.g > R::ZERO;
-    (Splat { footprint, bounds, surfel, back }, fate)
+) -> (Splat<R>, Reasons<R>) {
+    let (placed, shape) = projector.shape(disc);
+    let crosses = projector.reaches_near_plane(&placed, &shape);
+    projector.splat(disc, (&placed, &shape), crosses, surfel)
 }
 
-impl<R: Exact> Projector<R> {
+/// [`project`] of a surfel that reaches the near plane, or does not, as `crosses` says: what a
+/// number that cannot decide [`Projector::crosses`] asks for twice.
+#[must_use]
+pub fn project_as<R: Real>(
+    projector: &Projector<R>,
+    disc: &Disc<R>,
+    surfel: u32,
+    crosses: bool,
+) -> (Splat<R>, Reasons<R>) {
+    let (placed, shape) = projector.shape(disc);
+    projector.splat(disc, (&placed, &shape), crosses, surfel)
+}
+
+impl<R: Real> Projector<R> {
     /// The shared numbers of a picture.
     #[must_use]
     pub fn new(view: View<R>, kernel: &Kernel, cull: bool) -> Self {
@@ -193,44 +221,89 @@ impl<R: Exact> Projector<R> {
         }
     }
 
+    /// Whether a disc reaches the near plane of a perspective camera, t - half <= near, so that its
+    /// outline is no ellipse.
+    #[must_use]
+    pub fn crosses(&self, disc: &Disc<R>) -> R::Truth {
+        let (placed, shape) = self.shape(disc);
+        self.reaches_near_plane(&placed, &shape)
+    }
+
+    /// See [`Projector::crosses`].
+    fn reaches_near_plane(&self, placed: &PlacedDisc<R>, shape: &Covariance<R>) -> R::Truth {
+        R::Truth::from(self.view.perspective) & !(placed.t - shape.half).gt(self.view.near)
+    }
+
+    /// The splat by the outline of the picture, and the reasons not to draw it.
+    #[inline(always)]
+    fn splat(
+        &self,
+        disc: &Disc<R>,
+        (placed, shape): (&PlacedDisc<R>, &Covariance<R>),
+        crosses: bool,
+        surfel: u32,
+    ) -> (Splat<R>, Reasons<R>) {
+        let (footprint, bounds) = match self.outline {
+            Outline::Perspective if self.view.perspective && !crosses => {
+                self.perspective(placed, shape)
+            }
+            Outline::Affine | Outline::Perspective => self.affine(placed, shape),
+            Outline::RayCast => self.ray_cast(placed, shape, disc, crosses),
+        };
+        let reasons = self.reasons(placed, disc.reach(), &footprint, &bounds);
+        (Splat { footprint, bounds, surfel, back: placed.g.gt(R::ZERO) }, reasons)
+    }
+
+    /// A surfel in view space, and its covariance.
+    #[inline(always)]
+    fn shape(&self, disc: &Disc<R>) -> (PlacedDisc<R>, Covariance<R>) {
+        let placed = self.place(disc.position, disc.normal);
+        let shape = match disc.tangents {
+            None => self.disc(&placed, disc.radius),
+            Some(tangents) => self.ellipse(&placed, tangents),
+        };
+        (placed, shape)
+    }
+
     /// An affine disc without a branch, so that a loop over it vectorizes: footprint, bounds,
-    /// whether its back is seen, and fate.
+    /// whether its back is seen, and the reasons not to draw it.
     #[inline(always)]
     pub(super) fn affine_disc(
         &self,
         position: Vector3<R>,
         normal: Vector3<R>,
         radius: R,
-    ) -> (Footprint<R>, Rect, bool, Fate) {
+    ) -> (Footprint<R>, Rect, R::Truth, Reasons<R>) {
         let placed = self.place(position, normal);
         let shape = self.disc(&placed, radius);
         let (footprint, bounds) = self.affine(&placed, &shape);
-        let fate = self.fate(&placed, radius, &footprint, &bounds);
-        (footprint, bounds, placed.g > R::ZERO, fate)
+        let reasons = self.reasons(&placed, radius, &footprint, &bounds);
+        (footprint, bounds, placed.g.gt(R::ZERO), reasons)
     }
 
     /// The projection linearized at the centre.
     #[inline(always)]
-    fn affine(&self, placed: &Placed<R>, shape: &Shape<R>) -> (Footprint<R>, Rect) {
+    fn affine(&self, placed: &PlacedDisc<R>, shape: &Covariance<R>) -> (Footprint<R>, Rect) {
         self.gaussian(placed, shape, placed.center, self.view.nearness(placed.t))
     }
 
     /// The exact ellipse of the projected disc, convolved with the low-pass filter.
-    fn perspective(&self, placed: &Placed<R>, shape: &Shape<R>) -> (Footprint<R>, Rect) {
-        if !self.view.perspective || !(placed.t - shape.half > self.view.near) {
-            return self.affine(placed, shape);
-        }
+    fn perspective(&self, placed: &PlacedDisc<R>, shape: &Covariance<R>) -> (Footprint<R>, Rect) {
         let (shape, center, rest) = self.outline(placed, shape);
         self.gaussian(placed, &shape, center, placed.m / rest)
     }
 
     /// The covariance and the centre of the exact outline, and `rest`.
-    fn outline(&self, placed: &Placed<R>, shape: &Shape<R>) -> (Shape<R>, Vector2<R>, R) {
-        let Shape { half, tilt, .. } = *shape;
+    fn outline(
+        &self,
+        placed: &PlacedDisc<R>,
+        shape: &Covariance<R>,
+    ) -> (Covariance<R>, Vector2<R>, R) {
+        let Covariance { half, tilt, .. } = *shape;
         let t = placed.t;
         let rest = ((t - half) / t) * ((t + half) / t);
         let factor = (self.cutoff * self.cutoff) / rest;
-        let exact = Shape {
+        let exact = Covariance {
             xx: (shape.xx + factor * (tilt.x * tilt.x)) / rest,
             xy: (shape.xy + factor * (tilt.x * tilt.y)) / rest,
             yy: (shape.yy + factor * (tilt.y * tilt.y)) / rest,
@@ -244,9 +317,10 @@ impl<R: Exact> Projector<R> {
     /// The disc by ray casting, the low-pass filter beside it.
     fn ray_cast(
         &self,
-        placed: &Placed<R>,
-        shape: &Shape<R>,
+        placed: &PlacedDisc<R>,
+        shape: &Covariance<R>,
         disc: &Disc<R>,
+        crosses: bool,
     ) -> (Footprint<R>, Rect) {
         let view = &self.view;
         let w0 = view.nearness(placed.t);
@@ -255,10 +329,9 @@ impl<R: Exact> Projector<R> {
         footprint.ux = (scale * shape.yy.sqrt()) / shape.area;
         footprint.uy = -((shape.xy / shape.yy) * footprint.ux);
         footprint.vy = scale / shape.yy.sqrt();
-        footprint.amplitude = if shape.area > R::ZERO { R::ONE } else { R::ZERO };
+        footprint.amplitude = R::select(shape.area.gt(R::ZERO), R::ONE, R::ZERO);
 
-        let reaches = view.perspective && !(placed.t - shape.half > view.near);
-        let (low, high) = if reaches {
+        let (low, high) = if crosses {
             crossing::corners(view, placed, disc)
         } else {
             let (exact, center) = if view.perspective {
@@ -290,8 +363,8 @@ impl<R: Exact> Projector<R> {
     #[inline(always)]
     fn gaussian(
         &self,
-        placed: &Placed<R>,
-        shape: &Shape<R>,
+        placed: &PlacedDisc<R>,
+        shape: &Covariance<R>,
         center: Vector2<R>,
         w0: R,
     ) -> (Footprint<R>, Rect) {
@@ -312,13 +385,13 @@ impl<R: Exact> Projector<R> {
     #[inline(always)]
     fn nearness(
         &self,
-        placed: &Placed<R>,
-        shape: &Shape<R>,
+        placed: &PlacedDisc<R>,
+        shape: &Covariance<R>,
         center: Vector2<R>,
         w0: R,
     ) -> Footprint<R> {
         let view = &self.view;
-        let Placed { n, t, m, g, .. } = *placed;
+        let PlacedDisc { n, t, m, g, .. } = *placed;
         let near = (t - shape.half).at_least(view.near);
         Footprint {
             center,
@@ -334,29 +407,34 @@ impl<R: Exact> Projector<R> {
         }
     }
 
-    /// The first reason not to draw; see the module page.
+    /// The reasons not to draw a surfel; see the module page.
     #[inline(always)]
-    fn fate(&self, placed: &Placed<R>, radius: R, footprint: &Footprint<R>, bounds: &Rect) -> Fate {
+    fn reasons(
+        &self,
+        placed: &PlacedDisc<R>,
+        radius: R,
+        footprint: &Footprint<R>,
+        bounds: &Rect,
+    ) -> Reasons<R> {
         let f = footprint;
         // Comparisons with NaN are false, so every test is one that a good surfel passes.
         let largest = R::from_f32(LARGEST);
-        let sound = (f.amplitude >= R::from_f32(1.0 / LARGEST))
-            & (f.wx.abs() <= largest)
-            & (f.wy.abs() <= largest)
-            & (f.ux <= largest)
-            & (f.uy.abs() <= largest)
-            & (f.vy <= largest)
-            & (f.center.x.abs() <= largest)
-            & (f.center.y.abs() <= largest)
-            & (f.w_far <= f.w_near);
-        let fate = if bounds.is_empty() | !self.frustum.touches(placed.p, placed.t, radius) {
-            Fate::Outside
-        } else {
-            Fate::Visible
-        };
-        let fate = if self.cull & (placed.g >= R::ZERO) { Fate::BackFacing } else { fate };
-        let fate = if sound { fate } else { Fate::Degenerate };
-        if placed.t > self.view.near { fate } else { Fate::Behind }
+        let sound = f.amplitude.ge(R::from_f32(1.0 / LARGEST))
+            & f.wx.abs().le(largest)
+            & f.wy.abs().le(largest)
+            & f.ux.le(largest)
+            & f.uy.abs().le(largest)
+            & f.vy.le(largest)
+            & f.center.x.abs().le(largest)
+            & f.center.y.abs().le(largest)
+            & f.w_far.le(f.w_near);
+        let touches = self.frustum.touches(placed.p, placed.t, radius);
+        Reasons {
+            behind: !placed.t.gt(self.view.near),
+            degenerate: !sound,
+            back_facing: R::Truth::from(self.cull) & placed.g.ge(R::ZERO),
+            outside: R::Truth::from(bounds.is_empty()) | !touches,
+        }
     }
 }
 

@@ -1,8 +1,9 @@
 //! What every method that draws splats can set.
 
-use super::Kernel;
+use super::{Kernel, Outline};
 use crate::error::{Error, Result};
 use crate::scene::{Scene, Surfels};
+use crate::setting::{Field, Fields, Slot, Visit, Words};
 
 /// Footprints, the visible band and culling; everything here may change the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +46,60 @@ impl SplatSettings {
 impl Default for SplatSettings {
     fn default() -> Self {
         Self { cull: true, ..Self::BOTH_SIDES }
+    }
+}
+
+impl Fields for SplatSettings {
+    fn fields(&mut self, each: &mut Visit<'_>) {
+        let Self { kernel, epsilon, cull } = self;
+        let preset = "preset of outline, cut-off and low-pass filter";
+        each(Field::new("kernel", preset, Slot::Preset(kernel)));
+        each(Field::new("outline", "shape of a splat", Slot::Word(&mut kernel.outline)));
+        each(
+            Field::new("cutoff", "where the kernel is cut", Slot::Number(&mut kernel.cutoff))
+                .unit("standard deviations")
+                .range("0.25 to 4"),
+        );
+        let variance = "variance of the low-pass filter";
+        each(
+            Field::new("low_pass", variance, Slot::Number(&mut kernel.low_pass))
+                .unit("px^2")
+                .range("0 to 16"),
+        );
+        let (mut depth, mut in_radii) = match *epsilon {
+            Epsilon::World(depth) => (depth, false),
+            Epsilon::MedianRadii(depth) => (depth, true),
+        };
+        each(
+            Field::new(
+                "epsilon",
+                "depth of the visible band",
+                Slot::Depth(&mut depth, &mut in_radii),
+            )
+            .unit("world units, or in median radii as in 1.5r")
+            .range("0 to inf"),
+        );
+        *epsilon = if in_radii { Epsilon::MedianRadii(depth) } else { Epsilon::World(depth) };
+        each(culling(cull));
+    }
+}
+
+/// The row of culling, which methods without splats have too.
+pub(crate) fn culling(cull: &mut bool) -> Field<'_> {
+    Field::new("cull", "whether what is seen from behind is dropped", Slot::Switch(cull))
+}
+
+impl Words for Outline {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("affine", Self::Affine), ("perspective", Self::Perspective), ("raycast", Self::RayCast)];
+}
+
+impl Words for Kernel {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("default", Self::DEFAULT), ("zpvbg01", Self::ZPVBG01), ("zp06", Self::ZP06)];
+
+    fn is(&self, other: &Self) -> bool {
+        self == other
     }
 }
 

@@ -1,11 +1,11 @@
 //! Placing and shape: the first two steps of [`mod@super::project`].
 
 use super::Projector;
-use crate::number::{Exact, Vector2, Vector3};
+use crate::number::{Real, Vector2, Vector3};
 
 /// A surfel in view space, and the Jacobian there.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Placed<R> {
+pub(super) struct PlacedDisc<R> {
     /// Centre in view space.
     pub(super) p: Vector3<R>,
     /// Normal in view space.
@@ -22,7 +22,7 @@ pub(super) struct Placed<R> {
 
 /// The covariance of a disc on the screen, without low-pass filter.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shape<R> {
+pub(super) struct Covariance<R> {
     pub(super) xx: R,
     pub(super) xy: R,
     pub(super) yy: R,
@@ -31,10 +31,10 @@ pub(super) struct Shape<R> {
     pub(super) tilt: Vector2<R>,
 }
 
-impl<R: Exact> Projector<R> {
+impl<R: Real> Projector<R> {
     /// A surfel in view space, and the Jacobian there.
     #[inline(always)]
-    pub(super) fn place(&self, position: Vector3<R>, normal: Vector3<R>) -> Placed<R> {
+    pub(super) fn place(&self, position: Vector3<R>, normal: Vector3<R>) -> PlacedDisc<R> {
         let view = &self.view;
         let p = view.point(position);
         let n = view.direction(normal);
@@ -46,7 +46,7 @@ impl<R: Exact> Projector<R> {
         } else {
             (R::ONE, Vector2::new(R::ZERO, R::ZERO), Vector2::new(p.x, p.y))
         };
-        Placed {
+        PlacedDisc {
             p,
             n,
             t,
@@ -61,15 +61,15 @@ impl<R: Exact> Projector<R> {
 
     /// The covariance of a disc.
     #[inline(always)]
-    pub(super) fn disc(&self, placed: &Placed<R>, radius: R) -> Shape<R> {
-        let Placed { n, m, d, sx, sy, g, .. } = *placed;
+    pub(super) fn disc(&self, placed: &PlacedDisc<R>, radius: R) -> Covariance<R> {
+        let PlacedDisc { n, m, d, sx, sy, g, .. } = *placed;
         let s = radius / self.cutoff;
         let (rx, ry) = (s * sx, s * sy);
         let c = Vector3::new(-(d.x * n.y), d.x * n.x - n.z, n.y);
         let e = Vector3::new(n.z - d.y * n.y, d.y * n.x, -n.x);
         // The z axis in the disc's plane, times the variance.
         let z = Vector3::new(-(n.z * n.x), -(n.z * n.y), n.x * n.x + n.y * n.y) * (s * s);
-        Shape {
+        Covariance {
             xx: (rx * rx) * c.dot(c),
             xy: -((rx * ry) * c.dot(e)),
             yy: (ry * ry) * e.dot(e),
@@ -80,8 +80,12 @@ impl<R: Exact> Projector<R> {
     }
 
     /// The covariance of an ellipse.
-    pub(super) fn ellipse(&self, placed: &Placed<R>, tangents: [Vector3<R>; 2]) -> Shape<R> {
-        let Placed { m, d, sx, sy, .. } = *placed;
+    pub(super) fn ellipse(
+        &self,
+        placed: &PlacedDisc<R>,
+        tangents: [Vector3<R>; 2],
+    ) -> Covariance<R> {
+        let PlacedDisc { m, d, sx, sy, .. } = *placed;
         let [u, v] = tangents.map(|tangent| {
             let t = self.view.direction(tangent);
             Vector3::new(t.x / self.cutoff, t.y / self.cutoff, t.z / self.cutoff)
@@ -90,7 +94,7 @@ impl<R: Exact> Projector<R> {
         let (vx, vy) = (sx * (v.x + d.x * v.z), -(sy * (v.y + d.y * v.z)));
         let normal = u.cross(v);
         let along = (normal.x * d.x + normal.y * d.y) - normal.z;
-        Shape {
+        Covariance {
             xx: ux * ux + vx * vx,
             xy: ux * uy + vx * vy,
             yy: uy * uy + vy * vy,

@@ -1,6 +1,6 @@
 //! The camera in the numbers of the arithmetic.
 
-use crate::number::{Exact, Vector3};
+use crate::number::{Real, Vector3};
 use crate::scene::{Camera, Projection};
 
 /// A [`Camera`] over [`Real`]: the same `f32` inputs, exactly.
@@ -26,7 +26,7 @@ pub struct View<R> {
     pub height: R,
 }
 
-impl<R: Exact> View<R> {
+impl<R: Real> View<R> {
     /// The numbers of a camera.
     #[must_use]
     pub fn new(camera: &Camera) -> Self {

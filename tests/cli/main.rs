@@ -2,10 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+mod compare;
 mod golden;
 mod groups;
 mod pictures;
 mod primitives;
+mod project;
 mod refusals;
 mod reports;
 

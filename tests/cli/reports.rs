@@ -96,7 +96,7 @@ fn info_describes_every_kind_of_file() {
 #[test]
 fn help_and_version_are_not_errors() {
     let at = TempDir::new().unwrap();
-    for command in ["render", "golden", "compare", "explain", "group", "info"] {
+    for command in ["render", "golden", "compare", "explain", "group", "project", "info"] {
         assert!(succeeds(at.path(), &["--help"]).contains(command));
         assert!(succeeds(at.path(), &[command, "--help"]).contains("Usage: splatref"));
     }

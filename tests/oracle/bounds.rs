@@ -106,7 +106,8 @@ fn grazing(mut given: Given, lean: f32) -> Given {
 fn leak<R: Exact>(given: &Given, kernel: &Kernel, camera: &Camera) -> Option<(u32, u32, R)> {
     let view = View::<R>::new(camera);
     let shared = splatref::splat::Shared::new(&view, kernel);
-    let (splat, fate) = project(&Projector::new(view, kernel, false), &given.disc(), 0);
+    let (splat, reasons) = project(&Projector::new(view, kernel, false), &given.disc(), 0);
+    let fate = reasons.fate();
     if matches!(fate, Fate::Behind | Fate::Degenerate | Fate::BackFacing) {
         return None;
     }
@@ -178,8 +179,8 @@ proptest! {
         let kernel = Kernel { outline: OUTLINES[outline], ..Kernel::DEFAULT };
         let given = Given { position: Vec3::new(x, y, -t), normal, radius, tangents: None };
         let view = View::<f32>::new(&camera);
-        let (splat, fate) = project(&Projector::new(view, &kernel, false), &given.disc(), 0);
-        if fate != Fate::Visible {
+        let (splat, reasons) = project(&Projector::new(view, &kernel, false), &given.disc(), 0);
+        if reasons.fate() != Fate::Visible {
             return Ok(());
         }
         let ([low, high], facing) = extent(&given, kernel, &camera);

@@ -7,6 +7,7 @@ use super::{add, enlarge};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::scene::{Groups, Surfels};
+use crate::setting::{Field, Slot, Visit, Words};
 use std::f64::consts::PI;
 
 /// How groups are changed so as to cover more of the surface.
@@ -51,7 +52,29 @@ pub struct GroupCoverage {
     pub after: f64,
 }
 
+/// How far a surfel may be covered that is added to a group, if nobody says.
+const MOST: f32 = 0.5;
+
+impl Words for Extension {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("none", Self::None), ("add", Self::Add { most: MOST }), ("enlarge", Self::Enlarge)];
+}
+
 impl Extension {
+    /// The rows of the extension.
+    pub(super) fn fields(&mut self, each: &mut Visit<'_>) {
+        let extend = "how groups are made to cover the surface: surfels of others are added, or \
+                      radii are enlarged";
+        each(Field::new("extend", extend, Slot::Word(self)));
+        let help = "the most of a splat that is covered already if the splat is added, as a part \
+                    of its area";
+        let row = |most| Field::new("most", help, Slot::Number(most)).range("0 to 1");
+        match self {
+            Self::Add { most } => each(row(most)),
+            Self::None | Self::Enlarge => each(row(&mut { MOST }).idle("unless splats are added")),
+        }
+    }
+
     /// Whether the numbers are in range.
     ///
     /// # Errors

@@ -127,6 +127,7 @@ use crate::error::Result;
 use crate::frame::Exec;
 use crate::scene::groups::check_count;
 use crate::scene::{Groups, Surfels};
+use crate::setting::{Field, Fields, Slot, Visit};
 
 /// How surfels are divided into groups.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,6 +138,22 @@ pub struct Grouping {
     pub count: Option<usize>,
     /// How groups are made to cover the surface.
     pub extension: Extension,
+}
+
+impl Fields for Grouping {
+    fn fields(&mut self, each: &mut Visit<'_>) {
+        self.rules.fields(each);
+        let mut count = self.count.map(|count| count as u32);
+        let help = "most groups: the overlap is the largest that gives so few; `any`: as many as \
+                    the overlap takes";
+        each(
+            Field::new("count", help, Slot::CountOr(&mut count, "any"))
+                .option("groups")
+                .range("1 to 64"),
+        );
+        self.count = count.map(|count| count as usize);
+        self.extension.fields(each);
+    }
 }
 
 impl Grouping {
@@ -155,7 +172,7 @@ impl Grouping {
     /// `progress` is told the name of a step, how much of it is done, and of how much.
     ///
     /// # Errors
-    /// As [`group::group`], [`group_into`] and [`group::extend`].
+    /// As [`group()`], [`group_into`] and [`extend()`].
     pub fn groups(
         &self,
         surfels: &Surfels,

@@ -1,6 +1,7 @@
 //! Which surfels may not share a group: the rules of the graph.
 
 use crate::error::{Error, Result};
+use crate::setting::{Field, Slot, Visit};
 
 /// Which surfels may not share a group \[ZP06, section 4.1\].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +33,26 @@ impl Default for Rules {
 }
 
 impl Rules {
+    /// The rows of the rules.
+    pub(super) fn fields(&mut self, each: &mut Visit<'_>) {
+        let overlap = "c, the most overlap: splats nearer than c times their radii may not share a \
+                       group";
+        each(Field::new("overlap", overlap, Slot::Number(&mut self.overlap)).range("0 to 1"));
+        let opposite = "whether splats that face opposite ways may share a group";
+        each(Field::new("opposite", opposite, Slot::Switch(&mut self.opposite)));
+        let mut parts =
+            self.coplanar.map(|Coplanar { cosine, offset, color }| [cosine, offset, color]);
+        let coplanar = "whether so may those in one plane: least cosine of the normals, most \
+                        distance from each other's plane in sums of their radii, most difference \
+                        of colours";
+        let names = ["cosine", "offset", "color"];
+        each(
+            Field::new("coplanar", coplanar, Slot::Parts(&mut parts, names))
+                .range("0 to 1, 0 to 1 and 0 to inf"),
+        );
+        self.coplanar = parts.map(|[cosine, offset, color]| Coplanar { cosine, offset, color });
+    }
+
     /// Whether the numbers are in range.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! Frame to file.
 
 use super::ATTRIBUTE;
+use crate::frame::named::LONGEST_NAME;
 use crate::frame::{Channel, ChannelData, Frame};
 use crate::io::replace::write_atomically;
 use crate::{Error, Result};
@@ -16,9 +17,6 @@ use exr::meta::{BlockDescription, Headers, MetaData};
 use exr::prelude::Compression;
 use std::io::{self, Seek, Write};
 use std::path::Path;
-
-/// A reader without the long-names flag takes 31 bytes; the exr crate never sets it for channels.
-const LONGEST_NAME: usize = 31;
 
 /// Writes all channels of `frame` and `text`, the attribute [`ATTRIBUTE`], to the file at `path`.
 ///

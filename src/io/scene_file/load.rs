@@ -1,6 +1,6 @@
 //! From a [`SceneFile`] to surfels and primitives.
 
-use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, stem, words};
+use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, stem};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::{environment, ply};
@@ -57,7 +57,7 @@ impl SceneFile {
         let (mut models, mut clouds, mut primitives) = (Vec::new(), Vec::new(), Vec::new());
         let (mut dropped, mut dropped_primitives) = (Dropped::default(), 0);
         for model in &self.models {
-            let Parts { surfels, primitives: more, derived } = parts(model, exec, progress)?;
+            let ModelParts { surfels, primitives: more, derived } = parts(model, exec, progress)?;
             let counts = more.counts();
             let name = model.source.name();
             models.push(ModelReport { name, surfels: surfels.len(), primitives: counts, derived });
@@ -90,13 +90,13 @@ impl SceneFile {
 }
 
 /// A model where its file has it.
-struct Parts {
+struct ModelParts {
     surfels: Surfels,
     primitives: Primitives,
     derived: Option<Derived>,
 }
 
-impl Parts {
+impl ModelParts {
     fn new(surfels: Surfels, primitives: Primitives, derived: Derived) -> Self {
         Self { surfels, primitives, derived: Some(derived) }
     }
@@ -113,7 +113,7 @@ fn check_draw(model: &Model) -> Result<()> {
     Ok(())
 }
 
-fn parts(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Parts> {
+fn parts(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<ModelParts> {
     match &model.source {
         Source::File { path, radius } => {
             let cloud = ply::read(path)?;
@@ -123,7 +123,7 @@ fn parts(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Resul
                 other => other,
             })
         }
-        Source::Shape { shape, count, seed } => Ok(Parts {
+        Source::Shape { shape, count, seed } => Ok(ModelParts {
             surfels: shape.surfels(*count, *seed)?,
             primitives: Primitives::default(),
             derived: None,
@@ -132,7 +132,7 @@ fn parts(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Resul
             let tree = plant::apple_tree(*leaves, *seed)?;
             let primitives =
                 if model.draw == Draw::Polygons { tree.polygons() } else { tree.lines() }?;
-            Ok(Parts { surfels: Surfels::none(), primitives, derived: None })
+            Ok(ModelParts { surfels: Surfels::none(), primitives, derived: None })
         }
     }
 }
@@ -143,29 +143,29 @@ fn of_file(
     options: &Derive,
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
-) -> Result<Parts> {
+) -> Result<ModelParts> {
     let none = Primitives::default();
     Ok(match draw {
         Draw::Points => {
             let (surfels, derived) = derive::surfels(cloud, options, exec, progress)?;
-            Parts::new(surfels, none, derived)
+            ModelParts::new(surfels, none, derived)
         }
         Draw::Polygons => {
             let (triangles, derived) = derive::polygons(cloud, exec, progress)?;
-            Parts::new(Surfels::none(), Primitives { triangles, ..none }, derived)
+            ModelParts::new(Surfels::none(), Primitives { triangles, ..none }, derived)
         }
         Draw::Hybrid(half) => {
             let (surfels, triangles, derived) =
                 derive::hybrid(cloud, half, options, exec, progress)?;
-            Parts::new(surfels, Primitives { triangles, ..none }, derived)
+            ModelParts::new(surfels, Primitives { triangles, ..none }, derived)
         }
         Draw::Ribbons => {
             let (ribbons, derived) = derive::ribbons(cloud, options)?;
-            Parts::new(Surfels::none(), Primitives { ribbons, ..none }, derived)
+            ModelParts::new(Surfels::none(), Primitives { ribbons, ..none }, derived)
         }
         Draw::Tubes => {
             let (tubes, derived) = derive::tubes(cloud, options)?;
-            Parts::new(Surfels::none(), Primitives { tubes, ..none }, derived)
+            ModelParts::new(Surfels::none(), Primitives { tubes, ..none }, derived)
         }
         // Refused before any file is read.
         Draw::Lines => return Err(Error::Invalid("only a tree is drawn as lines".into())),
@@ -191,7 +191,7 @@ impl Source {
         match self {
             Self::File { path, .. } => stem(path),
             Self::Shape { shape, .. } => shape.name().to_owned(),
-            Self::Tree { .. } => words::TREE.to_owned(),
+            Self::Tree { .. } => TREE.to_owned(),
         }
     }
 }

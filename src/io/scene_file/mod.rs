@@ -29,18 +29,16 @@
 mod choice;
 mod draw;
 mod load;
+mod open;
 mod parse;
 mod ready;
 #[cfg(test)]
 mod tests;
-pub mod words;
 
-pub use choice::{
-    DEFAULT_MOST, DEFAULT_OVERLAP, DEFAULT_TRANSPARENT_GROUPS, ExtensionChoice, GroupChoice,
-    MethodChoice, MethodName,
-};
+pub use choice::{Choice, GroupChoice, MethodChoice, Number, OutputSettings};
 pub use draw::Draw;
 pub use load::{Loaded, ModelReport};
+pub use open::{FileKind, TREE, shapes};
 pub use ready::Ready;
 
 use crate::error::{Error, Result};
@@ -80,7 +78,7 @@ pub struct SceneFile {
     /// The groups, for a method that draws them.
     pub groups: GroupChoice,
     /// What is kept.
-    pub output: Output,
+    pub output: OutputSettings,
 }
 
 /// Surfels, polygons or lines from one place.
@@ -150,23 +148,15 @@ pub enum EnvironmentChoice {
     File(PathBuf),
 }
 
-/// The arithmetic of a picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Number {
-    /// The executable specification.
-    #[default]
-    F32,
-    /// The truth; files hold it rounded to `f32`.
-    F64,
-}
-
-/// What is kept of a picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Output {
-    /// The arithmetic.
-    pub number: Number,
-    /// Whether the planes of every stage are kept.
-    pub stages: bool,
+impl EnvironmentChoice {
+    /// `sky`, or else the name of a file.
+    #[must_use]
+    pub fn of(text: &str) -> Self {
+        match text {
+            "sky" => Self::Sky,
+            file => Self::File(file.into()),
+        }
+    }
 }
 
 impl SceneFile {
@@ -202,7 +192,7 @@ impl SceneFile {
             environment: None,
             method: MethodChoice::default(),
             groups: GroupChoice::default(),
-            output: Output::default(),
+            output: OutputSettings::default(),
         }
     }
 
@@ -260,9 +250,12 @@ impl SceneFile {
 
 impl SceneFile {
     /// The grouping that was chosen for a method; none: that of the file, or of the method.
-    #[must_use]
-    pub fn grouping(&self, method: &Method) -> Option<Grouping> {
-        (!self.groups.is_open()).then(|| self.groups.grouping(method))
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`GroupChoice::grouping`].
+    pub fn grouping(&self, method: &Method) -> Result<Option<Grouping>> {
+        let default = method.grouping().filter(|_| !self.groups.settings.is_empty());
+        default.map(|default| self.groups.grouping(default)).transpose()
     }
 }
 

@@ -32,11 +32,11 @@ impl SceneFile {
     /// out of range or not of the method, or if the method cannot draw the scene.
     pub fn ready(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Ready> {
         let method = self.method.method()?;
-        self.groups.check()?;
+        let grouping = self.grouping(&method)?;
         let loaded = self.load(exec, progress)?;
         method.check_scene(&loaded.scene)?;
         let camera = self.camera(&loaded.scene)?;
-        Ok(Ready { loaded, camera, method, grouping: self.grouping(&method) })
+        Ok(Ready { loaded, camera, method, grouping })
     }
 }
 

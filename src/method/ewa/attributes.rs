@@ -2,7 +2,7 @@
 //! \[GBP04, section 3\].
 
 use super::visibility::Foremost;
-use crate::composite::{epsilon, sum};
+use crate::composite::{decide, sum};
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::method::algorithm::Job;
 use crate::method::fragment::{TileSplats, facing};
@@ -50,8 +50,8 @@ pub(in crate::method) fn sums<R: Exact>(
     let (shared, epsilon) = (tile.shared(), tile.epsilon());
     let mut pixels = vec![Sums::NONE; tile.rect.pixels()];
     tile.each_inside(|splat, pixel, q, w| {
-        let visible = epsilon::visible(shared.depth(w), nearest[pixel].depth, epsilon);
-        if candidate(pixel, w) && visible {
+        let limit = decide::limit(nearest[pixel].depth, epsilon);
+        if candidate(pixel, w) && decide::visible(shared.depth(w), limit) {
             pixels[pixel].add(surfels, splat, splat.footprint.weight(q));
         }
     });

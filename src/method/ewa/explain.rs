@@ -3,7 +3,7 @@
 use super::Settings;
 use super::attributes::{Sums, sums};
 use super::visibility::{Foremost, foremost};
-use crate::composite::epsilon;
+use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::NO_ID;
 use crate::method::algorithm::Job;
@@ -67,7 +67,8 @@ pub(in crate::method) fn two_passes<R: Exact>(
     beyond: Option<R>,
 ) -> TwoPasses<R> {
     let (shared, epsilon) = (tile.shared(), tile.epsilon());
-    let candidate = |_: usize, w: R| beyond.is_none_or(|limit| shared.depth(w) > limit);
+    let candidate =
+        |_: usize, w: R| beyond.is_none_or(|limit| decide::beyond(shared.depth(w), limit));
     let nearest = foremost(tile, candidate);
     let sums = sums(tile, surfels, &nearest, candidate)[0];
     let nearest = nearest[0];
@@ -110,7 +111,7 @@ impl<R: Exact> fmt::Display for EwaReplay<R> {
         writeln!(
             f,
             "\nattribute splatting: visible if depth <= {} (nearest {}, surfel {id}, + epsilon {})",
-            n(epsilon::limit(self.nearest, self.epsilon)),
+            n(decide::limit(self.nearest, self.epsilon)),
             n(self.nearest),
             n(self.epsilon)
         )?;

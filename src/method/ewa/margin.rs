@@ -1,9 +1,9 @@
 //! How close the decisions at each pixel came to flipping.
 
 use super::visibility::Foremost;
-use crate::composite::epsilon;
+use crate::composite::decide;
 use crate::method::algorithm::Job;
-use crate::method::fragment::{TileSplats, inside};
+use crate::method::fragment::TileSplats;
 use crate::method::prepare::Prepared;
 use crate::method::tiled::Tiled;
 use crate::number::{Exact, Real};
@@ -22,7 +22,7 @@ pub(super) fn margins<R: Exact>(
         let mut margins = vec![R::INFINITY; rect.pixels()];
         splats.each_in_bounds(|splat, pixel, q, w| {
             let Foremost { nearness: nearest, depth, id } = visible[pixel];
-            let limit = epsilon::limit(depth, epsilon);
+            let limit = decide::limit(depth, epsilon);
             let decisions = Decisions { q, t: shared.depth(w), w, nearest, limit };
             let margin = decisions.margin(shared, id == splat.surfel);
             margins[pixel] = margins[pixel].at_most(margin);
@@ -50,7 +50,8 @@ impl<R: Exact> Decisions<R> {
     /// against the limit, if it is inside. Depth: nearness against that of the nearest, if it is
     /// inside and another one.
     fn margin(&self, shared: &Shared<R>, is_nearest: bool) -> R {
-        let (inside, visible) = (inside(shared, self.q), self.t <= self.limit);
+        let inside = decide::inside(self.q, shared.limit);
+        let visible = decide::visible(self.t, self.limit);
         let mut margin = f32::INFINITY;
         if visible {
             margin = margin.at_most(self.q.ulps_to(shared.limit));

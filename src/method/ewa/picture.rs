@@ -71,14 +71,8 @@ pub(super) fn stage<R: Exact>(
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
     let Job { scene, camera, exec, .. } = *job;
     let mut target = framebuffer(camera, wanted(scene, false), pool);
-    let (tally, times) = fast::render(&scene.surfels, camera, settings, exec, &mut target);
-    let clock = Clock::of(vec![
-        ("projection", times.project),
-        ("visibility", times.visibility),
-        ("attributes", times.attributes),
-        ("normalization", times.normalize),
-    ]);
-    Ok(finish(target, Vec::new(), tally, clock, job))
+    let (tally, laps) = fast::render(&scene.surfels, camera, settings, exec, &mut target);
+    Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 
 /// The planes that a scene needs.

@@ -1,8 +1,9 @@
 //! Visibility splatting: the nearest fragment of each pixel \[GBP04, section 3\].
 
+use crate::composite::decide;
 use crate::frame::NO_ID;
 use crate::method::algorithm::Job;
-use crate::method::fragment::{TileSplats, nearer};
+use crate::method::fragment::TileSplats;
 use crate::method::prepare::Prepared;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
@@ -44,7 +45,7 @@ pub(in crate::method) fn foremost<R: Exact>(
     let mut pixels = vec![Foremost::none(shared); tile.rect.pixels()];
     tile.each_inside(|splat, pixel, _, w| {
         let held = &mut pixels[pixel];
-        if candidate(pixel, w) && nearer(w, held.nearness) {
+        if candidate(pixel, w) && decide::nearer(w, held.nearness) {
             (held.nearness, held.id) = (w, splat.surfel);
         }
     });

@@ -1,7 +1,7 @@
 //! What the fast paths for `f32` share: records of splats, the blocks of a tile, and what is done
 //! with a block whatever the method. The layout: [`crate::method`].
 
-pub(super) mod lanes;
+pub(super) mod fragments;
 pub(super) mod resolve;
 mod store;
 pub(super) mod tile;

@@ -1,9 +1,9 @@
 //! Passes over the blocks of a tile that every method has, each compiled for every vector width.
 
-use super::tile::{Block, LANES, Tile};
-use crate::composite::{epsilon, sum};
+use super::tile::{PixelBlock, Tile};
+use crate::composite::{decide, sum};
+use crate::number::lanes::{LANES, components, vectorized};
 use crate::splat::Shared;
-use multiversion::multiversion;
 
 impl Tile {
     /// The least nearness of each pixel that passes the epsilon-z test.
@@ -22,16 +22,17 @@ impl Tile {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn limits(blocks: &mut [Block], shared: &Shared<f32>, epsilon: f32) {
-    let shared = *shared;
-    for block in blocks {
-        for i in 0..LANES {
-            let limit = epsilon::limit(shared.depth(block.nearest[i]), epsilon);
-            block.least[i] = least_nearness(&shared, limit);
+vectorized!(
+    fn limits(blocks: &mut [PixelBlock], shared: &Shared<f32>, epsilon: f32) {
+        let shared = *shared;
+        for block in blocks {
+            for i in 0..LANES {
+                let limit = decide::limit(shared.depth(block.nearest[i]), epsilon);
+                block.least[i] = least_nearness(&shared, limit);
+            }
         }
     }
-}
+);
 
 /// The smallest nearness whose depth, rounded, is at most `limit`.
 ///
@@ -50,23 +51,27 @@ pub(in crate::method) fn least_nearness(shared: &Shared<f32>, limit: f32) -> f32
     if 1.0 / below <= limit { below } else { least }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn normalize<const NORMAL: bool, const COLOR: bool>(blocks: &mut [Block], shared: &Shared<f32>) {
-    let shared = *shared;
-    for block in blocks {
-        let weight = block.weight;
-        let (mut depth, mut normal, mut color) = (block.nearest, block.normal, block.color);
-        for i in 0..LANES {
-            depth[i] = shared.depth(depth[i]);
-            if NORMAL {
-                let sums = [normal[0][i], normal[1][i], normal[2][i]];
-                [normal[0][i], normal[1][i], normal[2][i]] = sum::direction(sums, weight[i]);
+vectorized!(
+    fn normalize<const NORMAL: bool, const COLOR: bool>(
+        blocks: &mut [PixelBlock],
+        shared: &Shared<f32>,
+    ) {
+        let shared = *shared;
+        for block in blocks {
+            let weight = block.weight;
+            let (mut depth, mut normal, mut color) = (block.nearest, block.normal, block.color);
+            for i in 0..LANES {
+                depth[i] = shared.depth(depth[i]);
+                if NORMAL {
+                    let sums = components(&normal, i);
+                    [normal[0][i], normal[1][i], normal[2][i]] = sum::direction(sums, weight[i]);
+                }
+                if COLOR {
+                    let sums = components(&color, i);
+                    [color[0][i], color[1][i], color[2][i]] = sum::average(sums, weight[i]);
+                }
             }
-            if COLOR {
-                let sums = [color[0][i], color[1][i], color[2][i]];
-                [color[0][i], color[1][i], color[2][i]] = sum::average(sums, weight[i]);
-            }
+            (block.nearest, block.normal, block.color) = (depth, normal, color);
         }
-        (block.nearest, block.normal, block.color) = (depth, normal, color);
     }
-}
+);

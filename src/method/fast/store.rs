@@ -1,7 +1,8 @@
 //! From the blocks of a tile to the rows of the framebuffer.
 
-use super::tile::{Block, LANES, Lanes, ROW, Tile};
+use super::tile::{PixelBlock, ROW, Tile};
 use crate::frame::{FramebufferTile, NO_ID};
+use crate::number::lanes::{LANES, Lanes};
 
 /// Writes a tile without splats.
 pub(super) fn clear(tile: &mut FramebufferTile<'_, f32>) {
@@ -17,7 +18,7 @@ pub(super) fn clear(tile: &mut FramebufferTile<'_, f32>) {
 
 /// Copies the blocks into the rows of the framebuffer.
 pub(super) fn store(tile: &Tile, pixels: &mut FramebufferTile<'_, f32>) {
-    let columns = tile.columns as usize;
+    let columns = tile.grid.columns as usize;
     for y in 0..(pixels.rect.y1 - pixels.rect.y0) as usize {
         let blocks = &tile.blocks[y / ROW * columns..][..columns];
         let first = y % ROW * ROW;
@@ -35,7 +36,11 @@ pub(super) fn store(tile: &Tile, pixels: &mut FramebufferTile<'_, f32>) {
 
 /// Copies one row of pixels, a block at a time; the last may be cut by the edge of the picture.
 #[inline(always)]
-fn store_row<T: Copy>(blocks: &[Block], pixels: &mut [T], row: impl Fn(&Block) -> [T; ROW]) {
+fn store_row<T: Copy>(
+    blocks: &[PixelBlock],
+    pixels: &mut [T],
+    row: impl Fn(&PixelBlock) -> [T; ROW],
+) {
     let (whole, rest) = pixels.as_chunks_mut::<ROW>();
     for (block, pixels) in blocks.iter().zip(whole.iter_mut()) {
         *pixels = row(block);

@@ -3,6 +3,7 @@
 use crate::frame::{FramebufferTile, NO_ID, Rect};
 use crate::method::fragment::facing;
 use crate::method::prepare::Prepared;
+use crate::number::lanes::{LANES, Lanes};
 use crate::splat::{Footprint, Splat};
 use glam::Vec3;
 
@@ -10,16 +11,12 @@ use glam::Vec3;
 pub(in crate::method) const SIDE: u32 = 4;
 /// Pixels of a row of a block.
 pub(in crate::method) const ROW: usize = SIDE as usize;
-/// Pixels of a block.
-pub(in crate::method) const LANES: usize = (SIDE * SIDE) as usize;
+const _: () = assert!(ROW * ROW == LANES, "a lane is a pixel of a block");
 
-/// One number for each pixel of a block, row by row.
-pub(in crate::method) type Lanes = [f32; LANES];
-
-/// The pixels of a block.
+/// The pixels of a block, row by row.
 #[derive(Clone)]
 #[repr(align(64))]
-pub(in crate::method) struct Block {
+pub(in crate::method) struct PixelBlock {
     /// Nearness of the nearest fragment.
     pub(in crate::method) nearest: Lanes,
     /// Its surfel.
@@ -83,14 +80,20 @@ impl Record {
     }
 }
 
-/// What one tile works with.
-pub(in crate::method) struct Tile {
-    pub(in crate::method) splats: Vec<Record>,
-    pub(in crate::method) blocks: Vec<Block>,
+/// Where the blocks of a tile are.
+#[derive(Clone, Copy)]
+pub(in crate::method) struct BlockGrid {
     /// The pixels of the tile.
     pub(in crate::method) rect: Rect,
     /// Blocks in a row.
     pub(in crate::method) columns: u32,
+}
+
+/// What one tile works with.
+pub(in crate::method) struct Tile {
+    pub(in crate::method) splats: Vec<Record>,
+    pub(in crate::method) blocks: Vec<PixelBlock>,
+    pub(in crate::method) grid: BlockGrid,
     /// Whether normals are wanted.
     pub(in crate::method) normal: bool,
     /// Whether colours are wanted.
@@ -111,7 +114,7 @@ impl Tile {
         let rows = (rect.y1 - rect.y0).div_ceil(SIDE);
         let count = if splats.is_empty() { 0 } else { columns * rows };
         let zero = [0.0; LANES];
-        let empty = Block {
+        let empty = PixelBlock {
             nearest: [prepared.shared.empty(); LANES],
             id: [NO_ID; LANES],
             least: zero,
@@ -120,6 +123,7 @@ impl Tile {
             color: [zero; 3],
         };
         let (normal, color) = (tile.normal.is_some(), tile.color.is_some());
-        Self { splats, blocks: vec![empty; count as usize], rect, columns, normal, color }
+        let (blocks, grid) = (vec![empty; count as usize], BlockGrid { rect, columns });
+        Self { splats, blocks, grid, normal, color }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Settings;
 use super::layers::{PeeledLayer, PeeledPixel, Peeling};
-use crate::composite::epsilon;
+use crate::composite::decide;
 use crate::composite::under::Under;
 use crate::error::Result;
 use crate::frame::NO_ID;
@@ -96,7 +96,7 @@ impl<R: Exact> fmt::Display for PeelingReplay<R> {
                 f,
                 "layer {number}, attribute splatting: visible if depth <= {} (nearest {}, surfel \
                  {}, + epsilon {})",
-                n(epsilon::limit(layer.depth, self.epsilon)),
+                n(decide::limit(layer.depth, self.epsilon)),
                 n(layer.depth),
                 layer.id,
                 n(self.epsilon)

@@ -3,7 +3,7 @@
 use super::Settings;
 use super::blending::under;
 use crate::composite::under::Under;
-use crate::composite::{epsilon, sum};
+use crate::composite::{decide, sum};
 use crate::frame::{NO_ID, Rect};
 use crate::method::algorithm::Job;
 use crate::method::ewa::attributes::{Sums, sums};
@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 
 /// A picture whose splats are projected and sorted into tiles.
 #[derive(Debug)]
-pub(super) struct Peeling<'a, R> {
+pub(super) struct Peeling<'a, R: Exact> {
     pub(super) surfels: &'a Surfels,
     pub(super) splats: Prepared<R, Splat<R>>,
     shader: Shader<R>,
@@ -108,7 +108,7 @@ impl<'a, R: Exact> Peeling<'a, R> {
         limits: &[R],
     ) -> Option<Vec<PeeledLayer<R>>> {
         let shared = splats.shared();
-        let beyond = |pixel: usize, w: R| shared.depth(w) > limits[pixel];
+        let beyond = |pixel: usize, w: R| decide::beyond(shared.depth(w), limits[pixel]);
         let nearest = foremost(splats, beyond);
         if nearest.iter().all(|nearest| nearest.id == NO_ID) {
             return None;
@@ -158,6 +158,6 @@ impl<R: Exact> PeeledPixel<R> {
         }
         self.blend = under(self.blend, layer);
         self.layers += 1;
-        self.limit = epsilon::limit(layer.depth, epsilon);
+        self.limit = decide::limit(layer.depth, epsilon);
     }
 }

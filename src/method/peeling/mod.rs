@@ -12,7 +12,7 @@
 //!    is -inf, so that layer 1 is of all fragments.
 //! 3. **Attribute splatting**: of the same fragments, each with `t <= limit_j` adds its weight, and
 //!    its weight times normal, times colour and times opacity, in ascending surfel index; `limit_j
-//!    = t_j + epsilon`, see [`crate::composite::epsilon`]. A surfel seen from behind adds its
+//!    = t_j + epsilon`, see [`crate::composite::decide`]. A surfel seen from behind adds its
 //!    normal reversed. In a scene without opacities each is 1.
 //! 4. **Normalization**: colour and opacity `a_j` = sum / weight, normal = direction of sum /
 //!    weight.
@@ -76,6 +76,7 @@ use crate::method::tiled::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
+use crate::splat::SplatSettings;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "peeling";
@@ -83,6 +84,10 @@ impl Algorithm for Settings {
         "depth peeling, each layer by 2+1 passes: the truth of transparency [Mam89, Eve02]";
     const STAGES: &'static [Stage] = planes::ROWS;
     type Memory = ();
+
+    fn splats(&self) -> Option<&SplatSettings> {
+        Some(&self.splats)
+    }
 
     fn check(&self) -> Result<()> {
         Self::check(self)

@@ -1,7 +1,7 @@
 //! The planes of the stages: where they leave, and where they come in.
 
 use super::layers::{PeeledLayer, PeeledPixel};
-use crate::composite::{epsilon, under::Under};
+use crate::composite::{decide, under::Under};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Plane};
 use crate::method::resolved::{ALPHA, DEPTH, ID, SHADED};
@@ -98,7 +98,7 @@ pub(super) fn given_limits<R: Exact>(
     epsilon: R,
 ) -> Result<Tiled<R>> {
     let depth = given.scalar(&LAYER_DEPTH, number)?;
-    Ok(given.tiled(|x, y| epsilon::limit(*depth.at(x, y), epsilon)))
+    Ok(given.tiled(|x, y| decide::limit(*depth.at(x, y), epsilon)))
 }
 
 /// Somebody's layers, blended: as many as some pixel has.

@@ -1,6 +1,7 @@
 //! What is computed.
 
 use crate::error::{Error, Result};
+use crate::setting::{Field, Fields, Slot, Visit};
 use crate::splat::SplatSettings;
 
 /// What is computed; everything here may change the picture.
@@ -20,6 +21,14 @@ impl Default for Settings {
     /// 64 layers, seen from both sides.
     fn default() -> Self {
         Self { splats: SplatSettings::BOTH_SIDES, layers: 64 }
+    }
+}
+
+impl Fields for Settings {
+    fn fields(&mut self, each: &mut Visit<'_>) {
+        self.splats.fields(each);
+        let help = "most layers that are peeled";
+        each(Field::new("peel", help, Slot::Count(&mut self.layers)).range("1 to 256"));
     }
 }
 

@@ -106,8 +106,8 @@ fn fragments<R: Exact>(
     let projector = Projector::new(view, &settings.splats.kernel, settings.splats.cull);
     let mut pixels = vec![Vec::new(); (camera.width * camera.height) as usize];
     for i in 0..scene.surfels.len() {
-        let (splat, fate) = project(&projector, &batch::disc(&scene.surfels, i), i as u32);
-        if fate != Fate::Visible {
+        let (splat, reasons) = project(&projector, &batch::disc(&scene.surfels, i), i as u32);
+        if reasons.fate() != Fate::Visible {
             continue;
         }
         for (pixel, found) in (0..).zip(&mut pixels) {

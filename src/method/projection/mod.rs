@@ -2,7 +2,7 @@
 //!
 //! Source: \[MKC08, sections 3.1, 4.1, 4.2, 5\], \[MOC08, section 3.1\]. Every surfel becomes at
 //! most one pixel, ribbons and tubes become lines one pixel wide, triangles the pixels they cover.
-//! What a pixel keeps is one [`Sample`], the nearest; ties: the lower [id](self#ids).
+//! What a pixel keeps is one [`PixelSample`], the nearest; ties: the lower [id](self#ids).
 //!
 //! **Surfels.** With p the centre and n the normal in view space, t = -p.z, m = 1/t and (a, b) =
 //! (p.x m, p.y m) (orthographic: m = 1 and (a, b) = (p.x, p.y)):
@@ -29,31 +29,29 @@
 //!
 //! # Planes
 //!
-//! With stages: `projection.id`, `projection.kind` (the [`Kind`] as a stencil), `projection.Z`,
-//! `projection.normal` (view space), `projection.extent` (rho), `projection.radius` (r),
-//! `projection.center.X`, `.Y`, and if the scene has them `projection.R G B` and
-//! `projection.tangent` (view space).
+//! With stages: [`planes::PLANES`].
 
+pub(in crate::method) mod explain;
 pub(in crate::method) mod fast;
-mod plain;
-mod planes;
+pub mod planes;
 pub mod primitives;
-pub mod surfel;
+mod project;
+pub mod surfels;
 
-pub(in crate::method) use plain::project;
-pub(in crate::method) use planes::planes;
+pub(in crate::method) use project::project;
 
 use crate::frame::raster::Snap;
 use crate::frame::{NO_ID, Plane};
-use crate::number::{Exact, Vector2, Vector3};
+use crate::number::{Exact, Real, Vector2, Vector3};
 use crate::scene::{Camera, Scene};
 use crate::splat::clip::Clip;
 use crate::splat::{Tally, View};
+use surfels::PointProjector;
 
 /// What a pixel shows; the stencil of \[MKC08, section 4.1\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[repr(u8)]
-pub enum Kind {
+pub enum SampleKind {
     /// Nothing.
     #[default]
     Empty = 0,
@@ -67,11 +65,22 @@ pub enum Kind {
     Polygon = 4,
 }
 
+impl SampleKind {
+    /// All, each at the index that is its value in the stencil.
+    pub const ALL: [Self; 5] =
+        [Self::Empty, Self::Surface, Self::Ribbon, Self::Tube, Self::Polygon];
+
+    /// The name in words.
+    pub(in crate::method) fn name(self) -> &'static str {
+        ["nothing", "surfel", "ribbon", "tube", "triangle"][self as usize]
+    }
+}
+
 /// What one pixel knows of the scene; view space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample<R> {
+pub struct PixelSample<R> {
     /// What it is.
-    pub kind: Kind,
+    pub kind: SampleKind,
     /// Which, see the [module](self#ids).
     pub id: u32,
     /// Depth t in world units.
@@ -92,12 +101,30 @@ pub struct Sample<R> {
     pub color: [R; 3],
 }
 
-impl<R: Exact> Sample<R> {
+impl<R> PixelSample<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> PixelSample<S> {
+        PixelSample {
+            kind: self.kind,
+            id: self.id,
+            depth: f(self.depth),
+            radius: f(self.radius),
+            extent: f(self.extent),
+            center: self.center.map(&f),
+            normal: self.normal.map(&f),
+            tangent: self.tangent.map(&f),
+            color: self.color.map(&f),
+        }
+    }
+}
+
+impl<R: Real> PixelSample<R> {
     /// No sample.
     #[must_use]
     pub fn empty() -> Self {
         Self {
-            kind: Kind::Empty,
+            kind: SampleKind::Empty,
             id: NO_ID,
             depth: R::INFINITY,
             radius: R::ZERO,
@@ -114,29 +141,29 @@ impl<R: Exact> Sample<R> {
 #[derive(Clone, Debug)]
 pub struct Projected<R> {
     /// The nearest sample of each pixel.
-    pub samples: Plane<Sample<R>>,
+    pub samples: Plane<PixelSample<R>>,
     /// What became of the surfels.
     pub tally: Tally,
 }
 
 /// What the projection of a scene's primitives shares.
-struct Stage<'a, R> {
+struct SceneProjector<'a, R> {
     scene: &'a Scene,
     has: Has,
-    lens: surfel::Lens<R>,
+    points: PointProjector<R>,
     clip: Clip<R>,
     snap: Snap,
     /// Width and height of the picture.
     size: [u32; 2],
 }
 
-impl<'a, R: Exact> Stage<'a, R> {
+impl<'a, R: Exact> SceneProjector<'a, R> {
     fn new(scene: &'a Scene, camera: &Camera, cull: bool, snap: Snap) -> Self {
         let view = View::new(camera);
         Self {
             scene,
             has: Has::of(scene),
-            lens: surfel::Lens::new(view, cull),
+            points: PointProjector::new(view, cull),
             clip: Clip::new(&view),
             snap,
             size: [camera.width, camera.height],
@@ -156,13 +183,17 @@ pub(in crate::method) fn world<R: Exact>(view: &View<R>, v: Vector3<R>) -> [R; 3
 
 /// Which attributes a scene has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::method) struct Has {
-    pub(in crate::method) color: bool,
-    pub(in crate::method) tangent: bool,
+pub struct Has {
+    /// Colours, of surfels or of primitives.
+    pub color: bool,
+    /// Tangents: tubes.
+    pub tangent: bool,
 }
 
 impl Has {
-    pub(in crate::method) fn of(scene: &Scene) -> Self {
+    /// What this scene has.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
         Self {
             color: scene.surfels.color().is_some() || scene.primitives.colored(),
             tangent: !scene.primitives.tubes.is_empty(),

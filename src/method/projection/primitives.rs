@@ -31,8 +31,8 @@
 //! opposite, and what lies between them pass through 0: where `a_0 . a_1` < 0, `-a_1` takes the
 //! place of `a_1`; in world space, so that the camera has no part in it.
 
-use super::surfel::{Lens, Placed};
-use super::{Kind, Sample, Stage};
+use super::surfels::{PlacedPoint, PointProjector};
+use super::{PixelSample, SampleKind, SceneProjector};
 use crate::frame::Rect;
 use crate::frame::raster::{Line, Triangle};
 use crate::number::{Exact, Vector2, Vector3};
@@ -45,7 +45,7 @@ use crate::splat::ellipse;
 #[derive(Debug)]
 pub(super) struct Piece<R> {
     pub(super) bounds: Rect,
-    kind: Kind,
+    kind: SampleKind,
     id: u32,
     /// The primitive in its list.
     index: usize,
@@ -66,7 +66,7 @@ enum Raster {
 }
 
 /// A pixel of a piece: c and the position there.
-pub(super) struct Fragment<R> {
+pub(super) struct PiecePixel<R> {
     pub(super) x: u32,
     pub(super) y: u32,
     pub(super) c: [R; 3],
@@ -74,73 +74,81 @@ pub(super) struct Fragment<R> {
 }
 
 /// Calls `draw` for each piece of a primitive that may be seen.
-pub(super) fn pieces<R: Exact>(stage: &Stage<'_, R>, id: usize, draw: impl FnMut(Piece<R>)) {
-    let of = &stage.scene.primitives;
-    let index = id - stage.scene.surfels.len();
+pub(super) fn pieces<R: Exact>(
+    projector: &SceneProjector<'_, R>,
+    id: usize,
+    draw: impl FnMut(Piece<R>),
+) {
+    let of = &projector.scene.primitives;
+    let index = id - projector.scene.surfels.len();
     if index < of.triangles.len() {
-        return triangle(&of.triangles, stage, (id as u32, index), draw);
+        return triangle(&of.triangles, projector, id as u32, index, draw);
     }
     let index = index - of.triangles.len();
     if index < of.ribbons.len() {
-        return line((&of.ribbons, Kind::Ribbon), stage, (id as u32, index), draw);
+        return line(&of.ribbons, SampleKind::Ribbon, projector, id as u32, index, draw);
     }
     let index = index - of.ribbons.len();
-    line((&of.tubes, Kind::Tube), stage, (id as u32, index), draw);
+    line(&of.tubes, SampleKind::Tube, projector, id as u32, index, draw);
 }
 
 /// The corners of a primitive in view space.
 fn corners<R: Exact, const N: usize>(
     of: &Indexed<N>,
-    lens: &Lens<R>,
+    points: &PointProjector<R>,
     index: usize,
 ) -> [Vector3<R>; N] {
     let position = &of.vertices().position;
-    of.corners()[index].map(|i| lens.view.point(Vector3::from_glam(position[i as usize])))
+    of.corners()[index].map(|i| points.view.point(Vector3::from_glam(position[i as usize])))
 }
 
 /// A corner of a piece: its place in fixed point, and m.
-fn placed<R: Exact>(stage: &Stage<'_, R>, p: Vector3<R>) -> ([i64; 2], R) {
-    let Placed { m, center, .. } = stage.lens.place(p);
-    ([stage.snap.fixed(center.x), stage.snap.fixed(center.y)], m)
+fn placed<R: Exact>(projector: &SceneProjector<'_, R>, p: Vector3<R>) -> ([i64; 2], R) {
+    let PlacedPoint { m, center, .. } = projector.points.place(p);
+    ([projector.snap.fixed(center.x), projector.snap.fixed(center.y)], m)
 }
 
 fn triangle<R: Exact>(
     of: &Indexed<3>,
-    stage: &Stage<'_, R>,
-    (id, index): (u32, usize),
+    projector: &SceneProjector<'_, R>,
+    id: u32,
+    index: usize,
     mut draw: impl FnMut(Piece<R>),
 ) {
-    let p = corners(of, &stage.lens, index);
-    let polygon: Vec<Clipped<R, 3>> = stage.clip.triangle(p);
-    let [width, height] = stage.size;
+    let p = corners(of, &projector.points, index);
+    let polygon: Vec<Clipped<R, 3>> = projector.clip.triangle(p);
+    let [width, height] = projector.size;
     for i in 2..polygon.len() {
         let fan = [&polygon[0], &polygon[i - 1], &polygon[i]];
-        let ends = fan.map(|corner| placed(stage, corner.position));
-        let Some(raster) = Triangle::new(&stage.snap, ends.map(|(place, _)| place)) else {
+        let ends = fan.map(|corner| placed(projector, corner.position));
+        let Some(raster) = Triangle::new(&projector.snap, ends.map(|(place, _)| place)) else {
             continue;
         };
         let bounds = raster.bounds(width, height);
         let back = !raster.front();
-        if bounds.is_empty() || (stage.lens.cull && back) {
+        if bounds.is_empty() || (projector.points.cull && back) {
             continue;
         }
         let (m, weights) = (ends.map(|(_, m)| m), fan.map(|corner| corner.weights));
         let raster = Raster::Triangle(raster);
-        draw(Piece { bounds, kind: Kind::Polygon, id, index, back, raster, m, weights, p });
+        draw(Piece { bounds, kind: SampleKind::Polygon, id, index, back, raster, m, weights, p });
     }
 }
 
 fn line<R: Exact>(
-    (of, kind): (&Indexed<2>, Kind),
-    stage: &Stage<'_, R>,
-    (id, index): (u32, usize),
+    of: &Indexed<2>,
+    kind: SampleKind,
+    projector: &SceneProjector<'_, R>,
+    id: u32,
+    index: usize,
     mut draw: impl FnMut(Piece<R>),
 ) {
-    let p = corners(of, &stage.lens, index);
-    let Some([a, b]) = stage.clip.segment(p) else { return };
-    let ((from, from_m), (to, to_m)) = (placed(stage, a.position), placed(stage, b.position));
-    let raster = Line::new(&stage.snap, from, to);
-    let [width, height] = stage.size;
+    let p = corners(of, &projector.points, index);
+    let Some([a, b]) = projector.clip.segment(p) else { return };
+    let ((from, from_m), (to, to_m)) =
+        (placed(projector, a.position), placed(projector, b.position));
+    let raster = Line::new(&projector.snap, from, to);
+    let [width, height] = projector.size;
     let bounds = raster.bounds(width, height);
     if bounds.is_empty() {
         return;
@@ -161,7 +169,7 @@ fn line<R: Exact>(
 
 impl<R: Exact> Piece<R> {
     /// Calls `visit` for every pixel of a rectangle that the piece covers.
-    pub(super) fn for_each(&self, rect: &Rect, mut visit: impl FnMut(Fragment<R>)) {
+    pub(super) fn for_each(&self, rect: &Rect, mut visit: impl FnMut(PiecePixel<R>)) {
         let rect = rect.intersection(&self.bounds);
         match &self.raster {
             Raster::Triangle(triangle) => {
@@ -178,32 +186,36 @@ impl<R: Exact> Piece<R> {
     }
 
     /// Perspective-correct weights and position, see the module page.
-    fn at(&self, x: u32, y: u32, w: [R; 3]) -> Fragment<R> {
+    fn at(&self, x: u32, y: u32, w: [R; 3]) -> PiecePixel<R> {
         let q = [w[0] * self.m[0], w[1] * self.m[1], w[2] * self.m[2]];
         let whole = (q[0] + q[1]) + q[2];
         let b = q.map(|q| q / whole);
         let of = &self.weights;
         let c = [0, 1, 2].map(|k| (b[0] * of[0][k] + b[1] * of[1][k]) + b[2] * of[2][k]);
         let p = (self.p[0] * c[0] + self.p[1] * c[1]) + self.p[2] * c[2];
-        Fragment { x, y, c, p }
+        PiecePixel { x, y, c, p }
     }
 
     /// What a pixel keeps of the piece.
-    pub(super) fn sample(&self, stage: &Stage<'_, R>, fragment: &Fragment<R>) -> Sample<R> {
-        let Fragment { x, y, c, p } = *fragment;
-        let (scene, lens) = (stage.scene, &stage.lens);
+    pub(super) fn sample(
+        &self,
+        projector: &SceneProjector<'_, R>,
+        fragment: &PiecePixel<R>,
+    ) -> PixelSample<R> {
+        let PiecePixel { x, y, c, p } = *fragment;
+        let (scene, points) = (projector.scene, &projector.points);
         let of = &scene.primitives;
         let (direction, radius, color) = match self.kind {
-            Kind::Ribbon => attributes(&of.ribbons, self.index, c, self.kind),
-            Kind::Tube => attributes(&of.tubes, self.index, c, self.kind),
+            SampleKind::Ribbon => attributes(&of.ribbons, self.index, c, self.kind),
+            SampleKind::Tube => attributes(&of.tubes, self.index, c, self.kind),
             _ => attributes(&of.triangles, self.index, c, self.kind),
         };
-        let direction = lens.view.direction(direction).normalized();
-        let placed = lens.place(p);
+        let direction = points.view.direction(direction).normalized();
+        let placed = points.place(p);
         let (normal, tangent) = match self.kind {
-            Kind::Tube if lens.view.perspective => ((-p).normalized(), direction),
-            Kind::Tube => (Vector3::new(R::ZERO, R::ZERO, R::ONE), direction),
-            Kind::Ribbon if lens.facing(&placed, direction) > R::ZERO => {
+            SampleKind::Tube if points.view.perspective => ((-p).normalized(), direction),
+            SampleKind::Tube => (Vector3::new(R::ZERO, R::ZERO, R::ONE), direction),
+            SampleKind::Ribbon if points.facing(&placed, direction) > R::ZERO => {
                 (-direction, Vector3::ZERO)
             }
             _ if self.back => (-direction, Vector3::ZERO),
@@ -211,16 +223,16 @@ impl<R: Exact> Piece<R> {
         };
         let zero = |v: Vector3<R>| v + Vector3::ZERO;
         let own = || scene.material.color.to_array().map(R::from_f32);
-        Sample {
+        PixelSample {
             kind: self.kind,
             id: self.id,
             depth: placed.t,
             radius,
-            extent: ellipse::radius_in_pixels(radius, lens.focal, placed.m),
+            extent: ellipse::radius_in_pixels(radius, points.focal, placed.m),
             center: Vector2::new(R::from_f32(x as f32 + 0.5), R::from_f32(y as f32 + 0.5)),
             normal: zero(normal),
             tangent: zero(tangent),
-            color: if stage.has.color { color.unwrap_or_else(own) } else { [R::ZERO; 3] },
+            color: if projector.has.color { color.unwrap_or_else(own) } else { [R::ZERO; 3] },
         }
     }
 }
@@ -230,7 +242,7 @@ fn attributes<R: Exact, const N: usize>(
     of: &Indexed<N>,
     index: usize,
     c: [R; 3],
-    kind: Kind,
+    kind: SampleKind,
 ) -> (Vector3<R>, R, Option<[R; 3]>) {
     let Vertices { direction, radius, color, .. } = of.vertices();
     let corners = of.corners()[index];
@@ -240,7 +252,7 @@ fn attributes<R: Exact, const N: usize>(
         |a: &dyn Fn(usize) -> R| (c[0] * a(corner(0)) + c[1] * a(corner(1))) + c[2] * a(corner(2));
     let vector = |of: &[glam::Vec3]| [0, 1, 2].map(|axis| sum(&|i| R::from_f32(of[i][axis])));
     let mut a = [0, 1, 2].map(|k| Vector3::from_glam(direction[corner(k)]));
-    if kind == Kind::Tube && a[0].dot(a[1]) < R::ZERO {
+    if kind == SampleKind::Tube && a[0].dot(a[1]) < R::ZERO {
         a[1] = -a[1];
     }
     let direction = (a[0] * c[0] + a[1] * c[1]) + a[2] * c[2];
@@ -269,10 +281,10 @@ mod tests {
         let scene = Scene { primitives, ..crate::method::tests::scene(Surfels::none()) };
         let pose = Pose { eye: DVec3::Z * 4.0, target: DVec3::ZERO, up: DVec3::Y };
         let camera = Camera::new(33, 17, pose, Lens::FieldOfView(40.0)).unwrap();
-        let stage = Stage::new(&scene, &camera, false, Snap::new(8).unwrap());
+        let projector = SceneProjector::new(&scene, &camera, false, Snap::new(8).unwrap());
         let mut tangents = Vec::new();
-        pieces(&stage, 0, |piece| {
-            let visit = |fragment| tangents.push(piece.sample(&stage, &fragment).tangent);
+        pieces(&projector, 0, |piece| {
+            let visit = |fragment| tangents.push(piece.sample(&projector, &fragment).tangent);
             piece.for_each(&piece.bounds, visit);
         });
         assert!(tangents.len() > 9, "{tangents:?}");
@@ -309,7 +321,7 @@ mod tests {
         let [up, half] = [Vec3::Z, Vec3::new(0.0, 0.6, -0.8)];
         let middle = |kind| attributes::<f64, 2>(&segment([up, half]), 0, [0.5, 0.5, 0.0], kind).0;
         let [y, z] = [0.6_f32, 0.8].map(|v| f64::from(v) / 2.0);
-        assert_eq!(middle(Kind::Ribbon), Vector3::new(0.0, y, 0.5 - z));
-        assert_eq!(middle(Kind::Tube), Vector3::new(0.0, -y, 0.5 + z));
+        assert_eq!(middle(SampleKind::Ribbon), Vector3::new(0.0, y, 0.5 - z));
+        assert_eq!(middle(SampleKind::Tube), Vector3::new(0.0, -y, 0.5 + z));
     }
 }

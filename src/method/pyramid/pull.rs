@@ -24,8 +24,26 @@
 use super::Cell;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
-use crate::number::{Exact, Vector2};
-use crate::splat::Ellipse;
+use crate::method::projection::PixelSample;
+use crate::number::{Exact, Real, Vector2};
+
+/// The side of a cell of a level in pixels, 2^level.
+pub(super) fn side<R: Exact>(level: usize) -> R {
+    R::from_f32((1_u32 << level) as f32)
+}
+
+/// All levels from the projected scene, the finest first.
+#[must_use]
+pub fn pull_all<R: Exact>(samples: &Plane<PixelSample<R>>, exec: &Exec) -> Vec<Plane<Cell<R>>> {
+    let mut fine = samples.map(Cell::new);
+    let mut levels = Vec::new();
+    while fine.width() > 1 || fine.height() > 1 {
+        let coarse = pull(&fine, side(levels.len()), exec);
+        levels.push(std::mem::replace(&mut fine, coarse));
+    }
+    levels.push(fine);
+    levels
+}
 
 /// The next coarser level; `side` is that of the finer cells in pixels.
 #[must_use]
@@ -35,38 +53,52 @@ pub fn pull<R: Exact>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell
     let rows = coarse.rows_mut();
     exec.ordered((0..).zip(rows).collect(), |(y, row): (u32, &mut [Cell<R>])| {
         for (x, cell) in (0..).zip(row) {
-            let finer = [0, 1, 2, 3].map(|j| {
-                let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
-                let exists = x < fine.width() && y < fine.height();
-                if exists { *fine.at(x, y) } else { Cell::empty() }
-            });
-            *cell = one(&finer, side);
+            *cell = one(&four(fine, x, y), side);
         }
     });
     coarse
 }
 
+/// The four finer cells of a cell.
+pub(super) fn four<R: Exact>(fine: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
+    [0, 1, 2, 3].map(|j| {
+        let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
+        let exists = x < fine.width() && y < fine.height();
+        if exists { *fine.at(x, y) } else { Cell::empty() }
+    })
+}
+
 /// One cell from four, see the module page.
 fn one<R: Exact>(finer: &[Cell<R>; 4], side: R) -> Cell<R> {
+    let offsets = offsets(finer, side);
+    let (takes, first) = Cell::foremost(finer, Cell::inside(finer, &offsets));
+    if takes[first] { merge(finer, &offsets, takes, first) } else { Cell::empty() }
+}
+
+/// `v_j`: from the new cell's centre to those of the finer ellipses, in pixels; `side` is that of
+/// the finer cells.
+pub fn offsets<R: Real>(finer: &[Cell<R>; 4], side: R) -> [Vector2<R>; 4] {
     let half = side * R::from_f32(0.5);
-    let centers = [0, 1, 2, 3].map(|j| {
+    [0, 1, 2, 3].map(|j| {
         let d = finer[j].displacement;
         let x = if j % 2 == 0 { d.x - half } else { d.x + half };
         let y = if j / 2 == 0 { d.y - half } else { d.y + half };
         Vector2::new(x, y)
-    });
-    let inside = [0, 1, 2, 3].map(|j| {
-        let ellipse = Ellipse::new(finer[j].normal, finer[j].radius);
-        ellipse.holds(ellipse.form(centers[j].x, centers[j].y))
-    });
-    let (takes, first) = Cell::foremost(finer, inside);
-    if !takes[first] {
-        return Cell::empty();
-    }
+    })
+}
+
+/// The new cell, if of four cells at these [`offsets`] those in `takes` take part and `first` is the
+/// foremost of them.
+pub fn merge<R: Real>(
+    finer: &[Cell<R>; 4],
+    offsets: &[Vector2<R>; 4],
+    takes: [bool; 4],
+    first: usize,
+) -> Cell<R> {
     let mean = Mean::plain(takes);
     Cell {
         front: mean.least(finer.map(|cell| cell.front)),
         back: mean.greatest(finer.map(|cell| cell.back)),
-        ..Cell::average(finer, centers, &mean, finer[first].kind)
+        ..Cell::average(finer, *offsets, &mean, finer[first].kind)
     }
 }

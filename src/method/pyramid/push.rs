@@ -26,11 +26,29 @@
 //! by the words of the paper the second becomes empty; but what does not cover a cell does not hide
 //! it, and there would be a hole beside every silhouette.
 
+use super::pull::side;
 use super::{Cell, Occlusion, Settings, Weights};
+use crate::composite::decide;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
-use crate::number::{Exact, Vector2};
+use crate::number::{Exact, Real, Vector2};
 use crate::splat::Ellipse;
+
+/// All levels from those of the pull phase, the finest first.
+#[must_use]
+pub fn push_all<R: Exact>(
+    pulled: &[Plane<Cell<R>>],
+    settings: &Settings,
+    exec: &Exec,
+) -> Vec<Plane<Cell<R>>> {
+    let mut pushed: Vec<Plane<Cell<R>>> = pulled.last().cloned().into_iter().collect();
+    for (level, fine) in pulled.iter().enumerate().rev().skip(1) {
+        let coarse = &pushed[pushed.len() - 1];
+        pushed.push(push(fine, coarse, side(level), settings, exec));
+    }
+    pushed.reverse();
+    pushed
+}
 
 /// The finer level, as [`super::pull`] left it, from the coarser one; `side` is that of the finer
 /// cells in pixels.
@@ -44,26 +62,30 @@ pub fn push<R: Exact>(
 ) -> Plane<Cell<R>> {
     let mut pushed = fine.clone();
     let rows = pushed.rows_mut();
-    let exists = |x: i64, y: i64| {
-        (0..i64::from(coarse.width())).contains(&x) && (0..i64::from(coarse.height())).contains(&y)
-    };
     exec.ordered((0_u32..).zip(rows).collect(), |(y, row): (u32, &mut [Cell<R>])| {
         for (x, cell) in (0_u32..).zip(row) {
             let parent = *coarse.at(x / 2, y / 2);
             if cell.is_valid() && !occluded(cell, &parent, settings.occlusion) {
                 continue;
             }
-            let (px, py) = (i64::from(x / 2), i64::from(y / 2));
-            let (nx, ny) = (beside(x), beside(y));
-            let coarser = [(px, py), (nx, py), (px, ny), (nx, ny)].map(|(x, y)| {
-                if exists(x, y) { *coarse.at(x as u32, y as u32) } else { Cell::empty() }
-            });
+            let coarser = four(coarse, x, y);
             if let Some(found) = one(&coarser, (x % 2 == 0, y % 2 == 0), side, settings.weights) {
                 *cell = found;
             }
         }
     });
     pushed
+}
+
+/// The parent of a cell and the three neighbours.
+pub(super) fn four<R: Exact>(coarse: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
+    let exists = |x: i64, y: i64| {
+        (0..i64::from(coarse.width())).contains(&x) && (0..i64::from(coarse.height())).contains(&y)
+    };
+    let (px, py) = (i64::from(x / 2), i64::from(y / 2));
+    let (nx, ny) = (beside(x), beside(y));
+    [(px, py), (nx, py), (px, ny), (nx, ny)]
+        .map(|(x, y)| if exists(x, y) { *coarse.at(x as u32, y as u32) } else { Cell::empty() })
 }
 
 /// The column or row of the parent's neighbour.
@@ -73,40 +95,63 @@ fn beside(x: u32) -> i64 {
 }
 
 /// Whether a valid cell is occluded, see the module page.
-pub(super) fn occluded<R: Exact>(cell: &Cell<R>, parent: &Cell<R>, rule: Occlusion) -> bool {
-    let behind = cell.front > parent.back;
-    let before = cell.front < parent.front;
-    parent.is_valid() && (behind || (before && rule == Occlusion::Outside))
+pub fn occluded<R: Real>(cell: &Cell<R>, parent: &Cell<R>, rule: Occlusion) -> R::Truth {
+    let interval = [parent.front, parent.back];
+    R::Truth::from(parent.is_valid())
+        & decide::occluded(cell.front, interval, rule == Occlusion::Outside)
 }
 
 /// A cell from its parent and the three neighbours, if any holds its centre; see the module page.
 fn one<R: Exact>(
     coarser: &[Cell<R>; 4],
-    (even_x, even_y): (bool, bool),
+    even: (bool, bool),
     side: R,
     weights: Weights,
 ) -> Option<Cell<R>> {
+    let offsets = offsets(coarser, even, side);
+    let (takes, first) = Cell::foremost(coarser, Cell::inside(coarser, &offsets));
+    takes[first].then(|| merge(coarser, &offsets, weights, takes, first))
+}
+
+/// `v_j`: from the finer cell's centre to those of the coarser ellipses, in pixels; whether the
+/// column and the row of the finer cell are even, and the side of finer cells.
+pub fn offsets<R: Real>(
+    coarser: &[Cell<R>; 4],
+    (even_x, even_y): (bool, bool),
+    side: R,
+) -> [Vector2<R>; 4] {
     let shift = |neighbour: bool, even: bool| {
         let far = side * R::from_f32(if neighbour { 1.5 } else { 0.5 });
         if neighbour == even { -far } else { far }
     };
-    let centers = [0, 1, 2, 3].map(|j| {
+    [0, 1, 2, 3].map(|j| {
         let d = coarser[j].displacement;
         Vector2::new(d.x + shift(j % 2 == 1, even_x), d.y + shift(j / 2 == 1, even_y))
-    });
-    let ellipses = coarser.map(|cell| Ellipse::new(cell.normal, cell.radius));
-    let forms = [0, 1, 2, 3].map(|j| ellipses[j].form(centers[j].x, centers[j].y));
-    let inside = [0, 1, 2, 3].map(|j| ellipses[j].holds(forms[j]));
-    let (takes, first) = Cell::foremost(coarser, inside);
-    if !takes[first] {
-        return None;
-    }
-    let weight = |j: usize| match weights {
-        Weights::Gaussian if takes[j] => {
-            (R::from_f32(-2.0) * (forms[j] / ellipses[j].square)).exp()
+    })
+}
+
+/// The weight of a cell at this offset, see [`Weights`].
+pub(super) fn weight<R: Real>(cell: &Cell<R>, offset: Vector2<R>, weights: Weights) -> R {
+    match weights {
+        Weights::Box => R::ONE,
+        Weights::Gaussian => {
+            let ellipse = Ellipse::new(cell.normal, cell.extent);
+            let form = ellipse.form(offset.x, offset.y);
+            (R::from_f32(-2.0) * (form / ellipse.square)).exp()
         }
-        _ => R::ONE,
-    };
-    let mean = Mean::new(takes, [0, 1, 2, 3].map(weight));
-    Some(Cell::average(coarser, centers, &mean, coarser[first].kind))
+    }
+}
+
+/// The new cell, if of four cells at these [`offsets`] those in `takes` take part and `first` is the
+/// foremost of them.
+pub fn merge<R: Real>(
+    coarser: &[Cell<R>; 4],
+    offsets: &[Vector2<R>; 4],
+    weights: Weights,
+    takes: [bool; 4],
+    first: usize,
+) -> Cell<R> {
+    let of = |j: usize| if takes[j] { weight(&coarser[j], offsets[j], weights) } else { R::ONE };
+    let mean = Mean::new(takes, [0, 1, 2, 3].map(of));
+    Cell::average(coarser, *offsets, &mean, coarser[first].kind)
 }

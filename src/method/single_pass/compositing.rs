@@ -1,10 +1,9 @@
 //! The compositing pass: the operator of \[ZP06, Fig. 5\] over the depth-images, and normalization.
 
 use super::geometry::ImagePixel;
-use crate::composite::groups::{Sample, compose};
-use crate::composite::sum;
+use crate::composite::groups::{WeightedFragment, compose};
+use crate::composite::{decide, sum};
 use crate::frame::NO_ID;
-use crate::method::fragment::nearer;
 use crate::method::resolved::Resolved;
 use crate::number::Exact;
 
@@ -12,7 +11,7 @@ use crate::number::Exact;
 #[derive(Clone, Copy, Debug)]
 pub(in crate::method) struct Composite<R> {
     /// The sums, with the nearest depth.
-    pub(in crate::method) sums: Sample<R>,
+    pub(in crate::method) sums: WeightedFragment<R>,
     /// How many groups passed the epsilon-z test.
     pub(in crate::method) count: u32,
     /// The surfel of the greatest nearness.
@@ -33,8 +32,7 @@ pub(in crate::method) fn composites<R: Exact>(
         for image in images {
             let kept = &image.as_ref()[pixel];
             samples.push(kept.sample);
-            let tie = kept.nearness == nearness && kept.surfel < id;
-            if nearer(kept.nearness, nearness) || tie {
+            if decide::nearer_or_lower((kept.nearness, kept.surfel), (nearness, id)) {
                 (nearness, id) = (kept.nearness, kept.surfel);
             }
         }
@@ -59,7 +57,7 @@ impl<R: Exact> Composite<R> {
 
     /// The average opacity.
     pub(in crate::method) fn opacity(&self) -> R {
-        let Sample { opacity, weight, .. } = self.sums;
+        let WeightedFragment { opacity, weight, .. } = self.sums;
         let [alpha, ..] = sum::average([opacity, R::ZERO, R::ZERO], weight);
         // The quotient of two sums may exceed 1 by their rounding.
         alpha.at_most(R::ONE)

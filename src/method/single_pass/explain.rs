@@ -3,7 +3,7 @@
 use super::Settings;
 use super::compositing::composites;
 use super::geometry::{Geometry, ImagePixel};
-use crate::composite::epsilon;
+use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::NO_ID;
 use crate::method::algorithm::Job;
@@ -125,7 +125,7 @@ impl<R: Exact> fmt::Display for GroupsReplay<R> {
         writeln!(
             f,
             "\ncompositing pass: visible if depth <= {} (nearest {} + epsilon {})",
-            n(epsilon::limit(self.nearest, self.epsilon)),
+            n(decide::limit(self.nearest, self.epsilon)),
             n(self.nearest),
             n(self.epsilon)
         )?;

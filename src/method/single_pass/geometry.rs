@@ -2,11 +2,12 @@
 
 use super::Settings;
 use crate::composite::bins::DepthBins;
-use crate::composite::groups::Sample;
+use crate::composite::decide;
+use crate::composite::groups::WeightedFragment;
 use crate::error::Result;
 use crate::frame::{NO_ID, Rect};
 use crate::method::algorithm::Job;
-use crate::method::fragment::{TileSplats, facing, nearer};
+use crate::method::fragment::{TileSplats, facing};
 use crate::method::prepare::Prepared;
 use crate::number::Exact;
 use crate::scene::{Groups, Surfels};
@@ -14,7 +15,7 @@ use crate::splat::{Shared, Splat};
 
 /// The splats of a picture, projected and sorted into tiles, and what the depth test needs.
 #[derive(Debug)]
-pub(in crate::method) struct Geometry<'a, R> {
+pub(in crate::method) struct Geometry<'a, R: Exact> {
     surfels: &'a Surfels,
     groups: &'a Groups,
     pub(in crate::method) splats: Prepared<R, Splat<R>>,
@@ -41,7 +42,7 @@ pub(super) struct Kept<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::method) struct ImagePixel<R> {
     /// Depth and weighted attributes of the fragment that was kept.
-    pub(in crate::method) sample: Sample<R>,
+    pub(in crate::method) sample: WeightedFragment<R>,
     /// Its nearness; that of an empty pixel where there is none.
     pub(in crate::method) nearness: R,
     /// Its Voronoi-enhanced depth in bins, +inf where there is none; 0 under the plain depth test.
@@ -111,10 +112,10 @@ impl<'a, R: Exact> Geometry<'a, R> {
     ) -> (R, bool) {
         let shared = self.shared();
         let (z, passes) = match &self.bins {
-            None => (R::ZERO, nearer(nearness, kept.nearness)),
+            None => (R::ZERO, decide::nearer(nearness, kept.nearness)),
             Some(bins) => {
                 let z = bins.voronoi(shared.depth(nearness), (q / shared.limit).sqrt());
-                (z, z < kept.z)
+                (z, decide::nearer_bin(z, kept.z))
             }
         };
         if passes {
@@ -130,13 +131,13 @@ impl<'a, R: Exact> Geometry<'a, R> {
     fn leave(&self, kept: &Kept<R>) -> ImagePixel<R> {
         let Kept { z, nearness, weight, surfel, back } = *kept;
         if surfel == NO_ID {
-            return ImagePixel { sample: Sample::EMPTY, nearness, z, surfel };
+            return ImagePixel { sample: WeightedFragment::EMPTY, nearness, z, surfel };
         }
         let (surfels, i) = (self.surfels, surfel as usize);
         let normal = facing(surfels.normal()[i].to_array().map(R::from_f32), back);
         let color = surfels.color().map_or([R::ZERO; 3], |c| c[i].to_array().map(R::from_f32));
         let depth = self.shared().depth(nearness);
-        let sample = Sample::new(depth, weight, normal, color, opacity(surfels, surfel));
+        let sample = WeightedFragment::new(depth, weight, normal, color, opacity(surfels, surfel));
         ImagePixel { sample, nearness, z, surfel }
     }
 }

@@ -68,6 +68,7 @@ use crate::method::tiled::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
+use crate::splat::SplatSettings;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "single-pass";
@@ -80,6 +81,10 @@ impl Algorithm for Settings {
         extension: Extension::None,
     });
     type Memory = ();
+
+    fn splats(&self) -> Option<&SplatSettings> {
+        Some(&self.splats)
+    }
 
     fn check(&self) -> Result<()> {
         Self::check(self)

@@ -119,13 +119,8 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     let Job { scene, camera, exec, .. } = *job;
     let groups = job.index.groups()?;
     let mut target = framebuffer(camera, wanted(scene, false), pool);
-    let (tally, times) = fast::render(&scene.surfels, groups, camera, settings, exec, &mut target)?;
-    let clock = Clock::of(vec![
-        ("projection", times.project),
-        ("geometry", times.geometry),
-        ("compositing", times.compositing),
-    ]);
-    Ok(finish(target, Vec::new(), tally, clock, job))
+    let (tally, laps) = fast::render(&scene.surfels, groups, camera, settings, exec, &mut target)?;
+    Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 
 /// The planes that a scene needs.

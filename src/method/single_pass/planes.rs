@@ -3,7 +3,7 @@
 use super::compositing::Composite;
 use super::geometry::{ImagePixel, opacity};
 use super::{DepthTest, Settings};
-use crate::composite::groups::Sample;
+use crate::composite::groups::WeightedFragment;
 use crate::error::Result;
 use crate::frame::{NO_ID, NamedPlane};
 use crate::method::algorithm::Job;
@@ -210,7 +210,7 @@ pub(in crate::method) fn given_images<R: Exact>(
             };
             let normal = *normal.at(x, y);
             let color = color.map_or([R::ZERO; 3], |plane| *plane.at(x, y));
-            let sample = Sample { depth, weight, normal, color, opacity };
+            let sample = WeightedFragment { depth, weight, normal, color, opacity };
             ImagePixel { sample, nearness: view.nearness(depth), z: R::ZERO, surfel }
         }))
     };

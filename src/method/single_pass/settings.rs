@@ -4,6 +4,7 @@ use crate::composite::bins::{DepthBins, MAX_BINS, Range};
 use crate::error::{Error, Result};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene, Surfels};
+use crate::setting::{Field, Fields, Slot, Visit, Words};
 use crate::splat::SplatSettings;
 
 /// What is computed; everything here may change the picture.
@@ -16,13 +17,19 @@ pub struct Settings {
 }
 
 /// Which fragment of a group a pixel keeps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthTest {
     /// The nearest.
-    #[default]
     Plain,
     /// In the nearest depth bin the one nearest to its own centre \[ZP06, section 5.1\].
     Voronoi(BinCount),
+}
+
+impl Default for DepthTest {
+    /// The Voronoi-enhanced test with bins no deeper than epsilon.
+    fn default() -> Self {
+        Self::Voronoi(BinCount::Epsilon)
+    }
 }
 
 /// How many depth bins there are.
@@ -35,7 +42,44 @@ pub enum BinCount {
     Count(u32),
 }
 
+impl Fields for Settings {
+    fn fields(&mut self, each: &mut Visit<'_>) {
+        self.splats.fields(each);
+        each(self.depth.field());
+        match &mut self.depth {
+            DepthTest::Voronoi(bins) => bins.field(&mut |field| each(field)),
+            DepthTest::Plain => BinCount::default()
+                .field(&mut |field| each(field.idle("without depth = \"voronoi\""))),
+        }
+    }
+}
+
+impl DepthTest {
+    /// The row of the depth test, without that of its bins.
+    pub(in crate::method) fn field(&mut self) -> Field<'_> {
+        let help = "what a group keeps of overlapping splats: the nearest, or of the nearest bin \
+                    of depth the one nearest to its own centre";
+        Field::new("depth", help, Slot::Word(self))
+    }
+}
+
+impl Words for DepthTest {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("plain", Self::Plain), ("voronoi", Self::Voronoi(BinCount::Epsilon))];
+}
+
 impl BinCount {
+    /// The row of the bins.
+    pub(in crate::method) fn field(&mut self, each: &mut Visit<'_>) {
+        let mut count = match *self {
+            Self::Epsilon => None,
+            Self::Count(count) => Some(count),
+        };
+        let help = "how many bins of depth; `epsilon`: no deeper than epsilon";
+        each(Field::new("bins", help, Slot::CountOr(&mut count, "epsilon")).range("1 to 65535"));
+        *self = count.map_or(Self::Epsilon, Self::Count);
+    }
+
     /// Whether the number is in range.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use crate::method::{Method, Session, single_pass, transparent, transparent_hq};
 use crate::number::Exact;
 use crate::number::random::unit;
 use crate::scene::{Camera, Cloud, Environment, Light, Scene, Surfels};
-use crate::shade::optics::{self, Refraction};
+use crate::shade::optics::{BendingLayers, Refraction};
 use crate::source::Shape;
 
 /// Every method, and what changes the planes of some.
@@ -23,7 +23,7 @@ fn methods() -> Vec<Method> {
     methods.push(single_pass::Settings { depth, ..Default::default() }.into());
     let holes = transparent::Holes::Background;
     methods.push(transparent::Settings { holes, ..Default::default() }.into());
-    let refraction = Refraction { ratio: [0.75, 0.7, 0.65], layers: optics::Layers::Multiple };
+    let refraction = Refraction { ratio: [0.75, 0.7, 0.65], layers: BendingLayers::Multiple };
     let refraction = Some(refraction);
     methods.push(transparent_hq::Settings { refraction, ..Default::default() }.into());
     methods.into_iter().filter(|method| !method.stages().is_empty()).collect()

@@ -2,6 +2,7 @@
 
 use super::Holes;
 use super::blending::GroupLayers;
+use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::frame::NO_ID;
 use crate::number::Exact;
@@ -58,7 +59,7 @@ impl<R: Exact> GroupAverage<R> {
         self.opacity = self.opacity + layers.opacity;
         self.hidden = self.hidden + layers.hidden;
         self.layers = self.layers + R::from_f32(f32::from(layers.count));
-        if (layers.depth, layers.surfel) < (self.depth, self.surfel) {
+        if decide::before_or_lower((layers.depth, layers.surfel), (self.depth, self.surfel)) {
             (self.depth, self.surfel) = (layers.depth, layers.surfel);
         }
     }

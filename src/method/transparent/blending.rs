@@ -2,6 +2,7 @@
 
 use super::Settings;
 use crate::composite::bins::DepthBins;
+use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::stencil::{Outcome, Stencil};
@@ -12,11 +13,11 @@ use crate::method::prepare::Prepared;
 use crate::number::{Exact, Vector3};
 use crate::scene::Scene;
 use crate::shade::phong::Shader;
-use crate::splat::{Disc, Fate, Projector, Shared, Splat, Tally, View, batch, project};
+use crate::splat::{Disc, Fate, Projector, Reasons, Shared, Splat, Tally, View, batch, project};
 
 /// A surfel in one of its groups, on the screen.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct GroupSplat<R> {
+pub(super) struct GroupSplat<R: Exact> {
     pub(super) splat: Splat<R>,
     pub(super) group: u8,
     /// Shaded at the centre.
@@ -57,13 +58,13 @@ impl<R: Exact> GroupLayers<R> {
 
     /// The depth test: whether a fragment is in a nearer bin than all before.
     pub(super) fn is_behind(&self, bin: R) -> bool {
-        bin < self.bin
+        decide::nearer_bin(bin, self.bin)
     }
 
     /// Blends a fragment that passed the depth test.
     pub(super) fn add(&mut self, drawn: &GroupSplat<R>, bin: R, depth: R) {
         let GroupSplat { alpha, color, .. } = *drawn;
-        let opaque = alpha >= R::ONE;
+        let opaque = decide::opaque(alpha);
         *self = Self {
             bin,
             blend: self.blend.over(alpha, color),
@@ -78,7 +79,7 @@ impl<R: Exact> GroupLayers<R> {
 
 /// The splats of all groups, projected and sorted into tiles.
 #[derive(Debug)]
-pub(in crate::method) struct Blending<R> {
+pub(in crate::method) struct Blending<R: Exact> {
     prepared: Prepared<R, GroupSplat<R>>,
     pub(super) bins: DepthBins<R>,
     groups: usize,
@@ -107,7 +108,8 @@ impl<R: Exact> Blending<R> {
                 let mut tally = Tally::default();
                 for &(surfel, group) in &items[range] {
                     let scale = groups.scale()[usize::from(group)];
-                    let (splat, fate) = place(scene, surfel, scale, projector);
+                    let (splat, reasons) = place(scene, surfel, scale, projector);
+                    let fate = reasons.fate();
                     tally.count(fate);
                     if fate == Fate::Visible {
                         let (color, alpha) = appearance(scene, &shader, &splat);
@@ -189,7 +191,7 @@ fn place<R: Exact>(
     surfel: u32,
     scale: f32,
     projector: &Projector<R>,
-) -> (Splat<R>, Fate) {
+) -> (Splat<R>, Reasons<R>) {
     let scale = R::from_f32(scale);
     let disc: Disc<R> = batch::disc(&scene.surfels, surfel as usize);
     let disc = Disc {

@@ -3,6 +3,7 @@
 use super::Settings;
 use super::averaging::{GroupAverage, averages};
 use super::blending::{Blending, GroupLayers};
+use crate::composite::decide;
 use crate::error::Result;
 use crate::method::algorithm::Job;
 use crate::method::replay::{Decision, Place, Touch, touch};
@@ -71,7 +72,7 @@ pub(in crate::method) fn replay<R: Exact>(
 ) -> Result<(TransparentReplay<R>, GroupAverage<R>)> {
     let place = Place::new(job, pixel)?;
     let blending = Blending::<R>::project(job, settings)?;
-    let stays = |_: usize, t: R| beyond.is_none_or(|limit| t > limit);
+    let stays = |_: usize, t: R| beyond.is_none_or(|limit| decide::beyond(t, limit));
     let images = blending.images(place.tile, place.rect, stays);
     let average = averages(&images, 1, settings.holes)[0];
     let GroupAverage { blend, layers, depth, surfel, .. } = average;

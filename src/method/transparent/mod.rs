@@ -54,9 +54,10 @@ use crate::method::tiled::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
+use crate::splat::SplatSettings;
 
 /// K = 4, which \[ZP06, section 6.2\] finds sufficient; groups are extended by adding surfels.
-pub(super) const GROUPING: Grouping = Grouping {
+pub(crate) const GROUPING: Grouping = Grouping {
     rules: Rules { overlap: 1.0, opposite: true, coplanar: None },
     count: Some(4),
     extension: Extension::Add { most: 0.5 },
@@ -70,6 +71,10 @@ impl Algorithm for Settings {
     const GROUPING: Option<Grouping> = Some(GROUPING);
     const BACK_TO_FRONT: bool = true;
     type Memory = ();
+
+    fn splats(&self) -> Option<&SplatSettings> {
+        Some(&self.splats)
+    }
 
     fn check(&self) -> Result<()> {
         Self::check(self)

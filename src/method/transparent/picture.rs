@@ -42,7 +42,7 @@ fn picture<R: Exact>(job: &Job<'_>, averages: &Tiled<GroupAverage<R>>) -> Vec<Na
 }
 
 /// The geometry and the compositing pass.
-pub(in crate::method) struct Passes<'a, R> {
+pub(in crate::method) struct Passes<'a, R: Exact> {
     pub(in crate::method) blending: &'a Blending<R>,
     pub(in crate::method) holes: Holes,
     /// Whether the images of the groups are kept.

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::method::single_pass::BinCount;
+use crate::setting::{Field, Fields, Slot, Visit, Words};
 use crate::splat::SplatSettings;
 
 /// What is computed; everything here may change the picture.
@@ -33,6 +34,21 @@ impl Default for Settings {
             holes: Holes::default(),
         }
     }
+}
+
+impl Fields for Settings {
+    fn fields(&mut self, each: &mut Visit<'_>) {
+        self.splats.fields(each);
+        self.bins.field(each);
+        let help =
+            "what a group without fragments gives to the average: nothing, or the background";
+        each(Field::new("holes", help, Slot::Word(&mut self.holes)));
+    }
+}
+
+impl Words for Holes {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("skipped", Self::Skipped), ("background", Self::Background)];
 }
 
 impl Settings {

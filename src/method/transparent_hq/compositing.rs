@@ -1,21 +1,21 @@
 //! Pass 3 of Algorithm 3: the nearest layer before the others, and what is refracted through it.
 
 use super::Settings;
-use super::nearest::NearestLayer;
+use super::nearest::FrontLayer;
 use crate::composite::over::Blend;
 use crate::method::algorithm::Job;
 use crate::method::tiled::{Tiled, pixels};
 use crate::method::transparent::averaging::GroupAverage;
 use crate::number::{Exact, Vector3};
 use crate::scene::Scene;
-use crate::shade::optics::{self, Behind, Nearest};
+use crate::shade::optics::{self, Behind, NearestLayer};
 use crate::splat::View;
 
 /// What each pixel shows before the environment.
 pub(super) fn compositing<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
-    nearest: &Tiled<NearestLayer<R>>,
+    nearest: &Tiled<FrontLayer<R>>,
     others: &Tiled<GroupAverage<R>>,
 ) -> Tiled<Blend<R>> {
     let through = Through::new(job, settings);
@@ -29,7 +29,7 @@ pub(super) fn compositing<R: Exact>(
 }
 
 /// What is seen through the nearest layer.
-pub(super) struct Through<'a, R> {
+pub(super) struct Through<'a, R: Exact> {
     scene: &'a Scene,
     settings: &'a Settings,
     view: View<R>,
@@ -44,7 +44,7 @@ impl<'a, R: Exact> Through<'a, R> {
     pub(super) fn pixel(
         &self,
         (x, y): (u32, u32),
-        near: &NearestLayer<R>,
+        near: &FrontLayer<R>,
         others: &GroupAverage<R>,
     ) -> Blend<R> {
         if !near.depth.is_finite() {
@@ -56,8 +56,11 @@ impl<'a, R: Exact> Through<'a, R> {
             return others.blend.over(near.opacity, near.color);
         };
         let [nx, ny, nz] = near.normal;
-        let nearest =
-            Nearest { color: near.color, opacity: near.opacity, normal: Vector3::new(nx, ny, nz) };
+        let nearest = NearestLayer {
+            color: near.color,
+            opacity: near.opacity,
+            normal: Vector3::new(nx, ny, nz),
+        };
         let GroupAverage { blend, opacity, hidden, .. } = *others;
         let behind = Behind { color: blend.color, opacity, hidden };
         let view = -self.view.ray(x, y).normalized();
@@ -68,12 +71,12 @@ impl<'a, R: Exact> Through<'a, R> {
 
 /// l of \[ZP06, section 5.2.3\]: the sum of all opacities over that of the nearest layer; 0 where
 /// that is 0.
-pub(super) fn count_by_opacity<R: Exact>(near: &NearestLayer<R>, others: &GroupAverage<R>) -> R {
+pub(super) fn count_by_opacity<R: Exact>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
     let alpha = near.opacity;
     if alpha > R::ZERO { R::ONE + optics::layers(others.opacity, alpha) } else { R::ZERO }
 }
 
 /// The count of layers: that of the others, and one where there is a nearest one.
-pub(super) fn count<R: Exact>(near: &NearestLayer<R>, others: &GroupAverage<R>) -> R {
+pub(super) fn count<R: Exact>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
     if near.depth.is_finite() { others.layers + R::ONE } else { others.layers }
 }

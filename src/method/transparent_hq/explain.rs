@@ -4,7 +4,7 @@ use super::Settings;
 use super::compositing::Through;
 use super::nearest::{Shading, single_pass};
 use super::picture::check;
-use crate::composite::epsilon;
+use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::method::algorithm::Job;
@@ -51,7 +51,7 @@ pub fn explain<R: Exact>(
     let composite = composites(&images, 1, nearest.epsilon, geometry.shared().empty())[0];
     let layer = Shading::new(job).layer(pixel, &composite);
 
-    let band = epsilon::limit(layer.depth, nearest.epsilon);
+    let band = decide::limit(layer.depth, nearest.epsilon);
     let (others, average) = replay(job, &settings.layers, pixel, Some(band))?;
     let shown = Through::new(job, settings).pixel(pixel, &layer, &average);
     let (alpha, color) = (layer.opacity, layer.color);

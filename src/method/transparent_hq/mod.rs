@@ -40,6 +40,7 @@ use crate::method::tiled::Given;
 use crate::method::{Picture, Stage, transparent};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
+use crate::splat::SplatSettings;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "transparent-hq";
@@ -49,6 +50,10 @@ impl Algorithm for Settings {
     const GROUPING: Option<Grouping> = Some(transparent::GROUPING);
     const BACK_TO_FRONT: bool = true;
     type Memory = ();
+
+    fn splats(&self) -> Option<&SplatSettings> {
+        Some(&self.layers.splats)
+    }
 
     fn check(&self) -> Result<()> {
         Self::check(self)

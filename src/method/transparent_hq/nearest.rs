@@ -1,7 +1,7 @@
 //! Pass 1 of Algorithm 3: the nearest layer in high quality, by the single pass.
 
 use super::Settings;
-use crate::composite::epsilon;
+use crate::composite::decide;
 use crate::frame::stencil::{Function, Operation, Outcome, Stencil};
 use crate::method::algorithm::Job;
 use crate::method::resolved::Resolved;
@@ -20,7 +20,7 @@ const BEHIND: Stencil = Stencil { function: Function::Equal, pass: Operation::Ke
 
 /// The nearest layer at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct NearestLayer<R> {
+pub(super) struct FrontLayer<R> {
     /// Depth Z of its nearest fragment; +inf where there is none.
     pub(super) depth: R,
     /// The surfel of that fragment.
@@ -46,7 +46,7 @@ pub(super) fn single_pass(settings: &Settings) -> single_pass::Settings {
 pub(super) fn nearest<R: Exact>(
     job: &Job<'_>,
     composites: &Tiled<Composite<R>>,
-) -> Tiled<NearestLayer<R>> {
+) -> Tiled<FrontLayer<R>> {
     let shading = Shading::new(job);
     Tiled::new(job, |tile, rect| {
         let composites = pixels(rect).zip(composites.tile(tile));
@@ -70,7 +70,7 @@ impl<R: Exact> Shading<R> {
     }
 
     /// The nearest layer at a column and row.
-    pub(super) fn layer(&self, (x, y): (u32, u32), composite: &Composite<R>) -> NearestLayer<R> {
+    pub(super) fn layer(&self, (x, y): (u32, u32), composite: &Composite<R>) -> FrontLayer<R> {
         let Resolved { depth, id, weight, normal, color } = composite.resolved();
         let [nx, ny, nz] = normal;
         let form = (Vector3::new(nx, ny, nz), Vector3::ZERO);
@@ -78,14 +78,14 @@ impl<R: Exact> Shading<R> {
         let color = self.shader.pixel((x as usize, y as usize), depth, form, surface);
         let outcome = if composite.count > 0 { Outcome::Pass } else { Outcome::DepthFail };
         let (opacity, mask) = (composite.opacity(), MASK.update(0, outcome));
-        NearestLayer { depth, id, weight, normal, color, opacity, mask }
+        FrontLayer { depth, id, weight, normal, color, opacity, mask }
     }
 }
 
-impl<R: Exact> NearestLayer<R> {
+impl<R: Exact> FrontLayer<R> {
     /// Whether the layer is strictly before a fragment at depth `t`, which then belongs to the other
     /// layers: the stencil test passes, and the fragment is beyond the visible band.
     pub(super) fn is_before(&self, t: R, epsilon: R) -> bool {
-        BEHIND.test(self.mask) && !epsilon::visible(t, self.depth, epsilon)
+        BEHIND.test(self.mask) && !decide::visible(t, decide::limit(self.depth, epsilon))
     }
 }

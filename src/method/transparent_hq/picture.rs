@@ -1,7 +1,7 @@
 //! All stages in one call: from a scene to named planes; and one stage on somebody's planes.
 
 use super::compositing::compositing;
-use super::nearest::{NearestLayer, nearest, single_pass};
+use super::nearest::{FrontLayer, nearest, single_pass};
 use super::{Settings, planes};
 use crate::error::{Error, Result};
 use crate::frame::NamedPlane;
@@ -71,7 +71,7 @@ fn others<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     blending: &Blending<R>,
-    nearest: &Tiled<NearestLayer<R>>,
+    nearest: &Tiled<FrontLayer<R>>,
     keep: bool,
     clock: &mut Clock,
 ) -> second::Blended<R> {

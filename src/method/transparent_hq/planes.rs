@@ -2,7 +2,7 @@
 
 use super::Settings;
 use super::compositing::{count, count_by_opacity};
-use super::nearest::NearestLayer;
+use super::nearest::FrontLayer;
 use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::{NO_ID, NamedPlane};
@@ -101,7 +101,7 @@ pub(super) fn given_geometry<R: Exact>(
 }
 
 /// What the nearest layer leaves with the planes of the stages.
-pub(super) fn nearest_stages<R: Exact>(nearest: &Tiled<NearestLayer<R>>) -> [NamedPlane<R>; 3] {
+pub(super) fn nearest_stages<R: Exact>(nearest: &Tiled<FrontLayer<R>>) -> [NamedPlane<R>; 3] {
     [
         NEAREST_COLOR.triple(0, nearest.plane(|pixel| pixel.color)),
         NEAREST_ALPHA.scalar(0, nearest.plane(|pixel| pixel.opacity)),
@@ -110,7 +110,7 @@ pub(super) fn nearest_stages<R: Exact>(nearest: &Tiled<NearestLayer<R>>) -> [Nam
 }
 
 /// What the nearest layer leaves in every picture.
-pub(super) fn nearest<R: Exact>(nearest: &Tiled<NearestLayer<R>>) -> [NamedPlane<R>; 4] {
+pub(super) fn nearest<R: Exact>(nearest: &Tiled<FrontLayer<R>>) -> [NamedPlane<R>; 4] {
     [
         DEPTH.scalar(0, nearest.plane(|pixel| pixel.depth)),
         NORMAL.triple(0, nearest.plane(|pixel| pixel.normal)),
@@ -120,11 +120,11 @@ pub(super) fn nearest<R: Exact>(nearest: &Tiled<NearestLayer<R>>) -> [NamedPlane
 }
 
 /// Somebody's nearest layer, as the other layers need it: without surfel and weight.
-pub(super) fn given_nearest<R: Exact>(given: &Given<'_, R>) -> Result<Tiled<NearestLayer<R>>> {
+pub(super) fn given_nearest<R: Exact>(given: &Given<'_, R>) -> Result<Tiled<FrontLayer<R>>> {
     let (color, opacity) = (given.triple(&NEAREST_COLOR, 0)?, given.scalar(&NEAREST_ALPHA, 0)?);
     let (mask, depth) = (given.count(&NEAREST_MASK, 0)?, given.scalar(&DEPTH, 0)?);
     let normal = given.triple(&NORMAL, 0)?;
-    Ok(given.tiled(|x, y| NearestLayer {
+    Ok(given.tiled(|x, y| FrontLayer {
         depth: *depth.at(x, y),
         id: NO_ID,
         weight: R::ZERO,
@@ -137,7 +137,7 @@ pub(super) fn given_nearest<R: Exact>(given: &Given<'_, R>) -> Result<Tiled<Near
 
 /// l, with the planes of the stages.
 pub(super) fn layers_by_opacity<R: Exact>(
-    nearest: &Tiled<NearestLayer<R>>,
+    nearest: &Tiled<FrontLayer<R>>,
     others: &Tiled<GroupAverage<R>>,
 ) -> NamedPlane<R> {
     LAYERS_BY_OPACITY.scalar(0, nearest.with(others, count_by_opacity).plane(|count| *count))
@@ -147,7 +147,7 @@ pub(super) fn layers_by_opacity<R: Exact>(
 pub(super) fn compositing<R: Exact>(
     job: &Job<'_>,
     blends: &Tiled<Blend<R>>,
-    nearest: &Tiled<NearestLayer<R>>,
+    nearest: &Tiled<FrontLayer<R>>,
     others: &Tiled<GroupAverage<R>>,
 ) -> Vec<NamedPlane<R>> {
     let mut planes: Vec<_> = shown(job, blends).into();

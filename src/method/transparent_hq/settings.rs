@@ -3,7 +3,8 @@
 use crate::error::Result;
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::transparent;
-use crate::shade::optics::Refraction;
+use crate::setting::{Field, Fields, Slot, Visit};
+use crate::shade::optics::{BendingLayers, Refraction};
 
 /// What is computed; everything here may change the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +26,25 @@ impl Default for Settings {
             nearest: DepthTest::Voronoi(BinCount::Epsilon),
             refraction: None,
         }
+    }
+}
+
+impl Fields for Settings {
+    fn fields(&mut self, each: &mut Visit<'_>) {
+        self.layers.fields(each);
+        each(self.nearest.field());
+        if let DepthTest::Voronoi(bins) = &mut self.nearest {
+            *bins = self.layers.bins;
+        }
+        let mut ratio = self.refraction.map(|refraction| refraction.ratio);
+        let mut layers =
+            self.refraction.map_or(BendingLayers::Multiple, |refraction| refraction.layers);
+        let help = "ratios of refraction for red, green and blue, the index outside over the index \
+                    inside: 0.6667 from air to glass";
+        each(Field::new("refraction", help, Slot::Ratios(&mut ratio)).range("above 0 to 4"));
+        let bends = Field::new("bends", "how many layers bend light", Slot::Word(&mut layers));
+        each(if ratio.is_some() { bends } else { bends.idle("without a `refraction`") });
+        self.refraction = ratio.map(|ratio| Refraction { ratio, layers });
     }
 }
 

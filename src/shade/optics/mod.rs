@@ -39,6 +39,7 @@ mod tests;
 use crate::error::{Error, Result};
 use crate::number::{Exact, Vector3};
 use crate::scene::Environment;
+use crate::setting::Words;
 
 /// How many surfaces bend the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +48,11 @@ pub enum Layers {
     Single,
     /// As many as the accumulated opacity tells.
     Multiple,
+}
+
+impl Words for Layers {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("single", Self::Single), ("multiple", Self::Multiple)];
 }
 
 /// How a transparent surface bends light.
@@ -80,7 +86,7 @@ impl Refraction {
 
 /// The composited nearest layer of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest<R> {
+pub struct NearestLayer<R> {
     /// `C_F`: linear RGB after Phong shading.
     pub color: [R; 3],
     /// alpha, in [0, 1].
@@ -209,7 +215,7 @@ pub fn shade<R: Exact>(
     environment: &Environment,
     refraction: &Refraction,
     view: Vector3<R>,
-    nearest: &Nearest<R>,
+    nearest: &NearestLayer<R>,
     behind: &Behind<R>,
 ) -> [R; 3] {
     let alpha = nearest.opacity.at_least(R::ZERO).at_most(R::ONE);

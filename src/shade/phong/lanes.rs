@@ -4,15 +4,13 @@
 //! definition becomes a choice between two results; only the powers differ, see [`Exact::powers`].
 
 use super::{Answer, Form, Shader, mirrored};
-use crate::number::elementary::LANES;
+use crate::number::lanes::{
+    LANES, Lanes, any, components, mask, put_vector, transposed, vector, vectorized,
+};
 use crate::number::{Exact, Vector3};
-use multiversion::multiversion;
-
-/// One number of each pixel.
-type Lanes<R> = [R; LANES];
 
 /// One row of the picture.
-pub(super) struct Row<'a, R> {
+pub(super) struct ShadedRow<'a, R> {
     /// Which.
     pub(super) y: usize,
     /// t, +inf where a pixel is empty.
@@ -25,49 +23,58 @@ pub(super) struct Row<'a, R> {
     pub(super) own: Option<[R; 3]>,
 }
 
-/// Shades a row, as [`Shader::pixel`] does pixel by pixel.
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub(super) fn shade<R: Exact>(shader: &Shader<R>, row: &Row<'_, R>, pixels: &mut [[R; 3]]) {
-    let (groups, rest) = pixels.as_chunks_mut();
-    let whole = groups.len() * LANES;
-    for (first, pixels) in (0..whole).step_by(LANES).zip(groups) {
-        group(shader, row, first, pixels);
+vectorized!(
+    /// Shades a row, as [`Shader::pixel`] does pixel by pixel.
+    pub(super) fn shade<R: Exact>(
+        shader: &Shader<R>,
+        row: &ShadedRow<'_, R>,
+        pixels: &mut [[R; 3]],
+    ) {
+        let (groups, rest) = pixels.as_chunks_mut();
+        let whole = groups.len() * LANES;
+        for (first, pixels) in (0..whole).step_by(LANES).zip(groups) {
+            group(shader, row, first, pixels);
+        }
+        let one = |plane: Option<&[[R; 3]]>, x: usize| {
+            plane.map_or(Vector3::ZERO, |p| Vector3::new(p[x][0], p[x][1], p[x][2]))
+        };
+        for (x, pixel) in (whole..).zip(rest) {
+            let form = (one(row.normal, x), one(row.tangent, x));
+            let surface = row.own.unwrap_or(*pixel);
+            *pixel = shader.pixel((x, row.y), row.depth[x], form, surface);
+        }
     }
-    let one = |plane: Option<&[[R; 3]]>, x: usize| plane.map_or(Vector3::ZERO, |p| vector(p[x]));
-    for (x, pixel) in (whole..).zip(rest) {
-        let form = (one(row.normal, x), one(row.tangent, x));
-        let surface = row.own.unwrap_or(*pixel);
-        *pixel = shader.pixel((x, row.y), row.depth[x], form, surface);
-    }
-}
+);
 
 /// Shades the pixels from column `first` on.
 #[inline(always)]
 fn group<R: Exact>(
     shader: &Shader<R>,
-    row: &Row<'_, R>,
+    row: &ShadedRow<'_, R>,
     first: usize,
     pixels: &mut [[R; 3]; LANES],
 ) {
     let mut depth = [R::ZERO; LANES];
     depth.copy_from_slice(&row.depth[first..first + LANES]);
-    if !any(|i| depth[i].is_finite()) {
+    if !any(&mask(|i| depth[i].is_finite())) {
         *pixels = [[R::ZERO; 3]; LANES];
         return;
     }
-    let surface = row.own.map_or_else(|| gather(pixels), |own| own.map(|s| [s; LANES]));
+    let surface = match row.own {
+        Some(own) => own.map(|s| [s; LANES]),
+        None => transposed(pixels),
+    };
     let mut color = surface;
     if !shader.lights.is_empty() {
-        let from = |plane: Option<&[[R; 3]]>| plane.map(|p| gather(&p[first..first + LANES]));
-        let normal = from(row.normal).unwrap_or([[R::ZERO; LANES]; 3]);
-        color = match from(row.tangent) {
+        let normal = gather(row.normal, first).unwrap_or([[R::ZERO; LANES]; 3]);
+        color = match gather(row.tangent, first) {
             None => {
-                let turned = |i| shader.view.direction(at(&normal, i));
+                let turned = |i| shader.view.direction(vector(&normal, i));
                 let form = |i| Form { normal: turned(i), tangent: Vector3::ZERO };
                 lit(shader, (first, row.y), &depth, form, &surface)
             }
             Some(tangent) => {
-                let form = |i| shader.form(at(&normal, i), at(&tangent, i));
+                let form = |i| shader.form(vector(&normal, i), vector(&tangent, i));
                 lit(shader, (first, row.y), &depth, form, &surface)
             }
         }
@@ -93,8 +100,8 @@ fn lit<R: Exact>(
     let mut color = [[R::ZERO; LANES]; 3];
     for i in 0..LANES {
         let p = shader.position(first + i, y, depth[i]);
-        put(&mut points, i, p);
-        put(&mut eyes, i, shader.towards_eye(p));
+        put_vector(&mut points, i, p);
+        put_vector(&mut eyes, i, shader.towards_eye(p));
         for c in 0..3 {
             color[c][i] = answer.ambient * surface[c][i];
         }
@@ -102,16 +109,15 @@ fn lit<R: Exact>(
     for (place, light) in &shader.lights {
         let (mut cosine, mut gloss) = ([R::ZERO; LANES], [R::ZERO; LANES]);
         for i in 0..LANES {
-            let l = place.from(at(&points, i));
+            let l = place.from(vector(&points, i));
             let (n, n_l) = form(i).towards(l);
-            let r_v = mirrored(n, n_l, l, at(&eyes, i));
+            let r_v = mirrored(n, n_l, l, vector(&eyes, i));
             cosine[i] = n_l;
             gloss[i] = if n_l > R::ZERO && r_v > R::ZERO { r_v } else { R::ZERO };
         }
         let highlight = highlights(&answer, &gloss);
         for i in 0..LANES {
-            let before = [color[0][i], color[1][i], color[2][i]];
-            let own = [surface[0][i], surface[1][i], surface[2][i]];
+            let (before, own) = (components(&color, i), components(surface, i));
             let after = answer.add(before, *light, cosine[i], own, highlight[i]);
             for c in 0..3 {
                 color[c][i] = if cosine[i] > R::ZERO { after[c] } else { before[c] };
@@ -125,7 +131,7 @@ fn lit<R: Exact>(
 #[inline(always)]
 fn highlights<R: Exact>(answer: &Answer<R>, gloss: &Lanes<R>) -> Lanes<R> {
     let mut highlight = [R::ZERO; LANES];
-    if !(answer.specular > R::ZERO) || !any(|i| gloss[i] > R::ZERO) {
+    if !(answer.specular > R::ZERO) || !any(&mask(|i| gloss[i] > R::ZERO)) {
         return highlight;
     }
     // A power of 1 costs nothing.
@@ -140,38 +146,9 @@ fn highlights<R: Exact>(answer: &Answer<R>, gloss: &Lanes<R>) -> Lanes<R> {
     highlight
 }
 
-/// Whether this holds in a lane; all are asked, so that they are asked at once.
+/// The vectors of the pixels from column `first` on, a multiple of [`LANES`].
 #[inline(always)]
-fn any(holds: impl Fn(usize) -> bool) -> bool {
-    let mut found = false;
-    for i in 0..LANES {
-        found |= holds(i);
-    }
-    found
-}
-
-fn vector<R: Exact>([x, y, z]: [R; 3]) -> Vector3<R> {
-    Vector3::new(x, y, z)
-}
-
-/// The vectors of consecutive pixels, component by component.
-#[inline(always)]
-fn gather<R: Exact>(pixels: &[[R; 3]]) -> [Lanes<R>; 3] {
-    let mut lanes = [[R::ZERO; LANES]; 3];
-    for i in 0..LANES {
-        for c in 0..3 {
-            lanes[c][i] = pixels[i][c];
-        }
-    }
-    lanes
-}
-
-#[inline(always)]
-fn at<R: Exact>(lanes: &[Lanes<R>; 3], i: usize) -> Vector3<R> {
-    Vector3::new(lanes[0][i], lanes[1][i], lanes[2][i])
-}
-
-#[inline(always)]
-fn put<R: Exact>(lanes: &mut [Lanes<R>; 3], i: usize, v: Vector3<R>) {
-    (lanes[0][i], lanes[1][i], lanes[2][i]) = (v.x, v.y, v.z);
+fn gather<R: Exact>(plane: Option<&[[R; 3]]>, first: usize) -> Option<[Lanes<R>; 3]> {
+    let (groups, _) = plane?.as_chunks();
+    Some(transposed(&groups[first / LANES]))
 }

@@ -46,14 +46,14 @@ use crate::splat::View;
 
 /// A light in view space.
 #[derive(Clone, Copy, Debug)]
-enum Placed<R> {
+enum PlacedLight<R> {
     /// The unit direction towards it.
     Towards(Vector3<R>),
     /// Its position.
     At(Vector3<R>),
 }
 
-impl<R: Exact> Placed<R> {
+impl<R: Exact> PlacedLight<R> {
     /// l: the direction towards the light from p.
     #[inline(always)]
     fn from(&self, p: Vector3<R>) -> Vector3<R> {
@@ -68,7 +68,7 @@ impl<R: Exact> Placed<R> {
 #[derive(Clone, Debug)]
 pub struct Shader<R> {
     view: View<R>,
-    lights: Vec<(Placed<R>, [R; 3])>,
+    lights: Vec<(PlacedLight<R>, [R; 3])>,
     material: Phong,
 }
 
@@ -79,15 +79,15 @@ impl<R: Exact> Shader<R> {
         let place = |light: &Light| match *light {
             Light::Directional { towards, color } => {
                 let towards = view.direction(Vector3::from_glam(towards)).normalized();
-                (Placed::Towards(towards), color.to_array().map(R::from_f32))
+                (PlacedLight::Towards(towards), color.to_array().map(R::from_f32))
             }
             Light::Headlight { towards, color } => {
                 let towards = Vector3::from_glam(towards).normalized();
-                (Placed::Towards(towards), color.to_array().map(R::from_f32))
+                (PlacedLight::Towards(towards), color.to_array().map(R::from_f32))
             }
             Light::Point { position, color } => {
                 let position = view.point(Vector3::from_glam(position));
-                (Placed::At(position), color.to_array().map(R::from_f32))
+                (PlacedLight::At(position), color.to_array().map(R::from_f32))
             }
         };
         Self { view, lights: lights.iter().map(place).collect(), material }
@@ -130,7 +130,7 @@ impl<R: Exact> Shader<R> {
                 let depth = &depth.values()[y * row..][..row];
                 let normal = normal.map(|plane| &plane.values()[y * row..][..row]);
                 let tangent = tangent.map(|plane| &plane.values()[y * row..][..row]);
-                lanes::shade(self, &lanes::Row { y, depth, normal, tangent, own }, pixels);
+                lanes::shade(self, &lanes::ShadedRow { y, depth, normal, tangent, own }, pixels);
             },
         );
     }

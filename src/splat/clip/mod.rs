@@ -57,13 +57,13 @@ use crate::number::{Exact, Vector3};
 #[derive(Clone, Debug)]
 pub struct Clip<R> {
     /// In the order of the cuts.
-    planes: [Plane<R>; 5],
+    planes: [ClipPlane<R>; 5],
     near: R,
 }
 
 /// The distance `(scale c + past t) + one`, in units of its own, with c the coordinate it bounds.
 #[derive(Clone, Copy, Debug)]
-struct Plane<R> {
+struct ClipPlane<R> {
     axis: Axis,
     scale: R,
     past: R,
@@ -86,7 +86,7 @@ pub struct Clipped<R, const N: usize> {
     pub weights: [R; N],
 }
 
-impl<R: Exact> Plane<R> {
+impl<R: Exact> ClipPlane<R> {
     fn distance(&self, p: &Vector3<R>) -> R {
         let coordinate = match self.axis {
             Axis::X => p.x,
@@ -114,10 +114,10 @@ impl<R: Exact> Clip<R> {
         let guard = R::from_f32(GUARD_BAND as f32);
         let side = |axis: Axis, scale: R, reach: R| {
             let (past, one) = if view.perspective { (reach, R::ZERO) } else { (R::ZERO, reach) };
-            Plane { axis, scale, past, one }
+            ClipPlane { axis, scale, past, one }
         };
         let planes = [
-            Plane { axis: Axis::Z, scale: -R::ONE, past: R::ZERO, one: -view.near },
+            ClipPlane { axis: Axis::Z, scale: -R::ONE, past: R::ZERO, one: -view.near },
             side(Axis::X, view.fx, guard + view.cx),
             side(Axis::X, -view.fx, guard - view.cx),
             side(Axis::Y, -view.fy, guard + view.cy),
@@ -192,7 +192,7 @@ impl<R: Exact> Clip<R> {
     /// if that is not finite.
     fn cut<const N: usize>(
         &self,
-        plane: &Plane<R>,
+        plane: &ClipPlane<R>,
         (inside, d): (Clipped<R, N>, R),
         (outside, e): (Clipped<R, N>, R),
     ) -> Option<Clipped<R, N>> {

@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
-use splatref::composite::groups::{Sample, compose};
-use splatref::composite::{epsilon, sum};
+use splatref::composite::groups::{WeightedFragment, compose};
+use splatref::composite::{decide, sum};
 use splatref::number::Exact;
 
 /// Half the spacing of the numbers in [1, 2).
@@ -21,15 +21,15 @@ pub(crate) fn filled<R: Exact>((coarse, fine): (f32, f32)) -> R {
 /// The numbers of a sample: depth, weight, normal, colour, opacity.
 type Numbers = [(f32, f32); 9];
 
-fn sample<R: Exact>(numbers: &Numbers) -> Sample<R> {
+fn sample<R: Exact>(numbers: &Numbers) -> WeightedFragment<R> {
     if numbers[0].0 == f32::INFINITY {
-        return Sample::EMPTY;
+        return WeightedFragment::EMPTY;
     }
     let [t, w, nx, ny, nz, r, g, b, o] = numbers.map(filled::<R>);
-    Sample::new(t, w, [nx, ny, nz], [r, g, b], o)
+    WeightedFragment::new(t, w, [nx, ny, nz], [r, g, b], o)
 }
 
-fn samples<R: Exact>(all: &[Numbers]) -> Vec<Sample<R>> {
+fn samples<R: Exact>(all: &[Numbers]) -> Vec<WeightedFragment<R>> {
     all.iter().map(sample).collect()
 }
 
@@ -71,17 +71,17 @@ fn band() -> impl Strategy<Value = f32> {
 }
 
 /// The nine attributes but for the depth.
-fn attributes<R: Exact>(s: &Sample<R>) -> [f64; 8] {
+fn attributes<R: Exact>(s: &WeightedFragment<R>) -> [f64; 8] {
     let ([nx, ny, nz], [r, g, b]) = (s.normal, s.color);
     [s.weight, nx, ny, nz, r, g, b, s.opacity].map(R::to_f64)
 }
 
-fn bits<R: Exact>((sums, count): &(Sample<R>, u32)) -> ([u64; 8], u64, u32) {
+fn bits<R: Exact>((sums, count): &(WeightedFragment<R>, u32)) -> ([u64; 8], u64, u32) {
     (attributes(sums).map(f64::to_bits), sums.depth.to_f64().to_bits(), *count)
 }
 
 /// Those that pass the epsilon-z test, by the definition in words.
-fn visible<R: Exact>(all: &[Sample<R>], epsilon: R) -> Vec<Sample<R>> {
+fn visible<R: Exact>(all: &[WeightedFragment<R>], epsilon: R) -> Vec<WeightedFragment<R>> {
     let full = || all.iter().filter(|s| s.depth.is_finite());
     let nearest = full().map(|s| s.depth).fold(R::INFINITY, |a, b| if b < a { b } else { a });
     full().filter(|s| s.depth <= nearest + epsilon).copied().collect()
@@ -90,8 +90,8 @@ fn visible<R: Exact>(all: &[Sample<R>], epsilon: R) -> Vec<Sample<R>> {
 /// Sums of the same m terms in two orders: each is within (m - 1) u of the sum of magnitudes, u
 /// half an ulp of 1, so the two are within (m - 1) 2 u, which is at most 2 (m - 1) ulp of that sum.
 fn same_but_order<R: Exact>(
-    (a, b): (&Sample<R>, &Sample<R>),
-    terms: &[Sample<R>],
+    (a, b): (&WeightedFragment<R>, &WeightedFragment<R>),
+    terms: &[WeightedFragment<R>],
 ) -> TestCaseResult {
     prop_assert_eq!(a.depth, b.depth);
     let m = terms.len() as f64;
@@ -119,7 +119,7 @@ fn empty_is_neutral<R: Exact>(all: &[Numbers], places: &[usize], band: f32) -> T
     let (mut all, band) = (samples::<R>(all), R::from_f32(band));
     let before = compose(&all, band);
     for place in places {
-        all.insert(place % (all.len() + 1), Sample::EMPTY);
+        all.insert(place % (all.len() + 1), WeightedFragment::EMPTY);
         prop_assert_eq!(bits(&before), bits(&compose(&all, band)));
     }
     Ok(())
@@ -130,7 +130,8 @@ fn it_is_its_definition<R: Exact>(all: &[Numbers], band: f32) -> TestCaseResult 
     let (sums, count) = compose(&all, band);
     let terms = visible(&all, band);
     prop_assert_eq!(count as usize, terms.len());
-    let plain = |of: fn(&Sample<R>) -> R| terms.iter().fold(R::ZERO, |a, s| a + of(s)).to_f64();
+    let plain =
+        |of: fn(&WeightedFragment<R>) -> R| terms.iter().fold(R::ZERO, |a, s| a + of(s)).to_f64();
     let expected = [
         plain(|s| s.weight),
         plain(|s| s.normal[0]),
@@ -152,7 +153,7 @@ fn it_is_its_definition<R: Exact>(all: &[Numbers], band: f32) -> TestCaseResult 
         prop_assert_eq!(count as usize, full.filter(|s| s.depth == sums.depth).count());
     }
     if empty {
-        prop_assert_eq!(bits(&(sums, count)), bits(&(Sample::<R>::EMPTY, 0)));
+        prop_assert_eq!(bits(&(sums, count)), bits(&(WeightedFragment::<R>::EMPTY, 0)));
     }
     Ok(())
 }
@@ -172,7 +173,7 @@ fn an_image_of_its_own<R: Exact>(all: &[Numbers], place: usize, band: f32) -> Te
     let (all, band) = (samples::<R>(all), R::from_f32(band));
     let place = place % all.len();
     let mut apart = all.clone();
-    apart[place] = Sample::EMPTY;
+    apart[place] = WeightedFragment::EMPTY;
     apart.push(all[place]);
     let (before, after) = (compose(&all, band), compose(&apart, band));
     prop_assert_eq!(before.1, after.1);
@@ -243,7 +244,7 @@ proptest! {
 #[test]
 fn it_is_not_associative() {
     let epsilon = 1.0_f64;
-    let at = |t: f64| Sample::new(t, 1.0, [0.0, 0.0, 1.0], [t; 3], 1.0);
+    let at = |t: f64| WeightedFragment::new(t, 1.0, [0.0, 0.0, 1.0], [t; 3], 1.0);
     let depths = [0.0, 0.75, 1.5];
     let (all, count) = compose(&depths.map(at), epsilon);
     assert_eq!((count, all.weight, all.color[0]), (2, 2.0, 0.75), "the first two");
@@ -256,5 +257,5 @@ fn it_is_not_associative() {
     let (first, _) = compose(&[at(0.0), at(0.75)], epsilon);
     let (folded, _) = compose(&[first, at(1.5)], epsilon);
     assert_eq!((folded.weight, folded.color[0]), (2.0, 0.75));
-    assert!(!epsilon::visible(1.5, 0.0, epsilon));
+    assert!(!decide::visible(1.5, decide::limit(0.0, epsilon)));
 }

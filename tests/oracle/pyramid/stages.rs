@@ -16,7 +16,7 @@ use crate::pyramid::tolerance::PYRAMID;
 use Arithmetic::{F32, F64};
 use splatref::frame::{Exec, Frame, NO_ID, Samples};
 use splatref::method::Picture;
-use splatref::method::pyramid::{self, fast::Levels};
+use splatref::method::pyramid::{self, fast::CellLevels};
 use splatref::number::Exact;
 use splatref::splat::Tally;
 use std::collections::BTreeMap;
@@ -362,7 +362,7 @@ fn pyramid_stages_equal_the_oracle() {
 
 #[test]
 fn pyramid_bits_are_those_of_the_documentation() {
-    let (mut levels, exec) = (Levels::default(), Exec::sequential());
+    let (mut levels, exec) = (CellLevels::default(), Exec::sequential());
     for case in &cases() {
         let (mut measured, mut open) = (Measured::default(), Open::default());
         let plain = compare::<f32, BITS>(case, F32, (&mut measured, &mut open));

@@ -9,8 +9,8 @@ use crate::single_pass::stages::groups;
 use glam::Vec3;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
-use splatref::composite::epsilon;
-use splatref::composite::groups::{Sample, compose};
+use splatref::composite::decide;
+use splatref::composite::groups::{WeightedFragment, compose};
 use splatref::frame::{Exec, Frame, NO_ID};
 use splatref::method::ewa::{self, Epsilon};
 use splatref::method::single_pass::{self, BinCount, DepthTest, Settings};
@@ -121,7 +121,7 @@ fn relabelled<R: Exact>(
         same_but_order(&first, &second, i, &case.name)?;
         // Composed in the order of the first names, the second images give the first sums.
         let number = |group: usize, end: &str| value(&second, &format!("group{group:02}{end}"), i);
-        let wide = names.iter().map(|name| Sample {
+        let wide = names.iter().map(|name| WeightedFragment {
             depth: number(*name, ".Z")[0],
             weight: number(*name, ".weight")[0],
             normal: number(*name, ".normal"),
@@ -129,7 +129,7 @@ fn relabelled<R: Exact>(
             opacity: 0.0,
         });
         // Through f32 if R is f32: the numbers fit, the sums must round as R does.
-        let samples: Vec<Sample<R>> = wide.map(narrowed).collect();
+        let samples: Vec<WeightedFragment<R>> = wide.map(narrowed).collect();
         let (sums, _) = compose(&samples, epsilon);
         let found = [[sums.weight; 3], sums.normal, sums.color].map(|v| v.map(R::to_f64));
         let expected = ["sums.weight", "sums.normal", "sums"].map(|name| value(&first, name, i));
@@ -152,8 +152,8 @@ fn exactly<R: Exact>(value: f64) -> R {
         * R::from_f32(2.0_f32.powi(-scale))
 }
 
-fn narrowed<R: Exact>(s: Sample<f64>) -> Sample<R> {
-    Sample {
+fn narrowed<R: Exact>(s: WeightedFragment<f64>) -> WeightedFragment<R> {
+    WeightedFragment {
         depth: exactly(s.depth),
         weight: exactly(s.weight),
         normal: s.normal.map(exactly),
@@ -167,7 +167,7 @@ fn shown<R: Exact>(frame: &Frame<R>, i: usize, count: usize, band: R) -> Vec<u32
     let nearest = value(frame, "Z", i)[0];
     let groups = (0..count).filter_map(|group| {
         let t = value(frame, &format!("group{group:02}.Z"), i)[0];
-        let visible = epsilon::visible(exactly::<R>(t), exactly(nearest), band);
+        let visible = decide::visible(exactly::<R>(t), decide::limit(exactly(nearest), band));
         let id = index(frame, &format!("group{group:02}.id"), i).expect("an id");
         (visible && id != NO_ID).then_some(id)
     });

@@ -3,18 +3,17 @@
 //! Each table is read into a struct that mirrors its keys and then converted; a conversion that
 //! fails is reported by serde at the table's place in the text.
 
-mod method;
+mod table;
 
 use super::{
-    CameraChoice, DEFAULT_COUNT, Draw, EnvironmentChoice, GroupChoice, MethodChoice, Model, Number,
-    Output, SceneFile, Source, check_opacity, stem, words,
+    CameraChoice, DEFAULT_COUNT, Draw, EnvironmentChoice, GroupChoice, MethodChoice, Model,
+    OutputSettings, SceneFile, Source, TREE, check_opacity, shapes, stem,
 };
 use crate::error::{Error, Result};
 use crate::scene::transform::{self, Similarity};
 use crate::scene::{Lens, Light, Phong};
 use crate::source::{Shape, plant};
 use glam::{DMat3, DVec3, Vec3};
-use method::{RawGroups, RawMethod};
 use serde::de::{self, Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
 
@@ -67,12 +66,12 @@ struct File {
     #[serde(default)]
     material: Phong,
     environment: Option<EnvironmentChoice>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "table::method")]
     method: MethodChoice,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "table::groups")]
     groups: GroupChoice,
-    #[serde(default)]
-    output: Output,
+    #[serde(default, deserialize_with = "table::output")]
+    output: OutputSettings,
 }
 
 /// Implements `Deserialize` through a struct that mirrors the keys.
@@ -93,9 +92,6 @@ through! {
     Light: RawLight, RawLight::light;
     Phong: RawMaterial, RawMaterial::material;
     EnvironmentChoice: RawEnvironment, RawEnvironment::choice;
-    MethodChoice: RawMethod, RawMethod::choice;
-    GroupChoice: RawGroups, RawGroups::choice;
-    Output: RawOutput, RawOutput::output;
 }
 
 #[derive(serde::Deserialize)]
@@ -130,7 +126,7 @@ impl RawModel {
             let of = match &source {
                 Source::File { .. } => "a file",
                 Source::Shape { shape, .. } => shape.name(),
-                Source::Tree { .. } => words::TREE,
+                Source::Tree { .. } => TREE,
             };
             return Err(format!("`{key}` means nothing to {of}: remove it"));
         }
@@ -149,13 +145,13 @@ impl RawModel {
     fn source(&mut self) -> std::result::Result<Source, String> {
         match (self.file.take(), self.shape.take()) {
             (Some(path), None) => Ok(Source::File { path, radius: self.radius.take() }),
-            (None, Some(name)) if name == words::TREE => {
+            (None, Some(name)) if name == TREE => {
                 let leaves = self.leaves.take().unwrap_or(plant::LEAVES);
                 Ok(Source::Tree { leaves, seed: self.seed.take().unwrap_or(0) })
             }
             (None, Some(name)) => {
                 let shape = Shape::by_name(&name)
-                    .ok_or_else(|| format!("shape `{name}`; give one of {}", words::shapes()))?;
+                    .ok_or_else(|| format!("shape `{name}`; give one of {}", shapes()))?;
                 let shape = self.parameters(shape);
                 let count = self.count.take().unwrap_or(DEFAULT_COUNT);
                 Ok(Source::Shape { shape, count, seed: self.seed.take().unwrap_or(0) })
@@ -353,19 +349,5 @@ impl RawEnvironment {
             (None, Some(true)) => Ok(EnvironmentChoice::Sky),
             _ => Err("environment: give either a `file` or `sky = true`".into()),
         }
-    }
-}
-
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawOutput {
-    number: Option<String>,
-    stages: Option<bool>,
-}
-
-impl RawOutput {
-    fn output(self) -> std::result::Result<Output, String> {
-        let number = self.number.map_or(Ok(Number::default()), |word| words::number(&word))?;
-        Ok(Output { number, stages: self.stages.unwrap_or(false) })
     }
 }

@@ -6,24 +6,14 @@ mod kernels;
 use super::Settings;
 use crate::frame::{Exec, Framebuffer};
 use crate::method::fast::{draw, prepare};
+use crate::method::picture::{Clock, Laps};
 use crate::scene::{Camera, Surfels};
 use crate::splat::Tally;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-/// Wall time of the stages; those of the fused passes are shares of their common time.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Timings {
-    /// Projection and binning.
-    pub project: Duration,
-    /// Visibility splatting, with the gathering of each tile's splats.
-    pub visibility: Duration,
-    /// Attribute splatting.
-    pub attributes: Duration,
-    /// Normalization.
-    pub normalize: Duration,
-}
-
-/// Draws a scene into a framebuffer: both geometry passes and the normalization.
+/// Draws a scene into a framebuffer: both geometry passes and the normalization. The wall times of
+/// the fused passes are shares of their common time; visibility splatting includes the gathering of
+/// each tile's splats.
 ///
 /// Every pixel of `target` is overwritten, so a framebuffer can be used for many pictures. Its
 /// stencil and margin are not written; see [`super::plain`] for those.
@@ -36,14 +26,14 @@ pub fn render(
     settings: &Settings,
     exec: &Exec,
     target: &mut Framebuffer<f32>,
-) -> (Tally, Timings) {
+) -> (Tally, Laps) {
     assert_eq!((target.width, target.height), (camera.width, camera.height), "framebuffer size");
-    let start = Instant::now();
+    let mut clock = Clock::default();
     let grid = exec.grid(camera.width, camera.height);
     let prepared = prepare(surfels, camera, settings, (exec, &grid));
-    let project = start.elapsed();
+    clock.lap("projection");
     let shared = &prepared.shared;
-    let [visibility, attributes, normalize] = draw(&prepared, target, (exec, &grid), |tile| {
+    let passes = draw(&prepared, target, (exec, &grid), |tile| {
         let start = Instant::now();
         tile.visibility(shared);
         let visible = Instant::now();
@@ -53,5 +43,7 @@ pub fn render(
         tile.normalize(shared);
         [visible - start, added - visible, added.elapsed()]
     });
-    (prepared.tally, Timings { project, visibility, attributes, normalize })
+    let mut laps = clock.into_laps();
+    laps.extend(["visibility", "attributes", "normalization"].into_iter().zip(passes));
+    (prepared.tally, laps)
 }

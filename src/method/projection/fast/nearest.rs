@@ -6,9 +6,9 @@
 )]
 
 use super::points::{CHUNK, Points, depth};
-use super::{LANES, Lanes};
 use crate::frame::{Exec, NO_ID};
-use crate::method::projection::surfel::Lens;
+use crate::method::projection::surfels::PointProjector;
+use crate::number::lanes::{LANES, Lanes, each, put_vector, transposed, vector};
 use crate::number::{Real, Vector3};
 use crate::scene::Surfels;
 use crate::splat::ellipse;
@@ -18,10 +18,10 @@ use glam::Vec3;
 const NONE: u64 = u64::MAX;
 
 /// The nearest points of a row of pixels.
-pub(in crate::method) struct Nearest<'a> {
+pub(in crate::method) struct NearestPoints<'a> {
     points: &'a Points,
     surfels: &'a Surfels,
-    lens: &'a Lens<f32>,
+    lens: &'a PointProjector<f32>,
     /// The order of the depth in the upper half, and the slot: the less, the nearer, and of two
     /// surfels equally near the one of the lower index, as the order of slots in a pixel is that of
     /// the surfels.
@@ -32,10 +32,10 @@ impl Points {
     /// Calls `draw` for every row of pixels with what the row is drawn into.
     pub(in crate::method) fn each_row<T: Send>(
         &self,
-        (surfels, lens): (&Surfels, &Lens<f32>),
+        (surfels, lens): (&Surfels, &PointProjector<f32>),
         rows: impl Iterator<Item = T>,
         exec: &Exec,
-        draw: impl Fn(&Nearest<'_>, T) + Sync + Send,
+        draw: impl Fn(&NearestPoints<'_>, T) + Sync + Send,
     ) {
         let width = lens.view.width.to_pixel() as usize;
         exec.chunks(rows, self.rows(), |first, rows| {
@@ -47,7 +47,7 @@ impl Points {
                 }
             }
             for (kept, target) in kept.chunks(width).zip(rows) {
-                draw(&Nearest { points: self, surfels, lens, kept }, target);
+                draw(&NearestPoints { points: self, surfels, lens, kept }, target);
             }
         });
     }
@@ -64,30 +64,24 @@ pub(in crate::method) struct SampleLanes {
     slot: [usize; LANES],
 }
 
-impl Nearest<'_> {
+impl NearestPoints<'_> {
     /// The samples of the pixels from column x on; none if there is no point.
     #[inline(always)]
     pub(in crate::method) fn take(&self, x: usize) -> Option<SampleLanes> {
+        // -- The keys of the points
         let count = LANES.min(self.kept.len() - x);
         let mut kept = [NONE; LANES];
         kept[..count].copy_from_slice(&self.kept[x..x + count]);
         if kept.iter().fold(NONE, |all, kept| all & kept) == NONE {
             return None;
         }
+        // -- What they carry
         // A pixel without a point reads slot 0, which means nothing: loops of loads without a
         // branch wait for memory together.
-        let (mut slot, mut carried) = ([0; LANES], [[0.0; 4]; LANES]);
-        for i in 0..LANES {
-            slot[i] = if kept[i] == NONE { 0 } else { kept[i] as u32 as usize };
-            carried[i] = self.points.carried[slot[i]];
-        }
-        let mut column = [[0.0; LANES]; 4];
-        for i in 0..LANES {
-            for k in 0..4 {
-                column[k][i] = carried[i][k];
-            }
-        }
-        let [x, y, z, radius] = column;
+        let slot = each(|i| if kept[i] == NONE { 0 } else { kept[i] as u32 as usize });
+        let carried = each(|i| self.points.carried[slot[i]]);
+        let [x, y, z, radius] = transposed(&carried);
+        // -- What follows from the depth
         let (mut depths, mut extent) = ([f32::INFINITY; LANES], [0.0; LANES]);
         for i in 0..LANES {
             let t = depth((kept[i] >> 32) as u32);
@@ -101,14 +95,12 @@ impl Nearest<'_> {
     /// The surfels of samples; [`NO_ID`] where there is none.
     #[inline(always)]
     pub(in crate::method) fn ids(&self, of: &SampleLanes) -> [u32; LANES] {
-        let mut id = [NO_ID; LANES];
-        for i in 0..LANES {
+        each(|i| {
             // A slot and its surfel are of the same chunk.
             let (chunk, slot) = (of.slot[i] - of.slot[i] % CHUNK, of.slot[i]);
             let own = chunk as u32 + self.points.keys[slot].surfel();
-            id[i] = if of.depth[i] < f32::INFINITY { own } else { NO_ID };
-        }
-        id
+            if of.depth[i] < f32::INFINITY { own } else { NO_ID }
+        })
     }
 
     /// Where the centres of these surfels are in the picture; any place where there is none.
@@ -117,8 +109,7 @@ impl Nearest<'_> {
         let p = vectors(self.surfels.position(), id);
         let mut center = [[0.0; LANES]; 2];
         for i in 0..LANES {
-            let p = self.lens.view.point(Vector3::new(p[0][i], p[1][i], p[2][i]));
-            let placed = self.lens.place(p);
+            let placed = self.lens.place(self.lens.view.point(vector(&p, i)));
             (center[0][i], center[1][i]) = (placed.center.x, placed.center.y);
         }
         center
@@ -138,7 +129,7 @@ fn vectors(of: &[Vec3], id: &[u32; LANES]) -> [Lanes; 3] {
     let mut vectors = [[0.0; LANES]; 3];
     for i in 0..LANES {
         let own = if id[i] == NO_ID { 0 } else { id[i] as usize };
-        [vectors[0][i], vectors[1][i], vectors[2][i]] = of[own].to_array();
+        put_vector(&mut vectors, i, Vector3::from_glam(of[own]));
     }
     vectors
 }

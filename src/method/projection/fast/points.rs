@@ -5,15 +5,14 @@
     reason = "a lane is an index into several arrays, and such a loop becomes vectors"
 )]
 
-use super::{LANES, Lanes};
 use crate::frame::Exec;
-use crate::method::projection::surfel::Lens;
+use crate::method::projection::surfels::PointProjector;
+use crate::number::lanes::{LANES, Lanes, vectorized};
 use crate::number::{Real, Vector3};
 use crate::scene::Surfels;
 use crate::scene::camera::MAX_EXTENT;
 use crate::splat::{Fate, Tally};
 use glam::Vec3;
-use multiversion::multiversion;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
@@ -100,7 +99,7 @@ impl Points {
     pub(in crate::method) fn find(
         &mut self,
         surfels: &Surfels,
-        lens: &Lens<f32>,
+        lens: &PointProjector<f32>,
         exec: &Exec,
     ) -> Tally {
         let n = surfels.len();
@@ -149,7 +148,7 @@ impl Points {
 #[derive(Debug)]
 struct Chunk {
     /// Of all surfels, seen or not.
-    blocks: Vec<Block>,
+    blocks: Vec<PointBlock>,
     /// The surfels that are seen, ascending; the rest means nothing.
     seen: Vec<u16>,
     /// The next slot of each band.
@@ -161,7 +160,7 @@ struct Chunk {
 
 /// [`LANES`] surfels.
 #[derive(Clone, Copy, Debug)]
-struct Block {
+struct PointBlock {
     place: [u32; LANES],
     order: [u32; LANES],
     band: [u32; LANES],
@@ -170,7 +169,7 @@ struct Block {
 
 impl Chunk {
     fn new() -> Self {
-        let empty = Block {
+        let empty = PointBlock {
             place: [0; LANES],
             order: [0; LANES],
             band: [0; LANES],
@@ -214,39 +213,41 @@ impl Chunk {
     }
 }
 
-/// What becomes of a range of surfels: fills `chunk` but for what is sorted, and tells how many are
-/// seen.
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn points(
-    surfels: &Surfels,
-    lens: &Lens<f32>,
-    range: Range<usize>,
-    bands: Bands,
-    chunk: &mut Chunk,
-) -> (usize, Tally) {
-    // A copy, which nothing that is written can be thought to change.
-    let lens = &{ *lens };
-    let (p, last_p) = surfels.position()[range.clone()].as_chunks();
-    let (n, last_n) = surfels.normal()[range.clone()].as_chunks();
-    let (r, last_r) = surfels.radius()[range.clone()].as_chunks();
-    let (mut count, mut fates) = (0, Fates::default());
-    for (index, block) in chunk.blocks[..p.len()].iter_mut().enumerate() {
-        let visible = block.fill((&p[index], &n[index], &r[index]), index, lens, bands, &mut fates);
-        count += note(&visible, index, &mut chunk.seen[count..]);
+vectorized!(
+    /// What becomes of a range of surfels: fills `chunk` but for what is sorted, and tells how many are
+    /// seen.
+    fn points(
+        surfels: &Surfels,
+        lens: &PointProjector<f32>,
+        range: Range<usize>,
+        bands: Bands,
+        chunk: &mut Chunk,
+    ) -> (usize, Tally) {
+        // A copy, which nothing that is written can be thought to change.
+        let lens = &{ *lens };
+        let (p, last_p) = surfels.position()[range.clone()].as_chunks();
+        let (n, last_n) = surfels.normal()[range.clone()].as_chunks();
+        let (r, last_r) = surfels.radius()[range.clone()].as_chunks();
+        let (mut count, mut fates) = (0, Fates::default());
+        for (index, block) in chunk.blocks[..p.len()].iter_mut().enumerate() {
+            let visible =
+                block.fill((&p[index], &n[index], &r[index]), index, lens, bands, &mut fates);
+            count += note(&visible, index, &mut chunk.seen[count..]);
+        }
+        let rest = last_p.len();
+        if rest > 0 {
+            // Lanes without a surfel have the last one again, and are not counted.
+            let (index, at) = (p.len(), std::array::from_fn(|i: usize| i.min(rest - 1)));
+            let last = (&at.map(|i| last_p[i]), &at.map(|i| last_n[i]), &at.map(|i| last_r[i]));
+            let mut own = Fates::default();
+            let mut visible = chunk.blocks[index].fill(last, index, lens, bands, &mut own);
+            visible[rest..].fill(0);
+            fates.add(&own, rest);
+            count += note(&visible, index, &mut chunk.seen[count..]);
+        }
+        (count, fates.tally(range.len(), count))
     }
-    let rest = last_p.len();
-    if rest > 0 {
-        // Lanes without a surfel have the last one again, and are not counted.
-        let (index, at) = (p.len(), std::array::from_fn(|i: usize| i.min(rest - 1)));
-        let last = (&at.map(|i| last_p[i]), &at.map(|i| last_n[i]), &at.map(|i| last_r[i]));
-        let mut own = Fates::default();
-        let mut visible = chunk.blocks[index].fill(last, index, lens, bands, &mut own);
-        visible[rest..].fill(0);
-        fates.add(&own, rest);
-        count += note(&visible, index, &mut chunk.seen[count..]);
-    }
-    (count, fates.tally(range.len(), count))
-}
+);
 
 /// Notes the surfels of a block that are visible, and tells how many.
 #[inline(always)]
@@ -261,7 +262,7 @@ fn note(visible: &[u32; LANES], block: usize, seen: &mut [u16]) -> usize {
     count
 }
 
-impl Block {
+impl PointBlock {
     /// The block of this index from positions, normals and radii, and which of them are visible: 1,
     /// else 0.
     #[inline(always)]
@@ -269,7 +270,7 @@ impl Block {
         &mut self,
         (p, n, radius): (&[Vec3; LANES], &[Vec3; LANES], &Lanes),
         index: usize,
-        lens: &Lens<f32>,
+        lens: &PointProjector<f32>,
         bands: Bands,
         fates: &mut Fates,
     ) -> [u32; LANES] {
@@ -285,7 +286,7 @@ impl Block {
             fates.behind[i] += u32::from(fate == Fate::Behind);
             fates.degenerate[i] += u32::from(fate == Fate::Degenerate);
             fates.back_facing[i] += u32::from(fate == Fate::BackFacing);
-            let sample = lens.sample(&placed, (n, g), radius[i], (0, [0.0; 3]));
+            let sample = lens.sample(0, &placed, n, g, radius[i], [0.0; 3]);
             let (x, y) = (sample.center.x.to_pixel(), sample.center.y.to_pixel());
             place[i] = ((y & row) * width + x) << 16 | (index * LANES + i) as u32;
             orders[i] = order(sample.depth);

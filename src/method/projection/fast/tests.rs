@@ -5,8 +5,9 @@ use super::*;
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, NO_ID};
 use crate::method::projection::project;
-use crate::method::projection::surfel::Lens;
+use crate::method::projection::surfels::PointProjector;
 use crate::method::tests::{cameras, scene, surfels};
+use crate::number::lanes::{LANES, Lanes};
 use crate::scene::{Camera, Cloud, Projection, Surfels};
 use crate::splat::View;
 
@@ -14,7 +15,7 @@ use crate::splat::View;
 /// zeros.
 fn samples(of: &Surfels, camera: &Camera, cull: bool, points: &mut Points) -> Vec<String> {
     let exec = Exec::new(3, 16).unwrap();
-    let lens = Lens::new(View::new(camera), cull);
+    let lens = PointProjector::new(View::new(camera), cull);
     points.find(of, &lens, &exec);
     let width = camera.width as usize;
     let mut rows = vec![vec![String::new(); width]; camera.height as usize];
@@ -42,9 +43,9 @@ fn samples(of: &Surfels, camera: &Camera, cull: bool, points: &mut Points) -> Ve
 /// The samples of the definition.
 fn expected(of: &Surfels, camera: &Camera, cull: bool) -> Vec<String> {
     let exec = Exec::sequential();
-    let how = (cull, Snap::new(8).unwrap());
-    let projected = project::<f32>(&scene(of.clone()), camera, how, &exec).unwrap();
-    let text = |s: &crate::method::projection::Sample<f32>| {
+    let snap = Snap::new(8).unwrap();
+    let projected = project::<f32>(&scene(of.clone()), camera, cull, snap, &exec).unwrap();
+    let text = |s: &crate::method::projection::PixelSample<f32>| {
         let normal = [s.normal.x, s.normal.y, s.normal.z];
         let form = (s.depth, s.radius, s.extent, [s.center.x, s.center.y], normal);
         format!("{} {form:?} {:?}", s.id, s.color)

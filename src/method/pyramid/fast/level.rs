@@ -1,10 +1,9 @@
 //! A level in rows of numbers.
 
-use crate::method::projection::{Has, Kind};
+use crate::method::projection::fast::RowLayout;
+use crate::method::projection::{Has, SampleKind};
 
-pub(super) use crate::method::projection::fast::{PAD, Shape, lanes};
-
-/// The numbers of a cell, by their place in a row; [`KIND`] is the [`Kind`] as a number.
+/// The numbers of a cell, by their place in a row; [`KIND`] is the [`SampleKind`] as a number.
 pub(super) const KIND: usize = 0;
 pub(super) const FRONT: usize = 1;
 pub(super) const BACK: usize = 2;
@@ -20,38 +19,38 @@ pub(super) const TILT: usize = 9;
 /// The first number that not every scene has.
 pub(super) const FURTHER: usize = 11;
 
-/// [`Kind::Tube`] as a number.
-pub(super) const TUBE: f32 = Kind::Tube as u8 as f32;
+/// [`SampleKind::Tube`] as a number.
+pub(super) const TUBE: f32 = SampleKind::Tube as u8 as f32;
 
-/// The shape of a level's memory.
-pub(super) fn shape(size: [u32; 2], has: Has) -> Shape {
+/// The layout of a level of this size.
+pub(super) fn layout(size: [u32; 2], has: Has) -> RowLayout {
     let further = 3 * (usize::from(has.color) + usize::from(has.tangent));
-    Shape::new(size, FURTHER + further)
+    RowLayout::new(size, FURTHER + further)
 }
 
 /// A level; an empty row above the first and below the last.
 #[derive(Debug)]
-pub(super) struct Level {
-    pub(super) shape: Shape,
+pub(super) struct CellLevel {
+    pub(super) layout: RowLayout,
     numbers: Vec<f32>,
 }
 
-impl Level {
+impl CellLevel {
     /// An empty level.
-    pub(super) fn new(shape: Shape) -> Self {
-        Self { shape, numbers: vec![0.0; (shape.height + 2) * shape.row()] }
+    pub(super) fn new(layout: RowLayout) -> Self {
+        Self { layout, numbers: vec![0.0; (layout.height + 2) * layout.row()] }
     }
 
     /// The row y of cells; -1 and the height are empty.
     #[inline(always)]
     pub(super) fn row(&self, y: isize) -> &[f32] {
-        let start = (y + 1) as usize * self.shape.row();
-        &self.numbers[start..start + self.shape.row()]
+        let start = (y + 1) as usize * self.layout.row();
+        &self.numbers[start..start + self.layout.row()]
     }
 
     /// All rows of cells, to be written.
     pub(super) fn rows_mut(&mut self) -> std::slice::ChunksMut<'_, f32> {
-        let row = self.shape.row();
-        self.numbers[row..(self.shape.height + 1) * row].chunks_mut(row)
+        let row = self.layout.row();
+        self.numbers[row..(self.layout.height + 1) * row].chunks_mut(row)
     }
 }

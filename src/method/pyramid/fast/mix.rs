@@ -6,12 +6,12 @@
 )]
 
 use super::level::TUBE;
-use crate::method::projection::fast::{LANES, Lanes, any_above_0};
-use crate::number::{Real, Vector2, Vector3};
+use crate::number::lanes::{LANES, Lanes, any_above_0, each, vector};
+use crate::number::{Real, Vector2};
 use crate::splat::Ellipse;
 
 /// The numbers of four cells for [`LANES`] new ones that decide who takes part.
-pub(super) struct Four {
+pub(super) struct FourCells {
     pub(super) kind: [Lanes; 4],
     pub(super) front: [Lanes; 4],
     pub(super) back: [Lanes; 4],
@@ -33,7 +33,7 @@ pub(super) struct Mix {
     pub(super) kind: Lanes,
 }
 
-impl Four {
+impl FourCells {
     /// See [`super::super::Cell::foremost`]; `TUBES` false promises that there are none.
     ///
     /// One long loop: LLVM unrolls short ones before it looks for vectors, and then finds few.
@@ -43,6 +43,7 @@ impl Four {
         let mut distances = [[0.0; LANES]; 4];
         let mut kinds = [0.0; LANES];
         for i in 0..LANES {
+            // -- Which ellipses hold the centre of the new cell
             let mut fronts = [0.0; 4];
             for j in 0..4 {
                 let tilt = Vector2::new(self.tilt[j][0][i], self.tilt[j][1][i]);
@@ -55,6 +56,7 @@ impl Four {
                 fronts[j] = if candidate { self.front[j][i] } else { f32::NAN };
                 distances[j][i] = if GAUSSIAN { form / ellipse.square } else { 0.0 };
             }
+            // -- The foremost of them, and where its interval ends
             let (mut nearest, mut end, mut kind) = (f32::INFINITY, f32::NEG_INFINITY, 0.0);
             for j in 0..4 {
                 let nearer = fronts[j] < nearest;
@@ -63,26 +65,32 @@ impl Four {
                 kind = if nearer { self.kind[j][i] } else { kind };
             }
             kinds[i] = kind;
+            // -- Those that begin before that end
             for j in 0..4 {
                 let alike = !TUBES | ((self.kind[j][i] == TUBE) == (kind == TUBE));
                 weights[j][i] = if (fronts[j] <= end) & alike { 1.0 } else { 0.0 };
             }
         }
+        // -- Their weights
         if GAUSSIAN {
             for j in 0..4 {
                 if any_above_0(&weights[j]) {
-                    for i in 0..LANES {
-                        let weight = gaussian(distances[j][i]);
-                        weights[j][i] = if weights[j][i] > 0.0 { weight } else { 0.0 };
-                    }
+                    let takes = weights[j];
+                    let weight = |i: usize| gaussian(distances[j][i]);
+                    weights[j] = each(|i| if takes[i] > 0.0 { weight(i) } else { 0.0 });
                 }
             }
         }
-        let mut scale = [0.0; LANES];
-        for i in 0..LANES {
-            scale[i] = 1.0 / ((weights[0][i] + weights[1][i]) + (weights[2][i] + weights[3][i]));
-        }
+        let [a, b, c, d] = &weights;
+        let scale = each(|i| 1.0 / ((a[i] + b[i]) + (c[i] + d[i])));
         Mix { weights, scale, kind: kinds }
+    }
+
+    /// From the new cell's centre to those of the ellipses, along an axis.
+    #[inline(always)]
+    pub(super) fn place(&self, axis: usize) -> [Lanes; 4] {
+        let place = |j: usize| each(|i| self.displacement[j][axis][i] + self.shift[j][axis]);
+        [place(0), place(1), place(2), place(3)]
     }
 }
 
@@ -92,27 +100,12 @@ pub(super) fn pairs(x: &[Lanes; 4], y: &[Lanes; 4]) -> [[Lanes; 2]; 4] {
     [[x[0], y[0]], [x[1], y[1]], [x[2], y[2]], [x[3], y[3]]]
 }
 
-impl Four {
-    /// From the new cell's centre to those of the ellipses, along an axis.
-    #[inline(always)]
-    pub(super) fn place(&self, axis: usize) -> [Lanes; 4] {
-        let mut place = [[0.0; LANES]; 4];
-        for i in 0..LANES {
-            for j in 0..4 {
-                place[j][i] = self.displacement[j][axis][i] + self.shift[j][axis];
-            }
-        }
-        place
-    }
-}
-
 /// The tilts of ellipses from their normals.
 #[inline(always)]
 pub(super) fn tilts(normal: &[Lanes; 3]) -> [Lanes; 2] {
     let mut tilts = [[0.0; LANES]; 2];
     for i in 0..LANES {
-        let normal = Vector3::new(normal[0][i], normal[1][i], normal[2][i]);
-        let ellipse = Ellipse::new(normal, 0.0);
+        let ellipse = Ellipse::new(vector(normal, i), 0.0);
         (tilts[0][i], tilts[1][i]) = (ellipse.tilt.x, ellipse.tilt.y);
     }
     tilts
@@ -149,23 +142,19 @@ impl Mix {
     /// The least of a number.
     #[inline(always)]
     pub(super) fn least(&self, a: &[Lanes; 4]) -> Lanes {
-        let mut lanes = [0.0; LANES];
-        for i in 0..LANES {
+        each(|i| {
             let (_, a, takes) = self.lane(i, a);
-            lanes[i] = least(takes, a);
-        }
-        lanes
+            least(takes, a)
+        })
     }
 
     /// The greatest of a number.
     #[inline(always)]
     pub(super) fn greatest(&self, a: &[Lanes; 4]) -> Lanes {
-        let mut lanes = [0.0; LANES];
-        for i in 0..LANES {
+        each(|i| {
             let (_, a, takes) = self.lane(i, a);
-            lanes[i] = greatest(takes, a);
-        }
-        lanes
+            greatest(takes, a)
+        })
     }
 
     /// Weights and numbers of the four cells of a lane, and which of them take part.

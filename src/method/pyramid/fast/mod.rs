@@ -1,4 +1,4 @@
-//! The fast path for `f32`: the bits of [`super::plain`], from another layout.
+//! The fast path for `f32`: the bits of [`super::pull`] and [`super::push`], from another layout.
 //!
 //! A level is rows of numbers, one number of all cells of a row after the other, so that 16 cells
 //! of a row are 16 neighbours in memory. The pull phase computes 16 coarser cells at a time, the
@@ -8,47 +8,38 @@
 
 mod level;
 mod mix;
-mod output;
 mod pull;
 mod push;
+#[cfg(test)]
+mod tests;
+mod write;
 
-use super::picture::Surface;
-use super::plain::side;
+use super::gbuffer::GBuffer;
+use super::pull::side;
 use super::{Cell, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, pyramid};
-use crate::method::projection::fast::{LANES, Lanes, Nearest, Points};
-use crate::method::projection::surfel::Lens;
-use crate::method::projection::{self, Has, Kind, Projected};
+use crate::method::picture::{Clock, Laps};
+use crate::method::projection::fast::{NearestPoints, Points, RowLayout};
+use crate::method::projection::surfels::PointProjector;
+use crate::method::projection::{self, Has, Projected, SampleKind};
+use crate::number::lanes::{LANES, Lanes, each, store, vectorized};
 use crate::scene::{Camera, Scene};
 use crate::splat::{Tally, View};
-use level::{BACK, FRONT, FURTHER, KIND, Level, NORMAL, RADIUS, Shape};
-use multiversion::multiversion;
-use output::Output;
-use std::time::{Duration, Instant};
-
-/// Wall times of the stages.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Timings {
-    /// Projection to single pixels.
-    pub(super) project: Duration,
-    /// The pull phase.
-    pub(super) pull: Duration,
-    /// The push phase, and the picture.
-    pub(super) push: Duration,
-}
+use level::{BACK, CellLevel, FRONT, FURTHER, KIND, NORMAL, RADIUS};
+use write::GBufferRow;
 
 /// The levels of a picture, which can be used for many pictures.
 #[derive(Debug, Default)]
-pub struct Levels {
+pub struct CellLevels {
     points: Points,
-    levels: Vec<Level>,
+    levels: Vec<CellLevel>,
     has: Has,
 }
 
-impl Levels {
-    /// Projects a scene, pulls and pushes, and overwrites `surface`, which has the size of the
+impl CellLevels {
+    /// Projects a scene, pulls and pushes, and overwrites `target`, which has the size of the
     /// picture.
     ///
     /// # Errors
@@ -59,38 +50,34 @@ impl Levels {
         camera: &Camera,
         settings: &Settings,
         exec: &Exec,
-        surface: &mut Surface<f32>,
-    ) -> Result<(Tally, Timings)> {
-        let start = Instant::now();
+        target: &mut GBuffer<f32>,
+    ) -> Result<(Tally, Laps)> {
+        let mut clock = Clock::default();
         self.reshape(camera, Has::of(scene));
         let tally = self.project(scene, camera, settings, exec)?;
-        let projected = Instant::now();
+        clock.lap("projection");
         let tubes = self.has.tangent;
         for level in 1..self.levels.len() {
             let (finer, coarser) = self.levels.split_at_mut(level);
             pull::pull(&finer[level - 1], &mut coarser[0], side(level - 1), tubes, exec);
         }
-        let pulled = Instant::now();
+        clock.lap("pull");
         for level in (2..self.levels.len()).rev() {
             let (finer, coarser) = self.levels.split_at_mut(level);
             let (fine, how) = (&mut finer[level - 1], (side(level - 1), tubes, settings));
             push::push(fine, &coarser[0], how, exec, std::iter::repeat(()), |_, ()| {});
         }
-        self.finish(&View::new(camera), settings, exec, surface);
-        let times = Timings {
-            project: projected - start,
-            pull: pulled - projected,
-            push: pulled.elapsed(),
-        };
-        Ok((tally, times))
+        self.finish(&View::new(camera), settings, exec, target);
+        clock.lap("push");
+        Ok((tally, clock.into_laps()))
     }
 
     /// The memory for a picture.
     fn reshape(&mut self, camera: &Camera, has: Has) {
         let sizes = pyramid::sizes(camera.width, camera.height);
-        let shapes = sizes.into_iter().map(|size| level::shape(size, has));
-        if !shapes.clone().eq(self.levels.iter().map(|level| level.shape)) {
-            self.levels = shapes.map(Level::new).collect();
+        let layouts = sizes.into_iter().map(|size| level::layout(size, has));
+        if !layouts.clone().eq(self.levels.iter().map(|level| level.layout)) {
+            self.levels = layouts.map(CellLevel::new).collect();
         }
         self.has = has;
     }
@@ -105,16 +92,16 @@ impl Levels {
     ) -> Result<Tally> {
         let level = &mut self.levels[0];
         if !scene.primitives.is_empty() {
-            let how = (settings.cull, Snap::new(settings.subpixel_bits)?);
-            let projected = projection::project(scene, camera, how, exec)?;
-            store(&projected, self.has, level, exec);
+            let snap = Snap::new(settings.subpixel_bits)?;
+            let projected = projection::project(scene, camera, settings.cull, snap, exec)?;
+            fill(&projected, self.has, level, exec);
             return Ok(projected.tally);
         }
-        let lens = Lens::new(View::new(camera), settings.cull);
+        let lens = PointProjector::new(View::new(camera), settings.cull);
         let tally = self.points.find(&scene.surfels, &lens, exec);
-        let (shape, from) = (level.shape, (&scene.surfels, &lens));
+        let (layout, from) = (level.layout, (&scene.surfels, &lens));
         self.points.each_row(from, level.rows_mut(), exec, |nearest, row| {
-            samples(nearest, row, &shape);
+            samples(nearest, row, &layout);
         });
         Ok(tally)
     }
@@ -125,79 +112,71 @@ impl Levels {
         view: &View<f32>,
         settings: &Settings,
         exec: &Exec,
-        surface: &mut Surface<f32>,
+        target: &mut GBuffer<f32>,
     ) {
         let (finest, coarser) = self.levels.split_at_mut(1);
-        let (fine, outputs) = (&mut finest[0], output::rows(surface));
-        let shape = fine.shape;
-        let write = |row: &[f32], output: Output<'_>| output.write(row, &shape, view);
+        let (fine, rows) = (&mut finest[0], write::rows(target));
+        let layout = fine.layout;
+        let write = |cells: &[f32], row: GBufferRow<'_>| row.write(cells, &layout, view);
         match coarser.first() {
             Some(coarse) => {
                 let how = (side(0), self.has.tangent, settings);
-                push::push(fine, coarse, how, exec, outputs, write);
+                push::push(fine, coarse, how, exec, rows, write);
             }
             // One pixel.
-            None => fine.rows_mut().zip(outputs).for_each(|(row, output)| write(row, output)),
+            None => fine.rows_mut().zip(rows).for_each(|(cells, row)| write(cells, row)),
         }
     }
 }
 
-/// A row of level 0 from the nearest points of its pixels.
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn samples(nearest: &Nearest<'_>, row: &mut [f32], shape: &Shape) {
-    for x in (0..shape.width).step_by(LANES) {
-        let mut put = |attribute: usize, lanes: &Lanes| {
-            let at = shape.at(attribute, x);
-            row[at..at + LANES].copy_from_slice(lanes);
-        };
-        let Some(s) = nearest.take(x) else {
-            put(KIND, &[0.0; LANES]);
-            continue;
-        };
-        let (mut kind, mut back) = ([0.0; LANES], [0.0; LANES]);
-        for i in 0..LANES {
-            kind[i] = if s.depth[i] < f32::INFINITY { SURFACE } else { 0.0 };
-            back[i] = s.depth[i] + s.radius[i];
-        }
-        put(KIND, &kind);
-        put(FRONT, &s.depth);
-        put(BACK, &back);
-        put(RADIUS, &s.extent);
-        (0..3).for_each(|axis| put(NORMAL + axis, &s.normal[axis]));
-        if let Some(color) = nearest.colors(&nearest.ids(&s)) {
-            (0..3).for_each(|channel| put(FURTHER + channel, &color[channel]));
+vectorized!(
+    /// A row of level 0 from the nearest points of its pixels.
+    fn samples(nearest: &NearestPoints<'_>, row: &mut [f32], layout: &RowLayout) {
+        for x in (0..layout.width).step_by(LANES) {
+            let mut put = |attribute: usize, lanes: &Lanes| {
+                store(row, layout.at(attribute, x), lanes);
+            };
+            let Some(s) = nearest.take(x) else {
+                put(KIND, &[0.0; LANES]);
+                continue;
+            };
+            put(KIND, &each(|i| if s.depth[i] < f32::INFINITY { SURFACE } else { 0.0 }));
+            put(FRONT, &s.depth);
+            put(BACK, &each(|i| s.depth[i] + s.radius[i]));
+            put(RADIUS, &s.extent);
+            (0..3).for_each(|axis| put(NORMAL + axis, &s.normal[axis]));
+            if let Some(color) = nearest.colors(&nearest.ids(&s)) {
+                (0..3).for_each(|channel| put(FURTHER + channel, &color[channel]));
+            }
         }
     }
-}
+);
 
-/// [`Kind::Surface`] as a number.
-const SURFACE: f32 = Kind::Surface as u8 as f32;
+/// [`SampleKind::Surface`] as a number.
+const SURFACE: f32 = SampleKind::Surface as u8 as f32;
 
 /// The samples of a projected scene as level 0.
-fn store(projected: &Projected<f32>, has: Has, level: &mut Level, exec: &Exec) {
-    let shape = level.shape;
-    let samples = projected.samples.values().chunks(shape.width);
+fn fill(projected: &Projected<f32>, has: Has, level: &mut CellLevel, exec: &Exec) {
+    let layout = level.layout;
+    let samples = projected.samples.values().chunks(layout.width);
     let jobs = level.rows_mut().zip(samples).collect();
     exec.ordered(jobs, |(row, samples): (&mut [f32], &[_])| {
         for (x, sample) in samples.iter().enumerate() {
             let cell = Cell::new(sample);
             let mut put = |at: usize, values: &[f32]| {
                 for (k, value) in values.iter().enumerate() {
-                    row[shape.at(at + k, x)] = *value;
+                    row[layout.at(at + k, x)] = *value;
                 }
             };
             let (n, t) = (cell.normal, cell.tangent);
-            put(KIND, &[f32::from(cell.kind as u8), cell.front, cell.back, cell.radius]);
+            put(KIND, &[f32::from(cell.kind as u8), cell.front, cell.back, cell.extent]);
             put(NORMAL, &[n.x, n.y, n.z]);
             if has.color {
                 put(FURTHER, &cell.color);
             }
             if has.tangent {
-                put(shape.attributes - 3, &[t.x, t.y, t.z]);
+                put(layout.attributes - 3, &[t.x, t.y, t.z]);
             }
         }
     });
 }
-
-#[cfg(test)]
-mod tests;

@@ -8,7 +8,7 @@ use crate::scene::indexed::{Indexed, Vertices};
 use crate::scene::{Light, Primitives};
 use glam::Vec3;
 
-fn assert_same(scene: Scene, camera: &Camera, settings: &Settings, levels: &mut Levels) {
+fn assert_same(scene: Scene, camera: &Camera, settings: &Settings, levels: &mut CellLevels) {
     // With a light, so that normals are there too.
     let scene = Scene { lights: vec![Light::DEFAULT], ..scene };
     let exec = Exec::new(3, 16).unwrap();
@@ -26,7 +26,7 @@ fn assert_same(scene: Scene, camera: &Camera, settings: &Settings, levels: &mut 
 #[test]
 fn every_cell_has_the_bits_of_the_definition() {
     // Used again and again, for other sizes too.
-    let mut levels = Levels::default();
+    let mut levels = CellLevels::default();
     for (i, camera) in cameras().into_iter().enumerate() {
         for (count, radius) in [(1, 1e30), (37, 0.4), (3000, 0.05), (50_000, 0.01)] {
             let surfels = surfels(count, radius, count % 2 == 1, i as u64);
@@ -55,7 +55,7 @@ fn indexed<const N: usize>(count: u32, seed: u64) -> Indexed<N> {
 
 #[test]
 fn triangles_and_lines_too() {
-    let mut levels = Levels::default();
+    let mut levels = CellLevels::default();
     for (i, camera) in cameras().into_iter().enumerate() {
         let primitives = Primitives {
             triangles: indexed(9, 100),

@@ -1,13 +1,13 @@
 //! The compositing pass over one tile, compiled for every vector width.
 
-use super::images::{Image, Images};
+use super::images::{GroupImages, ImageBlock};
 use crate::method::fast::resolve::least_nearness;
-use crate::method::fast::tile::{LANES, Lanes, Tile};
+use crate::method::fast::tile::Tile;
 use crate::number::Real;
+use crate::number::lanes::{LANES, Lanes, mask, select, vectorized};
 use crate::splat::Shared;
-use multiversion::multiversion;
 
-impl Images {
+impl GroupImages {
     /// The nearest fragment of each pixel.
     pub(super) fn nearest(&self, tile: &mut Tile) {
         for (block, nearest) in tile.blocks.iter_mut().zip(&self.nearest) {
@@ -24,46 +24,45 @@ impl Images {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn composite(images: &mut Images, tile: &mut Tile, shared: &Shared<f32>) {
-    // An empty pixel is no fragment, whatever epsilon is.
-    let finite = least_nearness(shared, f32::MAX);
-    let places = images.ends.len();
-    for (index, block) in tile.blocks.iter_mut().enumerate() {
-        let list = &images.lists[index * places..][..images.counts[index]];
-        let mut least = block.least;
-        for lane in &mut least {
-            *lane = lane.at_least(finite);
-        }
-        // A loop of its own, in lanes; the next one reads single numbers.
-        for &image in list {
-            hide(&mut images.images[image as usize], &least);
-        }
-        let mut sums = [[0.0; 8]; LANES];
-        for &image in list {
-            let image = &images.images[image as usize];
-            for (i, sums) in sums.iter_mut().enumerate() {
-                let attributes = &images.attributes[image.splat[i] as usize];
-                for (sum, attribute) in sums.iter_mut().zip(attributes) {
-                    *sum += image.weight[i] * attribute;
+vectorized!(
+    fn composite(images: &mut GroupImages, tile: &mut Tile, shared: &Shared<f32>) {
+        // An empty pixel is no fragment, whatever epsilon is.
+        let finite = least_nearness(shared, f32::MAX);
+        let places = images.ends.len();
+        for (index, block) in tile.blocks.iter_mut().enumerate() {
+            // -- What passes the epsilon-z test
+            let list = &images.lists[index * places..][..images.counts[index]];
+            let mut least = block.least;
+            for lane in &mut least {
+                *lane = lane.at_least(finite);
+            }
+            // A loop of its own, in lanes; the next one reads single numbers.
+            for &image in list {
+                hide(&mut images.images[image as usize], &least);
+            }
+            // -- The sums, a pixel's numbers side by side
+            let mut sums = [[0.0; 8]; LANES];
+            for &image in list {
+                let image = &images.images[image as usize];
+                for (i, sums) in sums.iter_mut().enumerate() {
+                    let attributes = &images.attributes[image.splat[i] as usize];
+                    for (sum, attribute) in sums.iter_mut().zip(attributes) {
+                        *sum += image.weight[i] * attribute;
+                    }
                 }
             }
-        }
-        for (i, [r, g, b, weight, x, y, z, _]) in sums.into_iter().enumerate() {
-            block.weight[i] = weight;
-            (block.color[0][i], block.color[1][i], block.color[2][i]) = (r, g, b);
-            (block.normal[0][i], block.normal[1][i], block.normal[2][i]) = (x, y, z);
+            for (i, [r, g, b, weight, x, y, z, _]) in sums.into_iter().enumerate() {
+                block.weight[i] = weight;
+                (block.color[0][i], block.color[1][i], block.color[2][i]) = (r, g, b);
+                (block.normal[0][i], block.normal[1][i], block.normal[2][i]) = (x, y, z);
+            }
         }
     }
-}
+);
 
 /// Takes the weight of the fragments that are less near.
 #[inline(always)]
-fn hide(image: &mut Image, least: &Lanes) {
-    let (nearness, mut weight) = (image.nearness, image.weight);
-    for i in 0..LANES {
-        let mask = u32::from(nearness[i] >= least[i]).wrapping_neg();
-        weight[i] = f32::from_bits(weight[i].to_bits() & mask);
-    }
-    image.weight = weight;
+fn hide(image: &mut ImageBlock, least: &Lanes) {
+    let visible = mask(|i| image.nearness[i] >= least[i]);
+    image.weight = select(&visible, &image.weight, &[0.0; LANES]);
 }

@@ -1,27 +1,27 @@
 //! The geometry pass over one tile, compiled for every vector width.
 
-use super::images::{Image, Images, Nearest};
+use super::images::{GroupImages, ImageBlock, NearestFragments};
 use crate::composite::bins::DepthBins;
-use crate::method::fast::lanes::{columns, fragments, inside};
-use crate::method::fast::tile::{LANES, Lanes, Record, SIDE, Tile};
+use crate::method::fast::fragments::{each_block, inside};
+use crate::method::fast::tile::{Record, Tile};
 use crate::number::elementary::exp_f32_in_range;
+use crate::number::lanes::{LANES, Lanes, each, mask, select, select_u32, vectorized};
 use crate::splat::Shared;
-use multiversion::multiversion;
 
 /// What the image of the group that is being drawn keeps at the pixels of a block.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-struct Layer {
+struct KeptFragments {
     /// Voronoi-enhanced depth; not used under the plain depth test.
     z: Lanes,
     nearness: Lanes,
     q: Lanes,
     amplitude: Lanes,
-    /// As in [`Image`].
+    /// As in [`ImageBlock`].
     splat: [u32; LANES],
 }
 
-impl Images {
+impl GroupImages {
     /// Draws every splat into the image of its group, with the plain depth test if there are no
     /// bins.
     pub(super) fn draw(
@@ -39,137 +39,108 @@ impl Images {
     }
 }
 
-/// One group after the other in the same blocks, which stay in the nearest cache.
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn geometry<const RAY_CAST: bool, const VORONOI: bool>(
-    images: &mut Images,
-    tile: &Tile,
-    shared: &Shared<f32>,
-    bins: Option<&DepthBins<f32>>,
-) {
-    let shared = *shared;
-    let empty = Layer {
-        z: [f32::INFINITY; LANES],
-        nearness: [shared.empty(); LANES],
-        q: [0.0; LANES],
-        amplitude: [0.0; LANES],
-        splat: [tile.splats.len() as u32; LANES],
-    };
-    let mut layers = vec![empty; tile.blocks.len()];
-    let mut start = 0;
-    for group in 0..images.ends.len() {
-        let end = images.ends[group];
-        // A bit for each block: a tile has at most 16 x 16.
-        let mut touched = [0_u64; 4];
-        for &index in &images.order[start..end] {
-            let splat = (index, &tile.splats[index as usize]);
-            draw::<RAY_CAST, VORONOI>(&mut layers, &mut touched, tile, splat, &shared, bins);
-        }
-        start = end;
-        for (word, mut bits) in touched.into_iter().enumerate() {
-            while bits != 0 {
-                let block = 64 * word + bits.trailing_zeros() as usize;
-                bits &= bits - 1;
-                let layer = &mut layers[block];
-                finish(images, block, layer);
-                if VORONOI {
-                    layer.z = empty.z;
+vectorized!(
+    /// One group after the other in the same blocks, which stay in the nearest cache.
+    fn geometry<const RAY_CAST: bool, const VORONOI: bool>(
+        images: &mut GroupImages,
+        tile: &Tile,
+        shared: &Shared<f32>,
+        bins: Option<&DepthBins<f32>>,
+    ) {
+        let shared = *shared;
+        let empty = KeptFragments {
+            z: [f32::INFINITY; LANES],
+            nearness: [shared.empty(); LANES],
+            q: [0.0; LANES],
+            amplitude: [0.0; LANES],
+            splat: [tile.splats.len() as u32; LANES],
+        };
+        let mut kept = vec![empty; tile.blocks.len()];
+        let mut start = 0;
+        for group in 0..images.ends.len() {
+            let end = images.ends[group];
+            // -- The splats of the group
+            // A bit for each block: a tile has at most 16 x 16.
+            let mut touched = [0_u64; 4];
+            for &index in &images.order[start..end] {
+                let splat = &tile.splats[index as usize];
+                each_block::<RAY_CAST>(splat, &tile.grid, &shared, |block, q, w| {
+                    touched[block / 64] |= 1 << (block % 64);
+                    kept[block].meet::<VORONOI>((index, splat), (q, w), &shared, bins);
+                });
+            }
+            start = end;
+            // -- What the group has left
+            for (word, mut bits) in touched.into_iter().enumerate() {
+                while bits != 0 {
+                    let block = 64 * word + bits.trailing_zeros() as usize;
+                    bits &= bits - 1;
+                    let kept = &mut kept[block];
+                    finish(images, block, kept);
+                    // Empty again: the other numbers are read where there is a splat only.
+                    if VORONOI {
+                        kept.z = empty.z;
+                    }
+                    (kept.nearness, kept.splat) = (empty.nearness, empty.splat);
                 }
-                (layer.nearness, layer.splat) = (empty.nearness, empty.splat);
             }
         }
     }
-}
+);
 
-/// Draws a splat, given with its place in the list of the tile.
-#[inline(always)]
-fn draw<const RAY_CAST: bool, const VORONOI: bool>(
-    layers: &mut [Layer],
-    touched: &mut [u64; 4],
-    tile: &Tile,
-    (index, splat): (u32, &Record),
-    shared: &Shared<f32>,
-    bins: Option<&DepthBins<f32>>,
-) {
-    let (rect, footprint) = (tile.rect, splat.footprint);
-    let blocks = splat.blocks(&rect);
-    for row in blocks.y0..blocks.y1 {
-        let (first, last) = columns::<RAY_CAST>(splat, &blocks, row, &rect, shared.limit);
-        for column in first..last {
-            let (x, y) = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
-            let (q, w) = fragments::<RAY_CAST>(shared, &footprint, x, y);
-            let inside = inside(&q, &w, shared.limit);
-            let block = (row * tile.columns + column) as usize;
-            touched[block / 64] |= 1 << (block % 64);
-            let layer = &mut layers[block];
-            let mut wins = [0_u32; LANES];
-            if VORONOI && let Some(bins) = bins {
-                let (before, mut z) = (layer.z, [0.0; LANES]);
-                for i in 0..LANES {
-                    // NaN, which fails, outside.
-                    z[i] = bins.voronoi(shared.depth(inside[i]), (q[i] / shared.limit).sqrt());
-                }
-                for i in 0..LANES {
-                    wins[i] = u32::from(z[i] < before[i]).wrapping_neg();
-                }
-                keep(&mut layer.z, &wins, &z);
-            } else {
-                let before = layer.nearness;
-                for i in 0..LANES {
-                    wins[i] = u32::from(inside[i] > before[i]).wrapping_neg();
-                }
-            }
-            keep(&mut layer.nearness, &wins, &w);
-            keep(&mut layer.q, &wins, &q);
-            keep(&mut layer.amplitude, &wins, &[footprint.amplitude; LANES]);
-            let mut splat = layer.splat;
+impl KeptFragments {
+    /// The depth test against the fragments of a splat, given with its place in the list of the
+    /// tile.
+    #[inline(always)]
+    fn meet<const VORONOI: bool>(
+        &mut self,
+        (index, splat): (u32, &Record),
+        (q, w): (&Lanes, &Lanes),
+        shared: &Shared<f32>,
+        bins: Option<&DepthBins<f32>>,
+    ) {
+        let inside = inside(q, w, shared.limit);
+        let wins = if VORONOI && let Some(bins) = bins {
+            let mut z = [0.0; LANES];
             for i in 0..LANES {
-                splat[i] = (index & wins[i]) | (splat[i] & !wins[i]);
+                // NaN, which fails, outside.
+                z[i] = bins.voronoi(shared.depth(inside[i]), (q[i] / shared.limit).sqrt());
             }
-            layer.splat = splat;
-        }
+            let wins = mask(|i| z[i] < self.z[i]);
+            self.z = select(&wins, &z, &self.z);
+            wins
+        } else {
+            mask(|i| inside[i] > self.nearness[i])
+        };
+        self.nearness = select(&wins, w, &self.nearness);
+        self.q = select(&wins, q, &self.q);
+        self.amplitude = select(&wins, &[splat.footprint.amplitude; LANES], &self.amplitude);
+        self.splat = select_u32(&wins, &[index; LANES], &self.splat);
     }
-}
-
-/// Replaces the lanes that a mask has.
-#[inline(always)]
-fn keep(lanes: &mut Lanes, mask: &[u32; LANES], values: &Lanes) {
-    let mut kept = *lanes;
-    for i in 0..LANES {
-        // A select by a mask of integers: by a condition it would not always become a vector.
-        let bits = (values[i].to_bits() & mask[i]) | (kept[i].to_bits() & !mask[i]);
-        kept[i] = f32::from_bits(bits);
-    }
-    *lanes = kept;
 }
 
 /// Adds what a block has become to the images: a weight is computed once, for the fragment that is
 /// kept.
 #[inline(always)]
-fn finish(images: &mut Images, block: usize, layer: &Layer) {
-    let Layer { nearness, q, amplitude, splat, .. } = *layer;
+fn finish(images: &mut GroupImages, block: usize, kept: &KeptFragments) {
+    let KeptFragments { nearness, q, amplitude, splat, .. } = *kept;
     fold(&mut images.nearest[block], &nearness, &splat);
-    let mut weight = [0.0; LANES];
-    for i in 0..LANES {
-        weight[i] = amplitude[i] * exp_f32_in_range(q[i] * -0.5);
-    }
+    let weight = each(|i| amplitude[i] * exp_f32_in_range(q[i] * -0.5));
     let count = &mut images.counts[block];
     images.lists[block * images.ends.len() + *count] = images.images.len() as u32;
     *count += 1;
-    images.images.push(Image { nearness, weight, splat });
+    images.images.push(ImageBlock { nearness, weight, splat });
 }
 
 /// The nearer of two fragments, ties to the lower splat.
 #[inline(always)]
-fn fold(nearest: &mut Nearest, nearness: &Lanes, splat: &[u32; LANES]) {
-    let (mut best, mut own) = (nearest.nearness, nearest.splat);
-    for i in 0..LANES {
-        let equal = u32::from(nearness[i] == best[i]) & u32::from(splat[i] < own[i]);
-        let mask = (u32::from(nearness[i] > best[i]) | equal).wrapping_neg();
-        own[i] = (splat[i] & mask) | (own[i] & !mask);
-    }
-    for i in 0..LANES {
-        best[i] = if nearness[i] > best[i] { nearness[i] } else { best[i] };
-    }
-    (nearest.nearness, nearest.splat) = (best, own);
+fn fold(nearest: &mut NearestFragments, nearness: &Lanes, splat: &[u32; LANES]) {
+    let before = *nearest;
+    let wins = mask(|i| {
+        let equal = (nearness[i] == before.nearness[i]) & (splat[i] < before.splat[i]);
+        (nearness[i] > before.nearness[i]) | equal
+    });
+    nearest.splat = select_u32(&wins, splat, &before.splat);
+    let nearer = |i: usize| nearness[i] > before.nearness[i];
+    nearest.nearness = each(|i| if nearer(i) { nearness[i] } else { before.nearness[i] });
 }

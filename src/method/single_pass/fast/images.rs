@@ -1,7 +1,8 @@
 //! The depth-images of the groups in one tile: only the blocks that a splat touches.
 
 use crate::frame::NO_ID;
-use crate::method::fast::tile::{LANES, Lanes, Tile};
+use crate::method::fast::tile::Tile;
+use crate::number::lanes::{LANES, Lanes};
 use crate::scene::Groups;
 
 /// Colour, 1 and normal of a splat, so that all sums of a pixel are those of one vector; the last
@@ -10,7 +11,7 @@ pub(super) type Attributes = [f32; 8];
 
 /// What the image of a group keeps at the pixels of a block.
 #[repr(align(64))]
-pub(super) struct Image {
+pub(super) struct ImageBlock {
     /// Nearness of the fragment.
     pub(super) nearness: Lanes,
     /// Its weight; where there is no fragment, any number.
@@ -22,15 +23,15 @@ pub(super) struct Image {
 /// The nearest fragment of all groups at the pixels of a block.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(super) struct Nearest {
+pub(super) struct NearestFragments {
     /// Its nearness.
     pub(super) nearness: Lanes,
-    /// Its splat, as in [`Image`].
+    /// Its splat, as in [`ImageBlock`].
     pub(super) splat: [u32; LANES],
 }
 
 /// The images of all groups in one tile.
-pub(super) struct Images {
+pub(super) struct GroupImages {
     /// The splats of the tile, by group and then ascending.
     pub(super) order: Vec<u32>,
     /// Each group that has splats: where it ends in `order`.
@@ -40,17 +41,17 @@ pub(super) struct Images {
     /// Of each splat of the tile; then zeros.
     pub(super) attributes: Vec<Attributes>,
     /// The blocks that are touched, group by group.
-    pub(super) images: Vec<Image>,
+    pub(super) images: Vec<ImageBlock>,
     /// Which of the images each block has, by group: of each block as many places as there are
     /// `ends`.
     pub(super) lists: Vec<u32>,
     /// How many of those places are in use.
     pub(super) counts: Vec<usize>,
     /// Of each block.
-    pub(super) nearest: Vec<Nearest>,
+    pub(super) nearest: Vec<NearestFragments>,
 }
 
-impl Images {
+impl GroupImages {
     /// Sorts the splats of a tile by group; nothing is touched yet. `empty` is the nearness of an
     /// empty pixel.
     pub(super) fn new(tile: &Tile, groups: &Groups, empty: f32) -> Self {
@@ -67,7 +68,7 @@ impl Images {
         }
         surfels.push(NO_ID);
         attributes.push([0.0; 8]);
-        let none = Nearest { nearness: [empty; LANES], splat: [splats as u32; LANES] };
+        let none = NearestFragments { nearness: [empty; LANES], splat: [splats as u32; LANES] };
         let most = ends.len() * blocks;
         Self {
             order,

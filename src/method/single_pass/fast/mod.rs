@@ -19,24 +19,16 @@ use super::Settings;
 use crate::error::Result;
 use crate::frame::{Exec, Framebuffer};
 use crate::method::fast::{draw, prepare};
+use crate::method::picture::{Clock, Laps};
 use crate::scene::Groups;
 use crate::scene::{Camera, Surfels};
 use crate::splat::Tally;
-use images::Images;
-use std::time::{Duration, Instant};
-
-/// Wall time of the stages; those of the fused passes are shares of their common time.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Timings {
-    /// Projection and binning.
-    pub project: Duration,
-    /// The geometry pass, with the gathering of each tile's splats.
-    pub geometry: Duration,
-    /// The compositing pass, with the normalization.
-    pub compositing: Duration,
-}
+use images::GroupImages;
+use std::time::Instant;
 
 /// Draws a scene into a framebuffer: the geometry pass, the compositing pass and the normalization.
+/// The wall times of the fused passes are shares of their common time; the geometry pass includes
+/// the gathering of each tile's splats, the compositing pass the normalization.
 ///
 /// Every pixel of `target` is overwritten, so a framebuffer can be used for many pictures. Its
 /// stencil and margin are not written; see [`super::plain`] for those.
@@ -54,18 +46,18 @@ pub fn render(
     settings: &Settings,
     exec: &Exec,
     target: &mut Framebuffer<f32>,
-) -> Result<(Tally, Timings)> {
+) -> Result<(Tally, Laps)> {
     assert_eq!((target.width, target.height), (camera.width, camera.height), "framebuffer size");
     groups.check(surfels)?;
-    let start = Instant::now();
+    let mut clock = Clock::default();
     let bins = settings.bins(surfels, camera)?;
     let grid = exec.grid(camera.width, camera.height);
     let prepared = prepare(surfels, camera, &settings.splats, (exec, &grid));
-    let project = start.elapsed();
+    clock.lap("projection");
     let shared = &prepared.shared;
-    let [geometry, compositing] = draw(&prepared, target, (exec, &grid), |tile| {
+    let passes = draw(&prepared, target, (exec, &grid), |tile| {
         let start = Instant::now();
-        let mut images = Images::new(tile, groups, shared.empty());
+        let mut images = GroupImages::new(tile, groups, shared.empty());
         images.draw(tile, shared, bins.as_ref());
         let drawn = Instant::now();
         images.nearest(tile);
@@ -74,5 +66,7 @@ pub fn render(
         tile.normalize(shared);
         [drawn - start, drawn.elapsed()]
     });
-    Ok((prepared.tally, Timings { project, geometry, compositing }))
+    let mut laps = clock.into_laps();
+    laps.extend(["geometry", "compositing"].into_iter().zip(passes));
+    Ok((prepared.tally, laps))
 }

@@ -1,9 +1,8 @@
 //! A level in rows of numbers.
 
 use crate::frame::NO_ID;
-use crate::method::projection::fast::LANES;
-pub(super) use crate::method::projection::fast::{PAD, Shape, lanes};
-use crate::number::Vector3;
+use crate::method::projection::fast::{PAD, RowLayout};
+use crate::number::lanes::{LANES, Lanes, load, store, vector};
 use crate::splat::Ellipse;
 
 /// The numbers of a centre, by their place in a row: place in the picture, two numbers.
@@ -20,14 +19,14 @@ pub(super) const NORMAL: usize = 8;
 /// The first number that not every scene has.
 pub(super) const COLOR: usize = 11;
 
-/// The shape of a level's memory.
-pub(super) fn shape(size: [u32; 2], color: bool) -> Shape {
-    Shape::new(size, if color { COLOR + 3 } else { COLOR })
+/// The layout of a level of this size.
+pub(super) fn layout(size: [u32; 2], color: bool) -> RowLayout {
+    RowLayout::new(size, if color { COLOR + 3 } else { COLOR })
 }
 
 /// A row of a level, to be written.
 #[derive(Debug)]
-pub(super) struct RowMut<'a> {
+pub(super) struct CenterRowMut<'a> {
     pub(super) numbers: &'a mut [f32],
     /// Of each cell, [`PAD`] cells first; [`NO_ID`] where there is no centre.
     pub(super) ids: &'a mut [u32],
@@ -37,28 +36,29 @@ pub(super) struct RowMut<'a> {
 
 /// A row of a level.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Row<'a> {
+pub(super) struct CenterRow<'a> {
     pub(super) numbers: &'a [f32],
     pub(super) ids: &'a [u32],
     pub(super) has: [bool; 2],
+    pub(super) layout: RowLayout,
 }
 
 /// A level.
 #[derive(Debug)]
-pub(super) struct Level {
-    pub(super) shape: Shape,
+pub(super) struct CenterLevel {
+    pub(super) layout: RowLayout,
     numbers: Vec<f32>,
     ids: Vec<u32>,
     has: Vec<[bool; 2]>,
 }
 
-impl Level {
+impl CenterLevel {
     /// An empty level.
-    pub(super) fn new(shape: Shape) -> Self {
-        let Shape { height, stride, .. } = shape;
+    pub(super) fn new(layout: RowLayout) -> Self {
+        let RowLayout { height, stride, .. } = layout;
         Self {
-            shape,
-            numbers: vec![f32::NAN; height * shape.row()],
+            layout,
+            numbers: vec![f32::NAN; height * layout.row()],
             ids: vec![NO_ID; height * stride],
             has: vec![[false; 2]; height],
         }
@@ -66,12 +66,13 @@ impl Level {
 
     /// A row of cells.
     #[inline(always)]
-    pub(super) fn row(&self, y: usize) -> Row<'_> {
-        let (row, stride) = (self.shape.row(), self.shape.stride);
-        Row {
+    pub(super) fn row(&self, y: usize) -> CenterRow<'_> {
+        let (row, stride) = (self.layout.row(), self.layout.stride);
+        CenterRow {
             numbers: &self.numbers[y * row..(y + 1) * row],
             ids: &self.ids[y * stride..(y + 1) * stride],
             has: self.has[y],
+            layout: self.layout,
         }
     }
 
@@ -81,28 +82,43 @@ impl Level {
     }
 
     /// All rows, to be written.
-    pub(super) fn rows_mut(&mut self) -> impl Iterator<Item = RowMut<'_>> {
-        let numbers = self.numbers.chunks_mut(self.shape.row());
-        let rows = numbers.zip(self.ids.chunks_mut(self.shape.stride)).zip(&mut self.has);
-        rows.map(|((numbers, ids), has)| RowMut { numbers, ids, has })
+    pub(super) fn rows_mut(&mut self) -> impl Iterator<Item = CenterRowMut<'_>> {
+        let numbers = self.numbers.chunks_mut(self.layout.row());
+        let rows = numbers.zip(self.ids.chunks_mut(self.layout.stride)).zip(&mut self.has);
+        rows.map(|((numbers, ids), has)| CenterRowMut { numbers, ids, has })
     }
 }
 
-impl RowMut<'_> {
+impl CenterRow<'_> {
+    /// A number of [`LANES`] cells; `first` counts the [`PAD`].
+    #[inline(always)]
+    pub(super) fn load(&self, attribute: usize, first: usize) -> Lanes {
+        load(self.numbers, attribute * self.layout.stride + first)
+    }
+
+    /// Three numbers of [`LANES`] cells, likewise.
+    #[inline(always)]
+    pub(super) fn load_vectors(&self, attribute: usize, first: usize) -> [Lanes; 3] {
+        [
+            self.load(attribute, first),
+            self.load(attribute + 1, first),
+            self.load(attribute + 2, first),
+        ]
+    }
+}
+
+impl CenterRowMut<'_> {
     /// Finds the ellipses of [`LANES`] cells from x on, of which ids, extents and normals are
     /// there, and notes which of them stay within `reach`.
     #[inline(always)]
-    pub(super) fn settle(&mut self, shape: &Shape, x: usize, reach: f32) {
-        let at = |attribute: usize| shape.at(attribute, x);
-        let number = |attribute: usize| lanes(self.numbers, at(attribute));
-        let n = [number(NORMAL), number(NORMAL + 1), number(NORMAL + 2)];
-        let extent = number(EXTENT);
-        let mut ids = [0; LANES];
-        ids.copy_from_slice(&self.ids[PAD + x..PAD + x + LANES]);
+    pub(super) fn settle(&mut self, layout: &RowLayout, x: usize, reach: f32) {
+        let number = |attribute: usize| load(self.numbers, layout.at(attribute, x));
+        let normal = [number(NORMAL), number(NORMAL + 1), number(NORMAL + 2)];
+        let (extent, ids) = (number(EXTENT), load(self.ids, PAD + x));
         let (mut tilt, mut square) = ([[0.0; LANES]; 2], [0.0; LANES]);
         let mut has = [0_u32; 2];
         for i in 0..LANES {
-            let ellipse = Ellipse::new(Vector3::new(n[0][i], n[1][i], n[2][i]), extent[i]);
+            let ellipse = Ellipse::new(vector(&normal, i), extent[i]);
             let (valid, near) = (ids[i] != NO_ID, extent[i] <= reach);
             (tilt[0][i], tilt[1][i]) = (ellipse.tilt.x, ellipse.tilt.y);
             square[i] = if valid & near { ellipse.square } else { f32::NAN };
@@ -110,7 +126,7 @@ impl RowMut<'_> {
             has[1] |= u32::from(valid & !near);
         }
         for (k, lanes) in [(TILT, &tilt[0]), (TILT + 1, &tilt[1]), (SQUARE, &square)] {
-            self.numbers[at(k)..at(k) + LANES].copy_from_slice(lanes);
+            store(self.numbers, layout.at(k, x), lanes);
         }
         self.has[0] |= has[0] != 0;
         self.has[1] |= has[1] != 0;
@@ -118,9 +134,8 @@ impl RowMut<'_> {
 
     /// Marks [`LANES`] cells from x on as empty.
     #[inline(always)]
-    pub(super) fn clear(&mut self, shape: &Shape, x: usize) {
-        let at = shape.at(SQUARE, x);
-        self.numbers[at..at + LANES].fill(f32::NAN);
-        self.ids[PAD + x..PAD + x + LANES].fill(NO_ID);
+    pub(super) fn clear(&mut self, layout: &RowLayout, x: usize) {
+        store(self.numbers, layout.at(SQUARE, x), &[f32::NAN; LANES]);
+        store(self.ids, PAD + x, &[NO_ID; LANES]);
     }
 }

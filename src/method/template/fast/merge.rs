@@ -1,87 +1,88 @@
 //! Propagation and merging; see [`super::super::levels`].
 
-use super::level::{COLOR, DEPTH, EXTENT, Level, NORMAL, PAD, PLACE, RADIUS, Row, RowMut, Shape};
+use super::level::{
+    COLOR, CenterLevel, CenterRow, CenterRowMut, DEPTH, EXTENT, NORMAL, PLACE, RADIUS,
+};
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, NO_ID};
-use crate::method::projection::fast::{LANES, Lanes, halves};
-use multiversion::multiversion;
+use crate::method::projection::fast::{PAD, RowLayout};
+use crate::number::lanes::{LANES, Lanes, Mask, any, each, load_halves, mask, store, vectorized};
 
 /// Rows of a job.
 const ROWS: usize = 8;
 
 /// The next level, from what does not stay within the first `reach`; the second is its own.
-pub(super) fn merge(fine: &Level, coarse: &mut Level, reach: [f32; 2], exec: &Exec) {
-    let shapes = [fine.shape, coarse.shape];
+pub(super) fn merge(fine: &CenterLevel, coarse: &mut CenterLevel, reach: [f32; 2], exec: &Exec) {
+    let layouts = [fine.layout, coarse.layout];
     exec.chunks(coarse.rows_mut(), ROWS, |first, rows| {
         for (y, mut row) in (first..).zip(rows) {
             let upper = fine.row(2 * y);
             // Below the last row of an odd level there is none: the upper one stands for it, unread.
-            let exists = 2 * y + 1 < fine.shape.height;
+            let exists = 2 * y + 1 < fine.layout.height;
             let lower = if exists { fine.row(2 * y + 1) } else { upper };
             *row.has = [false; 2];
             let moving = upper.has[1] || (exists && lower.has[1]);
-            merge_row([upper, lower], (exists, moving), &mut row, &shapes, reach);
+            merge_row([upper, lower], (exists, moving), &mut row, &layouts, reach);
         }
     });
 }
 
 /// [`LANES`] centres: every second cell of two rows, the four that meet in one.
-struct Four {
-    moves: [[u32; LANES]; 4],
+struct FourCenters {
+    /// Which of them move on.
+    moves: [Mask; 4],
     ids: [[u32; LANES]; 4],
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn merge_row(
-    finer: [Row<'_>; 2],
-    (exists, moving): (bool, bool),
-    coarse: &mut RowMut<'_>,
-    [fine, shape]: &[Shape; 2],
-    [reach, own]: [f32; 2],
-) {
-    for x in (0..shape.width).step_by(LANES) {
-        coarse.clear(shape, x);
-        if !moving {
-            continue;
-        }
-        let number = |attribute: usize| {
-            let at = fine.at(attribute, 2 * x);
-            let [a, b] = halves(finer[0].numbers, at);
-            let [c, d] = halves(finer[1].numbers, at);
-            [a, b, c, d]
-        };
-        let ids = {
-            let [a, b] = halves(finer[0].ids, PAD + 2 * x);
-            let [c, d] = halves(finer[1].ids, PAD + 2 * x);
-            [a, b, c, d]
-        };
-        let extents = number(EXTENT);
-        let mut moves = [[0; LANES]; 4];
-        let mut any = 0;
-        for j in 0..4 {
-            for i in 0..LANES {
-                let moved = (ids[j][i] != NO_ID) & !(extents[j][i] <= reach) & (exists | (j < 2));
-                moves[j][i] = u32::from(moved);
-                any |= moves[j][i];
+vectorized!(
+    fn merge_row(
+        finer: [CenterRow<'_>; 2],
+        (exists, moving): (bool, bool),
+        coarse: &mut CenterRowMut<'_>,
+        [fine, layout]: &[RowLayout; 2],
+        [reach, own]: [f32; 2],
+    ) {
+        for x in (0..layout.width).step_by(LANES) {
+            coarse.clear(layout, x);
+            if !moving {
+                continue;
+            }
+            // -- The four finer cells
+            let number = |attribute: usize| {
+                let at = fine.at(attribute, 2 * x);
+                let [a, b] = load_halves(finer[0].numbers, at);
+                let [c, d] = load_halves(finer[1].numbers, at);
+                [a, b, c, d]
+            };
+            let [a, b] = load_halves(finer[0].ids, PAD + 2 * x);
+            let [c, d] = load_halves(finer[1].ids, PAD + 2 * x);
+            let ids = [a, b, c, d];
+            // -- Which of their centres move on
+            let extents = number(EXTENT);
+            let moves = [0, 1, 2, 3].map(|j: usize| {
+                let there = exists | (j < 2);
+                mask(|i| (ids[j][i] != NO_ID) & !(extents[j][i] <= reach) & there)
+            });
+            // -- What becomes of them
+            if moves.iter().any(any) {
+                FourCenters { moves, ids }.meet(number, coarse, layout, x);
+                coarse.settle(layout, x, own);
             }
         }
-        if any != 0 {
-            Four { moves, ids }.meet(number, coarse, shape, x);
-            coarse.settle(shape, x, own);
-        }
     }
-}
+);
 
-impl Four {
+impl FourCenters {
     /// The centres that become of them, from column x of the coarser row on.
     #[inline(always)]
     fn meet(
         &self,
         number: impl Fn(usize) -> [Lanes; 4],
-        coarse: &mut RowMut<'_>,
-        shape: &Shape,
+        coarse: &mut CenterRowMut<'_>,
+        layout: &RowLayout,
         x: usize,
     ) {
+        // -- The nearest of the four
         let (depths, radii) = (number(DEPTH), number(RADIUS));
         let (mut depth, mut radius) = ([f32::INFINITY; LANES], [0.0; LANES]);
         let mut id = [NO_ID; LANES];
@@ -93,6 +94,8 @@ impl Four {
                 id[i] = if nearer { self.ids[j][i] } else { id[i] };
             }
         }
+        store(coarse.ids, PAD + x, &id);
+        // -- Those of its surface
         let mut takes = [[0.0; LANES]; 4];
         for j in 0..4 {
             for i in 0..LANES {
@@ -100,17 +103,15 @@ impl Four {
                 takes[j][i] = if (self.moves[j][i] != 0) & near { 1.0 } else { 0.0 };
             }
         }
-        coarse.ids[PAD + x..PAD + x + LANES].copy_from_slice(&id);
+        // -- Their averages
         let own = [PLACE, PLACE + 1, DEPTH, RADIUS, EXTENT].into_iter().chain(NORMAL..COLOR);
-        for attribute in own.chain(COLOR..shape.attributes) {
+        for attribute in own.chain(COLOR..layout.attributes) {
             let a = number(attribute);
-            let at = shape.at(attribute, x);
-            let mut average = [0.0; LANES];
-            for i in 0..LANES {
+            let average = each(|i| {
                 let mean = Mean::plain([0, 1, 2, 3].map(|j| takes[j][i] > 0.0));
-                average[i] = mean.of([a[0][i], a[1][i], a[2][i], a[3][i]]);
-            }
-            coarse.numbers[at..at + LANES].copy_from_slice(&average);
+                mean.of([a[0][i], a[1][i], a[2][i], a[3][i]])
+            });
+            store(coarse.numbers, layout.at(attribute, x), &average);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The fast path for `f32`: the bits of [`super::gather`], from another layout.
+//! The fast path for `f32`: the bits of [`super::reconstruction`], from another layout.
 //!
 //! A level is rows of numbers, one number of all cells of a row after the other. Ellipses are found
 //! once a centre, not once a visit. 16 pixels of a row search together: at level 0 for centres that
@@ -12,37 +12,26 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-use super::{Settings, levels};
+use super::{Settings, propagation};
 use crate::frame::{Exec, Framebuffer, Plane, pyramid};
+use crate::method::picture::{Clock, Laps};
 use crate::method::projection::Has;
-use crate::method::projection::fast::{LANES, Lanes, Nearest, Points};
-use crate::method::projection::surfel::Lens;
+use crate::method::projection::fast::{NearestPoints, PAD, Points, RowLayout};
+use crate::method::projection::surfels::PointProjector;
+use crate::number::lanes::{LANES, Lanes, store, vectorized};
 use crate::scene::{Camera, Scene};
 use crate::splat::{Tally, View};
-use level::{COLOR, DEPTH, EXTENT, Level, NORMAL, PAD, PLACE, RADIUS, RowMut, Shape};
-use multiversion::multiversion;
+use level::{COLOR, CenterLevel, CenterRowMut, DEPTH, EXTENT, NORMAL, PLACE, RADIUS};
 use search::Target;
-use std::time::{Duration, Instant};
-
-/// Wall times of the stages.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Timings {
-    /// Projection to single pixels.
-    pub project: Duration,
-    /// Propagation and merging.
-    pub propagate: Duration,
-    /// Reconstruction and normalization.
-    pub search: Duration,
-}
 
 /// The levels of a picture, which can be used for many pictures.
 #[derive(Debug, Default)]
-pub struct Levels {
+pub struct CenterLevels {
     points: Points,
-    levels: Vec<Level>,
+    levels: Vec<CenterLevel>,
 }
 
-impl Levels {
+impl CenterLevels {
     /// Projects a scene, propagates and reconstructs; every pixel of `target` is overwritten but
     /// for stencil and margin.
     ///
@@ -55,34 +44,30 @@ impl Levels {
         settings: &Settings,
         exec: &Exec,
         target: &mut Framebuffer<f32>,
-    ) -> (Tally, Timings) {
+    ) -> (Tally, Laps) {
         assert_eq!((target.width, target.height), (camera.width, camera.height), "its size");
-        let start = Instant::now();
+        let mut clock = Clock::default();
         let has = Has::of(scene);
         let sizes = pyramid::sizes(camera.width, camera.height);
-        let top = levels::top(settings, &sizes);
-        let shapes = sizes[..=top].iter().map(|&size| level::shape(size, has.color));
-        if !shapes.clone().eq(self.levels.iter().map(|level| level.shape)) {
-            self.levels = shapes.map(Level::new).collect();
+        let top = propagation::top(settings, &sizes);
+        let layouts = sizes[..=top].iter().map(|&size| level::layout(size, has.color));
+        if !layouts.clone().eq(self.levels.iter().map(|level| level.layout)) {
+            self.levels = layouts.map(CenterLevel::new).collect();
         }
         let reach = |level: usize| {
             if level == top { f32::INFINITY } else { settings.reach(level) }
         };
         let tally = self.project(scene, camera, settings.cull, reach(0), exec);
-        let projected = Instant::now();
+        clock.lap("projection");
         for level in 1..=top {
             let (finer, coarser) = self.levels.split_at_mut(level);
             let reach = [reach(level - 1), reach(level)];
             merge::merge(&finer[level - 1], &mut coarser[0], reach, exec);
         }
-        let propagated = Instant::now();
+        clock.lap("propagation");
         self.search(camera, settings, has.color, exec, target);
-        let times = Timings {
-            project: projected - start,
-            propagate: propagated - projected,
-            search: propagated.elapsed(),
-        };
-        (tally, times)
+        clock.lap("reconstruction");
+        (tally, clock.into_laps())
     }
 
     /// Level 0.
@@ -94,12 +79,12 @@ impl Levels {
         reach: f32,
         exec: &Exec,
     ) -> Tally {
-        let lens = Lens::new(View::new(camera), cull);
+        let lens = PointProjector::new(View::new(camera), cull);
         let tally = self.points.find(&scene.surfels, &lens, exec);
         let level = &mut self.levels[0];
-        let (shape, from) = (level.shape, (&scene.surfels, &lens));
+        let (layout, from) = (level.layout, (&scene.surfels, &lens));
         self.points.each_row(from, level.rows_mut(), exec, |nearest, mut row| {
-            samples(nearest, &mut row, &shape, reach);
+            samples(nearest, &mut row, &layout, reach);
         });
         tally
     }
@@ -114,7 +99,7 @@ impl Levels {
         target: &mut Framebuffer<f32>,
     ) {
         let searched = self.levels.iter().enumerate().filter(|(_, level)| level.is_searched());
-        let (which, levels): (Vec<usize>, Vec<&Level>) = searched.unzip();
+        let (which, levels): (Vec<usize>, Vec<&CenterLevel>) = searched.unzip();
         let (view, half) = (View::new(camera), settings.half() as usize);
         exec.ordered(rows(target).enumerate().collect(), |(y, mut row): (usize, Target<'_>)| {
             if colored {
@@ -126,33 +111,38 @@ impl Levels {
     }
 }
 
-/// A row of level 0 from the nearest points of its pixels.
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn samples(nearest: &Nearest<'_>, row: &mut RowMut<'_>, shape: &Shape, reach: f32) {
-    *row.has = [false; 2];
-    for x in (0..shape.width).step_by(LANES) {
-        let Some(s) = nearest.take(x) else {
-            row.clear(shape, x);
-            continue;
-        };
-        let ids = nearest.ids(&s);
-        let center = nearest.centers(&ids);
-        let mut put = |attribute: usize, lanes: &Lanes| {
-            let at = shape.at(attribute, x);
-            row.numbers[at..at + LANES].copy_from_slice(lanes);
-        };
-        put(DEPTH, &s.depth);
-        put(RADIUS, &s.radius);
-        put(EXTENT, &s.extent);
-        (0..2).for_each(|axis| put(PLACE + axis, &center[axis]));
-        (0..3).for_each(|axis| put(NORMAL + axis, &s.normal[axis]));
-        if let Some(color) = nearest.colors(&ids) {
-            (0..3).for_each(|channel| put(COLOR + channel, &color[channel]));
+vectorized!(
+    /// A row of level 0 from the nearest points of its pixels.
+    fn samples(
+        nearest: &NearestPoints<'_>,
+        row: &mut CenterRowMut<'_>,
+        layout: &RowLayout,
+        reach: f32,
+    ) {
+        *row.has = [false; 2];
+        for x in (0..layout.width).step_by(LANES) {
+            let Some(s) = nearest.take(x) else {
+                row.clear(layout, x);
+                continue;
+            };
+            let ids = nearest.ids(&s);
+            let center = nearest.centers(&ids);
+            let mut put = |attribute: usize, lanes: &Lanes| {
+                store(row.numbers, layout.at(attribute, x), lanes);
+            };
+            put(DEPTH, &s.depth);
+            put(RADIUS, &s.radius);
+            put(EXTENT, &s.extent);
+            (0..2).for_each(|axis| put(PLACE + axis, &center[axis]));
+            (0..3).for_each(|axis| put(NORMAL + axis, &s.normal[axis]));
+            if let Some(color) = nearest.colors(&ids) {
+                (0..3).for_each(|channel| put(COLOR + channel, &color[channel]));
+            }
+            store(row.ids, PAD + x, &ids);
+            row.settle(layout, x, reach);
         }
-        row.ids[PAD + x..PAD + x + LANES].copy_from_slice(&ids);
-        row.settle(shape, x, reach);
     }
-}
+);
 
 /// The rows of a framebuffer.
 fn rows(target: &mut Framebuffer<f32>) -> impl Iterator<Item = Target<'_>> {

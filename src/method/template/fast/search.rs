@@ -1,27 +1,24 @@
-//! Reconstruction and normalization in lanes; see [`super::super::gather`].
+//! Reconstruction and normalization in lanes; see [`super::super::reconstruction`].
 //!
-//! A block is [`LANES`] pixels of a row. At level 0 each has a template of its own: the centres
-//! beside one another are read as lanes. A cell of a coarser level belongs to the templates of many
-//! of them: it is one centre for all lanes, those outside its template masked. Either way every
-//! lane meets its centres in the order of the definition.
+//! [`LANES`] pixels of a row search together. At level 0 each has a template of its own: the
+//! centres beside one another are read as lanes. A cell of a coarser level belongs to the templates
+//! of many of them: it is one centre for all lanes, those outside its template masked. Either way
+//! every lane meets its centres in the order of the definition.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
-)]
-
-use super::level::{COLOR, DEPTH, Level, NORMAL, PAD, PLACE, RADIUS, Row, SQUARE, TILT, lanes};
+use super::level::{COLOR, CenterLevel, CenterRow, DEPTH, NORMAL, PLACE, RADIUS, SQUARE, TILT};
 use crate::composite::sum;
 use crate::frame::NO_ID;
-use crate::method::projection::fast::{LANES, Lanes, put};
+use crate::method::projection::fast::PAD;
 use crate::method::projection::world;
-use crate::method::template::gather::weight;
+use crate::method::template::reconstruction::weight;
+use crate::number::lanes::{
+    LANES, Lanes, Mask, any, components, each, load, mask, store_first, vectorized,
+};
 use crate::number::{Vector2, Vector3};
 use crate::splat::{Ellipse, View};
-use multiversion::multiversion;
 
-/// What the pixels of a block have gathered.
-struct Block {
+/// What [`LANES`] pixels of a row have gathered.
+struct GatheredLanes {
     id: [u32; LANES],
     depth: Lanes,
     radius: Lanes,
@@ -32,7 +29,7 @@ struct Block {
 }
 
 /// One centre for each lane.
-struct Centers {
+struct CenterLanes {
     id: [u32; LANES],
     depth: Lanes,
     radius: Lanes,
@@ -50,97 +47,81 @@ pub(super) struct Target<'a> {
     pub(super) color: Option<&'a mut [[f32; 3]]>,
 }
 
-/// A row of pixels: reconstruction and normalization; `half` is h.
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub(super) fn search_row<const COLORED: bool>(
-    levels: &[&Level],
-    which: &[usize],
-    half: usize,
-    y: usize,
-    view: &View<f32>,
-    target: &mut Target<'_>,
-) {
-    let width = target.depth.len();
-    for x in (0..width).step_by(LANES) {
-        let mut block = Block {
-            id: [NO_ID; LANES],
-            depth: [f32::INFINITY; LANES],
-            radius: [0.0; LANES],
-            weight: [0.0; LANES],
-            depths: [0.0; LANES],
-            normals: [[0.0; LANES]; 3],
-            colors: [[0.0; LANES]; 3],
-        };
-        for (&level, cells) in which.iter().zip(levels) {
-            let row = y >> level;
-            for cy in row.saturating_sub(half)..cells.shape.height.min(row + half + 1) {
-                let cells = (cells.row(cy), cells.shape.stride, cells.shape.width);
-                match (cells.0.has[0], level) {
-                    (false, _) => {}
-                    (true, 0) => beside::<COLORED>(&mut block, cells, (x, y, cy == y), half),
-                    (true, _) => around::<COLORED>(&mut block, cells, (x, y, level), half),
+vectorized!(
+    /// A row of pixels: reconstruction and normalization; `half` is h.
+    pub(super) fn search_row<const COLORED: bool>(
+        levels: &[&CenterLevel],
+        which: &[usize],
+        half: usize,
+        y: usize,
+        view: &View<f32>,
+        target: &mut Target<'_>,
+    ) {
+        let width = target.depth.len();
+        for x in (0..width).step_by(LANES) {
+            let mut gathered = GatheredLanes::new();
+            for (&level, cells) in which.iter().zip(levels) {
+                let own = y >> level;
+                for cy in own.saturating_sub(half)..cells.layout.height.min(own + half + 1) {
+                    let row = cells.row(cy);
+                    match (row.has[0], level) {
+                        (false, _) => {}
+                        (true, 0) => beside::<COLORED>(&mut gathered, row, (x, y, cy == y), half),
+                        (true, _) => around::<COLORED>(&mut gathered, row, (x, y, level), half),
+                    }
                 }
             }
+            normalize::<COLORED>(&gathered, x, view, target);
         }
-        normalize::<COLORED>(&block, x, view, target);
     }
-}
+);
 
-/// One row of the templates at level 0.
+/// Gathers one row of the templates at level 0: centres beside one another.
 #[inline(always)]
 fn beside<const COLORED: bool>(
-    block: &mut Block,
-    (row, stride, _): (Row<'_>, usize, usize),
+    gathered: &mut GatheredLanes,
+    row: CenterRow<'_>,
     (x, y, own_row): (usize, usize, bool),
     half: usize,
 ) {
     for dx in 0..=2 * half {
+        // -- Which centres a pixel is inside of, and its own
         let first = PAD + x + dx - half;
-        let number = |attribute: usize| lanes(row.numbers, attribute * stride + first);
         let own = own_row && dx == half;
-        let (px, py, square) = (number(PLACE), number(PLACE + 1), number(SQUARE));
-        let (tx, ty) = (number(TILT), number(TILT + 1));
-        let mut form = [0.0; LANES];
-        let mut inside = [0_u32; LANES];
-        for i in 0..LANES {
-            let tilt = Vector2::new(tx[i], ty[i]);
-            let ellipse = Ellipse { tilt, square: square[i] };
-            form[i] = ellipse.form((x + i) as f32 + 0.5 - px[i], y as f32 + 0.5 - py[i]);
-            let stays = !square[i].is_nan();
-            inside[i] = u32::from(ellipse.holds(form[i]) | (own & stays));
-        }
-        if inside.iter().all(|&inside| inside == 0) {
+        let [px, py] = [row.load(PLACE, first), row.load(PLACE + 1, first)];
+        let [tx, ty] = [row.load(TILT, first), row.load(TILT + 1, first)];
+        let square = row.load(SQUARE, first);
+        let ellipse = |i: usize| Ellipse { tilt: Vector2::new(tx[i], ty[i]), square: square[i] };
+        let form = each(|i| ellipse(i).form((x + i) as f32 + 0.5 - px[i], y as f32 + 0.5 - py[i]));
+        let inside = mask(|i| ellipse(i).holds(form[i]) | (own & !square[i].is_nan()));
+        if !any(&inside) {
             continue;
         }
-        let mut ids = [0; LANES];
-        ids.copy_from_slice(&row.ids[first..first + LANES]);
-        let centers = Centers {
-            id: ids,
-            depth: number(DEPTH),
-            radius: number(RADIUS),
-            normal: [number(NORMAL), number(NORMAL + 1), number(NORMAL + 2)],
-            color: if COLORED {
-                [number(COLOR), number(COLOR + 1), number(COLOR + 2)]
-            } else {
-                [[0.0; LANES]; 3]
-            },
+        // -- What those are
+        let centers = CenterLanes {
+            id: load(row.ids, first),
+            depth: row.load(DEPTH, first),
+            radius: row.load(RADIUS, first),
+            normal: row.load_vectors(NORMAL, first),
+            color: if COLORED { row.load_vectors(COLOR, first) } else { [[0.0; LANES]; 3] },
         };
-        block.add::<COLORED>(&centers, &inside, &form, &square);
+        gathered.add::<COLORED>(&centers, &inside, &form, &square);
     }
 }
 
-/// One row of the templates at a coarser level.
+/// Gathers one row of the templates at a coarser level: each centre for all pixels around it.
 #[inline(always)]
 fn around<const COLORED: bool>(
-    block: &mut Block,
-    (row, stride, width): (Row<'_>, usize, usize),
+    gathered: &mut GatheredLanes,
+    row: CenterRow<'_>,
     (x, y, level): (usize, usize, usize),
     half: usize,
 ) {
     let first = (x >> level).saturating_sub(half);
-    let last = width.min(((x + LANES - 1) >> level) + half + 1);
+    let last = row.layout.width.min(((x + LANES - 1) >> level) + half + 1);
     for cx in first..last {
-        let number = |attribute: usize| row.numbers[attribute * stride + PAD + cx];
+        // -- Whether a pixel can be inside of it at all
+        let number = |attribute: usize| row.numbers[row.layout.at(attribute, cx)];
         let square = number(SQUARE);
         let (left, upper) = (number(PLACE), number(PLACE + 1));
         let dy = y as f32 + 0.5 - upper;
@@ -148,119 +129,137 @@ fn around<const COLORED: bool>(
         if !(dy * dy <= square * (1.0 + 1.0 / 1_048_576.0)) {
             continue;
         }
-        let tilt = Vector2::new(number(TILT), number(TILT + 1));
-        let ellipse = Ellipse { tilt, square };
-        let mut form = [0.0; LANES];
-        let mut inside = [0_u32; LANES];
-        for i in 0..LANES {
-            form[i] = ellipse.form((x + i) as f32 + 0.5 - left, dy);
+        // -- Which pixels are, and have it in their templates
+        let ellipse = Ellipse { tilt: Vector2::new(number(TILT), number(TILT + 1)), square };
+        let form = each(|i| ellipse.form((x + i) as f32 + 0.5 - left, dy));
+        let inside = mask(|i| {
             let column = (x + i) >> level;
             let found = (column + half >= cx) & (column <= cx + half);
-            inside[i] = u32::from(ellipse.holds(form[i]) & found);
-        }
-        if inside.iter().all(|&inside| inside == 0) {
+            ellipse.holds(form[i]) & found
+        });
+        if !any(&inside) {
             continue;
         }
+        // -- What it is
         let all = |attribute: usize| [number(attribute); LANES];
-        let centers = Centers {
+        let three = |first: usize| [all(first), all(first + 1), all(first + 2)];
+        let centers = CenterLanes {
             id: [row.ids[PAD + cx]; LANES],
             depth: all(DEPTH),
             radius: all(RADIUS),
-            normal: [all(NORMAL), all(NORMAL + 1), all(NORMAL + 2)],
-            color: if COLORED {
-                [all(COLOR), all(COLOR + 1), all(COLOR + 2)]
-            } else {
-                [[0.0; LANES]; 3]
-            },
+            normal: three(NORMAL),
+            color: if COLORED { three(COLOR) } else { [[0.0; LANES]; 3] },
         };
-        block.add::<COLORED>(&centers, &inside, &form, &[square; LANES]);
+        gathered.add::<COLORED>(&centers, &inside, &form, &[square; LANES]);
     }
 }
 
-impl Block {
+impl GatheredLanes {
+    /// Nothing.
+    #[inline(always)]
+    fn new() -> Self {
+        Self {
+            id: [NO_ID; LANES],
+            depth: [f32::INFINITY; LANES],
+            radius: [0.0; LANES],
+            weight: [0.0; LANES],
+            depths: [0.0; LANES],
+            normals: [[0.0; LANES]; 3],
+            colors: [[0.0; LANES]; 3],
+        }
+    }
+
     /// The ternary test, and the sums, in the lanes that are inside.
     #[inline(always)]
     fn add<const COLORED: bool>(
         &mut self,
-        c: &Centers,
-        inside: &[u32; LANES],
+        c: &CenterLanes,
+        inside: &Mask,
         form: &Lanes,
         square: &Lanes,
     ) {
-        // 0 where the sums start anew.
-        let mut kept = [1_u32; LANES];
-        let mut weights = [0.0; LANES];
-        let mut takes = [0_u32; LANES];
+        // -- The ternary test
+        let (mut anew, mut takes, mut weights) = ([0; LANES], [0; LANES], [0.0; LANES]);
         for i in 0..LANES {
             let (depth, radius) = (self.depth[i], self.radius[i]);
             let sum = c.radius[i] + radius;
             let before = (self.id[i] == NO_ID) | (depth - c.depth[i] > sum);
             let behind = !before & (c.depth[i] - depth > sum);
             let taken = (inside[i] != 0) & !behind;
-            let anew = (inside[i] != 0) & before;
+            let first = (inside[i] != 0) & before;
             weights[i] = weight(form[i], square[i]);
-            let front = taken & (anew | (c.depth[i] < depth));
+            let front = taken & (first | (c.depth[i] < depth));
             self.id[i] = if front { c.id[i] } else { self.id[i] };
             self.depth[i] = if front { c.depth[i] } else { depth };
             self.radius[i] = if front { c.radius[i] } else { radius };
-            kept[i] = u32::from(!anew);
-            takes[i] = u32::from(taken);
+            anew[i] = u32::from(first).wrapping_neg();
+            takes[i] = u32::from(taken).wrapping_neg();
         }
-        let add = |sum: &mut Lanes, value: &Lanes| {
-            let mut lanes = *sum;
-            for i in 0..LANES {
-                let old = if kept[i] != 0 { lanes[i] } else { 0.0 };
-                let new = old + weights[i] * value[i];
-                lanes[i] = if takes[i] != 0 { new } else { old };
-            }
-            *sum = lanes;
-        };
-        add(&mut self.weight, &[1.0; LANES]);
-        add(&mut self.depths, &c.depth);
+        // -- The sums
+        let terms = TermLanes { anew, takes, weights };
+        terms.add(&mut self.weight, &[1.0; LANES]);
+        terms.add(&mut self.depths, &c.depth);
         for axis in 0..3 {
-            add(&mut self.normals[axis], &c.normal[axis]);
+            terms.add(&mut self.normals[axis], &c.normal[axis]);
         }
         if COLORED {
             for channel in 0..3 {
-                add(&mut self.colors[channel], &c.color[channel]);
+                terms.add(&mut self.colors[channel], &c.color[channel]);
             }
         }
+    }
+}
+
+/// What the ternary test has decided of one centre for each lane.
+struct TermLanes {
+    /// Where the sums start anew.
+    anew: Mask,
+    /// Where the centre is added.
+    takes: Mask,
+    weights: Lanes,
+}
+
+impl TermLanes {
+    /// Adds a number of the centres to its sum.
+    #[inline(always)]
+    fn add(&self, sum: &mut Lanes, value: &Lanes) {
+        let mut lanes = *sum;
+        for i in 0..LANES {
+            let old = if self.anew[i] != 0 { 0.0 } else { lanes[i] };
+            let new = old + self.weights[i] * value[i];
+            lanes[i] = if self.takes[i] != 0 { new } else { old };
+        }
+        *sum = lanes;
     }
 }
 
 /// Sums divided by the sum of weights, into the picture.
 #[inline(always)]
 fn normalize<const COLORED: bool>(
-    block: &Block,
+    gathered: &GatheredLanes,
     x: usize,
     view: &View<f32>,
     target: &mut Target<'_>,
 ) {
-    let count = LANES.min(target.depth.len() - x);
-    let mut depth = [0.0; LANES];
-    for i in 0..LANES {
-        let seen = block.weight[i] > 0.0;
-        depth[i] = if seen { block.depths[i] / block.weight[i] } else { f32::INFINITY };
-    }
-    put(&mut target.depth[x..x + count], &depth);
-    put(&mut target.id[x..x + count], &block.id);
-    put(&mut target.weight[x..x + count], &block.weight);
-    let empty = block.id.iter().all(|&id| id == NO_ID);
-    if let Some(normals) = &mut target.normal {
+    let GatheredLanes { id, weight, depths, normals, colors, .. } = gathered;
+    let pixels = x..target.depth.len().min(x + LANES);
+    let depth = each(|i| if weight[i] > 0.0 { depths[i] / weight[i] } else { f32::INFINITY });
+    store_first(&mut target.depth[pixels.clone()], &depth);
+    store_first(&mut target.id[pixels.clone()], id);
+    store_first(&mut target.weight[pixels.clone()], weight);
+    if let Some(plane) = &mut target.normal {
         let mut turned = [[0.0; 3]; LANES];
-        if !empty {
+        if any(&mask(|i| id[i] != NO_ID)) {
             for i in 0..LANES {
-                let sums = [block.normals[0][i], block.normals[1][i], block.normals[2][i]];
-                let [x, y, z] = sum::average(sums, block.weight[i]);
+                let [x, y, z] = sum::average(components(normals, i), weight[i]);
                 turned[i] = world(view, Vector3::new(x, y, z));
             }
         }
-        put(&mut normals[x..x + count], &turned);
+        store_first(&mut plane[pixels.clone()], &turned);
     }
-    if let Some(colors) = target.color.as_mut().filter(|_| COLORED) {
-        for (i, color) in colors[x..x + count].iter_mut().enumerate() {
-            let sums = [block.colors[0][i], block.colors[1][i], block.colors[2][i]];
-            *color = sum::average(sums, block.weight[i]);
+    if let Some(plane) = target.color.as_mut().filter(|_| COLORED) {
+        for (i, color) in plane[pixels].iter_mut().enumerate() {
+            *color = sum::average(components(colors, i), weight[i]);
         }
     }
 }

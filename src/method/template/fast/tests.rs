@@ -14,7 +14,7 @@ fn bits(values: &[f32]) -> Vec<u32> {
 fn every_pixel_has_the_bits_of_the_definition() {
     let exec = Exec::new(3, 16).unwrap();
     // Used again and again, for other sizes too.
-    let mut levels = Levels::default();
+    let mut levels = CenterLevels::default();
     for (i, camera) in cameras().into_iter().enumerate() {
         for (count, radius) in [(1, 1e30), (37, 0.4), (3000, 0.05), (50_000, 0.01)] {
             let scene = scene(surfels(count, radius, count % 2 == 1, i as u64));

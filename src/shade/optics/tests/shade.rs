@@ -31,12 +31,12 @@ fn a_white_furnace_stays_white() {
         let passed = (0..i % 5).fold(1.0, |product, _| product * (1.0 - alpha));
         let color = [1.0 - passed * (1.0 - hidden); 3];
         let behind = Behind { color, opacity: alpha * count, hidden };
-        let nearest = Nearest { color: [1.0; 3], opacity: alpha, normal };
+        let nearest = NearestLayer { color: [1.0; 3], opacity: alpha, normal };
         for value in shade(&white, &refraction, view, &nearest, &behind) {
             assert!((value - 1.0).abs() < 1e-12, "{i}: {value}");
         }
         // And without the layers' own light nothing is above 1.
-        let nearest = Nearest { color: [0.0; 3], ..nearest };
+        let nearest = NearestLayer { color: [0.0; 3], ..nearest };
         let behind = Behind { color: [0.0; 3], ..behind };
         for value in shade(&white, &refraction, view, &nearest, &behind) {
             assert!((0.0..=1.0).contains(&value), "{i}: {value}");
@@ -53,13 +53,13 @@ fn an_opaque_pixel_is_its_phong_colour() {
         let (view, normal) = pair(22, i);
         let color = [0, 1, 2].map(|c| random::unit(23, 3 * i + c));
         let normal = single(normal * (0.5 + number(24, i)));
-        let nearest = Nearest { color, opacity: 1.0_f32, normal };
+        let nearest = NearestLayer { color, opacity: 1.0_f32, normal };
         let behind = Behind { color: [0.5; 3], opacity: 3.0, hidden: 0.25 };
         for kind in [Layers::Single, Layers::Multiple] {
             let shaded = shade(&Environment::Sky, &glass(kind), single(view), &nearest, &behind);
             assert_eq!(shaded, color);
             // And nearly so if it is nearly opaque: the sun is below 26.
-            let nearly = Nearest { opacity: 1.0 - 1.0 / 4096.0, ..nearest };
+            let nearly = NearestLayer { opacity: 1.0 - 1.0 / 4096.0, ..nearest };
             let shaded = shade(&Environment::Sky, &glass(kind), single(view), &nearly, &behind);
             assert!((0..3).all(|c| (shaded[c] - color[c]).abs() < 2.0 * 27.0 / 4096.0));
         }
@@ -73,7 +73,7 @@ fn without_refraction_it_is_alpha_blending() {
     for i in 0..500 {
         let (view, normal) = pair(25, i);
         let alpha = 0.125 + 0.75 * number(26, i);
-        let nearest = Nearest { color: [0.5, 0.25, 0.75], opacity: alpha, normal };
+        let nearest = NearestLayer { color: [0.5, 0.25, 0.75], opacity: alpha, normal };
         let behind = Behind { color: [0.25, 0.5, 0.125], opacity: 2.0 * alpha, hidden: 0.0 };
         let shaded = shade(&Environment::Sky, &plain, view, &nearest, &behind);
         let sky = Environment::Sky.radiance(-view);
@@ -92,7 +92,7 @@ fn without_refraction_it_is_alpha_blending() {
 #[test]
 fn a_single_layer_sees_no_other() {
     let (view, normal) = (view_at(0.5), UP);
-    let nearest = Nearest { color: [0.5; 3], opacity: 0.25, normal };
+    let nearest = NearestLayer { color: [0.5; 3], opacity: 0.25, normal };
     let behind = Behind { color: [0.75; 3], opacity: 2.0, hidden: 0.5 };
     let of = |layers, behind| shade(&Environment::Sky, &glass(layers), view, &nearest, behind);
     assert_eq!(of(Layers::Single, &behind), of(Layers::Single, &BLACK));
@@ -103,7 +103,7 @@ fn a_single_layer_sees_no_other() {
 #[test]
 fn each_channel_has_its_own_ratio() {
     let (view, normal) = (view_at(0.75), Vector3::new(0.25, 0.5, 1.0).normalized());
-    let nearest = Nearest { color: [0.5; 3], opacity: 0.25, normal };
+    let nearest = NearestLayer { color: [0.5; 3], opacity: 0.25, normal };
     let behind = Behind { opacity: 0.25, ..BLACK };
     let dispersed = glass(Layers::Multiple);
     let shaded = shade(&Environment::Sky, &dispersed, view, &nearest, &behind);
@@ -119,7 +119,7 @@ fn each_channel_has_its_own_ratio() {
 fn total_reflection_shows_the_mirror_alone() {
     let water = Refraction { ratio: [1.5; 3], layers: Layers::Multiple };
     let view = view_at(1.0);
-    let nearest = Nearest { color: [0.5; 3], opacity: 0.25, normal: UP };
+    let nearest = NearestLayer { color: [0.5; 3], opacity: 0.25, normal: UP };
     let behind = Behind { color: [9.0; 3], opacity: 1.0, hidden: 0.0 };
     let shaded = shade(&Environment::Sky, &water, view, &nearest, &behind);
     let mirror = Environment::Sky.radiance(Vector3::new(-sin(1.0), 0.0, cos(1.0)));
@@ -130,7 +130,7 @@ fn total_reflection_shows_the_mirror_alone() {
 fn a_normal_may_be_short_turned_away_or_absent() {
     let view = single(view_at(0.5));
     let of = |normal: Vector3<f32>| {
-        let nearest = Nearest { color: [0.5; 3], opacity: 0.5, normal };
+        let nearest = NearestLayer { color: [0.5; 3], opacity: 0.5, normal };
         let behind = Behind { color: [0.25; 3], opacity: 0.5, hidden: 0.0 };
         shade(&Environment::Sky, &glass(Layers::Multiple), view, &nearest, &behind)
     };
@@ -158,11 +158,19 @@ fn single_precision_is_close_and_nothing_is_nan() {
             layers: Layers::Multiple,
         };
         let behind = Behind { color, opacity: total, hidden: 0.25 };
-        let truth =
-            shade(&smooth, &refraction, view, &Nearest { color, opacity: alpha, normal }, &behind);
+        let truth = shade(
+            &smooth,
+            &refraction,
+            view,
+            &NearestLayer { color, opacity: alpha, normal },
+            &behind,
+        );
         let behind = Behind { color: [0.5, 0.25, 0.125], opacity: total as f32, hidden: 0.25 };
-        let nearest =
-            Nearest { color: [0.5, 0.25, 0.125], opacity: alpha as f32, normal: single(normal) };
+        let nearest = NearestLayer {
+            color: [0.5, 0.25, 0.125],
+            opacity: alpha as f32,
+            normal: single(normal),
+        };
         let found = shade(&smooth, &refraction, single(view), &nearest, &behind);
         // Beside the poles of the map a direction's rounding is a turn of any angle.
         let tolerance = if i % 4 == 0 { 0.05 } else { 1e-3 };
@@ -176,7 +184,7 @@ fn single_precision_is_close_and_nothing_is_nan() {
         for total in [0.0, 1e-45, 1.0, 1e30] {
             for ratio in [1e-45, 0.5, 1.0, 1.000_001, 4.0] {
                 for normal in [single(UP), Vector3::ZERO, Vector3::new(1.0, 0.0, 1e-30)] {
-                    let nearest = Nearest { color: [0.5; 3], opacity: alpha, normal };
+                    let nearest = NearestLayer { color: [0.5; 3], opacity: alpha, normal };
                     let behind = Behind { color: [0.5; 3], opacity: total, hidden: 0.0 };
                     let refraction = Refraction { ratio: [ratio; 3], layers: Layers::Multiple };
                     let light = shade(&sky, &refraction, single(UP), &nearest, &behind);

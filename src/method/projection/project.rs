@@ -1,7 +1,8 @@
 //! The definition: every primitive in its order, tile by tile.
 
 use super::primitives;
-use super::{Projected, Sample, Stage};
+use super::{PixelSample, Projected, SceneProjector};
+use crate::composite::decide;
 use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
 use crate::frame::{Bins, Exec, Plane, Rect};
@@ -11,14 +12,14 @@ use crate::splat::{Fate, Tally};
 use std::ops::Range;
 
 /// What is drawn as one thing.
-enum Drawn<R> {
+enum DrawnItem<R> {
     /// A surfel: its pixel and its sample.
-    Pixel([u32; 2], Sample<R>),
+    Pixel([u32; 2], PixelSample<R>),
     /// A piece of a triangle, a ribbon or a tube.
     Piece(primitives::Piece<R>),
 }
 
-impl<R: Exact> Drawn<R> {
+impl<R: Exact> DrawnItem<R> {
     fn bounds(&self) -> Rect {
         match self {
             Self::Pixel([x, y], _) => Rect { x0: *x, y0: *y, x1: x + 1, y1: y + 1 },
@@ -34,11 +35,12 @@ impl<R: Exact> Drawn<R> {
 pub(in crate::method) fn project<R: Exact>(
     scene: &Scene,
     camera: &Camera,
-    (cull, snap): (bool, Snap),
+    cull: bool,
+    snap: Snap,
     exec: &Exec,
 ) -> Result<Projected<R>> {
     let (width, height) = (camera.width, camera.height);
-    let samples = Plane::filled(width, height, Sample::empty());
+    let samples = Plane::filled(width, height, PixelSample::empty());
     let mut projected = Projected { samples, tally: Tally::default() };
     let surfels = scene.surfels.len();
     let count = surfels + scene.primitives.len();
@@ -46,19 +48,19 @@ pub(in crate::method) fn project<R: Exact>(
         let what = format!("{count} primitives, but ids have 32 bits: split the scene");
         return Err(Error::Invalid(what));
     }
-    let stage = Stage::new(scene, camera, cull, snap);
-    draw(&stage, exec, 0..count, &mut projected);
+    let projector = SceneProjector::new(scene, camera, cull, snap);
+    draw(&projector, exec, 0..count, &mut projected);
     Ok(projected)
 }
 
 /// Draws the primitives of a range of ids over what is there, which has lower ids.
 fn draw<R: Exact>(
-    stage: &Stage<'_, R>,
+    projector: &SceneProjector<'_, R>,
     exec: &Exec,
     ids: Range<usize>,
     projected: &mut Projected<R>,
 ) {
-    let [width, height] = stage.size;
+    let [width, height] = projector.size;
     let grid = exec.grid(width, height);
     let size = (ids.len() / 64).min(8192).max(2 * grid.len());
     let ranges = ids.clone().step_by(size).map(|first| first..ids.end.min(first + size));
@@ -66,10 +68,10 @@ fn draw<R: Exact>(
         let mut drawn = Vec::with_capacity(range.len());
         let mut tally = Tally::default();
         for id in range {
-            if id < stage.scene.surfels.len() {
-                surfel(stage, id, &mut tally, &mut drawn);
+            if id < projector.scene.surfels.len() {
+                surfel(projector, id, &mut tally, &mut drawn);
             } else {
-                primitives::pieces(stage, id, |piece| drawn.push(Drawn::Piece(piece)));
+                primitives::pieces(projector, id, |piece| drawn.push(DrawnItem::Piece(piece)));
             }
         }
         let bins = Bins::new(&grid, drawn.len(), |i| drawn[i].bounds());
@@ -82,17 +84,17 @@ fn draw<R: Exact>(
     exec.ordered(jobs, |(index, (rect, mut tile)): (usize, (Rect, _))| {
         for ((drawn, bins), _) in &batches {
             bins.for_each(index, |i| match &drawn[i as usize] {
-                Drawn::Pixel([x, y], sample) => {
+                DrawnItem::Pixel([x, y], sample) => {
                     let kept = &mut tile.row((y - rect.y0) as usize)[(x - rect.x0) as usize];
-                    if sample.depth < kept.depth {
+                    if decide::before(sample.depth, kept.depth) {
                         *kept = *sample;
                     }
                 }
-                Drawn::Piece(piece) => piece.for_each(&rect, |at| {
+                DrawnItem::Piece(piece) => piece.for_each(&rect, |at| {
                     let row = tile.row((at.y - rect.y0) as usize);
                     let kept = &mut row[(at.x - rect.x0) as usize];
-                    if -at.p.z < kept.depth {
-                        *kept = piece.sample(stage, &at);
+                    if decide::before(-at.p.z, kept.depth) {
+                        *kept = piece.sample(projector, &at);
                     }
                 }),
             });
@@ -101,17 +103,22 @@ fn draw<R: Exact>(
 }
 
 /// One surfel as a pixel, if it is seen.
-fn surfel<R: Exact>(stage: &Stage<'_, R>, i: usize, tally: &mut Tally, drawn: &mut Vec<Drawn<R>>) {
-    let (surfels, lens) = (&stage.scene.surfels, &stage.lens);
-    let n = lens.view.direction(Vector3::from_glam(surfels.normal()[i]));
-    let (placed, g, fate) = lens.fate(Vector3::from_glam(surfels.position()[i]), n);
+fn surfel<R: Exact>(
+    projector: &SceneProjector<'_, R>,
+    i: usize,
+    tally: &mut Tally,
+    drawn: &mut Vec<DrawnItem<R>>,
+) {
+    let (surfels, points) = (&projector.scene.surfels, &projector.points);
+    let n = points.view.direction(Vector3::from_glam(surfels.normal()[i]));
+    let (placed, g, fate) = points.fate(Vector3::from_glam(surfels.position()[i]), n);
     tally.count(fate);
     if fate != Fate::Visible {
         return;
     }
-    let color = surfels.color().map_or(stage.scene.material.color, |color| color[i]);
-    let color = if stage.has.color { color.to_array().map(R::from_f32) } else { [R::ZERO; 3] };
+    let color = surfels.color().map_or(projector.scene.material.color, |color| color[i]);
+    let color = if projector.has.color { color.to_array().map(R::from_f32) } else { [R::ZERO; 3] };
     let radius = R::from_f32(surfels.radius()[i]);
-    let sample = lens.sample(&placed, (n, g), radius, (i as u32, color));
-    drawn.push(Drawn::Pixel([placed.center.x.to_pixel(), placed.center.y.to_pixel()], sample));
+    let sample = points.sample(i as u32, &placed, n, g, radius, color);
+    drawn.push(DrawnItem::Pixel(placed.pixel(), sample));
 }

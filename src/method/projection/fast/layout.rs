@@ -1,20 +1,20 @@
 //! How a level is held: rows of numbers, one number of all cells of a row after the other.
 
-use super::{LANES, Lanes};
+use crate::number::lanes::LANES;
 
 /// Cells before the first and after the last of a row that are always empty.
 pub(in crate::method) const PAD: usize = LANES;
 
-/// The shape of a level's memory: rows of `attributes` times `stride` numbers.
+/// The layout of a level in memory: rows of `attributes` times `stride` numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::method) struct Shape {
+pub(in crate::method) struct RowLayout {
     pub(in crate::method) width: usize,
     pub(in crate::method) height: usize,
     pub(in crate::method) attributes: usize,
     pub(in crate::method) stride: usize,
 }
 
-impl Shape {
+impl RowLayout {
     pub(in crate::method) fn new([width, height]: [u32; 2], attributes: usize) -> Self {
         let (width, height) = (width as usize, height as usize);
         // Blocks of LANES coarser cells, which are two blocks of finer ones.
@@ -32,12 +32,4 @@ impl Shape {
     pub(in crate::method) fn at(&self, attribute: usize, x: usize) -> usize {
         attribute * self.stride + PAD + x
     }
-}
-
-/// [`LANES`] numbers of a row from an index on.
-#[inline(always)]
-pub(in crate::method) fn lanes(row: &[f32], at: usize) -> Lanes {
-    let mut lanes = [0.0; LANES];
-    lanes.copy_from_slice(&row[at..at + LANES]);
-    lanes
 }

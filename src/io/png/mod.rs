@@ -1,6 +1,10 @@
-//! 8-bit previews for people; nothing is ever compared through them.
+//! 8-bit previews for people, and PNG files of others, compared as they are stored.
 
-use crate::frame::Plane;
+mod read;
+
+pub use read::{Stored, read};
+
+use crate::frame::{Frame, Plane};
 use crate::io::replace::write_atomically;
 use crate::io::srgb;
 use crate::{Error, Result};
@@ -8,6 +12,29 @@ use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 use std::io;
 use std::path::Path;
+
+/// Writes the preview of a frame: the plane of colour with the empty name over the coverage `A`, if
+/// the frame has that; nothing if it has no colour.
+///
+/// A PNG wants colours that are not multiplied by alpha: where alpha is in (0, 1) the colour is
+/// divided by it.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_frame(path: &Path, frame: &Frame<f32>) -> Result<()> {
+    let Ok(color) = frame.color("") else { return Ok(()) };
+    let Ok(alpha) = frame.scalar("A") else { return write(path, color, None) };
+    let mut color = color.clone();
+    for (pixel, alpha) in color.values_mut().iter_mut().zip(alpha.values()) {
+        *pixel = pixel.map(|value| straight(value, *alpha));
+    }
+    write(path, &color, Some(alpha))
+}
+
+/// A colour over black as one that is not multiplied by alpha.
+fn straight(value: f32, alpha: f32) -> f32 {
+    if alpha > 0.0 && alpha < 1.0 { value / alpha } else { value }
+}
 
 /// Writes a plane of linear RGB to the PNG file at `path`, sRGB-encoded, 8 bits a channel.
 ///
@@ -39,7 +66,7 @@ pub fn write(path: &Path, color: &Plane<[f32; 3]>, alpha: Option<&Plane<f32>>) -
         }
         Some(alpha) => {
             let pixels = color.values().iter().zip(alpha.values()).flat_map(|(&[r, g, b], &a)| {
-                [srgb.encode(r), srgb.encode(g), srgb.encode(b), quantize(f64::from(a))]
+                [srgb.encode(r), srgb.encode(g), srgb.encode(b), quantize(f64::from(a), 255) as u8]
             });
             (pixels.collect::<Vec<u8>>(), ExtendedColorType::Rgba8)
         }
@@ -53,15 +80,15 @@ pub fn write(path: &Path, color: &Plane<[f32; 3]>, alpha: Option<&Plane<f32>>) -
     })
 }
 
-/// `floor(255 v + 1/2)` for v clipped to [0, 1]; 0 for NaN.
-fn quantize(value: f64) -> u8 {
+/// The code `floor(most v + 1/2)` for v clipped to [0, 1]; 0 for NaN.
+fn quantize(value: f64, most: u16) -> u16 {
     // The conversion truncates and saturates, and takes NaN to 0.
-    (255.0 * value + 0.5) as u8
+    ((f64::from(most) * value + 0.5) as u16).min(most)
 }
 
 /// The 8-bit code of a linear value.
 fn exact(linear: f32) -> u8 {
-    quantize(srgb::from_linear(f64::from(linear)))
+    quantize(srgb::from_linear(f64::from(linear)), 255) as u8
 }
 
 /// The function [`exact`] as the smallest `f32` of each code but 0.
@@ -116,7 +143,7 @@ mod tests {
         let srgb = Srgb::new();
         let outside = [-1.0, -0.0, f32::NEG_INFINITY, f32::NAN, 1.5, f32::INFINITY];
         assert_eq!(outside.map(|v| srgb.encode(v)), [0, 0, 0, 0, 255, 255]);
-        assert_eq!(outside.map(|v| quantize(f64::from(v))), [0, 0, 0, 0, 255, 255]);
+        assert_eq!(outside.map(|v| quantize(f64::from(v), 255)), [0, 0, 0, 0, 255, 255]);
     }
 
     #[test]

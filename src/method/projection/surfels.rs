@@ -1,12 +1,12 @@
 //! One surfel as one pixel, see the page of [`super`].
 
-use super::{Kind, Sample};
-use crate::number::{Exact, Vector2, Vector3};
-use crate::splat::{Fate, View, ellipse};
+use super::{PixelSample, SampleKind};
+use crate::number::{Exact, Real, Vector2, Vector3};
+use crate::splat::{Fate, Reasons, View, ellipse};
 
 /// What the projection of a picture's surfels shares.
 #[derive(Clone, Copy, Debug)]
-pub struct Lens<R> {
+pub struct PointProjector<R> {
     /// The camera.
     pub view: View<R>,
     /// f = sqrt(fx fy): pixels per world unit at depth 1.
@@ -17,7 +17,7 @@ pub struct Lens<R> {
 
 /// A point of the scene before the camera.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed<R> {
+pub struct PlacedPoint<R> {
     /// In view space.
     pub p: Vector3<R>,
     /// Depth.
@@ -28,7 +28,26 @@ pub struct Placed<R> {
     pub center: Vector2<R>,
 }
 
-impl<R: Exact> Lens<R> {
+impl<R: Real> PlacedPoint<R> {
+    /// The pixel that the point is drawn into: column and row, for a point in the picture.
+    #[must_use]
+    pub fn pixel(&self) -> [R::Pixel; 2] {
+        [self.center.x.to_pixel(), self.center.y.to_pixel()]
+    }
+}
+
+impl<R: Exact> PointProjector<R> {
+    /// [`PointProjector::reasons`] as a fate, without a branch, so that a loop over it vectorizes: where a
+    /// surfel is, g, fate.
+    #[inline(always)]
+    #[must_use]
+    pub fn fate(&self, position: Vector3<R>, n: Vector3<R>) -> (PlacedPoint<R>, R, Fate) {
+        let (placed, g, reasons) = self.reasons(position, n);
+        (placed, g, reasons.fate())
+    }
+}
+
+impl<R: Real> PointProjector<R> {
     /// The shared numbers of a picture.
     #[must_use]
     pub fn new(view: View<R>, cull: bool) -> Self {
@@ -45,18 +64,18 @@ impl<R: Exact> Lens<R> {
     /// Where a point in view space is.
     #[inline(always)]
     #[must_use]
-    pub fn place(&self, p: Vector3<R>) -> Placed<R> {
+    pub fn place(&self, p: Vector3<R>) -> PlacedPoint<R> {
         let view = &self.view;
         let t = -p.z;
         let m = self.scale(t);
         let center = Vector2::new(view.cx + view.fx * (p.x * m), view.cy - view.fy * (p.y * m));
-        Placed { p, t, m, center }
+        PlacedPoint { p, t, m, center }
     }
 
     /// How a surface turns: < 0 if its front is seen.
     #[inline(always)]
     #[must_use]
-    pub fn facing(&self, placed: &Placed<R>, n: Vector3<R>) -> R {
+    pub fn facing(&self, placed: &PlacedPoint<R>, n: Vector3<R>) -> R {
         if self.view.perspective {
             (n.x * (placed.p.x * placed.m) + n.y * (placed.p.y * placed.m)) - n.z
         } else {
@@ -64,37 +83,41 @@ impl<R: Exact> Lens<R> {
         }
     }
 
-    /// The fate of a surfel without a branch, so that a loop over it vectorizes: where it is, g,
-    /// fate.
+    /// Where a surfel is, g, and the reasons not to draw it; `n` is the normal in view space.
     #[inline(always)]
     #[must_use]
-    pub fn fate(&self, position: Vector3<R>, n: Vector3<R>) -> (Placed<R>, R, Fate) {
+    pub fn reasons(&self, position: Vector3<R>, n: Vector3<R>) -> (PlacedPoint<R>, R, Reasons<R>) {
         let view = &self.view;
         let placed = self.place(view.point(position));
         let g = self.facing(&placed, n);
         let Vector2 { x, y } = placed.center;
-        let inside = (x >= R::ZERO) & (x < view.width) & (y >= R::ZERO) & (y < view.height);
+        let inside = x.ge(R::ZERO) & x.lt(view.width) & y.ge(R::ZERO) & y.lt(view.height);
         let sound = x.is_finite() & y.is_finite() & placed.t.is_finite() & g.is_finite();
-        let fate = if inside { Fate::Visible } else { Fate::Outside };
-        let fate = if self.cull & (g >= R::ZERO) { Fate::BackFacing } else { fate };
-        let fate = if sound { fate } else { Fate::Degenerate };
-        let fate = if placed.t > view.near { fate } else { Fate::Behind };
-        (placed, g, fate)
+        let reasons = Reasons {
+            behind: !placed.t.gt(view.near),
+            degenerate: !sound,
+            back_facing: R::Truth::from(self.cull) & g.ge(R::ZERO),
+            outside: !inside,
+        };
+        (placed, g, reasons)
     }
 
-    /// The sample of a surfel at a place; n in view space, g as [`Lens::facing`].
+    /// The sample of a surfel at a place; n in view space, g as [`PointProjector::facing`].
     #[inline(always)]
     #[must_use]
     pub fn sample(
         &self,
-        placed: &Placed<R>,
-        (n, g): (Vector3<R>, R),
+        id: u32,
+        placed: &PlacedPoint<R>,
+        n: Vector3<R>,
+        g: R,
         radius: R,
-        (id, color): (u32, [R; 3]),
-    ) -> Sample<R> {
-        let n = if g > R::ZERO { -n } else { n };
-        Sample {
-            kind: Kind::Surface,
+        color: [R; 3],
+    ) -> PixelSample<R> {
+        let away = g.gt(R::ZERO);
+        let n = n.map(|component| R::select(away, -component, component));
+        PixelSample {
+            kind: SampleKind::Surface,
             id,
             // Adding 0 turns -0 into +0.
             depth: placed.t + R::ZERO,

@@ -30,10 +30,10 @@
 //! least weight, so that the rim, d = 1, is painted with a defined colour; no `f32` below 1 is
 //! closer to it, so nothing else changes.
 
-use super::{Center, Settings, levels};
-use crate::composite::sum;
+use super::{Center, Settings, propagation};
+use crate::composite::{decide, sum};
 use crate::frame::{Exec, NO_ID, Plane};
-use crate::number::Exact;
+use crate::number::{Exact, Real};
 use crate::splat::Ellipse;
 
 /// What a pixel has gathered.
@@ -73,16 +73,26 @@ impl<R: Exact> Gathered<R> {
         }
     }
 
-    /// A centre whose ellipse holds the pixel, with its weight; the ternary test of the module
-    /// page.
-    fn add(&mut self, center: &Center<R>, weight: R) {
-        let sum = center.radius + self.radius;
-        if self.id == NO_ID || self.depth - center.depth > sum {
-            *self = Self::empty();
-        } else if center.depth - self.depth > sum {
-            return;
+    /// The ternary test of the module page.
+    pub(super) fn test(&self, center: &Center<R>) -> Placement {
+        let test = decide::ternary([center.depth, center.radius], [self.depth, self.radius]);
+        if self.id == NO_ID || test.before {
+            Placement::Before
+        } else if test.behind {
+            Placement::Behind
+        } else {
+            Placement::Blended
         }
-        if center.depth < self.depth {
+    }
+
+    /// A centre whose ellipse holds the pixel, with its weight.
+    pub(super) fn add(&mut self, center: &Center<R>, weight: R) {
+        match self.test(center) {
+            Placement::Before => *self = Self::empty(),
+            Placement::Behind => return,
+            Placement::Blended => {}
+        }
+        if decide::before(center.depth, self.depth) {
             (self.id, self.depth, self.radius) = (center.id, center.depth, center.radius);
         }
         self.weight = self.weight + weight;
@@ -94,11 +104,22 @@ impl<R: Exact> Gathered<R> {
     }
 }
 
+/// Where a centre lies against the front of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Placement {
+    /// The sums start anew.
+    Before,
+    /// Nothing happens.
+    Behind,
+    /// The centre is added to the sums.
+    Blended,
+}
+
 /// The weight of a form, see the module page; also for one that is outside or NaN.
 #[inline(always)]
-pub(in crate::method::template) fn weight<R: Exact>(form: R, square: R) -> R {
+pub(in crate::method::template) fn weight<R: Real>(form: R, square: R) -> R {
     let (weight, least) = (R::ONE - (form / square).sqrt(), R::from_f32(LEAST));
-    if weight > least { weight } else { least }
+    R::select(weight.gt(least), weight, least)
 }
 
 /// 2^-24, the least weight.
@@ -116,21 +137,50 @@ pub fn gather<R: Exact>(
     let rows = gathered.rows_mut();
     exec.ordered((0..).zip(rows).collect(), |(y, row): (u32, &mut [Gathered<R>])| {
         for (x, pixel) in (0..).zip(row) {
-            for level in 0..levels.len() {
-                search(levels, level, settings, (x, y), pixel);
-            }
+            each_asked(levels, settings, (x, y), |asked| {
+                if asked.holds || asked.own {
+                    pixel.add(asked.center, weight(asked.form, asked.square));
+                }
+            });
         }
     });
     gathered
 }
 
+/// A centre that a pixel asks.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked<'a, R> {
+    pub(super) center: &'a Center<R>,
+    pub(super) level: usize,
+    pub(super) cell: (u32, u32),
+    /// The form at the pixel's centre, and what it is compared with.
+    pub(super) form: R,
+    pub(super) square: R,
+    /// Whether the ellipse holds the pixel's centre.
+    pub(super) holds: bool,
+    /// Whether the centre was projected to the pixel and stays at level 0.
+    pub(super) own: bool,
+}
+
+/// Calls `visit` for every centre that stays in the templates around a pixel, in their order.
+pub(super) fn each_asked<'a, R: Exact>(
+    levels: &'a [Plane<Center<R>>],
+    settings: &Settings,
+    pixel: (u32, u32),
+    mut visit: impl FnMut(&Asked<'a, R>),
+) {
+    for level in 0..levels.len() {
+        search(levels, level, settings, pixel, &mut visit);
+    }
+}
+
 /// The template of one level around a pixel.
-fn search<R: Exact>(
-    levels: &[Plane<Center<R>>],
+fn search<'a, R: Exact>(
+    levels: &'a [Plane<Center<R>>],
     level: usize,
     settings: &Settings,
     (x, y): (u32, u32),
-    pixel: &mut Gathered<R>,
+    visit: &mut impl FnMut(&Asked<'a, R>),
 ) {
     let (cells, h) = (&levels[level], settings.half());
     let is_top = level + 1 == levels.len();
@@ -139,18 +189,17 @@ fn search<R: Exact>(
     for cy in row.saturating_sub(h)..cells.height().min(row + h + 1) {
         for cx in column.saturating_sub(h)..cells.width().min(column + h + 1) {
             let center = cells.at(cx, cy);
-            if !center.is_valid() || (!is_top && levels::moves(center, reach)) {
+            if !center.is_valid() || (!is_top && propagation::moves(center, reach)) {
                 continue;
             }
             let ellipse = Ellipse::new(center.normal, center.extent);
             let form = ellipse.form(
-                R::from_f32(x as f32 + 0.5) - center.place.x,
-                R::from_f32(y as f32 + 0.5) - center.place.y,
+                R::from_f32(x as f32 + 0.5) - center.center.x,
+                R::from_f32(y as f32 + 0.5) - center.center.y,
             );
             let own = level == 0 && (cx, cy) == (x, y);
-            if ellipse.holds(form) || own {
-                pixel.add(center, weight(form, ellipse.square));
-            }
+            let (cell, square, holds) = ((cx, cy), ellipse.square, ellipse.holds(form));
+            visit(&Asked { center, level, cell, form, square, holds, own });
         }
     }
 }

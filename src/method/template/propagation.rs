@@ -18,10 +18,11 @@
 //! centre never stays at a level that it should have left.
 
 use super::{Center, Settings};
+use crate::composite::decide;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
-use crate::method::projection::Projected;
-use crate::number::{Exact, Vector2, Vector3};
+use crate::method::projection::PixelSample;
+use crate::number::{Exact, Real, Vector2, Vector3};
 
 /// The level from which every cell is found: the first whose sides are at most h + 1.
 #[must_use]
@@ -35,11 +36,10 @@ pub fn top(settings: &Settings, sizes: &[[u32; 2]]) -> usize {
 /// All levels up to the top; a level holds what arrived there, both what stays and what moves on.
 #[must_use]
 pub fn propagate<R: Exact>(
-    projected: &Projected<R>,
+    samples: &Plane<PixelSample<R>>,
     settings: &Settings,
     exec: &Exec,
 ) -> Vec<Plane<Center<R>>> {
-    let samples = &projected.samples;
     let sizes = crate::frame::pyramid::sizes(samples.width(), samples.height());
     let mut levels = vec![samples.map(Center::new)];
     for level in 0..top(settings, &sizes) {
@@ -50,48 +50,72 @@ pub fn propagate<R: Exact>(
 }
 
 /// Whether a centre of a level that is not the top moves on.
-pub(super) fn moves<R: Exact>(center: &Center<R>, reach: R) -> bool {
-    center.is_valid() && !(center.extent <= reach)
+pub fn moves<R: Real>(center: &Center<R>, reach: R) -> R::Truth {
+    R::Truth::from(center.is_valid()) & decide::moves(center.extent, reach)
 }
 
 /// The next level, from what does not stay within `reach`.
-fn coarser<R: Exact>(fine: &Plane<Center<R>>, reach: R, exec: &Exec) -> Plane<Center<R>> {
+pub(super) fn coarser<R: Exact>(
+    fine: &Plane<Center<R>>,
+    reach: R,
+    exec: &Exec,
+) -> Plane<Center<R>> {
     let (width, height) = (fine.width().div_ceil(2), fine.height().div_ceil(2));
     let mut coarse = Plane::filled(width, height, Center::empty());
     let rows = coarse.rows_mut();
     exec.ordered((0..).zip(rows).collect(), |(y, row): (u32, &mut [Center<R>])| {
         for (x, center) in (0..).zip(row) {
-            let finer = [0, 1, 2, 3].map(|j| {
-                let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
-                let exists = x < fine.width() && y < fine.height();
-                if exists { *fine.at(x, y) } else { Center::empty() }
-            });
+            let finer = four(fine, x, y);
             *center = merged(&finer, finer.map(|center| moves(&center, reach)));
         }
     });
     coarse
 }
 
+/// The four finer cells of a cell.
+pub(super) fn four<R: Exact>(fine: &Plane<Center<R>>, x: u32, y: u32) -> [Center<R>; 4] {
+    [0, 1, 2, 3].map(|j| {
+        let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
+        let exists = x < fine.width() && y < fine.height();
+        if exists { *fine.at(x, y) } else { Center::empty() }
+    })
+}
+
 /// One centre from those that move, see the module page.
 fn merged<R: Exact>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Center<R> {
-    let mut front = Center::empty();
+    let Some(first) = foremost(finer, moving) else { return Center::empty() };
+    let near = near(finer, first);
+    merge(finer, [0, 1, 2, 3].map(|j| moving[j] && near[j]), first)
+}
+
+/// The foremost of the centres that move; ties to the lower index.
+pub(super) fn foremost<R: Exact>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Option<usize> {
+    let (mut depth, mut first) = (R::INFINITY, None);
     for j in 0..4 {
-        if moving[j] && finer[j].depth < front.depth {
-            front = finer[j];
+        if moving[j] && decide::before(finer[j].depth, depth) {
+            (depth, first) = (finer[j].depth, Some(j));
         }
     }
-    if !front.is_valid() {
-        return front;
-    }
-    let near = |c: &Center<R>| c.depth - front.depth <= c.radius + front.radius;
-    let mean = Mean::plain([0, 1, 2, 3].map(|j| moving[j] && near(&finer[j])));
+    first
+}
+
+/// Which of four centres are near enough to be merged with the foremost.
+pub fn near<R: Real>(finer: &[Center<R>; 4], first: usize) -> [R::Truth; 4] {
+    let front = &finer[first];
+    finer.map(|c| decide::meets([c.depth, c.radius], [front.depth, front.radius]))
+}
+
+/// The new centre, if of four centres those in `takes` take part and `first` is the foremost of
+/// them.
+pub fn merge<R: Real>(finer: &[Center<R>; 4], takes: [bool; 4], first: usize) -> Center<R> {
+    let mean = Mean::plain(takes);
     let number = |of: fn(&Center<R>) -> R| mean.of([0, 1, 2, 3].map(|j| of(&finer[j])));
     Center {
-        id: front.id,
+        id: finer[first].id,
         depth: number(|c| c.depth),
         radius: number(|c| c.radius),
         extent: number(|c| c.extent),
-        place: Vector2::new(number(|c| c.place.x), number(|c| c.place.y)),
+        center: Vector2::new(number(|c| c.center.x), number(|c| c.center.y)),
         normal: Vector3::new(
             number(|c| c.normal.x),
             number(|c| c.normal.y),

@@ -1,16 +1,35 @@
-//! Lanes: what is done with one splat at the pixels of one block.
-//!
-//! Lanes are read into local arrays, changed there and written back: the loops over them then
-//! become single vector instructions, of the width of the function that these are inlined into.
+//! The fragments of one splat: what all of its passes do at the pixels of one block.
 
-use super::tile::{LANES, Lanes, Record, SIDE};
+use super::tile::{BlockGrid, Record, SIDE};
 use crate::frame::Rect;
 use crate::number::Real;
+use crate::number::lanes::{LANES, Lanes, each};
 use crate::splat::{Footprint, Shared};
+
+/// Calls `draw` for each block of a tile that a splat may touch: with the place of the block in the
+/// list of the tile, and with q and nearness of the splat at its pixels.
+#[inline(always)]
+pub(in crate::method) fn each_block<const RAY_CAST: bool>(
+    splat: &Record,
+    grid: &BlockGrid,
+    shared: &Shared<f32>,
+    mut draw: impl FnMut(usize, &Lanes, &Lanes),
+) {
+    let (rect, footprint) = (grid.rect, splat.footprint);
+    let blocks = splat.blocks(&rect);
+    for row in blocks.y0..blocks.y1 {
+        let (first, last) = columns::<RAY_CAST>(splat, &blocks, row, &rect, shared.limit);
+        for column in first..last {
+            let (x, y) = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
+            let (q, w) = fragments::<RAY_CAST>(shared, &footprint, x, y);
+            draw((row * grid.columns + column) as usize, &q, &w);
+        }
+    }
+}
 
 /// q and nearness of a splat at the pixels of a block whose first pixel is (x, y).
 #[inline(always)]
-pub(in crate::method) fn fragments<const RAY_CAST: bool>(
+fn fragments<const RAY_CAST: bool>(
     shared: &Shared<f32>,
     footprint: &Footprint<f32>,
     x: u32,
@@ -33,7 +52,7 @@ pub(in crate::method) fn fragments<const RAY_CAST: bool>(
 /// [`SIDE`] pixel rows: in the band, |v| is at least `v`, so |u| is at most sqrt(limit - v v), and
 /// dx lies within that over ux about -(uy/ux) dy. Widened for rounding, as the bounds are.
 #[inline(always)]
-pub(in crate::method) fn columns<const RAY_CAST: bool>(
+fn columns<const RAY_CAST: bool>(
     record: &Record,
     blocks: &Rect,
     row: u32,
@@ -77,19 +96,11 @@ const WIDE: u32 = 6;
 /// others.
 #[inline(always)]
 pub(in crate::method) fn inside(q: &Lanes, w: &Lanes, limit: f32) -> Lanes {
-    let mut inside = [f32::NAN; LANES];
-    for i in 0..LANES {
-        inside[i] = if q[i] <= limit { w[i] } else { inside[i] };
-    }
-    inside
+    each(|i| if q[i] <= limit { w[i] } else { f32::NAN })
 }
 
 /// `sum + weight value` in each lane.
 #[inline(always)]
 pub(in crate::method) fn add(sum: &mut Lanes, weight: &Lanes, value: f32) {
-    let mut lanes = *sum;
-    for i in 0..LANES {
-        lanes[i] += weight[i] * value;
-    }
-    *sum = lanes;
+    *sum = each(|i| sum[i] + weight[i] * value);
 }

@@ -1,0 +1,83 @@
+//! `splatref project`: the visible splats of a scene, as records for a backend to upload.
+
+use super::options::{ExecOptions, SceneOptions};
+use super::{Finding, Outcome, draw, progress, report};
+use splatref::io::provenance;
+use splatref::io::replace::write_atomically;
+use splatref::io::scene_file::{Number, Ready};
+use splatref::splat::record::{SplatRecord, project_records, shared_numbers};
+use splatref::{Error, Result};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+#[command(after_help = "\
+The file has no header: one record of 96 bytes a visible splat, in ascending surfel index, each a few
+little-endian 32-bit floats and integers. The program prints how many there are and where the fields
+lie; the documentation of splatref::splat::record::SplatRecord says what they mean.
+
+Examples:
+  splatref project bunny.ply -o records.bin
+  splatref project sphere --outline raycast --size 640x480 -o records.bin")]
+pub(super) struct Args {
+    /// The scene, as for render
+    scene: PathBuf,
+    /// Where the records go
+    #[arg(short, long, value_name = "FILE.bin")]
+    output: PathBuf,
+    #[command(flatten)]
+    exec: ExecOptions,
+    #[command(flatten)]
+    options: SceneOptions,
+}
+
+pub(super) fn run(args: &Args) -> Finding {
+    let file = args.options.scene_file(&args.scene)?;
+    let exec = args.exec.exec()?;
+    let method = file.method.method()?;
+    check(args, provenance::splats(&method).is_some(), file.output.number)?;
+    let ready = draw::ready(&file, &exec)?;
+    let Ready { loaded, camera, method, .. } = &ready;
+    let Some(splats) = provenance::splats(method) else { return Ok(Outcome::Good) };
+    let surfels = &loaded.scene.surfels;
+    let (records, tally) = progress::during("projecting", || {
+        project_records(surfels, camera, &splats.kernel, splats.cull)
+    });
+    progress::during("writing", || write(&args.output, &records))?;
+
+    report::scene(loaded);
+    report::camera(camera);
+    report::method(method, surfels);
+    report::tally(&tally);
+    report::line("records", format!("{} of {} bytes", records.len(), SplatRecord::SIZE));
+    for (name, offset, kind) in SplatRecord::FIELDS {
+        report::line("", format!("{offset:>2} {name:<9} {kind}"));
+    }
+    let shared = shared_numbers(camera, &splats.kernel);
+    let shared: Vec<String> = shared.iter().map(|(name, v)| format!("{name} = {v:?}")).collect();
+    report::line("all share", shared.join(", "));
+    report::line("file", args.output.display());
+    Ok(Outcome::Good)
+}
+
+/// What is refused before anything is loaded.
+fn check(args: &Args, splats: bool, number: Number) -> Result<()> {
+    if !splats {
+        let what = "this method draws no splats; project them for another one by --method";
+        return Err(Error::Usage(what.into()));
+    }
+    if number != Number::F32 {
+        return Err(Error::Usage("records are f32; give --number f32".into()));
+    }
+    if args.output.extension().is_none_or(|extension| extension != "bin") {
+        let path = args.output.display();
+        return Err(Error::Usage(format!("{path}: records are bytes; give a name in .bin")));
+    }
+    super::render::check_folder(&args.output)
+}
+
+fn write(path: &Path, records: &[SplatRecord]) -> Result<()> {
+    write_atomically(path, |file| {
+        records.iter().try_for_each(|record| file.write_all(&record.to_bytes()))
+    })
+}

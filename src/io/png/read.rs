@@ -1,0 +1,251 @@
+//! PNG files in, and the pictures that they are compared with.
+
+use super::{quantize, straight};
+use crate::frame::Image;
+use crate::frame::image::Values;
+use crate::io::srgb;
+use crate::{Error, Result};
+use image::codecs::png::PngDecoder;
+use image::{ColorType, ImageDecoder, ImageError, Limits};
+use std::fs::File;
+use std::io::{Cursor, Read};
+use std::path::Path;
+
+/// Deflate gives at most 1032 bytes for one.
+const MOST_EXPANSION: u64 = 1032;
+
+/// What a PNG file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stored {
+    /// The channels `R`, `G`, `B` and, if the file has it, `A`: codes divided by the greatest code.
+    pub image: Image,
+    /// The greatest code: 255, or 65,535 of a file of 16 bits a channel.
+    pub most: u16,
+}
+
+/// Reads the PNG file at `path`: its codes as numbers in [0, 1], each `code / most`.
+///
+/// Grey is R = G = B, a palette is looked up, fewer than 8 bits are widened to 8. The codes are
+/// taken as sRGB, whatever the file says of gamma or profile.
+///
+/// # Errors
+/// [`Error::Io`] if the file cannot be read, [`Error::Format`] if it is no PNG, is damaged, or
+/// promises more pixels than its bytes can hold, which is found before these are allocated.
+pub fn read(path: &Path) -> Result<Stored> {
+    let bytes = bytes(path).map_err(|source| Error::io(path, source))?;
+    let length = bytes.len() as u64;
+    // One line, whatever the decoder says.
+    let reason = |error: ImageError| {
+        Error::format(path, format!("{error}; write it again").replace('\n', " "))
+    };
+    let most_bytes = length.saturating_mul(MOST_EXPANSION);
+    let mut limits = Limits::no_limits();
+    // The decoder takes some 100 KB for itself, whatever the file.
+    limits.max_alloc = Some(most_bytes.saturating_add(1 << 20));
+    let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(reason)?;
+    let (width, height) = decoder.dimensions();
+    if decoder.total_bytes() > most_bytes {
+        return Err(Error::format(
+            path,
+            format!(
+                "header: promises {width} x {height} pixels, more than a file of {length} bytes can \
+                 hold; write it again"
+            ),
+        ));
+    }
+    let kind = decoder.color_type();
+    let mut bytes = vec![0; decoder.total_bytes() as usize];
+    decoder.read_image(&mut bytes).map_err(reason)?;
+    Ok(codes(width, height, kind, &bytes))
+}
+
+/// All bytes of a file, as many as it has when it is opened.
+fn bytes(path: &Path) -> std::io::Result<Vec<u8>> {
+    let file = File::open(path)?;
+    let length = file.metadata()?.len();
+    let mut bytes = Vec::new();
+    file.take(length).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The codes of a picture as the decoder gives them: interleaved, of 16 bits in this machine's order.
+fn codes(width: u32, height: u32, kind: ColorType, bytes: &[u8]) -> Stored {
+    let components = usize::from(kind.channel_count());
+    let (codes, most): (Vec<u16>, u16) = if kind.bytes_per_pixel() as usize > components {
+        (bytes.as_chunks().0.iter().map(|&pair| u16::from_ne_bytes(pair)).collect(), u16::MAX)
+    } else {
+        (bytes.iter().map(|&code| u16::from(code)).collect(), 255)
+    };
+    // Where the components of a pixel are: grey, grey and alpha, colour, colour and alpha.
+    let places: &[(&str, usize)] = match components {
+        1 => &[("B", 0), ("G", 0), ("R", 0)],
+        2 => &[("A", 1), ("B", 0), ("G", 0), ("R", 0)],
+        3 => &[("B", 2), ("G", 1), ("R", 0)],
+        _ => &[("A", 3), ("B", 2), ("G", 1), ("R", 0)],
+    };
+    let channels = places.iter().map(|&(name, place)| {
+        let codes = codes.iter().skip(place).step_by(components);
+        let values = codes.map(|&code| f32::from(code) / f32::from(most)).collect();
+        (name.to_owned(), Values::Float(values))
+    });
+    let channels = channels.collect();
+    Stored { image: Image { width, height, channels, text: None }, most }
+}
+
+impl Stored {
+    /// A linear picture as this crate would store it in a PNG of the same kind.
+    ///
+    /// `Decided:` a PNG is compared as it is stored. Its linear counterpart is encoded just as
+    /// [`super::write_frame()`] does, of so many bits: colours are divided by an alpha in (0, 1) if
+    /// the PNG has alpha, encoded as sRGB, clipped and rounded to a code; alpha is rounded to a
+    /// code. So the preview of a picture equals that picture, and one code of 8 bits is a
+    /// difference of 1/255. Only the channels `R`, `G`, `B` and, if the PNG has it, `A` are kept, of
+    /// those that `linear` has as floats.
+    #[must_use]
+    pub fn encode(&self, linear: &Image) -> Image {
+        let floats = |name: &str| match linear.channel(name) {
+            Some(Values::Float(values)) => Some(values),
+            _ => None,
+        };
+        let has_alpha = self.image.channel("A").is_some();
+        let alpha = floats("A").filter(|_| has_alpha);
+        let most = f64::from(self.most);
+        let code = |value: f64| (f64::from(quantize(value, self.most)) / most) as f32;
+        let mut channels = Vec::new();
+        if let Some(alpha) = alpha {
+            let codes = alpha.iter().map(|&a| code(f64::from(a))).collect();
+            channels.push(("A".to_owned(), Values::Float(codes)));
+        }
+        for name in ["B", "G", "R"] {
+            let Some(values) = floats(name) else { continue };
+            let codes = values.iter().enumerate().map(|(i, &value)| {
+                let value = alpha.map_or(value, |alpha| straight(value, alpha[i]));
+                code(srgb::from_linear(f64::from(value)))
+            });
+            channels.push((name.to_owned(), Values::Float(codes.collect())));
+        }
+        Image { width: linear.width, height: linear.height, channels, text: None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Frame, Plane, Samples};
+    use crate::verify::compare::{Criteria, Verdict, compare};
+    use image::{ExtendedColorType, ImageEncoder};
+    use std::fs;
+    use tempfile::TempDir;
+
+    fn png(width: u32, height: u32, kind: ExtendedColorType, bytes: &[u8]) -> Vec<u8> {
+        let mut file = Vec::new();
+        let encoder = image::codecs::png::PngEncoder::new(&mut file);
+        encoder.write_image(bytes, width, height, kind).unwrap();
+        file
+    }
+
+    fn read_bytes(bytes: &[u8]) -> Result<Stored> {
+        let at = TempDir::new().unwrap();
+        let path = at.path().join("a.png");
+        fs::write(&path, bytes).unwrap();
+        read(&path)
+    }
+
+    fn floats(image: &Image, name: &str) -> Vec<f32> {
+        let Some(Values::Float(values)) = image.channel(name) else { panic!("no {name}") };
+        values.clone()
+    }
+
+    #[test]
+    fn codes_become_parts_of_the_greatest() {
+        let found = read_bytes(&png(2, 1, ExtendedColorType::Rgb8, &[0, 51, 255, 1, 2, 3]));
+        let found = found.unwrap();
+        assert_eq!((found.image.width, found.image.height, found.most), (2, 1, 255));
+        assert_eq!(floats(&found.image, "R"), [0.0, 1.0 / 255.0]);
+        assert_eq!(floats(&found.image, "G"), [0.2, 2.0 / 255.0]);
+        assert_eq!(floats(&found.image, "B"), [1.0, 3.0 / 255.0]);
+        assert!(found.image.channel("A").is_none());
+
+        let grey = read_bytes(&png(1, 2, ExtendedColorType::La8, &[51, 255, 102, 0])).unwrap();
+        for name in ["R", "G", "B"] {
+            assert_eq!(floats(&grey.image, name), [0.2, 0.4], "{name}");
+        }
+        assert_eq!(floats(&grey.image, "A"), [1.0, 0.0]);
+
+        let deep: Vec<u8> = [0_u16, 13_107, 65_535].map(u16::to_ne_bytes).concat();
+        let deep = read_bytes(&png(3, 1, ExtendedColorType::L16, &deep)).unwrap();
+        assert_eq!((floats(&deep.image, "G"), deep.most), (vec![0.0, 0.2, 1.0], 65_535));
+    }
+
+    /// The preview of a picture is, as a PNG, equal to that picture, alpha included.
+    #[test]
+    fn a_preview_equals_its_picture() {
+        let at = TempDir::new().unwrap();
+        let path = at.path().join("a.png");
+        let (width, height) = (64, 40);
+        let count = width * height;
+        let unit = |seed, i| crate::number::random::unit(seed, u64::from(i));
+        let colors = (0..count).map(|i| [1, 2, 3].map(|seed| 1.5 * unit(seed, i) - 0.25)).collect();
+        let alphas = (0..count).map(|i| [0.0, 1.0, unit(4, i)][i as usize % 3]).collect();
+        let color = Samples::Color(Plane::from_values(width, height, colors));
+        let alpha = Samples::Scalar(Plane::from_values(width, height, alphas));
+        let depth = Samples::Scalar(Plane::filled(width, height, 1.0));
+        let mut frame = Frame::new(width, height).with("", color).unwrap();
+        for more in [None, Some(("A", alpha)), Some(("Z", depth))] {
+            more.into_iter().for_each(|(name, samples)| frame.push(name, samples).unwrap());
+            super::super::write_frame(&path, &frame).unwrap();
+            let stored = read(&path).unwrap();
+            let encoded = stored.encode(&Image::from(&frame));
+            let found = compare(&encoded, &stored.image, &Criteria::default()).unwrap();
+            assert_eq!(found.verdict(), Verdict::Equal, "{:?}", found.lines());
+            assert_eq!(found.channels.len(), 3 + usize::from(frame.planes.len() > 1));
+        }
+    }
+
+    #[test]
+    fn sixteen_bits_are_encoded_as_sixteen() {
+        let deep = png(1, 1, ExtendedColorType::Rgb16, &[0; 6]);
+        let linear = Image {
+            width: 1,
+            height: 1,
+            channels: ["B", "G", "R"].map(|c| (c.into(), Values::Float(vec![0.18]))).to_vec(),
+            text: None,
+        };
+        let encoded = read_bytes(&deep).unwrap().encode(&linear);
+        let code = (srgb::from_linear(f64::from(0.18_f32)) * 65_535.0).round();
+        assert_eq!(floats(&encoded, "R"), [(code / 65_535.0) as f32]);
+    }
+
+    #[test]
+    fn what_is_no_png_is_refused_in_one_line() {
+        let good = png(64, 64, ExtendedColorType::Rgb8, &[7; 64 * 64 * 3]);
+        let mut huge = good.clone();
+        // Width and height of IHDR, and the checksum over type and data.
+        huge[16..24].copy_from_slice(&[0, 0, 0xFF, 0xFF, 0, 0, 0xFF, 0xFF]);
+        let crc = crc32(&huge[12..29]);
+        huge[29..33].copy_from_slice(&crc.to_be_bytes());
+        let mut damaged = good.clone();
+        let middle = damaged.len() / 2;
+        damaged[middle] ^= 0xFF;
+        for (bytes, why) in [
+            (b"".to_vec(), "write it again"),
+            (b"\x76\x2f\x31\x01 an EXR".to_vec(), "write it again"),
+            (good[..good.len() - 20].to_vec(), "write it again"),
+            (damaged, "write it again"),
+            (huge, "promises 65535 x 65535 pixels, more than a file of"),
+        ] {
+            let line = read_bytes(&bytes).unwrap_err().to_string();
+            assert!(line.contains("a.png: ") && line.contains(why), "{line}");
+            assert_eq!(line.lines().count(), 1, "{line}");
+        }
+        assert!(matches!(read(Path::new("no such.png")), Err(Error::Io { .. })));
+    }
+
+    fn crc32(bytes: &[u8]) -> u32 {
+        !bytes.iter().fold(!0, |crc: u32, byte| {
+            (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
+                (crc >> 1) ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 }
+            })
+        })
+    }
+}

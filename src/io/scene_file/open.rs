@@ -1,0 +1,101 @@
+//! From the name of a scene to what the scene says.
+
+use super::{DEFAULT_COUNT, SceneFile, Source};
+use crate::error::{Error, Result};
+use crate::source::{Shape, plant};
+use std::path::Path;
+
+/// What the tree of [`crate::source::plant`] is called.
+pub const TREE: &str = "tree";
+
+/// The names of all that can be made without a file: [`Shape::ALL`] and [`TREE`].
+#[must_use]
+pub fn shapes() -> String {
+    let names: Vec<&str> = Shape::ALL.iter().map(Shape::name).chain([TREE]).collect();
+    names.join(", ")
+}
+
+/// What a file is, by its extension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileKind {
+    /// A point cloud or a mesh.
+    Ply,
+    /// A scene file.
+    Toml,
+    /// A picture.
+    Exr,
+}
+
+impl FileKind {
+    /// What the file at `path` is.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if the extension is none that is known.
+    pub fn of(path: &Path) -> Result<Self> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+        match extension.as_deref() {
+            Some("ply") => Ok(Self::Ply),
+            Some("toml") => Ok(Self::Toml),
+            Some("exr") => Ok(Self::Exr),
+            _ => Err(Error::Usage(format!(
+                "{}: no known kind of file; give a .ply, a scene .toml, an .exr, or a shape: {}",
+                path.display(),
+                shapes()
+            ))),
+        }
+    }
+}
+
+impl Source {
+    /// The procedural source of a name: a shape of about [`DEFAULT_COUNT`] surfels, or [`TREE`].
+    #[must_use]
+    pub fn procedural(name: &str) -> Option<Self> {
+        if name == TREE {
+            return Some(Self::Tree { leaves: plant::LEAVES, seed: 0 });
+        }
+        Shape::by_name(name).map(|shape| Self::Shape { shape, count: DEFAULT_COUNT, seed: 0 })
+    }
+}
+
+impl SceneFile {
+    /// The scene that a name stands for: a shape, `tree`, a .ply or a scene .toml. From a name to
+    /// a picture in memory:
+    ///
+    /// ```
+    /// use splatref::frame::{Exec, Samples};
+    /// use splatref::io::scene_file::SceneFile;
+    ///
+    /// let exec = Exec::new(0, 32)?;
+    /// let mut file = SceneFile::open("torus")?; // or "bunny.ply", or "scene.toml"
+    /// file.camera.size = Some([64, 48]);
+    /// # file.models[0].source = splatref::io::scene_file::Source::Shape {
+    /// #     shape: splatref::source::Shape::Torus, count: 2000, seed: 0 };
+    /// let ready = file.ready(&exec, &|_, _, _| ())?;
+    /// let (mut session, _) = ready.session(&exec, &|_, _, _| ())?;
+    /// let picture = session.render(&ready.camera)?;
+    ///
+    /// let Some(Samples::Scalar(depth)) = picture.frame.plane("Z") else { unreachable!() };
+    /// assert!(depth.values().iter().any(|depth| depth.is_finite()), "the torus is in sight");
+    /// # Ok::<(), splatref::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if the name is neither a shape nor that of a scene; else as
+    /// [`SceneFile::read`]. A .ply is not read yet.
+    pub fn open(name: impl AsRef<Path>) -> Result<Self> {
+        let path = name.as_ref();
+        if let Some(source) = path.to_str().and_then(Source::procedural) {
+            return Ok(Self::of_model(source));
+        }
+        match FileKind::of(path)? {
+            FileKind::Ply => {
+                Ok(Self::of_model(Source::File { path: path.to_owned(), radius: None }))
+            }
+            FileKind::Toml => Self::read(path),
+            FileKind::Exr => Err(Error::Usage(format!(
+                "{}: an EXR is a picture, not a scene; `splatref info` describes it",
+                path.display()
+            ))),
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! The record of a level.
+
+use crate::composite::mean::Mean;
+use crate::method::projection::{PixelSample, SampleKind};
+use crate::number::{Exact, Real, Vector2, Vector3};
+use crate::splat::Ellipse;
+
+/// A pixel of a level; view space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell<R> {
+    /// What it is.
+    pub kind: SampleKind,
+    /// Where its interval of depth begins; world units.
+    pub front: R,
+    /// Where it ends.
+    pub back: R,
+    /// Radius of its ellipse in pixels of level 0.
+    pub extent: R,
+    /// From the centre of the cell to that of the ellipse, in pixels of level 0, x right, y down.
+    pub displacement: Vector2<R>,
+    /// Normal, of any length.
+    pub normal: Vector3<R>,
+    /// Tangent of a tube, of any length; else the null vector.
+    pub tangent: Vector3<R>,
+    /// Linear RGB.
+    pub color: [R; 3],
+}
+
+impl<R> Cell<R> {
+    /// Each number in another arithmetic.
+    #[must_use]
+    pub fn map<S>(self, f: impl Fn(R) -> S) -> Cell<S> {
+        Cell {
+            kind: self.kind,
+            front: f(self.front),
+            back: f(self.back),
+            extent: f(self.extent),
+            displacement: self.displacement.map(&f),
+            normal: self.normal.map(&f),
+            tangent: self.tangent.map(&f),
+            color: self.color.map(&f),
+        }
+    }
+}
+
+impl<R: Real> Cell<R> {
+    /// Nothing: kind [`SampleKind::Empty`], front +inf, back -inf, all else 0.
+    #[must_use]
+    pub fn empty() -> Self {
+        let none = Vector3::ZERO;
+        Self {
+            kind: SampleKind::Empty,
+            front: R::INFINITY,
+            back: -R::INFINITY,
+            extent: R::ZERO,
+            displacement: Vector2::new(R::ZERO, R::ZERO),
+            normal: none,
+            tangent: none,
+            color: [R::ZERO; 3],
+        }
+    }
+
+    /// A cell of level 0.
+    #[must_use]
+    pub fn new(sample: &PixelSample<R>) -> Self {
+        if sample.kind == SampleKind::Empty {
+            return Self::empty();
+        }
+        Self {
+            kind: sample.kind,
+            front: sample.depth,
+            back: sample.depth + sample.radius,
+            extent: sample.extent,
+            displacement: Vector2::new(R::ZERO, R::ZERO),
+            normal: sample.normal,
+            tangent: sample.tangent,
+            color: sample.color,
+        }
+    }
+
+    /// Whether there is something.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        self.kind != SampleKind::Empty
+    }
+
+    /// Which of four cells are valid and hold the centre of a new cell, whose offsets from that
+    /// centre are given.
+    pub fn inside(cells: &[Self; 4], offsets: &[Vector2<R>; 4]) -> [R::Truth; 4] {
+        [0, 1, 2, 3].map(|j| {
+            let ellipse = Ellipse::new(cells[j].normal, cells[j].extent);
+            let holds = ellipse.holds(ellipse.form(offsets[j].x, offsets[j].y));
+            holds & R::Truth::from(cells[j].is_valid())
+        })
+    }
+
+    /// The average of the attributes; `displacements` are those from the new cell's centre.
+    pub(super) fn average(
+        cells: &[Self; 4],
+        displacements: [Vector2<R>; 4],
+        mean: &Mean<R>,
+        kind: SampleKind,
+    ) -> Self {
+        let vector = |of: fn(&Self) -> Vector3<R>| {
+            let v = [0, 1, 2, 3].map(|j| of(&cells[j]));
+            Vector3::new(mean.of(v.map(|v| v.x)), mean.of(v.map(|v| v.y)), mean.of(v.map(|v| v.z)))
+        };
+        Self {
+            kind,
+            front: mean.of(cells.map(|cell| cell.front)),
+            back: mean.of(cells.map(|cell| cell.back)),
+            extent: mean.of(cells.map(|cell| cell.extent)),
+            displacement: Vector2::new(
+                mean.of(displacements.map(|d| d.x)),
+                mean.of(displacements.map(|d| d.y)),
+            ),
+            normal: vector(|cell| cell.normal),
+            tangent: vector(|cell| cell.tangent),
+            color: [0, 1, 2].map(|c| mean.of(cells.map(|cell| cell.color[c]))),
+        }
+    }
+}
+
+impl<R: Exact> Cell<R> {
+    /// Of four cells those that take part, and which one is foremost.
+    ///
+    /// Candidates are those that are [inside](Cell::inside), see
+    /// [`crate::composite::mean::foremost`]; those that are not tubes if the foremost is one, or
+    /// tubes if it is none, take no part.
+    pub(super) fn foremost(cells: &[Self; 4], inside: [bool; 4]) -> ([bool; 4], usize) {
+        let (fronts, backs) = (cells.map(|cell| cell.front), cells.map(|cell| cell.back));
+        let (takes, first) = crate::composite::mean::foremost(inside, fronts, backs);
+        let tube = |j: usize| cells[j].kind == SampleKind::Tube;
+        ([0, 1, 2, 3].map(|j| takes[j] & (tube(j) == tube(first))), first)
+    }
+}

@@ -1,0 +1,71 @@
+//! What the picture is shaded from: the planes that the definition and the fast path both leave.
+
+use super::Cell;
+use crate::frame::{Plane, Pool};
+use crate::method::algorithm::Job;
+use crate::method::picture::before_environment;
+use crate::method::projection::{Has, world};
+use crate::number::Exact;
+use crate::scene::{Camera, Scene};
+use crate::shade::phong::Shader;
+use crate::splat::View;
+
+/// What is seen, pixel by pixel; vectors in world space.
+pub(super) struct GBuffer<R> {
+    /// See [`crate::method::projection::SampleKind`].
+    pub(super) kind: Plane<u8>,
+    /// 1 where something is seen, else 0.
+    pub(super) alpha: Plane<R>,
+    /// Depth t; +inf where nothing is seen.
+    pub(super) depth: Plane<R>,
+    /// Unit normals, if there is light or they were asked for.
+    pub(super) normal: Option<Plane<[R; 3]>>,
+    /// Unit tangents of tubes, the null vector elsewhere; if the scene has tubes.
+    pub(super) tangent: Option<Plane<[R; 3]>>,
+    /// Colours, if `colored`; else anything.
+    pub(super) color: Plane<[R; 3]>,
+    /// Whether the scene has colours.
+    pub(super) colored: bool,
+}
+
+impl GBuffer<f32> {
+    /// What a scene needs, in memory that is used again: the values are any.
+    pub(super) fn new(scene: &Scene, camera: &Camera, pool: &mut Pool) -> Self {
+        let (size, has) = ([camera.width, camera.height], Has::of(scene));
+        Self {
+            kind: pool.count(size),
+            alpha: pool.scalar(size),
+            depth: pool.scalar(size),
+            normal: (!scene.lights.is_empty()).then(|| pool.triple(size)),
+            tangent: has.tangent.then(|| pool.triple(size)),
+            color: pool.triple(size),
+            colored: has.color,
+        }
+    }
+}
+
+impl<R: Exact> GBuffer<R> {
+    /// Level 0 as the push phase left it.
+    pub(super) fn of(cells: &Plane<Cell<R>>, camera: &Camera, has: Has, normals: bool) -> Self {
+        let view = View::new(camera);
+        Self {
+            kind: cells.map(|cell| cell.kind as u8),
+            alpha: cells.map(|cell| if cell.is_valid() { R::ONE } else { R::ZERO }),
+            depth: cells.map(|cell| cell.front),
+            normal: normals.then(|| cells.map(|cell| world(&view, cell.normal))),
+            tangent: has.tangent.then(|| cells.map(|cell| world(&view, cell.tangent))),
+            color: cells.map(|cell| cell.color),
+            colored: has.color,
+        }
+    }
+
+    /// The same with the shaded colours, before the environment of the scene, if it has one.
+    pub(super) fn shaded(mut self, job: &Job<'_>) -> Self {
+        let Job { scene, camera, exec, .. } = *job;
+        let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
+        let (normal, tangent) = (self.normal.as_ref(), self.tangent.as_ref());
+        shader.shade_over(&self.depth, normal, tangent, (&mut self.color, self.colored), exec);
+        let (color, alpha) = before_environment(scene, camera, self.color, self.alpha, exec);
+        Self { color, alpha, ..self }
+    }
+}

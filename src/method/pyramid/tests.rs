@@ -1,0 +1,1 @@
+//! Stages, planes and explanations of the pyramid.

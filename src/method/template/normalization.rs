@@ -1,0 +1,41 @@
+//! Normalization \[MOC08, section 3.2\]: sums divided by the sum of weights.
+
+use super::reconstruction::Gathered;
+use crate::composite::sum;
+use crate::frame::{Framebuffer, Plane};
+use crate::method::projection::{Has, world};
+use crate::number::{Exact, Vector3};
+use crate::scene::Camera;
+use crate::splat::View;
+
+/// What the picture is shaded from; with the normals if they are wanted.
+pub(super) fn normalize<R: Exact>(
+    gathered: &Plane<Gathered<R>>,
+    camera: &Camera,
+    has: Has,
+    normals: bool,
+) -> Framebuffer<R> {
+    let view = View::new(camera);
+    Framebuffer {
+        width: camera.width,
+        height: camera.height,
+        depth: gathered.map(depth),
+        id: gathered.map(|pixel| pixel.id),
+        weight: gathered.map(|pixel| pixel.weight),
+        normal: normals.then(|| gathered.map(|pixel| normal(&view, pixel))),
+        color: has.color.then(|| gathered.map(|pixel| sum::average(pixel.colors, pixel.weight))),
+        stencil: None,
+        margin: None,
+    }
+}
+
+/// The average depth; +inf where nothing was gathered.
+fn depth<R: Exact>(pixel: &Gathered<R>) -> R {
+    if pixel.weight > R::ZERO { pixel.depths / pixel.weight } else { R::INFINITY }
+}
+
+/// The direction of the average normal, world space.
+fn normal<R: Exact>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
+    let [x, y, z] = sum::average(pixel.normals, pixel.weight);
+    world(view, Vector3::new(x, y, z))
+}

@@ -1,0 +1,98 @@
+//! Laws of alpha-blending from back to front \[ZP06, section 3.3\]: what is there, the opacity and
+//! the colour of the next nearer layer, to what is there then.
+
+use super::inputs::{CASES, Inputs};
+use super::{Lawful, law, same, unit};
+use crate::composite::over::Blend;
+use crate::number::Exact;
+
+/// Tries the laws of [`closed_form`], [`ends`] and [`wall`] at up to 24 layers.
+///
+/// # Errors
+/// The first counterexample.
+pub fn over<R: Exact>(over: &impl Fn(Blend<R>, R, [R; 3]) -> Blend<R>) -> Lawful {
+    let mut inputs = Inputs::new(3);
+    closed_form(over, &[])?;
+    for _ in 0..CASES {
+        let (layers, nearer) = (inputs.layers(24), inputs.layers(8));
+        let color = inputs.color();
+        closed_form(over, &layers)?;
+        ends(over, &layers, color)?;
+        wall(over, &layers, color, &nearer)?;
+    }
+    Ok(())
+}
+
+/// Layers from back to front over nothing.
+fn blend<R: Exact>(
+    over: &impl Fn(Blend<R>, R, [R; 3]) -> Blend<R>,
+    layers: &[(R, [R; 3])],
+) -> Blend<R> {
+    layers.iter().fold(Blend::CLEAR, |below, (alpha, color)| over(below, *alpha, *color))
+}
+
+fn equal<R: Exact>(a: &Blend<R>, b: &Blend<R>) -> bool {
+    same(a.color, b.color) && same([a.alpha], [b.alpha])
+}
+
+/// Of layers from back to front, opacities in \[0, 1\] and finite colours >= 0: the opacity is 1 -
+/// the product of all 1 - alpha, and in \[0, 1\]; the colour is the sum of alpha c times the product
+/// of the 1 - alpha of the nearer ones; both up to 4 (m + 1) half ulp of the greatest colour, at
+/// least 1, for m layers.
+///
+/// # Errors
+/// The first counterexample.
+pub fn closed_form<R: Exact>(
+    over: &impl Fn(Blend<R>, R, [R; 3]) -> Blend<R>,
+    layers: &[(R, [R; 3])],
+) -> Lawful {
+    let found = blend(over, layers);
+    let (mut through, mut color, mut largest) = (1.0_f64, [0.0_f64; 3], 1.0_f64);
+    for (alpha, value) in layers.iter().rev() {
+        for (sum, c) in color.iter_mut().zip(value.map(R::to_f64)) {
+            *sum += through * alpha.to_f64() * c;
+            largest = if c > largest { c } else { largest };
+        }
+        through *= 1.0 - alpha.to_f64();
+    }
+    let bound = 4.0 * (layers.len() as f64 + 1.0) * unit::<R>() * largest;
+    let near = |found: R, expected: f64| (found.to_f64() - expected).abs() <= bound;
+    let holds = near(found.alpha, 1.0 - through)
+        && (R::ZERO <= found.alpha && found.alpha <= R::ONE)
+        && (0..3).all(|i| near(found.color[i], color[i]));
+    let expected = Blend { color, alpha: 1.0 - through };
+    law("blending is its closed form, up to rounding", holds, &layers, &expected, &found)
+}
+
+/// An opaque layer leaves itself alone, and a clear layer leaves what was, to the bit.
+///
+/// # Errors
+/// The first counterexample.
+pub fn ends<R: Exact>(
+    over: &impl Fn(Blend<R>, R, [R; 3]) -> Blend<R>,
+    layers: &[(R, [R; 3])],
+    color: [R; 3],
+) -> Lawful {
+    let below = blend(over, layers);
+    let inputs = format_args!("the colour {color:?} over {below:?}");
+    let (alone, found) = (Blend { color, alpha: R::ONE }, over(below, R::ONE, color));
+    law("an opaque layer hides what is below", equal(&found, &alone), &inputs, &alone, &found)?;
+    let found = over(below, R::ZERO, color);
+    law("a clear layer changes nothing", equal(&found, &below), &inputs, &below, &found)
+}
+
+/// What lies behind an opaque layer changes no bit, whatever is in front of that layer.
+///
+/// # Errors
+/// The first counterexample.
+pub fn wall<R: Exact>(
+    over: &impl Fn(Blend<R>, R, [R; 3]) -> Blend<R>,
+    behind: &[(R, [R; 3])],
+    color: [R; 3],
+    before: &[(R, [R; 3])],
+) -> Lawful {
+    let from_wall = [&[(R::ONE, color)], before].concat();
+    let whole = [behind, &from_wall].concat();
+    let (alone, found) = (blend(over, &from_wall), blend(over, &whole));
+    law("nothing shines through an opaque layer", equal(&found, &alone), &whole, &alone, &found)
+}

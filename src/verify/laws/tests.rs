@@ -1,0 +1,232 @@
+//! The crate's operators keep every law, and every law catches an operator that breaks it.
+
+use super::*;
+use crate::composite::bins::{DepthBins, Range};
+use crate::composite::groups::{Sample, compose};
+use crate::composite::mean::Mean;
+use crate::composite::over::Blend;
+use crate::composite::sum;
+use crate::composite::under::Under;
+use crate::number::Real;
+
+/// The operator broke this law, and the line has all that a person needs.
+fn breaks(found: Lawful, law: &str) {
+    let counterexample = found.expect_err(law);
+    assert!(counterexample.law.contains(law), "{counterexample}");
+    let line = counterexample.to_string();
+    for part in [": of ", ": expected ", ", found "] {
+        assert!(line.contains(part) && !line.contains('\n'), "{line}");
+    }
+}
+
+fn keeps_every_law<R: Exact>() {
+    let all = [
+        epsilon(&|t: R, nearest, epsilon| t <= nearest + epsilon),
+        sums::<R>(&sum::add, &sum::average),
+        over(&|below: Blend<R>, alpha, color| below.over(alpha, color)),
+        under(&|above: Under<R>, alpha, color| above.under(alpha, color)),
+        bins(&|range, t: R| DepthBins::new(range).bin(t), &|range, t, ratio| {
+            DepthBins::new(range).voronoi(t, ratio)
+        }),
+        groups::<R>(&compose),
+        means(&|takes, weights, a: [R; 4]| Mean::new(takes, weights).of(a)),
+    ];
+    for found in all {
+        assert_eq!(found, Ok(()), "{}", found.clone().unwrap_err());
+    }
+}
+
+#[test]
+fn the_operators_of_the_crate_keep_every_law() {
+    keeps_every_law::<f32>();
+    keeps_every_law::<f64>();
+}
+
+#[test]
+fn a_broken_epsilon_test_is_caught() {
+    let of = |op: fn(f32, f32, f32) -> bool| epsilon(&op);
+    breaks(of(|t, nearest, epsilon| t < nearest + epsilon), "the nearest fragment is visible");
+    breaks(of(|t, nearest, e| t <= nearest + if e < 1e9 { e } else { 1e9 }), "infinite epsilon");
+    breaks(of(|t, nearest, e| t <= nearest + e + 1e-6), "epsilon = 0 keeps");
+    breaks(
+        of(|t, nearest, e| e != 5.0 && t <= nearest + e && !(e > 3.0 && e < 1e9 && t > nearest)),
+        "a greater epsilon keeps",
+    );
+    breaks(of(|t, nearest, e| t >= nearest && t <= nearest + e || e > 1e9), "what is nearer");
+    breaks(of(|t, nearest, e| t <= nearest + 2.0 * e), "the limit is nearest + epsilon");
+    breaks(of(|t, nearest, e| t - nearest <= e), "the limit is nearest + epsilon");
+}
+
+#[test]
+fn broken_sums_are_caught() {
+    type Average = fn([f32; 3], f32) -> [f32; 3];
+    let of = |average: Average| sums(&sum::add, &average);
+    let unweighted = |sum, _, value| sum::plus(sum, value);
+    breaks(sums::<f32>(&unweighted, &sum::average), "the average of a constant is");
+    breaks(sums::<f32>(&|_, w, v| v.map(|v| w * v), &sum::average), "the average of a constant is");
+    breaks(
+        of(|s, w| s.map(|s| if w > 0.0 { s * (1.0 / w) } else { 0.0 })),
+        "the average of 1 is 1",
+    );
+    breaks(of(|s, w| s.map(|s| s / w + 0.0)), "without weight");
+    breaks(of(|s, w| s.map(|s| if w > 0.0 { s / w } else { 0.0 })), "the average of -0");
+    // What keeps the quotient finite, where the weights are not tiny.
+    let biased = |s: [f32; 3], w: f32| match w {
+        ..1e-3 => sum::average(s, w),
+        _ => s.map(|s| s / (w + 1e-9)),
+    };
+    let (weights, value) = ([0.004; 2], [0.5, 2.0, 1.0]);
+    assert_eq!(sums::constant(&sum::add, &sum::average, &weights, value), Ok(()));
+    breaks(sums::constant(&sum::add, &biased, &weights, value), "1024 times");
+}
+
+#[test]
+fn broken_blending_is_caught() {
+    let of = |op: fn(Blend<f32>, f32, [f32; 3]) -> Blend<f32>| over(&op);
+    breaks(
+        of(|below, alpha, color| Blend { alpha: below.alpha + alpha, ..below.over(alpha, color) }),
+        "blending is its closed form",
+    );
+    breaks(
+        of(|below, a, color| {
+            let through = below.color.map(|c| (1.0 - a) * c);
+            Blend { color: sum::plus(color, through), ..below.over(a, color) }
+        }),
+        "blending is its closed form",
+    );
+    // A sum that is right but for its last digits.
+    breaks(
+        of(|below, a, color| {
+            let plus = |c: f32, below: f32| below + a * (c - below);
+            let [r, g, b] = [0, 1, 2].map(|i| plus(color[i], below.color[i]));
+            Blend { color: [r, g, b], ..below.over(a, color) }
+        }),
+        "an opaque layer hides",
+    );
+    let layers = [(0.5, [1.0; 3])];
+    let faint = |below: Blend<f32>, a: f32, color| Blend {
+        alpha: if a > 0.0 { below.over(a, color).alpha } else { below.alpha + 1e-9 },
+        ..below.over(a, color)
+    };
+    breaks(over::ends(&faint, &[], [1.0; 3]), "a clear layer changes nothing");
+    let shines = |below: Blend<f32>, a: f32, color: [f32; 3]| {
+        let trace = if a == 1.0 { below.alpha * 1e-3 } else { 0.0 };
+        Blend { color: color.map(|c| c + trace), ..below.over(a, color) }
+    };
+    breaks(over::wall(&shines, &layers, [1.0; 3], &[]), "nothing shines through");
+
+    let of = |op: fn(Under<f32>, f32, [f32; 3]) -> Under<f32>| under(&op);
+    breaks(
+        of(|above, alpha, color| Under { alpha: above.alpha + alpha, ..above.under(alpha, color) }),
+        "opacity and rest are their closed form",
+    );
+    breaks(
+        of(|above, a, color| {
+            let color = sum::add(above.color, a, color);
+            Under { color, ..above.under(a, [0.0; 3]) }
+        }),
+        "the colour is its closed form",
+    );
+    breaks(
+        of(|above, a, color| {
+            let color = sum::add(above.color, above.through * a, color);
+            Under { color, ..above.under(a, [0.0; 3]) }
+        }),
+        "a clear layer changes nothing",
+    );
+    breaks(
+        of(|above, a, color| {
+            let next = above.under(a, color);
+            Under { through: if a == 1.0 { 1e-9 } else { next.through }, ..next }
+        }),
+        "an opaque layer hides",
+    );
+}
+
+#[test]
+fn broken_bins_are_caught() {
+    type Bin = fn(&Range, f32) -> f32;
+    type Voronoi = fn(&Range, f32, f32) -> f32;
+    let bin: Bin = |range, t| DepthBins::new(range).bin(t);
+    let voronoi: Voronoi = |range, t, ratio| DepthBins::new(range).voronoi(t, ratio);
+    let position = |range: &Range, t: f32| {
+        (t - range.nearest) / (range.farthest - range.nearest) * range.count as f32
+    };
+    let of = |bin: Bin, voronoi: Voronoi| bins(&bin, &voronoi);
+    let unbounded = |range: &Range, t: f32| position(range, t).floor();
+    breaks(bins(&unbounded, &voronoi), "a bin is an integer in [0, n]");
+    let last = |range: &Range, t: f32| bin(range, t).at_most(range.count as f32 - 1.0);
+    breaks(bins(&last, &voronoi), "the ends are in the first and the last bin");
+    let rounded = |range: &Range, t: f32| {
+        bin(range, t + 0.5 * (range.farthest - range.nearest) / range.count as f32)
+    };
+    breaks(bins(&rounded, &voronoi), "the ends are in the first");
+    let reciprocal = |range: &Range, t: f32| {
+        let Range { nearest, farthest, count } = *range;
+        let part = (1.0 / nearest - 1.0 / t) / (1.0 / nearest - 1.0 / farthest);
+        let inside = nearest < t && t < farthest;
+        if inside { (part * count as f32).floor() } else { bin(range, t) }
+    };
+    breaks(bins(&reciprocal, &voronoi), "a depth is in the bin of its position");
+    breaks(of(bin, |range, t, ratio| DepthBins::new(range).bin(t) + ratio), "lies in its bin");
+    breaks(
+        of(bin, |range, t, r| DepthBins::new(range).bin(t) + (1.0 - r).at_most(0.5).at_least(0.0)),
+        "it never falls as the ratio grows",
+    );
+}
+
+#[test]
+fn a_broken_operator_over_groups_is_caught() {
+    let of = |op: fn(&[Sample<f32>], f32) -> (Sample<f32>, u32)| groups(&op);
+    let in_order = "in order";
+    // Folding over pairs, as images come.
+    breaks(
+        of(|samples, epsilon| {
+            samples.iter().fold((Sample::EMPTY, 0), |(sums, count), s| {
+                let (pair, more) = compose(&[sums, *s], epsilon);
+                (pair, if more == 2 { count + 1 } else { 1 })
+            })
+        }),
+        in_order,
+    );
+    breaks(
+        of(|samples, epsilon| {
+            let reversed: Vec<_> = samples.iter().rev().copied().collect();
+            compose(&reversed, epsilon)
+        }),
+        in_order,
+    );
+    breaks(of(|samples, epsilon| compose(samples, epsilon / 2.0)), in_order);
+    breaks(of(|samples, epsilon| (compose(samples, epsilon).0, samples.len() as u32)), in_order);
+    // Each of the other laws by itself.
+    let two = [1.0, 2.0].map(|t| Sample::new(t, t, [0.0; 3], [0.5; 3], 1.0));
+    let counts = |samples: &[Sample<f32>], e: f32| (compose(samples, e).0, samples.len() as u32);
+    breaks(groups::empty(&counts, &two, 1, 9.0), "an empty image is neutral");
+    breaks(groups::apart(&counts, &two, 0, 9.0), "an image of its own");
+    let first = |samples: &[Sample<f32>], e: f32| compose(&samples[..1], e);
+    breaks(groups::order(&first, &two, &[1, 0], 9.0), "in any order");
+}
+
+#[test]
+fn a_broken_mean_is_caught() {
+    type Operator = fn([bool; 4], [f32; 4], [f32; 4]) -> f32;
+    let of = |op: Operator| means(&op);
+    let sums = |takes: [bool; 4], w: [f32; 4], a: [f32; 4]| {
+        let taken = (0..4).filter(|&j| takes[j]);
+        taken.fold((0.0, 0.0), |(sum, total), j| (sum + w[j] * a[j], total + w[j]))
+    };
+    let unbounded = |takes, w, a| {
+        let (sum, total) = sums(takes, w, a);
+        sum / total
+    };
+    breaks(means(&unbounded), "the average of a constant is the constant");
+    let absent: Operator = |_, w, a| Mean::new([true; 4], w).of(a);
+    breaks(of(absent), "an average");
+    breaks(of(|takes, _, a| Mean::plain(takes).of(a)), "an average is the quotient");
+    let sided = |takes: [bool; 4], w: [f32; 4], a: [f32; 4]| {
+        let (sum, total) = sums(takes, w, a);
+        let mean = Mean::new(takes, w);
+        (sum / total).at_least(mean.least(a)).at_most(mean.greatest(a))
+    };
+    breaks(means(&sided), "exchanging sides");
+}

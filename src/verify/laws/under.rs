@@ -1,0 +1,100 @@
+//! Laws of alpha-blending from front to back: what is there, the opacity and the colour of the next
+//! farther layer, to what is there then.
+
+use super::inputs::{CASES, Inputs};
+use super::{Lawful, law, same, unit};
+use crate::composite::under::Under;
+use crate::number::Exact;
+
+/// Tries the laws of [`closed_form`] and [`ends`] at up to 24 layers.
+///
+/// # Errors
+/// The first counterexample.
+pub fn under<R: Exact>(under: &impl Fn(Under<R>, R, [R; 3]) -> Under<R>) -> Lawful {
+    let mut inputs = Inputs::new(4);
+    closed_form(under, &[])?;
+    for _ in 0..CASES {
+        let layers = inputs.layers(24);
+        closed_form(under, &layers)?;
+        ends(under, &layers, inputs.color())?;
+    }
+    Ok(())
+}
+
+/// Layers from front to back under nothing.
+fn blend<R: Exact>(
+    under: &impl Fn(Under<R>, R, [R; 3]) -> Under<R>,
+    layers: &[(R, [R; 3])],
+) -> Under<R> {
+    layers.iter().fold(Under::CLEAR, |above, (alpha, color)| under(above, *alpha, *color))
+}
+
+fn equal<R: Exact>(a: &Under<R>, b: &Under<R>) -> bool {
+    same(a.color, b.color) && same([a.alpha, a.through], [b.alpha, b.through])
+}
+
+/// Of layers from front to back, opacities in \[0, 1\] and finite colours >= 0, up to 6 (m + 1) half
+/// ulp for m layers, and of the greatest colour, at least 1:
+///
+/// - What is let through is the product of all 1 - alpha, the opacity is the rest to 1.
+/// - The colour is the sum of alpha c times the product of the 1 - alpha of the nearer ones: what
+///   blending from back to front gives.
+///
+/// # Errors
+/// The first counterexample.
+pub fn closed_form<R: Exact>(
+    under: &impl Fn(Under<R>, R, [R; 3]) -> Under<R>,
+    layers: &[(R, [R; 3])],
+) -> Lawful {
+    let found = blend(under, layers);
+    let (mut through, mut color, mut largest) = (1.0_f64, [0.0_f64; 3], 1.0_f64);
+    for (alpha, value) in layers {
+        for (sum, c) in color.iter_mut().zip(value.map(R::to_f64)) {
+            *sum += through * alpha.to_f64() * c;
+            largest = if c > largest { c } else { largest };
+        }
+        through *= 1.0 - alpha.to_f64();
+    }
+    let bound = 6.0 * (layers.len() as f64 + 1.0) * unit::<R>();
+    let near = |found: f64, expected: f64, of: f64| (found - expected).abs() <= bound * of;
+    let (alpha, rest) = (found.alpha.to_f64(), found.through.to_f64());
+    let expected = Under { color, alpha: 1.0 - through, through };
+    let holds = near(alpha, 1.0 - through, 1.0) && near(rest, through, 1.0);
+    law(
+        "opacity and rest are their closed form, up to rounding",
+        holds,
+        &layers,
+        &expected,
+        &found,
+    )?;
+    let holds = near(alpha + rest, 1.0, 1.0);
+    law("opacity and rest add up to 1, up to rounding", holds, &layers, &expected, &found)?;
+    let holds = (0..3).all(|i| near(found.color[i].to_f64(), color[i], largest));
+    law("the colour is its closed form, up to rounding", holds, &layers, &expected, &found)
+}
+
+/// An opaque layer on a clear pixel leaves its colour, and hides the layers that come under it; a
+/// clear layer changes nothing, even one of an infinite colour. To the bit.
+///
+/// # Errors
+/// The first counterexample.
+pub fn ends<R: Exact>(
+    under: &impl Fn(Under<R>, R, [R; 3]) -> Under<R>,
+    layers: &[(R, [R; 3])],
+    color: [R; 3],
+) -> Lawful {
+    let whole = [&[(R::ONE, color)], layers].concat();
+    let alone = Under { color, alpha: R::ONE, through: R::ZERO };
+    let found = blend(under, &whole);
+    law(
+        "an opaque layer hides what comes under it",
+        equal(&found, &alone),
+        &whole,
+        &alone,
+        &found,
+    )?;
+    let before = blend(under, layers);
+    let found = under(before, R::ZERO, [R::INFINITY; 3]);
+    let inputs = format_args!("an infinite colour under {before:?}");
+    law("a clear layer changes nothing", equal(&found, &before), &inputs, &before, &found)
+}

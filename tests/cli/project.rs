@@ -1,0 +1,54 @@
+//! `splatref project`.
+
+use super::*;
+use splatref::frame::Exec;
+use splatref::io::provenance;
+use splatref::io::scene_file::SceneFile;
+use splatref::splat::record::{SplatRecord, project_records};
+use tempfile::TempDir;
+
+#[test]
+fn records_are_those_of_the_library() {
+    let at = TempDir::new().unwrap();
+    let scene = "[[model]]\nshape = \"sphere\"\ncount = 300\n[camera]\nsize = [32, 24]\n";
+    fs::write(at.path().join("s.toml"), scene).unwrap();
+    let said = succeeds(at.path(), &["project", "s.toml", "-o", "a.bin", "--outline", "raycast"]);
+    let more = ["--outline", "raycast", "--threads", "1"];
+    succeeds(at.path(), &[&["project", "s.toml", "-o", "b.bin"], &more[..]].concat());
+    let [a, b] = ["a.bin", "b.bin"].map(|name| fs::read(at.path().join(name)).unwrap());
+    assert_eq!(a, b);
+
+    let mut file = SceneFile::read(&at.path().join("s.toml")).unwrap();
+    file.method.outline = Some(splatref::splat::Outline::RayCast);
+    let ready = file.ready(&Exec::sequential(), &|_, _, _| ()).unwrap();
+    let splats = provenance::splats(&ready.method).unwrap();
+    let surfels = &ready.loaded.scene.surfels;
+    let (records, _) = project_records(surfels, &ready.camera, &splats.kernel, splats.cull);
+    assert!(records.len() > 50);
+    let bytes: Vec<u8> = records.iter().flat_map(SplatRecord::to_bytes).collect();
+    assert_eq!(a, bytes);
+    let count = format!("records    {} of 96 bytes", records.len());
+    for word in [&count, "44 surfel    u32", "80 color     f32 x 3", "limit = 4.0, low_pass = 0.25"]
+    {
+        assert!(said.contains(word), "{word} in {said}");
+    }
+}
+
+#[test]
+fn what_has_no_records_is_refused() {
+    let at = TempDir::new().unwrap();
+    for (more, what, code) in [
+        (&["-o", "a.bin", "--method", "pyramid"] as &[&str], "draws no splats", 2),
+        (&["-o", "a.bin", "--method", "template"], "draws no splats", 2),
+        (&["-o", "a.bin", "--number", "f64"], "records are f32", 2),
+        (&["-o", "a.ply"], "give a name in .bin", 2),
+        (&[], "--output", 2),
+        (&["-o", "missing/a.bin"], "missing", 1),
+        (&["-o", "a.bin", "--cutoff", "9"], "cut-off of 9", 1),
+    ] {
+        let arguments = [&["project", "sphere", "--count", "50", "--size", "8x8"], more].concat();
+        let line = fails(at.path(), &arguments, code);
+        assert!(line.contains(what), "{line}");
+    }
+    assert!(names(at.path()).is_empty());
+}
