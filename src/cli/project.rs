@@ -2,7 +2,6 @@
 
 use super::options::{ExecOptions, SceneOptions};
 use super::{Finding, Outcome, draw, progress, report};
-use splatref::io::provenance;
 use splatref::io::replace::write_atomically;
 use splatref::io::scene_file::{Number, Ready};
 use splatref::splat::record::{SplatRecord, project_records, shared_numbers};
@@ -35,10 +34,10 @@ pub(super) fn run(args: &Args) -> Finding {
     let file = args.options.scene_file(&args.scene)?;
     let exec = args.exec.exec()?;
     let method = file.method.method()?;
-    check(args, provenance::splats(&method).is_some(), file.output.number)?;
+    check(args, method.splats().is_some(), file.output.number)?;
     let ready = draw::ready(&file, &exec)?;
     let Ready { loaded, camera, method, .. } = &ready;
-    let Some(splats) = provenance::splats(method) else { return Ok(Outcome::Good) };
+    let Some(splats) = method.splats() else { return Ok(Outcome::Good) };
     let surfels = &loaded.scene.surfels;
     let (records, tally) = progress::during("projecting", || {
         project_records(surfels, camera, &splats.kernel, splats.cull)
@@ -47,7 +46,7 @@ pub(super) fn run(args: &Args) -> Finding {
 
     report::scene(loaded);
     report::camera(camera);
-    report::method(method, surfels);
+    report::method(method, &loaded.scene, camera);
     report::tally(&tally);
     report::line("records", format!("{} of {} bytes", records.len(), SplatRecord::SIZE));
     for (name, offset, kind) in SplatRecord::FIELDS {

@@ -36,8 +36,8 @@ pub fn inside<R: Real>(q: R, limit: R) -> R::Truth {
     q.le(limit)
 }
 
-/// Whether a fragment of nearness `w` is in front of the nearest so far: `w > than`, strict, so that
-/// of equally near fragments the first one stays.
+/// Whether a fragment of nearness `w` is in front of the nearest so far: `w > than`, strict, so
+/// that of equally near fragments the first one stays.
 ///
 /// Nearness is 1/t or -t, see [`crate::splat`]; `than` may be the nearness of an empty pixel.
 /// Source: visibility splatting, \[GBP04, section 3\], \[ZP06, section 3.1\].
@@ -95,8 +95,8 @@ pub fn nearer_bin<R: Real>(z: R, than: R) -> R::Truth {
     z.lt(than)
 }
 
-/// Whether a depth is in front of another: `t < than`, strict, so that of equal depths the first one
-/// stays; +inf is in front of nothing.
+/// Whether a depth is in front of another: `t < than`, strict, so that of equal depths the first
+/// one stays; +inf is in front of nothing.
 ///
 /// Source: the nearest sample of a pixel \[MKC08, section 3.1\], the foremost of four
 /// \[MKC08, section 3.2\], \[MOC08, section 3.1\].
@@ -157,8 +157,8 @@ pub fn moves<R: Real>(extent: R, reach: R) -> R::Truth {
     !extent.le(reach)
 }
 
-/// Whether a centre is merged with the foremost: `t - t_f <= r + r_f`, for depths and radii in world
-/// units, `t >= t_f`.
+/// Whether a centre is merged with the foremost: `t - t_f <= r + r_f`, for depths and radii in
+/// world units, `t >= t_f`.
 ///
 /// `Departs:` \[MOC08, section 3.1\] says "its depth is less than the foremost depth minus the sum
 /// of their radii", which no depth behind the foremost can be.

@@ -8,6 +8,7 @@ use crate::index::grouping::Grouping;
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use crate::setting::Fields;
+use crate::splat::SplatSettings;
 use std::fmt::Debug;
 
 /// What a picture is made of, and how.
@@ -51,6 +52,11 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
 
     /// What the fast path works in, kept from picture to picture.
     type Memory: Debug + Default + Send;
+
+    /// Footprints, epsilon and culling of a method that draws splats.
+    fn splats(&self) -> Option<&SplatSettings> {
+        None
+    }
 
     /// Whether the numbers are in range.
     ///

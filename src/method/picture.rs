@@ -99,14 +99,6 @@ pub(super) fn framebuffer(camera: &Camera, wanted: Wanted, pool: &mut Pool) -> F
     }
 }
 
-pub(super) fn scalar<R>(name: &str, plane: Plane<R>) -> NamedPlane<R> {
-    named(name, Samples::Scalar(plane))
-}
-
-pub(super) fn color<R>(name: &str, plane: Plane<[R; 3]>) -> NamedPlane<R> {
-    named(name, Samples::Color(plane))
-}
-
 pub(super) fn named<R>(name: &str, samples: Samples<R>) -> NamedPlane<R> {
     NamedPlane { name: name.to_owned(), samples }
 }

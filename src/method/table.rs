@@ -10,6 +10,7 @@ use crate::index::grouping::Grouping;
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use crate::setting::{Fields, Visit};
+use crate::splat::SplatSettings;
 
 /// Makes the enum of methods, and hands every question on to the settings of the method that is
 /// asked.
@@ -80,6 +81,12 @@ macro_rules! methods {
             #[must_use]
             pub fn needs_order(&self) -> bool {
                 match self { $(Self::$method(_) => <$settings>::BACK_TO_FRONT,)* }
+            }
+
+            /// Footprints, epsilon and culling of a method that draws splats.
+            #[must_use]
+            pub fn splats(&self) -> Option<&SplatSettings> {
+                match self { $(Self::$method(settings) => Algorithm::splats(settings),)* }
             }
 
             /// Whether the numbers are in range.

@@ -165,7 +165,8 @@ pub struct Reasons<R: Real> {
     pub degenerate: R::Truth,
     /// The back is seen, g >= 0, and culling is on.
     pub back_facing: R::Truth,
-    /// The surfel cannot be seen in the picture.
+    /// The surfel cannot be seen in the picture. Empty bounds are a reason, but bounds that may be
+    /// empty are no doubt: bounds are rounded outwards, and empty ones have no fragments.
     pub outside: R::Truth,
 }
 

@@ -6,8 +6,8 @@
 //! - [`composite`]: laws of the operators.
 //! - [`bounds`]: no pixel outside a splat's bounds is inside the splat.
 //! - [`counter`]: a third number runs every formula and counts its operations.
-//! - [`three`]: a number whose comparisons have three outcomes; [`three_outcomes`]: every decision and
-//!   every formula that it can be asked.
+//! - [`three`]: a number whose comparisons have three outcomes; [`three_outcomes`]: every decision
+//!   and every formula that it can be asked.
 //! - [`bits`]: fast and plain, threads and tiles, to the last bit.
 #![expect(
     clippy::disallowed_methods,

@@ -185,7 +185,10 @@ fn a_projected_interval_holds_what_is_projected_from_it() {
             }
             assert!(why.degenerate.allows(false));
             outcomes.note("back facing", why.back_facing, reasons.back_facing);
-            outcomes.note("outside", why.outside, reasons.outside);
+            // Where the bounds are empty in f64 alone, there is no fragment to disagree on.
+            if !splat.bounds.is_empty() {
+                outcomes.note("outside", why.outside, reasons.outside);
+            }
             outcomes.note("back", found.back, splat.back);
             let pairs = numbers(&found.footprint).into_iter().zip(numbers(&splat.footprint));
             assert!(pairs.clone().all(|(wide, value)| wide.holds(value)), "{:?}", disc);

@@ -9,7 +9,7 @@ use crate::method::ewa::{Epsilon, Settings};
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::transparent;
 use crate::scene::environment::{Environment, Map};
-use crate::shade::optics::{Layers, Refraction};
+use crate::shade::optics::{BendingLayers, Refraction};
 use crate::source::derive::Origin;
 use crate::splat::{Kernel, Outline};
 use proptest::prelude::*;
@@ -68,7 +68,7 @@ fn the_example_says_what_it_says() {
     let settings = Settings { kernel, epsilon: Epsilon::MedianRadii(1.5), cull: false };
     let method = file.method.method().unwrap();
     let bins = BinCount::Count(256);
-    let refraction = Refraction { ratio: [0.66, 0.67, 0.68], layers: Layers::Multiple };
+    let refraction = Refraction { ratio: [0.66, 0.67, 0.68], layers: BendingLayers::Multiple };
     let expected = transparent::Settings {
         splats: settings,
         bins,

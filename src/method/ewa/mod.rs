@@ -46,6 +46,10 @@ impl Algorithm for Settings {
     const STAGES: &'static [Stage] = planes::STAGES;
     type Memory = ();
 
+    fn splats(&self) -> Option<&Settings> {
+        Some(self)
+    }
+
     fn check(&self) -> Result<()> {
         Self::check(self)
     }

@@ -87,8 +87,8 @@ pub fn offsets<R: Real>(finer: &[Cell<R>; 4], side: R) -> [Vector2<R>; 4] {
     })
 }
 
-/// The new cell, if of four cells at these [`offsets`] those in `takes` take part and `first` is the
-/// foremost of them.
+/// The new cell, if of four cells at these [`offsets`] those in `takes` take part and `first` is
+/// the foremost of them.
 pub fn merge<R: Real>(
     finer: &[Cell<R>; 4],
     offsets: &[Vector2<R>; 4],

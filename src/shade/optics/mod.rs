@@ -25,8 +25,8 @@
 //! - Opaque surfels among the other layers hide the environment, `hidden` says in what part; eq. 11
 //!   alone, made for one opacity everywhere, would let light through them.
 //! - `C_O` is seen straight through the surface, not refracted: there is nothing to look it up in.
-//! - [`Layers::Single`] is Fig. 14 a: reflection and refraction at the nearest surface alone, l = 1
-//!   and `C_O` = hidden = 0.
+//! - [`BendingLayers::Single`] is Fig. 14 a: reflection and refraction at the nearest surface alone,
+//!   l = 1 and `C_O` = hidden = 0.
 //! - A normal that faces away is turned round: a sheet has two sides.
 //!
 //! A law that follows: in an environment of radiance 1, a surface of colour 1 before layers that
@@ -43,14 +43,14 @@ use crate::setting::Words;
 
 /// How many surfaces bend the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Layers {
+pub enum BendingLayers {
     /// The nearest alone; nothing but the environment is seen behind it.
     Single,
     /// As many as the accumulated opacity tells.
     Multiple,
 }
 
-impl Words for Layers {
+impl Words for BendingLayers {
     const WORDS: &'static [(&'static str, Self)] =
         &[("single", Self::Single), ("multiple", Self::Multiple)];
 }
@@ -62,7 +62,7 @@ pub struct Refraction {
     /// air to glass. In (0, 4].
     pub ratio: [f32; 3],
     /// How many surfaces.
-    pub layers: Layers,
+    pub layers: BendingLayers,
 }
 
 /// The largest ratio of refraction.
@@ -223,8 +223,8 @@ pub fn shade<R: Exact>(
     let normal = if normal.dot(view) < R::ZERO { -normal } else { normal };
     let cosine = normal.dot(view).at_most(R::ONE);
     let (count, behind_color, seen) = match refraction.layers {
-        Layers::Single => (R::ONE, [R::ZERO; 3], R::ONE),
-        Layers::Multiple => {
+        BendingLayers::Single => (R::ONE, [R::ZERO; 3], R::ONE),
+        BendingLayers::Multiple => {
             (R::ONE + layers(behind.opacity, alpha), behind.color, R::ONE - behind.hidden)
         }
     };

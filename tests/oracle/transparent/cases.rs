@@ -10,7 +10,7 @@ use splatref::method::transparent::{Holes, Settings};
 use splatref::scene::Groups;
 use splatref::scene::environment::Map;
 use splatref::scene::{Environment, Surfels};
-use splatref::shade::optics::{Layers, Refraction};
+use splatref::shade::optics::{BendingLayers, Refraction};
 use splatref::splat::{Kernel, Outline};
 
 /// A case with groups, opacities and an environment.
@@ -97,7 +97,7 @@ impl Subject {
             1 => Some(DepthTest::Plain),
             _ => Some(DepthTest::Voronoi(lot(&mut dice))),
         };
-        let layers = [Layers::Single, Layers::Multiple][dice.below(2)];
+        let layers = [BendingLayers::Single, BendingLayers::Multiple][dice.below(2)];
         let ratio = [[0.625, 0.6875, 0.75], [1.25, 1.5, 0.96], [1.0, 0.5, 2.0]][dice.below(3)];
         let bent = nearest.is_some() && case.scene.environment.is_some() && dice.below(3) > 0;
         let settings = Settings {

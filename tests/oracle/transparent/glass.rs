@@ -12,7 +12,7 @@ use splatref::frame::{NO_ID, Plane};
 use splatref::method::single_pass::DepthTest;
 use splatref::scene::environment::Map;
 use splatref::scene::{Camera, Environment, Lens, Pose};
-use splatref::shade::optics::{Layers, Refraction};
+use splatref::shade::optics::{BendingLayers, Refraction};
 
 fn noise() -> Environment {
     let mut dice = Dice(9);
@@ -61,10 +61,10 @@ fn glass_met_head_on_reflects_what_is_behind_the_eye() {
     let [ahead, back] =
         [-1.0, 1.0].map(|z| radiance(&environment, [0.0, 0.0, z], 0.0).map(|n| n.value));
     for (layers, kind) in [
-        (vec![front], Layers::Multiple),
-        (vec![front, middle], Layers::Multiple),
-        (vec![front, middle, wall], Layers::Multiple),
-        (vec![wall, middle, front], Layers::Single),
+        (vec![front], BendingLayers::Multiple),
+        (vec![front, middle], BendingLayers::Multiple),
+        (vec![front, middle, wall], BendingLayers::Multiple),
+        (vec![wall, middle, front], BendingLayers::Single),
     ] {
         let mut given = sheets(&layers, 3);
         given.0.environment = Some(environment.clone());
@@ -76,7 +76,7 @@ fn glass_met_head_on_reflects_what_is_behind_the_eye() {
         let glass = others.iter().filter(|l| l.alpha < 1.0).count() as i32;
         let mut hides = others.iter().any(|l| l.alpha == 1.0);
         let (a, mut l) = (f64::from(alpha), 1 + glass);
-        if kind == Layers::Single {
+        if kind == BendingLayers::Single {
             (behind, hides, l) = ([0.0; 3], false, 1);
         }
         let expected = [0, 1, 2].map(|c| {
@@ -109,7 +109,7 @@ fn white_glass_in_white_light_is_not_seen() {
         given.0.environment = Some(Environment::Map(white.clone()));
         let mut settings = settings(2, Some(DepthTest::Plain));
         settings.refraction =
-            Some(Refraction { ratio: [0.5, 0.75, 1.75], layers: Layers::Multiple });
+            Some(Refraction { ratio: [0.5, 0.75, 1.75], layers: BendingLayers::Multiple });
         let frame = render::<f64>(&given, &camera(true), &settings);
         for i in 0..PIXELS {
             assert_eq!(value(&frame, "layers", i)[0], f64::from(count), "{count} sheets");
@@ -126,7 +126,7 @@ fn light_is_bent_by_as_many_layers_as_there_are() {
     let mut given = sheets(&layers, 1);
     given.0.environment = Some(Environment::Sky);
     let mut settings = settings(2, Some(DepthTest::Plain));
-    settings.refraction = Some(Refraction { ratio: [0.5; 3], layers: Layers::Multiple });
+    settings.refraction = Some(Refraction { ratio: [0.5; 3], layers: BendingLayers::Multiple });
     let frame = render::<f64>(&given, &camera(true), &settings);
     let n = unit([f64::from(normal.x), 0.0, f64::from(normal.z)]);
     let sine = 0.75_f64.sqrt() / 4.0;

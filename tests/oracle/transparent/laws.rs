@@ -15,7 +15,7 @@ use splatref::number::Exact;
 use splatref::scene::Groups;
 use splatref::scene::environment::Map;
 use splatref::scene::{Cloud, Environment, Light, Scene, Surfels};
-use splatref::shade::optics::{Layers, Refraction};
+use splatref::shade::optics::{BendingLayers, Refraction};
 
 /// How many scenes a law is tried on.
 const SCENES: usize = 48;
@@ -226,7 +226,7 @@ fn a_white_furnace_is_white() {
         change(case, |cloud| cloud.color = Some(vec![Vec3::ONE; cloud.position.len()]));
         let name = case.name.clone();
         // With one layer whatever is not reflected or covered comes from the environment.
-        let layers = Layers::Single;
+        let layers = BendingLayers::Single;
         let single = Refraction { ratio: [0.625, 1.0, 1.5], layers };
         let refraction = subject.settings.nearest.map(|_| single);
         for refraction in [None, refraction] {

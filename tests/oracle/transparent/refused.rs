@@ -12,7 +12,7 @@ use splatref::method::transparent::{self, Settings};
 use splatref::method::{Picture, peeling};
 use splatref::scene::Environment;
 use splatref::scene::Groups;
-use splatref::shade::optics::{Layers, Refraction};
+use splatref::shade::optics::{BendingLayers, Refraction};
 
 fn render(subject: &Subject) -> Result<Picture<f32>, Error> {
     let exec = Exec::sequential();
@@ -46,7 +46,7 @@ fn subject(settings: impl FnOnce(&mut Settings)) -> Subject {
 #[test]
 fn settings_out_of_range_are_refused() {
     assert!(render(&subject(|_| ())).is_ok());
-    let bend = Refraction { ratio: [0.75; 3], layers: Layers::Multiple };
+    let bend = Refraction { ratio: [0.75; 3], layers: BendingLayers::Multiple };
     refused(render(&subject(|s| s.refraction = Some(bend))), &["refraction", "nearest layer"]);
     let settings = |s: &mut Settings| {
         s.nearest = Some(DepthTest::Plain);

@@ -5,7 +5,7 @@ use crate::kit::eye::{Eye, V3, cross, dot, scaled, sub, unit};
 use crate::transparent::model::{Near, Truth};
 use splatref::scene::Environment;
 use splatref::scene::environment::Map;
-use splatref::shade::optics::{Layers, Refraction};
+use splatref::shade::optics::{BendingLayers, Refraction};
 use std::f64::consts::PI;
 
 /// Light from a direction, and its change with the rounding of the direction and of what the lookup
@@ -116,7 +116,7 @@ type Inputs = [f64; 15];
 struct Sheet<'a> {
     environment: &'a Environment,
     ratio: f64,
-    layers: Layers,
+    layers: BendingLayers,
     channel: usize,
     step: f64,
 }
@@ -131,7 +131,7 @@ impl Sheet<'_> {
             normal = scaled(normal, -1.0);
         }
         let (mut behind, mut l, mut hidden) = (x[7 + self.channel], 1.0, x[11]);
-        if self.layers == Layers::Single {
+        if self.layers == BendingLayers::Single {
             (behind, hidden) = (0.0, 0.0);
         } else if alpha > 0.0 {
             l += x[10] / alpha;

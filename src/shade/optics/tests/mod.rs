@@ -263,7 +263,8 @@ fn absorption_is_a_power_and_layers_its_count() {
 
 #[test]
 fn ratios_out_of_range_are_refused() {
-    let check = |ratio| Refraction { ratio: [1.0, ratio, 4.0], layers: Layers::Single }.check();
+    let check =
+        |ratio| Refraction { ratio: [1.0, ratio, 4.0], layers: BendingLayers::Single }.check();
     assert!(check(0.5).is_ok() && check(4.0).is_ok());
     for bad in [0.0, -0.0, -1.0, 4.000_001, f32::INFINITY, f32::NAN] {
         let line = check(bad).unwrap_err().to_string();

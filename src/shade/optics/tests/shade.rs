@@ -10,7 +10,7 @@ fn even(radiance: f32) -> Environment {
     Environment::Map(Map::new(Plane::filled(2, 1, [radiance; 3])).unwrap())
 }
 
-fn glass(layers: Layers) -> Refraction {
+fn glass(layers: BendingLayers) -> Refraction {
     Refraction { ratio: [0.6875, 0.671_875, 0.656_25], layers }
 }
 
@@ -25,7 +25,7 @@ fn a_white_furnace_stays_white() {
         let alpha = number(19, i);
         let count = f64::from((i % 5) as u8);
         let ratio = [0, 1, 2].map(|c| (0.25 + 2.0 * number(20, 3 * i + c)) as f32);
-        let refraction = Refraction { ratio, layers: Layers::Multiple };
+        let refraction = Refraction { ratio, layers: BendingLayers::Multiple };
         let hidden = if i % 3 == 0 { number(21, i) } else { 0.0 };
         // Where an opaque surfel hides the environment it sends what the environment would have.
         let passed = (0..i % 5).fold(1.0, |product, _| product * (1.0 - alpha));
@@ -55,7 +55,7 @@ fn an_opaque_pixel_is_its_phong_colour() {
         let normal = single(normal * (0.5 + number(24, i)));
         let nearest = NearestLayer { color, opacity: 1.0_f32, normal };
         let behind = Behind { color: [0.5; 3], opacity: 3.0, hidden: 0.25 };
-        for kind in [Layers::Single, Layers::Multiple] {
+        for kind in [BendingLayers::Single, BendingLayers::Multiple] {
             let shaded = shade(&Environment::Sky, &glass(kind), single(view), &nearest, &behind);
             assert_eq!(shaded, color);
             // And nearly so if it is nearly opaque: the sun is below 26.
@@ -69,7 +69,7 @@ fn an_opaque_pixel_is_its_phong_colour() {
 /// A ratio of 1 neither reflects nor bends: the paper's Algorithm 3 over an absorbed environment.
 #[test]
 fn without_refraction_it_is_alpha_blending() {
-    let plain = Refraction { ratio: [1.0; 3], layers: Layers::Multiple };
+    let plain = Refraction { ratio: [1.0; 3], layers: BendingLayers::Multiple };
     for i in 0..500 {
         let (view, normal) = pair(25, i);
         let alpha = 0.125 + 0.75 * number(26, i);
@@ -95,9 +95,13 @@ fn a_single_layer_sees_no_other() {
     let nearest = NearestLayer { color: [0.5; 3], opacity: 0.25, normal };
     let behind = Behind { color: [0.75; 3], opacity: 2.0, hidden: 0.5 };
     let of = |layers, behind| shade(&Environment::Sky, &glass(layers), view, &nearest, behind);
-    assert_eq!(of(Layers::Single, &behind), of(Layers::Single, &BLACK));
-    assert_eq!(of(Layers::Single, &behind), of(Layers::Multiple, &BLACK), "one layer is one layer");
-    assert_ne!(of(Layers::Multiple, &behind), of(Layers::Multiple, &BLACK));
+    assert_eq!(of(BendingLayers::Single, &behind), of(BendingLayers::Single, &BLACK));
+    assert_eq!(
+        of(BendingLayers::Single, &behind),
+        of(BendingLayers::Multiple, &BLACK),
+        "one layer is one layer"
+    );
+    assert_ne!(of(BendingLayers::Multiple, &behind), of(BendingLayers::Multiple, &BLACK));
 }
 
 #[test]
@@ -105,7 +109,7 @@ fn each_channel_has_its_own_ratio() {
     let (view, normal) = (view_at(0.75), Vector3::new(0.25, 0.5, 1.0).normalized());
     let nearest = NearestLayer { color: [0.5; 3], opacity: 0.25, normal };
     let behind = Behind { opacity: 0.25, ..BLACK };
-    let dispersed = glass(Layers::Multiple);
+    let dispersed = glass(BendingLayers::Multiple);
     let shaded = shade(&Environment::Sky, &dispersed, view, &nearest, &behind);
     for (c, ratio) in dispersed.ratio.into_iter().enumerate() {
         let one = Refraction { ratio: [ratio; 3], ..dispersed };
@@ -117,7 +121,7 @@ fn each_channel_has_its_own_ratio() {
 
 #[test]
 fn total_reflection_shows_the_mirror_alone() {
-    let water = Refraction { ratio: [1.5; 3], layers: Layers::Multiple };
+    let water = Refraction { ratio: [1.5; 3], layers: BendingLayers::Multiple };
     let view = view_at(1.0);
     let nearest = NearestLayer { color: [0.5; 3], opacity: 0.25, normal: UP };
     let behind = Behind { color: [9.0; 3], opacity: 1.0, hidden: 0.0 };
@@ -132,7 +136,7 @@ fn a_normal_may_be_short_turned_away_or_absent() {
     let of = |normal: Vector3<f32>| {
         let nearest = NearestLayer { color: [0.5; 3], opacity: 0.5, normal };
         let behind = Behind { color: [0.25; 3], opacity: 0.5, hidden: 0.0 };
-        shade(&Environment::Sky, &glass(Layers::Multiple), view, &nearest, &behind)
+        shade(&Environment::Sky, &glass(BendingLayers::Multiple), view, &nearest, &behind)
     };
     let normal = Vector3::new(0.25, 0.5, 1.0);
     assert_eq!(of(normal * 0.25), of(normal));
@@ -155,7 +159,7 @@ fn single_precision_is_close_and_nothing_is_nan() {
         let (alpha, total) = (number(28, i), 4.0 * number(29, i));
         let refraction = Refraction {
             ratio: [0, 1, 2].map(|c| random::unit(30, 3 * i + c) * 0.875 + 0.1),
-            layers: Layers::Multiple,
+            layers: BendingLayers::Multiple,
         };
         let behind = Behind { color, opacity: total, hidden: 0.25 };
         let truth = shade(
@@ -186,7 +190,8 @@ fn single_precision_is_close_and_nothing_is_nan() {
                 for normal in [single(UP), Vector3::ZERO, Vector3::new(1.0, 0.0, 1e-30)] {
                     let nearest = NearestLayer { color: [0.5; 3], opacity: alpha, normal };
                     let behind = Behind { color: [0.5; 3], opacity: total, hidden: 0.0 };
-                    let refraction = Refraction { ratio: [ratio; 3], layers: Layers::Multiple };
+                    let refraction =
+                        Refraction { ratio: [ratio; 3], layers: BendingLayers::Multiple };
                     let light = shade(&sky, &refraction, single(UP), &nearest, &behind);
                     assert!(
                         light.iter().all(|v| v.is_finite() && *v >= 0.0),
