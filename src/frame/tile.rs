@@ -119,6 +119,21 @@ impl Grid {
         Rect { x0, y0, x1: self.width.min(x0 + self.tile), y1: self.height.min(y0 + self.tile) }
     }
 
+    /// Width and height of the picture in pixels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// The tile of a pixel, and the place of the pixel in its tile, both counted row by row.
+    #[must_use]
+    pub fn place(&self, x: u32, y: u32) -> (usize, usize) {
+        let (column, row) = (x / self.tile, y / self.tile);
+        let Rect { x0, y0, x1, .. } = self.rect(column, row);
+        let tile = (row * self.columns + column) as usize;
+        (tile, ((y - y0) * (x1 - x0) + (x - x0)) as usize)
+    }
+
     /// The pixels of each tile, row by row.
     #[must_use]
     pub fn rects(&self) -> Vec<Rect> {

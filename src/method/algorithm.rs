@@ -2,7 +2,7 @@
 
 use super::{Picture, Stage};
 use crate::error::Result;
-use crate::frame::{Exec, Frame, Pool};
+use crate::frame::{Exec, Frame, NamedPlane, Pool};
 use crate::index::Index;
 use crate::index::grouping::Grouping;
 use crate::number::Exact;
@@ -22,6 +22,13 @@ pub struct Job<'a> {
     pub camera: &'a Camera,
     /// Threads and tiles; these cannot change one bit.
     pub exec: &'a Exec,
+}
+
+impl Job<'_> {
+    /// Planes of the picture as a frame.
+    pub(super) fn frame<R>(&self, planes: Vec<NamedPlane<R>>) -> Frame<R> {
+        Frame { width: self.camera.width, height: self.camera.height, planes }
+    }
 }
 
 /// A method, implemented by its settings: everything in the settings may change the picture, and

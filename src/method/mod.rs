@@ -27,11 +27,14 @@
 mod algorithm;
 pub mod ewa;
 mod fast;
+mod fragment;
 pub mod peeling;
 mod picture;
 mod prepare;
 pub mod projection;
 pub mod pyramid;
+mod replay;
+mod resolved;
 pub mod session;
 pub mod single_pass;
 pub mod stage;
@@ -39,6 +42,7 @@ mod table;
 pub mod template;
 #[cfg(test)]
 mod tests;
+mod tiled;
 pub mod transparent;
 pub mod transparent_hq;
 

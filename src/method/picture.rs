@@ -30,14 +30,10 @@ pub(super) fn finish<R: Exact>(
     mut clock: Clock,
     job: &Job<'_>,
 ) -> Picture<R> {
-    let Job { scene, camera, exec, .. } = *job;
     let Framebuffer { width, height, depth, id, weight, normal, color, .. } = target;
     clock.restart();
-    let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
-    let color = shader.shade(&depth, normal.as_ref(), None, color, exec);
+    let (color, alpha) = shaded(job, &depth, normal.as_ref(), &weight, color);
     clock.lap("shading");
-    let alpha: Plane<R> = weight.map(|&w| if w > R::ZERO { R::ONE } else { R::ZERO });
-    let (color, alpha) = before_environment(scene, camera, color, alpha, exec);
     planes.push(named("", Samples::Color(color)));
     planes.push(named("A", Samples::Scalar(alpha)));
     planes.push(named("Z", Samples::Scalar(depth)));
@@ -45,6 +41,21 @@ pub(super) fn finish<R: Exact>(
     planes.push(named("weight", Samples::Scalar(weight)));
     planes.push(named("id", Samples::Index(id)));
     Picture { frame: Frame { width, height, planes }, tally, timings: clock.into_laps() }
+}
+
+/// The colour and the opacity of a picture: deferred shading before the environment of the scene.
+pub(super) fn shaded<R: Exact>(
+    job: &Job<'_>,
+    depth: &Plane<R>,
+    normal: Option<&Plane<[R; 3]>>,
+    weight: &Plane<R>,
+    color: Option<Plane<[R; 3]>>,
+) -> (Plane<[R; 3]>, Plane<R>) {
+    let Job { scene, camera, exec, .. } = *job;
+    let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
+    let color = shader.shade(depth, normal, None, color, exec);
+    let alpha = weight.map(|&w| if w > R::ZERO { R::ONE } else { R::ZERO });
+    before_environment(scene, camera, color, alpha, exec)
 }
 
 /// Colours multiplied by their opacity before the environment of the scene, if it has one.
@@ -88,14 +99,6 @@ pub(super) fn framebuffer(camera: &Camera, wanted: Wanted, pool: &mut Pool) -> F
     }
 }
 
-pub(super) fn scalar<R>(name: &str, plane: Plane<R>) -> NamedPlane<R> {
-    named(name, Samples::Scalar(plane))
-}
-
-pub(super) fn color<R>(name: &str, plane: Plane<[R; 3]>) -> NamedPlane<R> {
-    named(name, Samples::Color(plane))
-}
-
 pub(super) fn named<R>(name: &str, samples: Samples<R>) -> NamedPlane<R> {
     NamedPlane { name: name.to_owned(), samples }
 }
@@ -130,9 +133,30 @@ impl Clock {
         self.laps
     }
 
-    /// Ends a stage that began at the last call, or at `restart`.
+    /// Ends stages that ran one after the other in every tile: each gets the share of the wall time
+    /// that it had of the time of all tiles.
+    pub(super) fn shares<const N: usize>(
+        &mut self,
+        names: [&'static str; N],
+        tiles: &[[Duration; N]],
+    ) {
+        let wall = self.start.elapsed();
+        let sums: [Duration; N] = std::array::from_fn(|i| tiles.iter().map(|tile| tile[i]).sum());
+        let total: Duration = sums.iter().sum();
+        let share = |part: Duration| match total.as_secs_f64() {
+            0.0 => Duration::ZERO,
+            total => wall.mul_f64(part.as_secs_f64() / total),
+        };
+        self.laps.extend(names.into_iter().zip(sums.map(share)));
+        self.start = Instant::now();
+    }
+
+    /// Ends a stage that began at the last call, or at `restart`, or goes on with the last one.
     pub(super) fn lap(&mut self, name: &'static str) {
-        self.laps.push((name, self.start.elapsed()));
+        match self.laps.last_mut() {
+            Some((last, time)) if *last == name => *time += self.start.elapsed(),
+            _ => self.laps.push((name, self.start.elapsed())),
+        }
         self.start = Instant::now();
     }
 }

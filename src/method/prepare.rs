@@ -1,5 +1,6 @@
 //! Projection and binning: what every method does first.
 
+use super::algorithm::Job;
 use crate::frame::{Bins, Exec, Grid, Rect};
 use crate::number::Exact;
 use crate::scene::{Camera, Surfels};
@@ -68,17 +69,14 @@ impl<R: Exact, S: Send> Prepared<R, S> {
 
 impl<R: Exact> Prepared<R, Splat<R>> {
     /// Every surfel as the splat it is, in ascending index.
-    pub(super) fn splats(
-        surfels: &Surfels,
-        camera: &Camera,
-        settings: &SplatSettings,
-        how: (&Exec, &Grid),
-    ) -> Self {
+    pub(super) fn splats(job: &Job<'_>, settings: &SplatSettings) -> Self {
+        let Job { scene, camera, exec, .. } = *job;
+        let surfels = &scene.surfels;
         Self::new(
             (surfels, surfels.len()),
             camera,
             settings,
-            how,
+            (exec, &exec.grid(camera.width, camera.height)),
             |projector, range, splats| {
                 batch::splats(projector, surfels, range, |splat| splats.push(splat))
             },

@@ -1,7 +1,7 @@
 //! Stages as values: the passes of a method, what each reads, and the planes that each leaves.
 
 use crate::error::{Error, Result};
-use crate::frame::{Frame, Samples};
+use crate::frame::{Frame, NamedPlane, Plane, Samples};
 use crate::scene::Camera;
 
 /// A pass of a method.
@@ -66,6 +66,25 @@ pub enum When {
     StagesOfTubes,
     /// With the planes of the stages, if the settings ask for the quantity.
     Settings,
+    /// With the planes of the stages of a whole picture; not where the stage runs on somebody's
+    /// planes, which do not hold what the quantity takes.
+    Whole,
+    /// Where the stage runs alone: what the next stage reads, and no picture keeps.
+    Alone,
+}
+
+impl Holds {
+    /// The type in words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Scalar => "one number a pixel",
+            Self::Color => "colours",
+            Self::Vector => "vectors",
+            Self::Index => "indices of 32 bits",
+            Self::Count => "counts of 8 bits",
+        }
+    }
 }
 
 impl PlaneRow {
@@ -92,6 +111,35 @@ impl PlaneRow {
                 format!("{before}{number}{}", after.trim_start_matches('#'))
             }
         }
+    }
+
+    /// A plane of this row; `number` stands for `#`.
+    pub(super) fn plane<R>(&self, number: usize, samples: Samples<R>) -> NamedPlane<R> {
+        debug_assert!(self.holds(&samples), "{}", self.name);
+        NamedPlane { name: self.numbered(number), samples }
+    }
+
+    /// A plane of this row, of one number a pixel.
+    pub(super) fn scalar<R>(&self, number: usize, plane: Plane<R>) -> NamedPlane<R> {
+        self.plane(number, Samples::Scalar(plane))
+    }
+
+    /// A plane of this row, of three numbers a pixel.
+    pub(super) fn triple<R>(&self, number: usize, plane: Plane<[R; 3]>) -> NamedPlane<R> {
+        match self.holds {
+            Holds::Vector => self.plane(number, Samples::Vector(plane)),
+            _ => self.plane(number, Samples::Color(plane)),
+        }
+    }
+
+    /// A plane of this row, of surfels.
+    pub(super) fn index<R>(&self, number: usize, plane: Plane<u32>) -> NamedPlane<R> {
+        self.plane(number, Samples::Index(plane))
+    }
+
+    /// A plane of this row, of small counts.
+    pub(super) fn count<R>(&self, number: usize, plane: Plane<u8>) -> NamedPlane<R> {
+        self.plane(number, Samples::Count(plane))
     }
 
     /// Whether a plane of this name is of this row.

@@ -1,7 +1,13 @@
-//! What the tests of several methods draw.
+//! What the tests of several methods draw, and tests of every method in the table.
 
+mod explanations;
+mod stages;
+
+use crate::frame::{Frame, Plane, Samples};
+use crate::number::Exact;
 use crate::number::random::unit;
-use crate::scene::{Camera, Cloud, Lens, Pose, Scene, Surfels};
+use crate::scene::{Camera, Cloud, Groups, Lens, Pose, Scene, Surfels};
+use crate::source::Shape;
 use glam::{DVec3, Vec3};
 
 /// Random surfels around the origin, with radii about `radius` and normals of any direction.
@@ -32,4 +38,44 @@ pub(super) fn cameras() -> Vec<Camera> {
     let pose = Pose { eye: DVec3::new(0.5, 0.25, 4.0), target: DVec3::ZERO, up: DVec3::Y };
     let cameras = sizes.into_iter().flat_map(|size| lenses.map(|lens| (size, lens)));
     cameras.map(|([w, h], lens)| Camera::new(w, h, pose, lens).unwrap()).collect()
+}
+
+/// A sphere in a light, its surfels in three groups, and no two neighbours in one.
+pub(super) fn sphere_of_groups() -> (Scene, Groups) {
+    let surfels = Shape::Sphere.surfels(150, 3).unwrap();
+    let own = (0..surfels.len()).map(|i| (i % 3) as u8).collect();
+    let groups = Groups::new(own, Vec::new(), vec![1.0; 3]).unwrap();
+    (Scene::lit("sphere", surfels), groups)
+}
+
+/// A plane of one number a pixel.
+pub(super) fn scalar<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<R> {
+    match frame.plane(name) {
+        Some(Samples::Scalar(plane)) => plane,
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// A plane of colours.
+pub(super) fn color<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<[R; 3]> {
+    match frame.plane(name) {
+        Some(Samples::Color(plane)) => plane,
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// A plane of small counts.
+pub(super) fn count<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<u8> {
+    match frame.plane(name) {
+        Some(Samples::Count(plane)) => plane,
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// A plane of surfels.
+pub(super) fn id<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<u32> {
+    match frame.plane(name) {
+        Some(Samples::Index(plane)) => plane,
+        other => panic!("{name}: {other:?}"),
+    }
 }

@@ -1,18 +1,22 @@
 //! Every decision at one pixel, with its operands.
 
 use super::Settings;
+use super::attributes::{Sums, sums};
+use super::visibility::{Foremost, foremost};
 use crate::composite::decide;
 use crate::error::Result;
-use crate::frame::Exec;
+use crate::frame::NO_ID;
+use crate::method::algorithm::Job;
+use crate::method::fragment::TileSplats;
+use crate::method::prepare::Prepared;
+use crate::method::replay::{Decision, Place, Touch, touch};
 use crate::number::Exact;
-use crate::scene::{Camera, Surfels};
-use crate::splat::{Projector, Shared, Splat, View, batch, fragment};
+use crate::scene::Surfels;
 use std::fmt;
-use std::ops::Range;
 
 /// What happened at one pixel.
 #[derive(Clone, Debug)]
-pub struct Explanation<R> {
+pub struct EwaReplay<R> {
     /// Column and row.
     pub pixel: (u32, u32),
     /// k^2, the limit of q.
@@ -23,25 +27,10 @@ pub struct Explanation<R> {
     pub nearest: R,
     /// The surfel of the nearest fragment.
     pub id: Option<u32>,
-    /// The splats whose bounds hold the pixel, in ascending surfel index.
+    /// Visibility splatting: the splats whose bounds hold the pixel, in ascending surfel index.
     pub touches: Vec<Touch<R>>,
-}
-
-/// One splat at the pixel.
-#[derive(Clone, Copy, Debug)]
-pub struct Touch<R> {
-    /// The surfel.
-    pub surfel: u32,
-    /// Its q, compared with k^2.
-    pub q: R,
-    /// Depth of the fragment.
-    pub t: R,
-    /// Nearness of the fragment.
-    pub w: R,
-    /// The greatest nearness of the splats before it, compared with `w`.
-    pub before: R,
-    /// The weight, if the fragment is accumulated.
-    pub weight: Option<R>,
+    /// Attribute splatting: those of them that are inside; each gives its weight, if it is visible.
+    pub visible: Vec<Touch<R>>,
 }
 
 /// Replays both passes at one pixel.
@@ -49,98 +38,85 @@ pub struct Touch<R> {
 /// # Errors
 /// [`crate::Error::Usage`] if the pixel is outside the picture.
 pub fn explain<R: Exact>(
-    surfels: &Surfels,
-    camera: &Camera,
+    job: &Job<'_>,
     settings: &Settings,
-    exec: &Exec,
-    (x, y): (u32, u32),
-) -> Result<Explanation<R>> {
-    camera.check_pixel(x, y)?;
-    let view = View::new(camera);
-    let projector = Projector::<R>::new(view, &settings.kernel, settings.cull);
-    let shared = Shared::new(&view, &settings.kernel);
-    let epsilon = R::from_f32(settings.epsilon.resolve(surfels));
-    let ranges = (0..surfels.len()).step_by(65_536);
-    let ranges = ranges.map(|first| first..surfels.len().min(first + 65_536)).collect();
-    let found = exec.ordered(ranges, |range: Range<usize>| {
-        let mut found: Vec<Splat<R>> = Vec::new();
-        batch::splats(&projector, surfels, range, |splat| {
-            if splat.bounds.contains(x, y) {
-                found.push(splat);
-            }
-        });
-        found
-    });
-
-    // Visibility splatting.
-    let (mut nearest, mut id) = (shared.empty(), None);
-    let mut touches = Vec::new();
-    for splat in found.iter().flatten() {
-        let (q, w) = fragment(&shared, &splat.footprint, (x, y));
-        let t = shared.depth(w);
-        touches.push(Touch { surfel: splat.surfel, q, t, w, before: nearest, weight: None });
-        if decide::inside(q, shared.limit) && decide::nearer(w, nearest) {
-            (nearest, id) = (w, Some(splat.surfel));
-        }
-    }
-    // Attribute splatting.
-    let nearest = shared.depth(nearest);
-    let limit = decide::limit(nearest, epsilon);
-    for (touch, splat) in touches.iter_mut().zip(found.iter().flatten()) {
-        if decide::inside(touch.q, shared.limit) && decide::visible(touch.t, limit) {
-            touch.weight = Some(splat.footprint.weight(touch.q));
-        }
-    }
-    Ok(Explanation { pixel: (x, y), limit: shared.limit, epsilon, nearest, id, touches })
+    pixel: (u32, u32),
+) -> Result<EwaReplay<R>> {
+    let place = Place::new(job, pixel)?;
+    let prepared = Prepared::splats(job, settings);
+    let tile = place.splats(&prepared);
+    let (limit, epsilon) = (tile.shared().limit, tile.epsilon());
+    let TwoPasses { nearest, touches, visible, .. } = two_passes(&tile, &job.scene.surfels, None);
+    let id = (nearest.id != NO_ID).then_some(nearest.id);
+    Ok(EwaReplay { pixel, limit, epsilon, nearest: nearest.depth, id, touches, visible })
 }
 
-impl<R: Exact> fmt::Display for Explanation<R> {
+/// Both passes at one pixel: what they leave, and why.
+pub(in crate::method) struct TwoPasses<R> {
+    pub(in crate::method) nearest: Foremost<R>,
+    pub(in crate::method) sums: Sums<R>,
+    pub(in crate::method) touches: Vec<Touch<R>>,
+    pub(in crate::method) visible: Vec<Touch<R>>,
+}
+
+/// Replays both passes at the one pixel of a rectangle, over the fragments strictly beyond a depth,
+/// if there is one.
+pub(in crate::method) fn two_passes<R: Exact>(
+    tile: &TileSplats<'_, R>,
+    surfels: &Surfels,
+    beyond: Option<R>,
+) -> TwoPasses<R> {
+    let (shared, epsilon) = (tile.shared(), tile.epsilon());
+    let candidate =
+        |_: usize, w: R| beyond.is_none_or(|limit| decide::beyond(shared.depth(w), limit));
+    let nearest = foremost(tile, candidate);
+    let sums = sums(tile, surfels, &nearest, candidate)[0];
+    let nearest = nearest[0];
+
+    let (mut touches, mut visible) = (Vec::new(), Vec::new());
+    let mut held = shared.empty();
+    tile.each_in_bounds(|splat, _, q, w| {
+        let mut seen = touch(shared, splat.surfel, q, w);
+        if let Some(limit) = beyond {
+            seen.decide(|| Decision::beyond(shared.depth(w), limit, ["beyond ", "peeled "]));
+        }
+        if seen.passes() {
+            let decisions = vec![Decision::visible(seen.t, nearest.depth, epsilon)];
+            let mut part = Touch { decisions, ..seen.clone() };
+            part.gives = part.passes().then(|| ("weight", splat.footprint.weight(q)));
+            visible.push(part);
+            seen.gives = Some(("depth", seen.t));
+        }
+        seen.decide(|| Decision::nearer(w, held, ["nearest", "farther"]));
+        if seen.passes() {
+            held = w;
+        }
+        touches.push(seen);
+    });
+    TwoPasses { nearest, sums, touches, visible }
+}
+
+impl<R: Exact> fmt::Display for EwaReplay<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = self.pixel;
         let n = |value: R| value.to_f64();
         writeln!(f, "pixel ({x}, {y}): {} splats reach it", self.touches.len())?;
         writeln!(f, "\nvisibility splatting: inside if q <= {}", n(self.limit))?;
-        for t in &self.touches {
-            let margin = t.q.ulps_to(self.limit);
-            let inside = decide::inside(t.q, self.limit);
-            let (sign, word) = if inside { ("<=", "inside ") } else { ("> ", "outside") };
-            write!(
-                f,
-                "  surfel {:>8}  {word}  q {:<12.9} {sign} {}",
-                t.surfel,
-                n(t.q),
-                n(self.limit)
-            )?;
-            write!(f, "  (margin {margin} ulp)")?;
-            if inside {
-                let wins = decide::nearer(t.w, t.before);
-                let (sign, word) = if wins { ("> ", "nearest") } else { ("<=", "farther") };
-                write!(f, "   {word}  nearness {:.9} {sign} {:.9}", n(t.w), n(t.before))?;
-                write!(f, "  (margin {} ulp)  depth {}", t.w.ulps_to(t.before), n(t.t))?;
-            }
-            writeln!(f)?;
+        for touch in &self.touches {
+            writeln!(f, "  {touch}")?;
         }
         let Some(id) = self.id else {
             return writeln!(f, "\nthe pixel is empty");
         };
-        let limit = decide::limit(self.nearest, self.epsilon);
         writeln!(
             f,
             "\nattribute splatting: visible if depth <= {} (nearest {}, surfel {id}, + epsilon {})",
-            n(limit),
+            n(decide::limit(self.nearest, self.epsilon)),
             n(self.nearest),
             n(self.epsilon)
         )?;
-        for t in self.touches.iter().filter(|t| decide::inside(t.q, self.limit)) {
-            let margin = t.t.ulps_to(limit);
-            let (sign, word) =
-                if t.weight.is_some() { ("<=", "visible") } else { ("> ", "hidden ") };
-            write!(f, "  surfel {:>8}  {word}  depth {} {sign} {}", t.surfel, n(t.t), n(limit))?;
-            write!(f, "  (margin {margin} ulp)")?;
-            match t.weight {
-                Some(weight) => writeln!(f, "  weight {}", n(weight))?,
-                None => writeln!(f)?,
-            }
+        for touch in &self.visible {
+            writeln!(f, "  {touch}")?;
         }
         Ok(())
     }

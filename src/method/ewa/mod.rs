@@ -14,22 +14,28 @@
 //!    weight. A pixel without weight is empty.
 //! 5. **Deferred shading**, see [`crate::shade`].
 //!
-//! [`plain`] is the definition, over any [`Exact`] number and one fragment at a time; [`fast`] gives
-//! the same bits for `f32`. [`explain`] lists every decision at one pixel.
+//! The definition is over any [`Exact`] number, one fragment at a time; [`fast`] gives the same bits
+//! for `f32`. [`explain`] lists every decision at one pixel. What each stage leaves:
+//! [`Algorithm::STAGES`].
 //!
 //! [`Splat`]: crate::splat::Splat
 //! [`Exact`]: crate::number::Exact
 
+pub(super) mod attributes;
 pub mod explain;
 pub mod fast;
+mod margin;
+pub(super) mod normalization;
 mod picture;
-pub mod plain;
+mod planes;
+pub(super) mod visibility;
 
 pub use crate::splat::SplatSettings as Settings;
 
 use crate::error::Result;
 use crate::frame::{Frame, Pool};
 use crate::method::algorithm::{Algorithm, Job};
+use crate::method::tiled::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
@@ -37,7 +43,7 @@ use crate::scene::{Camera, Scene};
 impl Algorithm for Settings {
     const NAME: &'static str = "ewa";
     const SUMMARY: &'static str = "EWA surface splatting in 2+1 passes [ZPvBG01, GP03]";
-    const STAGES: &'static [Stage] = &[];
+    const STAGES: &'static [Stage] = planes::STAGES;
     type Memory = ();
 
     fn splats(&self) -> Option<&Settings> {
@@ -57,14 +63,11 @@ impl Algorithm for Settings {
     }
 
     fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
-        let _ = (job, from);
-        Err(crate::method::stage::unknown(stage))
+        Ok(job.frame(picture::stage(job, self, stage, &Given::new(from, job))?))
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
-        let Job { scene, camera, exec, .. } = *job;
-        let found = explain::explain::<R>(&scene.surfels, camera, self, exec, pixel)?;
-        Ok(found.to_string())
+        Ok(explain::explain::<R>(job, self, pixel)?.to_string())
     }
 
     fn resolved(&self, scene: &Scene, _: &Camera) -> Vec<(&'static str, String)> {

@@ -1,12 +1,18 @@
-//! All stages in one call: from a scene to named planes.
+//! All stages in one call: from a scene to named planes; and one stage on somebody's planes.
 
-use super::Settings;
-use super::fast;
-use super::plain::Plain;
+use super::attributes::attributes;
+use super::margin::margins;
+use super::normalization::resolve;
+use super::visibility::visibility;
+use super::{Settings, fast, planes};
 use crate::error::Result;
-use crate::frame::{Pool, Samples, Wanted};
+use crate::frame::{NamedPlane, Pool, Wanted};
 use crate::method::algorithm::Job;
-use crate::method::picture::{Clock, Picture, finish, framebuffer, named};
+use crate::method::picture::{Clock, Picture, finish, framebuffer};
+use crate::method::prepare::Prepared;
+use crate::method::resolved;
+use crate::method::stage::unknown;
+use crate::method::tiled::Given;
 use crate::number::Exact;
 use crate::scene::Scene;
 
@@ -16,42 +22,49 @@ pub(super) fn define<R: Exact>(
     settings: &Settings,
     stages: bool,
 ) -> Result<Picture<R>> {
-    let Job { scene, camera, exec, .. } = *job;
     let mut clock = Clock::default();
-    let mut planes = Vec::new();
-    let mut plain =
-        Plain::<R>::project(&scene.surfels, camera, settings, exec, wanted(scene, stages));
+    let splats = Prepared::splats(job, settings);
     clock.lap("projection");
-
-    plain.visibility();
+    let visible = visibility(job, &splats);
     clock.lap("visibility");
-    if stages {
-        planes.push(named("visibility.Z", Samples::Scalar(plain.depth())));
-        planes.push(named("visibility.id", Samples::Index(plain.target.id.clone())));
-    }
-
-    clock.restart();
-    plain.attributes();
+    let sums = attributes(job, &splats, &visible);
     clock.lap("attributes");
-    if stages {
-        let target = &mut plain.target;
-        planes.extend(target.color.clone().map(|p| named("attributes", Samples::Color(p))));
-        planes
-            .extend(target.normal.clone().map(|p| named("attributes.normal", Samples::Vector(p))));
-        planes.push(named("attributes.weight", Samples::Scalar(target.weight.clone())));
-        planes.extend(target.stencil.take().map(|p| named("attributes.count", Samples::Count(p))));
-        planes.extend(target.margin.take().map(|p| named("margin", Samples::Scalar(p))));
-    }
-
-    clock.restart();
-    plain.normalize();
+    let averages = visible.with(&sums, resolve);
     clock.lap("normalization");
+
+    let mut left = Vec::new();
     if stages {
-        let color = plain.target.color.clone();
-        planes.extend(color.map(|p| named("resolved", Samples::Color(p))));
+        left.extend(planes::visibility(&visible));
+        left.extend(planes::attributes(job, &sums));
+        left.push(planes::margin(&margins(job, &splats, &visible)));
+        left.extend(resolved::colors(job, &averages));
     }
-    let tally = plain.tally();
-    Ok(finish(plain.target, planes, tally, clock, job))
+    let target = resolved::framebuffer(job, &averages, wanted(job.scene, stages));
+    Ok(finish(target, left, splats.tally, clock, job))
+}
+
+/// One stage on somebody's planes.
+pub(super) fn stage<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    stage: &str,
+    given: &Given<'_, R>,
+) -> Result<Vec<NamedPlane<R>>> {
+    let splats = || Prepared::splats(job, settings);
+    match stage {
+        "visibility" => Ok(planes::visibility(&visibility::<R>(job, &splats()))),
+        "attributes" => {
+            let visible = planes::given_visibility(job, given)?;
+            Ok(planes::attributes(job, &attributes(job, &splats(), &visible)))
+        }
+        "normalization" => {
+            let visible = planes::given_visibility(job, given)?;
+            let sums = planes::given_attributes(job, given)?;
+            Ok(resolved::planes(job, &visible.with(&sums, resolve)))
+        }
+        "shading" => resolved::shade(job, given),
+        _ => Err(unknown(stage)),
+    }
 }
 
 /// The fast path for `f32`.

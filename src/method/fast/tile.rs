@@ -1,7 +1,7 @@
 //! What a fast path works with: records of splats, and the blocks of a tile.
 
 use crate::frame::{FramebufferTile, NO_ID, Rect};
-use crate::method::ewa::plain::facing;
+use crate::method::fragment::facing;
 use crate::method::prepare::Prepared;
 use crate::number::lanes::{LANES, Lanes};
 use crate::splat::{Footprint, Splat};

@@ -1,23 +1,28 @@
-//! The layers of a tile, one after the other, over any number.
+//! The layers of a tile, one after the other: each by the two passes of [`crate::method::ewa`].
 
 use super::Settings;
+use super::blending::under;
 use crate::composite::under::Under;
 use crate::composite::{decide, sum};
-use crate::frame::stencil::{Outcome, Stencil};
-use crate::frame::{Exec, Grid, NO_ID, Rect};
-use crate::method::ewa::plain::{each_inside, facing};
+use crate::frame::{NO_ID, Rect};
+use crate::method::algorithm::Job;
+use crate::method::ewa::attributes::{Sums, sums};
+use crate::method::ewa::normalization::resolve;
+use crate::method::ewa::visibility::{Foremost, foremost};
+use crate::method::fragment::TileSplats;
 use crate::method::prepare::Prepared;
+use crate::method::tiled::pixels;
 use crate::number::{Exact, Vector3};
-use crate::scene::{Camera, Scene, Surfels};
+use crate::scene::Surfels;
 use crate::shade::phong::Shader;
-use crate::splat::{Splat, Tally, View};
+use crate::splat::{Splat, View};
+use std::time::{Duration, Instant};
 
 /// A picture whose splats are projected and sorted into tiles.
 #[derive(Debug)]
-pub struct Peeling<'a, R: Exact> {
-    surfels: &'a Surfels,
-    grid: Grid,
-    prepared: Prepared<R, Splat<R>>,
+pub(super) struct Peeling<'a, R: Exact> {
+    pub(super) surfels: &'a Surfels,
+    pub(super) splats: Prepared<R, Splat<R>>,
     shader: Shader<R>,
     /// The colour of surfels that have none.
     own: [R; 3],
@@ -25,7 +30,7 @@ pub struct Peeling<'a, R: Exact> {
 
 /// One layer at one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Layer<R> {
+pub struct PeeledLayer<R> {
     /// `t_j`, the depth of its nearest fragment; +inf where there is none.
     pub depth: R,
     /// The surfel of that fragment; [`NO_ID`] where there is none.
@@ -40,179 +45,119 @@ pub struct Layer<R> {
 
 /// A pixel and the layers it has so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pixel<R> {
+pub(super) struct PeeledPixel<R> {
     /// The layers, blended.
-    pub blend: Under<R>,
+    pub(super) blend: Under<R>,
     /// Depth of the first layer; +inf where there is none.
-    pub depth: R,
+    pub(super) depth: R,
     /// Surfel of the nearest fragment; [`NO_ID`] where there is none.
-    pub id: u32,
+    pub(super) id: u32,
     /// How many layers.
-    pub layers: u32,
-    /// `limit_j`: fragments beyond this depth are in none of the layers.
-    pub limit: R,
+    pub(super) layers: u32,
+    /// `limit_j`: fragments up to this depth are in the layers, or were passed by.
+    pub(super) limit: R,
 }
 
-/// What a pixel of a layer holds between visibility splatting and normalization.
-#[derive(Clone, Copy)]
-struct Sums<R> {
-    nearest: R,
-    id: u32,
-    count: u8,
-    weight: R,
-    normal: [R; 3],
-    color: [R; 3],
-    opacity: R,
+/// The pixels of a tile, row by row.
+pub(super) struct PeeledTile<R> {
+    pub(super) pixels: Vec<PeeledPixel<R>>,
+    /// The first of the layers, as many as are kept.
+    pub(super) kept: Vec<Vec<PeeledLayer<R>>>,
+    /// How long the layers and their blending took.
+    pub(super) times: [Duration; 2],
 }
 
 impl<'a, R: Exact> Peeling<'a, R> {
     /// Projection.
-    #[must_use]
-    pub fn project(scene: &'a Scene, camera: &Camera, settings: &Settings, exec: &Exec) -> Self {
-        let grid = exec.grid(camera.width, camera.height);
-        let surfels = &scene.surfels;
-        let prepared = Prepared::splats(surfels, camera, &settings.splats, (exec, &grid));
-        let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
+    pub(super) fn project(job: &Job<'a>, settings: &Settings) -> Self {
+        let scene = job.scene;
+        let shader = Shader::new(View::new(job.camera), &scene.lights, scene.material);
         let own = scene.material.color.to_array().map(R::from_f32);
-        Self { surfels, grid, prepared, shader, own }
+        let splats = Prepared::splats(job, &settings.splats);
+        Self { surfels: &scene.surfels, splats, shader, own }
     }
 
-    /// The division of the picture into tiles.
-    #[must_use]
-    pub fn grid(&self) -> &Grid {
-        &self.grid
-    }
-
-    /// What became of the surfels.
-    #[must_use]
-    pub fn tally(&self) -> Tally {
-        self.prepared.tally
-    }
-
-    /// Peels at most `most` layers off the pixels of a tile, row by row, and gives also the first
-    /// `keep` of the layers, or as many as there are.
-    #[must_use]
-    pub fn tile(
-        &self,
-        index: usize,
-        rect: Rect,
-        most: u32,
-        keep: usize,
-    ) -> (Vec<Pixel<R>>, Vec<Vec<Layer<R>>>) {
-        let mut pixels = vec![Pixel::new(); rect.pixels()];
-        let mut kept = Vec::new();
+    /// Peels at most `most` layers off the pixels of a tile, and keeps the first `keep` of them.
+    pub(super) fn tile(&self, tile: usize, rect: Rect, most: u32, keep: usize) -> PeeledTile<R> {
+        let splats = TileSplats::new(&self.splats, tile, rect);
+        let mut pixels = vec![PeeledPixel::new(); rect.pixels()];
+        let (mut kept, mut times) = (Vec::new(), [Duration::ZERO; 2]);
         for _ in 0..most {
-            let Some(layer) = self.layer(index, rect, &pixels) else { break };
+            let start = Instant::now();
+            let limits: Vec<_> = pixels.iter().map(|pixel| pixel.limit).collect();
+            let layer = self.layer(&splats, &limits);
+            let peeled = Instant::now();
+            times[0] += peeled - start;
+            let Some(layer) = layer else { break };
             for (pixel, layer) in pixels.iter_mut().zip(&layer) {
-                pixel.add(layer, self.prepared.epsilon);
+                pixel.add(layer, self.splats.epsilon);
             }
             if kept.len() < keep {
                 kept.push(layer);
             }
+            times[1] += peeled.elapsed();
         }
-        (pixels, kept)
+        kept.resize_with(keep, || vec![PeeledLayer::NONE; rect.pixels()]);
+        PeeledTile { pixels, kept, times }
     }
 
-    /// The next layer of a tile; none if no pixel has one.
-    fn layer(&self, index: usize, rect: Rect, pixels: &[Pixel<R>]) -> Option<Vec<Layer<R>>> {
-        let shared = &self.prepared.shared;
-        let mut sums = vec![Sums::new(shared.empty()); pixels.len()];
-
-        // Visibility splatting.
-        self.each_fragment(index, rect, |splat, (_, w), pixel| {
-            let sums = &mut sums[pixel];
-            if decide::beyond(shared.depth(w), pixels[pixel].limit)
-                && decide::nearer(w, sums.nearest)
-            {
-                sums.nearest = w;
-                sums.id = splat.surfel;
-            }
-        });
-        if sums.iter().all(|sums| sums.id == NO_ID) {
+    /// The layer of the fragments strictly beyond the limit of each pixel; none if no pixel has one.
+    pub(super) fn layer(
+        &self,
+        splats: &TileSplats<'_, R>,
+        limits: &[R],
+    ) -> Option<Vec<PeeledLayer<R>>> {
+        let shared = splats.shared();
+        let beyond = |pixel: usize, w: R| decide::beyond(shared.depth(w), limits[pixel]);
+        let nearest = foremost(splats, beyond);
+        if nearest.iter().all(|nearest| nearest.id == NO_ID) {
             return None;
         }
-
-        // Attribute splatting.
-        self.each_fragment(index, rect, |splat, (q, w), pixel| {
-            let sums = &mut sums[pixel];
-            let (t, nearest) = (shared.depth(w), shared.depth(sums.nearest));
-            let limit = decide::limit(nearest, self.prepared.epsilon);
-            if decide::beyond(t, pixels[pixel].limit) && decide::visible(t, limit) {
-                self.accumulate(sums, splat, splat.footprint.weight(q));
-            }
-        });
-
-        // Normalization and shading.
-        let columns = (rect.x1 - rect.x0) as usize;
-        let at = |i: usize| (rect.x0 as usize + i % columns, rect.y0 as usize + i / columns);
-        Some(sums.iter().enumerate().map(|(i, sums)| self.resolve(sums, at(i))).collect())
+        let sums = sums(splats, self.surfels, &nearest, beyond);
+        let found = pixels(splats.rect).zip(nearest.iter().zip(&sums));
+        Some(found.map(|(at, (nearest, sums))| self.resolve(nearest, sums, at)).collect())
     }
 
-    /// Adds the attributes of a fragment.
-    fn accumulate(&self, sums: &mut Sums<R>, splat: &Splat<R>, weight: R) {
-        let i = splat.surfel as usize;
-        let normal = facing(self.surfels.normal()[i].to_array().map(R::from_f32), splat.back);
-        let opacity = self.surfels.opacity().map_or(R::ONE, |all| R::from_f32(all[i]));
-        if let Some(colors) = self.surfels.color() {
-            sums.color = sum::add(sums.color, weight, colors[i].to_array().map(R::from_f32));
-        }
-        sums.normal = sum::add(sums.normal, weight, normal);
-        sums.opacity = sums.opacity + weight * opacity;
-        sums.weight = sums.weight + weight;
-        sums.count = Stencil::COUNT.update(sums.count, Outcome::Pass);
-    }
-
-    /// Averages in place of sums, shaded.
-    fn resolve(&self, sums: &Sums<R>, at: (usize, usize)) -> Layer<R> {
-        let depth = self.prepared.shared.depth(sums.nearest);
-        let [x, y, z] = sum::direction(sums.normal, sums.weight);
-        let surface = match self.surfels.color() {
-            Some(_) => sum::average(sums.color, sums.weight),
-            None => self.own,
-        };
-        let [alpha, ..] = sum::average([sums.opacity; 3], sums.weight);
-        let color = self.shader.pixel(at, depth, (Vector3::new(x, y, z), Vector3::ZERO), surface);
-        Layer { depth, id: sums.id, count: sums.count, alpha, color }
-    }
-
-    /// Runs `draw` for every fragment of a tile that is inside: splat, (q, nearness), pixel.
-    fn each_fragment(
+    /// Normalization and shading at a column and row.
+    pub(super) fn resolve(
         &self,
-        index: usize,
-        rect: Rect,
-        mut draw: impl FnMut(&Splat<R>, (R, R), usize),
-    ) {
-        let shared = &self.prepared.shared;
-        self.prepared.for_each(index, |splat| {
-            each_inside(shared, splat, &rect, |pixel, q, w| draw(splat, (q, w), pixel));
-        });
+        nearest: &Foremost<R>,
+        sums: &Sums<R>,
+        (x, y): (u32, u32),
+    ) -> PeeledLayer<R> {
+        let average = resolve(nearest, sums);
+        let [nx, ny, nz] = average.normal;
+        let surface = if self.surfels.color().is_some() { average.color } else { self.own };
+        let [alpha, ..] = sum::average([sums.opacity; 3], sums.weight);
+        let form = (Vector3::new(nx, ny, nz), Vector3::ZERO);
+        let color = self.shader.pixel((x as usize, y as usize), nearest.depth, form, surface);
+        PeeledLayer { depth: nearest.depth, id: nearest.id, count: sums.count, alpha, color }
     }
 }
 
-impl<R: Exact> Pixel<R> {
+impl<R: Exact> PeeledLayer<R> {
+    /// No fragment is left.
+    pub(super) const NONE: Self =
+        Self { depth: R::INFINITY, id: NO_ID, count: 0, alpha: R::ZERO, color: [R::ZERO; 3] };
+}
+
+impl<R: Exact> PeeledPixel<R> {
     /// No layer yet, and every fragment beyond the last.
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         let (depth, limit) = (R::INFINITY, -R::INFINITY);
         Self { blend: Under::CLEAR, depth, id: NO_ID, layers: 0, limit }
     }
 
     /// Blends the next layer under those before, if the pixel has one.
-    fn add(&mut self, layer: &Layer<R>, epsilon: R) {
+    pub(super) fn add(&mut self, layer: &PeeledLayer<R>, epsilon: R) {
         if layer.id == NO_ID {
             return;
         }
         if self.layers == 0 {
             (self.depth, self.id) = (layer.depth, layer.id);
         }
-        self.blend = self.blend.under(layer.alpha, layer.color);
+        self.blend = under(self.blend, layer);
         self.layers += 1;
         self.limit = decide::limit(layer.depth, epsilon);
-    }
-}
-
-impl<R: Exact> Sums<R> {
-    fn new(empty: R) -> Self {
-        let (weight, opacity, zero) = (R::ZERO, R::ZERO, [R::ZERO; 3]);
-        Self { nearest: empty, id: NO_ID, count: 0, weight, normal: zero, color: zero, opacity }
     }
 }

@@ -47,7 +47,7 @@
 //! low-pass filter makes that more than a radius where surfels are smaller than a pixel. Of a torus
 //! of 10 k, 100 k and 1 M surfels whose sight lines nearly all meet two surfaces, at 512 x 512, 99
 //! %, 91 % and 23 % of the covered pixels have two layers with epsilon = 1 median radius; 92 %, 99
-//! % and 92 % with 8. [`Layer::count`] and the plane `layers` show where it is wrong.
+//! % and 92 % with 8. The planes `layer#.count` and `layers` show where it is wrong.
 //!
 //! # It is slow
 //!
@@ -57,71 +57,32 @@
 //! single pass makes
 //! 9. It is here to be compared against, not to be fast.
 
+mod blending;
+pub mod explain;
 mod layers;
 mod picture;
+mod planes;
+mod settings;
 #[cfg(test)]
 mod tests;
 
-pub use layers::{Layer, Peeling, Pixel};
-pub use picture::STAGES;
+pub use planes::STAGES;
+pub use settings::{MAX_LAYERS, Settings};
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::frame::Frame;
 use crate::method::algorithm::{Algorithm, Job};
+use crate::method::tiled::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
-use crate::setting::{Field, Fields, Slot, Visit};
 use crate::splat::SplatSettings;
-
-/// What is computed; everything here may change the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Footprints, the epsilon of each layer, and culling: off by default, as the far side of a
-    /// transparent object is seen.
-    pub splats: SplatSettings,
-    /// The most layers of a pixel: 1 to [`MAX_LAYERS`].
-    pub layers: u32,
-}
-
-/// The greatest number of layers.
-pub const MAX_LAYERS: u32 = 256;
-
-impl Default for Settings {
-    /// 64 layers, seen from both sides.
-    fn default() -> Self {
-        Self { splats: SplatSettings::BOTH_SIDES, layers: 64 }
-    }
-}
-
-impl Fields for Settings {
-    fn fields(&mut self, each: &mut Visit<'_>) {
-        self.splats.fields(each);
-        let help = "most layers that are peeled";
-        each(Field::new("peel", help, Slot::Count(&mut self.layers)).range("1 to 256"));
-    }
-}
-
-impl Settings {
-    /// Whether the numbers are in range.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] as [`SplatSettings::check`], and if the number of layers is out of range.
-    pub fn check(&self) -> Result<()> {
-        self.splats.check()?;
-        if (1..=MAX_LAYERS).contains(&self.layers) {
-            Ok(())
-        } else {
-            Err(Error::Invalid(format!("layers: {}; give 1 to {MAX_LAYERS}", self.layers)))
-        }
-    }
-}
 
 impl Algorithm for Settings {
     const NAME: &'static str = "peeling";
     const SUMMARY: &'static str =
         "depth peeling, each layer by 2+1 passes: the truth of transparency [Mam89, Eve02]";
-    const STAGES: &'static [Stage] = &[];
+    const STAGES: &'static [Stage] = planes::ROWS;
     type Memory = ();
 
     fn splats(&self) -> Option<&SplatSettings> {
@@ -137,13 +98,11 @@ impl Algorithm for Settings {
     }
 
     fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
-        let _ = (job, from);
-        Err(crate::method::stage::unknown(stage))
+        Ok(job.frame(picture::stage(job, self, stage, &Given::new(from, job))?))
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
-        let _ = (job, pixel);
-        Err(Error::Usage("there is no replay of this method".into()))
+        Ok(explain::explain::<R>(job, self, pixel)?.to_string())
     }
 
     fn resolved(&self, scene: &Scene, _: &Camera) -> Vec<(&'static str, String)> {

@@ -1,14 +1,17 @@
-//! All layers in one call: from a scene to named planes.
+//! All layers in one call: from a scene to named planes; and one stage on somebody's planes.
 
-use super::{Layer, Peeling, Settings};
+use super::Settings;
+use super::blending::shown;
+use super::layers::{PeeledLayer, PeeledPixel, Peeling};
+use super::planes::{self, STAGES};
 use crate::error::Result;
-use crate::frame::{Frame, Grid, NO_ID, NamedPlane, Samples};
+use crate::frame::{NamedPlane, Rect};
 use crate::method::algorithm::Job;
-use crate::method::picture::{Clock, Picture, before_environment, named};
+use crate::method::fragment::TileSplats;
+use crate::method::picture::{Clock, Picture};
+use crate::method::stage::unknown;
+use crate::method::tiled::{Given, Tiled};
 use crate::number::Exact;
-
-/// How many layers leave planes.
-pub const STAGES: u32 = 8;
 
 /// The definition, in any number; with `stages`, the first [`STAGES`] layers leave their planes.
 pub(super) fn define<R: Exact>(
@@ -16,55 +19,87 @@ pub(super) fn define<R: Exact>(
     settings: &Settings,
     stages: bool,
 ) -> Result<Picture<R>> {
-    let Job { scene, camera, exec, .. } = *job;
     let mut clock = Clock::default();
-    let peeling = Peeling::<R>::project(scene, camera, settings, exec);
+    let peeling = Peeling::<R>::project(job, settings);
     clock.lap("projection");
-
-    let grid = peeling.grid();
     let keep = if stages { settings.layers.min(STAGES) as usize } else { 0 };
-    let tiles = grid.rects().into_iter().enumerate().collect();
-    let peel = |(index, rect)| peeling.tile(index, rect, settings.layers, keep);
-    let (pixels, layers): (Vec<_>, Vec<_>) = exec.ordered(tiles, peel).into_iter().unzip();
-    clock.lap("layers");
-
-    let mut planes = layer_planes(grid, &layers, keep);
-    let color = grid.assemble([R::ZERO; 3], |t, i| pixels[t][i].blend.color);
-    let alpha = grid.assemble(R::ZERO, |t, i| pixels[t][i].blend.alpha.at_most(R::ONE));
-    let (color, alpha) = before_environment(scene, camera, color, alpha, exec);
-    planes.push(named("", Samples::Color(color)));
-    planes.push(named("A", Samples::Scalar(alpha)));
-    let depth = grid.assemble(R::INFINITY, |t, i| pixels[t][i].depth);
-    planes.push(named("Z", Samples::Scalar(depth)));
-    let id = grid.assemble(NO_ID, |t, i| pixels[t][i].id);
-    planes.push(named("id", Samples::Index(id)));
-    let count = grid.assemble(0, |t, i| pixels[t][i].layers.min(255) as u8);
-    planes.push(named("layers", Samples::Count(count)));
-    clock.lap("planes");
-    let frame = Frame { width: camera.width, height: camera.height, planes };
-    Ok(Picture { frame, tally: peeling.tally(), timings: clock.into_laps() })
+    let peeled = peel(job, &peeling, settings, keep, &mut clock);
+    let mut left = peeled.layer_planes();
+    left.extend(planes::shown(shown(job, &peeled.pixels.map(|pixel| pixel.blend))));
+    left.extend(planes::pixels(&peeled.pixels));
+    let (frame, timings) = (job.frame(left), clock.into_laps());
+    Ok(Picture { frame, tally: peeling.splats.tally, timings })
 }
 
-/// The planes of the first layers: `layers[tile][layer][pixel]`, fewer where a tile has fewer.
-fn layer_planes<R: Exact>(
-    grid: &Grid,
-    layers: &[Vec<Vec<Layer<R>>>],
-    count: usize,
-) -> Vec<NamedPlane<R>> {
-    let mut planes = Vec::new();
-    for j in 0..count {
-        let at = |tile: usize, pixel: usize| layers[tile].get(j).map(|layer| &layer[pixel]);
-        let name = |plane: &str| format!("layer{}{plane}", j + 1);
-        let zero = [R::ZERO; 3];
-        let color = grid.assemble(zero, |t, i| at(t, i).map_or(zero, |layer| layer.color));
-        planes.push(named(&name(""), Samples::Color(color)));
-        let alpha = grid.assemble(R::ZERO, |t, i| at(t, i).map_or(R::ZERO, |layer| layer.alpha));
-        planes.push(named(&name(".A"), Samples::Scalar(alpha)));
-        let depth =
-            grid.assemble(R::INFINITY, |t, i| at(t, i).map_or(R::INFINITY, |layer| layer.depth));
-        planes.push(named(&name(".Z"), Samples::Scalar(depth)));
-        let counts = grid.assemble(0, |t, i| at(t, i).map_or(0, |layer| layer.count));
-        planes.push(named(&name(".count"), Samples::Count(counts)));
+/// What the stage of layers leaves.
+struct Peeled<R> {
+    pixels: Tiled<PeeledPixel<R>>,
+    kept: Vec<Tiled<PeeledLayer<R>>>,
+}
+
+impl<R: Exact> Peeled<R> {
+    fn layer_planes(&self) -> Vec<NamedPlane<R>> {
+        (1..).zip(&self.kept).flat_map(|(number, layer)| planes::layer(number, layer)).collect()
     }
-    planes
+}
+
+/// Peels and blends the layers of every tile.
+fn peel<R: Exact>(
+    job: &Job<'_>,
+    peeling: &Peeling<'_, R>,
+    settings: &Settings,
+    keep: usize,
+    clock: &mut Clock,
+) -> Peeled<R> {
+    let grid = job.exec.grid(job.camera.width, job.camera.height);
+    let tiles = job
+        .exec
+        .ordered(grid.rects().into_iter().enumerate().collect(), |(tile, rect): (usize, Rect)| {
+            peeling.tile(tile, rect, settings.layers, keep)
+        });
+    let times: Vec<_> = tiles.iter().map(|tile| tile.times).collect();
+    clock.shares(["layers", "blending"], &times);
+    let (pixels, kept) = tiles.into_iter().map(|tile| (tile.pixels, tile.kept)).unzip();
+    Peeled { pixels: Tiled::from_tiles(grid, pixels), kept: Tiled::images(grid, kept) }
+}
+
+/// One stage on somebody's planes.
+pub(super) fn stage<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    stage: &str,
+    given: &Given<'_, R>,
+) -> Result<Vec<NamedPlane<R>>> {
+    match (stage, planes::given_layers(given)) {
+        ("layers", 0) => {
+            let keep = settings.layers.min(STAGES) as usize;
+            let peeling = Peeling::project(job, settings);
+            let peeled = peel(job, &peeling, settings, keep, &mut Clock::default());
+            let mut left = peeled.layer_planes();
+            left.extend(planes::pixels(&peeled.pixels));
+            Ok(left)
+        }
+        ("layers", before) => {
+            let layer = next_layer(job, settings, given, before)?;
+            Ok(planes::layer(before + 1, &layer).into())
+        }
+        ("blending", _) => Ok(planes::shown(shown(job, &planes::given_blends(given)?)).into()),
+        _ => Err(unknown(stage)),
+    }
+}
+
+/// The layer after somebody's layer `before`.
+fn next_layer<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    given: &Given<'_, R>,
+    before: usize,
+) -> Result<Tiled<PeeledLayer<R>>> {
+    let peeling = Peeling::<R>::project(job, settings);
+    let limits = planes::given_limits(given, before, peeling.splats.epsilon)?;
+    Ok(Tiled::new(job, |tile, rect| {
+        let splats = TileSplats::new(&peeling.splats, tile, rect);
+        let layer = peeling.layer(&splats, limits.tile(tile));
+        layer.unwrap_or_else(|| vec![PeeledLayer::NONE; rect.pixels()])
+    }))
 }

@@ -1,14 +1,15 @@
 use super::*;
 use crate::composite::sum;
 use crate::frame::{Exec, NO_ID, Plane, Samples};
-use crate::method::Picture;
-use crate::method::ewa::Epsilon;
+use crate::method::{Method, Picture, Session};
 use crate::number::Exact;
 use crate::number::random::unit;
 use crate::scene::{Camera, Cloud, Lens, Light, Phong, Pose, Scene, Surfels};
 use crate::shade::phong::Shader;
 use crate::source::Shape;
-use crate::splat::{Fate, Outline, Projector, Shared, View, batch, project};
+use crate::splat::{
+    Epsilon, Fate, Outline, Projector, Shared, SplatSettings, View, batch, project,
+};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 
@@ -38,8 +39,29 @@ fn sheet(cloud: &mut Cloud, depth: f32, opacity: f32, color: Vec3) {
 
 fn settings(epsilon: f32) -> Settings {
     let default = Settings::default();
-    let splats = ewa::Settings { epsilon: Epsilon::World(epsilon), ..default.splats };
+    let splats = SplatSettings { epsilon: Epsilon::World(epsilon), ..default.splats };
     Settings { splats, ..default }
+}
+
+/// The picture by the definition.
+fn define<R: Exact>(
+    scene: &Scene,
+    camera: &Camera,
+    method: impl Into<Method>,
+    exec: &Exec,
+    stages: bool,
+) -> Result<Picture<R>> {
+    Session::new(scene, method.into(), exec)?.define(camera, stages)
+}
+
+fn render<R: Exact>(
+    scene: &Scene,
+    camera: &Camera,
+    settings: &Settings,
+    exec: &Exec,
+    stages: bool,
+) -> Result<Picture<R>> {
+    define(scene, camera, *settings, exec, stages)
 }
 
 fn peel(scene: &Scene, camera: &Camera, settings: &Settings) -> Picture<f64> {
@@ -232,7 +254,7 @@ proptest! {
 fn opaque_is_ewa<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) {
     let exec = Exec::sequential();
     let peeled = render::<R>(scene, camera, settings, &exec, true).unwrap();
-    let ewa = ewa::render::<R>(scene, camera, &settings.splats, &exec, true).unwrap();
+    let ewa = define::<R>(scene, camera, settings.splats, &exec, true).unwrap();
     for plane in ["", "A", "Z", "id"] {
         assert_eq!(peeled.frame.plane(plane), ewa.frame.plane(plane), "{plane}");
     }
@@ -363,4 +385,24 @@ fn numbers_out_of_range_are_refused() {
     }
     assert!(Settings { layers: MAX_LAYERS, ..Settings::default() }.check().is_ok());
     assert!(settings(-1.0).check().is_err(), "epsilon");
+}
+
+#[test]
+fn a_layer_follows_from_the_planes_of_the_one_before() {
+    let scene = scene(jumble(11, 60, true, true), vec![Light::DEFAULT]);
+    let camera = camera(23, 17, Lens::Focal(14.0));
+    let exec = Exec::new(2, 8).unwrap();
+    let session = Session::new(&scene, settings(0.0625).into(), &exec).unwrap();
+    let all = session.define::<f32>(&camera, true).unwrap().frame;
+    let of = |name: &str, number: u32| name.starts_with(&format!("layer{number}"));
+    for number in 2..=STAGES {
+        let mut before = all.clone();
+        before.planes.retain(|plane| (1..number).any(|earlier| of(&plane.name, earlier)));
+        let found = session.stage(&camera, "layers", &before).unwrap();
+        assert_eq!(found.planes.len(), 4);
+        for plane in found.planes {
+            assert!(of(&plane.name, number), "{}", plane.name);
+            assert_eq!(Some(&plane.samples), all.plane(&plane.name), "{}", plane.name);
+        }
+    }
 }

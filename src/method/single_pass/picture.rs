@@ -1,46 +1,117 @@
-//! All stages in one call: from a scene to named planes.
+//! All stages in one call: from a scene to named planes; and one stage on somebody's planes.
 
-use super::plain::{Composite, Geometry, Images, store};
-use super::{Settings, fast};
-use crate::composite::groups::WeightedFragment;
+use super::compositing::{Composite, composites};
+use super::geometry::{Geometry, ImagePixel};
+use super::{Settings, fast, planes};
 use crate::error::Result;
-use crate::frame::{Framebuffer, Grid, NO_ID, NamedPlane, Pool, Samples, Wanted};
+use crate::frame::{NamedPlane, Pool, Rect, Wanted};
 use crate::method::algorithm::Job;
-use crate::method::picture::{Clock, Picture, finish, framebuffer, named};
+use crate::method::picture::{Clock, Picture, finish, framebuffer};
+use crate::method::resolved;
+use crate::method::stage::unknown;
+use crate::method::tiled::{Given, Tiled};
 use crate::number::Exact;
 use crate::scene::Scene;
+use crate::splat::{Shared, View};
+use std::time::Instant;
+
+/// The stages that run tile by tile.
+const STAGES: [&str; 2] = ["geometry", "compositing"];
 
 /// The definition, in any number; with `stages`, every stage leaves its planes.
+///
+/// Both passes run over a tile before the next tile, so that the images of the groups exist for one
+/// tile at a time, if their planes are not kept.
 pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
 ) -> Result<Picture<R>> {
-    let Job { scene, camera, exec, .. } = *job;
-    let (groups, wanted) = (job.index.groups()?, wanted(scene, stages));
     let mut clock = Clock::default();
-    let geometry = Geometry::<R>::project(&scene.surfels, groups, camera, settings, exec)?;
-    let mut target = Framebuffer::new(camera.width, camera.height, R::ZERO, wanted);
+    let geometry = Geometry::<R>::project(job, settings)?;
     clock.lap("projection");
 
-    let kept = geometry.each_tile(&mut target, exec, |index, mut tile| {
-        let images = geometry.images(index, tile.rect);
-        let composites = geometry.composite(&images);
-        store(&composites, &mut tile);
-        stages.then_some((images, composites))
-    });
-    clock.lap("groups");
+    let Passes { images, composites } = passes(job, &geometry, stages, STAGES, &mut clock);
 
-    let mut planes = Vec::new();
+    let averages = composites.map(Composite::resolved);
+    let mut left = Vec::new();
     if stages {
-        let (images, composites): (Vec<_>, Vec<_>) = kept.into_iter().flatten().unzip();
-        let voronoi = settings.depth != super::DepthTest::Plain;
-        planes.extend(image_planes("", &geometry, &images, (wanted.color, voronoi)));
-        planes.extend(sum_planes(geometry.grid(), &composites, wanted.color));
-        planes.extend(target.stencil.take().map(|p| named("sums.count", Samples::Count(p))));
-        planes.extend(target.color.clone().map(|p| named("resolved", Samples::Color(p))));
+        left.extend(planes::geometry(job, settings, &images));
+        left.extend(planes::sums(job, &composites));
+        left.extend(resolved::colors(job, &averages));
     }
-    Ok(finish(target, planes, geometry.tally(), clock, job))
+    let target = resolved::framebuffer(job, &averages, wanted(job.scene, stages));
+    Ok(finish(target, left, geometry.splats.tally, clock, job))
+}
+
+/// What both passes leave.
+pub(in crate::method) struct Passes<R> {
+    /// The depth-image of each group, if it is kept.
+    pub(in crate::method) images: Vec<Tiled<ImagePixel<R>>>,
+    pub(in crate::method) composites: Tiled<Composite<R>>,
+}
+
+/// The geometry and the compositing pass, timed as two stages; `keep` keeps the images.
+pub(in crate::method) fn passes<R: Exact>(
+    job: &Job<'_>,
+    geometry: &Geometry<'_, R>,
+    keep: bool,
+    stages: [&'static str; 2],
+    clock: &mut Clock,
+) -> Passes<R> {
+    let grid = job.exec.grid(job.camera.width, job.camera.height);
+    let (epsilon, empty) = (geometry.splats.epsilon, geometry.shared().empty());
+    let tiles = grid.rects().into_iter().enumerate().collect();
+    let done = job.exec.ordered(tiles, |(tile, rect): (usize, Rect)| {
+        let start = Instant::now();
+        let images = geometry.images(tile, rect);
+        let drawn = Instant::now();
+        let composites = composites(&images, rect.pixels(), epsilon, empty);
+        ((keep.then_some(images), composites), [drawn - start, drawn.elapsed()])
+    });
+    let (done, times): (Vec<_>, Vec<_>) = done.into_iter().unzip();
+    clock.shares(stages, &times);
+    let (images, composites): (Vec<_>, Vec<_>) = done.into_iter().unzip();
+    let images = Tiled::images(grid, images.into_iter().flatten().collect());
+    Passes { images, composites: Tiled::from_tiles(grid, composites) }
+}
+
+/// The compositing pass over somebody's depth-images.
+pub(in crate::method) fn composite<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    images: &[Tiled<ImagePixel<R>>],
+) -> Tiled<Composite<R>> {
+    let shared = Shared::<R>::new(&View::new(job.camera), &settings.splats.kernel);
+    let epsilon = R::from_f32(settings.splats.epsilon.resolve(&job.scene.surfels));
+    Tiled::new(job, |tile, rect| {
+        let images: Vec<_> = images.iter().map(|image| image.tile(tile)).collect();
+        composites(&images, rect.pixels(), epsilon, shared.empty())
+    })
+}
+
+/// One stage on somebody's planes.
+pub(super) fn stage<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    stage: &str,
+    given: &Given<'_, R>,
+) -> Result<Vec<NamedPlane<R>>> {
+    match stage {
+        "geometry" => {
+            let geometry = Geometry::<R>::project(job, settings)?;
+            let images = passes(job, &geometry, true, STAGES, &mut Clock::default()).images;
+            Ok(planes::geometry(job, settings, &images))
+        }
+        "compositing" => {
+            let composites = composite(job, settings, &planes::given_geometry(job, given)?);
+            let mut left = planes::sums(job, &composites);
+            left.extend(resolved::planes(job, &composites.map(Composite::resolved)));
+            Ok(left)
+        }
+        "shading" => resolved::shade(job, given),
+        _ => Err(unknown(stage)),
+    }
 }
 
 /// The fast path for `f32`.
@@ -59,58 +130,4 @@ fn wanted(scene: &Scene, stages: bool) -> Wanted {
         color: scene.surfels.color().is_some(),
         observed: stages,
     }
-}
-
-/// The depth-image of each group.
-pub(in crate::method) fn image_planes<R: Exact>(
-    prefix: &str,
-    geometry: &Geometry<'_, R>,
-    images: &[Images<R>],
-    (color, voronoi): (bool, bool),
-) -> Vec<NamedPlane<R>> {
-    let grid = geometry.grid();
-    let groups = images.first().map_or(0, |image| image.groups.len());
-    let mut planes = Vec::new();
-    for k in 0..groups {
-        let kept = |tile: usize, pixel: usize| images[tile].groups[k][pixel];
-        let sample = |tile: usize, pixel: usize| geometry.sample(&kept(tile, pixel));
-        let name = |plane: &str| format!("{prefix}group{k:02}{plane}");
-        let scalar =
-            |value: &dyn Fn(usize, usize) -> R| Samples::Scalar(grid.assemble(R::ZERO, value));
-        let triple = |value: &dyn Fn(usize, usize) -> [R; 3]| grid.assemble([R::ZERO; 3], value);
-        planes.push(named(&name(".Z"), scalar(&|t, i| sample(t, i).depth)));
-        let ids = grid.assemble(NO_ID, |t, i| kept(t, i).surfel);
-        planes.push(named(&name(".id"), Samples::Index(ids)));
-        planes.push(named(&name(".weight"), scalar(&|t, i| sample(t, i).weight)));
-        let normals = triple(&|t, i| sample(t, i).normal.map(|n| n + R::ZERO));
-        planes.push(named(&name(".normal"), Samples::Vector(normals)));
-        if color {
-            let colors = Samples::Color(triple(&|t, i| sample(t, i).color));
-            planes.push(named(&name(""), colors));
-        }
-        if voronoi {
-            planes.push(named(&name(".voronoi"), scalar(&|t, i| kept(t, i).z)));
-        }
-    }
-    planes
-}
-
-/// The sums of the compositing pass.
-fn sum_planes<R: Exact>(
-    grid: &Grid,
-    composites: &[Vec<Composite<R>>],
-    color: bool,
-) -> Vec<NamedPlane<R>> {
-    let sums = |tile: usize, pixel: usize| -> WeightedFragment<R> { composites[tile][pixel].sums };
-    let zero = [R::ZERO; 3];
-    let mut planes = Vec::new();
-    if color {
-        let colors = grid.assemble(zero, |t, i| sums(t, i).color);
-        planes.push(named("sums", Samples::Color(colors)));
-    }
-    let normals = grid.assemble(zero, |t, i| sums(t, i).normal.map(|n| n + R::ZERO));
-    planes.push(named("sums.normal", Samples::Vector(normals)));
-    let weights = grid.assemble(R::ZERO, |t, i| sums(t, i).weight);
-    planes.push(named("sums.weight", Samples::Scalar(weights)));
-    planes
 }

@@ -37,76 +37,24 @@
 //!
 //! [`Groups`]: crate::scene::Groups
 
-pub(super) mod blend;
+pub(super) mod averaging;
+pub(super) mod blending;
+pub mod explain;
 pub(super) mod picture;
+pub(super) mod planes;
+mod settings;
+
+pub use settings::{Holes, Settings};
 
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::single_pass::BinCount;
+use crate::method::tiled::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
-use crate::setting::{Field, Fields, Slot, Visit, Words};
 use crate::splat::SplatSettings;
-
-/// What is computed; everything here may change the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Footprints, epsilon, culling.
-    pub splats: SplatSettings,
-    /// The bins of the low-precision depth.
-    pub bins: BinCount,
-    /// What a group that has nothing at a pixel gives to the average.
-    pub holes: Holes,
-}
-
-/// What a group that has no fragment at a pixel gives to the average.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Holes {
-    /// `Decided:` nothing: the average is over the other groups.
-    #[default]
-    Skipped,
-    /// The background, as averaging all images does to the letter \[ZP06, Algorithm 2\].
-    Background,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            splats: SplatSettings::BOTH_SIDES,
-            bins: BinCount::default(),
-            holes: Holes::default(),
-        }
-    }
-}
-
-impl Fields for Settings {
-    fn fields(&mut self, each: &mut Visit<'_>) {
-        self.splats.fields(each);
-        self.bins.field(each);
-        let help =
-            "what a group without fragments gives to the average: nothing, or the background";
-        each(Field::new("holes", help, Slot::Word(&mut self.holes)));
-    }
-}
-
-impl Words for Holes {
-    const WORDS: &'static [(&'static str, Self)] =
-        &[("skipped", Self::Skipped), ("background", Self::Background)];
-}
-
-impl Settings {
-    /// Whether the numbers are in range.
-    ///
-    /// # Errors
-    /// [`crate::Error::Invalid`] if one is not.
-    pub fn check(&self) -> Result<()> {
-        self.splats.check()?;
-        self.bins.check()
-    }
-}
 
 /// K = 4, which \[ZP06, section 6.2\] finds sufficient; groups are extended by adding surfels.
 pub(crate) const GROUPING: Grouping = Grouping {
@@ -119,7 +67,7 @@ impl Algorithm for Settings {
     const NAME: &'static str = "transparent";
     const SUMMARY: &'static str =
         "layers alpha-blended within groups, averaged [ZP06, Algorithm 2]";
-    const STAGES: &'static [Stage] = &[];
+    const STAGES: &'static [Stage] = planes::STAGES;
     const GROUPING: Option<Grouping> = Some(GROUPING);
     const BACK_TO_FRONT: bool = true;
     type Memory = ();
@@ -137,13 +85,11 @@ impl Algorithm for Settings {
     }
 
     fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
-        let _ = (job, from);
-        Err(crate::method::stage::unknown(stage))
+        Ok(job.frame(picture::stage(job, self, stage, &Given::new(from, job))?))
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
-        let _ = (job, pixel);
-        Err(crate::Error::Usage("there is no replay of this method".into()))
+        Ok(explain::explain::<R>(job, self, pixel)?.to_string())
     }
 
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {

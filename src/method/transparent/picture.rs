@@ -1,14 +1,17 @@
-//! All stages in one call: from a scene to named planes.
+//! All stages in one call: from a scene to named planes; and one stage on somebody's planes.
 
-use super::Settings;
-use super::blend::{Average, Blending, Layers};
+use super::averaging::{GroupAverage, averages};
+use super::blending::{Blending, GroupLayers};
+use super::{Holes, Settings, planes};
 use crate::composite::over::Blend;
 use crate::error::Result;
-use crate::frame::{Frame, Grid, NO_ID, NamedPlane, Rect, Samples};
+use crate::frame::{NamedPlane, Rect};
 use crate::method::algorithm::Job;
-use crate::method::picture::{Clock, Picture, before_environment, color, named, scalar};
+use crate::method::picture::{Clock, Picture};
+use crate::method::stage::unknown;
+use crate::method::tiled::{Given, Tiled};
 use crate::number::Exact;
-use crate::splat::Tally;
+use std::time::Instant;
 
 /// The definition of Algorithm 2, in any number; with `stages`, every stage leaves its planes.
 pub(super) fn define<R: Exact>(
@@ -17,146 +20,109 @@ pub(super) fn define<R: Exact>(
     stages: bool,
 ) -> Result<Picture<R>> {
     let mut clock = Clock::default();
-    let blended = blend(job, settings, stages, |_| None, |_, average| average.blend, &mut clock)?;
-    let mut planes = Vec::new();
-    if stages {
-        planes.extend(blended.planes());
-    }
-    planes.extend(blended.colors(job));
-    planes.push(scalar("Z", blended.plane(R::ZERO, |average| average.depth)));
-    planes.push(named("id", Samples::Index(blended.plane(NO_ID, |average| average.surfel))));
-    planes.push(scalar("layers", blended.plane(R::ZERO, |average| average.layers)));
-    let frame = Frame { width: job.camera.width, height: job.camera.height, planes };
-    Ok(Picture { frame, tally: blended.tally, timings: clock.into_laps() })
-}
-
-/// A pixel: its tile, its place in the tile, row by row, and its column and row in the picture.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::method) struct At {
-    pub(in crate::method) tile: usize,
-    pub(in crate::method) pixel: usize,
-    pub(in crate::method) x: u32,
-    pub(in crate::method) y: u32,
-}
-
-/// The blended groups of a picture, by tile and pixel.
-pub(in crate::method) struct Blended<R> {
-    grid: Grid,
-    groups: usize,
-    /// The image of each group, if the planes of the stages are kept.
-    images: Vec<Vec<Vec<Layers<R>>>>,
-    averages: Vec<Vec<Average<R>>>,
-    /// What each pixel shows, before the environment.
-    shown: Vec<Vec<Blend<R>>>,
-    pub(in crate::method) tally: Tally,
-}
-
-/// Order, projection, blending and average.
-///
-/// `mask` gives the depths of the nearest layer in a rectangle, if fragments up to epsilon behind
-/// it are dropped; `show` makes the colour of a pixel from the average of its groups.
-pub(in crate::method) fn blend<R: Exact>(
-    job: &Job<'_>,
-    settings: &Settings,
-    stages: bool,
-    mask: impl Fn(Rect) -> Option<Vec<R>> + Sync + Send,
-    show: impl Fn(At, &Average<R>) -> Blend<R> + Sync + Send,
-    clock: &mut Clock,
-) -> Result<Blended<R>> {
-    let Job { camera, exec, .. } = *job;
-    let grid = exec.grid(camera.width, camera.height);
     let blending = Blending::project(job, settings)?;
     clock.lap("projection");
-    let tiles = grid.rects().into_iter().enumerate().collect();
-    let done = exec.ordered(tiles, |(tile, rect): (usize, Rect)| {
-        let images = blending.images(tile, rect, mask(rect).as_deref());
-        let columns = (rect.x1 - rect.x0) as usize;
-        let pixels = (0..rect.pixels()).map(|pixel| {
-            let (x, y) = (rect.x0 + (pixel % columns) as u32, rect.y0 + (pixel / columns) as u32);
-            let average = blending.average(&images, pixel);
-            (average, show(At { tile, pixel, x, y }, &average))
+    let passes = Passes { blending: &blending, holes: settings.holes, keep: stages };
+    let Blended { images, averages } = passes.run(job, |_, _, _| true, &mut clock);
+    let mut left = planes::images(&images);
+    if stages {
+        left.extend(planes::averages(&averages));
+    }
+    left.extend(picture(job, &averages));
+    let (frame, timings) = (job.frame(left), clock.into_laps());
+    Ok(Picture { frame, tally: blending.tally(), timings })
+}
+
+/// The planes of every picture.
+fn picture<R: Exact>(job: &Job<'_>, averages: &Tiled<GroupAverage<R>>) -> Vec<NamedPlane<R>> {
+    let blends: Tiled<Blend<R>> = averages.map(|pixel| pixel.blend);
+    let mut left: Vec<_> = planes::shown(job, &blends).into();
+    left.extend(planes::nearest(averages));
+    left
+}
+
+/// The geometry and the compositing pass.
+pub(in crate::method) struct Passes<'a, R: Exact> {
+    pub(in crate::method) blending: &'a Blending<R>,
+    pub(in crate::method) holes: Holes,
+    /// Whether the images of the groups are kept.
+    pub(in crate::method) keep: bool,
+}
+
+/// What both passes leave.
+pub(in crate::method) struct Blended<R> {
+    /// The image of each group, if it is kept.
+    pub(in crate::method) images: Vec<Tiled<GroupLayers<R>>>,
+    pub(in crate::method) averages: Tiled<GroupAverage<R>>,
+}
+
+impl<R: Exact> Passes<'_, R> {
+    /// Runs both over each tile; fragments for which `stays` (the tile, the pixel in it, and the
+    /// depth) does not hold are dropped.
+    pub(in crate::method) fn run(
+        &self,
+        job: &Job<'_>,
+        stays: impl Fn(usize, usize, R) -> bool + Sync + Send,
+        clock: &mut Clock,
+    ) -> Blended<R> {
+        let grid = job.exec.grid(job.camera.width, job.camera.height);
+        let tiles = grid.rects().into_iter().enumerate().collect();
+        let done = job.exec.ordered(tiles, |(tile, rect): (usize, Rect)| {
+            let start = Instant::now();
+            let images = self.blending.images(tile, rect, |pixel, t| stays(tile, pixel, t));
+            let drawn = Instant::now();
+            let averages = averages(&images, rect.pixels(), self.holes);
+            ((self.keep.then_some(images), averages), [drawn - start, drawn.elapsed()])
         });
-        let (averages, shown): (Vec<_>, Vec<_>) = pixels.unzip();
-        (stages.then_some(images), (averages, shown))
-    });
-    clock.lap("blending");
-    let (images, pixels): (Vec<_>, Vec<_>) = done.into_iter().unzip();
-    let (averages, shown) = pixels.into_iter().unzip();
-    let images = images.into_iter().flatten().collect();
-    let (groups, tally) = (job.index.groups()?.len(), blending.tally());
-    Ok(Blended { grid, groups, images, averages, shown, tally })
-}
-
-impl<R: Exact> Blended<R> {
-    /// A plane of the averages.
-    pub(in crate::method) fn plane<T: Clone>(
-        &self,
-        fill: T,
-        of: impl Fn(&Average<R>) -> T,
-    ) -> crate::frame::Plane<T> {
-        self.grid.assemble(fill, |t, i| of(&self.averages[t][i]))
-    }
-
-    /// A plane of the averages and the pixels they are of.
-    pub(in crate::method) fn plane_at(
-        &self,
-        of: impl Fn((usize, usize), &Average<R>) -> R,
-    ) -> crate::frame::Plane<R> {
-        self.grid.assemble(R::ZERO, |t, i| of((t, i), &self.averages[t][i]))
-    }
-
-    /// The planes of blending and average.
-    pub(in crate::method) fn planes(&self) -> Vec<NamedPlane<R>> {
-        let mut planes = image_planes(&self.grid, &self.images, self.groups);
-        planes.extend(average_planes(&self.grid, |t, i| &self.averages[t][i]));
-        planes
-    }
-
-    /// Colour and opacity before the environment.
-    pub(in crate::method) fn colors(&self, job: &Job<'_>) -> [NamedPlane<R>; 2] {
-        let shown = |t: usize, i: usize| &self.shown[t][i];
-        let colors = self.grid.assemble([R::ZERO; 3], |t, i| shown(t, i).color);
-        let alphas = self.grid.assemble(R::ZERO, |t, i| shown(t, i).alpha);
-        let (colors, alphas) = before_environment(job.scene, job.camera, colors, alphas, job.exec);
-        [color("", colors), scalar("A", alphas)]
+        let (done, times): (Vec<_>, Vec<_>) = done.into_iter().unzip();
+        clock.shares(["blending", "averaging"], &times);
+        let (images, averages): (Vec<_>, Vec<_>) = done.into_iter().unzip();
+        let images = Tiled::images(grid, images.into_iter().flatten().collect());
+        Blended { images, averages: Tiled::from_tiles(grid, averages) }
     }
 }
 
-/// The image of each group.
-fn image_planes<R: Exact>(
-    grid: &Grid,
-    images: &[Vec<Vec<Layers<R>>>],
-    groups: usize,
+/// The planes of the stage of blending, run alone.
+pub(in crate::method) fn blended_alone<R: Exact>(
+    images: &[Tiled<GroupLayers<R>>],
 ) -> Vec<NamedPlane<R>> {
-    let groups = if images.is_empty() { 0 } else { groups };
-    let of = |k: usize| {
-        let at = |tile: usize, i: usize| &images[tile][k][i];
-        let name = |plane: &str| format!("blended.group{k:02}{plane}");
-        let counts = grid.assemble(0, |t, i| at(t, i).count);
-        let ids = grid.assemble(NO_ID, |t, i| at(t, i).surfel);
-        [
-            color(&name(""), grid.assemble([R::ZERO; 3], |t, i| at(t, i).blend.color)),
-            scalar(&name(".A"), grid.assemble(R::ZERO, |t, i| at(t, i).blend.alpha)),
-            scalar(&name(".opacity"), grid.assemble(R::ZERO, |t, i| at(t, i).opacity)),
-            scalar(&name(".bin"), grid.assemble(R::ZERO, |t, i| at(t, i).bin)),
-            named(&name(".count"), Samples::Count(counts)),
-            named(&name(".id"), Samples::Index(ids)),
-        ]
-    };
-    (0..groups).flat_map(of).collect()
+    let mut left = planes::images(images);
+    left.extend(planes::images_alone(images));
+    left
 }
 
-/// The averages of the compositing pass.
-fn average_planes<'a, R: Exact>(
-    grid: &Grid,
-    at: impl Fn(usize, usize) -> &'a Average<R>,
-) -> Vec<NamedPlane<R>> {
-    let of = |value: &dyn Fn(&Average<R>) -> R| grid.assemble(R::ZERO, |t, i| value(at(t, i)));
-    vec![
-        color("blended", grid.assemble([R::ZERO; 3], |t, i| at(t, i).blend.color)),
-        scalar("blended.A", of(&|average| average.blend.alpha)),
-        scalar("blended.opacity", of(&|average| average.opacity)),
-        scalar("blended.hidden", of(&|average| average.hidden)),
-        scalar("blended.layers", of(&|average| average.layers)),
-    ]
+/// The compositing pass over somebody's images.
+pub(in crate::method) fn average<R: Exact>(
+    job: &Job<'_>,
+    holes: Holes,
+    images: &[Tiled<GroupLayers<R>>],
+) -> Tiled<GroupAverage<R>> {
+    Tiled::new(job, |tile, rect| {
+        let images: Vec<_> = images.iter().map(|image| image.tile(tile)).collect();
+        averages(&images, rect.pixels(), holes)
+    })
+}
+
+/// One stage on somebody's planes.
+pub(super) fn stage<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    stage: &str,
+    given: &Given<'_, R>,
+) -> Result<Vec<NamedPlane<R>>> {
+    match stage {
+        "blending" => {
+            let blending = Blending::project(job, settings)?;
+            let passes = Passes { blending: &blending, holes: settings.holes, keep: true };
+            let blended = passes.run(job, |_, _, _| true, &mut Clock::default());
+            Ok(blended_alone(&blended.images))
+        }
+        "averaging" => {
+            let averages = average(job, settings.holes, &planes::given_images(job, given)?);
+            let mut left: Vec<_> = planes::averages(&averages).into();
+            left.extend(picture(job, &averages));
+            Ok(left)
+        }
+        _ => Err(unknown(stage)),
+    }
 }

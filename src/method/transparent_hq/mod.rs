@@ -23,82 +23,30 @@
 //! [`mod@crate::splat::project`]) and epsilon < (scale - 1) r, and, as depths of another radius
 //! round otherwise, anywhere with an epsilon of 0.
 
+mod compositing;
+pub mod explain;
 mod nearest;
 mod picture;
+mod planes;
+mod settings;
+
+pub use settings::Settings;
 
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::index::grouping::Grouping;
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::single_pass::{BinCount, DepthTest};
+use crate::method::tiled::Given;
 use crate::method::{Picture, Stage, transparent};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
-use crate::setting::{Field, Fields, Slot, Visit};
-use crate::shade::optics::{BendingLayers, Refraction};
 use crate::splat::SplatSettings;
-
-/// What is computed; everything here may change the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// How the other layers are blended; its footprints, epsilon and culling are those of the
-    /// nearest layer too.
-    pub layers: transparent::Settings,
-    /// Which fragment of a group the nearest layer keeps.
-    pub nearest: DepthTest,
-    /// How light is bent at the nearest layer; needs an environment to be seen.
-    pub refraction: Option<Refraction>,
-}
-
-impl Default for Settings {
-    /// Voronoi depth with bins as deep as epsilon; nothing is refracted.
-    fn default() -> Self {
-        Self {
-            layers: transparent::Settings::default(),
-            nearest: DepthTest::Voronoi(BinCount::Epsilon),
-            refraction: None,
-        }
-    }
-}
-
-impl Fields for Settings {
-    fn fields(&mut self, each: &mut Visit<'_>) {
-        self.layers.fields(each);
-        each(self.nearest.field());
-        if let DepthTest::Voronoi(bins) = &mut self.nearest {
-            *bins = self.layers.bins;
-        }
-        let mut ratio = self.refraction.map(|refraction| refraction.ratio);
-        let mut layers =
-            self.refraction.map_or(BendingLayers::Multiple, |refraction| refraction.layers);
-        let help = "ratios of refraction for red, green and blue, the index outside over the index \
-                    inside: 0.6667 from air to glass";
-        each(Field::new("refraction", help, Slot::Ratios(&mut ratio)).range("above 0 to 4"));
-        let bends = Field::new("bends", "how many layers bend light", Slot::Word(&mut layers));
-        each(if ratio.is_some() { bends } else { bends.idle("without a `refraction`") });
-        self.refraction = ratio.map(|ratio| Refraction { ratio, layers });
-    }
-}
-
-impl Settings {
-    /// Whether the numbers are in range.
-    ///
-    /// # Errors
-    /// [`crate::Error::Invalid`] if one is not.
-    pub fn check(&self) -> Result<()> {
-        self.layers.check()?;
-        if let DepthTest::Voronoi(bins) = &self.nearest {
-            bins.check()?;
-        }
-        self.refraction.as_ref().map_or(Ok(()), Refraction::check)
-    }
-}
 
 impl Algorithm for Settings {
     const NAME: &'static str = "transparent-hq";
     const SUMMARY: &'static str = "layers behind a smoothly interpolated nearest one; reflection, \
          refraction, dispersion [ZP06, Algorithm 3]";
-    const STAGES: &'static [Stage] = &[];
+    const STAGES: &'static [Stage] = planes::STAGES;
     const GROUPING: Option<Grouping> = Some(transparent::GROUPING);
     const BACK_TO_FRONT: bool = true;
     type Memory = ();
@@ -116,13 +64,11 @@ impl Algorithm for Settings {
     }
 
     fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
-        let _ = (job, from);
-        Err(crate::method::stage::unknown(stage))
+        Ok(job.frame(picture::stage(job, self, stage, &Given::new(from, job))?))
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
-        let _ = (job, pixel);
-        Err(crate::Error::Usage("there is no replay of this method".into()))
+        Ok(explain::explain::<R>(job, self, pixel)?.to_string())
     }
 
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {

@@ -1,32 +1,33 @@
 //! The geometry pass of Algorithm 2: every layer of every group, blended from back to front.
 
-use super::{Holes, Settings};
+use super::Settings;
 use crate::composite::bins::DepthBins;
 use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::error::Result;
+use crate::frame::stencil::{Outcome, Stencil};
 use crate::frame::{NO_ID, Rect};
 use crate::method::algorithm::Job;
-use crate::method::ewa::plain::{each_inside, facing};
+use crate::method::fragment::{each_in_bounds, each_inside, facing};
 use crate::method::prepare::Prepared;
 use crate::number::{Exact, Vector3};
 use crate::scene::Scene;
 use crate::shade::phong::Shader;
-use crate::splat::{Disc, Fate, Projector, Reasons, Splat, Tally, View, batch, project};
+use crate::splat::{Disc, Fate, Projector, Reasons, Shared, Splat, Tally, View, batch, project};
 
 /// A surfel in one of its groups, on the screen.
 #[derive(Clone, Copy, Debug)]
-struct Drawn<R: Exact> {
-    splat: Splat<R>,
-    group: u8,
+pub(super) struct GroupSplat<R: Exact> {
+    pub(super) splat: Splat<R>,
+    pub(super) group: u8,
     /// Shaded at the centre.
     color: [R; 3],
-    alpha: R,
+    pub(super) alpha: R,
 }
 
 /// What the image of a group holds at a pixel.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::method) struct Layers<R> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::method) struct GroupLayers<R> {
     /// The bin of the nearest fragment so far; +inf where there is none.
     pub(in crate::method) bin: R,
     /// All fragments that passed, blended.
@@ -43,8 +44,9 @@ pub(in crate::method) struct Layers<R> {
     pub(in crate::method) surfel: u32,
 }
 
-impl<R: Exact> Layers<R> {
-    const EMPTY: Self = Self {
+impl<R: Exact> GroupLayers<R> {
+    /// No fragment.
+    pub(super) const EMPTY: Self = Self {
         bin: R::INFINITY,
         blend: Blend::CLEAR,
         opacity: R::ZERO,
@@ -54,16 +56,21 @@ impl<R: Exact> Layers<R> {
         surfel: NO_ID,
     };
 
+    /// The depth test: whether a fragment is in a nearer bin than all before.
+    pub(super) fn is_behind(&self, bin: R) -> bool {
+        decide::nearer_bin(bin, self.bin)
+    }
+
     /// Blends a fragment that passed the depth test.
-    fn add(&mut self, drawn: &Drawn<R>, bin: R, depth: R) {
-        let Drawn { alpha, color, .. } = *drawn;
+    pub(super) fn add(&mut self, drawn: &GroupSplat<R>, bin: R, depth: R) {
+        let GroupSplat { alpha, color, .. } = *drawn;
         let opaque = decide::opaque(alpha);
         *self = Self {
             bin,
             blend: self.blend.over(alpha, color),
             opacity: if opaque { R::ZERO } else { self.opacity + alpha },
             hidden: if opaque { R::ONE } else { self.hidden },
-            count: self.count.saturating_add(1),
+            count: Stencil::COUNT.update(self.count, Outcome::Pass),
             depth,
             surfel: drawn.splat.surfel,
         };
@@ -73,10 +80,9 @@ impl<R: Exact> Layers<R> {
 /// The splats of all groups, projected and sorted into tiles.
 #[derive(Debug)]
 pub(in crate::method) struct Blending<R: Exact> {
-    prepared: Prepared<R, Drawn<R>>,
-    bins: DepthBins<R>,
+    prepared: Prepared<R, GroupSplat<R>>,
+    pub(super) bins: DepthBins<R>,
     groups: usize,
-    holes: Holes,
 }
 
 impl<R: Exact> Blending<R> {
@@ -107,14 +113,14 @@ impl<R: Exact> Blending<R> {
                     tally.count(fate);
                     if fate == Fate::Visible {
                         let (color, alpha) = appearance(scene, &shader, &splat);
-                        drawn.push(Drawn { splat, group, color, alpha });
+                        drawn.push(GroupSplat { splat, group, color, alpha });
                     }
                 }
                 tally
             },
-            |drawn: &Drawn<R>| drawn.splat.bounds,
+            |drawn: &GroupSplat<R>| drawn.splat.bounds,
         );
-        Ok(Self { prepared, bins, groups: groups.len(), holes: settings.holes })
+        Ok(Self { prepared, bins, groups: groups.len() })
     }
 
     /// What became of the surfels, each counted once in each of its groups.
@@ -122,27 +128,42 @@ impl<R: Exact> Blending<R> {
         self.prepared.tally
     }
 
-    /// The geometry pass over one tile: the image of each group, row by row.
+    /// What the fragments of all splats share.
+    pub(super) fn shared(&self) -> &Shared<R> {
+        &self.prepared.shared
+    }
+
+    /// The depth of the visible band in world units.
+    pub(in crate::method) fn epsilon(&self) -> R {
+        self.prepared.epsilon
+    }
+
+    /// How many groups there are.
+    pub(super) fn groups(&self) -> usize {
+        self.groups
+    }
+
+    /// The geometry pass over some pixels of a tile: the image of each group, row by row.
     ///
-    /// With `mask`, the depth of the nearest layer at each pixel, fragments up to epsilon behind it
-    /// are dropped.
+    /// Fragments for which `stays` (the pixel, counted row by row, and the depth) does not hold are
+    /// dropped.
     pub(in crate::method) fn images(
         &self,
         tile: usize,
         rect: Rect,
-        mask: Option<&[R]>,
-    ) -> Vec<Vec<Layers<R>>> {
-        let (shared, band) = (&self.prepared.shared, self.prepared.epsilon);
-        let mut images = vec![vec![Layers::EMPTY; rect.pixels()]; self.groups];
+        stays: impl Fn(usize, R) -> bool,
+    ) -> Vec<Vec<GroupLayers<R>>> {
+        let shared = self.shared();
+        let mut images = vec![vec![GroupLayers::EMPTY; rect.pixels()]; self.groups];
         self.prepared.for_each(tile, |drawn| {
             let image = &mut images[usize::from(drawn.group)];
             each_inside(shared, &drawn.splat, &rect, |i, _, nearness| {
                 let depth = shared.depth(nearness);
-                if mask.is_some_and(|mask| decide::visible(depth, decide::limit(mask[i], band))) {
+                if !stays(i, depth) {
                     return;
                 }
                 let bin = self.bins.bin(depth);
-                if decide::nearer_bin(bin, image[i].bin) {
+                if image[i].is_behind(bin) {
                     image[i].add(drawn, bin, depth);
                 }
             });
@@ -150,67 +171,17 @@ impl<R: Exact> Blending<R> {
         images
     }
 
-    /// The compositing pass: the average of all groups at one pixel of their images.
-    pub(in crate::method) fn average(&self, images: &[Vec<Layers<R>>], pixel: usize) -> Average<R> {
-        let mut sum = Average::EMPTY;
-        let mut count = 0_u8;
-        for image in images {
-            let layers = &image[pixel];
-            count += u8::from(layers.count > 0 || self.holes == Holes::Background);
-            sum.add(layers);
-        }
-        // An image that is left out has added zeros.
-        if count == 0 { sum } else { sum.divided(R::from_f32(f32::from(count))) }
-    }
-}
-
-/// The groups of a pixel together.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::method) struct Average<R> {
-    pub(in crate::method) blend: Blend<R>,
-    /// See [`Layers::opacity`].
-    pub(in crate::method) opacity: R,
-    /// See [`Layers::hidden`].
-    pub(in crate::method) hidden: R,
-    /// Mean count of layers.
-    pub(in crate::method) layers: R,
-    /// Least depth of any group.
-    pub(in crate::method) depth: R,
-    /// Its surfel; ties: the lower one.
-    pub(in crate::method) surfel: u32,
-}
-
-impl<R: Exact> Average<R> {
-    pub(in crate::method) const EMPTY: Self = Self {
-        blend: Blend::CLEAR,
-        opacity: R::ZERO,
-        hidden: R::ZERO,
-        layers: R::ZERO,
-        depth: R::INFINITY,
-        surfel: NO_ID,
-    };
-
-    fn add(&mut self, layers: &Layers<R>) {
-        self.blend = self.blend.plus(&layers.blend);
-        self.opacity = self.opacity + layers.opacity;
-        self.hidden = self.hidden + layers.hidden;
-        self.layers = self.layers + R::from_f32(f32::from(layers.count));
-        if decide::before_or_lower((layers.depth, layers.surfel), (self.depth, self.surfel)) {
-            (self.depth, self.surfel) = (layers.depth, layers.surfel);
-        }
-    }
-
-    fn divided(self, count: R) -> Self {
-        Self {
-            blend: Blend {
-                color: self.blend.color.map(|c| c / count),
-                alpha: self.blend.alpha / count,
-            },
-            opacity: self.opacity / count,
-            hidden: self.hidden / count,
-            layers: self.layers / count,
-            ..self
-        }
+    /// Runs `visit` for every pixel of `rect` in the bounds of every splat, from back to front:
+    /// splat, q and nearness.
+    pub(super) fn each_in_bounds(
+        &self,
+        tile: usize,
+        rect: Rect,
+        mut visit: impl FnMut(&GroupSplat<R>, R, R),
+    ) {
+        self.prepared.for_each(tile, |drawn| {
+            each_in_bounds(self.shared(), &drawn.splat, &rect, |_, q, w| visit(drawn, q, w));
+        });
     }
 }
 

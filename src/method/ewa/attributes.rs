@@ -1,0 +1,84 @@
+//! Attribute splatting: weighted sums over the fragments within epsilon of the nearest
+//! \[GBP04, section 3\].
+
+use super::visibility::Foremost;
+use crate::composite::{decide, sum};
+use crate::frame::stencil::{Outcome, Stencil};
+use crate::method::algorithm::Job;
+use crate::method::fragment::{TileSplats, facing};
+use crate::method::prepare::Prepared;
+use crate::method::tiled::Tiled;
+use crate::number::Exact;
+use crate::scene::Surfels;
+use crate::splat::Splat;
+
+/// What has been added up at a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::method) struct Sums<R> {
+    pub(in crate::method) weight: R,
+    /// Weights times normals.
+    pub(in crate::method) normal: [R; 3],
+    /// Weights times colours; 0 where the scene has none.
+    pub(in crate::method) color: [R; 3],
+    /// Weights times opacities; an opacity that the scene does not have is 1.
+    pub(in crate::method) opacity: R,
+    /// How many fragments, up to 255.
+    pub(in crate::method) count: u8,
+}
+
+/// Attribute splatting over the picture.
+pub(super) fn attributes<R: Exact>(
+    job: &Job<'_>,
+    splats: &Prepared<R, Splat<R>>,
+    visible: &Tiled<Foremost<R>>,
+) -> Tiled<Sums<R>> {
+    let surfels = &job.scene.surfels;
+    Tiled::new(job, |tile, rect| {
+        sums(&TileSplats::new(splats, tile, rect), surfels, visible.tile(tile), |_, _| true)
+    })
+}
+
+/// The sums over the fragments that are inside, for which `candidate` holds (as in
+/// [`super::visibility::foremost`]) and that pass the epsilon-z test against the nearest, in
+/// ascending surfel index.
+pub(in crate::method) fn sums<R: Exact>(
+    tile: &TileSplats<'_, R>,
+    surfels: &Surfels,
+    nearest: &[Foremost<R>],
+    candidate: impl Fn(usize, R) -> bool,
+) -> Vec<Sums<R>> {
+    let (shared, epsilon) = (tile.shared(), tile.epsilon());
+    let mut pixels = vec![Sums::NONE; tile.rect.pixels()];
+    tile.each_inside(|splat, pixel, q, w| {
+        let limit = decide::limit(nearest[pixel].depth, epsilon);
+        if candidate(pixel, w) && decide::visible(shared.depth(w), limit) {
+            pixels[pixel].add(surfels, splat, splat.footprint.weight(q));
+        }
+    });
+    pixels
+}
+
+impl<R: Exact> Sums<R> {
+    /// No fragment.
+    pub(in crate::method) const NONE: Self = Self {
+        weight: R::ZERO,
+        normal: [R::ZERO; 3],
+        color: [R::ZERO; 3],
+        opacity: R::ZERO,
+        count: 0,
+    };
+
+    /// Adds the attributes of a fragment.
+    fn add(&mut self, surfels: &Surfels, splat: &Splat<R>, weight: R) {
+        let i = splat.surfel as usize;
+        let normal = facing(surfels.normal()[i].to_array().map(R::from_f32), splat.back);
+        let opacity = surfels.opacity().map_or(R::ONE, |all| R::from_f32(all[i]));
+        if let Some(colors) = surfels.color() {
+            self.color = sum::add(self.color, weight, colors[i].to_array().map(R::from_f32));
+        }
+        self.normal = sum::add(self.normal, weight, normal);
+        self.opacity = self.opacity + weight * opacity;
+        self.weight = self.weight + weight;
+        self.count = Stencil::COUNT.update(self.count, Outcome::Pass);
+    }
+}

@@ -1,0 +1,18 @@
+//! Normalization: averages and directions in place of sums.
+
+use super::attributes::Sums;
+use super::visibility::Foremost;
+use crate::composite::sum;
+use crate::method::resolved::Resolved;
+use crate::number::Exact;
+
+/// At one pixel: depth of the nearest fragment; colour = sum / weight; normal = direction of sum / weight.
+pub(in crate::method) fn resolve<R: Exact>(nearest: &Foremost<R>, sums: &Sums<R>) -> Resolved<R> {
+    Resolved {
+        depth: nearest.depth,
+        id: nearest.id,
+        weight: sums.weight,
+        normal: sum::direction(sums.normal, sums.weight),
+        color: sum::average(sums.color, sums.weight),
+    }
+}

@@ -1,0 +1,56 @@
+//! Visibility splatting: the nearest fragment of each pixel \[GBP04, section 3\].
+
+use crate::composite::decide;
+use crate::frame::NO_ID;
+use crate::method::algorithm::Job;
+use crate::method::fragment::TileSplats;
+use crate::method::prepare::Prepared;
+use crate::method::tiled::Tiled;
+use crate::number::Exact;
+use crate::splat::{Shared, Splat};
+
+/// The nearest fragment of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::method) struct Foremost<R> {
+    /// Its nearness; that of an empty pixel where there is none.
+    pub(in crate::method) nearness: R,
+    /// Its depth in world units; +inf where there is none.
+    pub(in crate::method) depth: R,
+    /// Its surfel; [`NO_ID`] where there is none.
+    pub(in crate::method) id: u32,
+}
+
+impl<R: Exact> Foremost<R> {
+    /// An empty pixel.
+    fn none(shared: &Shared<R>) -> Self {
+        Self { nearness: shared.empty(), depth: R::INFINITY, id: NO_ID }
+    }
+}
+
+/// Visibility splatting over the picture.
+pub(super) fn visibility<R: Exact>(
+    job: &Job<'_>,
+    splats: &Prepared<R, Splat<R>>,
+) -> Tiled<Foremost<R>> {
+    Tiled::new(job, |tile, rect| foremost(&TileSplats::new(splats, tile, rect), |_, _| true))
+}
+
+/// Of the fragments that are inside and for which `candidate` holds (the pixel, counted row by row,
+/// and the nearness), each pixel keeps the greatest nearness; ties: the lower surfel index.
+pub(in crate::method) fn foremost<R: Exact>(
+    tile: &TileSplats<'_, R>,
+    candidate: impl Fn(usize, R) -> bool,
+) -> Vec<Foremost<R>> {
+    let shared = tile.shared();
+    let mut pixels = vec![Foremost::none(shared); tile.rect.pixels()];
+    tile.each_inside(|splat, pixel, _, w| {
+        let held = &mut pixels[pixel];
+        if candidate(pixel, w) && decide::nearer(w, held.nearness) {
+            (held.nearness, held.id) = (w, splat.surfel);
+        }
+    });
+    for pixel in &mut pixels {
+        pixel.depth = shared.depth(pixel.nearness);
+    }
+    pixels
+}

@@ -1,0 +1,93 @@
+//! The fragments of splats: what every method that draws splats does with one.
+
+use super::prepare::Prepared;
+use crate::composite::decide;
+use crate::frame::Rect;
+use crate::number::Exact;
+use crate::splat::{Shared, Splat, fragment};
+
+/// The splats that may touch some pixels, all of one tile.
+#[derive(Debug)]
+pub(super) struct TileSplats<'a, R: Exact> {
+    prepared: &'a Prepared<R, Splat<R>>,
+    tile: usize,
+    /// The pixels.
+    pub(super) rect: Rect,
+}
+
+impl<'a, R: Exact> TileSplats<'a, R> {
+    /// The splats of a tile, at these of its pixels.
+    pub(super) fn new(prepared: &'a Prepared<R, Splat<R>>, tile: usize, rect: Rect) -> Self {
+        Self { prepared, tile, rect }
+    }
+
+    /// What the fragments of all splats share.
+    pub(super) fn shared(&self) -> &'a Shared<R> {
+        &self.prepared.shared
+    }
+
+    /// The depth of the visible band in world units.
+    pub(super) fn epsilon(&self) -> R {
+        self.prepared.epsilon
+    }
+
+    /// Runs `draw` for every pixel in the bounds of every splat, in ascending surfel index: splat,
+    /// pixel counted row by row, q and nearness.
+    #[inline(always)]
+    pub(super) fn each_in_bounds(&self, mut draw: impl FnMut(&Splat<R>, usize, R, R)) {
+        self.prepared.for_each(self.tile, |splat| {
+            each_in_bounds(self.shared(), splat, &self.rect, |pixel, q, w| {
+                draw(splat, pixel, q, w);
+            });
+        });
+    }
+
+    /// Runs `draw` for every fragment that is inside, in ascending surfel index: splat, pixel
+    /// counted row by row, q and nearness.
+    #[inline(always)]
+    pub(super) fn each_inside(&self, mut draw: impl FnMut(&Splat<R>, usize, R, R)) {
+        self.prepared.for_each(self.tile, |splat| {
+            each_inside(self.shared(), splat, &self.rect, |pixel, q, w| draw(splat, pixel, q, w));
+        });
+    }
+}
+
+/// Runs `draw` for the pixels of `rect` in the bounds of a splat: the pixel, counted row by row, q
+/// and nearness.
+#[inline(always)]
+pub(super) fn each_in_bounds<R: Exact>(
+    shared: &Shared<R>,
+    splat: &Splat<R>,
+    rect: &Rect,
+    mut draw: impl FnMut(usize, R, R),
+) {
+    let columns = rect.x1 - rect.x0;
+    let Rect { x0, y0, x1, y1 } = splat.bounds.intersection(rect);
+    for y in y0..y1 {
+        for x in x0..x1 {
+            let (q, w) = fragment(shared, &splat.footprint, (x, y));
+            draw(((y - rect.y0) * columns + (x - rect.x0)) as usize, q, w);
+        }
+    }
+}
+
+/// The same for the fragments that are inside.
+#[inline(always)]
+pub(super) fn each_inside<R: Exact>(
+    shared: &Shared<R>,
+    splat: &Splat<R>,
+    rect: &Rect,
+    mut draw: impl FnMut(usize, R, R),
+) {
+    each_in_bounds(shared, splat, rect, |pixel, q, w| {
+        if decide::inside(q, shared.limit) {
+            draw(pixel, q, w);
+        }
+    });
+}
+
+/// The normal, reversed if the back is seen.
+#[inline(always)]
+pub(super) fn facing<R: Exact>(normal: [R; 3], back: bool) -> [R; 3] {
+    if back { normal.map(|component| -component) } else { normal }
+}

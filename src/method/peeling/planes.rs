@@ -1,0 +1,118 @@
+//! The planes of the stages: where they leave, and where they come in.
+
+use super::layers::{PeeledLayer, PeeledPixel};
+use crate::composite::{decide, under::Under};
+use crate::error::Result;
+use crate::frame::{NamedPlane, Plane};
+use crate::method::resolved::{ALPHA, DEPTH, ID, SHADED};
+use crate::method::stage::{Holds, PlaneRow, Stage, When};
+use crate::method::tiled::{Given, Tiled};
+use crate::number::Exact;
+
+/// How many layers leave planes.
+pub const STAGES: u32 = 8;
+
+const LAYER_COLOR: PlaneRow = PlaneRow::new(
+    "layer#",
+    Holds::Color,
+    "linear RGB",
+    "shaded colour C_j of layer j, not multiplied by its opacity; black where there is no layer",
+    When::Settings,
+);
+const LAYER_ALPHA: PlaneRow = PlaneRow::new(
+    "layer#.A",
+    Holds::Scalar,
+    "",
+    "opacity a_j of layer j in [0, 1]; 0 where there is no layer",
+    When::Settings,
+);
+const LAYER_DEPTH: PlaneRow = PlaneRow::new(
+    "layer#.Z",
+    Holds::Scalar,
+    "world units",
+    "depth t_j of the nearest fragment of layer j; +inf where there is no layer",
+    When::Settings,
+);
+const LAYER_COUNT: PlaneRow = PlaneRow::new(
+    "layer#.count",
+    Holds::Count,
+    "fragments",
+    "how many fragments layer j averages, up to 255; 0 where there is no layer",
+    When::Settings,
+);
+const LAYERS: PlaneRow = PlaneRow::new(
+    "layers",
+    Holds::Count,
+    "layers",
+    "how many layers the pixel has, up to 255",
+    When::Always,
+);
+
+/// The stages. The first [`STAGES`] layers leave planes, or as many as the settings ask for.
+///
+/// On somebody's planes the stage `layers` begins anew if there are none of layers. With those of
+/// the layers up to j - 1 it gives the planes of layer j alone.
+pub(super) const ROWS: &[Stage] = &[
+    Stage { name: "projection", reads: &[], leaves: &[] },
+    Stage {
+        name: "layers",
+        reads: &["projection"],
+        leaves: &[LAYER_COLOR, LAYER_ALPHA, LAYER_DEPTH, LAYER_COUNT, DEPTH, ID, LAYERS],
+    },
+    Stage { name: "blending", reads: &["layers"], leaves: &[SHADED, ALPHA] },
+];
+
+/// The planes of layer `number`, counted from 1.
+pub(super) fn layer<R: Exact>(number: usize, layer: &Tiled<PeeledLayer<R>>) -> [NamedPlane<R>; 4] {
+    [
+        LAYER_COLOR.triple(number, layer.plane(|pixel| pixel.color)),
+        LAYER_ALPHA.scalar(number, layer.plane(|pixel| pixel.alpha)),
+        LAYER_DEPTH.scalar(number, layer.plane(|pixel| pixel.depth)),
+        LAYER_COUNT.count(number, layer.plane(|pixel| pixel.count)),
+    ]
+}
+
+/// The planes of all layers together.
+pub(super) fn pixels<R: Exact>(pixels: &Tiled<PeeledPixel<R>>) -> [NamedPlane<R>; 3] {
+    [
+        DEPTH.scalar(0, pixels.plane(|pixel| pixel.depth)),
+        ID.index(0, pixels.plane(|pixel| pixel.id)),
+        LAYERS.count(0, pixels.plane(|pixel| pixel.layers.min(255) as u8)),
+    ]
+}
+
+/// The planes of the picture.
+pub(super) fn shown<R: Exact>((color, alpha): (Plane<[R; 3]>, Plane<R>)) -> [NamedPlane<R>; 2] {
+    [SHADED.triple(0, color), ALPHA.scalar(0, alpha)]
+}
+
+/// How many of somebody's layers there are, one after the other from the first.
+pub(super) fn given_layers<R: Exact>(given: &Given<'_, R>) -> usize {
+    (1..=STAGES as usize).take_while(|&number| given.has(&LAYER_DEPTH, number)).count()
+}
+
+/// `limit_j` of somebody's layer j at each pixel; +inf where there is no layer, as none follows.
+pub(super) fn given_limits<R: Exact>(
+    given: &Given<'_, R>,
+    number: usize,
+    epsilon: R,
+) -> Result<Tiled<R>> {
+    let depth = given.scalar(&LAYER_DEPTH, number)?;
+    Ok(given.tiled(|x, y| decide::limit(*depth.at(x, y), epsilon)))
+}
+
+/// Somebody's layers, blended: as many as some pixel has.
+///
+/// A pixel with fewer has an opacity of 0 there, which changes nothing.
+pub(super) fn given_blends<R: Exact>(given: &Given<'_, R>) -> Result<Tiled<Under<R>>> {
+    let counts = given.count(&LAYERS, 0)?.values();
+    let most = counts.iter().copied().max().unwrap_or(0);
+    let layer = |number: usize| {
+        Ok((given.scalar(&LAYER_ALPHA, number)?, given.triple(&LAYER_COLOR, number)?))
+    };
+    let layers: Vec<_> = (1..=usize::from(most)).map(layer).collect::<Result<_>>()?;
+    Ok(given.tiled(|x, y| {
+        let layers = layers.iter().map(|(alpha, color)| (*alpha.at(x, y), *color.at(x, y)));
+        layers.fold(Under::CLEAR, |before, (alpha, color)| before.under(alpha, color))
+    }))
+}

@@ -1,0 +1,133 @@
+//! A surface at each pixel, before it is shaded: where the passes of opaque splats end, and the
+//! stage of shading that they have in common.
+
+use super::algorithm::Job;
+use super::picture::shaded;
+use super::stage::{Holds, PlaneRow, Stage, When};
+use super::tiled::{Given, Tiled};
+use crate::error::Result;
+use crate::frame::{Framebuffer, NamedPlane, Wanted};
+use crate::number::Exact;
+
+/// The averages at a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Resolved<R> {
+    /// Depth of the nearest fragment in world units; +inf where there is none.
+    pub(super) depth: R,
+    /// Its surfel; [`crate::frame::NO_ID`] where there is none.
+    pub(super) id: u32,
+    /// Sum of the weights.
+    pub(super) weight: R,
+    /// Direction of the average normal, in world space.
+    pub(super) normal: [R; 3],
+    /// Average colour; 0 where the scene has none.
+    pub(super) color: [R; 3],
+}
+
+pub(super) const COLOR: PlaneRow = PlaneRow::new(
+    "resolved",
+    Holds::Color,
+    "linear RGB",
+    "average colour of the visible fragments, before shading; 0 where there is none",
+    When::Colored,
+);
+pub(super) const DEPTH: PlaneRow = PlaneRow::new(
+    "Z",
+    Holds::Scalar,
+    "world units",
+    "depth of the nearest fragment; +inf where there is none",
+    When::Always,
+);
+pub(super) const NORMAL: PlaneRow = PlaneRow::new(
+    "normal",
+    Holds::Vector,
+    "",
+    "direction of the average normal of the visible fragments, in world space, of length 1; the \
+     null vector where there is none",
+    When::Lit,
+);
+pub(super) const WEIGHT: PlaneRow = PlaneRow::new(
+    "weight",
+    Holds::Scalar,
+    "",
+    "sum of the weights of the visible fragments; 0 where there is none",
+    When::Always,
+);
+pub(super) const ID: PlaneRow = PlaneRow::new(
+    "id",
+    Holds::Index,
+    "surfel",
+    "surfel of the nearest fragment; 0xFFFF_FFFF where there is none",
+    When::Always,
+);
+/// The colour of a picture.
+pub(super) const SHADED: PlaneRow = PlaneRow::new(
+    "",
+    Holds::Color,
+    "linear RGB",
+    "the picture: shaded, multiplied by A where several layers are seen, before the environment; \
+     black where nothing is seen",
+    When::Always,
+);
+/// The opacity of a picture.
+pub(super) const ALPHA: PlaneRow = PlaneRow::new(
+    "A",
+    Holds::Scalar,
+    "",
+    "opacity of the picture in [0, 1]; 1 where the environment is seen, 0 where nothing is",
+    When::Always,
+);
+
+/// Deferred shading, as a stage after the one called `normalized`.
+pub(super) const fn shading(normalized: &'static [&'static str]) -> Stage {
+    Stage { name: "shading", reads: normalized, leaves: &[SHADED, ALPHA] }
+}
+
+/// All planes of the averages.
+pub(super) fn planes<R: Exact>(job: &Job<'_>, pixels: &Tiled<Resolved<R>>) -> Vec<NamedPlane<R>> {
+    let mut planes: Vec<_> = colors(job, pixels).into_iter().collect();
+    planes.push(DEPTH.scalar(0, pixels.plane(|pixel| pixel.depth)));
+    planes.push(NORMAL.triple(0, pixels.plane(|pixel| pixel.normal)));
+    planes.push(WEIGHT.scalar(0, pixels.plane(|pixel| pixel.weight)));
+    planes.push(ID.index(0, pixels.plane(|pixel| pixel.id)));
+    planes
+}
+
+/// The average colours, if the scene has colours.
+pub(super) fn colors<R: Exact>(
+    job: &Job<'_>,
+    pixels: &Tiled<Resolved<R>>,
+) -> Option<NamedPlane<R>> {
+    let colored = job.scene.surfels.color().is_some();
+    colored.then(|| COLOR.triple(0, pixels.plane(|pixel| pixel.color)))
+}
+
+/// The averages as a framebuffer that can be shaded.
+pub(super) fn framebuffer<R: Exact>(
+    job: &Job<'_>,
+    pixels: &Tiled<Resolved<R>>,
+    wanted: Wanted,
+) -> Framebuffer<R> {
+    Framebuffer {
+        width: job.camera.width,
+        height: job.camera.height,
+        depth: pixels.plane(|pixel| pixel.depth),
+        id: pixels.plane(|pixel| pixel.id),
+        weight: pixels.plane(|pixel| pixel.weight),
+        normal: wanted.normal.then(|| pixels.plane(|pixel| pixel.normal)),
+        color: wanted.color.then(|| pixels.plane(|pixel| pixel.color)),
+        stencil: None,
+        margin: None,
+    }
+}
+
+/// The stage of shading, on somebody's averages.
+pub(super) fn shade<R: Exact>(job: &Job<'_>, given: &Given<'_, R>) -> Result<Vec<NamedPlane<R>>> {
+    let (depth, weight) = (given.scalar(&DEPTH, 0)?, given.scalar(&WEIGHT, 0)?);
+    let lit = !job.scene.lights.is_empty();
+    let normal = lit.then(|| given.triple(&NORMAL, 0)).transpose()?;
+    let colored = job.scene.surfels.color().is_some();
+    let color = colored.then(|| given.triple(&COLOR, 0).cloned()).transpose()?;
+    let (color, alpha) = shaded(job, depth, normal, weight, color);
+    Ok(vec![SHADED.triple(0, color), ALPHA.scalar(0, alpha)])
+}

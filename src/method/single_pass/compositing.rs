@@ -1,0 +1,65 @@
+//! The compositing pass: the operator of \[ZP06, Fig. 5\] over the depth-images, and normalization.
+
+use super::geometry::ImagePixel;
+use crate::composite::groups::{WeightedFragment, compose};
+use crate::composite::{decide, sum};
+use crate::frame::NO_ID;
+use crate::method::resolved::Resolved;
+use crate::number::Exact;
+
+/// What the compositing pass makes of one pixel.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::method) struct Composite<R> {
+    /// The sums, with the nearest depth.
+    pub(in crate::method) sums: WeightedFragment<R>,
+    /// How many groups passed the epsilon-z test.
+    pub(in crate::method) count: u32,
+    /// The surfel of the greatest nearness.
+    pub(in crate::method) id: u32,
+}
+
+/// The compositing pass over the first `pixels` pixels of all images; `empty` is the nearness of an empty pixel.
+pub(in crate::method) fn composites<R: Exact>(
+    images: &[impl AsRef<[ImagePixel<R>]>],
+    pixels: usize,
+    epsilon: R,
+    empty: R,
+) -> Vec<Composite<R>> {
+    let mut samples = Vec::with_capacity(images.len());
+    let composite = |pixel: usize| {
+        samples.clear();
+        let (mut nearness, mut id) = (empty, NO_ID);
+        for image in images {
+            let kept = &image.as_ref()[pixel];
+            samples.push(kept.sample);
+            if decide::nearer_or_lower((kept.nearness, kept.surfel), (nearness, id)) {
+                (nearness, id) = (kept.nearness, kept.surfel);
+            }
+        }
+        let (sums, count) = compose(&samples, epsilon);
+        Composite { sums, count, id }
+    };
+    (0..pixels).map(composite).collect()
+}
+
+impl<R: Exact> Composite<R> {
+    /// Normalization.
+    pub(in crate::method) fn resolved(&self) -> Resolved<R> {
+        let Self { sums, id, .. } = *self;
+        Resolved {
+            depth: sums.depth,
+            id,
+            weight: sums.weight,
+            normal: sum::direction(sums.normal, sums.weight),
+            color: sum::average(sums.color, sums.weight),
+        }
+    }
+
+    /// The average opacity.
+    pub(in crate::method) fn opacity(&self) -> R {
+        let WeightedFragment { opacity, weight, .. } = self.sums;
+        let [alpha, ..] = sum::average([opacity, R::ZERO, R::ZERO], weight);
+        // The quotient of two sums may exceed 1 by their rounding.
+        alpha.at_most(R::ONE)
+    }
+}

@@ -1,0 +1,161 @@
+//! Every decision at one pixel, with its operands.
+
+use super::Settings;
+use super::averaging::{GroupAverage, averages};
+use super::blending::{Blending, GroupLayers};
+use crate::composite::decide;
+use crate::error::Result;
+use crate::method::algorithm::Job;
+use crate::method::replay::{Decision, Place, Touch, touch};
+use crate::number::Exact;
+use std::fmt;
+
+/// What happened at one pixel.
+#[derive(Clone, Debug)]
+pub struct TransparentReplay<R> {
+    /// Column and row.
+    pub pixel: (u32, u32),
+    /// k^2, the limit of q.
+    pub limit: R,
+    /// The groups that splats reach the pixel from, ascending.
+    pub groups: Vec<BlendedGroupAt<R>>,
+    /// Opacity of the average of all groups.
+    pub alpha: R,
+    /// Colour of the average, over black.
+    pub color: [R; 3],
+    /// Average count of layers.
+    pub layers: R,
+    /// Depth of the nearest fragment; +inf if the pixel is empty.
+    pub nearest: R,
+    /// Its surfel.
+    pub id: u32,
+}
+
+/// A group at the pixel.
+#[derive(Clone, Debug)]
+pub struct BlendedGroupAt<R> {
+    /// The group.
+    pub group: usize,
+    /// The splats whose bounds hold the pixel, from back to front; each that passes is blended by
+    /// the opacity that it gives.
+    pub touches: Vec<Touch<R>>,
+    /// How many layers were blended, up to 255.
+    pub count: u8,
+    /// Their opacity together.
+    pub alpha: R,
+    /// Sum of the opacities in front of the nearest opaque layer.
+    pub opacity: R,
+    /// Their colour, over black.
+    pub color: [R; 3],
+}
+
+/// Replays both passes at one pixel.
+///
+/// # Errors
+/// [`crate::Error::Usage`] if the pixel is outside the picture; [`crate::Error::Invalid`] if there
+/// are no groups, or if the depth test takes too many bins.
+pub fn explain<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    pixel: (u32, u32),
+) -> Result<TransparentReplay<R>> {
+    Ok(replay(job, settings, pixel, None)?.0)
+}
+
+/// Replays both passes; fragments that are not strictly beyond a depth are dropped, if there is one.
+/// Gives the average of the groups, too.
+pub(in crate::method) fn replay<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    pixel: (u32, u32),
+    beyond: Option<R>,
+) -> Result<(TransparentReplay<R>, GroupAverage<R>)> {
+    let place = Place::new(job, pixel)?;
+    let blending = Blending::<R>::project(job, settings)?;
+    let stays = |_: usize, t: R| beyond.is_none_or(|limit| decide::beyond(t, limit));
+    let images = blending.images(place.tile, place.rect, stays);
+    let average = averages(&images, 1, settings.holes)[0];
+    let GroupAverage { blend, layers, depth, surfel, .. } = average;
+    let groups = geometry_pass(&blending, place, beyond).into_iter().map(|(group, touches)| {
+        let GroupLayers { blend, count, opacity, .. } = images[group][0];
+        let (alpha, color) = (blend.alpha, blend.color);
+        BlendedGroupAt { group, touches, count, alpha, opacity, color }
+    });
+    let replay = TransparentReplay {
+        pixel,
+        limit: blending.shared().limit,
+        groups: groups.collect(),
+        alpha: blend.alpha,
+        color: blend.color,
+        layers,
+        nearest: depth,
+        id: surfel,
+    };
+    Ok((replay, average))
+}
+
+/// The geometry pass: each group that reaches the pixel, and by which splats.
+fn geometry_pass<R: Exact>(
+    blending: &Blending<R>,
+    place: Place,
+    beyond: Option<R>,
+) -> Vec<(usize, Vec<Touch<R>>)> {
+    let shared = blending.shared();
+    let mut groups = vec![(GroupLayers::EMPTY, Vec::new()); blending.groups()];
+    blending.each_in_bounds(place.tile, place.rect, |drawn, q, w| {
+        let (layers, touches) = &mut groups[usize::from(drawn.group)];
+        let mut seen = touch(shared, drawn.splat.surfel, q, w);
+        if let Some(limit) = beyond {
+            seen.decide(|| Decision::beyond(shared.depth(w), limit, ["behind ", "masked "]));
+        }
+        let bin = blending.bins.bin(seen.t);
+        seen.decide(|| {
+            let (held, words) = (layers.bin, ["blended", "dropped"]);
+            Decision::new("bin", [bin, held], layers.is_behind(bin), ["< ", ">="], words)
+        });
+        if seen.passes() {
+            layers.add(drawn, bin, seen.t);
+            seen.gives = Some(("opacity", drawn.alpha));
+        }
+        touches.push(seen);
+    });
+    let reached = groups.into_iter().map(|(_, touches)| touches).enumerate();
+    reached.filter(|(_, touches)| !touches.is_empty()).collect()
+}
+
+impl<R: Exact> fmt::Display for TransparentReplay<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ((x, y), n) = (self.pixel, |value: R| value.to_f64());
+        writeln!(f, "pixel ({x}, {y}): groups whose splats reach it: {}", self.groups.len())?;
+        let limit = n(self.limit);
+        writeln!(
+            f,
+            "\ngeometry pass, from back to front: inside if q <= {limit}, blended if bin < before"
+        )?;
+        for at in &self.groups {
+            writeln!(f, "  group {}", at.group)?;
+            at.touches.iter().try_for_each(|touch| writeln!(f, "    {touch}"))?;
+            writeln!(
+                f,
+                "    gives opacity {} and colour {:?} of {} layers, whose opacities sum to {}",
+                n(at.alpha),
+                at.color.map(n),
+                at.count,
+                n(at.opacity)
+            )?;
+        }
+        if self.groups.iter().all(|at| at.count == 0) {
+            return writeln!(f, "\nthe pixel is empty");
+        }
+        writeln!(
+            f,
+            "\ncompositing pass: opacity {}, colour {:?} over black, {} layers on average (nearest \
+             {}, surfel {})",
+            n(self.alpha),
+            self.color.map(n),
+            n(self.layers),
+            n(self.nearest),
+            self.id
+        )
+    }
+}

@@ -1,0 +1,82 @@
+//! Pass 3 of Algorithm 3: the nearest layer before the others, and what is refracted through it.
+
+use super::Settings;
+use super::nearest::FrontLayer;
+use crate::composite::over::Blend;
+use crate::method::algorithm::Job;
+use crate::method::tiled::{Tiled, pixels};
+use crate::method::transparent::averaging::GroupAverage;
+use crate::number::{Exact, Vector3};
+use crate::scene::Scene;
+use crate::shade::optics::{self, Behind, NearestLayer};
+use crate::splat::View;
+
+/// What each pixel shows before the environment.
+pub(super) fn compositing<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    nearest: &Tiled<FrontLayer<R>>,
+    others: &Tiled<GroupAverage<R>>,
+) -> Tiled<Blend<R>> {
+    let through = Through::new(job, settings);
+    Tiled::new(job, |tile, rect| {
+        let layers = nearest.tile(tile).iter().zip(others.tile(tile));
+        pixels(rect)
+            .zip(layers)
+            .map(|(at, (near, others))| through.pixel(at, near, others))
+            .collect()
+    })
+}
+
+/// What is seen through the nearest layer.
+pub(super) struct Through<'a, R: Exact> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    view: View<R>,
+}
+
+impl<'a, R: Exact> Through<'a, R> {
+    pub(super) fn new(job: &Job<'a>, settings: &'a Settings) -> Self {
+        Self { scene: job.scene, settings, view: View::new(job.camera) }
+    }
+
+    /// The colour and the opacity of a pixel at a column and row.
+    pub(super) fn pixel(
+        &self,
+        (x, y): (u32, u32),
+        near: &FrontLayer<R>,
+        others: &GroupAverage<R>,
+    ) -> Blend<R> {
+        if !near.depth.is_finite() {
+            return others.blend;
+        }
+        let (Some(refraction), Some(environment)) =
+            (&self.settings.refraction, &self.scene.environment)
+        else {
+            return others.blend.over(near.opacity, near.color);
+        };
+        let [nx, ny, nz] = near.normal;
+        let nearest = NearestLayer {
+            color: near.color,
+            opacity: near.opacity,
+            normal: Vector3::new(nx, ny, nz),
+        };
+        let GroupAverage { blend, opacity, hidden, .. } = *others;
+        let behind = Behind { color: blend.color, opacity, hidden };
+        let view = -self.view.ray(x, y).normalized();
+        let color = optics::shade(environment, refraction, view, &nearest, &behind);
+        Blend { color, alpha: R::ONE }
+    }
+}
+
+/// l of \[ZP06, section 5.2.3\]: the sum of all opacities over that of the nearest layer; 0 where
+/// that is 0.
+pub(super) fn count_by_opacity<R: Exact>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
+    let alpha = near.opacity;
+    if alpha > R::ZERO { R::ONE + optics::layers(others.opacity, alpha) } else { R::ZERO }
+}
+
+/// The count of layers: that of the others, and one where there is a nearest one.
+pub(super) fn count<R: Exact>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
+    if near.depth.is_finite() { others.layers + R::ONE } else { others.layers }
+}
