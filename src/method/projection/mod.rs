@@ -37,6 +37,8 @@ pub mod planes;
 pub mod primitives;
 mod project;
 pub mod surfels;
+#[cfg(test)]
+pub(in crate::method) mod tests;
 
 pub(in crate::method) use project::project;
 

@@ -202,7 +202,11 @@ impl<R: Exact> fmt::Display for Pushed<R> {
         let Some(from) = &self.from else { return Ok(()) };
         write!(f, "{from}")?;
         if own.is_valid() && !from.found.is_valid() {
-            writeln!(f, "    so the cell stays: what does not cover it does not hide it")?;
+            let stays = Words(&self.left);
+            writeln!(
+                f,
+                "    so the cell stays {stays}: what does not cover a cell does not hide it"
+            )?;
         }
         Ok(())
     }

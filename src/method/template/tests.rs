@@ -1,1 +1,100 @@
 //! Stages, planes and explanations of the templates.
+
+use super::explain::explain;
+use super::planes::read_level;
+use super::*;
+use crate::frame::{Exec, Samples};
+use crate::index::Index;
+use crate::method::Method;
+use crate::method::projection::tests::{
+    every_stage_runs_alone, lit, samples_mut, stage_with, wrong_planes_are_refused,
+};
+use crate::method::projection::{Has, SampleKind};
+use crate::method::tests::{cameras, scene, surfels};
+use crate::scene::{Camera, Scene};
+
+fn settings() -> [Settings; 2] {
+    [Settings::default(), Settings { size: 3, levels: LevelRule::Covering, cull: false }]
+}
+
+#[test]
+fn every_stage_runs_on_planes() {
+    for (i, camera) in cameras().into_iter().enumerate() {
+        let scene = scene(surfels(400, 0.2, i % 3 == 0, i as u64));
+        let scene = if i % 2 == 0 { lit(scene) } else { scene };
+        for settings in settings() {
+            every_stage_runs_alone::<f32>(&scene, &camera, Method::Template(settings));
+            every_stage_runs_alone::<f64>(&scene, &camera, Method::Template(settings));
+        }
+    }
+}
+
+#[test]
+fn planes_that_do_not_fit_are_refused() {
+    let scene = scene(surfels(400, 0.2, true, 1));
+    wrong_planes_are_refused(&scene, &cameras()[4], Method::Template(Settings::default()));
+}
+
+/// A level is computed from what the planes have, so that a wrong one shows in the next alone.
+#[test]
+fn a_wrong_level_spoils_the_next_alone() {
+    let (scene, camera) = (scene(surfels(400, 0.4, true, 1)), cameras()[6]);
+    let method = Method::Template(settings()[1]);
+    let right = stage_with(&scene, &camera, method, "propagation", |_| {}).unwrap();
+    let wrong = |frame: &mut Frame<f32>| {
+        let Samples::Scalar(depths) = samples_mut(frame, "level01.Z") else { panic!("its type") };
+        depths.values_mut().iter_mut().for_each(|depth| *depth += 0.125);
+    };
+    let found = stage_with(&scene, &camera, method, "propagation", wrong).unwrap();
+    for (found, right) in found.planes.iter().zip(&right.planes) {
+        let same = format!("{found:?}") == format!("{right:?}");
+        assert!(same || found.name.starts_with("level02"), "{}", found.name);
+    }
+    assert_ne!(found, right);
+}
+
+/// The explanation of every pixel is the picture's.
+fn assert_explained<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) {
+    let exec = Exec::sequential();
+    let job = Job { scene, index: &Index::default(), camera, exec: &exec };
+    let (frame, has) = (settings.define::<R>(&job, true).unwrap().frame, Has::of(scene));
+    let samples = projection::planes::read(&frame, has).unwrap();
+    let sizes = crate::frame::pyramid::sizes(frame.width, frame.height);
+    let levels = (1..=propagation::top(settings, &sizes)).map(|l| read_level(&frame, l, has));
+    let levels: Vec<_> = levels.map(Result::unwrap).collect();
+    let mut most = 0;
+    for (x, y) in (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| (x, y))) {
+        let found = explain::<R>(&job, settings, (x, y)).unwrap();
+        let sample = samples.at(x, y);
+        let kept = (sample.kind != SampleKind::Empty).then_some((sample.id, sample.depth));
+        assert_eq!(found.projection.kept, kept, "({x}, {y})");
+        assert_eq!(found.merged.len(), levels.len());
+        for ((level, found), cells) in (1..).zip(&found.merged).zip(&levels) {
+            assert_eq!(found.found, *cells.at(x >> level, y >> level), "({x}, {y}), {level}");
+        }
+        let gathered = &found.gathered;
+        assert_eq!(frame.index("id").unwrap().at(x, y), &gathered.id);
+        assert_eq!(frame.scalar("weight").unwrap().at(x, y), &gathered.weight);
+        assert_eq!(frame.count("gathered.count").unwrap().at(x, y), &gathered.count);
+        assert_eq!(frame.scalar("gathered.Z").unwrap().at(x, y), &gathered.depth);
+        assert_eq!(frame.scalar("Z").unwrap().at(x, y), &found.depth);
+        most = most.max(gathered.count);
+        // The text says of as many centres that they add to the sums, from the last new start on.
+        let text = found.to_string();
+        let lines: Vec<_> = text.lines().filter(|line| line.contains(", weight ")).collect();
+        let anew = |line: &&str| line.contains("the first") || line.contains("starts anew");
+        let start = lines.iter().rposition(anew).unwrap_or(0);
+        assert_eq!(lines.len() - start, usize::from(gathered.count), "{text}");
+        assert_eq!(text, explain::<R>(&job, settings, (x, y)).unwrap().to_string());
+    }
+    assert!(most > 2, "{most}");
+}
+
+#[test]
+fn explanations_agree_with_the_picture() {
+    let camera = cameras()[4];
+    for settings in settings() {
+        assert_explained::<f32>(&scene(surfels(300, 0.2, true, 7)), &camera, &settings);
+        assert_explained::<f64>(&scene(surfels(300, 0.4, false, 9)), &camera, &settings);
+    }
+}

@@ -1,19 +1,21 @@
 //! Fast is plain, bit for bit.
 
-use super::super::picture::{render, render_f32};
+use super::super::tests::indexed;
 use super::super::{Occlusion, Weights};
 use super::*;
+use crate::frame::Pool;
+use crate::index::Index;
+use crate::method::algorithm::{Algorithm, Job};
 use crate::method::tests::{cameras, scene, surfels};
-use crate::scene::indexed::{Indexed, Vertices};
 use crate::scene::{Light, Primitives};
-use glam::Vec3;
 
 fn assert_same(scene: Scene, camera: &Camera, settings: &Settings, levels: &mut CellLevels) {
     // With a light, so that normals are there too.
     let scene = Scene { lights: vec![Light::DEFAULT], ..scene };
     let exec = Exec::new(3, 16).unwrap();
-    let expected = render::<f32>(&scene, camera, settings, &exec, false).unwrap();
-    let found = render_f32(&scene, camera, settings, &exec, levels, None).unwrap();
+    let job = Job { scene: &scene, index: &Index::default(), camera, exec: &exec };
+    let expected = settings.define::<f32>(&job, false).unwrap();
+    let found = Algorithm::draw(settings, &job, levels, &mut Pool::default()).unwrap();
     assert_eq!(found.tally, expected.tally);
     assert_eq!(found.frame.planes.len(), expected.frame.planes.len());
     for (found, expected) in found.frame.planes.iter().zip(&expected.frame.planes) {
@@ -38,19 +40,6 @@ fn every_cell_has_the_bits_of_the_definition() {
             }
         }
     }
-}
-
-/// Primitives between random points; their vertices are the surfels of another seed.
-fn indexed<const N: usize>(count: u32, seed: u64) -> Indexed<N> {
-    let points = surfels(u64::from(count), 0.05, true, seed);
-    let vertices = Vertices {
-        position: points.position().iter().map(|p| *p * 0.75).collect(),
-        direction: points.normal().to_vec(),
-        radius: points.radius().to_vec(),
-        color: points.color().map(<[Vec3]>::to_vec),
-    };
-    let corners = (0..count).map(|i| std::array::from_fn(|k| (i + k as u32) % count)).collect();
-    Indexed::new(vertices, corners).unwrap().0
 }
 
 #[test]

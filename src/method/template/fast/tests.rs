@@ -1,8 +1,10 @@
 //! Fast is plain, bit for bit.
 
-use super::super::{LevelRule, render};
+use super::super::LevelRule;
 use super::*;
 use crate::frame::{Samples, Wanted};
+use crate::index::Index;
+use crate::method::algorithm::{Algorithm, Job};
 use crate::method::tests::{cameras, scene, surfels};
 
 /// The planes of a framebuffer as bits.
@@ -26,7 +28,9 @@ fn every_pixel_has_the_bits_of_the_definition() {
                 let wanted = Wanted { normal: true, color, observed: false };
                 let mut found = Framebuffer::new(camera.width, camera.height, 9.0, wanted);
                 let (tally, _) = levels.draw(&scene, &camera, &settings, &exec, &mut found);
-                let picture = render::<f32>(&scene, &camera, &settings, &exec, true).unwrap();
+                let (index, camera) = (&Index::default(), &camera);
+                let job = Job { scene: &scene, index, camera, exec: &exec };
+                let picture = settings.define::<f32>(&job, true).unwrap();
                 let place = format!("{i}: {count} surfels, {settings:?}");
                 assert_eq!(tally, picture.tally, "{place}");
                 let expected = |name: &str| match picture.frame.plane(name) {
