@@ -2,7 +2,6 @@
 
 use super::*;
 use splatref::frame::Exec;
-use splatref::io::provenance;
 use splatref::io::scene_file::SceneFile;
 use splatref::splat::record::{SplatRecord, project_records};
 use tempfile::TempDir;
@@ -18,10 +17,10 @@ fn records_are_those_of_the_library() {
     let [a, b] = ["a.bin", "b.bin"].map(|name| fs::read(at.path().join(name)).unwrap());
     assert_eq!(a, b);
 
-    let mut file = SceneFile::read(&at.path().join("s.toml")).unwrap();
-    file.method.outline = Some(splatref::splat::Outline::RayCast);
+    let text = format!("{scene}[method]\noutline = \"raycast\"\n");
+    let file = SceneFile::parse(&text, &at.path().join("s.toml")).unwrap();
     let ready = file.ready(&Exec::sequential(), &|_, _, _| ()).unwrap();
-    let splats = provenance::splats(&ready.method).unwrap();
+    let splats = ready.method.splats().unwrap();
     let surfels = &ready.loaded.scene.surfels;
     let (records, _) = project_records(surfels, &ready.camera, &splats.kernel, splats.cull);
     assert!(records.len() > 50);

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::composite::bins::{DepthBins, Range};
-use crate::composite::groups::{Sample, compose};
+use crate::composite::groups::{WeightedFragment, compose};
 use crate::composite::mean::Mean;
 use crate::composite::over::Blend;
 use crate::composite::sum;
@@ -177,12 +177,12 @@ fn broken_bins_are_caught() {
 
 #[test]
 fn a_broken_operator_over_groups_is_caught() {
-    let of = |op: fn(&[Sample<f32>], f32) -> (Sample<f32>, u32)| groups(&op);
+    let of = |op: fn(&[WeightedFragment<f32>], f32) -> (WeightedFragment<f32>, u32)| groups(&op);
     let in_order = "in order";
     // Folding over pairs, as images come.
     breaks(
         of(|samples, epsilon| {
-            samples.iter().fold((Sample::EMPTY, 0), |(sums, count), s| {
+            samples.iter().fold((WeightedFragment::EMPTY, 0), |(sums, count), s| {
                 let (pair, more) = compose(&[sums, *s], epsilon);
                 (pair, if more == 2 { count + 1 } else { 1 })
             })
@@ -199,11 +199,12 @@ fn a_broken_operator_over_groups_is_caught() {
     breaks(of(|samples, epsilon| compose(samples, epsilon / 2.0)), in_order);
     breaks(of(|samples, epsilon| (compose(samples, epsilon).0, samples.len() as u32)), in_order);
     // Each of the other laws by itself.
-    let two = [1.0, 2.0].map(|t| Sample::new(t, t, [0.0; 3], [0.5; 3], 1.0));
-    let counts = |samples: &[Sample<f32>], e: f32| (compose(samples, e).0, samples.len() as u32);
+    let two = [1.0, 2.0].map(|t| WeightedFragment::new(t, t, [0.0; 3], [0.5; 3], 1.0));
+    let counts =
+        |samples: &[WeightedFragment<f32>], e: f32| (compose(samples, e).0, samples.len() as u32);
     breaks(groups::empty(&counts, &two, 1, 9.0), "an empty image is neutral");
     breaks(groups::apart(&counts, &two, 0, 9.0), "an image of its own");
-    let first = |samples: &[Sample<f32>], e: f32| compose(&samples[..1], e);
+    let first = |samples: &[WeightedFragment<f32>], e: f32| compose(&samples[..1], e);
     breaks(groups::order(&first, &two, &[1, 0], 9.0), "in any order");
 }
 

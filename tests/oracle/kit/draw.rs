@@ -3,9 +3,10 @@
 use crate::kit::case::Case;
 use splatref::Result;
 use splatref::frame::{Exec, Frame};
+use splatref::index::Index;
 use splatref::index::order::BackToFront;
-use splatref::method::ewa::explain::{Explanation, explain};
-use splatref::method::{Method, Picture, Session, ewa};
+use splatref::method::ewa::explain::{EwaReplay, explain};
+use splatref::method::{Job, Method, Picture, Session, ewa};
 use splatref::number::Exact;
 use splatref::scene::{Camera, Groups, Scene, Surfels};
 
@@ -79,9 +80,11 @@ impl<'a> Drawing<'a> {
 }
 
 /// What the 2+1-pass method does at a pixel.
-pub(crate) fn explained(case: &Case<ewa::Settings>, pixel: (u32, u32)) -> Explanation<f32> {
+pub(crate) fn explained(case: &Case<ewa::Settings>, pixel: (u32, u32)) -> EwaReplay<f32> {
     let Case { scene, camera, settings, .. } = case;
-    explain(&scene.surfels, camera, settings, &Exec::sequential(), pixel).expect("inside")
+    let (index, exec) = (Index::default(), Exec::sequential());
+    let job = Job { scene, index: &index, camera, exec: &exec };
+    explain(&job, settings, pixel).expect("inside")
 }
 
 /// The surfels from back to front.
