@@ -2,7 +2,7 @@
 //!
 //! - [`environment`]: environment maps from EXR files.
 //! - [`exr`]: every plane of a frame, exactly; reading guards against lying files.
-//! - [`npy`]: arrays of NumPy as planes.
+//! - [`npy`]: arrays of `NumPy` as planes.
 //! - [`ply`]: point clouds and meshes, in and out.
 //! - `png`: an 8-bit preview; needs the feature `cli`.
 //! - [`provenance`]: the text that a picture carries.

@@ -1,4 +1,4 @@
-//! NPY files in: an array of NumPy as a plane of a picture.
+//! NPY files in: an array of `NumPy` as a plane of a picture.
 //!
 //! Format: [NEP 1](https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html),
 //! versions 1.0 to 3.0.
@@ -10,7 +10,7 @@ use std::fs::File;
 use std::io::{Read, Take};
 use std::path::Path;
 
-/// A header is a line of some hundred bytes; NumPy itself reads no longer one without being told.
+/// A header is a line of some hundred bytes; `NumPy` itself reads no longer one without being told.
 const LONGEST_HEADER: u64 = 10_000;
 
 /// A reason, without the file's name.

@@ -40,7 +40,7 @@ pub fn bins<R: Exact>(
 ///
 /// - A bin is an integer in \[0, n\]; the nearest depth and all before are in bin 0, the farthest and
 ///   all behind in bin n.
-/// - A depth inside is in the bin of its position (t - d_min) / (d_max - d_min) n, which rounding
+/// - A depth inside is in the bin of its position `(t - d_min) / (d_max - d_min) n`, which rounding
 ///   may move by 2^-5.
 /// - The Voronoi-enhanced depth lies from its bin to 255/256 above, never falls as the ratio grows,
 ///   and no longer grows from 255/256 on.
@@ -92,7 +92,7 @@ pub fn one<R: Exact>(
 /// Two depths >= 0 and a ratio of each.
 ///
 /// - The bin never falls as depth grows.
-/// - Depths in the range that differ by at least (1 + 2^-5) (d_max - d_min) / n are in different
+/// - Depths in the range that differ by at least `(1 + 2^-5) (d_max - d_min) / n` are in different
 ///   bins, and then the Voronoi-enhanced depths are in the same order, whatever the ratios.
 ///
 /// # Errors

@@ -45,16 +45,23 @@ fn the_operators_of_the_crate_keep_every_law() {
 #[test]
 fn a_broken_epsilon_test_is_caught() {
     let of = |op: fn(f32, f32, f32) -> bool| epsilon(&op);
-    breaks(of(|t, nearest, epsilon| t < nearest + epsilon), "the nearest fragment is visible");
-    breaks(of(|t, nearest, e| t <= nearest + if e < 1e9 { e } else { 1e9 }), "infinite epsilon");
-    breaks(of(|t, nearest, e| t <= nearest + e + 1e-6), "epsilon = 0 keeps");
-    breaks(
-        of(|t, nearest, e| e != 5.0 && t <= nearest + e && !(e > 3.0 && e < 1e9 && t > nearest)),
-        "a greater epsilon keeps",
-    );
-    breaks(of(|t, nearest, e| t >= nearest && t <= nearest + e || e > 1e9), "what is nearer");
-    breaks(of(|t, nearest, e| t <= nearest + 2.0 * e), "the limit is nearest + epsilon");
+    breaks(of(|t, nearest, e| t < nearest + e), "the limit is nearest + epsilon");
     breaks(of(|t, nearest, e| t - nearest <= e), "the limit is nearest + epsilon");
+    // Each law by itself.
+    type Test = fn(f32, f32, f32) -> bool;
+    let at = |t, nearest, bands, op: Test| epsilon::case(&op, t, nearest, bands);
+    let found = at(1.0, 1.0, [0.0; 2], |t, nearest, e| t < nearest + e);
+    breaks(found, "the nearest fragment is visible");
+    let found = at(1e30, 1.0, [0.0; 2], |t, nearest, e| t <= nearest + e.at_most(1e9));
+    breaks(found, "an infinite epsilon keeps everything");
+    let found = at(1.000_000_5, 1.0, [0.0; 2], |t, nearest, e| t <= nearest + e + 1e-6);
+    breaks(found, "epsilon = 0 keeps the nearest");
+    let found = at(2.0, 1.0, [2.0, 4.0], |t, nearest, e| t <= nearest + e && e != 4.0 || t == 1.0);
+    breaks(found, "a greater epsilon keeps");
+    let behind: Test = |t, nearest, e| nearest <= t && t <= nearest + e || e == f32::INFINITY;
+    breaks(at(1.0, 2.0, [1.0; 2], behind), "what is nearer than a visible fragment");
+    let found = at(2.5, 1.0, [1.0; 2], |t, nearest, e| t <= nearest + 2.0 * e);
+    breaks(found, "the limit is nearest + epsilon");
 }
 
 #[test]
@@ -65,15 +72,15 @@ fn broken_sums_are_caught() {
     breaks(sums::<f32>(&unweighted, &sum::average), "the average of a constant is");
     breaks(sums::<f32>(&|_, w, v| v.map(|v| w * v), &sum::average), "the average of a constant is");
     breaks(
-        of(|s, w| s.map(|s| if w > 0.0 { s * (1.0 / w) } else { 0.0 })),
+        of(|s, w| s.map(|s| if w > 0.0 { s * (1.0 / w) + 0.0 } else { 0.0 })),
         "the average of 1 is 1",
     );
     breaks(of(|s, w| s.map(|s| s / w + 0.0)), "without weight");
     breaks(of(|s, w| s.map(|s| if w > 0.0 { s / w } else { 0.0 })), "the average of -0");
-    // What keeps the quotient finite, where the weights are not tiny.
-    let biased = |s: [f32; 3], w: f32| match w {
-        ..1e-3 => sum::average(s, w),
-        _ => s.map(|s| s / (w + 1e-9)),
+    // A bias that keeps quotients finite, where not all values are 1.
+    let biased = |s: [f32; 3], w: f32| match s[0] == w {
+        true => sum::average(s, w),
+        false => s.map(|s| s / (w + 1e-9)),
     };
     let (weights, value) = ([0.004; 2], [0.5, 2.0, 1.0]);
     assert_eq!(sums::constant(&sum::add, &sum::average, &weights, value), Ok(()));
@@ -160,7 +167,7 @@ fn broken_bins_are_caught() {
     let rounded = |range: &Range, t: f32| {
         bin(range, t + 0.5 * (range.farthest - range.nearest) / range.count as f32)
     };
-    breaks(bins(&rounded, &voronoi), "the ends are in the first");
+    breaks(bins(&rounded, &voronoi), "a depth is in the bin of its position");
     let reciprocal = |range: &Range, t: f32| {
         let Range { nearest, farthest, count } = *range;
         let part = (1.0 / nearest - 1.0 / t) / (1.0 / nearest - 1.0 / farthest);
