@@ -54,7 +54,7 @@ fn a_render_stays_within_its_budget() {
     // Neighbours are in different groups, so that every block of every image is touched.
     let own = (0..SURFELS).map(|i| (i % GROUPS) as u8).collect();
     let groups = Groups::new(own, Vec::new(), vec![1.0; GROUPS]).expect("groups");
-    let settings = single_pass::Settings { splats: settings, ..single_pass::Settings::default() };
+    let settings = single_pass::Settings { splats: settings, depth: single_pass::DepthTest::Plain };
     check("single pass", &|target| {
         let drawn = single_pass::fast::render(&surfels, &groups, &camera, &settings, &exec, target);
         drawn.expect("the plain depth test takes no bins").0

@@ -1,6 +1,6 @@
 //! `splatref compare`: two EXR files, plane by plane.
 
-use super::{Finding, Outcome, report, say};
+use super::{Ended, Ending, report, say};
 use splatref::io::exr;
 use splatref::verify::compare::{Tolerance, Verdict, compare};
 use splatref::verify::metrics;
@@ -27,7 +27,7 @@ pub(super) struct Args {
     max_abs: Option<f32>,
 }
 
-pub(super) fn run(args: &Args) -> Finding {
+pub(super) fn run(args: &Args) -> Ended {
     let tolerance = tolerance(args)?;
     let (first, second) = (exr::read(&args.first)?, exr::read(&args.second)?);
     let found = compare(&first, &second, tolerance);
@@ -41,8 +41,8 @@ pub(super) fn run(args: &Args) -> Finding {
     }
     say(verdict);
     Ok(match found.verdict() {
-        Verdict::Equal | Verdict::Within => Outcome::Good,
-        Verdict::Different => Outcome::Different,
+        Verdict::Equal | Verdict::Within => Ending::Good,
+        Verdict::Different => Ending::Different,
     })
 }
 

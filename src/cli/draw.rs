@@ -29,7 +29,9 @@ pub(super) fn draw<'s>(
     output: OutputSettings,
 ) -> Result<Cow<'s, Picture<f32>>> {
     Ok(match output {
-        OutputSettings { number: Number::F32, stages: false } => Cow::Borrowed(session.render(camera)?),
+        OutputSettings { number: Number::F32, stages: false } => {
+            Cow::Borrowed(session.render(camera)?)
+        }
         OutputSettings { number: Number::F32, stages: true } => {
             Cow::Owned(session.define::<f32>(camera, true)?)
         }

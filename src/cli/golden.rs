@@ -1,13 +1,13 @@
 //! `splatref golden`: the pictures under `golden/` are reproduced bit for bit, or blessed.
 
 use super::options::ExecOptions;
-use super::{Finding, Outcome, draw, say};
+use super::{Ended, Ending, draw, say};
 use splatref::frame::image::{Image, Values};
 use splatref::frame::{Exec, Frame, NamedPlane, Plane, Samples};
 use splatref::io::exr;
 use splatref::io::provenance;
 use splatref::io::scene_file::{Ready, SceneFile};
-use splatref::verify::compare::{Finding as PlaneFinding, Report, Tolerance, Verdict, compare};
+use splatref::verify::compare::{Finding, Report, Tolerance, Verdict, compare};
 use splatref::verify::digest;
 use splatref::{Error, Result};
 use std::collections::BTreeSet;
@@ -44,7 +44,7 @@ struct Case {
     frame: Frame<f32>,
 }
 
-pub(super) fn run(args: &Args) -> Finding {
+pub(super) fn run(args: &Args) -> Ended {
     let exec = args.exec.exec()?;
     let names = names(&args.dir, &args.names)?;
     let mut rendered = Vec::new();
@@ -62,7 +62,7 @@ pub(super) fn run(args: &Args) -> Finding {
     let different = names.len() - equal;
     say(format!("{equal} equal, {different} different"));
     say(format!("sha256 {}", digest::sha256(rendered.iter().map(|(name, image)| (*name, image)))));
-    Ok(if different == 0 { Outcome::Good } else { Outcome::Different })
+    Ok(if different == 0 { Ending::Good } else { Ending::Different })
 }
 
 /// The cases of a directory, in the order of names; a picture without its scene is one too.
@@ -132,7 +132,7 @@ fn differences(name: &str, case: &Case, report: &Report) {
         say(format!("  {}", planes[i]));
     }
     let pixel = report.planes.iter().find_map(|plane| match &plane.finding {
-        PlaneFinding::Values(values) => values.first,
+        Finding::Values(values) => values.first,
         _ => None,
     });
     if let Some(at) = pixel {

@@ -96,13 +96,12 @@ impl Slot<'_> {
             Self::Preset(_) => return None,
             Self::Number(value) => Value::Number(**value),
             Self::Count(value) => Value::Whole((**value).into()),
-            Self::CountOr(value, word) => {
-                value.map_or_else(|| Value::Text((*word).into()), |count| Value::Whole(count.into()))
-            }
+            Self::CountOr(value, word) => value
+                .map_or_else(|| Value::Text((*word).into()), |count| Value::Whole(count.into())),
             Self::Switch(value) => Value::Switch(**value),
             Self::Word(word) => Value::Text(word.word().into()),
-            Self::Depth(value, true) => Value::Text(format!("{value:?}r")),
-            Self::Depth(value, false) => Value::Text(format!("{value:?}")),
+            Self::Depth(value, true) => Value::Text(format!("{value}r")),
+            Self::Depth(value, false) => Value::Text(value.to_string()),
             Self::Ratios(values) => values.map_or_else(none, |v| Value::Numbers(v.to_vec())),
             Self::Parts(values, names) => values.map_or_else(none, |values| {
                 Value::Parts(names.iter().map(|name| (*name).into()).zip(values).collect())
@@ -134,7 +133,9 @@ impl Slot<'_> {
             (Self::Ratios(to), Value::Numbers(numbers)) => {
                 put(*to, <[f32; 3]>::try_from(numbers.as_slice()).ok().map(Some))
             }
-            (Self::Parts(to, names), Value::Parts(parts)) => put(*to, three(names, parts).map(Some)),
+            (Self::Parts(to, names), Value::Parts(parts)) => {
+                put(*to, three(names, parts).map(Some))
+            }
             (Self::Ratios(to) | Self::Parts(to, _), Value::Text(text)) => {
                 put(*to, (text == NONE).then_some(None))
             }
@@ -200,14 +201,14 @@ impl Slot<'_> {
             Self::CountOr(_, word) => format!("a whole number from 0, or {word}"),
             Self::Switch(_) => "true or false, on the command line on or off".into(),
             Self::Word(word) | Self::Preset(word) => format!("one of {}", word.words().join(", ")),
-            Self::Depth(..) => {
-                "world units such as 0.25, median radii such as 1.5r, or inf".into()
-            }
+            Self::Depth(..) => "world units such as 0.25, median radii such as 1.5r, or inf".into(),
             Self::Ratios(_) => {
                 format!("three numbers, on the command line 0.66,0.67,0.68 or one, or {NONE}")
             }
             Self::Parts(_, [a, b, c]) => {
-                format!("{a}, {b} and {c}, on the command line three numbers in this order, or {NONE}")
+                format!(
+                    "{a}, {b} and {c}, on the command line three numbers in this order, or {NONE}"
+                )
             }
         };
         format!("{name} `{text}`; give {wanted}")

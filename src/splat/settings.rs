@@ -71,9 +71,13 @@ impl Fields for SplatSettings {
             Epsilon::MedianRadii(depth) => (depth, true),
         };
         each(
-            Field::new("epsilon", "depth of the visible band", Slot::Depth(&mut depth, &mut in_radii))
-                .unit("world units, or in median radii as in 1.5r")
-                .range("0 to inf"),
+            Field::new(
+                "epsilon",
+                "depth of the visible band",
+                Slot::Depth(&mut depth, &mut in_radii),
+            )
+            .unit("world units, or in median radii as in 1.5r")
+            .range("0 to inf"),
         );
         *epsilon = if in_radii { Epsilon::MedianRadii(depth) } else { Epsilon::World(depth) };
         each(culling(cull));
@@ -86,11 +90,8 @@ pub(crate) fn culling(cull: &mut bool) -> Field<'_> {
 }
 
 impl Words for Outline {
-    const WORDS: &'static [(&'static str, Self)] = &[
-        ("affine", Self::Affine),
-        ("perspective", Self::Perspective),
-        ("raycast", Self::RayCast),
-    ];
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("affine", Self::Affine), ("perspective", Self::Perspective), ("raycast", Self::RayCast)];
 }
 
 impl Words for Kernel {

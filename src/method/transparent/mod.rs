@@ -86,7 +86,8 @@ impl Fields for Settings {
     fn fields(&mut self, each: &mut Visit<'_>) {
         self.splats.fields(each);
         self.bins.field(each);
-        let help = "what a group without fragments gives to the average: nothing, or the background";
+        let help =
+            "what a group without fragments gives to the average: nothing, or the background";
         each(Field::new("holes", help, Slot::Word(&mut self.holes)));
     }
 }
