@@ -172,7 +172,7 @@ impl Grouping {
     /// `progress` is told the name of a step, how much of it is done, and of how much.
     ///
     /// # Errors
-    /// As [`group::group`], [`group_into`] and [`group::extend`].
+    /// As [`group`], [`group_into`] and [`extend`].
     pub fn groups(
         &self,
         surfels: &Surfels,
