@@ -1,6 +1,6 @@
 //! `splatref compare`: two pictures, plane by plane.
 
-use super::{Finding, Outcome, report, say};
+use super::{Ended, Ending, report, say};
 use splatref::frame::Image;
 use splatref::io::{exr, npy, png};
 use splatref::verify::compare::{Criteria, Tolerance, Verdict, compare};
@@ -48,7 +48,7 @@ pub(super) struct Args {
     name: Option<String>,
 }
 
-pub(super) fn run(args: &Args) -> Finding {
+pub(super) fn run(args: &Args) -> Ended {
     let pair = [File::read(&args.first, args)?, File::read(&args.second, args)?];
     let stored = pair.iter().any(|file| matches!(file, File::Png(_)));
     let (first, second) = alike(pair)?;
@@ -64,8 +64,8 @@ pub(super) fn run(args: &Args) -> Finding {
     }
     say(verdict);
     Ok(match found.verdict() {
-        Verdict::Equal | Verdict::Within => Outcome::Good,
-        Verdict::Different => Outcome::Different,
+        Verdict::Equal | Verdict::Within => Ending::Good,
+        Verdict::Different => Ending::Different,
     })
 }
 

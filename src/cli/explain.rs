@@ -1,7 +1,7 @@
 //! `splatref explain`: every decision at one pixel.
 
 use super::options::{ExecOptions, SceneOptions};
-use super::{Finding, Outcome, draw, report, say};
+use super::{Ended, Ending, draw, report, say};
 use splatref::io::scene_file::{Number, Ready};
 use std::path::PathBuf;
 
@@ -24,7 +24,7 @@ pub(super) struct Args {
     options: SceneOptions,
 }
 
-pub(super) fn run(args: &Args) -> Finding {
+pub(super) fn run(args: &Args) -> Ended {
     let file = args.options.scene_file(&args.scene)?;
     let exec = args.exec.exec()?;
     let ready = draw::ready(&file, &exec)?;
@@ -42,5 +42,5 @@ pub(super) fn run(args: &Args) -> Finding {
     report::groups(session.groups(), made.as_ref());
     say("");
     say(text.trim_end());
-    Ok(Outcome::Good)
+    Ok(Ending::Good)
 }

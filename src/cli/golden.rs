@@ -1,7 +1,7 @@
 //! `splatref golden`: the pictures under `golden/` are reproduced bit for bit, or blessed.
 
 use super::options::ExecOptions;
-use super::{Finding, Outcome, draw, say};
+use super::{Ended, Ending, draw, say};
 use splatref::frame::image::{Image, Values};
 use splatref::frame::{Exec, Frame, Plane, Samples};
 use splatref::io::scene_file::{Ready, SceneFile};
@@ -43,7 +43,7 @@ struct Case {
     frame: Frame<f32>,
 }
 
-pub(super) fn run(args: &Args) -> Finding {
+pub(super) fn run(args: &Args) -> Ended {
     let exec = args.exec.exec()?;
     let names = names(&args.dir, &args.names)?;
     let mut rendered = Vec::new();
@@ -61,7 +61,7 @@ pub(super) fn run(args: &Args) -> Finding {
     let different = names.len() - equal;
     say(format!("{equal} equal, {different} different"));
     say(format!("sha256 {}", digest::sha256(rendered.iter().map(|(name, image)| (*name, image)))));
-    Ok(if different == 0 { Outcome::Good } else { Outcome::Different })
+    Ok(if different == 0 { Ending::Good } else { Ending::Different })
 }
 
 /// The cases of a directory, in the order of names; a picture without its scene is one too.

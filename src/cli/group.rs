@@ -2,7 +2,7 @@
 
 use super::options::named;
 use super::rows::{OfGroupsAlone, RowOptions};
-use super::{Finding, Outcome, progress, report};
+use super::{Ended, Ending, progress, report};
 use splatref::frame::Exec;
 use splatref::index::grouping::{Extended, Extension, Grouping, GroupingReport};
 use splatref::io::ply;
@@ -39,7 +39,7 @@ pub(super) struct Args {
     threads: usize,
 }
 
-pub(super) fn run(args: &Args) -> Finding {
+pub(super) fn run(args: &Args) -> Ended {
     let grouping = args.grouping()?;
     if !matches!(FileKind::of(&args.output), Ok(FileKind::Ply)) {
         let path = args.output.display();
@@ -67,7 +67,7 @@ pub(super) fn run(args: &Args) -> Finding {
     cloud.groups = Some(groups);
     progress::during("writing", || ply::write(&args.output, &cloud))?;
     report::line("file", args.output.display());
-    Ok(Outcome::Good)
+    Ok(Ending::Good)
 }
 
 impl Args {

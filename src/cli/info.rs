@@ -1,7 +1,7 @@
 //! `splatref info`: what a file holds.
 
 use super::report::{self, line};
-use super::{Finding, Outcome, progress, say};
+use super::{Ended, Ending, progress, say};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
@@ -21,13 +21,13 @@ pub(super) struct Args {
     file: PathBuf,
 }
 
-pub(super) fn run(args: &Args) -> Finding {
+pub(super) fn run(args: &Args) -> Ended {
     match FileKind::of(&args.file)? {
         FileKind::Ply => points(&args.file)?,
         FileKind::Toml => scene(&args.file)?,
         FileKind::Exr => picture(&args.file)?,
     }
-    Ok(Outcome::Good)
+    Ok(Ending::Good)
 }
 
 fn points(path: &Path) -> Result<()> {

@@ -74,8 +74,8 @@ pub(crate) fn run() -> ExitCode {
         Command::Info(args) => info::run(&args),
     };
     match outcome {
-        Ok(Outcome::Good) => ExitCode::SUCCESS,
-        Ok(Outcome::Different) => ExitCode::FAILURE,
+        Ok(Ending::Good) => ExitCode::SUCCESS,
+        Ok(Ending::Different) => ExitCode::FAILURE,
         Err(error) => {
             complain(&error);
             ExitCode::from(error.exit_code())
@@ -83,17 +83,17 @@ pub(crate) fn run() -> ExitCode {
     }
 }
 
-/// What a command that did its work found.
+/// How a command ended that did its work.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Outcome {
+enum Ending {
     /// As it should be.
     Good,
     /// Pictures that should be equal are not.
     Different,
 }
 
-/// A command's result.
-type Finding = Result<Outcome>;
+/// How a command ended.
+type Ended = Result<Ending>;
 
 /// Help and version as they are; errors of clap as one line.
 fn usage(error: &clap::Error) -> ExitCode {

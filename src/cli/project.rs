@@ -1,7 +1,7 @@
 //! `splatref project`: the visible splats of a scene, as records for a backend to upload.
 
 use super::options::{ExecOptions, SceneOptions};
-use super::{Finding, Outcome, draw, progress, report};
+use super::{Ended, Ending, draw, progress, report};
 use splatref::io::replace::write_atomically;
 use splatref::io::scene_file::{Number, Ready};
 use splatref::splat::record::{SplatRecord, project_records, shared_numbers};
@@ -30,14 +30,14 @@ pub(super) struct Args {
     options: SceneOptions,
 }
 
-pub(super) fn run(args: &Args) -> Finding {
+pub(super) fn run(args: &Args) -> Ended {
     let file = args.options.scene_file(&args.scene)?;
     let exec = args.exec.exec()?;
     let method = file.method.method()?;
     check(args, method.splats().is_some(), file.output.number)?;
     let ready = draw::ready(&file, &exec)?;
     let Ready { loaded, camera, method, .. } = &ready;
-    let Some(splats) = method.splats() else { return Ok(Outcome::Good) };
+    let Some(splats) = method.splats() else { return Ok(Ending::Good) };
     let surfels = &loaded.scene.surfels;
     let (records, tally) = progress::during("projecting", || {
         project_records(surfels, camera, &splats.kernel, splats.cull)
@@ -56,7 +56,7 @@ pub(super) fn run(args: &Args) -> Finding {
     let shared: Vec<String> = shared.iter().map(|(name, v)| format!("{name} = {v:?}")).collect();
     report::line("all share", shared.join(", "));
     report::line("file", args.output.display());
-    Ok(Outcome::Good)
+    Ok(Ending::Good)
 }
 
 /// What is refused before anything is loaded.

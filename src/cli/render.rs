@@ -2,7 +2,7 @@
 
 use super::options::{ExecOptions, SceneOptions};
 use super::rows::{OfStages, RowOptions};
-use super::{Finding, Outcome, draw, progress, report};
+use super::{Ended, Ending, draw, progress, report};
 use splatref::io::scene_file::{FileKind, Ready};
 use splatref::io::{exr, png, provenance};
 use splatref::method::Picture;
@@ -40,7 +40,7 @@ pub(super) struct Args {
     options: SceneOptions,
 }
 
-pub(super) fn run(args: &Args) -> Finding {
+pub(super) fn run(args: &Args) -> Ended {
     let start = Instant::now();
     let mut file = args.options.scene_file(&args.scene)?;
     file.output = args.stages.chosen.on(file.output, "the output")?;
@@ -90,7 +90,7 @@ pub(super) fn run(args: &Args) -> Finding {
     report::time("total", vec![start.elapsed()]);
     report::line("files", picture.display());
     report::line("", preview.display());
-    Ok(Outcome::Good)
+    Ok(Ending::Good)
 }
 
 /// Whether a file could be written there, before much is computed for it.

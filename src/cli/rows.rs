@@ -44,10 +44,10 @@ impl Rows for OfMethods {
 
     fn heading(row: &Setting) -> String {
         let owners: Vec<&str> = row.owners.iter().map(|(owner, _)| *owner).collect();
-        match owners.len() == Method::all().len() {
-            true => "Settings of every method".into(),
-            false => format!("Settings of {}", owners.join(", ")),
+        if owners.len() == Method::all().len() {
+            return "Settings of every method".into();
         }
+        format!("Settings of {}", owners.join(", "))
     }
 
     fn read(name: &str, text: &str) -> Option<Result<Value, String>> {

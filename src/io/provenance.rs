@@ -23,11 +23,9 @@ pub fn text(
     let groups = groups.map_or(String::new(), |groups| {
         format!("[groups]\ncount = {}\nsha256 = \"{}\"\n\n", groups.len(), groups.sha256())
     });
-    let settings: String =
-        method.values().iter().map(|(name, value)| format!("{name} = {value}\n")).collect();
-    let resolved = method.resolved(scene, camera);
-    let resolved: String =
-        resolved.into_iter().map(|(name, value)| format!("{name} = {value}\n")).collect();
+    let chosen = method.values().into_iter().map(|(name, value)| (name, value.to_string()));
+    let settings = chosen.chain(method.resolved(scene, camera));
+    let settings: String = settings.map(|(name, value)| format!("{name} = {value}\n")).collect();
     let primitives = if scene.primitives.is_empty() {
         String::new()
     } else {
@@ -43,7 +41,7 @@ pub fn text(
     format!(
         "splatref = \"{version}\"\nnumber = \"{number}\"\n\n\
          [scene]\nname = {name}\nsurfels = {surfels}\n{primitives}sha256 = \"{hash}\"\n\n\
-         [method]\nname = \"{method}\"\n{settings}{resolved}\n{groups}\
+         [method]\nname = \"{method}\"\n{settings}\n{groups}\
          [camera]\nsize = [{width}, {height}]\nprojection = \"{projection}\"\n\
          f = [{fx:?}, {fy:?}]\nc = [{cx:?}, {cy:?}]\nnear = {near:?}\n\
          view_from_world = [\n{rows}]\n",

@@ -61,13 +61,14 @@ impl Setting {
     #[must_use]
     pub fn description(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(", in {}", self.unit) };
-        let range = if self.range.is_empty() { String::new() } else { format!(", {}", self.range) };
+        let range =
+            if self.range.is_empty() { String::new() } else { format!(" ({})", self.range) };
         format!("{}{unit}{range}", self.help)
     }
 
     /// The default, written by `show`, and where it is another; empty of a preset.
     #[must_use]
-    pub fn default_text(&self, show: fn(&Value) -> String) -> String {
+    pub fn default_text(&self, show: impl Fn(&Value) -> String) -> String {
         let mut defaults: Vec<(&Value, Vec<&str>)> = Vec::new();
         for (owner, value) in &self.owners {
             let Some(value) = value else { continue };

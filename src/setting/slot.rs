@@ -100,8 +100,8 @@ impl Slot<'_> {
                 .map_or_else(|| Value::Text((*word).into()), |count| Value::Whole(count.into())),
             Self::Switch(value) => Value::Switch(**value),
             Self::Word(word) => Value::Text(word.word().into()),
-            Self::Depth(value, true) => Value::Text(format!("{value:?}r")),
-            Self::Depth(value, false) => Value::Text(format!("{value:?}")),
+            Self::Depth(value, true) => Value::Text(format!("{value}r")),
+            Self::Depth(value, false) => Value::Text(value.to_string()),
             Self::Ratios(values) => values.map_or_else(none, |v| Value::Numbers(v.to_vec())),
             Self::Parts(values, names) => values.map_or_else(none, |values| {
                 Value::Parts(names.iter().map(|name| (*name).into()).zip(values).collect())

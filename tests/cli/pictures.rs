@@ -76,12 +76,16 @@ fn options_replace_what_a_scene_file_says() {
                  [output]\nnumber = \"f64\"\nstages = true\n";
     fs::write(at.path().join("s.toml"), scene).unwrap();
     let said = succeeds(at.path(), &["render", "s.toml"]);
-    for word in ["20 x 10 pixels, f64", "raycast outline, cut-off 3, low-pass 1", "every stage"] {
+    for word in
+        ["20 x 10 pixels, f64", "outline = raycast, cutoff = 3, low_pass = 1,", "every stage"]
+    {
         assert!(said.contains(word), "{word} in {said}");
     }
     let more = ["--size", "12x8", "--ortho", "4", "--kernel", "default", "--number", "f32"];
     let said = succeeds(at.path(), &[&["render", "s.toml"], &more[..]].concat());
-    for word in ["12 x 8 pixels, f32", "affine outline, cut-off 2, low-pass 0.25", "orthographic"] {
+    for word in
+        ["12 x 8 pixels, f32", "outline = affine, cutoff = 2, low_pass = 0.25,", "orthographic"]
+    {
         assert!(said.contains(word), "{word} in {said}");
     }
     assert_eq!(names(&at.path().join("out")), ["s.exr", "s.png"]);

@@ -102,3 +102,29 @@ fn help_and_version_are_not_errors() {
     }
     assert!(succeeds(at.path(), &["--version"]).contains(env!("CARGO_PKG_VERSION")));
 }
+
+/// The lines of a help text without the breaks that a narrow terminal makes.
+fn help(command: &str) -> String {
+    let said = succeeds(TempDir::new().unwrap().path(), &[command, "--help"]);
+    said.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn help_tells_every_setting() {
+    use splatref::io::scene_file::{GroupChoice, MethodChoice, OutputSettings};
+    use splatref::setting::{Setting, Value};
+    let tells = |help: &str, row: &Setting| {
+        let description = row.description();
+        let default = row.default_text(Value::text);
+        let default = if default.is_empty() { default } else { format!(" [default: {default}]") };
+        // The first letter is a capital one.
+        for part in [&format!("--{}", row.option), &row.form, &description[1..], &default] {
+            assert!(help.contains(part), "{part} in {help}");
+        }
+    };
+    let render = help("render");
+    let rows = MethodChoice::rows().into_iter().chain(GroupChoice::rows());
+    rows.chain(OutputSettings::rows()).for_each(|row| tells(&render, &row));
+    let group = help("group");
+    Setting::of([("", GroupChoice::ALONE)]).iter().for_each(|row| tells(&group, row));
+}

@@ -42,9 +42,9 @@ impl Rules {
         each(Field::new("opposite", opposite, Slot::Switch(&mut self.opposite)));
         let mut parts =
             self.coplanar.map(|Coplanar { cosine, offset, color }| [cosine, offset, color]);
-        let coplanar = "whether so may those in one plane: least cosine of the normals, most \
-                        distance from each other's plane in sums of their radii, most difference \
-                        of colours";
+        let coplanar = "whether splats of one plane may share a group: least cosine of the normals, \
+                        most distance from each other's plane in sums of their radii, most \
+                        difference of colours";
         let names = ["cosine", "offset", "color"];
         each(
             Field::new("coplanar", coplanar, Slot::Parts(&mut parts, names))

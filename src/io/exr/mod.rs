@@ -17,7 +17,7 @@ pub const ATTRIBUTE: &str = "splatref";
 
 /// What the header of an EXR file promises.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Header {
+pub struct PictureHeader {
     /// Width in pixels, at least 1.
     pub width: u32,
     /// Height in pixels, at least 1.

@@ -1,6 +1,6 @@
 //! File to image, trusting nothing.
 
-use super::{ATTRIBUTE, ChannelType, Header};
+use super::{ATTRIBUTE, ChannelType, PictureHeader};
 use crate::frame::image::{Image, Values};
 use crate::{Error, Result};
 use exr::block::UncompressedBlock;
@@ -53,7 +53,7 @@ pub fn read(path: &Path) -> Result<Image> {
 ///
 /// # Errors
 /// As [`read()`], as far as the header tells.
-pub fn read_header(path: &Path) -> Result<Header> {
+pub fn read_header(path: &Path) -> Result<PictureHeader> {
     let (file, length) = open(path)?;
     guarded(|| Ok(summary(&metadata(BufReader::new(file), length)?)))
         .map_err(|what| Error::format(path, what))
@@ -139,7 +139,7 @@ fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
 }
 
 /// The part of a checked header that this crate speaks of.
-fn summary(meta: &MetaData) -> Header {
+fn summary(meta: &MetaData) -> PictureHeader {
     let mut channels = Vec::new();
     for part in &meta.headers {
         channels.extend(part.channels.list.iter().map(|channel| {
@@ -153,7 +153,7 @@ fn summary(meta: &MetaData) -> Header {
     }
     channels.sort_by(|a, b| a.0.cmp(&b.0));
     let first = &meta.headers[0];
-    Header {
+    PictureHeader {
         // Less than 2^30 each: the exr crate has checked the windows.
         width: first.layer_size.width() as u32,
         height: first.layer_size.height() as u32,
@@ -199,7 +199,7 @@ fn reason(place: &str, error: exr::error::Error) -> String {
 pub(super) fn decode(bytes: &[u8]) -> Reason<Image> {
     let mut rest = bytes;
     let meta = metadata(&mut rest, bytes.len() as u64)?;
-    let Header { width, height, text, .. } = summary(&meta);
+    let PictureHeader { width, height, text, .. } = summary(&meta);
     let mut channels = Vec::new();
     for (part, header) in meta.headers.iter().enumerate() {
         let mut planes = empty_planes(header);

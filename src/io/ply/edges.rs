@@ -1,13 +1,13 @@
 //! The element `edge`: segments between two vertices.
 
 use super::faces::corner;
-use super::header::{Element, Kind};
-use super::values::{Event, Values};
+use super::header::{Element, PropertyKind};
+use super::values::{BodyValues, Event};
 
 /// Reads all edges; each end is held against `vertices`.
 pub(super) fn read(
     element: &Element,
-    values: &mut Values<'_>,
+    values: &mut BodyValues<'_>,
     vertices: u64,
     edges: &mut Vec<[u32; 2]>,
 ) -> Result<(), String> {
@@ -34,7 +34,7 @@ fn end(element: &Element, name: &str) -> Result<usize, String> {
     let found = element.properties.iter().position(|property| property.name == name);
     let index = found.ok_or_else(|| format!("element edge has no property {name}; declare it"))?;
     match element.properties[index].kind {
-        Kind::One(scalar) if scalar.is_integer() => Ok(index),
+        PropertyKind::One(scalar) if scalar.is_integer() => Ok(index),
         _ => Err(format!("element edge: property `{name}` must be one integer")),
     }
 }

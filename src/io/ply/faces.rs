@@ -1,12 +1,12 @@
 //! The element `face`: polygons, cut into triangles.
 
-use super::header::{Element, Kind, quote};
-use super::values::{Event, Values};
+use super::header::{Element, PropertyKind, quote};
+use super::values::{BodyValues, Event};
 
 /// Reads all faces and appends their triangles; each index is held against `vertices`.
 pub(super) fn read(
     element: &Element,
-    values: &mut Values<'_>,
+    values: &mut BodyValues<'_>,
     vertices: u64,
     triangles: &mut Vec<[u32; 3]>,
 ) -> Result<(), String> {
@@ -51,8 +51,8 @@ fn indices(element: &Element) -> Result<usize, String> {
     let index = found.ok_or("element face has no property list vertex_indices; declare it")?;
     let property = &element.properties[index];
     match property.kind {
-        Kind::List { item, .. } if item.is_integer() => Ok(index),
-        Kind::List { .. } | Kind::One(_) => {
+        PropertyKind::List { item, .. } if item.is_integer() => Ok(index),
+        PropertyKind::List { .. } | PropertyKind::One(_) => {
             let name = quote(&property.name);
             Err(format!("element face: property {name} must be a list of integers"))
         }

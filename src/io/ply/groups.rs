@@ -1,7 +1,7 @@
 //! Groups: properties `group` and `also` of the vertices, and the element `group`.
 
-use super::header::{Element, Kind};
-use super::values::{Event, Values};
+use super::header::{Element, PropertyKind};
+use super::values::{BodyValues, Event};
 use crate::scene::groups::{Groups, MAX_GROUPS};
 
 const GROUP: &str = "element vertex: property `group` must be one integer, the number of a group; \
@@ -11,7 +11,7 @@ const ALSO: &str = "element vertex: property `also` must be a list of integers, 
 
 /// What a property of the vertices says.
 #[derive(Clone, Copy)]
-pub(super) enum Part {
+pub(super) enum GroupPart {
     /// The group of its own.
     Own,
     /// Those that it was added to.
@@ -39,19 +39,21 @@ impl Reader {
     }
 
     /// What a property of this name and kind says; none if it says nothing of groups.
-    pub(super) fn part(&self, name: &str, kind: Kind) -> Result<Option<Part>, String> {
+    pub(super) fn part(&self, name: &str, kind: PropertyKind) -> Result<Option<GroupPart>, String> {
         match (name, kind) {
             _ if !self.wanted => Ok(None),
-            ("group", Kind::One(scalar)) if scalar.is_integer() => Ok(Some(Part::Own)),
+            ("group", PropertyKind::One(scalar)) if scalar.is_integer() => Ok(Some(GroupPart::Own)),
             ("group", _) => Err(GROUP.into()),
-            ("also", Kind::List { item, .. }) if item.is_integer() => Ok(Some(Part::Also)),
+            ("also", PropertyKind::List { item, .. }) if item.is_integer() => {
+                Ok(Some(GroupPart::Also))
+            }
             ("also", _) => Err(ALSO.into()),
             _ => Ok(None),
         }
     }
 
     /// A number of the property, of the next vertex.
-    pub(super) fn put(&mut self, part: Part, value: f64) -> Result<(), String> {
+    pub(super) fn put(&mut self, part: GroupPart, value: f64) -> Result<(), String> {
         if !(value >= 0.0 && value < MAX_GROUPS as f64) {
             let last = MAX_GROUPS - 1;
             return Err(format!("there is no group {value}, groups are 0 to {last}"));
@@ -62,8 +64,8 @@ impl Reader {
         }
         self.member |= 1 << group;
         match part {
-            Part::Own => self.current = group,
-            Part::Also => self.added.push((self.own.len() as u32, group)),
+            GroupPart::Own => self.current = group,
+            GroupPart::Also => self.added.push((self.own.len() as u32, group)),
         }
         Ok(())
     }
@@ -80,7 +82,7 @@ impl Reader {
     pub(super) fn scales(
         &mut self,
         element: &Element,
-        values: &mut Values<'_>,
+        values: &mut BodyValues<'_>,
     ) -> Result<(), String> {
         if !self.wanted {
             return values.walk(element, |_| Ok(()));
@@ -91,7 +93,7 @@ impl Reader {
         }
         let scale = element.properties.iter().position(|property| property.name == "scale");
         let scale = scale.ok_or("element group has no property scale; declare it")?;
-        if let Kind::List { .. } = element.properties[scale].kind {
+        if let PropertyKind::List { .. } = element.properties[scale].kind {
             return Err("element group: property `scale` is a list, but must be one number".into());
         }
         let mut found = Vec::new();

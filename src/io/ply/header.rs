@@ -73,7 +73,7 @@ impl Scalar {
 
 /// One number, or a list that starts with how many there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum PropertyKind {
     One(Scalar),
     List { count: Scalar, item: Scalar },
 }
@@ -81,7 +81,7 @@ pub(super) enum Kind {
 #[derive(Debug)]
 pub(super) struct Property {
     pub(super) name: String,
-    pub(super) kind: Kind,
+    pub(super) kind: PropertyKind,
 }
 
 #[derive(Debug)]
@@ -93,7 +93,7 @@ pub(super) struct Element {
 }
 
 #[derive(Debug)]
-pub(super) struct Header {
+pub(super) struct PlyHeader {
     pub(super) format: Format,
     pub(super) elements: Vec<Element>,
     /// Where the body starts, in bytes.
@@ -103,7 +103,7 @@ pub(super) struct Header {
 }
 
 /// Reads the header of a file.
-pub(super) fn parse(bytes: &[u8]) -> Result<Header, String> {
+pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, String> {
     let mut lines = Lines { bytes, at: 0, number: 0 };
     if lines.next().as_deref() != Some("ply") {
         return Err("line 1: not a PLY file: the first line must be `ply`".into());
@@ -146,7 +146,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, String> {
     let format = format.ok_or_else(|| {
         format!("line {}: no format line; add `format ascii 1.0` or a binary one", lines.number)
     })?;
-    Ok(Header { format, elements, body: lines.at, line: lines.number + 1 })
+    Ok(PlyHeader { format, elements, body: lines.at, line: lines.number + 1 })
 }
 
 fn unknown_line(text: &str, line: u64) -> String {
@@ -196,9 +196,9 @@ fn parse_property(words: &[&str], text: &str, line: u64) -> Result<Property, Str
                 let what = format!("counts its list in {}; use uchar or int", count.name());
                 return Err(format!("line {line}: property {} {what}", quote(name)));
             }
-            (Kind::List { count, item }, name)
+            (PropertyKind::List { count, item }, name)
         }
-        [kind, name] => (Kind::One(Scalar::parse(kind, line)?), name),
+        [kind, name] => (PropertyKind::One(Scalar::parse(kind, line)?), name),
         _ => return Err(unknown_line(text, line)),
     };
     Ok(Property { name: name.to_owned(), kind })

@@ -51,7 +51,7 @@ pub use write::write;
 use crate::error::{Error, Result};
 use crate::scene::Cloud;
 use std::path::Path;
-use values::Values;
+use values::BodyValues;
 
 /// Reads a file. It needs memory for the file and the cloud, and about 0.1 s for a million points.
 ///
@@ -77,7 +77,7 @@ pub fn parse(bytes: &[u8]) -> std::result::Result<Cloud, String> {
         return Err("element vertex has count 0: the file holds no points".into());
     }
 
-    let mut values = Values::new(bytes, &header);
+    let mut values = BodyValues::new(bytes, &header);
     let mut cloud = Cloud::default();
     let mut groups = groups::Reader::new(vertex);
     for element in &header.elements {

@@ -1,10 +1,10 @@
 //! The body of a PLY file: one number after another, in any of the three formats.
 
-use super::header::{Element, Format, Header, Kind, Scalar, quote};
+use super::header::{Element, Format, PlyHeader, PropertyKind, Scalar, quote};
 
-/// A place in the body. Errors say what is wrong; [`Values::walk`] adds where.
+/// A place in the body. Errors say what is wrong; [`BodyValues::walk`] adds where.
 #[derive(Debug)]
-pub(super) struct Values<'a> {
+pub(super) struct BodyValues<'a> {
     bytes: &'a [u8],
     format: Format,
     /// The next byte to be read.
@@ -23,9 +23,9 @@ pub(super) enum Event {
     End,
 }
 
-impl<'a> Values<'a> {
-    pub(super) fn new(bytes: &'a [u8], header: &Header) -> Self {
-        let Header { format, body, line, .. } = *header;
+impl<'a> BodyValues<'a> {
+    pub(super) fn new(bytes: &'a [u8], header: &PlyHeader) -> Self {
+        let PlyHeader { format, body, line, .. } = *header;
         Self { bytes, format, at: body, last: body, line }
     }
 
@@ -64,12 +64,12 @@ impl<'a> Values<'a> {
     #[inline]
     fn property(
         &mut self,
-        kind: Kind,
+        kind: PropertyKind,
         mut visit: impl FnMut(f64) -> Result<(), String>,
     ) -> Result<(), String> {
         match kind {
-            Kind::One(scalar) => visit(self.next(scalar)?),
-            Kind::List { count, item } => {
+            PropertyKind::One(scalar) => visit(self.next(scalar)?),
+            PropertyKind::List { count, item } => {
                 let count = self.next(count)?;
                 if count < 0.0 {
                     return Err(format!("a list of {count} values; a count is at least 0"));
@@ -94,7 +94,9 @@ impl<'a> Values<'a> {
     /// Refuses a count that the rest of the file cannot hold.
     fn check_room(&self, element: &Element) -> Result<(), String> {
         let smallest = element.properties.iter().map(|property| match property.kind {
-            Kind::One(scalar) | Kind::List { count: scalar, .. } => self.bytes_of(scalar),
+            PropertyKind::One(scalar) | PropertyKind::List { count: scalar, .. } => {
+                self.bytes_of(scalar)
+            }
         });
         let most = self.room(smallest.sum());
         if element.count <= most {

@@ -1,8 +1,8 @@
 //! The element `vertex`: which property goes where, and how it is decoded.
 
 use super::groups;
-use super::header::{Element, Kind, Scalar, quote};
-use super::values::{Event, Values};
+use super::header::{Element, PropertyKind, Scalar, quote};
+use super::values::{BodyValues, Event};
 use crate::io::srgb;
 use crate::scene::Cloud;
 use glam::Vec3;
@@ -52,13 +52,13 @@ enum Slot {
     Skip,
     /// A number goes to a place of the row.
     Number(usize, Decode),
-    Group(groups::Part),
+    Group(groups::GroupPart),
 }
 
 /// Reads all vertices into the empty arrays of `cloud`.
 pub(super) fn read(
     element: &Element,
-    values: &mut Values<'_>,
+    values: &mut BodyValues<'_>,
     cloud: &mut Cloud,
     groups: &mut groups::Reader,
 ) -> Result<(), String> {
@@ -117,7 +117,7 @@ fn has(given: &[bool], group: Range<usize>) -> Result<bool, String> {
 }
 
 /// What becomes of a property of this name and kind.
-fn slot(name: &str, kind: Kind, groups: &groups::Reader) -> Result<Slot, String> {
+fn slot(name: &str, kind: PropertyKind, groups: &groups::Reader) -> Result<Slot, String> {
     if let Some(part) = groups.part(name, kind)? {
         return Ok(Slot::Group(part));
     }
@@ -125,7 +125,7 @@ fn slot(name: &str, kind: Kind, groups: &groups::Reader) -> Result<Slot, String>
     let Some(place) = NAMES.iter().position(|&known| known == name) else {
         return Ok(Slot::Skip);
     };
-    let Kind::One(scalar) = kind else {
+    let PropertyKind::One(scalar) = kind else {
         let what = format!("property {} is a list, but must be one number", quote(name));
         return Err(format!("element vertex: {what}"));
     };

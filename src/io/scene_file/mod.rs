@@ -23,8 +23,10 @@
 //! prints comes back with its bits. Keys that are in neither of these are refused, so that a typing
 //! error is not a default.
 //!
-//! [`SceneFile`] is what such a file says. One PLY file or one shape alone makes a scene file too:
-//! [`SceneFile::of_model`].
+//! [`SceneFile`] is what such a file says; [`SceneFile::open`] leads from a name to a picture. One
+//! PLY file or one shape alone makes a scene file too: [`SceneFile::of_model`]. The tables of
+//! settings follow from the rows of [`crate::setting`], here, on the command line and in the text of a
+//! picture.
 
 mod choice;
 mod draw;

@@ -5,13 +5,13 @@ use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples};
 use crate::index::grouping::Extension;
 use crate::io::exr;
 use crate::method::Method;
-use crate::method::ewa::{Epsilon, Settings};
 use crate::method::single_pass::{BinCount, DepthTest};
-use crate::method::transparent;
+use crate::method::{transparent, transparent_hq};
 use crate::scene::environment::{Environment, Map};
-use crate::shade::optics::{BendingLayers, Refraction};
+use crate::setting::Fields;
+use crate::shade::optics::{Layers, Refraction};
 use crate::source::derive::Origin;
-use crate::splat::{Kernel, Outline};
+use crate::splat::{Epsilon, Kernel, Outline, SplatSettings};
 use proptest::prelude::*;
 use std::fs;
 
@@ -20,6 +20,12 @@ const SHAPE: &str = "[[model]]\nshape = \"sphere\"\ncount = 100\n";
 
 fn parse(text: &str) -> SceneFile {
     SceneFile::parse(text, Path::new("a/scene.toml")).unwrap()
+}
+
+/// The splats of a file whose method is `ewa`.
+fn splats(file: &SceneFile) -> SplatSettings {
+    let Method::Ewa(settings) = file.method.method().unwrap() else { panic!("another method") };
+    settings
 }
 
 /// The one line that a bad file gives.
@@ -65,24 +71,24 @@ fn the_example_says_what_it_says() {
     let map = Path::new("a").join("sky.exr");
     assert_eq!(file.environment, Some(EnvironmentChoice::File(map)));
     let kernel = Kernel { outline: Outline::Perspective, cutoff: 2.0, low_pass: 0.25 };
-    let settings = Settings { kernel, epsilon: Epsilon::MedianRadii(1.5), cull: false };
+    let settings = SplatSettings { kernel, epsilon: Epsilon::MedianRadii(1.5), cull: false };
     let method = file.method.method().unwrap();
     let bins = BinCount::Count(256);
     let refraction = Refraction { ratio: [0.66, 0.67, 0.68], layers: BendingLayers::Multiple };
-    let expected = transparent::Settings {
-        splats: settings,
-        bins,
-        holes: transparent::Holes::Skipped,
-        nearest: Some(DepthTest::Voronoi(bins)),
+    let layers =
+        transparent::Settings { splats: settings, bins, holes: transparent::Holes::Skipped };
+    let expected = transparent_hq::Settings {
+        layers,
+        nearest: DepthTest::Voronoi(bins),
         refraction: Some(refraction),
     };
-    assert_eq!(method, Method::Transparent(expected));
-    let grouping = file.groups.grouping(&method);
+    assert_eq!(method, Method::TransparentHq(expected));
+    let grouping = file.grouping(&method).unwrap().unwrap();
     assert_eq!((grouping.rules.overlap, grouping.count), (1.0, Some(4)));
     assert_eq!(grouping.rules.coplanar.unwrap().cosine, 0.99);
     assert_eq!(grouping.extension, Extension::Add { most: 0.5 });
     assert_eq!(bunny.opacity, Some(0.5));
-    assert_eq!(file.output, Output { number: Number::F32, stages: true });
+    assert_eq!(file.output, OutputSettings { number: Number::F32, stages: true });
 }
 
 #[test]
@@ -90,7 +96,7 @@ fn what_is_absent_has_its_default() {
     let file = parse("[[model]]\nshape = \"staircase\"\n");
     let source = Source::Shape { shape: Shape::ALL[4], count: DEFAULT_COUNT, seed: 0 };
     assert_eq!(file, SceneFile { name: "scene".into(), ..SceneFile::of_model(source) });
-    assert_eq!(file.method.method().unwrap().splats(), Some(&Settings::default()));
+    assert_eq!(splats(&file), SplatSettings::default());
     assert_eq!(parse(&format!("light = []\n{SHAPE}")).lights, []);
 }
 
@@ -156,15 +162,8 @@ fn errors_name_the_file_the_line_and_the_key() {
 
 #[test]
 fn epsilon_is_a_number_or_radii() {
-    let epsilon = |text: &str| {
-        parse(&format!("{SHAPE}[method]\nepsilon = {text}\n"))
-            .method
-            .method()
-            .unwrap()
-            .splats()
-            .unwrap()
-            .epsilon
-    };
+    let epsilon =
+        |text: &str| splats(&parse(&format!("{SHAPE}[method]\nepsilon = {text}\n"))).epsilon;
     assert_eq!(epsilon("0.25"), Epsilon::World(0.25));
     assert_eq!(epsilon("2"), Epsilon::World(2.0));
     assert_eq!(epsilon("inf"), Epsilon::World(f32::INFINITY));
@@ -185,7 +184,11 @@ proptest! {
         let eye = file.camera.eye.unwrap();
         prop_assert_eq!(eye.to_array().map(f64::to_bits), camera.map(f64::to_bits));
         for epsilon in [Epsilon::World(numbers[0]), Epsilon::MedianRadii(numbers[1])] {
-            prop_assert_eq!(words::epsilon(&words::of_epsilon(epsilon)), Ok(epsilon));
+            let given = SplatSettings { epsilon, ..SplatSettings::default() };
+            let (_, value) = given.values().into_iter().find(|(name, _)| *name == "epsilon").unwrap();
+            let mut read = SplatSettings::default();
+            prop_assert_eq!(read.set("epsilon", &value), Ok(()));
+            prop_assert_eq!(read, given);
         }
     }
 }
@@ -223,8 +226,8 @@ fn an_environment_is_the_sky_or_a_file() {
     assert_eq!(load(&file("")).scene.environment, None);
     let sky = file("[environment]\nsky = true\n");
     assert_eq!(load(&sky).scene.environment, Some(Environment::Sky));
-    assert_eq!(words::environment("sky"), EnvironmentChoice::Sky);
-    assert_eq!(words::environment("b/sky.exr"), EnvironmentChoice::File("b/sky.exr".into()));
+    assert_eq!(EnvironmentChoice::of("sky"), EnvironmentChoice::Sky);
+    assert_eq!(EnvironmentChoice::of("b/sky.exr"), EnvironmentChoice::File("b/sky.exr".into()));
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
@@ -306,6 +309,71 @@ fn what_the_camera_leaves_open_shows_the_scene() {
 #[test]
 fn a_preset_can_be_changed_in_part() {
     let settings = parse(&format!("{SHAPE}[method]\nkernel = \"zpvbg01\"\nlow_pass = 0\n"));
-    let kernel = settings.method.method().unwrap().splats().unwrap().kernel;
+    let kernel = splats(&settings).kernel;
     assert_eq!(kernel, Kernel { low_pass: 0.0, ..Kernel::ZPVBG01 });
+}
+
+#[test]
+fn settings_are_of_their_method_and_of_their_type() {
+    for (table, line, what) in [
+        ("[method]\ncutof = 2\n", 5, "unknown key `cutof`; the keys are name, kernel, outline"),
+        ("[method]\npeel = 3\n", 4, "`peel` means nothing to the method ewa"),
+        ("[method]\nname = \"template\"\ncutoff = 2\n", 4, "`cutoff` means nothing to the method"),
+        ("[method]\ncutoff = \"2\"\n", 5, "cutoff `2`; give a number"),
+        ("[method]\ncull = \"on\"\n", 5, "cull `on`; give true or false"),
+        ("[method]\n\nbins = -1\n", 6, "bins `-1`; give a whole number"),
+        ("[method]\nname = \"transparent-hq\"\nrefraction = [1, 2]\n", 6, "give three numbers"),
+        ("[method]\nname = \"transparent-hq\"\nbends = \"single\"\n", 4, "without a `refraction`"),
+        ("[method]\nname = \"single-pass\"\ndepth = \"plain\"\nbins = 3\n", 4, "without depth"),
+        ("[groups]\nmost = 0.5\nextend = \"none\"\n", 4, "`most` means nothing unless"),
+        ("[groups]\ncoplanar = { cosine = 1, offset = 0 }\n", 5, "cosine, offset and color"),
+        ("[groups]\noverlap = 2\n", 4, "c = 2; give 0 to 1"),
+        ("[output]\nstages = 1\n", 5, "stages `1`; give true or false"),
+    ] {
+        let found = refused(&format!("{SHAPE}{table}"));
+        let place = format!(" line {line}: ");
+        assert!(found.contains(what) && found.contains(&place), "{table}: {found}");
+    }
+}
+
+#[test]
+fn another_method_keeps_what_means_something_to_it() {
+    let mut choice = parse(&format!(
+        "{SHAPE}[method]\nname = \"transparent-hq\"\nbins = 9\ndepth = \"plain\"\ncull = true\n\
+         refraction = [0.5, 0.5, 0.5]\n"
+    ))
+    .method;
+    choice.replace("single-pass").unwrap();
+    let Method::SinglePass(settings) = choice.method().unwrap() else { panic!("single-pass") };
+    assert_eq!((settings.depth, settings.splats.cull), (DepthTest::Plain, true));
+    choice.replace("pyramid").unwrap();
+    assert!(choice.method().is_ok() && choice.settings.has("cull") && !choice.settings.has("bins"));
+}
+
+#[test]
+fn a_count_of_groups_and_an_overlap_do_without_each_other() {
+    let grouping = |groups: &str, method: &str| {
+        let method = Method::by_name(method).unwrap();
+        let found = parse(&format!("{SHAPE}[groups]\n{groups}")).grouping(&method).unwrap();
+        found.map(|found| (found.rules.overlap, found.count))
+    };
+    assert_eq!(grouping("count = 3\n", "single-pass"), Some((1.0, Some(3))));
+    assert_eq!(grouping("overlap = 0.5\n", "transparent"), Some((0.5, None)));
+    assert_eq!(grouping("overlap = 0.5\ncount = 3\n", "transparent"), Some((0.5, Some(3))));
+    assert_eq!(grouping("extend = \"none\"\n", "transparent"), Some((1.0, Some(4))));
+    assert_eq!(grouping("extend = \"none\"\n", "single-pass"), Some((0.4, None)));
+    assert_eq!(grouping("", "transparent"), None);
+    assert_eq!(grouping("count = 3\n", "ewa"), None, "the method draws no groups");
+}
+
+#[test]
+fn a_scene_is_opened_by_its_name() {
+    for name in ["sphere", "tree", "b/bunny.ply"] {
+        let file = SceneFile::open(name).unwrap();
+        assert_eq!(file.name, name.trim_start_matches("b/").trim_end_matches(".ply"));
+    }
+    for name in ["ball", "a.exr", "a.txt"] {
+        assert_eq!(SceneFile::open(name).unwrap_err().exit_code(), 2);
+    }
+    assert_eq!(SceneFile::open("missing.toml").unwrap_err().exit_code(), 1);
 }

@@ -26,8 +26,8 @@ pub(super) fn method<'de, D: Deserializer<'de>>(from: D) -> Result<MethodChoice,
     Ok(choice)
 }
 
-/// The groups of a scene file may be for any method: with every default that a method has, the
-/// ranges are those of transparency, where splats are added.
+/// The groups of a scene file may be for any method, and ranges are the same for every method. They
+/// are checked on top of the defaults of transparency, where `most` means something.
 pub(super) fn groups<'de, D: Deserializer<'de>>(from: D) -> Result<GroupChoice, D::Error> {
     let check = |key: &str, value: &Value| check_type([GroupChoice::ALONE], key, value);
     let table = Table { rows: GroupChoice::rows(), named: false, check };

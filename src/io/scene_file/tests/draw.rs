@@ -1,7 +1,7 @@
 //! Models that are drawn as polygons, ribbons, tubes or hybrids.
 
 use super::*;
-use crate::scene::{Counts, Primitives};
+use crate::scene::{Counts, Primitives, Surfels};
 use crate::source::plant;
 
 /// A pyramid of four triangles without a bottom, whose apex is up, and two edges; what more a

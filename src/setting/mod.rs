@@ -20,8 +20,6 @@
 
 mod description;
 mod slot;
-#[cfg(test)]
-mod tests;
 
 pub use description::Setting;
 pub(crate) use description::check_type;
