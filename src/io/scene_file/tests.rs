@@ -9,7 +9,7 @@ use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::{transparent, transparent_hq};
 use crate::scene::environment::{Environment, Map};
 use crate::setting::Fields;
-use crate::shade::optics::{Layers, Refraction};
+use crate::shade::optics::{BendingLayers, Refraction};
 use crate::source::derive::Origin;
 use crate::splat::{Epsilon, Kernel, Outline, SplatSettings};
 use proptest::prelude::*;
