@@ -27,8 +27,8 @@ pub const PLANES: [PlaneRow; 10] = {
         PlaneRow::new("projection.normal", Vector, "", "towards the viewer, view space", Stages),
         PlaneRow::new("projection.extent", Scalar, "px", "radius rho", Stages),
         PlaneRow::new("projection.radius", Scalar, "world units", "radius r", Stages),
-        PlaneRow::new("projection.centre.X", Scalar, "px", "the centre's column", Stages),
-        PlaneRow::new("projection.centre.Y", Scalar, "px", "the centre's row", Stages),
+        PlaneRow::new("projection.center.X", Scalar, "px", "the centre's column", Stages),
+        PlaneRow::new("projection.center.Y", Scalar, "px", "the centre's row", Stages),
         PlaneRow::new("projection", Color, "", "colour, linear RGB", Colored),
         PlaneRow::new(
             "projection.tangent",

@@ -41,7 +41,7 @@ macro_rules! level {
                 Stages,
             ),
             PlaneRow::new(
-                concat!($level, ".radius"),
+                concat!($level, ".extent"),
                 Scalar,
                 "px",
                 "radius of the ellipse, in pixels of level 0",

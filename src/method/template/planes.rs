@@ -30,8 +30,8 @@ pub const LEVELS: [PlaneRow; 8] = {
         PlaneRow::new("level##.Z", Scalar, "world units", "depth t; +inf if empty", Stages),
         PlaneRow::new("level##.radius", Scalar, "world units", "radius r", Stages),
         PlaneRow::new("level##.extent", Scalar, "px", "radius rho", Stages),
-        PlaneRow::new("level##.place.X", Scalar, "px", "the centre's column", Stages),
-        PlaneRow::new("level##.place.Y", Scalar, "px", "the centre's row", Stages),
+        PlaneRow::new("level##.center.X", Scalar, "px", "the centre's column", Stages),
+        PlaneRow::new("level##.center.Y", Scalar, "px", "the centre's row", Stages),
         PlaneRow::new("level##.normal", Vector, "", "view space, of any length", Stages),
         PlaneRow::new("level##", Color, "", "colour, linear RGB", Colored),
     ]

@@ -95,7 +95,7 @@ fn agree(found: &transparent::explain::TransparentReplay<f64>, frame: &Frame<f64
         let plane = |name: &str| format!("blended.group{:02}{name}", at.group);
         assert_eq!(at.color, *color(frame, &plane("")).at(x, y));
         assert_eq!(at.alpha, *scalar(frame, &plane(".A")).at(x, y));
-        assert_eq!(at.opacity, *scalar(frame, &plane(".opacity")).at(x, y));
+        assert_eq!(at.opacity, *scalar(frame, &plane(".opacities")).at(x, y));
         assert_eq!(at.count, *count(frame, &plane(".count")).at(x, y));
         let blended = || at.touches.iter().filter(|touch| touch.passes());
         assert_eq!(blended().count(), usize::from(at.count));

@@ -27,7 +27,7 @@ const GROUP_ALPHA: PlaneRow = PlaneRow::new(
     When::Stages,
 );
 const GROUP_OPACITY: PlaneRow = PlaneRow::new(
-    "blended.group##.opacity",
+    "blended.group##.opacities",
     Holds::Scalar,
     "",
     "sum of the opacities of the layers in front of the nearest opaque one; 0 where there is none",
@@ -84,7 +84,7 @@ const AVERAGE_ALPHA: PlaneRow = PlaneRow::new(
     When::Stages,
 );
 const AVERAGE_OPACITY: PlaneRow = PlaneRow::new(
-    "blended.opacity",
+    "blended.opacities",
     Holds::Scalar,
     "",
     "average of the groups' sums of opacities",

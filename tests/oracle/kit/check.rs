@@ -114,7 +114,7 @@ impl<R: Exact, const P: u32> Check<'_, R, P> {
 
     fn empty(&self, i: usize, place: &str) {
         let expected = [0.0, f64::INFINITY, 0.0, 0.0, 0.0, 0.0];
-        let names = ["kind", "Z", "extent", "radius", "centre.X", "centre.Y"];
+        let names = ["kind", "Z", "extent", "radius", "center.X", "center.Y"];
         let found = names.map(|name| self.number(&format!("projection.{name}"), i));
         assert_eq!(found, expected, "{place} is empty");
         for name in ["projection.normal", "projection.tangent", "projection"] {
@@ -129,8 +129,8 @@ impl<R: Exact, const P: u32> Check<'_, R, P> {
             ("projection.Z", c.t, plane("Z")[0]),
             ("projection.extent", c.extent, plane("extent")[0]),
             ("projection.radius", c.radius, plane("radius")[0]),
-            ("projection.centre", c.center[0], plane("centre.X")[0]),
-            ("projection.centre", c.center[1], plane("centre.Y")[0]),
+            ("projection.center", c.center[0], plane("center.X")[0]),
+            ("projection.center", c.center[1], plane("center.Y")[0]),
         ];
         all.extend(vector("projection.normal", c.normal, plane("normal")));
         if let Some(found) = self.optional("projection", i) {

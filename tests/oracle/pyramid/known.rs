@@ -117,7 +117,7 @@ fn mirrors(discs: &[Colored], size: [u32; 2], axis: usize, settings: &Settings) 
     (0..width * height).all(|i| {
         let (x, y) = (i % width, i / width);
         let k = if axis == 0 { y * width + width - 1 - x } else { (height - 1 - y) * width + x };
-        let same = ["", "A", "Z", "kind", "push00.front", "push00.back", "push00.radius"]
+        let same = ["", "A", "Z", "kind", "push00.front", "push00.back", "push00.extent"]
             .iter()
             .filter(|name| a.plane(name).is_some())
             .all(|name| value(&a, name, i) == value(&b, name, k));

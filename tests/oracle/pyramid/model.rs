@@ -62,7 +62,7 @@ impl Level {
                 kind: one(".kind") as u8,
                 front: one(".front"),
                 back: one(".back"),
-                radius: one(".radius"),
+                radius: one(".extent"),
                 displacement: [one(".displacement.X"), one(".displacement.Y")],
                 normal: at(needed(".normal"), i),
                 tangent: optional(".tangent", i),

@@ -188,7 +188,7 @@ fn centers_as_far_apart_as_their_radii_are_one_surface() {
             assert_eq!(id(&frame, "level01.id", cell), front);
             let expected = if merged { [7.0, 3.0] } else { [4.0, 2.5] };
             assert_eq!(number(&frame, "level01.Z", cell), expected[0]);
-            assert_eq!(number(&frame, "level01.place.X", cell), expected[1]);
+            assert_eq!(number(&frame, "level01.center.X", cell), expected[1]);
         }
     }
     // Equally near: the id is that of the lower j, left before right, above before below.

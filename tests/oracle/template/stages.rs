@@ -17,15 +17,15 @@ use splatref::method::Picture;
 use splatref::method::template::{LevelRule, Settings};
 use splatref::number::Exact;
 
-/// A level as the picture shows it; `names`: of its place.
+/// A level as the picture shows it.
 pub(crate) fn grid<R: Exact>(frame: &Frame<R>, level: usize, [width, height]: [u32; 2]) -> Grid {
-    let (stage, place) = match level {
-        0 => ("projection".to_string(), "centre"),
-        _ => (format!("level{level:02}"), "place"),
+    let stage = match level {
+        0 => "projection".to_string(),
+        _ => format!("level{level:02}"),
     };
     let named = |end: &str| plane(frame, &format!("{stage}.{end}"));
     let [id, depth, radius, extent, normal] = ["id", "Z", "radius", "extent", "normal"].map(named);
-    let place = ["X", "Y"].map(|axis| named(&format!("{place}.{axis}")));
+    let place = ["X", "Y"].map(|axis| named(&format!("center.{axis}")));
     let color = frame.plane(&stage);
     let cell = |i: usize| Center {
         id: at(id, i)[0] as u32,
@@ -131,7 +131,7 @@ impl<R: Exact, const P: u32> TemplateStages<'_, R, P> {
                 ("level.Z", [found.depth; 3], [expected.depth; 3]),
                 ("level.radius", [found.radius; 3], [expected.radius; 3]),
                 ("level.extent", [found.extent; 3], [expected.extent; 3]),
-                ("level.place", [px, py, 0.0], [ex, ey, Num::ZERO]),
+                ("level.center", [px, py, 0.0], [ex, ey, Num::ZERO]),
                 ("level.normal", found.normal, expected.normal),
                 ("level", found.color, expected.color),
             ] {

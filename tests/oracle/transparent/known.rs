@@ -176,7 +176,7 @@ fn something_opaque_hides_what_is_behind_it_and_nothing_else() {
             assert_eq!(value(&more, "", i), value(&alone, "", i), "behind the wall");
             assert_eq!(value(&hidden, "", i), [1.0, 0.5, 0.25], "a wall before glass");
             let seen = if test.is_some() { 0.0 } else { 0.25 };
-            assert_eq!(value(&more, "blended.opacity", i), [seen; 3], "before the wall");
+            assert_eq!(value(&more, "blended.opacities", i), [seen; 3], "before the wall");
             assert_eq!(value(&more, "blended.hidden", i), [1.0; 3]);
             if test.is_some() {
                 assert_eq!(value(&more, "l", i), [1.0; 3], "no glass but the nearest");

@@ -115,7 +115,7 @@ fn opaque_surfels_show_the_nearest_bin_of_each_group() {
             };
             assert_eq!(value(&frame, "", i), color.to_array().map(f64::from), "{i} of {name}");
             assert_eq!(value(&frame, "A", i), [1.0; 3], "pixel {i} of {name}");
-            assert_eq!(value(&frame, "blended.opacity", i), [0.0; 3], "pixel {i} of {name}");
+            assert_eq!(value(&frame, "blended.opacities", i), [0.0; 3], "pixel {i} of {name}");
             assert_eq!(value(&frame, "blended.hidden", i), [1.0; 3], "pixel {i} of {name}");
         }
     }
@@ -175,7 +175,7 @@ fn the_names_of_the_groups_do_not_matter() {
         let name = subject.name.as_str();
         same(&before, &after, &["Z", "id"], name);
         for (g, other) in names.iter().enumerate() {
-            for end in ["", ".A", ".opacity", ".bin", ".count", ".id"] {
+            for end in ["", ".A", ".opacities", ".bin", ".count", ".id"] {
                 let [old, new] =
                     [g, usize::from(*other)].map(|k| format!("blended.group{k:02}{end}"));
                 assert!(before.plane(&old) == after.plane(&new), "{old}: {name}");
@@ -286,7 +286,7 @@ fn light_does_not_change_what_is_seen() {
             _ => Vec::new(),
         };
         let other = render::<f32>(&subject, true);
-        let planes = ["A", "Z", "id", "layers", "blended.A", "blended.opacity", "blended.hidden"];
+        let planes = ["A", "Z", "id", "layers", "blended.A", "blended.opacities", "blended.hidden"];
         same(&lit, &other, &planes, &subject.name);
     }
 }

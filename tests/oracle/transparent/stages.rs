@@ -70,7 +70,7 @@ impl<R: Exact> Compare<'_, R> {
     fn image(&mut self, layer: &str, image: &Image) {
         self.sharp(layer, "blended.group", image.color);
         self.sharp(&format!("{layer}.A"), "blended.group.A", [image.alpha; 3]);
-        self.sharp(&format!("{layer}.opacity"), "blended.group.opacity", [image.opacity; 3]);
+        self.sharp(&format!("{layer}.opacities"), "blended.group.opacities", [image.opacity; 3]);
         self.exact(&format!("{layer}.bin"), image.bin);
         self.exact(&format!("{layer}.count"), image.layers.value);
         self.exact(&format!("{layer}.id"), image.last.into());
@@ -83,7 +83,7 @@ impl<R: Exact> Compare<'_, R> {
         let mean = &truth.average;
         self.sharp("blended", "blended", mean.color);
         self.sharp("blended.A", "blended.A", [mean.alpha; 3]);
-        self.sharp("blended.opacity", "blended.opacity", [mean.opacity; 3]);
+        self.sharp("blended.opacities", "blended.opacities", [mean.opacity; 3]);
         self.sharp("blended.hidden", "blended.hidden", [mean.hidden; 3]);
         self.sharp("blended.layers", "blended.layers", [mean.layers; 3]);
         if !nearest {
