@@ -90,8 +90,8 @@ impl<R: Exact> fmt::Display for PeelingReplay<R> {
                 n(self.limit)
             )?;
             // What is outside, or already peeled, has been said with the layers before.
-            let left = touches.iter().filter(|touch| number == 1 || touch.gives.is_some());
-            left.map(|touch| writeln!(f, "  {touch}")).collect::<fmt::Result>()?;
+            let mut left = touches.iter().filter(|touch| number == 1 || touch.gives.is_some());
+            left.try_for_each(|touch| writeln!(f, "  {touch}"))?;
             writeln!(
                 f,
                 "layer {number}, attribute splatting: visible if depth <= {} (nearest {}, surfel \

@@ -17,6 +17,8 @@ pub struct TransparentReplay<R> {
     pub pixel: (u32, u32),
     /// k^2, the limit of q.
     pub limit: R,
+    /// Fragments up to this depth are masked, if there is a layer before the others.
+    pub beyond: Option<R>,
     /// The groups that splats reach the pixel from, ascending.
     pub groups: Vec<BlendedGroupAt<R>>,
     /// Opacity of the average of all groups.
@@ -84,6 +86,7 @@ pub(in crate::method) fn replay<R: Exact>(
     let replay = TransparentReplay {
         pixel,
         limit: blending.shared().limit,
+        beyond,
         groups: groups.collect(),
         alpha: blend.alpha,
         color: blend.color,
@@ -145,7 +148,8 @@ impl<R: Exact> fmt::Display for TransparentReplay<R> {
             )?;
         }
         if self.groups.iter().all(|at| at.count == 0) {
-            return writeln!(f, "\nthe pixel is empty");
+            let nothing = self.beyond.map_or("the pixel is empty", |_| "nothing is behind");
+            return writeln!(f, "\n{nothing}");
         }
         writeln!(
             f,
