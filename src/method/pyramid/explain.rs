@@ -154,6 +154,9 @@ impl<R: Exact> Four<R> {
 
 impl<R: Exact> fmt::Display for Four<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.cells.iter().any(Cell::is_valid) {
+            return writeln!(f, "    all four are empty");
+        }
         for j in 0..4 {
             writeln!(f, "    {j}  {}", self.fate(j))?;
         }

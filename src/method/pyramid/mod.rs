@@ -49,7 +49,8 @@ impl Algorithm for Settings {
         projection::planes::STAGE,
         Stage { name: "pull", reads: &["projection"], leaves: &planes::PULL },
         Stage { name: "push", reads: &["projection", "pull"], leaves: &planes::PUSH },
-        Stage { name: "shading", reads: &["push"], leaves: &planes::SHADING },
+        // A picture of one pixel has no level to push: its shading reads the projection.
+        Stage { name: "shading", reads: &["projection", "push"], leaves: &planes::SHADING },
     ];
     const DRAWS_PRIMITIVES: bool = true;
     type Memory = fast::CellLevels;

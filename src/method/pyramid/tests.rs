@@ -67,7 +67,8 @@ fn planes_that_do_not_fit_are_refused() {
 /// A level is computed from what the planes have, so that a wrong one shows in the next alone.
 #[test]
 fn a_wrong_level_spoils_the_next_alone() {
-    let (scene, camera) = (hybrid(true), cameras()[6]);
+    // Large, so that coarse levels are not empty.
+    let (scene, camera) = (scene(surfels(400, 0.4, true, 3)), cameras()[6]);
     let method = Method::Pyramid(Settings::default());
     let wrong = |frame: &mut Frame<f32>, level: &str| {
         let Samples::Scalar(fronts) = samples_mut(frame, level) else { panic!("{level}") };
@@ -86,7 +87,7 @@ fn a_wrong_level_spoils_the_next_alone() {
             let same = format!("{found:?}") == format!("{right:?}");
             assert!(same || found.name.starts_with(next), "{}", found.name);
         }
-        assert_ne!(found, right, "{next}");
+        assert!(found != right, "nothing of {next} has changed");
     }
 }
 
@@ -101,7 +102,7 @@ fn assert_explained<R: Exact>(scene: &Scene, camera: &Camera, settings: &Setting
         range.map(|l| read_level(&frame, rows, l, has).unwrap()).collect::<Vec<_>>()
     };
     let (pulled, pushed) = (of(&PULL, 1..levels), of(&PUSH, 0..levels - 1));
-    let mut kinds = [0; 5];
+    let (mut kinds, mut occluded) = ([0; 5], 0);
     for (x, y) in (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| (x, y))) {
         let found = explain::<R>(&job, settings, (x, y)).unwrap();
         let sample = samples.at(x, y);
@@ -120,18 +121,19 @@ fn assert_explained<R: Exact>(scene: &Scene, camera: &Camera, settings: &Setting
         kinds[found.shown.kind as usize] += 1;
         let text = found.to_string();
         assert!(text.contains(found.shown.kind.name()), "{text}");
+        occluded += usize::from(text.contains("occluded"));
         assert_eq!(text, explain::<R>(&job, settings, (x, y)).unwrap().to_string());
     }
-    assert!(kinds[0] > 0 && kinds[1] > 50, "{kinds:?}");
+    assert!(kinds[0] > 0 && kinds[1] > 50 && occluded > 10, "{kinds:?}, {occluded}");
 }
 
 #[test]
 fn explanations_agree_with_the_picture() {
     let camera = cameras()[4];
-    let tiny = Scene { surfels: surfels(80, 0.1, true, 7), ..hybrid(true) };
+    let tiny = Scene { surfels: surfels(80, 0.4, true, 7), ..hybrid(true) };
     for settings in settings() {
         assert_explained::<f32>(&tiny, &camera, &settings);
-        assert_explained::<f64>(&scene(surfels(300, 0.1, false, 9)), &camera, &settings);
+        assert_explained::<f64>(&scene(surfels(300, 0.2, false, 9)), &camera, &settings);
     }
 }
 

@@ -136,6 +136,9 @@ impl<R: Exact> fmt::Display for Merged<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ((x, y), level) = (self.cell, self.level);
         writeln!(f, "  level {level}, cell ({x}, {y})")?;
+        if !self.finer.iter().any(Center::is_valid) {
+            return writeln!(f, "    all four are empty");
+        }
         for j in 0..4 {
             writeln!(f, "    {j}  {}", self.fate(j))?;
         }
