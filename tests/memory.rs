@@ -7,7 +7,8 @@
 
 use glam::DVec3;
 use splatref::frame::Exec;
-use splatref::method::{Method, Session, single_pass};
+use splatref::method::single_pass::{self, DepthTest};
+use splatref::method::{Method, Session};
 use splatref::scene::{Camera, Groups, Lens, Pose, Scene};
 use splatref::source::Shape;
 use splatref::splat::SplatSettings;
@@ -34,7 +35,7 @@ fn a_render_stays_within_its_budget() {
     // Neighbours are in different groups, so that every block of every image is touched.
     let own = (0..SURFELS).map(|i| (i % GROUPS) as u8).collect();
     let groups = Groups::new(own, Vec::new(), vec![1.0; GROUPS]).expect("groups");
-    let single_pass = single_pass::Settings { splats, ..single_pass::Settings::default() };
+    let single_pass = single_pass::Settings { splats, depth: DepthTest::Plain };
     let budget = 100 * SURFELS as u64 + 64 * u64::from(SIDE) * u64::from(SIDE);
     let methods: [(Method, _); 2] = [(splats.into(), None), (single_pass.into(), Some(groups))];
     for (method, groups) in methods {

@@ -8,8 +8,19 @@ pub mod order;
 pub(crate) mod point_tree;
 
 use crate::error::{Error, Result};
-use crate::scene::{Groups, Surfels};
+use crate::scene::{Camera, Groups, Surfels};
 use order::BackToFront;
+
+/// What a view draws as one splat: a surfel, in one of its groups.
+///
+/// A view selects a plain list of items; their order is the order in which they are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Item {
+    /// The surfel.
+    pub surfel: u32,
+    /// One of the groups that the surfel is in.
+    pub group: u8,
+}
 
 /// What a method asks of a scene for every view, as far as the method needs it.
 #[derive(Debug, Default)]
@@ -35,6 +46,19 @@ impl Index {
     /// [`Error::Invalid`] if there is none.
     pub fn order(&self) -> Result<&BackToFront> {
         self.order.as_ref().ok_or_else(|| missing("an order from back to front"))
+    }
+
+    /// Every surfel in each of its groups, from back to front: what blending draws.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there are no groups or no order.
+    pub fn back_to_front(&self, camera: &Camera) -> Result<Vec<Item>> {
+        let (groups, order) = (self.groups()?, self.order()?);
+        let mut items = Vec::with_capacity(groups.own().len() + groups.added().len());
+        for surfel in order.walk(camera) {
+            items.extend(groups.of(surfel).map(|group| Item { surfel, group }));
+        }
+        Ok(items)
     }
 
     /// Whether this can be an index of these surfels: it must be of as many.

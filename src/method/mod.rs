@@ -1,20 +1,37 @@
 //! One file or folder for each published method; each reads as its paper's pass list.
 //!
+//! [`Method`] is the table of methods, one row a method, and [`Session`] draws a scene by one of
+//! them. The rows, each a folder whose page is the specification:
+//!
 //! - [`ewa`]: EWA surface splatting in two geometry passes and a normalization \[ZPvBG01, GP03\].
-//! - [`peeling`]: transparency by depth peeling, the truth that the others are compared with
-//!   \[ZP06\].
-//! - [`mod@projection`]: a scene as one sample a pixel, which the next two begin with.
-//! - [`pyramid`]: pull-push interpolation, with ribbons, tubes and polygons \[MKC08\].
-//! - [`template`]: reconstruction with templates of k x k pixels \[MOC08\].
 //! - [`single_pass`]: one geometry pass into the depth-images of groups, then compositing \[ZP06\].
 //! - [`transparent`]: layers blended from back to front within groups \[ZP06\].
 //! - [`transparent_hq`]: the same behind a nearest layer in high quality \[ZP06\].
-//! - [`Method`]: any of them, chosen by a value; [`session`]: a scene drawn by one of them.
+//! - [`peeling`]: transparency by depth peeling, the truth that the others are compared with
+//!   \[ZP06\].
+//! - [`pyramid`]: pull-push interpolation, with ribbons, tubes and polygons \[MKC08\].
+//! - [`template`]: reconstruction with templates of k x k pixels \[MOC08\].
+//!
+//! [`mod@projection`] is a scene as one sample a pixel, which the last two begin with.
+//!
+//! # The files of a method
+//!
+//! | file | what is in it |
+//! |---|---|
+//! | `mod.rs` | the specification, and the row of the table: [`Algorithm`] for the settings |
+//! | `settings.rs` | what is computed, a row a setting ([`crate::setting`]) |
+//! | one a published pass | the definition, over any exact number |
+//! | `planes.rs` | the planes of every [`Stage`], out and in |
+//! | `picture.rs` | all stages in one call |
+//! | `explain.rs` | the decisions at one pixel |
+//! | `fast/` | the bits of the definition for `f32`, from another layout |
+//!
+//! A new method is its folder, a row in `table.rs`, its scenes under `golden/` and its oracle under
+//! `tests/oracle/`.
 //!
 //! # Fast paths
 //!
-//! [`ewa::fast`] and [`single_pass::fast`] give the bits of the definitions for `f32`, from another
-//! layout. A tile is done from beginning to end while it is in the cache: its splats are gathered
+//! The fast paths of [`ewa`] and [`single_pass`] give the bits of the definitions for `f32`. A tile is done from beginning to end while it is in the cache: its splats are gathered
 //! into one list, and its pixels are kept in blocks of 4 x 4, one vector of 16 lanes a quantity. A
 //! lane is a pixel and never a partial sum, so every pixel sees the operations of the definition in
 //! their order. Three things differ, and none of them changes a bit:

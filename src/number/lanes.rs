@@ -2,7 +2,7 @@
 //!
 //! A kernel is written in straight loops over lanes. The compiler makes single vector instructions
 //! of such a loop, of the width of the function that the loop is inlined into: so everything here
-//! is inlined, and [`vectorized`] compiles each kernel for several widths. Lanes are read into local
+//! is inlined, and `vectorized` compiles each kernel for several widths. Lanes are read into local
 //! arrays, changed there and written back, because a loop that writes to memory that it may read
 //! again stays a loop. In every lane the operations are those of the definition, in its order.
 //!

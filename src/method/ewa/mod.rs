@@ -23,7 +23,7 @@
 
 pub(super) mod attributes;
 pub mod explain;
-pub mod fast;
+mod fast;
 mod margin;
 pub(super) mod normalization;
 mod picture;

@@ -22,7 +22,7 @@
 
 mod cell;
 mod explain;
-pub mod fast;
+mod fast;
 mod gbuffer;
 mod picture;
 pub mod planes;

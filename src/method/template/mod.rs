@@ -20,7 +20,7 @@
 
 mod center;
 mod explain;
-pub mod fast;
+mod fast;
 mod normalization;
 mod picture;
 pub mod planes;

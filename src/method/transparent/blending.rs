@@ -7,6 +7,7 @@ use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::frame::{NO_ID, Rect};
+use crate::index::Item;
 use crate::method::algorithm::Job;
 use crate::method::fragment::{each_in_bounds, each_inside, facing};
 use crate::method::prepare::Prepared;
@@ -89,14 +90,11 @@ impl<R: Exact> Blending<R> {
     /// Order, projection and shading.
     pub(in crate::method) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
         let Job { scene, index, camera, exec } = *job;
-        let (groups, order) = (index.groups()?, index.order()?);
+        let groups = index.groups()?;
         let surfels = &scene.surfels;
         let epsilon = settings.splats.epsilon.resolve(surfels);
         let bins = DepthBins::new(&settings.bins.resolve(surfels, camera, epsilon)?);
-        let mut items = Vec::with_capacity(surfels.len() + groups.added().len());
-        for surfel in order.walk(camera) {
-            items.extend(groups.of(surfel).map(|group| (surfel, group)));
-        }
+        let items = index.back_to_front(camera)?;
         let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
         let grid = exec.grid(camera.width, camera.height);
         let prepared = Prepared::new(
@@ -106,7 +104,7 @@ impl<R: Exact> Blending<R> {
             (exec, &grid),
             |projector, range, drawn| {
                 let mut tally = Tally::default();
-                for &(surfel, group) in &items[range] {
+                for &Item { surfel, group } in &items[range] {
                     let scale = groups.scale()[usize::from(group)];
                     let (splat, reasons) = place(scene, surfel, scale, projector);
                     let fate = reasons.fate();

@@ -20,7 +20,7 @@ use std::time::Instant;
 ///
 /// # Panics
 /// If the framebuffer has not the size of the camera's picture.
-pub fn render(
+pub(super) fn render(
     surfels: &Surfels,
     camera: &Camera,
     settings: &Settings,
