@@ -1,6 +1,7 @@
 //! `splatref compare`, `explain`, `info` and `--help`.
 
 use super::*;
+use splatref::method::Method;
 use tempfile::TempDir;
 
 #[test]
@@ -52,6 +53,16 @@ fn explain_agrees_with_the_picture() {
             }
         }
         assert!(seen > 2 && empty > 2, "{seen} {empty}");
+    }
+}
+
+#[test]
+fn every_method_explains_a_pixel() {
+    let at = TempDir::new().unwrap();
+    for method in Method::all() {
+        let scene = ["--count", "300", "--size", "32x24", "--method", method.name()];
+        let said = succeeds(at.path(), &[&["explain", "cluster", "16", "12"], &scene[..]].concat());
+        assert!(said.contains("pixel (16, 12)"), "{}: {said}", method.name());
     }
 }
 

@@ -20,7 +20,7 @@ struct Given {
 
 impl Given {
     fn new() -> Self {
-        let opacity = |i: u64| if i % 5 == 0 { 1.0 } else { unit(3, i) };
+        let opacity = |i: u64| if i.is_multiple_of(5) { 1.0 } else { unit(3, i) };
         let cloud = Cloud {
             opacity: Some((0..120).map(opacity).collect()),
             ..super::surfels(120, 0.25, true, 1).into_cloud()
@@ -99,7 +99,7 @@ fn agree(found: &transparent::explain::TransparentReplay<f64>, frame: &Frame<f64
         assert_eq!(at.count, *count(frame, &plane(".count")).at(x, y));
         let blended = || at.touches.iter().filter(|touch| touch.passes());
         assert_eq!(blended().count(), usize::from(at.count));
-        let last = blended().last().map_or(NO_ID, |touch| touch.surfel);
+        let last = blended().next_back().map_or(NO_ID, |touch| touch.surfel);
         assert_eq!(last, *id(frame, &plane(".id")).at(x, y));
     }
     assert_eq!(found.color, *color(frame, "blended").at(x, y));

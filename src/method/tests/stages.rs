@@ -33,8 +33,9 @@ fn methods() -> Vec<Method> {
 fn scenes() -> Vec<Scene> {
     let surfels = Shape::Torus.surfels(400, 1).unwrap();
     let scene = |i: u32| {
-        let (colored, lit, clear) = (i % 2 == 0, i / 2 % 2 == 0, i == 0 || i == 3);
-        let opacity = |i: u64| if i % 4 == 0 { 1.0 } else { unit(7, i) };
+        let (colored, lit, clear) =
+            (i.is_multiple_of(2), (i / 2).is_multiple_of(2), i == 0 || i == 3);
+        let opacity = |i: u64| if i.is_multiple_of(4) { 1.0 } else { unit(7, i) };
         let cloud = Cloud {
             color: surfels.color().filter(|_| colored).map(<[_]>::to_vec),
             opacity: clear.then(|| (0..400).map(opacity).collect()),
