@@ -14,7 +14,7 @@
 //!    weight. A pixel without weight is empty.
 //! 5. **Deferred shading**, see [`crate::shade`].
 //!
-//! The definition is over any [`Exact`] number, one fragment at a time; [`fast`] gives the same bits
+//! The definition is over any [`Exact`] number, one fragment at a time; `fast` gives the same bits
 //! for `f32`. [`explain`] lists every decision at one pixel. What each stage leaves:
 //! [`Algorithm::STAGES`].
 //!

@@ -43,7 +43,7 @@
 //!
 //! There the group keeps the nearer fragment alone.
 //!
-//! The definition is over any [`Exact`] number; [`fast`] gives the same bits for `f32`. [`explain`]
+//! The definition is over any [`Exact`] number; `fast` gives the same bits for `f32`. [`explain`]
 //! lists every decision at one pixel. What each stage leaves: [`Algorithm::STAGES`].
 //!
 //! [`Splat`]: crate::splat::Splat

@@ -182,9 +182,12 @@ fn broken_bins_are_caught() {
     );
 }
 
+/// An operator over the depth-images of groups: samples and epsilon to sums and count.
+type Compose = fn(&[WeightedFragment<f32>], f32) -> (WeightedFragment<f32>, u32);
+
 #[test]
 fn a_broken_operator_over_groups_is_caught() {
-    let of = |op: fn(&[WeightedFragment<f32>], f32) -> (WeightedFragment<f32>, u32)| groups(&op);
+    let of = |op: Compose| groups(&op);
     let in_order = "in order";
     // Folding over pairs, as images come.
     breaks(
