@@ -14,7 +14,7 @@ use std::fmt;
 
 /// What happened to the cells over one pixel.
 #[derive(Clone, Debug)]
-pub(super) struct Explanation<R> {
+pub(super) struct PyramidReplay<R> {
     pixel: (u32, u32),
     pub(super) projection: PixelProjection<R>,
     /// The cells over the pixel, of level 1 and on.
@@ -63,7 +63,7 @@ pub(super) fn explain<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     pixel: (u32, u32),
-) -> Result<Explanation<R>> {
+) -> Result<PyramidReplay<R>> {
     let Job { scene, camera, exec, .. } = *job;
     let snap = Snap::new(settings.subpixel_bits)?;
     let projected = projection::project::<R>(scene, camera, settings.cull, snap, exec)?;
@@ -84,7 +84,7 @@ pub(super) fn explain<R: Exact>(
         let left = from.filter(|from| from.found.is_valid()).map_or(own, |from| from.found);
         Pushed { level, cell: (x, y), rule, own, parent, from, left }
     });
-    Ok(Explanation {
+    Ok(PyramidReplay {
         pixel,
         projection: replay(job, settings.cull, snap, pixel),
         pulled: pulled.collect(),
@@ -160,14 +160,14 @@ impl<R: Exact> fmt::Display for Four<R> {
         for j in 0..4 {
             writeln!(f, "    {j}  {}", self.fate(j))?;
         }
-        writeln!(f, "    gives {}", Words(&self.found))
+        writeln!(f, "    gives {}", CellWords(&self.found))
     }
 }
 
 /// A cell in words.
-struct Words<'a, R>(&'a Cell<R>);
+struct CellWords<'a, R>(&'a Cell<R>);
 
-impl<R: Exact> fmt::Display for Words<'_, R> {
+impl<R: Exact> fmt::Display for CellWords<'_, R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Cell { kind, front, back, extent, .. } = self.0;
         if *kind == SampleKind::Empty {
@@ -205,7 +205,7 @@ impl<R: Exact> fmt::Display for Pushed<R> {
         let Some(from) = &self.from else { return Ok(()) };
         write!(f, "{from}")?;
         if own.is_valid() && !from.found.is_valid() {
-            let stays = Words(&self.left);
+            let stays = CellWords(&self.left);
             writeln!(
                 f,
                 "    so the cell stays {stays}: what does not cover a cell does not hide it"
@@ -215,7 +215,7 @@ impl<R: Exact> fmt::Display for Pushed<R> {
     }
 }
 
-impl<R: Exact> fmt::Display for Explanation<R> {
+impl<R: Exact> fmt::Display for PyramidReplay<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = self.pixel;
         writeln!(f, "pixel ({x}, {y})\n\n{}", self.projection)?;
@@ -228,6 +228,6 @@ impl<R: Exact> fmt::Display for Explanation<R> {
         for pushed in &self.pushed {
             write!(f, "{pushed}")?;
         }
-        writeln!(f, "\nthe pixel shows {}", Words(&self.shown))
+        writeln!(f, "\nthe pixel shows {}", CellWords(&self.shown))
     }
 }

@@ -15,13 +15,13 @@ use std::fmt;
 
 /// What happened to one pixel and to the cells over it.
 #[derive(Clone, Debug)]
-pub(super) struct Explanation<R> {
+pub(super) struct TemplateReplay<R> {
     pixel: (u32, u32),
     pub(super) projection: PixelProjection<R>,
     /// The cells over the pixel, of level 1 and on.
     pub(super) merged: Vec<Merged<R>>,
     /// The centres in the templates around the pixel, in the order of the gathering.
-    asked: Vec<Answer<R>>,
+    asked: Vec<CenterAnswer<R>>,
     /// The sums.
     pub(super) gathered: Gathered<R>,
     /// The average depth.
@@ -45,7 +45,7 @@ pub(super) struct Merged<R> {
 
 /// A centre, and what the pixel makes of it.
 #[derive(Clone, Copy, Debug)]
-struct Answer<R> {
+struct CenterAnswer<R> {
     level: usize,
     cell: (u32, u32),
     center: Center<R>,
@@ -67,7 +67,7 @@ pub(super) fn explain<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     pixel: (u32, u32),
-) -> Result<Explanation<R>> {
+) -> Result<TemplateReplay<R>> {
     let Job { scene, camera, exec, .. } = *job;
     let snap = Snap::default();
     let projected = projection::project::<R>(scene, camera, settings.cull, snap, exec)?;
@@ -85,10 +85,10 @@ pub(super) fn explain<R: Exact>(
         }
         let (level, cell, center, form, square) = (a.level, a.cell, *a.center, a.form, a.square);
         let (holds, own) = (a.holds, a.own);
-        asked.push(Answer { level, cell, center, form, square, holds, own, before, test });
+        asked.push(CenterAnswer { level, cell, center, form, square, holds, own, before, test });
     });
     let one = normalize(&Plane::filled(1, 1, gathered), camera, Has::of(scene), false);
-    Ok(Explanation {
+    Ok(TemplateReplay {
         pixel,
         projection: replay(job, settings.cull, snap, pixel),
         merged: merged.collect(),
@@ -151,7 +151,7 @@ impl<R: Exact> fmt::Display for Merged<R> {
     }
 }
 
-impl<R: Exact> fmt::Display for Answer<R> {
+impl<R: Exact> fmt::Display for CenterAnswer<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ((x, y), level, id) = (self.cell, self.level, self.center.id);
         write!(f, "  level {level}, cell ({x}, {y}), surfel {id}: ")?;
@@ -186,7 +186,7 @@ impl<R: Exact> fmt::Display for Answer<R> {
     }
 }
 
-impl<R: Exact> fmt::Display for Explanation<R> {
+impl<R: Exact> fmt::Display for TemplateReplay<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = self.pixel;
         writeln!(f, "pixel ({x}, {y})\n\n{}", self.projection)?;
