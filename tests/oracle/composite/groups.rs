@@ -1,9 +1,11 @@
 //! Laws of the compositing operator over depth-images, in `f32` and in `f64`.
 
+use crate::composite::lawful;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use splatref::composite::groups::{WeightedFragment, compose};
 use splatref::composite::{decide, sum};
+use splatref::laws;
 use splatref::number::Exact;
 
 /// Half the spacing of the numbers in [1, 2).
@@ -87,46 +89,22 @@ fn visible<R: Exact>(all: &[WeightedFragment<R>], epsilon: R) -> Vec<WeightedFra
     full().filter(|s| s.depth <= nearest + epsilon).copied().collect()
 }
 
-/// Sums of the same m terms in two orders: each is within (m - 1) u of the sum of magnitudes, u
-/// half an ulp of 1, so the two are within (m - 1) 2 u, which is at most 2 (m - 1) ulp of that sum.
-fn same_but_order<R: Exact>(
-    (a, b): (&WeightedFragment<R>, &WeightedFragment<R>),
-    terms: &[WeightedFragment<R>],
-) -> TestCaseResult {
-    prop_assert_eq!(a.depth, b.depth);
-    let m = terms.len() as f64;
-    for (i, (a, b)) in attributes(a).into_iter().zip(attributes(b)).enumerate() {
-        let magnitude: f64 = terms.iter().map(|s| attributes(s)[i].abs()).sum();
-        let bound = 2.0 * (m - 1.0).max(0.0) * unit::<R>() * magnitude * 1.001;
-        prop_assert!((a - b).abs() <= bound, "attribute {}: {} and {}, {} terms", i, a, b, m);
-    }
-    Ok(())
-}
-
 fn order_is_rounding<R: Exact>(all: &[Numbers], order: &[usize], band: f32) -> TestCaseResult {
-    let (all, band) = (samples::<R>(all), R::from_f32(band));
-    let permuted: Vec<_> = order.iter().map(|i| all[*i]).collect();
-    let (before, after) = (compose(&all, band), compose(&permuted, band));
-    prop_assert_eq!(before.1, after.1, "how many");
-    same_but_order((&before.0, &after.0), &visible(&all, band))?;
-    let mut back = permuted.clone();
-    order.iter().zip(&permuted).for_each(|(to, image)| back[*to] = *image);
-    prop_assert_eq!(bits(&before), bits(&compose(&back, band)), "relabelled back");
-    Ok(())
+    lawful(laws::groups::order(&compose, &samples::<R>(all), order, R::from_f32(band)))
 }
 
 fn empty_is_neutral<R: Exact>(all: &[Numbers], places: &[usize], band: f32) -> TestCaseResult {
     let (mut all, band) = (samples::<R>(all), R::from_f32(band));
-    let before = compose(&all, band);
     for place in places {
+        lawful(laws::groups::empty(&compose, &all, *place, band))?;
         all.insert(place % (all.len() + 1), WeightedFragment::EMPTY);
-        prop_assert_eq!(bits(&before), bits(&compose(&all, band)));
     }
     Ok(())
 }
 
 fn it_is_its_definition<R: Exact>(all: &[Numbers], band: f32) -> TestCaseResult {
     let (all, band) = (samples::<R>(all), R::from_f32(band));
+    lawful(laws::groups::definition(&compose, &all, band))?;
     let (sums, count) = compose(&all, band);
     let terms = visible(&all, band);
     prop_assert_eq!(count as usize, terms.len());
@@ -170,14 +148,8 @@ fn greater_keeps_more<R: Exact>(all: &[Numbers], [a, b]: [f32; 2]) -> TestCaseRe
 }
 
 fn an_image_of_its_own<R: Exact>(all: &[Numbers], place: usize, band: f32) -> TestCaseResult {
-    let (all, band) = (samples::<R>(all), R::from_f32(band));
-    let place = place % all.len();
-    let mut apart = all.clone();
-    apart[place] = WeightedFragment::EMPTY;
-    apart.push(all[place]);
-    let (before, after) = (compose(&all, band), compose(&apart, band));
-    prop_assert_eq!(before.1, after.1);
-    same_but_order((&before.0, &after.0), &visible(&all, band))
+    let all = samples::<R>(all);
+    lawful(laws::groups::apart(&compose, &all, place % all.len(), R::from_f32(band)))
 }
 
 /// Values that are one constant average to it, whatever is seen.

@@ -1,9 +1,11 @@
 //! Laws of alpha-blending, in `f32` and in `f64`.
 
-use crate::composite::groups::{filled, unit};
+use crate::composite::groups::filled;
+use crate::composite::lawful;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use splatref::composite::over::Blend;
+use splatref::laws;
 use splatref::number::Exact;
 
 /// A layer: opacity, colour.
@@ -22,62 +24,34 @@ fn layer() -> impl Strategy<Value = Layer> {
     )
 }
 
-fn blend<R: Exact>(layers: &[Layer]) -> Blend<R> {
-    layers.iter().fold(Blend::CLEAR, |below, layer| {
+/// The operator of the crate, which the laws are asked of.
+fn over<R: Exact>(below: Blend<R>, alpha: R, color: [R; 3]) -> Blend<R> {
+    below.over(alpha, color)
+}
+
+fn layers<R: Exact>(all: &[Layer]) -> Vec<(R, [R; 3])> {
+    let layer = |layer: &Layer| {
         let [a, r, g, b] = layer.map(filled::<R>);
-        below.over(a, [r, g, b])
-    })
+        (a, [r, g, b])
+    };
+    all.iter().map(layer).collect()
 }
 
-fn bits<R: Exact>(blend: &Blend<R>) -> [u64; 4] {
-    let [r, g, b] = blend.color;
-    [r, g, b, blend.alpha].map(|v| v.to_f64().to_bits())
+fn closed_form<R: Exact>(all: &[Layer]) -> TestCaseResult {
+    lawful(laws::over::closed_form(&over::<R>, &layers(all)))
 }
 
-/// Back to front, m layers: opacity is 1 - the product of all 1 - alpha, colour the sum of alpha c
-/// times the product of 1 - alpha of the nearer ones. A layer costs four roundings of numbers that
-/// are no larger than the result's bound, the closed form's own are those of f64.
-fn closed_form<R: Exact>(layers: &[Layer]) -> TestCaseResult {
-    let found = blend::<R>(layers);
-    let (mut through, mut color, mut largest) = (1.0_f64, [0.0_f64; 3], 1.0_f64);
-    for layer in layers.iter().rev() {
-        let [a, r, g, b] = layer.map(|v| filled::<R>(v).to_f64());
-        for (sum, c) in color.iter_mut().zip([r, g, b]) {
-            *sum += through * a * c;
-            largest = largest.max(c);
-        }
-        through *= 1.0 - a;
-    }
-    let bound = 4.0 * (layers.len() as f64 + 1.0) * unit::<R>() * largest;
-    prop_assert!((found.alpha.to_f64() - (1.0 - through)).abs() <= bound);
-    for (found, expected) in found.color.iter().zip(color) {
-        prop_assert!((found.to_f64() - expected).abs() <= bound, "{:?} {}", found, expected);
-    }
-    // Never past 1: 1 - alpha is off by half the spacing below 1, which a sum of 1 rounds away.
-    prop_assert!(found.alpha >= R::ZERO && found.alpha <= R::ONE);
-    Ok(())
+fn ends<R: Exact>(all: &[Layer], top: &Layer) -> TestCaseResult {
+    lawful(laws::over::ends(&over::<R>, &layers(all), layers(&[*top])[0].1))
 }
 
-fn ends<R: Exact>(layers: &[Layer], top: &Layer) -> TestCaseResult {
-    let below = blend::<R>(layers);
-    let [_, r, g, b] = top.map(filled::<R>);
-    let opaque = below.over(R::ONE, [r, g, b]);
-    prop_assert_eq!(bits(&opaque), bits(&Blend { color: [r, g, b], alpha: R::ONE }));
-    prop_assert_eq!(bits(&below.over(R::ZERO, [r, g, b])), bits(&below));
-    Ok(())
-}
-
-/// Whatever is below, an opaque layer makes its own colour of it: what is nearer decides alone.
 fn nothing_shines_through<R: Exact>(
-    layers: &[Layer],
+    all: &[Layer],
     others: &[Layer],
     wall: &Layer,
 ) -> TestCaseResult {
-    let mut wall = *wall;
-    wall[0] = (1.0, 0.0);
-    let before = |far: &[Layer]| blend::<R>(&[far, &[wall], others].concat());
-    prop_assert_eq!(bits(&before(layers)), bits(&before(&[])));
-    Ok(())
+    let color = layers(&[*wall])[0].1;
+    lawful(laws::over::wall(&over::<R>, &layers(all), color, &layers(others)))
 }
 
 proptest! {

@@ -1,7 +1,9 @@
 //! Laws of the epsilon-z test and of weighted sums.
 
+use crate::composite::lawful;
 use proptest::prelude::*;
 use splatref::composite::{decide, sum};
+use splatref::laws;
 
 /// A depth: ordinary, a few ulp from another, huge, tiny.
 fn depth() -> impl Strategy<Value = f32> {
@@ -25,14 +27,8 @@ fn weight() -> impl Strategy<Value = f32> {
 proptest! {
     #[test]
     fn the_epsilon_test_is_an_interval_that_grows(t in depth(), nearest in depth(), a in band(), b in band()) {
-        let (small, large) = if a < b { (a, b) } else { (b, a) };
-        prop_assert!(decide::visible(nearest, decide::limit(nearest, a)), "the nearest passes");
-        prop_assert!(decide::visible(t, decide::limit(nearest, f32::INFINITY)), "inf keeps everything");
-        prop_assert!(!decide::visible(t, decide::limit(nearest, small)) || decide::visible(t, decide::limit(nearest, large)));
-        let (near, far) = if t < nearest { (t, nearest) } else { (nearest, t) };
-        prop_assert_eq!(decide::visible(far, decide::limit(near, 0.0)), far == near, "0 keeps ties alone");
-        // Nearer never fails where farther passes; in f64 f32 operands add without rounding here.
-        prop_assert!(!decide::visible(far, decide::limit(nearest, a)) || decide::visible(near, decide::limit(nearest, a)));
+        let visible = |t: f32, nearest, epsilon| decide::visible(t, decide::limit(nearest, epsilon));
+        lawful(laws::epsilon::case(&visible, t, nearest, [a, b]))?;
     }
 
     #[test]
