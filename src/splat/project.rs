@@ -95,49 +95,9 @@
 
 use super::frustum::Frustum;
 use super::shape::{Covariance, PlacedDisc};
-use super::{Footprint, Kernel, Outline, Splat, View, bounds, crossing};
+use super::{Disc, Footprint, Kernel, Outline, Reasons, Splat, View, bounds, crossing};
 use crate::frame::Rect;
 use crate::number::{Exact, Real, Vector2, Vector3};
-
-/// What became of a surfel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
-pub enum Fate {
-    /// It is drawn.
-    Visible,
-    /// Its centre is not farther than the near plane.
-    Behind,
-    /// It has no footprint in this arithmetic, see the module page.
-    Degenerate,
-    /// Its back is seen, and culling is on.
-    BackFacing,
-    /// None of its pixels is in the picture, or it lies beyond a side of the view.
-    Outside,
-}
-
-/// A surfel in world space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Disc<R> {
-    /// Centre.
-    pub position: Vector3<R>,
-    /// Unit normal.
-    pub normal: Vector3<R>,
-    /// Radius; with tangents they count instead.
-    pub radius: R,
-    /// Half axes of an elliptical surfel.
-    pub tangents: Option<[Vector3<R>; 2]>,
-}
-
-impl<R: Real> Disc<R> {
-    /// The radius of a sphere that holds it: r, or sqrt(U . U + V . V) of an ellipse, whose half
-    /// axes need not be perpendicular.
-    pub(super) fn reach(&self) -> R {
-        match self.tangents {
-            None => self.radius,
-            Some([u, v]) => (u.dot(u) + v.dot(v)).sqrt(),
-        }
-    }
-}
 
 /// All that the projection of a picture's surfels shares.
 #[derive(Clone, Copy, Debug)]
@@ -154,32 +114,6 @@ pub struct Projector<R> {
     pub cull: bool,
     /// The sides of the view.
     frustum: Frustum<R>,
-}
-
-/// Why a surfel is not drawn, in the order of the fates; see the module page.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reasons<R: Real> {
-    /// The centre is not farther than the near plane: not t > near.
-    pub behind: R::Truth,
-    /// The surfel has no footprint in this arithmetic.
-    pub degenerate: R::Truth,
-    /// The back is seen, g >= 0, and culling is on.
-    pub back_facing: R::Truth,
-    /// The surfel cannot be seen in the picture. Empty bounds are a reason, but bounds that may be
-    /// empty are no doubt: bounds are rounded outwards, and empty ones have no fragments.
-    pub outside: R::Truth,
-}
-
-impl<R: Exact> Reasons<R> {
-    /// The first reason there is; without a branch, so that a loop over surfels vectorizes.
-    #[inline(always)]
-    #[must_use]
-    pub fn fate(&self) -> Fate {
-        let fate = if self.outside { Fate::Outside } else { Fate::Visible };
-        let fate = if self.back_facing { Fate::BackFacing } else { fate };
-        let fate = if self.degenerate { Fate::Degenerate } else { fate };
-        if self.behind { Fate::Behind } else { fate }
-    }
 }
 
 /// Projects one surfel; see the module page. The splat is meaningless unless there is no reason not

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use splatref::method::ewa::Settings;
 use splatref::number::{Exact, Vector3};
 use splatref::scene::Camera;
-use splatref::splat::project::Disc;
+use splatref::splat::Disc;
 use splatref::splat::{Fate, Kernel, Outline, Projector, View, project};
 
 /// A surfel in view space before any number type.

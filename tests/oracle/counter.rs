@@ -11,7 +11,7 @@ use splatref::method::ewa::Settings;
 use splatref::method::single_pass::{self, BinCount, DepthTest};
 use splatref::number::{Exact, Real, Vector3};
 use splatref::scene::Light;
-use splatref::splat::project::Disc;
+use splatref::splat::Disc;
 use splatref::splat::{Kernel, Outline, Projector, Shared, View, project};
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
