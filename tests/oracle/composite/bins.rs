@@ -1,9 +1,11 @@
 //! Laws of low-precision and Voronoi-enhanced depth, against exact rational arithmetic.
 
 use crate::composite::groups::unit;
+use crate::composite::lawful;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use splatref::composite::bins::{DepthBins, MAX_BINS, Range};
+use splatref::laws;
 use splatref::number::Exact;
 
 /// A number as a multiple of 2^-64, exactly: for multiples of that below 2^32.
@@ -90,15 +92,33 @@ fn bin_is_floor<R: Exact>(range: &Range, part: f64) -> TestCaseResult {
     Ok(())
 }
 
-fn nearer_is_not_behind<R: Exact>(range: &Range, parts: [f64; 2]) -> TestCaseResult {
-    let bins = DepthBins::<R>::new(range);
-    let [a, b] = parts.map(|part| at::<R>(range, part));
-    let (near, far) = if a < b { (a, b) } else { (b, a) };
-    prop_assert!(bins.bin(near) <= bins.bin(far), "{:?} {:?}", near, far);
-    Ok(())
+/// The operators of the crate, which the laws are asked of.
+fn bin<R: Exact>(range: &Range, t: R) -> R {
+    DepthBins::new(range).bin(t)
 }
 
-/// Depths in the range that differ by (1 + 2^-5) extent / n are apart, whatever their ratios.
+fn voronoi<R: Exact>(range: &Range, t: R, ratio: R) -> R {
+    DepthBins::new(range).voronoi(t, ratio)
+}
+
+/// A depth is at least 0.
+fn depth<R: Exact>(range: &Range, part: f64) -> R {
+    let t = at::<R>(range, part);
+    if t < R::ZERO { R::ZERO } else { t }
+}
+
+fn laws_of_a_pair<R: Exact>(range: &Range, parts: [f64; 2], ratios: [f32; 2]) -> TestCaseResult {
+    let (depths, ratios) = (parts.map(|part| depth::<R>(range, part)), ratios.map(R::from_f32));
+    lawful(laws::bins::pair(&bin, &voronoi, range, depths, ratios))
+}
+
+fn laws_of_one<R: Exact>(range: &Range, part: f64, ratios: [f32; 2]) -> TestCaseResult {
+    let ratios = ratios.map(R::from_f32);
+    lawful(laws::bins::one(&bin, &voronoi, range, depth::<R>(range, part), ratios))
+}
+
+/// The law of separation, decided in exact arithmetic: depths in the range that differ by
+/// (1 + 2^-5) extent / n are apart, whatever their ratios.
 fn apart<R: Exact>(range: &Range, parts: [f64; 2]) -> TestCaseResult {
     let bins = DepthBins::<R>::new(range);
     let [a, b] = parts.map(|part| at::<R>(range, part));
@@ -112,6 +132,7 @@ fn apart<R: Exact>(range: &Range, parts: [f64; 2]) -> TestCaseResult {
     Ok(())
 }
 
+/// How finely ratios are told apart, which no other operator need do.
 fn own_center_wins<R: Exact>(range: &Range, part: f64, ratios: [f32; 2]) -> TestCaseResult {
     let bins = DepthBins::<R>::new(range);
     let t = at::<R>(range, part);
@@ -119,7 +140,6 @@ fn own_center_wins<R: Exact>(range: &Range, part: f64, ratios: [f32; 2]) -> Test
     let (a, b) =
         if ratios[0] < ratios[1] { (ratios[0], ratios[1]) } else { (ratios[1], ratios[0]) };
     let [near, far] = [a, b].map(|ratio| bins.voronoi(t, R::from_f32(ratio)));
-    prop_assert!(bin <= near && near <= far && far < bin + R::ONE);
     prop_assert_eq!(bins.voronoi(t, R::ZERO), bin);
     prop_assert_eq!(bins.voronoi(t, R::ONE), bin + R::from_f32(255.0 / 256.0), "exact");
     // Below the end, ratios that differ by more than the spacing at the bin are told apart.
@@ -140,10 +160,21 @@ proptest! {
 
     #[test]
     fn no_rounding_turns_two_layers_around(
-        range in range(), part in -0.1_f64..1.1, step in prop_oneof![0.0_f64..1e-5, 0.0_f64..1.0],
+        range in range(),
+        part in -0.1_f64..1.1,
+        step in prop_oneof![0.0_f64..1e-5, 0.0_f64..1.0],
+        ratios in [0.0_f32..1.25, 0.0_f32..1.25],
     ) {
-        nearer_is_not_behind::<f32>(&range, [part, part + step])?;
-        nearer_is_not_behind::<f64>(&range, [part, part + step])?;
+        laws_of_a_pair::<f32>(&range, [part, part + step], ratios)?;
+        laws_of_a_pair::<f64>(&range, [part, part + step], ratios)?;
+    }
+
+    #[test]
+    fn a_voronoi_enhanced_depth_lies_in_the_bin_of_its_depth(
+        range in range(), part in -0.1_f64..1.1, ratios in [0.0_f32..1.25, 0.0_f32..1.25],
+    ) {
+        laws_of_one::<f32>(&range, part, ratios)?;
+        laws_of_one::<f64>(&range, part, ratios)?;
     }
 
     #[test]

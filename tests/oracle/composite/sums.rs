@@ -36,18 +36,9 @@ proptest! {
         weights in prop::collection::vec(weight(), 1..300),
         value in (0.0_f32..1.0, 1e-3_f32..1e3).prop_map(|(a, b)| [a, b, 1.0]),
     ) {
-        let (mut total, mut colors) = (0.0_f32, [0.0_f32; 3]);
-        for w in &weights {
-            total += w;
-            colors = sum::add(colors, *w, value);
-        }
-        let average = sum::average(colors, total);
-        for (a, v) in average.into_iter().zip(value) {
-            // Each sum of n terms >= 0 is off by n roundings, each product by one, the quotient by one.
-            let bound = (2 * weights.len() + 2) as f32 * 2.0_f32.powi(-24) * v;
-            prop_assert!((a - v).abs() <= bound + 1e-37, "{} for {}", a, v);
-        }
-        prop_assert_eq!(average[2], 1.0, "weights themselves average to 1 exactly");
+        lawful(laws::sums::constant(&sum::add, &sum::average, &weights, value))?;
+        let total = weights.iter().fold(0.0, |total, w| total + w);
+        let colors = weights.iter().fold([0.0; 3], |sum, w| sum::add(sum, *w, value));
         let direction = sum::direction(colors.map(|c| c + total), total);
         let length = direction.iter().map(|c| f64::from(*c).powi(2)).sum::<f64>().sqrt();
         prop_assert!((length - 1.0).abs() < 4e-7, "length {}", length);
