@@ -49,8 +49,8 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Ended {
-    let pair = [File::read(&args.first, args)?, File::read(&args.second, args)?];
-    let stored = pair.iter().any(|file| matches!(file, File::Png(_)));
+    let pair = [PictureFile::read(&args.first, args)?, PictureFile::read(&args.second, args)?];
+    let stored = pair.iter().any(|file| matches!(file, PictureFile::Png(_)));
     let (first, second) = alike(pair)?;
     let found = compare(&first, &second, &args.criteria())?;
     let lines = found.lines();
@@ -81,14 +81,14 @@ impl Args {
 }
 
 /// A picture as its kind of file holds it.
-enum File {
+enum PictureFile {
     Exr(Image),
     Png(png::Stored),
     /// One plane, and where it is from.
     Npy(Image, PathBuf),
 }
 
-impl File {
+impl PictureFile {
     fn read(path: &Path, args: &Args) -> Result<Self> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
@@ -111,20 +111,22 @@ impl File {
 }
 
 /// Two pictures with what both kinds of files can hold: an NPY one plane, a PNG encoded colours.
-fn alike(pair: [File; 2]) -> Result<(Image, Image)> {
+fn alike(pair: [PictureFile; 2]) -> Result<(Image, Image)> {
     Ok(match pair {
-        [File::Png(first), second @ (File::Exr(_) | File::Npy(..))] => {
+        [PictureFile::Png(first), second @ (PictureFile::Exr(_) | PictureFile::Npy(..))] => {
             let second = first.encode(&second.image());
             (first.image, second)
         }
-        [first @ (File::Exr(_) | File::Npy(..)), File::Png(second)] => {
+        [first @ (PictureFile::Exr(_) | PictureFile::Npy(..)), PictureFile::Png(second)] => {
             (second.encode(&first.image()), second.image)
         }
-        [File::Npy(plane, path), File::Exr(all)] => {
+        [PictureFile::Npy(plane, path), PictureFile::Exr(all)] => {
             let all = part_of(all, &plane, &path)?;
             (plane, all)
         }
-        [File::Exr(all), File::Npy(plane, path)] => (part_of(all, &plane, &path)?, plane),
+        [PictureFile::Exr(all), PictureFile::Npy(plane, path)] => {
+            (part_of(all, &plane, &path)?, plane)
+        }
         [first, second] => (first.image(), second.image()),
     })
 }

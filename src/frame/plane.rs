@@ -30,6 +30,12 @@ impl<T> Plane<T> {
         Self { width, height, values }
     }
 
+    /// A value for each pixel, by column and row.
+    pub(crate) fn from_pixels([width, height]: [u32; 2], value: impl Fn(u32, u32) -> T) -> Self {
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        Self::from_values(width, height, pixels.map(|(x, y)| value(x, y)).collect())
+    }
+
     /// Width in pixels.
     #[must_use]
     pub fn width(&self) -> u32 {

@@ -20,3 +20,6 @@ pub mod provenance;
 pub mod replace;
 pub mod scene_file;
 pub mod srgb;
+
+/// A result or the reason why not, without the file's name.
+type Reason<T> = Result<T, String>;

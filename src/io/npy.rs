@@ -3,6 +3,7 @@
 //! Format: [NEP 1](https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html),
 //! versions 1.0 to 3.0.
 
+use super::Reason;
 use crate::frame::Image;
 use crate::frame::image::Values;
 use crate::{Error, Result};
@@ -12,9 +13,6 @@ use std::path::Path;
 
 /// A header is a line of some hundred bytes; `NumPy` itself reads no longer one without being told.
 const LONGEST_HEADER: u64 = 10_000;
-
-/// A reason, without the file's name.
-type Reason<T> = std::result::Result<T, String>;
 
 /// Reads the array of the NPY file at `path` as the plane called `name`.
 ///
@@ -88,7 +86,7 @@ fn header_text(file: &mut Take<File>) -> Reason<String> {
 
 /// The types of elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Element {
+enum Dtype {
     F32,
     F64,
     U8,
@@ -100,7 +98,7 @@ enum Element {
 /// What a header says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Array {
-    element: Element,
+    element: Dtype,
     height: u32,
     width: u32,
     /// 1 or 3.
@@ -115,11 +113,11 @@ impl Array {
         let dictionary = dictionary.ok_or("header: no dictionary; write it with numpy.save")?;
         let descr = value(dictionary, "descr")?;
         let element = match descr.trim_matches(['\'', '"']) {
-            "<f4" => Element::F32,
-            "<f8" => Element::F64,
-            "|u1" => Element::U8,
-            "<u2" => Element::U16,
-            "<u4" | "<i4" => Element::U32,
+            "<f4" => Dtype::F32,
+            "<f8" => Dtype::F64,
+            "|u1" => Dtype::U8,
+            "<u2" => Dtype::U16,
+            "<u4" | "<i4" => Dtype::U32,
             other => {
                 return Err(format!(
                     "header: elements `{other}`; save as float32, float64, uint8, uint16, uint32 or \
@@ -151,10 +149,10 @@ impl Array {
     /// The bytes of the array.
     fn bytes(&self) -> u64 {
         let size = match self.element {
-            Element::F32 | Element::U32 => 4,
-            Element::F64 => 8,
-            Element::U8 => 1,
-            Element::U16 => 2,
+            Dtype::F32 | Dtype::U32 => 4,
+            Dtype::F64 => 8,
+            Dtype::U8 => 1,
+            Dtype::U16 => 2,
         };
         let pixels = u64::from(self.height) * u64::from(self.width);
         pixels.saturating_mul(size * self.components as u64)
@@ -179,11 +177,11 @@ impl Array {
             let floats = |all: Vec<f32>| Values::Float(self.strided(&all, component));
             let indices = |all: Vec<u32>| Values::Index(self.strided(&all, component));
             match self.element {
-                Element::F32 => floats(elements(bytes, f32::from_le_bytes)),
-                Element::F64 => floats(elements(bytes, |b| f64::from_le_bytes(b) as f32)),
-                Element::U8 => indices(elements(bytes, |[b]| u32::from(b))),
-                Element::U16 => indices(elements(bytes, |b| u32::from(u16::from_le_bytes(b)))),
-                Element::U32 => indices(elements(bytes, u32::from_le_bytes)),
+                Dtype::F32 => floats(elements(bytes, f32::from_le_bytes)),
+                Dtype::F64 => floats(elements(bytes, |b| f64::from_le_bytes(b) as f32)),
+                Dtype::U8 => indices(elements(bytes, |[b]| u32::from(b))),
+                Dtype::U16 => indices(elements(bytes, |b| u32::from(u16::from_le_bytes(b)))),
+                Dtype::U32 => indices(elements(bytes, u32::from_le_bytes)),
             }
         };
         let channels = names.into_iter().enumerate().map(|(i, name)| (name, each(i)));

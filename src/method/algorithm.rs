@@ -1,15 +1,16 @@
 //! What a method is: the interface that a row of the table of methods implements.
 
+use super::given::Given;
 use super::{Picture, Stage};
 use crate::error::Result;
-use crate::frame::{Exec, Frame, NamedPlane, Pool};
+use crate::frame::{Exec, Frame, Grid, NamedPlane, Pool};
 use crate::index::Index;
 use crate::index::grouping::Grouping;
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use crate::setting::Fields;
 use crate::splat::SplatSettings;
-use std::fmt::Debug;
+use std::fmt::{Debug, Display};
 
 /// What a picture is made of, and how.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +26,11 @@ pub struct Job<'a> {
 }
 
 impl Job<'_> {
+    /// The tiles of the picture.
+    pub(super) fn grid(&self) -> Grid {
+        self.exec.grid(self.camera.width, self.camera.height)
+    }
+
     /// Planes of the picture as a frame.
     pub(super) fn frame<R>(&self, planes: Vec<NamedPlane<R>>) -> Frame<R> {
         Frame { width: self.camera.width, height: self.camera.height, planes }
@@ -90,17 +96,22 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     /// # Errors
     /// [`crate::Error::Invalid`] if a plane is missing, of another type or size, or if no stage of
     /// this name can be run so.
-    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>>;
+    fn stage<R: Exact>(
+        &self,
+        job: &Job<'_>,
+        stage: &str,
+        given: &Given<'_, R>,
+    ) -> Result<Vec<NamedPlane<R>>>;
 
     /// Every decision at one pixel, with its operands, in words.
     ///
     /// # Errors
     /// [`crate::Error::Usage`] if the pixel is outside the picture; else as [`Algorithm::define`].
-    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String>;
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display>;
 
     /// What the settings come to in a scene: names and values as TOML, for the text of a picture.
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
-        let _ = (scene, camera);
-        Vec::new()
+        let _ = camera;
+        self.splats().map_or_else(Vec::new, |splats| splats.resolved(scene))
     }
 }

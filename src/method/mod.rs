@@ -45,6 +45,7 @@ mod algorithm;
 pub mod ewa;
 mod fast;
 mod fragment;
+mod given;
 pub mod peeling;
 mod picture;
 mod prepare;
@@ -64,6 +65,7 @@ pub mod transparent;
 pub mod transparent_hq;
 
 pub use algorithm::{Algorithm, Job};
+pub use given::Given;
 pub use picture::{Laps, Picture};
 pub use session::Session;
 pub use stage::{Holds, PlaneRow, Stage, When};

@@ -85,7 +85,7 @@ pub(super) fn before_environment<R: Exact>(
 
 /// A framebuffer for a camera's picture, in memory that is used again: the values are any.
 pub(super) fn framebuffer(camera: &Camera, wanted: Wanted, pool: &mut Pool) -> Framebuffer<f32> {
-    let size = [camera.width, camera.height];
+    let size = camera.size();
     Framebuffer {
         width: camera.width,
         height: camera.height,

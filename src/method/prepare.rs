@@ -1,9 +1,8 @@
 //! Projection and binning: what every method does first.
 
 use super::algorithm::Job;
-use crate::frame::{Bins, Exec, Grid, Rect};
+use crate::frame::{Bins, Rect};
 use crate::number::Exact;
-use crate::scene::{Camera, Surfels};
 use crate::splat::SplatSettings;
 use crate::splat::{Projector, Shared, Splat, Tally, View, batch};
 use std::ops::Range;
@@ -24,30 +23,29 @@ impl<R: Exact, S: Send> Prepared<R, S> {
     ///
     /// `project` makes the records of a range of items; `bounds` gives the pixels of a record.
     pub(super) fn new(
-        (surfels, count): (&Surfels, usize),
-        camera: &Camera,
+        job: &Job<'_>,
         settings: &SplatSettings,
-        (exec, grid): (&Exec, &Grid),
+        count: usize,
         project: impl Fn(&Projector<R>, Range<usize>, &mut Vec<S>) -> Tally + Sync + Send,
         bounds: impl Fn(&S) -> Rect + Sync + Send,
     ) -> Self {
-        let view = View::new(camera);
+        let (view, grid) = (View::new(job.camera), job.grid());
         let projector = Projector::new(view, &settings.kernel, settings.cull);
         // Many batches, so that threads end together, of at most 8192 surfels, which fit the cache;
         // but at least two items for each tile, so that the starts of its bins take 2 bytes an
         // item.
         let size = (count / 64).min(8192).max(2 * grid.len());
         let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
-        let results = exec.ordered(ranges.collect(), |range: Range<usize>| {
+        let results = job.exec.ordered(ranges.collect(), |range: Range<usize>| {
             let mut splats = Vec::with_capacity(range.len());
             let tally = project(&projector, range, &mut splats);
-            let bins = Bins::new(grid, splats.len(), |i| bounds(&splats[i]));
+            let bins = Bins::new(&grid, splats.len(), |i| bounds(&splats[i]));
             ((splats, bins), tally)
         });
         let tally = results.iter().fold(Tally::default(), |sum, (_, tally)| sum.plus(tally));
         Self {
             shared: Shared::new(&view, &settings.kernel),
-            epsilon: R::from_f32(settings.epsilon.resolve(surfels)),
+            epsilon: R::from_f32(settings.epsilon.resolve(&job.scene.surfels)),
             tally,
             batches: results.into_iter().map(|(batch, _)| batch).collect(),
         }
@@ -70,13 +68,11 @@ impl<R: Exact, S: Send> Prepared<R, S> {
 impl<R: Exact> Prepared<R, Splat<R>> {
     /// Every surfel as the splat it is, in ascending index.
     pub(super) fn splats(job: &Job<'_>, settings: &SplatSettings) -> Self {
-        let Job { scene, camera, exec, .. } = *job;
-        let surfels = &scene.surfels;
+        let surfels = &job.scene.surfels;
         Self::new(
-            (surfels, surfels.len()),
-            camera,
+            job,
             settings,
-            (exec, &exec.grid(camera.width, camera.height)),
+            surfels.len(),
             |projector, range, splats| {
                 batch::splats(projector, surfels, range, |splat| splats.push(splat))
             },

@@ -2,9 +2,10 @@
 //! stage of shading that they have in common.
 
 use super::algorithm::Job;
+use super::given::Given;
 use super::picture::shaded;
 use super::stage::{Holds, PlaneRow, Stage, When};
-use super::tiled::{Given, Tiled};
+use super::tiled::Tiled;
 use crate::error::Result;
 use crate::frame::{Framebuffer, NamedPlane, Wanted};
 use crate::number::Exact;

@@ -1,8 +1,7 @@
 //! Stages as values: the passes of a method, what each reads, and the planes that each leaves.
 
-use crate::error::{Error, Result};
+use crate::error::Error;
 use crate::frame::{Frame, NamedPlane, Plane, Samples};
-use crate::scene::Camera;
 
 /// A pass of a method.
 ///
@@ -176,20 +175,6 @@ impl Stage {
         let own = frame.planes.iter().filter(|plane| self.row(&plane.name).is_some());
         Frame { width: frame.width, height: frame.height, planes: own.cloned().collect() }
     }
-}
-
-/// Refuses planes that are not of the size of the camera's picture.
-pub(super) fn check_size<R>(frame: &Frame<R>, camera: &Camera) -> Result<()> {
-    let (found, expected) = ([frame.width, frame.height], [camera.width, camera.height]);
-    if found == expected {
-        return Ok(());
-    }
-    let size = |[width, height]: [u32; 2]| format!("{width} x {height}");
-    Err(Error::Invalid(format!(
-        "planes of {} pixels, but the camera's picture has {}",
-        size(found),
-        size(expected)
-    )))
 }
 
 /// There is no stage of this name, or none that runs on planes.

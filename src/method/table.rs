@@ -1,6 +1,7 @@
 //! The table of methods: one row a method, from which everything follows that is said of methods.
 
 use super::algorithm::{Algorithm, Job};
+use super::given::Given;
 use super::{
     Picture, Stage, ewa, peeling, pyramid, single_pass, template, transparent, transparent_hq,
 };
@@ -113,11 +114,19 @@ macro_rules! methods {
                 stage: &str,
                 from: &Frame<R>,
             ) -> Result<Frame<R>> {
-                match self { $(Self::$method(settings) => settings.stage(job, stage, from),)* }
+                let given = Given::new(from, job)?;
+                let planes = match self {
+                    $(Self::$method(settings) => settings.stage(job, stage, &given),)*
+                };
+                Ok(job.frame(planes?))
             }
 
             pub(super) fn explain<R: Exact>(&self, job: &Job<'_>, at: (u32, u32)) -> Result<String> {
-                match self { $(Self::$method(settings) => settings.explain::<R>(job, at),)* }
+                match self {
+                    $(Self::$method(settings) => {
+                        Ok(settings.explain::<R>(job, at)?.to_string())
+                    })*
+                }
             }
 
             pub(super) fn memory(&self) -> Memory {

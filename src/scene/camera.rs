@@ -192,6 +192,12 @@ impl Camera {
         Ok(())
     }
 
+    /// Width and height of the picture in pixels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
     /// The position of the camera in world space, in f64.
     #[must_use]
     pub fn eye(&self) -> DVec3 {

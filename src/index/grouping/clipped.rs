@@ -2,7 +2,7 @@
 
 use super::budget::Budget;
 use super::disc::{SpaceDisc, dot};
-use super::disc_tree::{DiscTree, LANES};
+use super::disc_tree::{DISCS, DiscTree};
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::elementary::{cos, sin};
@@ -110,7 +110,7 @@ pub(super) fn by_lower(
                 let mask = &mut covered[i - first];
                 seen += 1;
                 if tree.surfel[j] < tree.surfel[i] {
-                    *mask |= samples[i - block * LANES].covered_by(&disc(j));
+                    *mask |= samples[i - block * DISCS].covered_by(&disc(j));
                 }
                 *mask != u64::MAX
             });

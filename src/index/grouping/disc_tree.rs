@@ -1,6 +1,6 @@
 //! Discs in space, and which of them are near each other.
 //!
-//! A balanced tree over blocks of [`LANES`] discs: like a k-d tree it does not care how unevenly
+//! A balanced tree over blocks of [`DISCS`] discs: like a k-d tree it does not care how unevenly
 //! they are spread, and as each box knows the largest radius in it, nor how their sizes differ. One
 //! block is searched for at a time, and pairs are tested a block at a time. What is found depends
 //! on the discs alone; the tree leaves no trace but the order in which it is found.
@@ -14,7 +14,7 @@ use glam::{DVec3, Vec3};
 use std::ops::Range;
 
 /// Discs of one block.
-pub(super) const LANES: usize = 8;
+pub(super) const DISCS: usize = 8;
 
 /// Discs in the order of the tree: *places* 0, 1, 2 ...
 #[derive(Debug)]
@@ -30,10 +30,10 @@ pub(super) struct DiscTree {
 /// Discs side by side; what is left of the last block is NaN, which is near nothing.
 #[derive(Clone, Debug)]
 struct DiscBlock {
-    x: [f64; LANES],
-    y: [f64; LANES],
-    z: [f64; LANES],
-    r: [f64; LANES],
+    x: [f64; DISCS],
+    y: [f64; DISCS],
+    z: [f64; DISCS],
+    r: [f64; DISCS],
 }
 
 /// A box around centres, and the largest of their radii.
@@ -52,7 +52,7 @@ impl DiscTree {
         split(&mut entries);
         let radius = radii(surfels);
         let block = |entries: &[(Vec3, u32)]| {
-            let [x, y, z, r] = [[f64::NAN; LANES]; 4];
+            let [x, y, z, r] = [[f64::NAN; DISCS]; 4];
             let mut block = DiscBlock { x, y, z, r };
             for (lane, &(p, id)) in entries.iter().enumerate() {
                 let p = p.as_dvec3();
@@ -61,7 +61,7 @@ impl DiscTree {
             }
             block
         };
-        let blocks: Vec<DiscBlock> = entries.chunks(LANES).map(block).collect();
+        let blocks: Vec<DiscBlock> = entries.chunks(DISCS).map(block).collect();
         let mut levels = vec![blocks.iter().map(Bounds::of).collect::<Vec<_>>()];
         while let Some(below) = levels.last().filter(|level| level.len() > 1) {
             let pair = |pair: &[Bounds]| pair[1..].iter().fold(pair[0], Bounds::and);
@@ -74,14 +74,14 @@ impl DiscTree {
 
     /// The places of a block.
     pub(super) fn places(&self, block: usize) -> Range<usize> {
-        let first = block * LANES;
-        first..self.surfel.len().min(first + LANES)
+        let first = block * DISCS;
+        first..self.surfel.len().min(first + DISCS)
     }
 
     /// The disc at a place.
     #[inline]
     pub(super) fn disc(&self, place: usize) -> SpaceDisc {
-        let (block, lane) = (&self.blocks[place / LANES], place % LANES);
+        let (block, lane) = (&self.blocks[place / DISCS], place % DISCS);
         SpaceDisc {
             surfel: self.surfel[place],
             center: DVec3::new(block.x[lane], block.y[lane], block.z[lane]),
@@ -104,12 +104,12 @@ impl DiscTree {
         for i in self.places(block) {
             'rest: for &other in &near {
                 let other = other as usize;
-                let mut hits = self.blocks[other].hits(&self.blocks[block], i % LANES, factor);
+                let mut hits = self.blocks[other].hits(&self.blocks[block], i % DISCS, factor);
                 if other == block {
-                    hits &= !(1 << (i % LANES));
+                    hits &= !(1 << (i % DISCS));
                 }
                 while hits != 0 {
-                    let j = other * LANES + hits.trailing_zeros() as usize;
+                    let j = other * DISCS + hits.trailing_zeros() as usize;
                     if !visit(i, j) {
                         break 'rest;
                     }
@@ -133,7 +133,7 @@ impl DiscTree {
         const BATCH: usize = 128 * JOB;
         let (blocks, places) = (self.blocks.len(), self.surfel.len() as u64);
         for batch in (0..blocks).step_by(BATCH) {
-            progress((batch * LANES) as u64, places);
+            progress((batch * DISCS) as u64, places);
             let starts = (batch..blocks.min(batch + BATCH)).step_by(JOB);
             let ranges = starts.map(|start| start..blocks.min(start + JOB)).collect();
             for result in exec.ordered(ranges, &job) {
@@ -185,11 +185,11 @@ pub(super) fn radii(surfels: &Surfels) -> impl Fn(u32) -> f64 {
 /// Orders points so that blocks, pairs of blocks, pairs of those ... are close together: the first
 /// 2^k blocks, k as large as can be, lie below the others along the widest axis; so again in both.
 fn split(entries: &mut [(Vec3, u32)]) {
-    if entries.len() <= LANES {
+    if entries.len() <= DISCS {
         return;
     }
     let axis = widest(entries.iter().map(|(point, _)| *point));
-    let middle = LANES * (entries.len().div_ceil(LANES).next_power_of_two() / 2);
+    let middle = DISCS * (entries.len().div_ceil(DISCS).next_power_of_two() / 2);
     entries.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]));
     let (below, above) = entries.split_at_mut(middle);
     split(below);
@@ -201,7 +201,7 @@ impl DiscBlock {
     #[inline]
     fn hits(&self, of: &Self, lane: usize, factor: f64) -> u32 {
         let (x, y, z, r) = (of.x[lane], of.y[lane], of.z[lane], of.r[lane]);
-        let mut hits = [0; LANES];
+        let mut hits = [0; DISCS];
         for (l, hit) in hits.iter_mut().enumerate() {
             let (dx, dy, dz) = (x - self.x[l], y - self.y[l], z - self.z[l]);
             let reach = factor * (r + self.r[l]);
@@ -218,7 +218,7 @@ impl Bounds {
             high: DVec3::new(block.x[l], block.y[l], block.z[l]),
             r: block.r[l],
         };
-        let filled = (1..LANES).take_while(|&l| !block.r[l].is_nan());
+        let filled = (1..DISCS).take_while(|&l| !block.r[l].is_nan());
         filled.fold(lane(0), |all, l| all.and(&lane(l)))
     }
 

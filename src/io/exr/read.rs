@@ -2,6 +2,7 @@
 
 use super::{ATTRIBUTE, ChannelType, PictureHeader};
 use crate::frame::image::{Image, Values};
+use crate::io::Reason;
 use crate::{Error, Result};
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{
@@ -22,9 +23,6 @@ use std::sync::Once;
 const MOST_EXPANSION: u64 = 1376;
 /// A block has an entry of 8 bytes in the table of offsets, and its place and size in 8 more.
 const LEAST_BLOCK: u64 = 16;
-
-/// A reason, without the file's name.
-type Reason<T> = std::result::Result<T, String>;
 
 /// Reads every channel of the flat EXR file at `path`, whoever wrote it.
 ///

@@ -48,7 +48,7 @@ impl Decode {
 
 /// What becomes of a property.
 #[derive(Clone, Copy)]
-enum Slot {
+enum PropertyUse {
     Skip,
     /// A number goes to a place of the row.
     Number(usize, Decode),
@@ -63,11 +63,11 @@ pub(super) fn read(
     groups: &mut groups::Reader,
 ) -> Result<(), String> {
     let slots = element.properties.iter().map(|p| slot(&p.name, p.kind, groups));
-    let slots: Vec<Slot> = slots.collect::<Result<_, _>>()?;
+    let slots: Vec<PropertyUse> = slots.collect::<Result<_, _>>()?;
     let mut given = [false; NAMES.len()];
     let numbers = slots.iter().filter_map(|slot| match slot {
-        Slot::Number(place, _) => Some(*place),
-        Slot::Skip | Slot::Group(_) => None,
+        PropertyUse::Number(place, _) => Some(*place),
+        PropertyUse::Skip | PropertyUse::Group(_) => None,
     });
     for place in numbers {
         if std::mem::replace(&mut given[place], true) {
@@ -88,9 +88,9 @@ pub(super) fn read(
     values.walk(element, |event| {
         match event {
             Event::Value(property, value) => match slots[property] {
-                Slot::Skip => {}
-                Slot::Number(place, decode) => row[place] = decode.apply(value),
-                Slot::Group(part) => groups.put(part, value)?,
+                PropertyUse::Skip => {}
+                PropertyUse::Number(place, decode) => row[place] = decode.apply(value),
+                PropertyUse::Group(part) => groups.put(part, value)?,
             },
             Event::End => {
                 push(cloud, &row);
@@ -117,20 +117,20 @@ fn has(given: &[bool], group: Range<usize>) -> Result<bool, String> {
 }
 
 /// What becomes of a property of this name and kind.
-fn slot(name: &str, kind: PropertyKind, groups: &groups::Reader) -> Result<Slot, String> {
+fn slot(name: &str, kind: PropertyKind, groups: &groups::Reader) -> Result<PropertyUse, String> {
     if let Some(part) = groups.part(name, kind)? {
-        return Ok(Slot::Group(part));
+        return Ok(PropertyUse::Group(part));
     }
     let name = if name == "alpha" { "opacity" } else { name };
     let Some(place) = NAMES.iter().position(|&known| known == name) else {
-        return Ok(Slot::Skip);
+        return Ok(PropertyUse::Skip);
     };
     let PropertyKind::One(scalar) = kind else {
         let what = format!("property {} is a list, but must be one number", quote(name));
         return Err(format!("element vertex: {what}"));
     };
     if !COLOR.contains(&place) && !OPACITY.contains(&place) {
-        return Ok(Slot::Number(place, Decode::Keep));
+        return Ok(PropertyUse::Number(place, Decode::Keep));
     }
     let color = COLOR.contains(&place);
     let decode = match scalar {
@@ -148,7 +148,7 @@ fn slot(name: &str, kind: PropertyKind, groups: &groups::Reader) -> Result<Slot,
             ));
         }
     };
-    Ok(Slot::Number(place, decode))
+    Ok(PropertyUse::Number(place, decode))
 }
 
 /// Adds one vertex.

@@ -33,12 +33,12 @@ pub(super) mod visibility;
 pub use crate::splat::SplatSettings as Settings;
 
 use crate::error::Result;
-use crate::frame::{Frame, Pool};
+use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::tiled::Given;
+use crate::method::given::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
-use crate::scene::{Camera, Scene};
+use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "ewa";
@@ -62,15 +62,16 @@ impl Algorithm for Settings {
         picture::draw(job, self, pool)
     }
 
-    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
-        Ok(job.frame(picture::stage(job, self, stage, &Given::new(from, job))?))
+    fn stage<R: Exact>(
+        &self,
+        job: &Job<'_>,
+        stage: &str,
+        given: &Given<'_, R>,
+    ) -> Result<Vec<NamedPlane<R>>> {
+        picture::stage(job, self, stage, given)
     }
 
-    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
-        Ok(explain::explain::<R>(job, self, pixel)?.to_string())
-    }
-
-    fn resolved(&self, scene: &Scene, _: &Camera) -> Vec<(&'static str, String)> {
-        self.resolved(scene)
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {
+        explain::explain::<R>(job, self, pixel)
     }
 }

@@ -8,11 +8,11 @@ use super::{Settings, fast, planes};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool, Wanted};
 use crate::method::algorithm::Job;
+use crate::method::given::Given;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::prepare::Prepared;
 use crate::method::resolved;
 use crate::method::stage::unknown;
-use crate::method::tiled::Given;
 use crate::number::Exact;
 use crate::scene::Scene;
 
@@ -69,9 +69,8 @@ pub(super) fn stage<R: Exact>(
 
 /// The fast path for `f32`.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
-    let Job { scene, camera, exec, .. } = *job;
-    let mut target = framebuffer(camera, wanted(scene, false), pool);
-    let (tally, laps) = fast::render(&scene.surfels, camera, settings, exec, &mut target);
+    let mut target = framebuffer(job.camera, wanted(job.scene, false), pool);
+    let (tally, laps) = fast::render(job, settings, &mut target);
     Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 

@@ -5,9 +5,10 @@ use super::visibility::Foremost;
 use crate::error::Result;
 use crate::frame::NamedPlane;
 use crate::method::algorithm::Job;
+use crate::method::given::Given;
 use crate::method::resolved;
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
-use crate::method::tiled::{Given, Tiled};
+use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::View;
 
@@ -98,7 +99,7 @@ pub(super) fn given_visibility<R: Exact>(
     job: &Job<'_>,
     given: &Given<'_, R>,
 ) -> Result<Tiled<Foremost<R>>> {
-    let (depth, id) = (given.scalar(&NEAREST, 0)?, given.surfels(&NEAREST_ID, 0)?);
+    let (depth, id) = (given.scalar(&NEAREST, 0)?, given.ids(&NEAREST_ID, 0)?);
     let view = View::new(job.camera);
     Ok(given.tiled(|x, y| {
         let depth = *depth.at(x, y);

@@ -6,27 +6,22 @@ pub(super) mod resolve;
 mod store;
 pub(super) mod tile;
 
+use super::algorithm::Job;
 use super::prepare::Prepared;
-use crate::frame::{Exec, Framebuffer, Grid};
-use crate::scene::{Camera, Surfels};
+use crate::frame::Framebuffer;
 use crate::splat::SplatSettings;
 use crate::splat::batch;
 use std::time::{Duration, Instant};
 use tile::{Record, Tile};
 
 /// Projection and binning.
-pub(super) fn prepare(
-    surfels: &Surfels,
-    camera: &Camera,
-    settings: &SplatSettings,
-    (exec, grid): (&Exec, &Grid),
-) -> Prepared<f32, Record> {
+pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, Record> {
+    let surfels = &job.scene.surfels;
     let colors = surfels.color();
     Prepared::new(
-        (surfels, surfels.len()),
-        camera,
+        job,
         settings,
-        (exec, grid),
+        surfels.len(),
         |projector, range, records| {
             batch::splats_f32(projector, surfels, range, |splat| {
                 records.push(Record::new(&splat, surfels.normal(), colors));
@@ -42,14 +37,14 @@ pub(super) fn prepare(
 /// tells how long each stage took; the first includes gathering the splats, the last storing the
 /// pixels.
 pub(super) fn draw<const N: usize>(
+    job: &Job<'_>,
     prepared: &Prepared<f32, Record>,
     target: &mut Framebuffer<f32>,
-    (exec, grid): (&Exec, &Grid),
     stages: impl Fn(&mut Tile) -> [Duration; N] + Sync + Send,
 ) -> [Duration; N] {
     let start = Instant::now();
-    let jobs = target.tiles(grid, exec).into_iter().enumerate().collect();
-    let times = exec.ordered(jobs, |(index, mut pixels)| {
+    let tiles = target.tiles(&job.grid(), job.exec).into_iter().enumerate().collect();
+    let times = job.exec.ordered(tiles, |(index, mut pixels)| {
         let start = Instant::now();
         let mut tile = Tile::gather(prepared, index, &pixels);
         let mut times = [Duration::ZERO; N];

@@ -70,13 +70,13 @@ pub use planes::STAGES;
 pub use settings::{MAX_LAYERS, Settings};
 
 use crate::error::Result;
-use crate::frame::Frame;
+use crate::frame::NamedPlane;
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::tiled::Given;
+use crate::method::given::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
-use crate::scene::{Camera, Scene};
 use crate::splat::SplatSettings;
+use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "peeling";
@@ -97,15 +97,16 @@ impl Algorithm for Settings {
         picture::define(job, self, stages)
     }
 
-    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
-        Ok(job.frame(picture::stage(job, self, stage, &Given::new(from, job))?))
+    fn stage<R: Exact>(
+        &self,
+        job: &Job<'_>,
+        stage: &str,
+        given: &Given<'_, R>,
+    ) -> Result<Vec<NamedPlane<R>>> {
+        picture::stage(job, self, stage, given)
     }
 
-    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
-        Ok(explain::explain::<R>(job, self, pixel)?.to_string())
-    }
-
-    fn resolved(&self, scene: &Scene, _: &Camera) -> Vec<(&'static str, String)> {
-        self.splats.resolved(scene)
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {
+        explain::explain::<R>(job, self, pixel)
     }
 }

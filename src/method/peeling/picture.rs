@@ -8,9 +8,10 @@ use crate::error::Result;
 use crate::frame::{NamedPlane, Rect};
 use crate::method::algorithm::Job;
 use crate::method::fragment::TileSplats;
+use crate::method::given::Given;
 use crate::method::picture::{Clock, Picture};
 use crate::method::stage::unknown;
-use crate::method::tiled::{Given, Tiled};
+use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
 /// The definition, in any number; with `stages`, the first [`STAGES`] layers leave their planes.
@@ -51,7 +52,7 @@ fn peel<R: Exact>(
     keep: usize,
     clock: &mut Clock,
 ) -> Peeled<R> {
-    let grid = job.exec.grid(job.camera.width, job.camera.height);
+    let grid = job.grid();
     let tiles = job
         .exec
         .ordered(grid.rects().into_iter().enumerate().collect(), |(tile, rect): (usize, Rect)| {

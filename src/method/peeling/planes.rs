@@ -4,9 +4,10 @@ use super::layers::{PeeledLayer, PeeledPixel};
 use crate::composite::{decide, under::Under};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Plane};
+use crate::method::given::Given;
 use crate::method::resolved::{ALPHA, DEPTH, ID, SHADED};
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
-use crate::method::tiled::{Given, Tiled};
+use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
 /// How many layers leave planes.

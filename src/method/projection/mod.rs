@@ -168,7 +168,7 @@ impl<'a, R: Exact> SceneProjector<'a, R> {
             points: PointProjector::new(view, cull),
             clip: Clip::new(&view),
             snap,
-            size: [camera.width, camera.height],
+            size: camera.size(),
         }
     }
 }

@@ -1,9 +1,9 @@
-//! The planes of the projection, out and in, and how planes of any stage are read.
+//! The planes of the projection, out and in.
 
 use super::{Has, PixelSample, SampleKind};
 use crate::error::{Error, Result};
-use crate::frame::{Frame, NamedPlane, Plane, Samples};
-use crate::method::picture::named;
+use crate::frame::{NamedPlane, Plane};
+use crate::method::given::Given;
 use crate::method::{Holds, PlaneRow, Stage, When};
 use crate::number::{Exact, Vector2, Vector3};
 
@@ -45,132 +45,80 @@ pub(in crate::method) fn write<R: Exact>(
     samples: &Plane<PixelSample<R>>,
     has: Has,
 ) -> Vec<NamedPlane<R>> {
-    let [id, kind, depth, normal, extent, radius, left, upper, color, tangent] =
-        PLANES.map(|row| row.name);
+    let [id, kind, depth, normal, extent, radius, left, upper, color, tangent] = &PLANES;
+    let scalar = |row: &PlaneRow, of: fn(&PixelSample<R>) -> R| row.scalar(0, samples.map(of));
     let mut planes = vec![
-        named(id, Samples::Index(samples.map(|s| s.id))),
-        named(kind, Samples::Count(samples.map(|s| s.kind as u8))),
-        named(depth, Samples::Scalar(samples.map(|s| s.depth))),
-        named(normal, Samples::Vector(samples.map(|s| components(s.normal)))),
-        named(extent, Samples::Scalar(samples.map(|s| s.extent))),
-        named(radius, Samples::Scalar(samples.map(|s| s.radius))),
-        named(left, Samples::Scalar(samples.map(|s| s.center.x))),
-        named(upper, Samples::Scalar(samples.map(|s| s.center.y))),
+        id.index(0, samples.map(|s| s.id)),
+        kind.count(0, samples.map(|s| s.kind as u8)),
+        scalar(depth, |s| s.depth),
+        normal.triple(0, samples.map(|s| components(s.normal))),
+        scalar(extent, |s| s.extent),
+        scalar(radius, |s| s.radius),
+        scalar(left, |s| s.center.x),
+        scalar(upper, |s| s.center.y),
     ];
-    if has.color {
-        planes.push(named(color, Samples::Color(samples.map(|s| s.color))));
-    }
-    if has.tangent {
-        planes.push(named(tangent, Samples::Vector(samples.map(|s| components(s.tangent)))));
-    }
+    planes.extend(has.color.then(|| color.triple(0, samples.map(|s| s.color))));
+    planes.extend(has.tangent.then(|| tangent.triple(0, samples.map(|s| components(s.tangent)))));
     planes
 }
 
 /// The planes as they come in.
 ///
 /// # Errors
-/// [`Error::Invalid`] if a plane is missing, of another type, or not of the size of the frame, or if
-/// a pixel has a kind that there is not.
-pub fn read<R: Exact>(frame: &Frame<R>, has: Has) -> Result<Plane<PixelSample<R>>> {
-    let [id, kind, depth, normal, extent, radius, left, upper, color, tangent] =
-        PLANES.map(|row| row.name);
-    let given = GivenPlanes(frame);
-    let kinds = given.kinds(kind)?;
-    let id = given.indices(id)?;
-    let [depth, extent, radius] =
-        [given.scalar(depth)?, given.scalar(extent)?, given.scalar(radius)?];
-    let [left, upper] = [given.scalar(left)?, given.scalar(upper)?];
-    let normal = given.vector(normal)?;
-    let color = given.color_if(has.color, color)?;
-    let tangent = given.vector_if(has.tangent, tangent)?;
-    Ok(given.corner([frame.width, frame.height], |i| PixelSample {
-        kind: kinds[i],
-        id: id[i],
-        depth: depth[i],
-        radius: radius[i],
-        extent: extent[i],
-        center: Vector2::new(left[i], upper[i]),
-        normal: vector(normal[i]),
-        tangent: vector(tangent.map_or([R::ZERO; 3], |of| of[i])),
-        color: color.map_or([R::ZERO; 3], |of| of[i]),
+/// [`Error::Invalid`] if a plane is missing, or of another type or size, or if a pixel has a kind
+/// that there is not.
+pub(in crate::method) fn read<R: Exact>(
+    given: &Given<'_, R>,
+    has: Has,
+) -> Result<Plane<PixelSample<R>>> {
+    let [id, kind, depth, normal, extent, radius, left, upper, color, tangent] = &PLANES;
+    let (id, kind) = (given.ids(id, 0)?, kinds(given, kind, 0)?);
+    let scalar = |row| given.scalar(row, 0);
+    let [depth, extent, radius] = [scalar(depth)?, scalar(extent)?, scalar(radius)?];
+    let [left, upper] = [scalar(left)?, scalar(upper)?];
+    let normal = given.triple(normal, 0)?;
+    let color = given.triple_if(has.color, color, 0)?;
+    let tangent = given.triple_if(has.tangent, tangent, 0)?;
+    Ok(Plane::from_pixels([id.width(), id.height()], |x, y| PixelSample {
+        kind: *kind.at(x, y),
+        id: *id.at(x, y),
+        depth: *depth.at(x, y),
+        radius: *radius.at(x, y),
+        extent: *extent.at(x, y),
+        center: Vector2::new(*left.at(x, y), *upper.at(x, y)),
+        normal: vector(*normal.at(x, y)),
+        tangent: vector(triple_at(tangent, x, y)),
+        color: triple_at(color, x, y),
     }))
 }
 
-/// Somebody's planes, each found by its name, its type and its size.
+/// What each pixel shows.
 ///
-/// Their values are taken as they are: a stage computes with what a client has stored.
-pub(in crate::method) struct GivenPlanes<'a, R>(pub(in crate::method) &'a Frame<R>);
-
-impl<'a, R: Exact> GivenPlanes<'a, R> {
-    /// The values of a plane, which must be of the size of the frame.
-    fn values<T>(&self, name: &str, plane: &'a Plane<T>) -> Result<&'a [T]> {
-        let (found, frame) = ((plane.width(), plane.height()), self.0);
-        if found == (frame.width, frame.height) {
-            return Ok(plane.values());
-        }
-        Err(Error::Invalid(format!(
-            "the plane `{name}` has {} x {} pixels; expected {} x {}",
-            found.0, found.1, frame.width, frame.height
-        )))
+/// # Errors
+/// As [`Given::count`], and if a pixel has a kind that there is not.
+pub(in crate::method) fn kinds<R: Exact>(
+    given: &Given<'_, R>,
+    row: &PlaneRow,
+    number: usize,
+) -> Result<Plane<SampleKind>> {
+    let counts = given.count(row, number)?;
+    let last = SampleKind::ALL.len() - 1;
+    if let Some(i) = counts.values().iter().position(|&value| usize::from(value) > last) {
+        let (name, value, width) = (row.numbered(number), counts.values()[i], counts.width());
+        let (x, y) = (i % width as usize, i / width as usize);
+        let what = format!("the plane `{name}` has {value} at ({x}, {y}); at most {last}");
+        return Err(Error::Invalid(what));
     }
+    Ok(counts.map(|&value| SampleKind::ALL[usize::from(value)]))
+}
 
-    pub(in crate::method) fn scalar(&self, name: &str) -> Result<&'a [R]> {
-        self.values(name, self.0.scalar(name)?)
-    }
-
-    pub(in crate::method) fn vector(&self, name: &str) -> Result<&'a [[R; 3]]> {
-        self.values(name, self.0.vector(name)?)
-    }
-
-    /// The vectors of a scene that has these.
-    pub(in crate::method) fn vector_if(
-        &self,
-        has: bool,
-        name: &str,
-    ) -> Result<Option<&'a [[R; 3]]>> {
-        if has { self.vector(name).map(Some) } else { Ok(None) }
-    }
-
-    /// The colours of a scene that has colours.
-    pub(in crate::method) fn color_if(
-        &self,
-        has: bool,
-        name: &str,
-    ) -> Result<Option<&'a [[R; 3]]>> {
-        if has { self.values(name, self.0.color(name)?).map(Some) } else { Ok(None) }
-    }
-
-    pub(in crate::method) fn indices(&self, name: &str) -> Result<&'a [u32]> {
-        self.values(name, self.0.index(name)?)
-    }
-
-    pub(in crate::method) fn counts(&self, name: &str) -> Result<&'a [u8]> {
-        self.values(name, self.0.count(name)?)
-    }
-
-    /// What each pixel shows.
-    pub(in crate::method) fn kinds(&self, name: &str) -> Result<Vec<SampleKind>> {
-        let kind = |(i, &value): (usize, &u8)| {
-            SampleKind::ALL.get(usize::from(value)).copied().ok_or_else(|| {
-                let (x, y) = (i % self.0.width as usize, i / self.0.width as usize);
-                let last = SampleKind::ALL.len() - 1;
-                let what = format!("the plane `{name}` has {value} at ({x}, {y}); at most {last}");
-                Error::Invalid(what)
-            })
-        };
-        self.counts(name)?.iter().enumerate().map(kind).collect()
-    }
-
-    /// What lies in the upper left corner of the planes; `value` is asked for a place in them.
-    pub(in crate::method) fn corner<T>(
-        &self,
-        [width, height]: [u32; 2],
-        value: impl Fn(usize) -> T,
-    ) -> Plane<T> {
-        let (row, whole) = (width as usize, self.0.width as usize);
-        let places = (0..height as usize).flat_map(|y| (0..row).map(move |x| y * whole + x));
-        Plane::from_values(width, height, places.map(value).collect())
-    }
+/// The values of a plane at a pixel; 0 where the scene has no such plane.
+pub(in crate::method) fn triple_at<R: Exact>(
+    plane: Option<&Plane<[R; 3]>>,
+    x: u32,
+    y: u32,
+) -> [R; 3] {
+    plane.map_or([R::ZERO; 3], |plane| *plane.at(x, y))
 }
 
 /// The components of a vector, as planes hold it.

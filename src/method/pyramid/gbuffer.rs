@@ -31,7 +31,7 @@ pub(super) struct GBuffer<R> {
 impl GBuffer<f32> {
     /// What a scene needs, in memory that is used again: the values are any.
     pub(super) fn new(scene: &Scene, camera: &Camera, pool: &mut Pool) -> Self {
-        let (size, has) = ([camera.width, camera.height], Has::of(scene));
+        let (size, has) = (camera.size(), Has::of(scene));
         Self {
             kind: pool.count(size),
             alpha: pool.scalar(size),

@@ -36,10 +36,12 @@ pub use cell::Cell;
 pub use settings::{Occlusion, Settings, Weights};
 
 use crate::error::Result;
-use crate::frame::{Frame, Pool};
+use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
+use crate::method::given::Given;
 use crate::method::{Picture, Stage, projection};
 use crate::number::Exact;
+use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "pyramid";
@@ -72,11 +74,16 @@ impl Algorithm for Settings {
         picture::draw(job, self, memory, pool)
     }
 
-    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
-        picture::stage(job, self, stage, from)
+    fn stage<R: Exact>(
+        &self,
+        job: &Job<'_>,
+        stage: &str,
+        given: &Given<'_, R>,
+    ) -> Result<Vec<NamedPlane<R>>> {
+        picture::stage(job, self, stage, given)
     }
 
-    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
-        Ok(explain::explain::<R>(job, self, pixel)?.to_string())
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {
+        explain::explain::<R>(job, self, pixel)
     }
 }

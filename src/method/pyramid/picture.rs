@@ -9,10 +9,12 @@ use super::{Cell, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Frame, NamedPlane, Plane, Pool, pyramid};
+use crate::method::PlaneRow;
 use crate::method::algorithm::Job;
+use crate::method::given::Given;
 use crate::method::picture::{Clock, Picture};
 use crate::method::projection::{self, Has};
-use crate::method::stage::{check_size, unknown};
+use crate::method::stage::unknown;
 use crate::number::Exact;
 use crate::splat::Tally;
 
@@ -73,13 +75,12 @@ fn finish<R: Exact>(
 
 /// The planes of consecutive levels.
 fn write<R: Exact>(
-    rows: &[crate::method::PlaneRow; 9],
+    rows: &[PlaneRow; 9],
     first: usize,
     levels: &[Plane<Cell<R>>],
     job: &Job<'_>,
 ) -> Vec<NamedPlane<R>> {
-    let (size, has) = ([job.camera.width, job.camera.height], Has::of(job.scene));
-    let level = |(level, cells)| planes::write_level(rows, level, cells, size, has);
+    let level = |(level, cells)| planes::write_level(rows, level, cells, job);
     (first..).zip(levels).flat_map(level).collect()
 }
 
@@ -96,78 +97,99 @@ pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
-    from: &Frame<R>,
-) -> Result<Frame<R>> {
-    check_size(from, job.camera)?;
-    let planes = match stage {
+    given: &Given<'_, R>,
+) -> Result<Vec<NamedPlane<R>>> {
+    let levels = GivenLevels::new(job, given);
+    match stage {
         "projection" => {
             let snap = Snap::new(settings.subpixel_bits)?;
             let Job { scene, camera, exec, .. } = *job;
             let projected = projection::project::<R>(scene, camera, settings.cull, snap, exec)?;
-            projection::planes::write(&projected.samples, Has::of(scene))
+            Ok(projection::planes::write(&projected.samples, levels.has))
         }
-        "pull" => pulled(job, from)?,
-        "push" => pushed(job, settings, from)?,
+        "pull" => levels.pull(),
+        "push" => levels.push(settings),
         "shading" => {
-            let has = Has::of(job.scene);
-            let last = pyramid::sizes(from.width, from.height).len() - 1;
-            // The level of one pixel is not pushed.
-            let finest = if last > 0 {
-                planes::read_level(from, &PUSH, 0, has)?
-            } else {
-                samples(job, from)?
-            };
-            planes::write_picture(GBuffer::of(&finest, job.camera, has, true).shaded(job))
+            let target = GBuffer::of(&levels.finest()?, job.camera, levels.has, true);
+            Ok(planes::write_picture(target.shaded(job)))
         }
-        _ => return Err(unknown(stage)),
-    };
-    Ok(Frame { width: from.width, height: from.height, planes })
-}
-
-/// Level 0 before the pull, from the planes of the projection.
-fn samples<R: Exact>(job: &Job<'_>, from: &Frame<R>) -> Result<Plane<Cell<R>>> {
-    Ok(projection::planes::read(from, Has::of(job.scene))?.map(Cell::new))
-}
-
-/// A level of the pull phase as the planes have it.
-fn pulled_level<R: Exact>(job: &Job<'_>, from: &Frame<R>, level: usize) -> Result<Plane<Cell<R>>> {
-    if level == 0 {
-        return samples(job, from);
+        _ => Err(unknown(stage)),
     }
-    planes::read_level(from, &PULL, level, Has::of(job.scene))
 }
 
-/// The planes of the pull phase.
-fn pulled<R: Exact>(job: &Job<'_>, from: &Frame<R>) -> Result<Vec<NamedPlane<R>>> {
-    let last = pyramid::sizes(from.width, from.height).len() - 1;
-    let mut fine = samples(job, from)?;
-    let mut planes = Vec::new();
-    for level in 1..=last {
-        let coarse = pull::pull(&fine, side(level - 1), job.exec);
-        planes.extend(write(&PULL, level, std::slice::from_ref(&coarse), job));
-        let given = planes::has_level(from, &PULL, level);
-        fine = if given { pulled_level(job, from, level)? } else { coarse };
-    }
-    Ok(planes)
+/// The levels as somebody's planes have them.
+struct GivenLevels<'a, R> {
+    job: &'a Job<'a>,
+    given: &'a Given<'a, R>,
+    has: Has,
+    /// The size of every level.
+    sizes: Vec<[u32; 2]>,
 }
 
-/// The planes of the push phase.
-fn pushed<R: Exact>(
-    job: &Job<'_>,
-    settings: &Settings,
-    from: &Frame<R>,
-) -> Result<Vec<NamedPlane<R>>> {
-    let has = Has::of(job.scene);
-    let last = pyramid::sizes(from.width, from.height).len() - 1;
-    let mut coarse = pulled_level(job, from, last)?;
-    let mut levels = Vec::new();
-    for level in (0..last).rev() {
-        let fine = pulled_level(job, from, level)?;
-        let found = push::push(&fine, &coarse, side(level), settings, job.exec);
-        let given = planes::has_level(from, &PUSH, level);
-        coarse = if given { planes::read_level(from, &PUSH, level, has)? } else { found.clone() };
-        levels.push(found);
+impl<'a, R: Exact> GivenLevels<'a, R> {
+    fn new(job: &'a Job<'a>, given: &'a Given<'a, R>) -> Self {
+        let sizes = pyramid::sizes(job.camera.width, job.camera.height);
+        Self { job, given, has: Has::of(job.scene), sizes }
     }
-    levels.reverse();
-    Ok(write(&PUSH, 0, &levels, job))
+
+    /// The number of the coarsest level.
+    fn last(&self) -> usize {
+        self.sizes.len() - 1
+    }
+
+    /// Level 0 before the pull, from the planes of the projection.
+    fn samples(&self) -> Result<Plane<Cell<R>>> {
+        Ok(projection::planes::read(self.given, self.has)?.map(Cell::new))
+    }
+
+    /// A level of a phase.
+    fn read(&self, rows: &[PlaneRow; 9], level: usize) -> Result<Plane<Cell<R>>> {
+        planes::read_level(self.given, rows, level, self.sizes[level], self.has)
+    }
+
+    /// A level of a phase, or where its planes are missing, the level just computed.
+    fn read_or(
+        &self,
+        rows: &[PlaneRow; 9],
+        level: usize,
+        computed: Plane<Cell<R>>,
+    ) -> Result<Plane<Cell<R>>> {
+        if self.given.has(&rows[0], level) { self.read(rows, level) } else { Ok(computed) }
+    }
+
+    /// A level before the push.
+    fn pulled(&self, level: usize) -> Result<Plane<Cell<R>>> {
+        if level == 0 { self.samples() } else { self.read(&PULL, level) }
+    }
+
+    /// Level 0 after the push; the level of one pixel is not pushed.
+    fn finest(&self) -> Result<Plane<Cell<R>>> {
+        if self.last() > 0 { self.read(&PUSH, 0) } else { self.samples() }
+    }
+
+    /// The planes of the pull phase.
+    fn pull(&self) -> Result<Vec<NamedPlane<R>>> {
+        let mut fine = self.samples()?;
+        let mut planes = Vec::new();
+        for level in 1..=self.last() {
+            let coarse = pull::pull(&fine, side(level - 1), self.job.exec);
+            planes.extend(planes::write_level(&PULL, level, &coarse, self.job));
+            fine = self.read_or(&PULL, level, coarse)?;
+        }
+        Ok(planes)
+    }
+
+    /// The planes of the push phase.
+    fn push(&self, settings: &Settings) -> Result<Vec<NamedPlane<R>>> {
+        let mut coarse = self.pulled(self.last())?;
+        let mut levels = Vec::new();
+        for level in (0..self.last()).rev() {
+            let fine = self.pulled(level)?;
+            let found = push::push(&fine, &coarse, side(level), settings, self.job.exec);
+            coarse = self.read_or(&PUSH, level, found.clone())?;
+            levels.push(found);
+        }
+        levels.reverse();
+        Ok(write(&PUSH, 0, &levels, self.job))
+    }
 }

@@ -6,10 +6,11 @@
 use super::Cell;
 use super::gbuffer::GBuffer;
 use crate::error::Result;
-use crate::frame::{Frame, NamedPlane, Plane, Samples, pyramid};
-use crate::method::picture::named;
+use crate::frame::{NamedPlane, Plane, pyramid};
+use crate::method::algorithm::Job;
+use crate::method::given::Given;
 use crate::method::projection::Has;
-use crate::method::projection::planes::{GivenPlanes, components, vector};
+use crate::method::projection::planes::{components, kinds, triple_at, vector};
 use crate::method::{Holds, PlaneRow, When};
 use crate::number::{Exact, Vector2};
 
@@ -112,83 +113,70 @@ pub(super) fn write_level<R: Exact>(
     rows: &[PlaneRow; 9],
     level: usize,
     cells: &Plane<Cell<R>>,
-    size: [u32; 2],
-    has: Has,
+    job: &Job<'_>,
 ) -> Vec<NamedPlane<R>> {
-    let whole = pyramid::in_corner(cells, size, Cell::empty());
-    let names = rows.map(|row| row.numbered(level));
-    let [kind, front, back, extent, right, down, normal, color, tangent] = &names;
-    let scalar = |name: &str, of: fn(&Cell<R>) -> R| named(name, Samples::Scalar(whole.map(of)));
+    let has = Has::of(job.scene);
+    let whole = pyramid::in_corner(cells, job.camera.size(), Cell::empty());
+    let [kind, front, back, extent, right, down, normal, color, tangent] = rows;
+    let scalar = |row: &PlaneRow, of: fn(&Cell<R>) -> R| row.scalar(level, whole.map(of));
     let mut planes = vec![
-        named(kind, Samples::Count(whole.map(|cell| cell.kind as u8))),
+        kind.count(level, whole.map(|cell| cell.kind as u8)),
         scalar(front, |cell| cell.front),
         scalar(back, |cell| cell.back),
         scalar(extent, |cell| cell.extent),
         scalar(right, |cell| cell.displacement.x),
         scalar(down, |cell| cell.displacement.y),
-        named(normal, Samples::Vector(whole.map(|cell| components(cell.normal)))),
+        normal.triple(level, whole.map(|cell| components(cell.normal))),
     ];
-    if has.color {
-        planes.push(named(color, Samples::Color(whole.map(|cell| cell.color))));
-    }
-    if has.tangent {
-        let tangents = whole.map(|cell| components(cell.tangent));
-        planes.push(named(tangent, Samples::Vector(tangents)));
-    }
+    planes.extend(has.color.then(|| color.triple(level, whole.map(|cell| cell.color))));
+    let tangents = || tangent.triple(level, whole.map(|cell| components(cell.tangent)));
+    planes.extend(has.tangent.then(tangents));
     planes
 }
 
-/// Whether a frame has a level.
-pub(super) fn has_level<R: Exact>(frame: &Frame<R>, rows: &[PlaneRow; 9], level: usize) -> bool {
-    frame.plane(&rows[0].numbered(level)).is_some()
-}
-
-/// A level as it comes in; `rows` are [`PULL`] or [`PUSH`]. What lies outside the level is not read.
+/// A level as it comes in; `rows` are [`PULL`] or [`PUSH`], and `size` is that of the level. What
+/// lies outside the level is not read.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if a plane is missing, of another type, or not of the size of the
-/// frame, or if a cell has a kind that there is not.
-///
-/// # Panics
-/// If a picture of the frame's size has no such level.
-pub fn read_level<R: Exact>(
-    frame: &Frame<R>,
+/// [`crate::Error::Invalid`] if a plane is missing, or of another type or size, or if a cell has a
+/// kind that there is not.
+pub(super) fn read_level<R: Exact>(
+    given: &Given<'_, R>,
     rows: &[PlaneRow; 9],
     level: usize,
+    size: [u32; 2],
     has: Has,
 ) -> Result<Plane<Cell<R>>> {
-    let names = rows.map(|row| row.numbered(level));
-    let [kind, front, back, extent, right, down, normal, color, tangent] = &names;
-    let given = GivenPlanes(frame);
-    let kind = given.kinds(kind)?;
-    let [front, back, extent] = [given.scalar(front)?, given.scalar(back)?, given.scalar(extent)?];
-    let [right, down] = [given.scalar(right)?, given.scalar(down)?];
-    let normal = given.vector(normal)?;
-    let color = given.color_if(has.color, color)?;
-    let tangent = given.vector_if(has.tangent, tangent)?;
-    let size = pyramid::sizes(frame.width, frame.height)[level];
-    Ok(given.corner(size, |i| Cell {
-        kind: kind[i],
-        front: front[i],
-        back: back[i],
-        extent: extent[i],
-        displacement: Vector2::new(right[i], down[i]),
-        normal: vector(normal[i]),
-        tangent: vector(tangent.map_or([R::ZERO; 3], |of| of[i])),
-        color: color.map_or([R::ZERO; 3], |of| of[i]),
+    let [kind, front, back, extent, right, down, normal, color, tangent] = rows;
+    let kind = kinds(given, kind, level)?;
+    let scalar = |row| given.scalar(row, level);
+    let [front, back, extent] = [scalar(front)?, scalar(back)?, scalar(extent)?];
+    let [right, down] = [scalar(right)?, scalar(down)?];
+    let normal = given.triple(normal, level)?;
+    let color = given.triple_if(has.color, color, level)?;
+    let tangent = given.triple_if(has.tangent, tangent, level)?;
+    Ok(Plane::from_pixels(size, |x, y| Cell {
+        kind: *kind.at(x, y),
+        front: *front.at(x, y),
+        back: *back.at(x, y),
+        extent: *extent.at(x, y),
+        displacement: Vector2::new(*right.at(x, y), *down.at(x, y)),
+        normal: vector(*normal.at(x, y)),
+        tangent: vector(triple_at(tangent, x, y)),
+        color: triple_at(color, x, y),
     }))
 }
 
 /// The planes of the picture.
 pub(super) fn write_picture<R: Exact>(shaded: GBuffer<R>) -> Vec<NamedPlane<R>> {
-    let [color, alpha, depth, normal, tangent, kind] = SHADING.map(|row| row.name);
+    let [color, alpha, depth, normal, tangent, kind] = &SHADING;
     let mut planes = vec![
-        named(color, Samples::Color(shaded.color)),
-        named(alpha, Samples::Scalar(shaded.alpha)),
-        named(depth, Samples::Scalar(shaded.depth)),
+        color.triple(0, shaded.color),
+        alpha.scalar(0, shaded.alpha),
+        depth.scalar(0, shaded.depth),
     ];
-    planes.extend(shaded.normal.map(|plane| named(normal, Samples::Vector(plane))));
-    planes.extend(shaded.tangent.map(|plane| named(tangent, Samples::Vector(plane))));
-    planes.push(named(kind, Samples::Count(shaded.kind)));
+    planes.extend(shaded.normal.map(|plane| normal.triple(0, plane)));
+    planes.extend(shaded.tangent.map(|plane| tangent.triple(0, plane)));
+    planes.push(kind.count(0, shaded.kind));
     planes
 }

@@ -3,7 +3,7 @@
 use super::explain::explain;
 use super::planes::{PULL, PUSH, read_level};
 use super::*;
-use crate::frame::{Exec, Samples};
+use crate::frame::{Exec, Frame, Samples};
 use crate::index::Index;
 use crate::method::Method;
 use crate::method::projection::tests::{
@@ -96,12 +96,14 @@ fn assert_explained<R: Exact>(scene: &Scene, camera: &Camera, settings: &Setting
     let exec = Exec::sequential();
     let job = Job { scene, index: &Index::default(), camera, exec: &exec };
     let (frame, has) = (settings.define::<R>(&job, true).unwrap().frame, Has::of(scene));
-    let samples = projection::planes::read(&frame, has).unwrap();
-    let levels = crate::frame::pyramid::sizes(frame.width, frame.height).len();
+    let given = Given::new(&frame, &job).unwrap();
+    let samples = projection::planes::read(&given, has).unwrap();
+    let sizes = crate::frame::pyramid::sizes(frame.width, frame.height);
     let of = |rows, range: std::ops::Range<usize>| {
-        range.map(|l| read_level(&frame, rows, l, has).unwrap()).collect::<Vec<_>>()
+        let level = |l| read_level(&given, rows, l, sizes[l], has).unwrap();
+        range.map(level).collect::<Vec<_>>()
     };
-    let (pulled, pushed) = (of(&PULL, 1..levels), of(&PUSH, 0..levels - 1));
+    let (pulled, pushed) = (of(&PULL, 1..sizes.len()), of(&PUSH, 0..sizes.len() - 1));
     let (mut kinds, mut occluded) = ([0; 5], 0);
     for (x, y) in (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| (x, y))) {
         let found = explain::<R>(&job, settings, (x, y)).unwrap();
@@ -142,7 +144,7 @@ fn a_pixel_of_one_surfel_in_words() {
     let (scene, camera) = (scene(surfels(300, 0.1, false, 9)), cameras()[4]);
     let (exec, settings) = (Exec::sequential(), Settings::default());
     let job = Job { scene: &scene, index: &Index::default(), camera: &camera, exec: &exec };
-    let text = Algorithm::explain::<f32>(&settings, &job, (16, 8)).unwrap();
+    let text = explain::<f32>(&job, &settings, (16, 8)).unwrap().to_string();
     for part in ["pixel (16, 8)", "projection:", "pull:", "push:", "level 1, cell (8, 4)", "ulp"] {
         assert!(text.contains(part), "{part}: {text}");
     }

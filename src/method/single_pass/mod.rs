@@ -61,14 +61,15 @@ mod settings;
 pub use settings::{BinCount, DepthTest, Settings, depth_range};
 
 use crate::error::Result;
-use crate::frame::{Frame, Pool};
+use crate::frame::{NamedPlane, Pool};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::tiled::Given;
+use crate::method::given::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
 use crate::splat::SplatSettings;
+use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "single-pass";
@@ -98,12 +99,17 @@ impl Algorithm for Settings {
         picture::draw(job, self, pool)
     }
 
-    fn stage<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
-        Ok(job.frame(picture::stage(job, self, stage, &Given::new(from, job))?))
+    fn stage<R: Exact>(
+        &self,
+        job: &Job<'_>,
+        stage: &str,
+        given: &Given<'_, R>,
+    ) -> Result<Vec<NamedPlane<R>>> {
+        picture::stage(job, self, stage, given)
     }
 
-    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<String> {
-        Ok(explain::explain::<R>(job, self, pixel)?.to_string())
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {
+        explain::explain::<R>(job, self, pixel)
     }
 
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {

@@ -6,10 +6,11 @@ use super::{Settings, fast, planes};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool, Rect, Wanted};
 use crate::method::algorithm::Job;
+use crate::method::given::Given;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::resolved;
 use crate::method::stage::unknown;
-use crate::method::tiled::{Given, Tiled};
+use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::scene::Scene;
 use crate::splat::{Shared, View};
@@ -59,7 +60,7 @@ pub(in crate::method) fn passes<R: Exact>(
     stages: [&'static str; 2],
     clock: &mut Clock,
 ) -> Passes<R> {
-    let grid = job.exec.grid(job.camera.width, job.camera.height);
+    let grid = job.grid();
     let (epsilon, empty) = (geometry.splats.epsilon, geometry.shared().empty());
     let tiles = grid.rects().into_iter().enumerate().collect();
     let done = job.exec.ordered(tiles, |(tile, rect): (usize, Rect)| {
@@ -116,10 +117,8 @@ pub(super) fn stage<R: Exact>(
 
 /// The fast path for `f32`.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
-    let Job { scene, camera, exec, .. } = *job;
-    let groups = job.index.groups()?;
-    let mut target = framebuffer(camera, wanted(scene, false), pool);
-    let (tally, laps) = fast::render(&scene.surfels, groups, camera, settings, exec, &mut target)?;
+    let mut target = framebuffer(job.camera, wanted(job.scene, false), pool);
+    let (tally, laps) = fast::render(job, settings, &mut target)?;
     Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 

@@ -7,9 +7,10 @@ use crate::composite::groups::WeightedFragment;
 use crate::error::Result;
 use crate::frame::{NO_ID, NamedPlane};
 use crate::method::algorithm::Job;
+use crate::method::given::Given;
 use crate::method::resolved;
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
-use crate::method::tiled::{Given, Tiled};
+use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::View;
 
@@ -199,7 +200,7 @@ pub(in crate::method) fn given_images<R: Exact>(
     let (view, surfels) = (View::new(job.camera), &job.scene.surfels);
     let colored = surfels.color().is_some();
     let image = |k: usize| {
-        let (depth, id) = (given.scalar(&rows.depth, k)?, given.surfels(&rows.id, k)?);
+        let (depth, id) = (given.scalar(&rows.depth, k)?, given.ids(&rows.id, k)?);
         let (weight, normal) = (given.scalar(&rows.weight, k)?, given.triple(&rows.normal, k)?);
         let color = colored.then(|| given.triple(&rows.color, k)).transpose()?;
         Ok(given.tiled(|x, y| {

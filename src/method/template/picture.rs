@@ -8,11 +8,12 @@ use super::reconstruction::gather;
 use super::{Center, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
-use crate::frame::{Frame, NamedPlane, Plane, Pool, Wanted, pyramid};
+use crate::frame::{NamedPlane, Plane, Pool, Wanted, pyramid};
 use crate::method::algorithm::Job;
+use crate::method::given::Given;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::projection::{self, Has};
-use crate::method::stage::{check_size, unknown};
+use crate::method::stage::unknown;
 use crate::number::Exact;
 use crate::splat::Tally;
 
@@ -34,7 +35,8 @@ pub(super) fn define<R: Exact>(
     let mut planes = Vec::new();
     if stages {
         planes = projection::planes::write(&projected.samples, has);
-        planes.extend((1..).zip(&levels[1..]).flat_map(|(level, cells)| write(level, cells, job)));
+        let level = |(level, cells)| planes::write_level(level, cells, job);
+        planes.extend((1..).zip(&levels[1..]).flat_map(level));
         planes.extend(planes::write_gathered(&gathered, has));
     }
     clock.restart();
@@ -59,12 +61,6 @@ pub(super) fn draw(
     Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 
-/// The planes of a level.
-fn write<R: Exact>(level: usize, cells: &Plane<Center<R>>, job: &Job<'_>) -> Vec<NamedPlane<R>> {
-    let size = [job.camera.width, job.camera.height];
-    planes::write_level(level, cells, size, Has::of(job.scene))
-}
-
 /// One stage on somebody's planes, see [`super::planes`].
 ///
 /// In the propagation every level is computed from the finer one *as the planes have it*, and where
@@ -77,55 +73,55 @@ pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
-    from: &Frame<R>,
-) -> Result<Frame<R>> {
-    check_size(from, job.camera)?;
+    given: &Given<'_, R>,
+) -> Result<Vec<NamedPlane<R>>> {
     let Job { scene, camera, exec, .. } = *job;
     let has = Has::of(scene);
-    let planes = match stage {
+    match stage {
         "projection" => {
             let snap = Snap::default();
             let projected = projection::project::<R>(scene, camera, settings.cull, snap, exec)?;
-            projection::planes::write(&projected.samples, has)
+            Ok(projection::planes::write(&projected.samples, has))
         }
-        "propagation" => propagated(job, settings, from)?,
+        "propagation" => propagated(job, settings, given),
         "reconstruction" => {
-            let gathered = gather(&levels(job, settings, from)?, settings, exec);
+            let gathered = gather(&levels(job, settings, given)?, settings, exec);
             let mut planes = planes::write_gathered(&gathered, has);
             planes.push(planes::write_id(&gathered));
-            planes
+            Ok(planes)
         }
         "normalization" => {
-            let gathered = planes::read_gathered(from, has)?;
-            planes::write_normalized(normalize(&gathered, camera, has, true))
+            let gathered = planes::read_gathered(given, has)?;
+            Ok(planes::write_normalized(normalize(&gathered, camera, has, true)))
         }
         "shading" => {
-            let target = planes::read_normalized(from, has)?;
+            let target = planes::read_normalized(given, has)?;
             let shaded = finish(target, Vec::new(), Tally::default(), Clock::default(), job);
             let mut planes = shaded.frame.planes;
             planes.retain(|plane| SHADING.iter().any(|row| row.is_called(&plane.name)));
-            planes
+            Ok(planes)
         }
-        _ => return Err(unknown(stage)),
-    };
-    Ok(Frame { width: from.width, height: from.height, planes })
+        _ => Err(unknown(stage)),
+    }
 }
 
-/// The number of the top level.
-fn top<R: Exact>(settings: &Settings, from: &Frame<R>) -> usize {
-    propagation::top(settings, &pyramid::sizes(from.width, from.height))
+/// The sizes of the levels 0 to the top.
+fn sizes(job: &Job<'_>, settings: &Settings) -> Vec<[u32; 2]> {
+    let mut sizes = pyramid::sizes(job.camera.width, job.camera.height);
+    sizes.truncate(propagation::top(settings, &sizes) + 1);
+    sizes
 }
 
 /// All levels as the planes have them.
 fn levels<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
-    from: &Frame<R>,
+    given: &Given<'_, R>,
 ) -> Result<Vec<Plane<Center<R>>>> {
     let has = Has::of(job.scene);
-    let mut levels = vec![projection::planes::read(from, has)?.map(Center::new)];
-    for level in 1..=top(settings, from) {
-        levels.push(planes::read_level(from, level, has)?);
+    let mut levels = vec![projection::planes::read(given, has)?.map(Center::new)];
+    for (level, size) in sizes(job, settings).into_iter().enumerate().skip(1) {
+        levels.push(planes::read_level(given, level, size, has)?);
     }
     Ok(levels)
 }
@@ -134,17 +130,20 @@ fn levels<R: Exact>(
 fn propagated<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
-    from: &Frame<R>,
+    given: &Given<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     let has = Has::of(job.scene);
-    let mut fine = projection::planes::read(from, has)?.map(Center::new);
+    let mut fine = projection::planes::read(given, has)?.map(Center::new);
     let mut planes = Vec::new();
-    for level in 1..=top(settings, from) {
+    for (level, size) in sizes(job, settings).into_iter().enumerate().skip(1) {
         let reach = R::from_f32(settings.reach(level - 1));
         let coarse = propagation::coarser(&fine, reach, job.exec);
-        planes.extend(write(level, &coarse, job));
-        let given = planes::has_level(from, level);
-        fine = if given { planes::read_level(from, level, has)? } else { coarse };
+        planes.extend(planes::write_level(level, &coarse, job));
+        fine = if given.has(&planes::LEVELS[0], level) {
+            planes::read_level(given, level, size, has)?
+        } else {
+            coarse
+        };
     }
     Ok(planes)
 }

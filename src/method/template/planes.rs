@@ -7,10 +7,11 @@ use super::Center;
 use super::reconstruction::Gathered;
 use crate::composite::sum;
 use crate::error::Result;
-use crate::frame::{Frame, Framebuffer, NO_ID, NamedPlane, Plane, Samples, pyramid};
-use crate::method::picture::named;
+use crate::frame::{Framebuffer, NO_ID, NamedPlane, Plane, pyramid};
+use crate::method::algorithm::Job;
+use crate::method::given::Given;
 use crate::method::projection::Has;
-use crate::method::projection::planes::{GivenPlanes, components, vector};
+use crate::method::projection::planes::{components, triple_at, vector};
 use crate::method::{Holds, PlaneRow, When};
 use crate::number::{Exact, Vector2};
 
@@ -106,59 +107,51 @@ pub const SHADING: [PlaneRow; 2] = [
 pub(super) fn write_level<R: Exact>(
     level: usize,
     cells: &Plane<Center<R>>,
-    size: [u32; 2],
-    has: Has,
+    job: &Job<'_>,
 ) -> Vec<NamedPlane<R>> {
-    let whole = pyramid::in_corner(cells, size, Center::empty());
-    let names = LEVELS.map(|row| row.numbered(level));
-    let [id, depth, radius, extent, left, upper, normal, color] = &names;
-    let scalar = |name: &str, of: fn(&Center<R>) -> R| named(name, Samples::Scalar(whole.map(of)));
+    let whole = pyramid::in_corner(cells, job.camera.size(), Center::empty());
+    let [id, depth, radius, extent, left, upper, normal, color] = &LEVELS;
+    let scalar = |row: &PlaneRow, of: fn(&Center<R>) -> R| row.scalar(level, whole.map(of));
     let mut planes = vec![
-        named(id, Samples::Index(whole.map(|cell| cell.id))),
+        id.index(level, whole.map(|cell| cell.id)),
         scalar(depth, |cell| cell.depth),
         scalar(radius, |cell| cell.radius),
         scalar(extent, |cell| cell.extent),
         scalar(left, |cell| cell.center.x),
         scalar(upper, |cell| cell.center.y),
-        named(normal, Samples::Vector(whole.map(|cell| components(cell.normal)))),
+        normal.triple(level, whole.map(|cell| components(cell.normal))),
     ];
-    if has.color {
-        planes.push(named(color, Samples::Color(whole.map(|cell| cell.color))));
-    }
+    let colors = || color.triple(level, whole.map(|cell| cell.color));
+    planes.extend(Has::of(job.scene).color.then(colors));
     planes
 }
 
-/// Whether a frame has a level.
-pub(super) fn has_level<R: Exact>(frame: &Frame<R>, level: usize) -> bool {
-    frame.plane(&LEVELS[0].numbered(level)).is_some()
-}
-
-/// A level as it comes in. What lies outside the level is not read.
+/// A level as it comes in, of which `size` is the size. What lies outside the level is not read.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if a plane is missing, of another type, or not of the size of the
-/// frame.
-///
-/// # Panics
-/// If a picture of the frame's size has no such level.
-pub fn read_level<R: Exact>(frame: &Frame<R>, level: usize, has: Has) -> Result<Plane<Center<R>>> {
-    let names = LEVELS.map(|row| row.numbered(level));
-    let [id, depth, radius, extent, left, upper, normal, color] = &names;
-    let given = GivenPlanes(frame);
-    let id = given.indices(id)?;
-    let [depth, radius] = [given.scalar(depth)?, given.scalar(radius)?];
-    let [extent, left, upper] = [given.scalar(extent)?, given.scalar(left)?, given.scalar(upper)?];
-    let normal = given.vector(normal)?;
-    let color = given.color_if(has.color, color)?;
-    let size = pyramid::sizes(frame.width, frame.height)[level];
-    Ok(given.corner(size, |i| Center {
-        id: id[i],
-        depth: depth[i],
-        radius: radius[i],
-        extent: extent[i],
-        center: Vector2::new(left[i], upper[i]),
-        normal: vector(normal[i]),
-        color: color.map_or([R::ZERO; 3], |of| of[i]),
+/// [`crate::Error::Invalid`] if a plane is missing, or of another type or size, or if the scene has
+/// no surfel of an id.
+pub(super) fn read_level<R: Exact>(
+    given: &Given<'_, R>,
+    level: usize,
+    size: [u32; 2],
+    has: Has,
+) -> Result<Plane<Center<R>>> {
+    let [id, depth, radius, extent, left, upper, normal, color] = &LEVELS;
+    let id = given.ids(id, level)?;
+    let scalar = |row| given.scalar(row, level);
+    let [depth, radius, extent] = [scalar(depth)?, scalar(radius)?, scalar(extent)?];
+    let [left, upper] = [scalar(left)?, scalar(upper)?];
+    let normal = given.triple(normal, level)?;
+    let color = given.triple_if(has.color, color, level)?;
+    Ok(Plane::from_pixels(size, |x, y| Center {
+        id: *id.at(x, y),
+        depth: *depth.at(x, y),
+        radius: *radius.at(x, y),
+        extent: *extent.at(x, y),
+        center: Vector2::new(*left.at(x, y), *upper.at(x, y)),
+        normal: vector(*normal.at(x, y)),
+        color: triple_at(color, x, y),
     }))
 }
 
@@ -167,82 +160,84 @@ pub(super) fn write_gathered<R: Exact>(
     pixels: &Plane<Gathered<R>>,
     has: Has,
 ) -> Vec<NamedPlane<R>> {
-    let [count, weight, depths, depth, radius, normal, color, _] = GATHERED.map(|row| row.name);
+    let [count, weight, depths, depth, radius, normal, color, _] = &GATHERED;
+    let scalar = |row: &PlaneRow, of: fn(&Gathered<R>) -> R| row.scalar(0, pixels.map(of));
     let mut planes = vec![
-        named(count, Samples::Count(pixels.map(|pixel| pixel.count))),
-        named(weight, Samples::Scalar(pixels.map(|pixel| pixel.weight))),
-        named(depths, Samples::Scalar(pixels.map(|pixel| pixel.depths))),
-        named(depth, Samples::Scalar(pixels.map(|pixel| pixel.depth))),
-        named(radius, Samples::Scalar(pixels.map(|pixel| pixel.radius))),
-        named(normal, Samples::Vector(pixels.map(|pixel| pixel.normals))),
+        count.count(0, pixels.map(|pixel| pixel.count)),
+        scalar(weight, |pixel| pixel.weight),
+        scalar(depths, |pixel| pixel.depths),
+        scalar(depth, |pixel| pixel.depth),
+        scalar(radius, |pixel| pixel.radius),
+        normal.triple(0, pixels.map(|pixel| pixel.normals)),
     ];
-    if has.color {
-        planes.push(named(color, Samples::Color(pixels.map(|pixel| pixel.colors))));
-    }
+    planes.extend(has.color.then(|| color.triple(0, pixels.map(|pixel| pixel.colors))));
     planes
 }
 
 /// The id of the nearest centre blended.
 pub(super) fn write_id<R: Exact>(pixels: &Plane<Gathered<R>>) -> NamedPlane<R> {
-    let [.., id] = GATHERED.map(|row| row.name);
-    named(id, Samples::Index(pixels.map(|pixel| pixel.id)))
+    let [.., id] = &GATHERED;
+    id.index(0, pixels.map(|pixel| pixel.id))
 }
 
 /// What was gathered as it comes in.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if a plane is missing, of another type, or not of the size of the
-/// frame.
-pub fn read_gathered<R: Exact>(frame: &Frame<R>, has: Has) -> Result<Plane<Gathered<R>>> {
-    let [count, weight, depths, depth, radius, normal, color, id] = GATHERED.map(|row| row.name);
-    let given = GivenPlanes(frame);
-    let (count, id) = (given.counts(count)?, given.indices(id)?);
-    let [weight, depths] = [given.scalar(weight)?, given.scalar(depths)?];
-    let [depth, radius] = [given.scalar(depth)?, given.scalar(radius)?];
-    let normal = given.vector(normal)?;
-    let color = given.color_if(has.color, color)?;
-    Ok(given.corner([frame.width, frame.height], |i| Gathered {
-        id: id[i],
-        depth: depth[i],
-        radius: radius[i],
-        weight: weight[i],
-        depths: depths[i],
-        normals: normal[i],
-        colors: color.map_or([R::ZERO; 3], |of| of[i]),
-        count: count[i],
+/// As [`read_level`].
+pub(super) fn read_gathered<R: Exact>(
+    given: &Given<'_, R>,
+    has: Has,
+) -> Result<Plane<Gathered<R>>> {
+    let [count, weight, depths, depth, radius, normal, color, id] = &GATHERED;
+    let (count, id) = (given.count(count, 0)?, given.ids(id, 0)?);
+    let scalar = |row| given.scalar(row, 0);
+    let [weight, depths] = [scalar(weight)?, scalar(depths)?];
+    let [depth, radius] = [scalar(depth)?, scalar(radius)?];
+    let normal = given.triple(normal, 0)?;
+    let color = given.triple_if(has.color, color, 0)?;
+    Ok(Plane::from_pixels([id.width(), id.height()], |x, y| Gathered {
+        id: *id.at(x, y),
+        depth: *depth.at(x, y),
+        radius: *radius.at(x, y),
+        weight: *weight.at(x, y),
+        depths: *depths.at(x, y),
+        normals: *normal.at(x, y),
+        colors: triple_at(color, x, y),
+        count: *count.at(x, y),
     }))
 }
 
 /// The planes that leave the normalization; the colour is shaded before it leaves.
 pub(super) fn write_normalized<R: Exact>(target: Framebuffer<R>) -> Vec<NamedPlane<R>> {
-    let [depth, normal, weight] = NORMALIZATION.map(|row| row.name);
-    let mut planes = vec![named(depth, Samples::Scalar(target.depth))];
-    planes.extend(target.normal.map(|plane| named(normal, Samples::Vector(plane))));
-    planes.push(named(weight, Samples::Scalar(target.weight)));
+    let [depth, normal, weight] = &NORMALIZATION;
+    let mut planes = vec![depth.scalar(0, target.depth)];
+    planes.extend(target.normal.map(|plane| normal.triple(0, plane)));
+    planes.push(weight.scalar(0, target.weight));
     planes
 }
 
 /// What the shading reads as it comes in: the planes of the normalization, and the sums of colours.
 ///
 /// # Errors
-/// As [`read_gathered`].
-pub(super) fn read_normalized<R: Exact>(frame: &Frame<R>, has: Has) -> Result<Framebuffer<R>> {
-    let [depth, normal, weight] = NORMALIZATION.map(|row| row.name);
-    let [.., colors, _] = GATHERED.map(|row| row.name);
-    let given = GivenPlanes(frame);
-    let (depth, weight) = (given.scalar(depth)?, given.scalar(weight)?);
-    let normal = given.vector(normal)?;
-    let colors = given.color_if(has.color, colors)?;
-    let (width, height) = (frame.width, frame.height);
-    let size = [width, height];
+/// As [`read_level`].
+pub(super) fn read_normalized<R: Exact>(given: &Given<'_, R>, has: Has) -> Result<Framebuffer<R>> {
+    let [depth, normal, weight] = &NORMALIZATION;
+    let [.., colors, _] = &GATHERED;
+    let (depth, weight) = (given.scalar(depth, 0)?, given.scalar(weight, 0)?);
+    let normal = given.triple(normal, 0)?;
+    let colors = given.triple_if(has.color, colors, 0)?;
+    let size = [depth.width(), depth.height()];
+    let average = |colors: &Plane<[R; 3]>| {
+        Plane::from_pixels(size, |x, y| sum::average(*colors.at(x, y), *weight.at(x, y)))
+    };
     Ok(Framebuffer {
-        width,
-        height,
-        depth: given.corner(size, |i| depth[i]),
-        id: Plane::filled(width, height, NO_ID),
-        weight: given.corner(size, |i| weight[i]),
-        normal: Some(given.corner(size, |i| normal[i])),
-        color: colors.map(|colors| given.corner(size, |i| sum::average(colors[i], weight[i]))),
+        width: size[0],
+        height: size[1],
+        depth: depth.clone(),
+        id: Plane::filled(size[0], size[1], NO_ID),
+        weight: weight.clone(),
+        normal: Some(normal.clone()),
+        color: colors.map(average),
         stencil: None,
         margin: None,
     })

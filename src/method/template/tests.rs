@@ -3,7 +3,7 @@
 use super::explain::explain;
 use super::planes::read_level;
 use super::*;
-use crate::frame::{Exec, Samples};
+use crate::frame::{Exec, Frame, Samples};
 use crate::index::Index;
 use crate::method::Method;
 use crate::method::projection::tests::{
@@ -58,9 +58,11 @@ fn assert_explained<R: Exact>(scene: &Scene, camera: &Camera, settings: &Setting
     let exec = Exec::sequential();
     let job = Job { scene, index: &Index::default(), camera, exec: &exec };
     let (frame, has) = (settings.define::<R>(&job, true).unwrap().frame, Has::of(scene));
-    let samples = projection::planes::read(&frame, has).unwrap();
+    let given = Given::new(&frame, &job).unwrap();
+    let samples = projection::planes::read(&given, has).unwrap();
     let sizes = crate::frame::pyramid::sizes(frame.width, frame.height);
-    let levels = (1..=propagation::top(settings, &sizes)).map(|l| read_level(&frame, l, has));
+    let level = |l: usize| read_level(&given, l, sizes[l], has);
+    let levels = (1..=propagation::top(settings, &sizes)).map(level);
     let levels: Vec<_> = levels.map(Result::unwrap).collect();
     let mut most = 0;
     for (x, y) in (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| (x, y))) {

@@ -11,14 +11,14 @@ use crate::number::random::unit;
 use crate::scene::{Camera, Cloud, Groups, Light, Scene, Surfels};
 
 /// Random surfels of random opacities under a light, in three groups, from the side of a camera.
-struct Given {
+struct Example {
     scene: Scene,
     index: Index,
     camera: Camera,
     exec: Exec,
 }
 
-impl Given {
+impl Example {
     fn new() -> Self {
         let opacity = |i: u64| if i.is_multiple_of(5) { 1.0 } else { unit(3, i) };
         let cloud = Cloud {
@@ -52,7 +52,7 @@ impl Given {
 #[test]
 fn ewa_is_explained_as_it_is_drawn() {
     let settings = ewa::Settings::default();
-    Given::new().each_pixel(&settings, |job, frame, (x, y)| {
+    Example::new().each_pixel(&settings, |job, frame, (x, y)| {
         let found = ewa::explain::explain::<f64>(job, &settings, (x, y)).unwrap();
         assert_eq!(found.nearest, *scalar(frame, "Z").at(x, y));
         let last = found.touches.iter().rev().find(|touch| touch.passes());
@@ -69,7 +69,7 @@ fn ewa_is_explained_as_it_is_drawn() {
 #[test]
 fn peeling_is_explained_as_it_is_drawn() {
     let settings = peeling::Settings::default();
-    Given::new().each_pixel(&settings, |job, frame, (x, y)| {
+    Example::new().each_pixel(&settings, |job, frame, (x, y)| {
         let found = peeling::explain::explain::<f64>(job, &settings, (x, y)).unwrap();
         assert_eq!(found.layers.len(), usize::from(*count(frame, "layers").at(x, y)));
         for (number, at) in (1..=8).zip(&found.layers) {
@@ -111,7 +111,7 @@ fn agree(found: &transparent::explain::TransparentReplay<f64>, frame: &Frame<f64
 fn transparent_is_explained_as_it_is_drawn() {
     let settings = transparent::Settings::default();
     let mut most = 0;
-    Given::new().each_pixel(&settings, |job, frame, (x, y)| {
+    Example::new().each_pixel(&settings, |job, frame, (x, y)| {
         let found = transparent::explain::explain::<f64>(job, &settings, (x, y)).unwrap();
         most = most.max(agree(&found, frame));
         assert_eq!(found.nearest, *scalar(frame, "Z").at(x, y));
@@ -125,7 +125,7 @@ fn transparent_is_explained_as_it_is_drawn() {
 fn transparent_hq_is_explained_as_it_is_drawn() {
     let settings = transparent_hq::Settings::default();
     let mut most = 0;
-    Given::new().each_pixel(&settings, |job, frame, (x, y)| {
+    Example::new().each_pixel(&settings, |job, frame, (x, y)| {
         let found = transparent_hq::explain::explain::<f64>(job, &settings, (x, y)).unwrap();
         most = most.max(agree(&found.others, frame));
         assert_eq!(found.nearest.nearest, *scalar(frame, "Z").at(x, y));
@@ -142,7 +142,7 @@ fn transparent_hq_is_explained_as_it_is_drawn() {
 
 #[test]
 fn a_pixel_outside_is_wrong_usage() {
-    let Given { scene, camera, exec, index } = Given::new();
+    let Example { scene, camera, exec, index } = Example::new();
     for method in Method::all() {
         let session = Session::with_groups(&scene, method, index.groups.clone(), &exec).unwrap();
         for pixel in [(camera.width, 0), (0, camera.height)] {

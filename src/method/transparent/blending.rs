@@ -89,19 +89,17 @@ pub(in crate::method) struct Blending<R: Exact> {
 impl<R: Exact> Blending<R> {
     /// Order, projection and shading.
     pub(in crate::method) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
-        let Job { scene, index, camera, exec } = *job;
+        let Job { scene, index, camera, .. } = *job;
         let groups = index.groups()?;
         let surfels = &scene.surfels;
         let epsilon = settings.splats.epsilon.resolve(surfels);
         let bins = DepthBins::new(&settings.bins.resolve(surfels, camera, epsilon)?);
         let items = index.back_to_front(camera)?;
         let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
-        let grid = exec.grid(camera.width, camera.height);
         let prepared = Prepared::new(
-            (surfels, items.len()),
-            camera,
+            job,
             &settings.splats,
-            (exec, &grid),
+            items.len(),
             |projector, range, drawn| {
                 let mut tally = Tally::default();
                 for &Item { surfel, group } in &items[range] {

@@ -7,9 +7,10 @@ use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::{NamedPlane, Rect};
 use crate::method::algorithm::Job;
+use crate::method::given::Given;
 use crate::method::picture::{Clock, Picture};
 use crate::method::stage::unknown;
-use crate::method::tiled::{Given, Tiled};
+use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use std::time::Instant;
 
@@ -22,7 +23,7 @@ pub(super) fn define<R: Exact>(
     let mut clock = Clock::default();
     let blending = Blending::project(job, settings)?;
     clock.lap("projection");
-    let passes = Passes { blending: &blending, holes: settings.holes, keep: stages };
+    let passes = BlendPasses { blending: &blending, holes: settings.holes, keep: stages };
     let Blended { images, averages } = passes.run(job, |_, _, _| true, &mut clock);
     let mut left = planes::images(&images);
     if stages {
@@ -42,7 +43,7 @@ fn picture<R: Exact>(job: &Job<'_>, averages: &Tiled<GroupAverage<R>>) -> Vec<Na
 }
 
 /// The geometry and the compositing pass.
-pub(in crate::method) struct Passes<'a, R: Exact> {
+pub(in crate::method) struct BlendPasses<'a, R: Exact> {
     pub(in crate::method) blending: &'a Blending<R>,
     pub(in crate::method) holes: Holes,
     /// Whether the images of the groups are kept.
@@ -56,7 +57,7 @@ pub(in crate::method) struct Blended<R> {
     pub(in crate::method) averages: Tiled<GroupAverage<R>>,
 }
 
-impl<R: Exact> Passes<'_, R> {
+impl<R: Exact> BlendPasses<'_, R> {
     /// Runs both over each tile; fragments for which `stays` (the tile, the pixel in it, and the
     /// depth) does not hold are dropped.
     pub(in crate::method) fn run(
@@ -65,7 +66,7 @@ impl<R: Exact> Passes<'_, R> {
         stays: impl Fn(usize, usize, R) -> bool + Sync + Send,
         clock: &mut Clock,
     ) -> Blended<R> {
-        let grid = job.exec.grid(job.camera.width, job.camera.height);
+        let grid = job.grid();
         let tiles = grid.rects().into_iter().enumerate().collect();
         let done = job.exec.ordered(tiles, |(tile, rect): (usize, Rect)| {
             let start = Instant::now();
@@ -113,7 +114,7 @@ pub(super) fn stage<R: Exact>(
     match stage {
         "blending" => {
             let blending = Blending::project(job, settings)?;
-            let passes = Passes { blending: &blending, holes: settings.holes, keep: true };
+            let passes = BlendPasses { blending: &blending, holes: settings.holes, keep: true };
             let blended = passes.run(job, |_, _, _| true, &mut Clock::default());
             Ok(blended_alone(&blended.images))
         }

@@ -6,10 +6,11 @@ use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::NamedPlane;
 use crate::method::algorithm::Job;
+use crate::method::given::Given;
 use crate::method::picture::before_environment;
 use crate::method::resolved::{ALPHA, DEPTH, ID, SHADED};
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
-use crate::method::tiled::{Given, Tiled};
+use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
 const GROUP_COLOR: PlaneRow = PlaneRow::new(
@@ -190,7 +191,7 @@ pub(in crate::method) fn given_images<R: Exact>(
         let (color, alpha) = (given.triple(&GROUP_COLOR, k)?, given.scalar(&GROUP_ALPHA, k)?);
         let opacity = given.scalar(&GROUP_OPACITY, k)?;
         let (bin, count) = (given.scalar(&GROUP_BIN, k)?, given.count(&GROUP_COUNT, k)?);
-        let (depth, surfel) = (given.scalar(&GROUP_DEPTH, k)?, given.surfels(&GROUP_ID, k)?);
+        let (depth, surfel) = (given.scalar(&GROUP_DEPTH, k)?, given.ids(&GROUP_ID, k)?);
         let hidden = given.scalar(&GROUP_HIDDEN, k)?;
         Ok(given.tiled(|x, y| GroupLayers {
             bin: *bin.at(x, y),

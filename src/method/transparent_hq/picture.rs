@@ -6,11 +6,12 @@ use super::{Settings, planes};
 use crate::error::{Error, Result};
 use crate::frame::NamedPlane;
 use crate::method::algorithm::Job;
+use crate::method::given::Given;
 use crate::method::picture::{Clock, Picture};
 use crate::method::single_pass::geometry::Geometry;
 use crate::method::single_pass::picture as first;
 use crate::method::stage::unknown;
-use crate::method::tiled::{Given, Tiled};
+use crate::method::tiled::Tiled;
 use crate::method::transparent::blending::Blending;
 use crate::method::transparent::picture as second;
 use crate::method::transparent::planes as layers;
@@ -76,7 +77,7 @@ fn others<R: Exact>(
     clock: &mut Clock,
 ) -> second::Blended<R> {
     let epsilon = blending.epsilon();
-    let passes = second::Passes { blending, holes: settings.layers.holes, keep };
+    let passes = second::BlendPasses { blending, holes: settings.layers.holes, keep };
     passes.run(job, |tile, pixel, t| nearest.tile(tile)[pixel].is_before(t, epsilon), clock)
 }
 

@@ -16,7 +16,7 @@ pub(super) const TIES: usize = 8;
 /// positive, see [`Side::is_inner`]. Hoppe's choice, the normal of one extreme point, turns a whole
 /// scan inside out where that point is on a thin tip.
 pub(super) fn agree(places: &[Vec3], ties: &[[u32; TIES]], normals: &mut [Vec3]) {
-    let mut parts = Parts::new(places.len());
+    let mut parts = Forest::new(places.len());
     for (_, a, b) in edges(ties, normals) {
         let against = dot(normals[a as usize], normals[b as usize]) < 0.0;
         parts.join(a, b, against);
@@ -127,12 +127,12 @@ fn edges(ties: &[[u32; TIES]], normals: &[Vec3]) -> Vec<(u32, u32, u32)> {
 }
 
 /// Connected parts: a forest where each place knows whether its normal is against its parent's.
-struct Parts {
+struct Forest {
     parent: Vec<u32>,
     against: Vec<bool>,
 }
 
-impl Parts {
+impl Forest {
     fn new(n: usize) -> Self {
         Self { parent: (0..n as u32).collect(), against: vec![false; n] }
     }

@@ -53,7 +53,7 @@ impl<'de> Visitor<'de> for &Table {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
         let mut name = None;
         let mut chosen = Vec::new();
-        while let Some(key) = map.next_key_seed(Key(self))? {
+        while let Some(key) = map.next_key_seed(SettingKey(self))? {
             match key {
                 None => name = Some(map.next_value_seed(MethodName)?),
                 Some(row) => chosen.push((row, map.next_value_seed(Typed(self, row))?)),
@@ -68,9 +68,9 @@ impl<'de> Visitor<'de> for &Table {
 }
 
 /// A key: a row, or none for [`NAME`].
-struct Key<'t>(&'t Table);
+struct SettingKey<'t>(&'t Table);
 
-impl<'de> DeserializeSeed<'de> for Key<'_> {
+impl<'de> DeserializeSeed<'de> for SettingKey<'_> {
     type Value = Option<usize>;
 
     fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<Self::Value, D::Error> {

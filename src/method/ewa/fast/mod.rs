@@ -1,13 +1,12 @@
-//! The fast path for `f32`: the bits of [`super::plain`], from another layout, see
-//! [`crate::method`].
+//! The fast path for `f32`: the bits of the definition, from another layout, see [`crate::method`].
 
 mod kernels;
 
 use super::Settings;
-use crate::frame::{Exec, Framebuffer};
+use crate::frame::Framebuffer;
+use crate::method::algorithm::Job;
 use crate::method::fast::{draw, prepare};
 use crate::method::picture::{Clock, Laps};
-use crate::scene::{Camera, Surfels};
 use crate::splat::Tally;
 use std::time::Instant;
 
@@ -16,24 +15,21 @@ use std::time::Instant;
 /// each tile's splats.
 ///
 /// Every pixel of `target` is overwritten, so a framebuffer can be used for many pictures. Its
-/// stencil and margin are not written; see [`super::plain`] for those.
+/// stencil and margin are not written; the definition has those.
 ///
 /// # Panics
 /// If the framebuffer has not the size of the camera's picture.
 pub(super) fn render(
-    surfels: &Surfels,
-    camera: &Camera,
+    job: &Job<'_>,
     settings: &Settings,
-    exec: &Exec,
     target: &mut Framebuffer<f32>,
 ) -> (Tally, Laps) {
-    assert_eq!((target.width, target.height), (camera.width, camera.height), "framebuffer size");
+    assert_eq!([target.width, target.height], job.camera.size(), "framebuffer size");
     let mut clock = Clock::default();
-    let grid = exec.grid(camera.width, camera.height);
-    let prepared = prepare(surfels, camera, settings, (exec, &grid));
+    let prepared = prepare(job, settings);
     clock.lap("projection");
     let shared = &prepared.shared;
-    let passes = draw(&prepared, target, (exec, &grid), |tile| {
+    let passes = draw(job, &prepared, target, |tile| {
         let start = Instant::now();
         tile.visibility(shared);
         let visible = Instant::now();

@@ -27,7 +27,7 @@ const BANDS: usize = 16;
 
 /// Where a point is, whose it is, and how far.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Key {
+pub(super) struct PointKey {
     /// The pixel of the band, counted row by row, in the upper half; the surfel of the chunk in the
     /// lower.
     place: u32,
@@ -35,7 +35,7 @@ pub(super) struct Key {
     pub(super) order: u32,
 }
 
-impl Key {
+impl PointKey {
     /// The pixel of the band.
     pub(super) fn pixel(self) -> usize {
         (self.place >> 16) as usize
@@ -67,7 +67,7 @@ pub(super) fn depth(order: u32) -> f32 {
 /// surfels. A point carries the normal, towards the viewer and in view space, and the radius.
 #[derive(Debug, Default)]
 pub(in crate::method) struct Points {
-    pub(super) keys: Vec<Key>,
+    pub(super) keys: Vec<PointKey>,
     pub(super) carried: Vec<[f32; 4]>,
     /// Of each chunk: where each band starts, from its first slot on, and where the last ends.
     starts: Vec<u32>,
@@ -108,7 +108,7 @@ impl Points {
         let bounds = self.bands.count + 1;
         // Longer than what they hold, so that they need not be cleared for every picture.
         if self.keys.len() < n {
-            self.keys.resize(n, Key::default());
+            self.keys.resize(n, PointKey::default());
             self.carried.resize(n, [0.0; 4]);
         }
         self.starts.resize(n.div_ceil(CHUNK) * bounds, 0);
@@ -154,7 +154,7 @@ struct Chunk {
     /// The next slot of each band.
     next: Vec<u32>,
     /// What [`Chunk::sort`] has sorted.
-    keys: Vec<Key>,
+    keys: Vec<PointKey>,
     carried: Vec<[f32; 4]>,
 }
 
@@ -179,7 +179,7 @@ impl Chunk {
             blocks: vec![empty; CHUNK / LANES],
             seen: vec![0; CHUNK + LANES],
             next: Vec::new(),
-            keys: vec![Key::default(); CHUNK],
+            keys: vec![PointKey::default(); CHUNK],
             carried: vec![[0.0; 4]; CHUNK],
         }
     }
@@ -204,7 +204,7 @@ impl Chunk {
             let next = &mut self.next[block.band[lane] as usize];
             let (key, carried) =
                 (&mut self.keys[*next as usize], &mut self.carried[*next as usize]);
-            *key = Key { place: block.place[lane], order: block.order[lane] };
+            *key = PointKey { place: block.place[lane], order: block.order[lane] };
             for (to, from) in carried.iter_mut().zip(&block.carried) {
                 *to = from[lane];
             }

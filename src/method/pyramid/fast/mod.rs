@@ -28,6 +28,7 @@ use crate::number::lanes::{LANES, Lanes, each, store, vectorized};
 use crate::scene::{Camera, Scene};
 use crate::splat::{Tally, View};
 use level::{BACK, CellLevel, FRONT, FURTHER, KIND, NORMAL, RADIUS};
+use push::PushRules;
 use write::GBufferRow;
 
 /// The levels of a picture, which can be used for many pictures.
@@ -64,8 +65,9 @@ impl CellLevels {
         clock.lap("pull");
         for level in (2..self.levels.len()).rev() {
             let (finer, coarser) = self.levels.split_at_mut(level);
-            let (fine, how) = (&mut finer[level - 1], (side(level - 1), tubes, settings));
-            push::push(fine, &coarser[0], how, exec, std::iter::repeat(()), |_, ()| {});
+            let rules = PushRules { side: side(level - 1), tubes, settings };
+            let beside = std::iter::repeat(());
+            push::push(&mut finer[level - 1], &coarser[0], &rules, exec, beside, |_, ()| {});
         }
         self.finish(&View::new(camera), settings, exec, target);
         clock.lap("push");
@@ -120,8 +122,8 @@ impl CellLevels {
         let write = |cells: &[f32], row: GBufferRow<'_>| row.write(cells, &layout, view);
         match coarser.first() {
             Some(coarse) => {
-                let how = (side(0), self.has.tangent, settings);
-                push::push(fine, coarse, how, exec, rows, write);
+                let rules = PushRules { side: side(0), tubes: self.has.tangent, settings };
+                push::push(fine, coarse, &rules, exec, rows, write);
             }
             // One pixel.
             None => fine.rows_mut().zip(rows).for_each(|(cells, row)| write(cells, row)),

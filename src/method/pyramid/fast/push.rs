@@ -19,20 +19,29 @@ use crate::number::lanes::{
 /// Rows of a job.
 const ROWS: usize = 8;
 
-/// The cells of a level that are empty or occluded, from the coarser level; `side` is that of a
-/// cell in pixels. Each row is then handed to `done`, while it is in the cache, with what `beside`
+/// How a level is pushed.
+pub(super) struct PushRules<'a> {
+    /// The side of a cell in pixels.
+    pub(super) side: f32,
+    /// Whether the scene has tubes.
+    pub(super) tubes: bool,
+    pub(super) settings: &'a Settings,
+}
+
+/// The cells of a level that are empty or occluded, from the coarser level. Each row is then handed to `done`, while it is in the cache, with what `beside`
 /// has for it.
 pub(super) fn push<T: Send>(
     fine: &mut CellLevel,
     coarse: &CellLevel,
-    (side, tubes, settings): (f32, bool, &Settings),
+    rules: &PushRules<'_>,
     exec: &Exec,
     beside: impl Iterator<Item = T>,
     done: impl Fn(&[f32], T) + Sync + Send,
 ) {
     let layouts = [fine.layout, coarse.layout];
+    let PushRules { side, settings, .. } = *rules;
     let outside = settings.occlusion == Occlusion::Outside;
-    let run = match (settings.weights, tubes) {
+    let run = match (settings.weights, rules.tubes) {
         (Weights::Box, false) => push_row::<false, false>,
         (Weights::Box, true) => push_row::<false, true>,
         (Weights::Gaussian, false) => push_row::<true, false>,
@@ -43,7 +52,7 @@ pub(super) fn push<T: Send>(
             let parent = (y / 2) as isize;
             let even = y % 2 == 0;
             let beside = if even { parent - 1 } else { parent + 1 };
-            run([coarse.row(parent), coarse.row(beside)], row, &layouts, (side, even), outside);
+            run([coarse.row(parent), coarse.row(beside)], row, &layouts, side, even, outside);
             done(row, own);
         }
     });
@@ -68,14 +77,9 @@ fn four(
     ]
 }
 
-/// Where cells must be computed: 1, else 0. Cells beyond the level's width never are.
+/// Where cells must be computed: 1, else 0. Only the first `left` are of the level's width.
 #[inline(always)]
-fn needed(
-    kind: &Lanes,
-    front: &Lanes,
-    parent: [&Lanes; 3],
-    (left, outside): (usize, bool),
-) -> Lanes {
+fn needed(kind: &Lanes, front: &Lanes, parent: [&Lanes; 3], outside: bool, left: usize) -> Lanes {
     let [parent_kind, parent_front, parent_back] = parent;
     each(|i| {
         let before = outside & (front[i] < parent_front[i]);
@@ -90,11 +94,12 @@ vectorized!(
         coarser: [&[f32]; 2],
         fine: &mut [f32],
         [fine_layout, layout]: &[RowLayout; 2],
-        (side, even_y): (f32, bool),
+        side: f32,
+        even_y: bool,
         outside: bool,
     ) {
         let finest = side == 1.0;
-        let shifts = [shifts(side, (true, even_y)), shifts(side, (false, even_y))];
+        let shifts = [shifts(side, [true, even_y]), shifts(side, [false, even_y])];
         for x in (0..layout.width).step_by(LANES) {
             // An empty neighbourhood changes nothing: 2 rows of cells from x - 1 to x + LANES.
             let around = PAD + x - 1..PAD + x + LANES + 1;
@@ -111,7 +116,7 @@ vectorized!(
                 // Columns 2x + odd, 2x + odd + 2 ... of the width.
                 let left = (fine_layout.width + 1 - odd).saturating_sub(2 * x) / 2;
                 let parent = [&kind, &front, &back];
-                let needed = needed(&kinds[odd], &fronts[odd], parent, (left, outside));
+                let needed = needed(&kinds[odd], &fronts[odd], parent, outside, left);
                 let number = |attribute: usize| number(attribute, odd);
                 NewCells::new::<GAUSSIAN, TUBES>(number, &needed, &shifts[odd])
             };
@@ -202,7 +207,7 @@ impl NewCells {
 
 /// From the centres of the finer cells to those of their parents and the neighbours of those.
 #[inline(always)]
-fn shifts(side: f32, (even_x, even_y): (bool, bool)) -> [[f32; 2]; 4] {
+fn shifts(side: f32, [even_x, even_y]: [bool; 2]) -> [[f32; 2]; 4] {
     let shift = |neighbour: bool, even: bool| {
         let far = side * if neighbour { 1.5 } else { 0.5 };
         if neighbour == even { -far } else { far }

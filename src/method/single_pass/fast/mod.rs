@@ -1,5 +1,4 @@
-//! The fast path for `f32`: the bits of [`super::plain`], from another layout, see
-//! [`crate::method`].
+//! The fast path for `f32`: the bits of the definition, from another layout, see [`crate::method`].
 //!
 //! In a tile the splats are sorted by group, and the groups are drawn one after the other into the
 //! same blocks. What a group has left in a block is then put aside: nearness, weight and splat of
@@ -17,11 +16,10 @@ mod images;
 
 use super::Settings;
 use crate::error::Result;
-use crate::frame::{Exec, Framebuffer};
+use crate::frame::Framebuffer;
+use crate::method::algorithm::Job;
 use crate::method::fast::{draw, prepare};
 use crate::method::picture::{Clock, Laps};
-use crate::scene::Groups;
-use crate::scene::{Camera, Surfels};
 use crate::splat::Tally;
 use images::GroupImages;
 use std::time::Instant;
@@ -31,31 +29,28 @@ use std::time::Instant;
 /// the gathering of each tile's splats, the compositing pass the normalization.
 ///
 /// Every pixel of `target` is overwritten, so a framebuffer can be used for many pictures. Its
-/// stencil and margin are not written; see [`super::plain`] for those.
+/// stencil and margin are not written; the definition has those.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if the Voronoi depth test takes too many bins, or if there are not as
-/// many surfels in the groups.
+/// [`crate::Error::Invalid`] if the Voronoi depth test takes too many bins, or if there are no groups of as
+/// many surfels.
 ///
 /// # Panics
 /// If the framebuffer has not the size of the camera's picture.
 pub(super) fn render(
-    surfels: &Surfels,
-    groups: &Groups,
-    camera: &Camera,
+    job: &Job<'_>,
     settings: &Settings,
-    exec: &Exec,
     target: &mut Framebuffer<f32>,
 ) -> Result<(Tally, Laps)> {
-    assert_eq!((target.width, target.height), (camera.width, camera.height), "framebuffer size");
+    assert_eq!([target.width, target.height], job.camera.size(), "framebuffer size");
+    let (surfels, groups) = (&job.scene.surfels, job.index.groups()?);
     groups.check(surfels)?;
     let mut clock = Clock::default();
-    let bins = settings.bins(surfels, camera)?;
-    let grid = exec.grid(camera.width, camera.height);
-    let prepared = prepare(surfels, camera, &settings.splats, (exec, &grid));
+    let bins = settings.bins(surfels, job.camera)?;
+    let prepared = prepare(job, &settings.splats);
     clock.lap("projection");
     let shared = &prepared.shared;
-    let passes = draw(&prepared, target, (exec, &grid), |tile| {
+    let passes = draw(job, &prepared, target, |tile| {
         let start = Instant::now();
         let mut images = GroupImages::new(tile, groups, shared.empty());
         images.draw(tile, shared, bins.as_ref());
