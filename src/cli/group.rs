@@ -2,7 +2,7 @@
 
 use super::options::named;
 use super::rows::{OfGroupsAlone, RowOptions};
-use super::{Ended, Ending, progress, report};
+use super::{Ended, Ending, output, progress, report};
 use splatref::frame::Exec;
 use splatref::index::grouping::{Extended, Extension, Grouping, GroupingReport};
 use splatref::io::ply;
@@ -45,11 +45,12 @@ pub(super) fn run(args: &Args) -> Ended {
         let path = args.output.display();
         return Err(Error::Usage(format!("{path}: groups go into a PLY; give a name in .ply")));
     }
-    super::render::check_folder(&args.output)?;
+    let file = named(&args.scene, args.count, args.seed)?;
+    output::check(&args.output, &args.scene, &file)?;
     let exec = Exec::new(args.threads, 32)?;
     let steps = progress::Steps::new();
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let loaded = named(&args.scene, args.count, args.seed)?.load(&exec, &show)?;
+    let loaded = file.load(&exec, &show)?;
     let Scene { name, primitives, .. } = &loaded.scene;
     if !primitives.is_empty() {
         let what = format!("{name} has triangles or lines; only surfels are divided into groups");

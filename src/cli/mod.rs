@@ -9,7 +9,9 @@ mod explain;
 mod golden;
 mod group;
 mod info;
+mod interrupt;
 mod options;
+mod output;
 mod progress;
 mod project;
 mod render;
@@ -64,6 +66,7 @@ pub(crate) fn run() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return usage(&error),
     };
+    interrupt::watch();
     let outcome = match cli.command {
         Command::Render(args) => render::run(&args),
         Command::Golden(args) => golden::run(&args),

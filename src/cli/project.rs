@@ -1,7 +1,7 @@
 //! `splatref project`: the visible splats of a scene, as records for a backend to upload.
 
 use super::options::{ExecOptions, SceneOptions};
-use super::{Ended, Ending, draw, progress, report};
+use super::{Ended, Ending, draw, output, progress, report};
 use splatref::io::replace::write_atomically;
 use splatref::io::scene_file::{Number, Ready};
 use splatref::splat::record::{SplatRecord, project_records, shared_numbers};
@@ -35,6 +35,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let exec = args.exec.exec()?;
     let method = file.method.method()?;
     check(args, method.splats().is_some(), file.output.number)?;
+    output::check(&args.output, &args.scene, &file)?;
     let ready = draw::ready(&file, &exec)?;
     let Ready { loaded, camera, method, .. } = &ready;
     let Some(splats) = method.splats() else { return Ok(Ending::Good) };
@@ -72,7 +73,7 @@ fn check(args: &Args, splats: bool, number: Number) -> Result<()> {
         let path = args.output.display();
         return Err(Error::Usage(format!("{path}: records are bytes; give a name in .bin")));
     }
-    super::render::check_folder(&args.output)
+    Ok(())
 }
 
 fn write(path: &Path, records: &[SplatRecord]) -> Result<()> {

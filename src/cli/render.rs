@@ -2,8 +2,9 @@
 
 use super::options::{ExecOptions, SceneOptions};
 use super::rows::{OfStages, RowOptions};
-use super::{Ended, Ending, draw, progress, report};
-use splatref::io::scene_file::{FileKind, Ready};
+use super::{Ended, Ending, draw, output, progress, report};
+use splatref::io::replace::Pending;
+use splatref::io::scene_file::{FileKind, Ready, SceneFile};
 use splatref::io::{exr, png, provenance};
 use splatref::method::Picture;
 use splatref::{Error, Result};
@@ -45,9 +46,8 @@ pub(super) fn run(args: &Args) -> Ended {
     let mut file = args.options.scene_file(&args.scene)?;
     file.output = args.stages.chosen.on(file.output, "the output")?;
     let exec = args.exec.exec()?;
-    if let Some(path) = &args.output {
-        check_place(path)?;
-    }
+    let picture = place(args, &file)?;
+    let preview = picture.with_extension("png");
     let ready = draw::ready(&file, &exec)?;
     let (mut session, made) = draw::session(&ready, &exec)?;
     let loading = start.elapsed();
@@ -64,18 +64,11 @@ pub(super) fn run(args: &Args) -> Ended {
     })?;
 
     let writing = Instant::now();
-    let picture = match &args.output {
-        Some(path) => path.clone(),
-        None => {
-            let folder = Path::new("out");
-            fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
-            folder.join(format!("{}.exr", scene.name))
-        }
-    };
-    let preview = picture.with_extension("png");
     progress::during("writing", || {
-        exr::write(&picture, &drawing.frame, &text)?;
-        png::write_frame(&preview, &drawing.frame)
+        // Both are written before one is put in its place.
+        let small = png::pending_frame(&preview, &drawing.frame)?;
+        exr::pending(&picture, &drawing.frame, &text)?.put()?;
+        small.map_or(Ok(()), Pending::put)
     })?;
     let (writing, tally) = (writing.elapsed(), drawing.tally);
     drop(drawing);
@@ -93,25 +86,24 @@ pub(super) fn run(args: &Args) -> Ended {
     Ok(Ending::Good)
 }
 
-/// Whether a file could be written there, before much is computed for it.
-fn check_place(path: &Path) -> Result<()> {
-    if !matches!(FileKind::of(path), Ok(FileKind::Exr)) {
-        let path = path.display();
-        return Err(Error::Usage(format!("{path}: the picture is an EXR; give a name in .exr")));
-    }
-    check_folder(path)
-}
-
-/// Whether there is a directory for a file.
-pub(super) fn check_folder(path: &Path) -> Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    match folder.map(fs::metadata) {
-        Some(Ok(found)) if !found.is_dir() => {
-            Err(Error::format(path, "what should be its directory is a file"))
+/// Where the picture goes.
+fn place(args: &Args, file: &SceneFile) -> Result<PathBuf> {
+    let path = match &args.output {
+        Some(path) if matches!(FileKind::of(path), Ok(FileKind::Exr)) => path.clone(),
+        Some(path) => {
+            let path = path.display();
+            return Err(Error::Usage(format!(
+                "{path}: the picture is an EXR; give a name in .exr"
+            )));
         }
-        Some(Err(source)) => Err(Error::io(path, source)),
-        _ => Ok(()),
-    }
+        None => {
+            let folder = Path::new("out");
+            fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+            folder.join(format!("{}.exr", file.name))
+        }
+    };
+    output::check(&path, &args.scene, file)?;
+    Ok(path)
 }
 
 /// Each stage, and last the whole, of each repetition.

@@ -10,7 +10,7 @@ mod tests;
 mod write;
 
 pub use read::{read, read_header};
-pub use write::write;
+pub use write::{pending, write};
 
 /// The name of the one text attribute that a file of this crate carries.
 pub const ATTRIBUTE: &str = "splatref";

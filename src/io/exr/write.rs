@@ -3,7 +3,7 @@
 use super::ATTRIBUTE;
 use crate::frame::named::LONGEST_NAME;
 use crate::frame::{Channel, ChannelData, Frame};
-use crate::io::replace::write_atomically;
+use crate::io::replace::Pending;
 use crate::{Error, Result};
 use exr::block::lines::LineRefMut;
 use exr::block::writer::ChunksWriter;
@@ -30,11 +30,19 @@ use std::path::Path;
 /// name that is empty, longer than 31 bytes or given twice; [`Error::Io`] if the file cannot be
 /// written, and then nothing is left of it.
 pub fn write(path: &Path, frame: &Frame<f32>, text: &str) -> Result<()> {
+    pending(path, frame, text)?.put()
+}
+
+/// [`write()`] up to the moment when the file is put in its place, for files that belong together.
+///
+/// # Errors
+/// As [`write()`].
+pub fn pending(path: &Path, frame: &Frame<f32>, text: &str) -> Result<Pending> {
     let channels = frame.channels();
     check(frame, &channels)?;
     let headers: Headers = std::iter::once(header(frame, &channels, text)).collect();
     MetaData::validate(&headers, true).map_err(|e| Error::Invalid(format!("no EXR: {e}")))?;
-    write_atomically(path, |file| {
+    Pending::write(path, |file| {
         encode(file, headers, &channels).map_err(|error| match error {
             exr::error::Error::Io(error) => error,
             other => io::Error::other(other.to_string()),

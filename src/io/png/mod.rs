@@ -5,7 +5,7 @@ mod read;
 pub use read::{Stored, read};
 
 use crate::frame::{Frame, Plane};
-use crate::io::replace::write_atomically;
+use crate::io::replace::Pending;
 use crate::io::srgb;
 use crate::{Error, Result};
 use image::codecs::png::PngEncoder;
@@ -22,13 +22,22 @@ use std::path::Path;
 /// # Errors
 /// As [`write()`].
 pub fn write_frame(path: &Path, frame: &Frame<f32>) -> Result<()> {
-    let Ok(color) = frame.color("") else { return Ok(()) };
-    let Ok(alpha) = frame.scalar("A") else { return write(path, color, None) };
+    pending_frame(path, frame)?.map_or(Ok(()), Pending::put)
+}
+
+/// [`write_frame`] up to the moment when the file is put in its place, for files that belong
+/// together; none if the frame has no colour.
+///
+/// # Errors
+/// As [`write()`].
+pub fn pending_frame(path: &Path, frame: &Frame<f32>) -> Result<Option<Pending>> {
+    let Ok(color) = frame.color("") else { return Ok(None) };
+    let Ok(alpha) = frame.scalar("A") else { return pending(path, color, None).map(Some) };
     let mut color = color.clone();
     for (pixel, alpha) in color.values_mut().iter_mut().zip(alpha.values()) {
         *pixel = pixel.map(|value| straight(value, *alpha));
     }
-    write(path, &color, Some(alpha))
+    pending(path, &color, Some(alpha)).map(Some)
 }
 
 /// A colour over black as one that is not multiplied by alpha.
@@ -47,6 +56,10 @@ fn straight(value: f32, alpha: f32) -> f32 {
 /// [`Error::Invalid`] if the planes have no pixel or are not of one size; [`Error::Io`] if the file
 /// cannot be written, and then nothing is left of it.
 pub fn write(path: &Path, color: &Plane<[f32; 3]>, alpha: Option<&Plane<f32>>) -> Result<()> {
+    pending(path, color, alpha)?.put()
+}
+
+fn pending(path: &Path, color: &Plane<[f32; 3]>, alpha: Option<&Plane<f32>>) -> Result<Pending> {
     let (width, height) = (color.width(), color.height());
     if width == 0 || height == 0 {
         return Err(Error::Invalid(format!(
@@ -71,7 +84,7 @@ pub fn write(path: &Path, color: &Plane<[f32; 3]>, alpha: Option<&Plane<f32>>) -
             (pixels.collect::<Vec<u8>>(), ExtendedColorType::Rgba8)
         }
     };
-    write_atomically(path, |file| {
+    Pending::write(path, |file| {
         PngEncoder::new(file).write_image(&pixels, width, height, kind).map_err(|error| match error
         {
             ImageError::IoError(error) => error,

@@ -198,6 +198,19 @@ impl SceneFile {
         }
     }
 
+    /// The files that loading reads.
+    pub fn reads(&self) -> impl Iterator<Item = &Path> {
+        let models = self.models.iter().filter_map(|model| match &model.source {
+            Source::File { path, .. } => Some(path.as_path()),
+            Source::Shape { .. } | Source::Tree { .. } => None,
+        });
+        let environment = self.environment.iter().filter_map(|environment| match environment {
+            EnvironmentChoice::File(path) => Some(path.as_path()),
+            EnvironmentChoice::Sky => None,
+        });
+        models.chain(environment)
+    }
+
     /// The camera: what was chosen, and for the rest what shows `scene`, this one when loaded.
     ///
     /// A scene of one shape that is not transformed has the shape's own pose and lens. Any other is

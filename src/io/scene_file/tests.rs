@@ -100,6 +100,46 @@ fn what_is_absent_has_its_default() {
     assert_eq!(parse(&format!("light = []\n{SHAPE}")).lights, []);
 }
 
+/// Every array, with a value too many and with one too few.
+#[test]
+fn arrays_have_as_many_values_as_they_must() {
+    let model = "[[model]]\nshape = \"torus\"\n";
+    let tree = "[[model]]\nshape = \"tree\"\ndraw = \"polygons\"\n";
+    for (text, count) in [
+        (format!("{model}color = VALUES\n"), 3),
+        (format!("{tree}color = VALUES\n"), 3),
+        (format!("{model}draw = \"hybrid\"\nsplit = VALUES\n"), 4),
+        (format!("{model}[model.transform]\ntranslate = VALUES\n"), 3),
+        (format!("{model}[model.transform.rotate]\naxis = VALUES\ndegrees = 1\n"), 3),
+        (format!("{model}[model.transform.rotate]\nmatrix = [[1, 0, 0], [0, 1, 0], VALUES]\n"), 3),
+        (format!("{model}[camera]\nsize = VALUES\n"), 2),
+        (format!("{model}[camera]\neye = VALUES\n"), 3),
+        (format!("{model}[camera]\ntarget = VALUES\n"), 3),
+        (format!("{model}[camera]\nup = VALUES\n"), 3),
+        (format!("{model}[[light]]\nkind = \"point\"\nposition = VALUES\n"), 3),
+        (format!("{model}[[light]]\nkind = \"headlight\"\ntowards = VALUES\n"), 3),
+        (
+            format!(
+                "{model}[[light]]\nkind = \"directional\"\ntowards = [0, 0, 1]\ncolor = VALUES\n"
+            ),
+            3,
+        ),
+        (format!("{model}[material]\ncolor = VALUES\n"), 3),
+        (format!("{model}[method]\nname = \"transparent-hq\"\nrefraction = VALUES\n"), 3),
+    ] {
+        for found in [count - 1, count + 1] {
+            let values = format!("[{}]", vec!["1"; found].join(", "));
+            let error = refused(&text.replace("VALUES", &values));
+            let says = error.contains("length") || error.contains("numbers");
+            assert!(says && !error.contains('\n'), "{values} of {text}: {error}");
+        }
+    }
+    // A matrix of four rows.
+    let rows = "[[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]]";
+    let error = refused(&format!("{model}[model.transform.rotate]\nmatrix = {rows}\n"));
+    assert!(error.contains("length 4"), "{error}");
+}
+
 #[test]
 fn errors_name_the_file_the_line_and_the_key() {
     for (text, line, what) in [

@@ -3,6 +3,7 @@
 //! Each table is read into a struct that mirrors its keys and then converted; a conversion that
 //! fails is reported by serde at the table's place in the text.
 
+mod exactly;
 mod table;
 
 use super::{
@@ -13,6 +14,7 @@ use crate::error::{Error, Result};
 use crate::scene::transform::{self, Similarity};
 use crate::scene::{Lens, Light, Phong};
 use crate::source::{Shape, plant};
+use exactly::Exactly;
 use glam::{DMat3, DVec3, Vec3};
 use serde::de::{self, Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
@@ -100,7 +102,7 @@ struct RawModel {
     file: Option<PathBuf>,
     radius: Option<f32>,
     draw: Option<String>,
-    split: Option<[f64; 4]>,
+    split: Option<Exactly<f64, 4>>,
     shape: Option<String>,
     square: Option<f32>,
     gap: Option<f32>,
@@ -109,7 +111,7 @@ struct RawModel {
     count: Option<usize>,
     leaves: Option<usize>,
     seed: Option<u64>,
-    color: Option<[f32; 3]>,
+    color: Option<Exactly<f32, 3>>,
     opacity: Option<f32>,
     #[serde(default)]
     transform: RawTransform,
@@ -118,7 +120,7 @@ struct RawModel {
 impl RawModel {
     fn model(mut self) -> std::result::Result<Model, String> {
         let source = self.source()?;
-        let draw = Draw::choose(self.draw.as_deref(), self.split, &source)?;
+        let draw = Draw::choose(self.draw.as_deref(), self.split.map(|split| split.0), &source)?;
         if draw == Draw::Polygons && matches!(source, Source::File { radius: Some(_), .. }) {
             return Err("`radius` means nothing to polygons: remove it".into());
         }
@@ -130,7 +132,7 @@ impl RawModel {
             };
             return Err(format!("`{key}` means nothing to {of}: remove it"));
         }
-        let color = self.color.map(Vec3::from_array);
+        let color = self.color.map(|color| Vec3::from_array(color.0));
         if !color.is_none_or(|c| c.is_finite() && c.min_element() >= 0.0) {
             return Err("color must be three finite numbers >= 0".into());
         }
@@ -198,15 +200,15 @@ impl RawModel {
 struct RawTransform {
     scale: Option<f64>,
     rotate: Option<RawRotation>,
-    translate: Option<[f64; 3]>,
+    translate: Option<Exactly<f64, 3>>,
 }
 
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawRotation {
-    axis: Option<[f64; 3]>,
+    axis: Option<Exactly<f64, 3>>,
     degrees: Option<f64>,
-    matrix: Option<[[f64; 3]; 3]>,
+    matrix: Option<Exactly<Exactly<f64, 3>, 3>>,
 }
 
 impl RawTransform {
@@ -214,21 +216,21 @@ impl RawTransform {
         let rotation = match self.rotate {
             None => DMat3::IDENTITY,
             Some(RawRotation { axis: Some(axis), degrees: Some(degrees), matrix: None }) => {
-                let axis = DVec3::from_array(axis);
+                let axis = DVec3::from_array(axis.0);
                 if !(axis.length() > 0.0 && axis.is_finite() && degrees.is_finite()) {
                     return Err("rotate: axis must not be 0, nor any number infinite".into());
                 }
                 transform::rotation(axis, degrees)
             }
             Some(RawRotation { axis: None, degrees: None, matrix: Some(rows) }) => {
-                DMat3::from_cols_array_2d(&rows).transpose()
+                DMat3::from_cols_array_2d(&rows.0.map(|row| row.0)).transpose()
             }
             Some(_) => return Err("rotate: give axis and degrees, or a matrix".into()),
         };
         let similarity = Similarity {
             rotation,
             scale: self.scale.unwrap_or(1.0),
-            translation: self.translate.unwrap_or_default().into(),
+            translation: self.translate.map_or(DVec3::ZERO, |by| by.0.into()),
         };
         similarity.check().map_err(|error| error.to_string())?;
         Ok(similarity)
@@ -238,10 +240,10 @@ impl RawTransform {
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawCamera {
-    size: Option<[u32; 2]>,
-    eye: Option<[f64; 3]>,
-    target: Option<[f64; 3]>,
-    up: Option<[f64; 3]>,
+    size: Option<Exactly<u32, 2>>,
+    eye: Option<Exactly<f64, 3>>,
+    target: Option<Exactly<f64, 3>>,
+    up: Option<Exactly<f64, 3>>,
     fov: Option<f64>,
     focal: Option<f64>,
     ortho: Option<f64>,
@@ -259,9 +261,9 @@ impl RawCamera {
         if lenses.next().is_some() {
             return Err("camera: give one of fov, focal and ortho".into());
         }
-        let vector = |v: Option<[f64; 3]>| v.map(DVec3::from_array);
+        let vector = |v: Option<Exactly<f64, 3>>| v.map(|v| DVec3::from_array(v.0));
         Ok(CameraChoice {
-            size: self.size,
+            size: self.size.map(|size| size.0),
             eye: vector(self.eye),
             target: vector(self.target),
             up: vector(self.up),
@@ -274,37 +276,37 @@ impl RawCamera {
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 enum RawLight {
     Directional {
-        towards: [f32; 3],
+        towards: Exactly<f32, 3>,
         #[serde(default = "white")]
-        color: [f32; 3],
+        color: Exactly<f32, 3>,
     },
     Headlight {
-        towards: [f32; 3],
+        towards: Exactly<f32, 3>,
         #[serde(default = "white")]
-        color: [f32; 3],
+        color: Exactly<f32, 3>,
     },
     Point {
-        position: [f32; 3],
+        position: Exactly<f32, 3>,
         #[serde(default = "white")]
-        color: [f32; 3],
+        color: Exactly<f32, 3>,
     },
 }
 
-fn white() -> [f32; 3] {
-    [1.0; 3]
+fn white() -> Exactly<f32, 3> {
+    Exactly([1.0; 3])
 }
 
 impl RawLight {
     fn light(self) -> std::result::Result<Light, String> {
         let light = match self {
             Self::Directional { towards, color } => {
-                Light::Directional { towards: towards.into(), color: color.into() }
+                Light::Directional { towards: towards.0.into(), color: color.0.into() }
             }
             Self::Headlight { towards, color } => {
-                Light::Headlight { towards: towards.into(), color: color.into() }
+                Light::Headlight { towards: towards.0.into(), color: color.0.into() }
             }
             Self::Point { position, color } => {
-                Light::Point { position: position.into(), color: color.into() }
+                Light::Point { position: position.0.into(), color: color.0.into() }
             }
         };
         light.check().map(|()| light).map_err(|error| error.to_string())
@@ -318,7 +320,7 @@ struct RawMaterial {
     diffuse: Option<f32>,
     specular: Option<f32>,
     shininess: Option<f32>,
-    color: Option<[f32; 3]>,
+    color: Option<Exactly<f32, 3>>,
 }
 
 impl RawMaterial {
@@ -329,7 +331,7 @@ impl RawMaterial {
             diffuse: self.diffuse.unwrap_or(default.diffuse),
             specular: self.specular.unwrap_or(default.specular),
             shininess: self.shininess.unwrap_or(default.shininess),
-            color: self.color.map_or(default.color, Vec3::from_array),
+            color: self.color.map_or(default.color, |color| color.0.into()),
         };
         material.check().map(|()| material).map_err(|error| error.to_string())
     }

@@ -1,0 +1,29 @@
+//! Where a command may write.
+
+use splatref::io::scene_file::SceneFile;
+use splatref::{Error, Result};
+use std::fs;
+use std::path::Path;
+
+/// Whether a file could be written at `path`, before much is computed for it: its directory must be
+/// there, and the file must be none that the command reads.
+pub(super) fn check(path: &Path, scene: &Path, file: &SceneFile) -> Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder.map(fs::metadata) {
+        Some(Ok(found)) if !found.is_dir() => {
+            return Err(Error::format(path, "what should be its directory is a file"));
+        }
+        Some(Err(source)) => return Err(Error::io(path, source)),
+        _ => {}
+    }
+    // What is not there yet is nothing that is read.
+    let Ok(place) = fs::canonicalize(path) else { return Ok(()) };
+    let mut read = std::iter::once(scene).chain(file.reads());
+    if read.any(|input| fs::canonicalize(input).is_ok_and(|input| input == place)) {
+        let path = path.display();
+        return Err(Error::Usage(format!(
+            "{path} is what the scene is read from; give another name for the output"
+        )));
+    }
+    Ok(())
+}
