@@ -17,13 +17,15 @@ mod project;
 mod render;
 mod report;
 mod rows;
+mod words;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
-use splatref::Result;
+use splatref::{Error, Result};
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
+use std::sync::OnceLock;
 
 /// The ground truth for point-splatting renderers
 #[derive(Parser)]
@@ -76,7 +78,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Project(args) => project::run(&args),
         Command::Info(args) => info::run(&args),
     };
-    match outcome {
+    match outcome.and_then(|ending| printed().map(|()| ending)) {
         Ok(Ending::Good) => ExitCode::SUCCESS,
         Ok(Ending::Different) => ExitCode::FAILURE,
         Err(error) => {
@@ -103,7 +105,13 @@ fn usage(error: &clap::Error) -> ExitCode {
     let text = error.render().to_string();
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
         say(text.trim_end());
-        return ExitCode::SUCCESS;
+        return match printed() {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                complain(&error);
+                ExitCode::from(error.exit_code())
+            }
+        };
     }
     let what: Vec<&str> = text
         .lines()
@@ -116,12 +124,29 @@ fn usage(error: &clap::Error) -> ExitCode {
     ExitCode::from(2)
 }
 
-/// A line on stdout. A reader that has gone, such as `head`, is no reason to stop.
+/// The first failure of stdout.
+static STDOUT: OnceLock<io::Error> = OnceLock::new();
+
+/// A line on stdout. A full disk or a reader that has gone, such as `head`, is no reason to stop:
+/// files are still to be written. It is a failure in the end.
 fn say(text: impl Display) {
-    let _ = writeln!(io::stdout(), "{text}");
+    if let Err(error) = writeln!(io::stdout(), "{}", words::visible(&text.to_string())) {
+        let _ = STDOUT.set(error);
+    }
+}
+
+/// What is printed has arrived, or why not.
+fn printed() -> Result<()> {
+    if let Err(error) = io::stdout().flush() {
+        let _ = STDOUT.set(error);
+    }
+    match STDOUT.get() {
+        None => Ok(()),
+        Some(error) => Err(Error::Invalid(format!("standard output: {error}"))),
+    }
 }
 
 /// The line on stderr.
 fn complain(error: impl Display) {
-    let _ = writeln!(io::stderr(), "splatref: {}", error.to_string().replace('\n', " "));
+    let _ = writeln!(io::stderr(), "splatref: {}", words::line(&error.to_string()));
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use splatref::frame::Exec;
 use splatref::io::scene_file::{EnvironmentChoice, SceneFile, Source, check_opacity};
 use splatref::method::Method;
-use splatref::scene::Lens;
+use splatref::scene::{Camera, Lens};
 use splatref::{Error, Result};
 use std::path::Path;
 
@@ -177,7 +177,9 @@ fn replace<T>(chosen: &mut Option<T>, by: Option<T>) {
 /// `640x480`.
 fn size(text: &str) -> std::result::Result<[u32; 2], String> {
     let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
-    sides.ok_or_else(|| "give width and height in pixels, such as 640x480".into())
+    let size: [u32; 2] = sides.ok_or("give width and height in pixels, such as 640x480")?;
+    Camera::check_size(size[0], size[1]).map_err(|error| error.to_string())?;
+    Ok(size)
 }
 
 /// `sky` or a file.

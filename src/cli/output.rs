@@ -8,14 +8,23 @@ use std::path::Path;
 /// Whether a file could be written at `path`, before much is computed for it: its directory must be
 /// there, and the file must be none that the command reads.
 pub(super) fn check(path: &Path, scene: &Path, file: &SceneFile) -> Result<()> {
+    check_folder(path)?;
+    check_unread(path, scene, file)
+}
+
+fn check_folder(path: &Path) -> Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     match folder.map(fs::metadata) {
         Some(Ok(found)) if !found.is_dir() => {
-            return Err(Error::format(path, "what should be its directory is a file"));
+            Err(Error::format(path, "what should be its directory is a file"))
         }
-        Some(Err(source)) => return Err(Error::io(path, source)),
-        _ => {}
+        Some(Err(source)) => Err(Error::io(path, source)),
+        _ => Ok(()),
     }
+}
+
+/// Whether a file that is to be written is none that is read.
+pub(super) fn check_unread(path: &Path, scene: &Path, file: &SceneFile) -> Result<()> {
     // What is not there yet is nothing that is read.
     let Ok(place) = fs::canonicalize(path) else { return Ok(()) };
     let mut read = std::iter::once(scene).chain(file.reads());

@@ -64,6 +64,10 @@ pub(super) fn run(args: &Args) -> Ended {
     })?;
 
     let writing = Instant::now();
+    if args.output.is_none() {
+        let folder = Path::new(FOLDER);
+        fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+    }
     progress::during("writing", || {
         // Both are written before one is put in its place.
         let small = png::pending_frame(&preview, &drawing.frame)?;
@@ -86,10 +90,16 @@ pub(super) fn run(args: &Args) -> Ended {
     Ok(Ending::Good)
 }
 
+/// Where pictures go of which nobody says; made when they are written.
+const FOLDER: &str = "out";
+
 /// Where the picture goes.
 fn place(args: &Args, file: &SceneFile) -> Result<PathBuf> {
     let path = match &args.output {
-        Some(path) if matches!(FileKind::of(path), Ok(FileKind::Exr)) => path.clone(),
+        Some(path) if matches!(FileKind::of(path), Ok(FileKind::Exr)) => {
+            output::check(path, &args.scene, file)?;
+            path.clone()
+        }
         Some(path) => {
             let path = path.display();
             return Err(Error::Usage(format!(
@@ -97,12 +107,11 @@ fn place(args: &Args, file: &SceneFile) -> Result<PathBuf> {
             )));
         }
         None => {
-            let folder = Path::new("out");
-            fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
-            folder.join(format!("{}.exr", file.name))
+            let path = Path::new(FOLDER).join(format!("{}.exr", file.name));
+            output::check_unread(&path, &args.scene, file)?;
+            path
         }
     };
-    output::check(&path, &args.scene, file)?;
     Ok(path)
 }
 

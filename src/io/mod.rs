@@ -1,6 +1,7 @@
 //! Files: everything that touches the disk. Only this module, `cli` and `main` know of them.
 //!
 //! - [`environment`]: environment maps from EXR files.
+//! - `input`: the files that are read.
 //! - [`exr`]: every plane of a frame, exactly; reading guards against lying files.
 //! - [`npy`]: arrays of `NumPy` as planes.
 //! - [`ply`]: point clouds and meshes, in and out.
@@ -12,6 +13,7 @@
 
 pub mod environment;
 pub mod exr;
+mod input;
 pub mod npy;
 pub mod ply;
 #[cfg(feature = "cli")]

@@ -3,7 +3,7 @@
 //! Format: [NEP 1](https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html),
 //! versions 1.0 to 3.0.
 
-use super::Reason;
+use super::{Reason, input};
 use crate::frame::Image;
 use crate::frame::image::Values;
 use crate::{Error, Result};
@@ -35,12 +35,7 @@ const LONGEST_HEADER: u64 = 10_000;
 /// [`Error::Io`] if the file cannot be read. [`Error::Format`] if it is no NPY file, has another
 /// type, order (Fortran) or shape, is empty, or is not as long as its shape says.
 pub fn read(path: &Path, name: &str) -> Result<Image> {
-    let open = || -> std::io::Result<(File, u64)> {
-        let file = File::open(path)?;
-        let length = file.metadata()?.len();
-        Ok((file, length))
-    };
-    let (file, length) = open().map_err(|source| Error::io(path, source))?;
+    let (file, length) = input::open(path).map_err(|source| Error::io(path, source))?;
     // The length is taken once: no more is read, even if the file grows meanwhile.
     let mut file = file.take(length);
     let text = header_text(&mut file).map_err(|what| Error::format(path, what))?;

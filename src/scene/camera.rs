@@ -72,19 +72,23 @@ pub struct Camera {
 pub const MAX_EXTENT: u32 = 65_536;
 /// The largest number of pixels of a picture: 2^28, a square of 16,384.
 pub const MAX_PIXELS: u64 = 1 << 28;
+/// The farthest that a coordinate of the eye may be from 0, and the eye from the target; matrices
+/// are `f32`.
+pub const MAX_DISTANCE: f64 = 1e38;
 
 impl Camera {
     /// A camera at `pose`, the principal point in the middle of the picture.
     ///
     /// Everything is computed in f64 and rounded once. The near plane is at 1/1024 of the distance
-    /// from eye to target.
+    /// from eye to target. An `up` whose largest component is not in [1e-100, 1e100] is divided by
+    /// this component first.
     ///
     /// # Errors
     /// [`Error::Invalid`] if the picture has no pixels or more than [`MAX_EXTENT`] a side or
-    /// [`MAX_PIXELS`] in all, if the lens is out of range, if eye and target coincide, if up is 0
-    /// or parallel to the view, or if anything is not finite.
+    /// [`MAX_PIXELS`] in all, if the lens is out of range, if eye and target coincide or are farther
+    /// away than [`MAX_DISTANCE`], if up is 0 or parallel to the view, or if anything is not finite.
     pub fn new(width: u32, height: u32, pose: Pose, lens: Lens) -> Result<Self> {
-        check_size(width, height)?;
+        Self::check_size(width, height)?;
         let (projection, scale) = scale(height, lens)?;
         let invalid = |what: &str| Err(Error::Invalid(format!("camera: {what}")));
         let Pose { eye, target, up } = pose;
@@ -92,12 +96,20 @@ impl Camera {
             return invalid("eye, target and up must be finite numbers");
         }
         let distance = (target - eye).length();
-        if !(distance > 0.0 && distance.is_finite()) {
+        if distance == 0.0 {
             return invalid("eye and target are the same point: move one of them");
         }
+        // The square of such a length is beyond f64, and a position beyond f32.
+        if distance > MAX_DISTANCE || eye.abs().max_element() > MAX_DISTANCE {
+            let what = format!("eye or target is farther away than {MAX_DISTANCE:e}");
+            return invalid(&format!("{what}, about the most that f32 holds"));
+        }
         let back = (eye - target) / distance;
+        // Only the direction of up counts, and the square of its length must be in f64.
+        let largest = up.abs().max_element();
+        let up = if (1e-100..=1e100).contains(&largest) { up } else { up / largest };
         let right = up.cross(back);
-        // An angle below 1e-6 between up and the view leaves no digits for `right`.
+        // An up of 0 is NaN by now. An angle below 1e-6 between up and the view leaves no digits for `right`.
         if !(right.length() > 1e-6 * up.length()) {
             return invalid("up is zero or parallel to the line of sight: choose another --up");
         }
@@ -141,7 +153,7 @@ impl Camera {
         from: DVec3,
         lens: Lens,
     ) -> Result<Self> {
-        check_size(width, height)?;
+        Self::check_size(width, height)?;
         let (projection, scale) = scale(height, lens)?;
         let half_extent = f64::from(if width < height { width } else { height }) / 2.0;
         // A single point has no extent: any distance frames it.
@@ -157,6 +169,21 @@ impl Camera {
         let up = if from.x == 0.0 && from.z == 0.0 { -DVec3::Z } else { DVec3::Y };
         let eye = center + from.normalize() * distance;
         Self::new(width, height, Pose { eye, target: center, up }, lens)
+    }
+
+    /// Whether a picture can have this size.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Camera::new`].
+    pub fn check_size(width: u32, height: u32) -> Result<()> {
+        let pixels = u64::from(width) * u64::from(height);
+        if pixels == 0 || width > MAX_EXTENT || height > MAX_EXTENT || pixels > MAX_PIXELS {
+            return Err(Error::Invalid(format!(
+                "camera: a picture of {width} x {height} pixels; give 1 to {MAX_EXTENT} a side and at \
+                 most {MAX_PIXELS} in all"
+            )));
+        }
+        Ok(())
     }
 
     /// Whether a pixel is in the picture.
@@ -177,7 +204,7 @@ impl Camera {
     /// # Errors
     /// [`Error::Invalid`] as [`Camera::new`].
     pub fn check(&self) -> Result<()> {
-        check_size(self.width, self.height)?;
+        Self::check_size(self.width, self.height)?;
         let numbers = [self.fx, self.fy, self.cx, self.cy, self.near];
         let finite = self.view_from_world.is_finite() && numbers.iter().all(|v| v.is_finite());
         let near_ok = match self.projection {
@@ -203,18 +230,6 @@ impl Camera {
     pub fn eye(&self) -> DVec3 {
         self.view_from_world.as_dmat4().inverse().w_axis.truncate()
     }
-}
-
-/// Whether a picture can have this size.
-fn check_size(width: u32, height: u32) -> Result<()> {
-    let pixels = u64::from(width) * u64::from(height);
-    if pixels == 0 || width > MAX_EXTENT || height > MAX_EXTENT || pixels > MAX_PIXELS {
-        return Err(Error::Invalid(format!(
-            "camera: a picture of {width} x {height} pixels; give 1 to {MAX_EXTENT} a side and at \
-             most {MAX_PIXELS} in all"
-        )));
-    }
-    Ok(())
 }
 
 /// Projection and pixels per unit of a lens.

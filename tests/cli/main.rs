@@ -5,6 +5,8 @@
 mod compare;
 mod golden;
 mod groups;
+#[cfg(unix)]
+mod interrupts;
 mod pictures;
 mod primitives;
 mod project;

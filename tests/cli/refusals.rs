@@ -21,6 +21,10 @@ fn wrong_usage_is_exit_code_2() {
     for more in [
         &["--size", "3"] as &[&str],
         &["--size", "axb"],
+        &["--size", "0x0"],
+        &["--size", "70000x1"],
+        &["--size", "65536x65536"],
+        &["--eye", "1,2,3,4"],
         &["--eye", "1,2"],
         &["--eye", "1,2,x"],
         &["--fov", "30", "--ortho", "2"],
@@ -47,9 +51,10 @@ fn wrong_usage_is_exit_code_2() {
 fn pictures_that_cannot_be_are_refused() {
     let at = TempDir::new().unwrap();
     for (more, what) in [
-        (&["--size", "0x0"] as &[&str], "0 x 0"),
-        (&["--size", "70000x1"], "70000 x 1"),
-        (&["--size", "65536x65536"], "65536 x 65536"),
+        (&["--eye", "1e308,0,0"] as &[&str], "farther away than 1e38"),
+        (&["--eye", "0,1e39,0", "--up", "1,0,0"], "farther away than 1e38"),
+        (&["--up", "0,0,0"], "up is zero"),
+        (&["--up", "0,0,1e300", "--eye", "0,0,5", "--target", "0,0,0"], "parallel"),
         (&["--eye", "1,1,1", "--target", "1,1,1"], "same point"),
         (&["--eye", "0,5,0", "--target", "0,0,0"], "--up"),
         (&["--eye", "nan,0,0"], "finite"),
@@ -87,6 +92,93 @@ fn pictures_that_cannot_be_are_refused() {
     assert!(names(at.path()).is_empty(), "{:?}", names(at.path()));
 }
 
+/// The direction of `up` counts, whatever its length.
+#[test]
+fn up_may_be_of_any_length() {
+    let at = TempDir::new().unwrap();
+    let picture = |up: &str, name: &str| {
+        succeeds(at.path(), &small(&["--up", up, "-o", name]));
+        exr::read(&at.path().join(name)).unwrap().channels
+    };
+    let expected = picture("1,1,0", "a.exr");
+    for (up, name) in [("1e300,1e300,0", "b.exr"), ("1e-300,1e-300,0", "c.exr")] {
+        assert!(picture(up, name) == expected, "{up}");
+    }
+}
+
+/// An output that is an input: by another way to its name, and as the preview.
+#[cfg(unix)]
+#[test]
+fn inputs_are_spared() {
+    let at = TempDir::new().unwrap();
+    let name = |name: &str| at.path().join(name);
+    succeeds(at.path(), &["group", "sphere", "--count", "300", "-o", "a.ply"]);
+    std::os::unix::fs::symlink("a.ply", name("link.ply")).unwrap();
+    fs::create_dir(name("deep")).unwrap();
+    succeeds(at.path(), &["render", "sphere", "--count", "9", "--size", "32x16", "-o", "map.exr"]);
+    fs::write(name("scene.toml"), "[[model]]\nfile = \"a.ply\"\n").unwrap();
+    let before = [fs::read(name("a.ply")).unwrap(), fs::read(name("map.exr")).unwrap()];
+    for arguments in [
+        &["group", "a.ply", "-o", "a.ply"] as &[&str],
+        &["group", "a.ply", "-o", "deep/../a.ply"],
+        &["group", "a.ply", "-o", "link.ply"],
+        &["group", "scene.toml", "-o", "a.ply"],
+        &["render", "sphere", "--environment", "map.exr", "-o", "map.exr"],
+    ] {
+        let line = fails(at.path(), arguments, 2);
+        assert!(line.contains("is what the scene is read from"), "{line}");
+    }
+    assert_eq!(before, [fs::read(name("a.ply")).unwrap(), fs::read(name("map.exr")).unwrap()]);
+    succeeds(at.path(), &["group", "a.ply", "-o", "b.ply"]);
+}
+
+/// What is no file, and what a name may do to a terminal.
+#[cfg(unix)]
+#[test]
+fn pipes_and_names_are_told_in_one_line() {
+    let at = TempDir::new().unwrap();
+    let pipe = at.path().join("pipe.exr");
+    let made = Command::new("mkfifo").arg(&pipe).status().unwrap();
+    assert!(made.success());
+    succeeds(at.path(), &small(&["-o", "a.exr"]));
+    for (arguments, code) in [
+        (&["info", "pipe.exr"] as &[&str], 1),
+        (&["compare", "a.exr", "pipe.exr"], 1),
+        (&["render", "sphere", "--environment", "pipe.exr"], 1),
+        (&["info", "/dev/null"], 2),
+    ] {
+        let line = fails(at.path(), arguments, code);
+        assert!(line.contains("a pipe or a device"), "{line}");
+    }
+    let line = fails(at.path(), &["info", "."], 2);
+    assert!(line.contains("a directory"), "{line}");
+    let line = fails(at.path(), &["render", "a\u{1b}[2J\n\u{202e}.ply"], 1);
+    assert!(line.contains("a\\u{1b}[2J \\u{202e}.ply"), "{line}");
+    let line = fails(at.path(), &["render", &format!("{}.ply", "long".repeat(20_000))], 1);
+    assert!(line.chars().count() < 1100 && line.contains("characters left out"), "{line}");
+}
+
+/// Output that does not arrive is a failure, though the picture is written.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_standard_output_is_a_failure() {
+    let at = TempDir::new().unwrap();
+    for arguments in [&small(&["-o", "a.exr"])[..], &["--help"], &["--version"], &["info", "a.exr"]]
+    {
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let output = Command::new(env!("CARGO_BIN_EXE_splatref"))
+            .current_dir(at.path())
+            .args(arguments)
+            .stdout(full)
+            .output()
+            .unwrap();
+        let line = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {line}");
+        assert!(line.starts_with("splatref: standard output: "), "{arguments:?}: {line}");
+        assert_eq!(names(at.path()), ["a.exr", "a.png"]);
+    }
+}
+
 #[test]
 fn broken_files_leave_nothing_behind() {
     let at = TempDir::new().unwrap();
@@ -98,6 +190,7 @@ fn broken_files_leave_nothing_behind() {
     for (name, text) in [
         ("noise.ply", "pretty noise"),
         ("short.ply", &format!("{vertices}0 0 0\n1 0 0\n")),
+        ("cut.ply", &format!("{vertices}0 0 0\n1 0 0\n0 1 0.12")),
         ("nan.ply", &format!("{vertices}nan 0 0\nnan 0 0\nnan 0 0\n")),
         ("heap.ply", &format!("{vertices}0 0 0\n0 0 0\n0 0 0\n")),
         ("bad.toml", "[[model]\n"),

@@ -2,7 +2,7 @@
 
 use super::{ATTRIBUTE, ChannelType, PictureHeader};
 use crate::frame::image::{Image, Values};
-use crate::io::Reason;
+use crate::io::{Reason, input};
 use crate::{Error, Result};
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{
@@ -60,8 +60,7 @@ pub fn read_header(path: &Path) -> Result<PictureHeader> {
 /// The file at its start, known to begin as an EXR does, and its length.
 fn open(path: &Path) -> Result<(File, u64)> {
     let start = || -> std::io::Result<(File, u64, [u8; 4])> {
-        let mut file = File::open(path)?;
-        let length = file.metadata()?.len();
+        let (mut file, length) = input::open(path)?;
         let mut magic = [0; 4];
         let all = file.read(&mut magic)? == magic.len();
         file.rewind()?;

@@ -49,6 +49,7 @@ mod write;
 pub use write::write;
 
 use crate::error::{Error, Result};
+use crate::io::input;
 use crate::scene::Cloud;
 use std::path::Path;
 use values::BodyValues;
@@ -58,7 +59,7 @@ use values::BodyValues;
 /// # Errors
 /// [`Error::Io`] if the file cannot be read, [`Error::Format`] as [`parse`].
 pub fn read(path: &Path) -> Result<Cloud> {
-    let bytes = std::fs::read(path).map_err(|source| Error::io(path, source))?;
+    let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
     parse(&bytes).map_err(|what| Error::format(path, what))
 }
 

@@ -166,6 +166,9 @@ impl<'a> BodyValues<'a> {
         if length == 0 {
             return Err(ENDS.into());
         }
+        if length == rest.len() {
+            return Err(CUT.into());
+        }
         self.at += length;
         let word = &rest[..length];
         let number = std::str::from_utf8(word).ok().and_then(|word| parse(word, scalar));
@@ -233,6 +236,9 @@ impl<'a> BodyValues<'a> {
     }
 }
 
+/// A cut number is a number too: 6.125 becomes 6.1.
+const CUT: &str = "the file ends inside its last line, so its last number may be cut; if it is \
+                   whole, end the line";
 const ENDS: &str = "the file ends here: it is truncated, or a count in the header is too large";
 
 /// A word as a number of the given type: integers in range, a float rounded once to its own type.

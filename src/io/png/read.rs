@@ -3,12 +3,11 @@
 use super::{quantize, straight};
 use crate::frame::Image;
 use crate::frame::image::Values;
-use crate::io::srgb;
+use crate::io::{input, srgb};
 use crate::{Error, Result};
 use image::codecs::png::PngDecoder;
 use image::{ColorType, ImageDecoder, ImageError, Limits};
-use std::fs::File;
-use std::io::{Cursor, Read};
+use std::io::Cursor;
 use std::path::Path;
 
 /// Deflate gives at most 1032 bytes for one.
@@ -32,7 +31,7 @@ pub struct Stored {
 /// [`Error::Io`] if the file cannot be read, [`Error::Format`] if it is no PNG, is damaged, or
 /// promises more pixels than its bytes can hold, which is found before these are allocated.
 pub fn read(path: &Path) -> Result<Stored> {
-    let bytes = bytes(path).map_err(|source| Error::io(path, source))?;
+    let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
     let length = bytes.len() as u64;
     // One line, whatever the decoder says.
     let reason = |error: ImageError| {
@@ -57,15 +56,6 @@ pub fn read(path: &Path) -> Result<Stored> {
     let mut bytes = vec![0; decoder.total_bytes() as usize];
     decoder.read_image(&mut bytes).map_err(reason)?;
     Ok(codes(width, height, kind, &bytes))
-}
-
-/// All bytes of a file, as many as it has when it is opened.
-fn bytes(path: &Path) -> std::io::Result<Vec<u8>> {
-    let file = File::open(path)?;
-    let length = file.metadata()?.len();
-    let mut bytes = Vec::new();
-    file.take(length).read_to_end(&mut bytes)?;
-    Ok(bytes)
 }
 
 /// The codes of a picture as the decoder gives them: interleaved, of 16 bits in this machine's order.

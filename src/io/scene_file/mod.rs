@@ -45,6 +45,7 @@ pub use ready::Ready;
 
 use crate::error::{Error, Result};
 use crate::index::grouping::Grouping;
+use crate::io::input;
 use crate::method::Method;
 use crate::scene::{Camera, Lens, Light, Phong, Pose, Scene, Similarity};
 use crate::source::Shape;
@@ -167,7 +168,9 @@ impl SceneFile {
     /// # Errors
     /// [`Error::Io`] if it cannot be read, [`Error::Format`] as [`SceneFile::parse`].
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|source| Error::io(path, source))?;
+        let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
+        let text = String::from_utf8(bytes)
+            .map_err(|_| Error::format(path, "not text; a scene file is TOML, which is UTF-8"))?;
         Self::parse(&text, path)
     }
 

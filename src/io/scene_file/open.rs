@@ -2,6 +2,7 @@
 
 use super::{DEFAULT_COUNT, SceneFile, Source};
 use crate::error::{Error, Result};
+use crate::io::input;
 use crate::source::{Shape, plant};
 use std::path::Path;
 
@@ -37,11 +38,14 @@ impl FileKind {
             Some("ply") => Ok(Self::Ply),
             Some("toml") => Ok(Self::Toml),
             Some("exr") => Ok(Self::Exr),
-            _ => Err(Error::Usage(format!(
-                "{}: no known kind of file; give a .ply, a scene .toml, an .exr, or a shape: {}",
-                path.display(),
-                shapes()
-            ))),
+            _ => Err(Error::Usage(match input::no_file(path) {
+                Some(what) => format!("{}: {what}", path.display()),
+                None => format!(
+                    "{}: no known kind of file; give a .ply, a scene .toml, an .exr, or a shape: {}",
+                    path.display(),
+                    shapes()
+                ),
+            })),
         }
     }
 }

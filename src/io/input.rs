@@ -1,0 +1,41 @@
+//! Files that are read: regular ones, whose length is known before anything is read.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::Path;
+
+/// The file at `path`, at its start, and its length in bytes.
+///
+/// # Errors
+/// If it cannot be opened, or is a directory, a pipe or a device.
+pub(super) fn open(path: &Path) -> io::Result<(File, u64)> {
+    // Asked before opening, which waits where a pipe has no writer.
+    if let Some(what) = no_file(path) {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+    }
+    let file = File::open(path)?;
+    let length = file.metadata()?.len();
+    Ok((file, length))
+}
+
+/// All bytes of the file at `path`, as many as it has when it is opened.
+///
+/// # Errors
+/// As [`open`], and if it cannot be read.
+pub(super) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+    let (file, length) = open(path)?;
+    let mut bytes = Vec::new();
+    file.take(length).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// Why what is at `path` cannot be read as a file, if something is there.
+pub(super) fn no_file(path: &Path) -> Option<&'static str> {
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => Some("this is a directory; give a file"),
+        Ok(found) if !found.is_file() => {
+            Some("this is a pipe or a device; its length must be known: write it to a file first")
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,53 @@
+//! Signals in the middle of writing.
+
+use super::*;
+use std::os::unix::process::ExitStatusExt;
+use std::process::{Child, Stdio};
+use tempfile::TempDir;
+
+/// A picture that takes a while to be written, when the first byte of it is.
+fn writing(at: &TempDir, command: &mut Command) -> Child {
+    let options = ["--count", "1000", "--size", "2048x2048", "--stages", "-o", "a.exr"];
+    let mut child = command
+        .current_dir(at.path())
+        .args(["render", "sphere"])
+        .args(options)
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !names(at.path()).iter().any(|name| name.ends_with(".partial")) {
+        assert_eq!(child.try_wait().unwrap(), None, "it has ended");
+    }
+    child
+}
+
+fn send(signal: i32, child: &Child) {
+    let sent = Command::new("kill").arg(format!("-{signal}")).arg(child.id().to_string()).status();
+    assert!(sent.unwrap().success());
+}
+
+#[test]
+fn a_signal_leaves_no_partial_file() {
+    for signal in [1, 2, 15] {
+        let at = TempDir::new().unwrap();
+        fs::write(at.path().join("a.exr"), "old").unwrap();
+        let mut child = writing(&at, &mut Command::new(env!("CARGO_BIN_EXE_splatref")));
+        send(signal, &child);
+        assert_eq!(child.wait().unwrap().signal(), Some(signal));
+        assert_eq!(names(at.path()), ["a.exr"], "signal {signal}");
+        assert_eq!(fs::read(at.path().join("a.exr")).unwrap(), b"old");
+    }
+}
+
+/// As under `nohup`.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_signal_that_is_ignored_stays_ignored() {
+    let at = TempDir::new().unwrap();
+    let mut shell = Command::new("sh");
+    shell.args(["-c", "trap '' HUP; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_splatref")]);
+    let mut child = writing(&at, &mut shell);
+    send(1, &child);
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    assert_eq!(names(at.path()), ["a.exr", "a.png"]);
+}
