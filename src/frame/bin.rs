@@ -1,94 +1,173 @@
-//! From screen bounds to tiles, by counting sort.
+//! From screen bounds to tiles, by counting sort, at the resolution that suits the bounds.
 
 use super::{Grid, Rect};
 
-/// Which tiles a batch of bounds touches: for each tile a list of indices, in ascending order.
+/// Which tiles a batch of bounds touches: for each tile indices in ascending order.
+///
+/// Bounds that touch at most [`MOST`] tiles are listed in each of these. Larger ones are listed in
+/// cells of 2 x 2, 4 x 4 ... tiles, the smallest of which they touch at most [`MOST`], and a tile
+/// has the lists of all cells that it is in. So memory is at most 4 [`MOST`] bytes a splat whatever
+/// its size, and a splat is met by about twice as many tiles as it touches, at most four times; by
+/// more only if it is over [`MOST`] tiles long and thinner than one in [`MOST`] of that.
 #[derive(Clone, Debug, Default)]
 pub struct Bins {
-    /// Where the list of each tile starts in `items`, and where the last ends.
-    starts: Vec<u32>,
-    items: Vec<u32>,
-    /// Bounds that touch more tiles than [`WIDE`]: every tile looks through them, so that memory
-    /// stays within 4 [`WIDE`] bytes a splat whatever its size.
-    wide: Vec<u32>,
+    /// Columns of tiles.
+    columns: u32,
+    /// Those of the levels that list anything, finest first.
+    levels: Vec<Level>,
 }
 
-/// The most tiles a splat is listed in.
-const WIDE: u32 = 6;
+/// The most cells that bounds are listed in.
+const MOST: u32 = 16;
+/// Levels there can be: cells of up to 2^16 tiles a side, which no picture exceeds.
+const LEVELS: usize = 17;
+
+/// The lists of cells of 2^shift x 2^shift tiles.
+#[derive(Clone, Debug)]
+struct Level {
+    shift: u32,
+    /// Columns of cells.
+    columns: u32,
+    /// Where the list of each cell starts in `items`, and where the last ends.
+    starts: Vec<u32>,
+    items: Vec<u32>,
+}
 
 /// Columns and rows of tiles that bounds touch, the ends exclusive.
 #[inline(always)]
 fn tiles(grid: &Grid, r: &Rect) -> Rect {
     // Tiles are a power of two wide; a shift is much faster than a division.
-    let shift = grid.tile.trailing_zeros();
-    let end = |pixel: u32| ((pixel - 1) >> shift) + 1;
+    coarser(r, grid.tile.trailing_zeros())
+}
+
+/// The cells of 2^shift a side that a rectangle touches, which is not empty.
+#[inline(always)]
+fn coarser(r: &Rect, shift: u32) -> Rect {
+    let end = |end: u32| ((end - 1) >> shift) + 1;
     Rect { x0: r.x0 >> shift, y0: r.y0 >> shift, x1: end(r.x1), y1: end(r.y1) }
+}
+
+/// The level of bounds that touch these tiles, and the cells that they touch there.
+#[inline(always)]
+fn place(tiles: Rect) -> (u32, Rect) {
+    let (mut shift, mut cells) = (0, tiles);
+    while (cells.x1 - cells.x0) * (cells.y1 - cells.y0) > MOST {
+        cells = coarser(&cells, 1);
+        shift += 1;
+    }
+    (shift, cells)
 }
 
 impl Bins {
     /// Sorts `count` bounds, none of them empty, into the tiles of a grid.
     #[must_use]
     pub fn new(grid: &Grid, count: usize, bounds: impl Fn(usize) -> Rect) -> Self {
-        let mut bins = Self { starts: vec![0; grid.len() + 1], ..Self::default() };
-        let is_wide = |r: &Rect| (r.x1 - r.x0) * (r.y1 - r.y0) > WIDE;
-        let list = |column: u32, row: u32| (row * grid.columns + column) as usize;
-
-        // Count, one place late, so that the sums become starts.
+        let placed = |i: usize| place(tiles(grid, &bounds(i)));
+        // Count; a level is made when the first is listed in it.
+        let mut levels: [Option<Level>; LEVELS] = Default::default();
         for i in 0..count {
-            let r = tiles(grid, &bounds(i));
-            if is_wide(&r) {
-                bins.wide.push(i as u32);
-                continue;
-            }
-            for row in r.y0..r.y1 {
-                for column in r.x0..r.x1 {
-                    bins.starts[list(column, row) + 1] += 1;
-                }
-            }
+            let (shift, cells) = placed(i);
+            let level = levels[shift as usize].get_or_insert_with(|| Level::new(grid, shift));
+            each_cell(level.columns, &cells, |cell| level.starts[cell + 2] += 1);
         }
-        for tile in 1..bins.starts.len() {
-            bins.starts[tile] += bins.starts[tile - 1];
+        for level in levels.iter_mut().flatten() {
+            level.sum();
         }
         // Fill, in ascending order.
-        bins.items = vec![0; bins.starts[grid.len()] as usize];
-        let mut next = bins.starts.clone();
         for i in 0..count {
-            let r = tiles(grid, &bounds(i));
-            if is_wide(&r) {
-                continue;
-            }
-            for row in r.y0..r.y1 {
-                for column in r.x0..r.x1 {
-                    let place = &mut next[list(column, row)];
-                    bins.items[*place as usize] = i as u32;
-                    *place += 1;
-                }
+            let (shift, cells) = placed(i);
+            if let Some(level) = &mut levels[shift as usize] {
+                level.put(&cells, i as u32);
             }
         }
-        bins
+        Self { columns: grid.columns, levels: levels.into_iter().flatten().collect() }
     }
 
-    /// How many indices [`Bins::for_each`] visits.
+    /// At most how many indices [`Bins::for_each`] visits.
     #[must_use]
     pub fn count(&self, tile: usize) -> usize {
-        (self.starts[tile + 1] - self.starts[tile]) as usize + self.wide.len()
+        self.lists(tile).map(<[u32]>::len).sum()
     }
 
     /// Calls `visit` for each index whose bounds may touch the tile, in ascending order.
     #[inline(always)]
     pub fn for_each(&self, tile: usize, mut visit: impl FnMut(u32)) {
-        let items = &self.items[self.starts[tile] as usize..self.starts[tile + 1] as usize];
-        if self.wide.is_empty() {
-            return items.iter().for_each(|&i| visit(i));
+        let mut lists: [&[u32]; LEVELS] = [&[]; LEVELS];
+        let mut left = 0;
+        for list in self.lists(tile).filter(|list| !list.is_empty()) {
+            lists[left] = list;
+            left += 1;
         }
-        let mut wide = self.wide.iter().peekable();
-        for &item in items {
-            while let Some(&i) = wide.next_if(|&&i| i < item) {
-                visit(i);
+        // The list that begins lowest, up to where another one begins.
+        while left > 1 {
+            let lowest =
+                (1..left).fold(0, |low, k| if lists[k][0] < lists[low][0] { k } else { low });
+            let others = (0..left).filter(|&k| k != lowest).map(|k| lists[k][0]);
+            let until = others.fold(u32::MAX, |low, first| if first < low { first } else { low });
+            while let Some((&first, rest)) = lists[lowest].split_first() {
+                if first > until {
+                    break;
+                }
+                visit(first);
+                lists[lowest] = rest;
             }
-            visit(item);
+            if lists[lowest].is_empty() {
+                left -= 1;
+                lists[lowest] = lists[left];
+            }
         }
-        wide.for_each(|&i| visit(i));
+        lists[0].iter().for_each(|&i| visit(i));
+    }
+
+    /// The lists of the cells that a tile is in.
+    fn lists(&self, tile: usize) -> impl Iterator<Item = &[u32]> {
+        let (x, y) = (tile as u32 % self.columns, tile as u32 / self.columns);
+        self.levels.iter().map(move |level| {
+            let cell = ((y >> level.shift) * level.columns + (x >> level.shift)) as usize;
+            &level.items[level.starts[cell] as usize..level.starts[cell + 1] as usize]
+        })
+    }
+}
+
+impl Level {
+    fn new(grid: &Grid, shift: u32) -> Self {
+        let cells = |tiles: u32| ((tiles - 1) >> shift) + 1;
+        let (columns, rows) = (cells(grid.columns), cells(grid.rows));
+        // One place more at the end, and counts go two places late: after `sum` the list of a cell
+        // starts one place late, and `put` moves each start to where the list ends, which is the
+        // start of the next.
+        let starts = vec![0; (columns * rows) as usize + 2];
+        Self { shift, columns, starts, items: Vec::new() }
+    }
+
+    /// From counts to starts.
+    fn sum(&mut self) {
+        let mut sum = 0;
+        for start in &mut self.starts {
+            sum += *start;
+            *start = sum;
+        }
+        self.items = vec![0; sum as usize];
+    }
+
+    /// Appends an index to the lists of cells.
+    #[inline(always)]
+    fn put(&mut self, cells: &Rect, index: u32) {
+        each_cell(self.columns, cells, |cell| {
+            let next = &mut self.starts[cell + 1];
+            self.items[*next as usize] = index;
+            *next += 1;
+        });
+    }
+}
+
+/// Calls `visit` for the number of each cell of a level.
+#[inline(always)]
+fn each_cell(columns: u32, cells: &Rect, mut visit: impl FnMut(usize)) {
+    for row in cells.y0..cells.y1 {
+        for column in cells.x0..cells.x1 {
+            visit((row * columns + column) as usize);
+        }
     }
 }
 
@@ -111,16 +190,26 @@ mod tests {
                 .map(|&(x0, y0, w, h)| Rect { x0, y0, x1: width.min(x0 + w), y1: height.min(y0 + h) })
                 .collect();
             let bins = Bins::new(&grid, bounds.len(), |i| bounds[i]);
+            let mut met = vec![0; bounds.len()];
             for (tile, rect) in grid.rects().iter().enumerate() {
                 let mut seen = Vec::new();
                 bins.for_each(tile, |i| seen.push(i));
                 prop_assert!(seen.is_sorted_by(|a, b| a < b), "{seen:?}");
+                prop_assert_eq!(seen.len(), bins.count(tile));
+                seen.iter().for_each(|i| met[*i as usize] += 1);
                 for (i, b) in bounds.iter().enumerate() {
                     if !b.intersection(rect).is_empty() {
                         prop_assert!(seen.contains(&(i as u32)), "{i} not in tile {tile}");
                     }
                 }
             }
+            for (bounds, met) in bounds.iter().zip(met) {
+                // 5 tiles a side can lie in 3 cells of 2, which makes 36 of 25; 9 in 4 of 4.
+                let touched = tiles(&grid, bounds).pixels();
+                prop_assert!(met <= 4 * touched, "{met} tiles for {touched}");
+            }
+            let listed: usize = bins.levels.iter().map(|level| level.items.len()).sum();
+            prop_assert!(listed <= MOST as usize * bounds.len());
         }
     }
 }

@@ -32,8 +32,8 @@ impl<R: Exact, S: Send> Prepared<R, S> {
         let (view, grid) = (View::new(job.camera), job.grid());
         let projector = Projector::new(view, &settings.kernel, settings.cull);
         // Many batches, so that threads end together, of at most 8192 surfels, which fit the cache;
-        // but at least two items for each tile, so that the starts of its bins take 2 bytes an
-        // item.
+        // but at least two items for each tile, so that the starts of its bins take about 2 bytes
+        // an item.
         let size = (count / 64).min(8192).max(2 * grid.len());
         let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
         let results = job.exec.ordered(ranges.collect(), |range: Range<usize>| {

@@ -107,9 +107,13 @@ impl Tile {
         index: usize,
         tile: &FramebufferTile<'_, f32>,
     ) -> Self {
-        let mut splats = Vec::with_capacity(prepared.count(index));
-        prepared.for_each(index, |record| splats.push(*record));
         let rect = tile.rect;
+        let mut splats = Vec::with_capacity(prepared.count(index));
+        prepared.for_each(index, |record| {
+            if !record.bounds().intersection(&rect).is_empty() {
+                splats.push(*record);
+            }
+        });
         let columns = (rect.x1 - rect.x0).div_ceil(SIDE);
         let rows = (rect.y1 - rect.y0).div_ceil(SIDE);
         let count = if splats.is_empty() { 0 } else { columns * rows };
