@@ -1,6 +1,7 @@
 //! What the tests of several methods draw, and tests of every method in the table.
 
 mod explanations;
+mod extremes;
 mod stages;
 
 use crate::frame::{Frame, Plane, Samples};

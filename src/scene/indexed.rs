@@ -1,5 +1,6 @@
 //! Triangles and polylines: vertices with attributes, and what joins them.
 
+use super::light::is_color;
 use super::surfels::unit;
 use crate::error::{Error, Result};
 use glam::Vec3;
@@ -21,8 +22,8 @@ pub struct Vertices {
 /// Primitives of `N` corners over checked vertices; there may be none.
 ///
 /// Guarantees, kept by construction: arrays of one length, and for every vertex that a primitive
-/// uses: position finite; direction of length 1 within 2^-20; radius finite and >= 0; colour finite
-/// and >= 0. Corners may coincide: such a segment is a point, such a triangle covers nothing. Edges
+/// uses: position finite; direction of length 1 within 2^-20; radius finite and >= 0; colour in
+/// [0, [`super::light::MAX_RADIANCE`]] and not -0. Corners may coincide: such a segment is a point, such a triangle covers nothing. Edges
 /// may have any number of triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Indexed<const N: usize> {
@@ -79,12 +80,11 @@ impl<const N: usize> Indexed<N> {
                     && unit(&mut vertices.direction[i])
                     && vertices.radius[i] >= 0.0
                     && vertices.radius[i].is_finite()
-                    && vertices
-                        .color
-                        .as_ref()
-                        .is_none_or(|color| color[i].is_finite() && color[i].min_element() >= 0.0)
+                    && vertices.color.as_ref().is_none_or(|color| is_color(color[i]))
             })
             .collect();
+        // -0 becomes 0.
+        vertices.color.iter_mut().flatten().for_each(|color| *color += Vec3::ZERO);
         let before = corners.len();
         corners.retain(|corners| corners.iter().all(|&corner| sound[corner as usize]));
         let dropped = (before - corners.len()) as u64;

@@ -29,8 +29,14 @@ pub enum Light {
     },
 }
 
-/// The largest component of a light's colour.
+/// The largest component of a colour, of a light's, a surface's or an environment's, so that no sum
+/// of products of colours leaves `f32`.
 pub const MAX_RADIANCE: f32 = 65_536.0;
+
+/// Whether every component of a colour is in [0, [`MAX_RADIANCE`]].
+pub(crate) fn is_color(color: Vec3) -> bool {
+    color.to_array().iter().all(|v| (0.0..=MAX_RADIANCE).contains(v))
+}
 
 impl Light {
     /// The headlight of pictures that name no light: white, from the upper left.
@@ -59,7 +65,7 @@ impl Light {
                 color
             }
         };
-        if color.to_array().iter().all(|v| (0.0..=MAX_RADIANCE).contains(v)) {
+        if is_color(color) {
             Ok(())
         } else {
             let what = format!("light: color must be three numbers in [0, {MAX_RADIANCE}]");

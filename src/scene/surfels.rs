@@ -3,13 +3,14 @@
 use super::Cloud;
 use super::Groups;
 use crate::error::{Error, Result};
+use crate::scene::light::is_color;
 use glam::{DVec3, Vec3};
 
 /// Surfels as a structure of arrays, each of one length.
 ///
 /// Guarantees, kept by construction: at least one surfel, but for [`Surfels::none`]; positions
-/// finite; normals of length 1 within 2^-20; radii finite and > 0; colours finite and >= 0;
-/// opacities in [0, 1]; tangents finite and not parallel. (Whether they are perpendicular to each
+/// finite; normals of length 1 within 2^-20; radii finite and > 0; colours in
+/// [0, [`crate::scene::light::MAX_RADIANCE`]] and opacities in [0, 1], none of them -0; tangents finite and not parallel. (Whether they are perpendicular to each
 /// other and to the normal is the business of whoever gives them.) An array that the scene does not
 /// need is not allocated.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +35,7 @@ pub struct Dropped {
     pub normal: u64,
     /// A radius that is not finite or not > 0.
     pub radius: u64,
-    /// Colour not finite or negative, opacity outside [0, 1], tangents not finite or parallel.
+    /// Colour outside [0, [`crate::scene::light::MAX_RADIANCE`]], opacity outside [0, 1], tangents not finite or parallel.
     pub attribute: u64,
 }
 
@@ -102,7 +103,7 @@ impl Surfels {
                 &mut dropped.normal
             } else if !(radius[i] > 0.0 && radius[i].is_finite()) {
                 &mut dropped.radius
-            } else if !color.as_ref().is_none_or(|c| c[i].is_finite() && c[i].min_element() >= 0.0)
+            } else if !color.as_ref().is_none_or(|c| is_color(c[i]))
                 || !opacity.as_ref().is_none_or(|o| (0.0..=1.0).contains(&o[i]))
                 || !tangents.as_ref().is_none_or(|t| spans_a_plane(t[i]))
             {
@@ -123,8 +124,9 @@ impl Surfels {
             position: retain(position, &keep),
             normal: retain(normal, &keep),
             radius,
-            color: color.map(|c| retain(c, &keep)),
-            opacity: opacity.map(|o| retain(o, &keep)),
+            // -0 becomes 0.
+            color: color.map(|c| retain(c, &keep).into_iter().map(|c| c + Vec3::ZERO).collect()),
+            opacity: opacity.map(|o| retain(o, &keep).into_iter().map(|o| o + 0.0).collect()),
             tangents: tangents.map(|t| retain(t, &keep)),
             groups: groups.map(|g| g.retain(&keep)),
         };

@@ -31,7 +31,7 @@ impl Map {
     /// # Errors
     /// [`Error::Invalid`] if the plane is empty, not twice as wide as high or wider than
     /// [`MAX_EXTENT`], or if a component is not in [0, [`MAX_RADIANCE`]]; the pixel is named.
-    pub fn new(pixels: Plane<[f32; 3]>) -> Result<Self> {
+    pub fn new(mut pixels: Plane<[f32; 3]>) -> Result<Self> {
         let (width, height) = (pixels.width(), pixels.height());
         if height == 0 || width % 2 != 0 || width / 2 != height || width > MAX_EXTENT {
             return Err(Error::Invalid(format!(
@@ -48,6 +48,8 @@ impl Map {
                  [0, {MAX_RADIANCE}]"
             )));
         }
+        // -0 becomes 0.
+        pixels.values_mut().as_flattened_mut().iter_mut().for_each(|value| *value += 0.0);
         Ok(Self(pixels))
     }
 

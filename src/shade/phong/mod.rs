@@ -43,6 +43,7 @@ use crate::frame::{Exec, Plane};
 use crate::number::{Exact, Vector3};
 use crate::scene::{Light, Phong};
 use crate::splat::View;
+use glam::Vec3;
 
 /// A light in view space.
 #[derive(Clone, Copy, Debug)]
@@ -76,18 +77,20 @@ impl<R: Exact> Shader<R> {
     /// Places the lights before a camera.
     #[must_use]
     pub fn new(view: View<R>, lights: &[Light], material: Phong) -> Self {
+        // -0 becomes 0.
+        let material = Phong { color: material.color + Vec3::ZERO, ..material };
         let place = |light: &Light| match *light {
             Light::Directional { towards, color } => {
                 let towards = view.direction(Vector3::from_glam(towards)).normalized();
-                (PlacedLight::Towards(towards), color.to_array().map(R::from_f32))
+                (PlacedLight::Towards(towards), (color + Vec3::ZERO).to_array().map(R::from_f32))
             }
             Light::Headlight { towards, color } => {
                 let towards = Vector3::from_glam(towards).normalized();
-                (PlacedLight::Towards(towards), color.to_array().map(R::from_f32))
+                (PlacedLight::Towards(towards), (color + Vec3::ZERO).to_array().map(R::from_f32))
             }
             Light::Point { position, color } => {
                 let position = view.point(Vector3::from_glam(position));
-                (PlacedLight::At(position), color.to_array().map(R::from_f32))
+                (PlacedLight::At(position), (color + Vec3::ZERO).to_array().map(R::from_f32))
             }
         };
         Self { view, lights: lights.iter().map(place).collect(), material }

@@ -11,6 +11,7 @@ use super::{
     OutputSettings, SceneFile, Source, TREE, check_opacity, shapes, stem,
 };
 use crate::error::{Error, Result};
+use crate::scene::light::{MAX_RADIANCE, is_color};
 use crate::scene::transform::{self, Similarity};
 use crate::scene::{Lens, Light, Phong};
 use crate::source::{Shape, plant};
@@ -133,8 +134,8 @@ impl RawModel {
             return Err(format!("`{key}` means nothing to {of}: remove it"));
         }
         let color = self.color.map(|color| Vec3::from_array(color.0));
-        if !color.is_none_or(|c| c.is_finite() && c.min_element() >= 0.0) {
-            return Err("color must be three finite numbers >= 0".into());
+        if !color.is_none_or(is_color) {
+            return Err(format!("color must be three numbers in [0, {MAX_RADIANCE}]"));
         }
         if let Some(opacity) = self.opacity {
             check_opacity(opacity).map_err(|error| error.to_string())?;
