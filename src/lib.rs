@@ -193,6 +193,7 @@ pub mod error;
 pub mod frame;
 pub mod index;
 pub mod io;
+pub mod memory;
 pub mod method;
 pub mod number;
 pub mod scene;

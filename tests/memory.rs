@@ -1,5 +1,8 @@
 //! Peak memory of a render, measured from outside the allocator.
 //!
+//! What is asked for before a picture is made, by every method, is measured in a process each: memory
+//! that was freed hides what comes after.
+//!
 //! The budget: 100 bytes a surfel and 64 bytes a pixel beyond the scene. The images of the single
 //! pass have to live in it too, and whole they would not.
 
@@ -7,6 +10,7 @@
 
 use glam::DVec3;
 use splatref::frame::Exec;
+use splatref::method::session::Making;
 use splatref::method::single_pass::{self, DepthTest};
 use splatref::method::{Method, Session};
 use splatref::scene::{Camera, Groups, Lens, Pose, Scene};
@@ -54,5 +58,65 @@ fn a_render_stays_within_its_budget() {
         assert!(peak <= budget, "{name}: peak {peak} bytes, budget {budget}");
         // The least that it can be: the planes themselves. A smaller figure measures nothing.
         assert!(peak >= 36 * u64::from(SIDE) * u64::from(SIDE), "{name}: peak {peak} bytes");
+    }
+}
+
+/// How pictures are made.
+const MAKINGS: [Making; 4] = [
+    Making::Render,
+    Making::Define { number: 4, stages: false },
+    Making::Define { number: 4, stages: true },
+    Making::Define { number: 8, stages: true },
+];
+
+/// What a picture is said to take, and what it takes in this process, which has drawn no other.
+fn said_and_taken(method: Method, making: Making) -> (u64, u64) {
+    let surfels = Shape::Torus.surfels(20_000, 0).expect("a torus");
+    let scene = Scene::lit("torus", surfels);
+    let pose = Shape::Torus.default_pose();
+    let camera = Camera::new(1500, 1100, pose, Shape::Torus.default_lens()).expect("a camera");
+    let exec = Exec::new(2, 32).expect("threads");
+    let mut session = Session::new(&scene, method, &exec).expect("a session");
+    let said = session.needs(&camera, making);
+    let before = status("VmHWM").expect("a peak");
+    let pixels = match making {
+        Making::Render => session.render(&camera).expect("renders").frame.width,
+        Making::Define { number: 4, stages } => {
+            session.define::<f32>(&camera, stages).expect("renders").frame.width
+        }
+        Making::Define { stages, .. } => {
+            session.define::<f64>(&camera, stages).expect("renders").frame.to_f32().width
+        }
+    };
+    assert_eq!(pixels, 1500);
+    (said, status("VmHWM").expect("a peak") - before)
+}
+
+/// What a picture is said to take is about what it takes: not less, and not six times as much.
+#[test]
+fn a_picture_takes_what_it_is_said_to() {
+    const CASE: &str = "SPLATREF_MEMORY_CASE";
+    let all = Method::all();
+    let cases = all.iter().flat_map(|method| MAKINGS.map(|making| (*method, making)));
+    if let Some(case) = std::env::var(CASE).ok().and_then(|case| case.parse::<usize>().ok()) {
+        let (method, making) = cases.clone().nth(case).expect("a case");
+        let (said, taken) = said_and_taken(method, making);
+        println!("\nmemory {said} {taken}");
+        return;
+    }
+    for (case, (method, making)) in cases.enumerate() {
+        let this = std::env::current_exe().expect("this program");
+        let output = std::process::Command::new(this)
+            .args(["--exact", "a_picture_takes_what_it_is_said_to", "--nocapture"])
+            .env(CASE, case.to_string())
+            .output()
+            .expect("this program");
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let line = said.lines().find_map(|line| line.strip_prefix("memory "));
+        let numbers = line.unwrap_or_else(|| panic!("{said}")).split_once(' ').expect("two");
+        let [said, taken] = [numbers.0, numbers.1].map(|n| n.parse::<u64>().expect("a number"));
+        let ratio = said as f64 / taken as f64;
+        println!("{}, {making:?}: {said} for {taken}, {ratio:.2}", method.name());
+        assert!((1.0..6.0).contains(&ratio), "{}, {making:?}: {said} for {taken}", method.name());
     }
 }

@@ -10,6 +10,7 @@ mod golden;
 mod group;
 mod info;
 mod interrupt;
+mod memory;
 mod options;
 mod output;
 mod progress;
@@ -33,6 +34,9 @@ use std::sync::OnceLock;
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// The most memory to take, such as 2G [default: three quarters of the machine's]
+    #[arg(long, global = true, value_name = "BYTES", value_parser = memory::bytes)]
+    memory: Option<u64>,
 }
 
 const EXAMPLES: &str = "\
@@ -69,6 +73,7 @@ pub(crate) fn run() -> ExitCode {
         Err(error) => return usage(&error),
     };
     interrupt::watch();
+    memory::limit(cli.memory);
     let outcome = match cli.command {
         Command::Render(args) => render::run(&args),
         Command::Golden(args) => golden::run(&args),

@@ -15,6 +15,10 @@ use std::path::Path;
 /// Those of [`exr::read`]; [`Error::Format`] if a channel is absent or holds integers, or as
 /// [`Map::new`].
 pub fn read(path: &Path) -> Result<Environment> {
+    // Before anything large is read.
+    let header = exr::read_header(path)?;
+    Map::check_size(header.width, header.height)
+        .map_err(|error| Error::format(path, error.to_string()))?;
     let mut image = exr::read(path)?;
     let mut channel = |name: &str| {
         let found = image.channels.iter_mut().find(|(of, _)| of == name);

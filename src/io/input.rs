@@ -1,5 +1,6 @@
 //! Files that are read: regular ones, whose length is known before anything is read.
 
+use crate::memory;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
@@ -24,7 +25,9 @@ pub(super) fn open(path: &Path) -> io::Result<(File, u64)> {
 /// As [`open`], and if it cannot be read.
 pub(super) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     let (file, length) = open(path)?;
-    let mut bytes = Vec::new();
+    memory::try_ask(length, || "the file".to_owned())
+        .map_err(|what| io::Error::new(io::ErrorKind::OutOfMemory, what))?;
+    let mut bytes = Vec::with_capacity(length as usize);
     file.take(length).read_to_end(&mut bytes)?;
     Ok(bytes)
 }

@@ -6,6 +6,7 @@
 use super::{Reason, input};
 use crate::frame::Image;
 use crate::frame::image::Values;
+use crate::memory;
 use crate::{Error, Result};
 use std::fs::File;
 use std::io::{Read, Take};
@@ -41,6 +42,9 @@ pub fn read(path: &Path, name: &str) -> Result<Image> {
     let text = header_text(&mut file).map_err(|what| Error::format(path, what))?;
     let array = Array::parse(&text)
         .and_then(|array| array.fits(file.limit()).map(|()| array))
+        .map_err(|what| Error::format(path, what))?;
+    let held = array.bytes() + 4 * u64::from(array.width) * u64::from(array.height) * 3;
+    memory::try_ask(held, || format!("an array of {} x {}", array.height, array.width))
         .map_err(|what| Error::format(path, what))?;
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes).map_err(|source| Error::io(path, source))?;

@@ -56,6 +56,10 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     /// Whether surfels are needed from back to front.
     const BACK_TO_FRONT: bool = false;
 
+    /// About the most bytes that the fast path takes for a pixel, the picture included; none: there
+    /// is no fast path.
+    const FAST_BYTES_A_PIXEL: Option<u64> = None;
+
     /// What the fast path works in, kept from picture to picture.
     type Memory: Debug + Default + Send;
 

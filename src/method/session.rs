@@ -1,5 +1,9 @@
 //! A scene that is drawn by one method from as many cameras as one likes.
 
+mod needs;
+
+pub use needs::Making;
+
 use super::algorithm::Job;
 use super::table::Memory;
 use super::{Method, Picture};
@@ -132,6 +136,7 @@ impl<'a> Session<'a> {
     /// and settings together does not hold.
     pub fn render(&mut self, camera: &Camera) -> Result<&Picture<f32>> {
         camera.check()?;
+        self.ask(camera, Making::Render)?;
         if let Some(last) = self.picture.take() {
             self.pool.recycle(last.frame);
         }
@@ -148,7 +153,9 @@ impl<'a> Session<'a> {
     /// # Errors
     /// As [`Session::render`].
     pub fn define<R: Exact>(&self, camera: &Camera, stages: bool) -> Result<Picture<R>> {
-        self.method.define(&self.job(camera)?, stages)
+        let job = self.job(camera)?;
+        self.ask(camera, Making::Define { number: size_of::<R>() as u64, stages })?;
+        self.method.define(&job, stages)
     }
 
     /// Runs one stage of the method on somebody's planes of the stages that it reads, and gives

@@ -84,6 +84,10 @@ macro_rules! methods {
                 match self { $(Self::$method(_) => <$settings>::BACK_TO_FRONT,)* }
             }
 
+            pub(super) fn fast_bytes_a_pixel(&self) -> Option<u64> {
+                match self { $(Self::$method(_) => <$settings>::FAST_BYTES_A_PIXEL,)* }
+            }
+
             /// Footprints, epsilon and culling of a method that draws splats.
             #[must_use]
             pub fn splats(&self) -> Option<&SplatSettings> {

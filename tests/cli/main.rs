@@ -7,6 +7,7 @@ mod golden;
 mod groups;
 #[cfg(unix)]
 mod interrupts;
+mod memory;
 mod pictures;
 mod primitives;
 mod project;

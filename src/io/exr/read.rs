@@ -3,6 +3,7 @@
 use super::{ATTRIBUTE, ChannelType, PictureHeader};
 use crate::frame::image::{Image, Values};
 use crate::io::{Reason, input};
+use crate::memory;
 use crate::{Error, Result};
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{
@@ -197,6 +198,11 @@ pub(super) fn decode(bytes: &[u8]) -> Reason<Image> {
     let mut rest = bytes;
     let meta = metadata(&mut rest, bytes.len() as u64)?;
     let PictureHeader { width, height, text, .. } = summary(&meta);
+    let planes = meta.headers.iter().map(|part| part.channels.list.len() as u64).sum::<u64>();
+    let needed = planes * 4 * u64::from(width) * u64::from(height);
+    memory::try_ask(needed, || {
+        format!("a picture of {width} x {height} pixels, {planes} channels")
+    })?;
     let mut channels = Vec::new();
     for (part, header) in meta.headers.iter().enumerate() {
         let mut planes = empty_planes(header);

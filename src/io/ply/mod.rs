@@ -50,9 +50,14 @@ pub use write::write;
 
 use crate::error::{Error, Result};
 use crate::io::input;
+use crate::memory;
 use crate::scene::Cloud;
 use std::path::Path;
 use values::BodyValues;
+
+/// What a vertex takes at most while arrays of all attributes grow, and a face of a few corners.
+const BYTES_A_VERTEX: u64 = 128;
+const BYTES_A_FACE: u64 = 24;
 
 /// Reads a file. It needs memory for the file and the cloud, and about 0.1 s for a million points.
 ///
@@ -78,6 +83,11 @@ pub fn parse(bytes: &[u8]) -> std::result::Result<Cloud, String> {
         return Err("element vertex has count 0: the file holds no points".into());
     }
 
+    // A count that the bytes cannot hold is refused before anything is read of it.
+    let faces = header.elements.iter().filter(|element| element.name != "vertex");
+    let faces: u64 = faces.map(|element| element.count.min(bytes.len() as u64)).sum();
+    let needed = vertices.min(bytes.len() as u64) * BYTES_A_VERTEX + faces * BYTES_A_FACE;
+    memory::try_ask(needed, || format!("a cloud of {vertices} points"))?;
     let mut values = BodyValues::new(bytes, &header);
     let mut cloud = Cloud::default();
     let mut groups = groups::Reader::new(vertex);

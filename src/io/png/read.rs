@@ -4,6 +4,7 @@ use super::{quantize, straight};
 use crate::frame::Image;
 use crate::frame::image::Values;
 use crate::io::{input, srgb};
+use crate::memory;
 use crate::{Error, Result};
 use image::codecs::png::PngDecoder;
 use image::{ColorType, ImageDecoder, ImageError, Limits};
@@ -52,6 +53,11 @@ pub fn read(path: &Path) -> Result<Stored> {
             ),
         ));
     }
+    // The bytes, their codes in 16 bits, and planes of floats.
+    memory::try_ask(decoder.total_bytes().saturating_mul(7), || {
+        format!("a picture of {width} x {height} pixels")
+    })
+    .map_err(|what| Error::format(path, what))?;
     let kind = decoder.color_type();
     let mut bytes = vec![0; decoder.total_bytes() as usize];
     decoder.read_image(&mut bytes).map_err(reason)?;

@@ -55,6 +55,7 @@ impl Algorithm for Settings {
         Stage { name: "shading", reads: &["projection", "push"], leaves: &planes::SHADING },
     ];
     const DRAWS_PRIMITIVES: bool = true;
+    const FAST_BYTES_A_PIXEL: Option<u64> = Some(224);
     type Memory = fast::CellLevels;
 
     fn check(&self) -> Result<()> {

@@ -81,6 +81,7 @@ impl Algorithm for Settings {
         count: None,
         extension: Extension::None,
     });
+    const FAST_BYTES_A_PIXEL: Option<u64> = Some(64);
     type Memory = ();
 
     fn splats(&self) -> Option<&SplatSettings> {

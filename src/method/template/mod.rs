@@ -60,6 +60,7 @@ impl Algorithm for Settings {
             leaves: &planes::SHADING,
         },
     ];
+    const FAST_BYTES_A_PIXEL: Option<u64> = Some(224);
     type Memory = fast::CenterLevels;
 
     fn check(&self) -> Result<()> {

@@ -32,13 +32,8 @@ impl Map {
     /// [`Error::Invalid`] if the plane is empty, not twice as wide as high or wider than
     /// [`MAX_EXTENT`], or if a component is not in [0, [`MAX_RADIANCE`]]; the pixel is named.
     pub fn new(mut pixels: Plane<[f32; 3]>) -> Result<Self> {
-        let (width, height) = (pixels.width(), pixels.height());
-        if height == 0 || width % 2 != 0 || width / 2 != height || width > MAX_EXTENT {
-            return Err(Error::Invalid(format!(
-                "environment: a map of {width} x {height} pixels; give one twice as wide as high, \
-                 at most {MAX_EXTENT} wide"
-            )));
-        }
+        let width = pixels.width();
+        Self::check_size(width, pixels.height())?;
         let bad = |v: &f32| !(0.0..=MAX_RADIANCE).contains(v);
         if let Some(i) = pixels.values().iter().position(|pixel| pixel.iter().any(bad)) {
             let [r, g, b] = pixels.values()[i];
@@ -51,6 +46,20 @@ impl Map {
         // -0 becomes 0.
         pixels.values_mut().as_flattened_mut().iter_mut().for_each(|value| *value += 0.0);
         Ok(Self(pixels))
+    }
+
+    /// Whether a map can have this size.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Map::new`].
+    pub fn check_size(width: u32, height: u32) -> Result<()> {
+        if height == 0 || !width.is_multiple_of(2) || width / 2 != height || width > MAX_EXTENT {
+            return Err(Error::Invalid(format!(
+                "environment: a map of {width} x {height} pixels; give one twice as wide as high, \
+                 at most {MAX_EXTENT} wide"
+            )));
+        }
+        Ok(())
     }
 
     /// The pixels, row by row from the top left.

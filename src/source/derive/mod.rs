@@ -43,6 +43,7 @@ pub use primitives::{hybrid, polygons, ribbons, tubes};
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::memory;
 use crate::scene::{Cloud, Dropped, Surfels};
 use glam::Vec3;
 use places::Places;
@@ -138,6 +139,15 @@ fn complete(
     Ok((cloud, Derived { normals, radii, dropped, dropped_primitives: 0 }))
 }
 
+/// What the tree of the nearest neighbours and what is found with it take for a point.
+const BYTES_A_NEIGHBOUR: u64 = 160;
+
+/// Whether the neighbours of so many points may be looked for.
+fn ask_for_neighbours(points: &[Vec3]) -> Result<()> {
+    let count = points.len();
+    memory::ask(count as u64 * BYTES_A_NEIGHBOUR, || format!("the neighbours of {count} points"))
+}
+
 fn missing_normals(
     cloud: &Cloud,
     places: &OnceCell<Places>,
@@ -151,6 +161,7 @@ fn missing_normals(
     if !cloud.triangles.is_empty() {
         return Ok((faces::normals(points, &cloud.triangles), Origin::Triangles));
     }
+    ask_for_neighbours(points)?;
     let places = places.get_or_init(|| Places::new(points, exec, progress));
     Ok((places.normals(exec, progress)?, Origin::Neighbours))
 }
@@ -171,6 +182,9 @@ fn missing_radii(
     }
     if !cloud.triangles.is_empty() {
         return Ok((faces::radii(points, &cloud.triangles), Origin::Triangles));
+    }
+    if places.get().is_none() {
+        ask_for_neighbours(points)?;
     }
     let places = places.get_or_init(|| Places::new(points, exec, progress));
     Ok((places.radii(exec, progress)?, Origin::Neighbours))

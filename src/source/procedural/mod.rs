@@ -47,6 +47,7 @@ mod torus;
 
 use crate::error::{Error, Result};
 use crate::frame::Frame;
+use crate::memory;
 use crate::scene::{Camera, Lens, Pose, Surfels};
 use glam::DVec3;
 use sampling::Sampler;
@@ -161,6 +162,7 @@ impl Shape {
             )));
         }
         self.check()?;
+        memory::ask(count as u64 * 96, || format!("{}: {count} surfels", self.name()))?;
         let mut sampler = Sampler::new(count, seed);
         match *self {
             Self::Sphere => ball::sample(&[ball::SPHERE], count, &mut sampler),

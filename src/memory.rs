@@ -1,0 +1,76 @@
+//! How much memory the process may take: asked before what is large is allocated.
+//!
+//! Without a limit nothing is refused. The program sets one; a library user may. What is asked for
+//! is an upper estimate of what the work holds at once, and what the process holds already counts
+//! too, where the system tells (on Linux). Small things are not asked for.
+
+use crate::error::{Error, Result};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+static LIMIT: AtomicU64 = AtomicU64::new(u64::MAX);
+
+/// Sets how many bytes the process may hold; [`u64::MAX`] is no limit.
+pub fn set_limit(bytes: u64) {
+    LIMIT.store(bytes, Ordering::Relaxed);
+}
+
+/// Whether `bytes` more may be held, for what `what` says.
+///
+/// # Errors
+/// [`Error::Invalid`] if not: what, how much, and the limit.
+pub(crate) fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<()> {
+    try_ask(bytes, what).map_err(Error::Invalid)
+}
+
+/// [`ask`] with the reason alone, where the error names a file.
+pub(crate) fn try_ask(
+    bytes: u64,
+    what: impl FnOnce() -> String,
+) -> std::result::Result<(), String> {
+    let limit = LIMIT.load(Ordering::Relaxed);
+    if limit == u64::MAX || bytes <= limit.saturating_sub(held()) {
+        return Ok(());
+    }
+    Err(format!(
+        "{} takes up to {} of memory, beside {} in use, but {} is the limit; give less to do, or \
+         raise --memory",
+        what(),
+        in_words(bytes),
+        in_words(held()),
+        in_words(limit)
+    ))
+}
+
+/// How many bytes the process holds; 0 where the system does not tell.
+fn held() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    let kilobytes = line.and_then(|line| line.split_whitespace().next()?.parse::<u64>().ok());
+    kilobytes.unwrap_or(0).saturating_mul(1024)
+}
+
+/// Bytes as people say them: 1.5 GiB.
+fn in_words(bytes: u64) -> String {
+    const UNITS: [&str; 5] = ["bytes", "KiB", "MiB", "GiB", "TiB"];
+    let power = (bytes.max(1).ilog2() / 10).min(4);
+    let value = bytes as f64 / (1_u64 << (10 * power)) as f64;
+    format!("{} {}", (value * 10.0).round() / 10.0, UNITS[power as usize])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_in_words() {
+        let words = [0, 1023, 1024, 1536, 3 << 29, u64::MAX].map(in_words);
+        let expected = ["0 bytes", "1023 bytes", "1 KiB", "1.5 KiB", "1.5 GiB", "16777216 TiB"];
+        assert_eq!(words, expected);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_is_held_is_known() {
+        assert!(held() > 1 << 20, "{}", held());
+    }
+}

@@ -1,0 +1,77 @@
+//! What a picture takes: upper estimates, checked by `tests/memory.rs` for every method.
+
+use super::Session;
+use crate::error::Result;
+use crate::frame::pyramid;
+use crate::memory;
+use crate::method::{Holds, PlaneRow, When, peeling};
+use crate::scene::Camera;
+
+/// How a picture is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Making {
+    /// By [`Session::render`].
+    Render,
+    /// By [`Session::define`], in numbers of so many bytes, with the planes of the stages or not.
+    Define {
+        /// 4 or 8.
+        number: u64,
+        /// Whether the planes of the stages are kept.
+        stages: bool,
+    },
+}
+
+impl Session<'_> {
+    /// About the most bytes that a picture takes beside the session, the picture itself included.
+    #[must_use]
+    pub fn needs(&self, camera: &Camera, making: Making) -> u64 {
+        let pixels = u64::from(camera.width) * u64::from(camera.height);
+        let items = self.index.order.as_ref().map_or(self.scene.surfels.len(), |_| {
+            // A surfel is drawn once in each of its groups.
+            self.index.groups.as_ref().map_or(0, |groups| groups.own().len() + groups.added().len())
+        });
+        let fast = self.method.fast_bytes_a_pixel().filter(|_| making == Making::Render);
+        let number = if let Making::Define { number, .. } = making { number } else { 4 };
+        let kept = match making {
+            Making::Define { stages: true, .. } => self.planes(camera, number),
+            _ => 0,
+        };
+        // Planes of stages are there twice: as records and as planes, or in numbers of two types.
+        let a_pixel = fast.unwrap_or(number * OF_A_PIXEL + 2 * kept);
+        pixels * a_pixel + items as u64 * number * OF_A_SPLAT
+    }
+
+    /// The planes of all stages, a pixel.
+    fn planes(&self, camera: &Camera, number: u64) -> u64 {
+        let levels = pyramid::sizes(camera.width, camera.height).len() as u64;
+        let groups = self.index.groups.as_ref().map_or(1, |groups| groups.len() as u64);
+        let copies = |row: &PlaneRow| match row.name {
+            name if !name.contains('#') => 1,
+            name if name.starts_with("group") => groups,
+            name if name.starts_with("layer") => u64::from(peeling::STAGES),
+            _ => levels,
+        };
+        let bytes = |row: &PlaneRow| match row.holds {
+            Holds::Scalar => number,
+            Holds::Color | Holds::Vector => 3 * number,
+            Holds::Index => 4,
+            Holds::Count => 1,
+        };
+        let rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
+        let kept = rows.filter(|row| row.when != When::Alone);
+        kept.map(|row| copies(row) * bytes(row)).sum()
+    }
+
+    /// Whether the process may hold a picture more.
+    pub(super) fn ask(&self, camera: &Camera, making: Making) -> Result<()> {
+        let (width, height) = (camera.width, camera.height);
+        memory::ask(self.needs(camera, making), || {
+            format!("a picture of {width} x {height} pixels by {}", self.method.name())
+        })
+    }
+}
+
+/// Numbers of a pixel that passes hold at once, the planes of the picture included, at most.
+const OF_A_PIXEL: u64 = 80;
+/// Numbers of a splat, with the bins that list it.
+const OF_A_SPLAT: u64 = 64;
