@@ -11,13 +11,13 @@ use std::borrow::Cow;
 
 /// Loads a scene, with progress.
 pub(super) fn ready(file: &SceneFile, exec: &Exec) -> Result<Ready> {
-    let steps = progress::Steps::new();
+    let steps = progress::Steps::new("loading");
     file.ready(exec, &|what, done, of| steps.show(what, done, of))
 }
 
 /// Prepares a scene for its method, with progress.
 pub(super) fn session<'a>(ready: &'a Ready, exec: &'a Exec) -> Result<(Session<'a>, Option<Made>)> {
-    let steps = progress::Steps::new();
+    let steps = progress::Steps::new("preparing");
     ready.session(exec, &|what, done, of| steps.show(what, done, of))
 }
 

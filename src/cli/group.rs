@@ -48,7 +48,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let file = named(&args.scene, args.count, args.seed)?;
     output::check(&args.output, &args.scene, &file)?;
     let exec = Exec::new(args.threads, 32)?;
-    let steps = progress::Steps::new();
+    let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
     let loaded = file.load(&exec, &show)?;
     let Scene { name, primitives, .. } = &loaded.scene;

@@ -50,7 +50,7 @@ fn points(path: &Path) -> Result<()> {
     let there: Vec<&str> = arrays.iter().filter(|(_, is)| *is).map(|(name, _)| *name).collect();
     line("has", if there.is_empty() { "positions only".into() } else { there.join(", ") });
 
-    let steps = progress::Steps::new();
+    let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
     let found = derive::surfels(cloud, &Derive::default(), &Exec::new(0, 32)?, &show);
     drop(steps);
@@ -92,7 +92,7 @@ fn scene(path: &Path) -> Result<()> {
             },
         );
     }
-    let steps = progress::Steps::new();
+    let steps = progress::Steps::new("loading");
     let loaded: Loaded =
         file.load(&Exec::new(0, 32)?, &|what, done, of| steps.show(what, done, of))?;
     drop(steps);

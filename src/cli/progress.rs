@@ -2,36 +2,38 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
-use std::sync::mpsc;
-use std::thread;
-use std::time::{Duration, Instant};
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
 
 /// How long work may take unnoticed.
 const PATIENCE: Duration = Duration::from_secs(1);
+/// Of a step that cannot tell how far it is, and of one that can.
+const STYLES: [&str; 2] = ["{spinner} {msg}", "{spinner} {msg} [{bar:32}] {percent} %"];
 
-/// The progress of steps that know how far they are.
+/// The progress of work, step by step: a sign of life from the first second on, and how far a step
+/// is where it can tell.
 pub(super) struct Steps {
-    start: Instant,
     bar: ProgressBar,
+    /// Ends the watcher; none where nobody is looking, or where there are no threads.
+    watcher: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Steps {
-    pub(super) fn new() -> Self {
+    /// Begins with a step that cannot tell how far it is.
+    pub(super) fn new(what: &str) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        if let Ok(style) = ProgressStyle::with_template("{msg} [{bar:32}] {percent} %") {
-            bar.set_style(style);
-        }
-        Self { start: Instant::now(), bar }
+        style(&bar, STYLES[0]);
+        bar.set_message(what.to_owned());
+        let watcher = std::io::stderr().is_terminal().then(|| watch(bar.clone())).flatten();
+        Self { bar, watcher }
     }
 
-    /// Step `what` has done so many of so many.
+    /// Step `what` has done so many of so many; one of one is no measure.
     pub(super) fn show(&self, what: &str, done: u64, of: u64) {
-        if self.bar.is_hidden() && self.start.elapsed() > PATIENCE {
-            // Stays hidden where stderr is no terminal.
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
         if self.bar.message() != what {
             self.bar.set_message(what.to_owned());
+            style(&self.bar, STYLES[usize::from(of > 1)]);
         }
         self.bar.set_length(of);
         self.bar.set_position(done);
@@ -40,30 +42,34 @@ impl Steps {
 
 impl Drop for Steps {
     fn drop(&mut self) {
+        if let Some((end, watcher)) = self.watcher.take() {
+            drop(end);
+            let _ = watcher.join();
+        }
         self.bar.finish_and_clear();
     }
 }
 
-/// Does work that cannot tell how far it is, with a sign of life.
-pub(super) fn during<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
-    if !std::io::stderr().is_terminal() {
-        return work();
+/// Does work that cannot tell how far it is.
+pub(super) fn during<T>(what: &str, work: impl FnOnce() -> T) -> T {
+    let _steps = Steps::new(what);
+    work()
+}
+
+fn style(bar: &ProgressBar, template: &str) {
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
     }
+}
+
+/// Lets the bar be seen, and move, when the work has taken long enough.
+fn watch(bar: ProgressBar) -> Option<(Sender<()>, JoinHandle<()>)> {
     let (end, ended) = mpsc::channel::<()>();
     let watch = move || {
-        if ended.recv_timeout(PATIENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
-            let sign = ProgressBar::new_spinner().with_message(what);
-            sign.enable_steady_tick(Duration::from_millis(100));
-            let _ = ended.recv();
-            sign.finish_and_clear();
+        if ended.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+            bar.set_draw_target(ProgressDrawTarget::stderr());
+            bar.enable_steady_tick(Duration::from_millis(100));
         }
     };
-    // Where there are no threads there is no sign of life.
-    let watcher = thread::Builder::new().spawn(watch).ok();
-    let done = work();
-    drop(end);
-    if let Some(watcher) = watcher {
-        let _ = watcher.join();
-    }
-    done
+    thread::Builder::new().spawn(watch).ok().map(|watcher| (end, watcher))
 }
