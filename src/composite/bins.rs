@@ -14,6 +14,10 @@
 //! the value of the next bin's centre; the ratio therefore ends at 255/256, which added to a bin up
 //! to [`MAX_BINS`] is exact in `f32`.
 //!
+//! `Departs:` section 5.1 says of an overlap first that the splat with the *lower* weight gives colour
+//! and weight, then that fragments with *lower* weights are culled. The second is meant: eq. 10, and
+//! the words under it, let the fragment nearest to its own centre win, which has the higher weight.
+//!
 //! Laws, for numbers t >= 0 as depths are:
 //!
 //! - `bin` never falls as t grows: no rounding turns two layers around.

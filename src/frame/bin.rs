@@ -4,11 +4,11 @@ use super::{Grid, Rect};
 
 /// Which tiles a batch of bounds touches: for each tile indices in ascending order.
 ///
-/// Bounds that touch at most [`MOST`] tiles are listed in each of these. Larger ones are listed in
-/// cells of 2 x 2, 4 x 4 ... tiles, the smallest of which they touch at most [`MOST`], and a tile
-/// has the lists of all cells that it is in. So memory is at most 4 [`MOST`] bytes a splat whatever
-/// its size, and a splat is met by about twice as many tiles as it touches, at most four times; by
-/// more only if it is over [`MOST`] tiles long and thinner than one in [`MOST`] of that.
+/// Bounds that touch at most 16 tiles are listed in each of these. Larger ones are listed in cells of
+/// 2 x 2, 4 x 4 ... tiles, the smallest of which they touch at most 16, and a tile has the lists of
+/// all cells that it is in. So memory is at most 64 bytes a splat whatever its size, and a splat is
+/// met by about twice as many tiles as it touches, at most four times; by more only if it is over 16
+/// tiles long and thinner than one in 16 of that.
 #[derive(Clone, Debug, Default)]
 pub struct Bins {
     /// Columns of tiles.

@@ -45,8 +45,11 @@
 //!   amplitude = area / sqrt(det)
 //! ```
 //!
-//! The amplitude is that of \[ZPvBG01\] up to the constant that normalization removes. Bounds:
-//! k sqrt(xx') and k sqrt(yy') about the centre, see [`super::bounds`].
+//! `Departs:` the amplitude is that of \[ZPvBG01\], whose Gaussians are normalized, times 2 pi s s
+//! (of an ellipse 2 pi |U x V|): without the filter every splat has the weight 1 at its centre.
+//! Normalization removes the factor where the radii of neighbours are equal; where they differ, a
+//! larger splat counts more than there, in proportion to its area. Bounds: k sqrt(xx') and
+//! k sqrt(yy') about the centre, see [`super::bounds`].
 //!
 //! `Perspective`, the exact ellipse of the projected disc \[ZRB+04\], then the low-pass filter.
 //! `Decided:` \[ZRB+04\] gives the outline as a conic; here its centre and covariance follow from
@@ -77,10 +80,10 @@
 //! order: a surfel whose centre is not farther than the near plane is `Behind`; one whose amplitude
 //! is below 2^-96, whose gradient of nearness exceeds 2^96 a pixel, or of which any number is not
 //! finite is `Degenerate` (seen edge-on, or astronomically large or small); with culling, one with
-//! g >= 0 is `BackFacing`; one that cannot be seen is `Outside`: no pixel of the picture is in its
-//! bounds, or the sphere about p that holds it, of radius r or, for an ellipse,
-//! sqrt(k U . k U + k V . k V), lies beyond a side of the view by more than the reach of the
-//! low-pass filter, k sqrt(h) px. For the left side that is
+//! g >= 0 is `BackFacing` (at 0 it has no area, and is `Degenerate` already); one that cannot be
+//! seen is `Outside`: no pixel of the picture is in its bounds, or the sphere about p that holds it,
+//! of radius r or, for an ellipse, sqrt(k U . k U + k V . k V), lies beyond a side of the view by
+//! more than the reach of the low-pass filter, k sqrt(h) px. For the left side that is
 //!
 //! ```text
 //!   fx p.x + cx t < -(r sqrt(fx fx + cx cx) + (k sqrt(h)) t)      orthographic: t = 1, and fx r

@@ -16,6 +16,10 @@
 //! With [`Settings::refraction`] and an environment, that sum is the one of
 //! [`crate::shade::optics`]. The environment is otherwise as in [`mod@super::transparent`].
 //!
+//! `Departs:` section 5.2.3 interpolates the position too, "if necessary". Here the position that
+//! Phong lighting takes is that of the nearest fragment: on the ray of the pixel, at the depth Z of
+//! pass 1. Reflection and refraction need none, as the environment is infinitely far away.
+//!
 //! # What it gets wrong
 //!
 //! All that [`mod@super::transparent`] does, and: a surfel that its group enlarges can be drawn
