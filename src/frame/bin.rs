@@ -92,6 +92,12 @@ impl Bins {
     /// Calls `visit` for each index whose bounds may touch the tile, in ascending order.
     #[inline(always)]
     pub fn for_each(&self, tile: usize, mut visit: impl FnMut(u32)) {
+        if self.is_exact() {
+            return self
+                .levels
+                .iter()
+                .for_each(|level| level.list(tile).iter().for_each(|&i| visit(i)));
+        }
         let mut lists: [&[u32]; LEVELS] = [&[]; LEVELS];
         let mut left = 0;
         for list in self.lists(tile).filter(|list| !list.is_empty()) {
@@ -122,10 +128,14 @@ impl Bins {
     /// The lists of the cells that a tile is in.
     fn lists(&self, tile: usize) -> impl Iterator<Item = &[u32]> {
         let (x, y) = (tile as u32 % self.columns, tile as u32 / self.columns);
-        self.levels.iter().map(move |level| {
-            let cell = ((y >> level.shift) * level.columns + (x >> level.shift)) as usize;
-            &level.items[level.starts[cell] as usize..level.starts[cell + 1] as usize]
-        })
+        let cell = move |level: &Level| (y >> level.shift) * level.columns + (x >> level.shift);
+        self.levels.iter().map(move |level| level.list(cell(level) as usize))
+    }
+
+    /// Whether the lists are of tiles, so that bounds touch each tile that they are visited for.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        self.levels.iter().all(|level| level.shift == 0)
     }
 }
 
@@ -138,6 +148,12 @@ impl Level {
         // start of the next.
         let starts = vec![0; (columns * rows) as usize + 2];
         Self { shift, columns, starts, items: Vec::new() }
+    }
+
+    /// The list of a cell.
+    #[inline(always)]
+    fn list(&self, cell: usize) -> &[u32] {
+        &self.items[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
     /// From counts to starts.

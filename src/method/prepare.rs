@@ -52,7 +52,7 @@ impl<R: Exact, S: Send> Prepared<R, S> {
     }
 
     /// At most how many splats [`Prepared::for_each`] visits.
-    pub(super) fn count(&self, tile: usize) -> usize {
+    fn count(&self, tile: usize) -> usize {
         self.batches.iter().map(|(_, bins)| bins.count(tile)).sum()
     }
 
@@ -62,6 +62,26 @@ impl<R: Exact, S: Send> Prepared<R, S> {
         for (splats, bins) in &self.batches {
             bins.for_each(tile, |i| visit(&splats[i as usize]));
         }
+    }
+
+    /// The splats that touch a tile of these pixels, in the order of the items.
+    #[inline(always)]
+    pub(super) fn gather(&self, tile: usize, rect: &Rect, bounds: impl Fn(&S) -> Rect) -> Vec<S>
+    where
+        S: Copy,
+    {
+        let mut gathered = Vec::with_capacity(self.count(tile));
+        for (splats, bins) in &self.batches {
+            let touches = |splat: &S| !bounds(splat).intersection(rect).is_empty();
+            if bins.is_exact() {
+                bins.for_each(tile, |i| gathered.push(splats[i as usize]));
+            } else {
+                bins.for_each(tile, |i| {
+                    gathered.extend(Some(splats[i as usize]).filter(touches));
+                });
+            }
+        }
+        gathered
     }
 }
 

@@ -102,9 +102,12 @@ pub trait Exact: Real<Truth = bool, Pixel = u32> + PartialOrd {
     }
     /// The angle of the point (x, `self`) from the x axis, in radians, see [`elementary::atan2`].
     fn atan2(self, x: Self) -> Self;
-    /// How many representable numbers lie between this one and `other`, 0 if they are equal.
+    /// How far apart two numbers are in the ascending list of all numbers: the difference of their
+    /// ranks, 1 for neighbours.
     ///
-    /// -0 and +0 are equal. The count is rounded to `f32`; +inf if either is NaN.
+    /// The rank of a number >= 0 is its bits as an integer, that of -x the negative of x's; so both
+    /// zeros have rank 0, and +inf is one after the largest number. The difference is exact as an
+    /// integer and then rounded to `f32`; +inf if either is NaN.
     fn ulps_to(self, other: Self) -> f32;
 }
 

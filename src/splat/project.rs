@@ -20,12 +20,22 @@
 //!   tilt = (a.z', b.z') m,  z' = s s (z - n.z n)   how nearness grows over V0
 //! ```
 //!
-//! and `area` is sqrt(det V0). For an ellipse with half axes k U and k V (its tangents, of any
-//! angle between them):
+//! and `area` is sqrt(det V0). In order of evaluation:
 //!
 //! ```text
+//!   c  = (-(d.x n.y), (d.x n.x) - n.z, n.y)        e = (n.z - (d.y n.y), d.y n.x, -n.x)
+//!   z' = (-(n.z n.x), -(n.z n.y), n.x n.x + n.y n.y), each times (s s)
+//!   a.z' = sx (z'.x + d.x z'.z)                    b.z' = -(sy (z'.y + d.y z'.z))
+//! ```
+//!
+//! For an ellipse with half axes k U and k V (its tangents, of any angle between them): each tangent
+//! is turned to view space first, then each of its components is divided by k.
+//!
+//! ```text
+//!   a.U = sx (U.x + d.x U.z)   b.U = -(sy (U.y + d.y U.z))        and so for V
 //!   xx = (a.U)^2 + (a.V)^2     xy = (a.U) (b.U) + (a.V) (b.V)     yy = (b.U)^2 + (b.V)^2
-//!   area = |(sx sy) ((U x V) . d)|      half = k sqrt(U.z U.z + V.z V.z)
+//!   N = U x V                  area = |(sx sy) ((N.x d.x + N.y d.y) - N.z)|
+//!   half = k sqrt(U.z U.z + V.z V.z)
 //!   tilt = (((a.U) U.z + (a.V) V.z) m, ((b.U) U.z + (b.V) V.z) m)
 //! ```
 //!
@@ -49,7 +59,7 @@
 //! (of an ellipse 2 pi |U x V|): without the filter every splat has the weight 1 at its centre.
 //! Normalization removes the factor where the radii of neighbours are equal; where they differ, a
 //! larger splat counts more than there, in proportion to its area. Bounds: k sqrt(xx') and
-//! k sqrt(yy') about the centre, see [`super::bounds`].
+//! k sqrt(yy') about the centre, by [`super::bounds::around`] with the stretch ux sqrt(xx').
 //!
 //! `Perspective`, the exact ellipse of the projected disc \[ZRB+04\], then the low-pass filter.
 //! `Decided:` \[ZRB+04\] gives the outline as a conic; here its centre and covariance follow from
@@ -74,7 +84,10 @@
 //! ```
 //!
 //! Bounds: those of the exact outline and of the filter's circle of radius k sqrt(h), both; a disc
-//! that reaches the near plane has those of its visible part.
+//! that reaches the near plane has those of its visible part. The outline's are k sqrt(xx) and
+//! k sqrt(yy) about its centre, each times 1 + (stretch ratio) 2^-18 with stretch = (sqrt(xx)
+//! sqrt(yy)) / area and ratio = t / (t - half) (1 under an orthographic camera), and at the end all
+//! are moved outwards by 1/128 px.
 //!
 //! **Fate**, the first of the [`Reasons`] in this arithmetic: `f32` and `f64` may differ. In this
 //! order: a surfel whose centre is not farther than the near plane is `Behind`; one whose amplitude

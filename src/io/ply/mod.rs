@@ -8,7 +8,7 @@
 //! | `vertex` | `x y z` | any | world units, rounded to `f32` once |
 //! | | `nx ny nz` | any | of any length |
 //! | | `radius` | any | world units |
-//! | | `red green blue` | `uchar`, `ushort` | sRGB, decoded in `f64` and rounded once |
+//! | | `red green blue` | `uchar`, `ushort` | **sRGB**, decoded in `f64` and rounded once, see below |
 //! | | | `float`, `double` | linear, kept |
 //! | | `opacity` or `alpha` | `uchar`, `ushort` | divided by 255 or 65535 |
 //! | | | `float`, `double` | kept |
@@ -19,6 +19,9 @@
 //! | `group` | `scale` | any | what radii are multiplied by, finite and > 0, for each group; skipped without `group` |
 //! | `face` | `vertex_indices` or `vertex_index` | list of integers | a polygon is the fan of its first corner; with fewer than 3 corners it is nothing |
 //! | `edge` | `vertex1` and `vertex2` | integers | a segment of a ribbon or of a tube |
+//!
+//! To compare with a renderer that takes colours as they are stored, mind that integers here are
+//! decoded from sRGB ([`crate::io::srgb`]): a `uchar` of 128 is 0.2159 and not 0.502. Floats are kept.
 //!
 //! Without an element `group` there are as many groups as the largest number tells, of scale 1;
 //! with one there are as many as it has, 64 at most. It may come before or after the vertices.

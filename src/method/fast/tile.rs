@@ -108,12 +108,7 @@ impl Tile {
         tile: &FramebufferTile<'_, f32>,
     ) -> Self {
         let rect = tile.rect;
-        let mut splats = Vec::with_capacity(prepared.count(index));
-        prepared.for_each(index, |record| {
-            if !record.bounds().intersection(&rect).is_empty() {
-                splats.push(*record);
-            }
-        });
+        let splats = prepared.gather(index, &rect, Record::bounds);
         let columns = (rect.x1 - rect.x0).div_ceil(SIDE);
         let rows = (rect.y1 - rect.y0).div_ceil(SIDE);
         let count = if splats.is_empty() { 0 } else { columns * rows };
