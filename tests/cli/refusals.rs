@@ -132,6 +132,18 @@ fn inputs_are_spared() {
     succeeds(at.path(), &["group", "a.ply", "-o", "b.ply"]);
 }
 
+/// A preview that cannot be written keeps the picture from being replaced.
+#[test]
+fn a_picture_and_its_preview_go_together() {
+    let at = TempDir::new().unwrap();
+    fs::write(at.path().join("a.exr"), "old").unwrap();
+    fs::create_dir(at.path().join("a.png")).unwrap();
+    let line = fails(at.path(), &small(&["-o", "a.exr"]), 1);
+    assert!(line.contains("a.png") && line.contains("no regular file"), "{line}");
+    assert_eq!(fs::read(at.path().join("a.exr")).unwrap(), b"old");
+    assert_eq!(names(at.path()), ["a.exr", "a.png"]);
+}
+
 /// What is no file, and what a name may do to a terminal.
 #[cfg(unix)]
 #[test]
