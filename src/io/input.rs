@@ -27,7 +27,9 @@ pub(super) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     let (file, length) = open(path)?;
     memory::try_ask(length, || "the file".to_owned())
         .map_err(|what| io::Error::new(io::ErrorKind::OutOfMemory, what))?;
-    let mut bytes = Vec::with_capacity(length as usize);
+    let mut bytes = Vec::new();
+    let room = usize::try_from(length).map_err(|_| io::ErrorKind::OutOfMemory)?;
+    bytes.try_reserve_exact(room)?;
     file.take(length).read_to_end(&mut bytes)?;
     Ok(bytes)
 }

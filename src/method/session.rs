@@ -136,8 +136,13 @@ impl<'a> Session<'a> {
     /// and settings together does not hold.
     pub fn render(&mut self, camera: &Camera) -> Result<&Picture<f32>> {
         camera.check()?;
-        self.ask(camera, Making::Render)?;
-        if let Some(last) = self.picture.take() {
+        let last = self.picture.take();
+        let size = |picture: &Picture<f32>| [picture.frame.width, picture.frame.height];
+        // The memory of the last picture is there, if it was one of this size.
+        if last.as_ref().map(size) != Some(camera.size()) {
+            self.ask(camera, Making::Render)?;
+        }
+        if let Some(last) = last {
             self.pool.recycle(last.frame);
         }
         let Self { scene, exec, index, .. } = self;

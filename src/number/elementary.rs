@@ -3,7 +3,9 @@
 //! std leaves the bits of these functions to the platform, so clippy's `disallowed-methods` rejects
 //! them everywhere.
 //!
-//! - **f64**: the functions of `libm` (pinned), which give the same bits on every target.
+//! - **f64**: the functions of the crate `libm` 0.2.16 (pinned), which give the same bits on every
+//!   target: `exp`, `log`, `pow`, `sin`, `cos`, `tan` and `atan2`, ports of FreeBSD's msun. Other
+//!   libraries, newer versions of musl among them, differ in the last digit here and there.
 //! - **f32**: the definition is *the correctly rounded value*. It is computed in f64 and rounded
 //!   once: [`exp_f32`] by the polynomial below, which is checked over every `f32` in its range by
 //!   an ignored test against a correctly rounded oracle; the others through `libm`, or to the bits

@@ -39,7 +39,8 @@ pub(crate) fn is_color(color: Vec3) -> bool {
 }
 
 impl Light {
-    /// The headlight of pictures that name no light: white, from the upper left.
+    /// The headlight of pictures that name no light: white, from the upper left, along (-1/2, 3/4, 1)
+    /// in view space.
     pub const DEFAULT: Self =
         Self::Headlight { towards: Vec3::new(-0.5, 0.75, 1.0), color: Vec3::ONE };
 
@@ -89,6 +90,7 @@ pub struct Phong {
     pub color: Vec3,
 }
 
+/// Ambient 1/8, diffuse 3/4, specular 1/4, shininess 32, and a surface of (3/4, 3/4, 3/4).
 impl Default for Phong {
     fn default() -> Self {
         Self {

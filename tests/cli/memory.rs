@@ -47,6 +47,9 @@ fn what_takes_too_much_is_refused() {
     };
     succeeds(&["compare", "zeros.exr", "zeros.exr", "--memory", "2G"]);
     succeeds(&small(&["-o", "a.exr", "--memory", "96M"]));
+    // The second picture is drawn in the memory of the first, and takes no more.
+    let twice = ["--size", "1000x800", "--repeat", "2", "-o", "a.exr", "--memory", "96M"];
+    succeeds(&small(&twice));
 }
 
 /// Found in the header, so that no memory of the machine is too small for the reason to be told.

@@ -10,6 +10,12 @@
 //!              ((diffuse (n . l)) s + specular (r . v)^shininess)     r = n (2 (n . l)) - l
 //! ```
 //!
+//! l is a vector of view space: of a directional light its `towards`, turned to view space
+//! ([`View::direction`]) and then divided by its length; of a headlight its `towards` divided by its
+//! length; of a point light (q - p) divided by its length, q its position in view space
+//! ([`View::point`]). n and v are divided by their lengths too. Lights are added in the order of the
+//! scene.
+//!
 //! A light with n . l <= 0 adds nothing; a highlight needs r . v > 0. Without any light the colour
 //! is s. An empty pixel is black.
 //!
