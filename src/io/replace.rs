@@ -62,15 +62,17 @@ impl Pending {
         if replaced.as_ref().is_some_and(|at| !at.is_file()) {
             return refuse("this is there and is no regular file; give another name");
         }
-        if replaced.as_ref().is_some_and(|at| at.permissions().readonly()) {
+        // WASI has no permissions; there every file counts as one that may only be read.
+        let permissions = replaced.map(|at| at.permissions()).filter(|_| cfg!(any(unix, windows)));
+        if permissions.as_ref().is_some_and(Permissions::readonly) {
             return refuse("this is there and may only be read; give another name");
         }
         let (partial, file) = Partial::new(folder)?;
         let mut out = BufWriter::new(file);
         write(&mut out)?;
         out.flush()?;
-        if let Some(replaced) = replaced {
-            fs::set_permissions(partial.path(), replaced.permissions())?;
+        if let Some(permissions) = permissions {
+            fs::set_permissions(partial.path(), permissions)?;
         }
         Ok(Self { partial, path: path.to_owned(), place })
     }
