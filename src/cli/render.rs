@@ -95,24 +95,21 @@ const FOLDER: &str = "out";
 
 /// Where the picture goes.
 fn place(args: &Args, file: &SceneFile) -> Result<PathBuf> {
-    let path = match &args.output {
+    match &args.output {
         Some(path) if matches!(FileKind::of(path), Ok(FileKind::Exr)) => {
             output::check(path, &args.scene, file)?;
-            path.clone()
+            Ok(path.clone())
         }
         Some(path) => {
             let path = path.display();
-            return Err(Error::Usage(format!(
-                "{path}: the picture is an EXR; give a name in .exr"
-            )));
+            Err(Error::Usage(format!("{path}: the picture is an EXR; give a name in .exr")))
         }
         None => {
             let path = Path::new(FOLDER).join(format!("{}.exr", file.name));
             output::check_unread(&path, &args.scene, file)?;
-            path
+            Ok(path)
         }
-    };
-    Ok(path)
+    }
 }
 
 /// Each stage, and last the whole, of each repetition.

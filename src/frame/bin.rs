@@ -6,9 +6,9 @@ use super::{Grid, Rect};
 ///
 /// Bounds that touch at most 16 tiles are listed in each of these. Larger ones are listed in cells of
 /// 2 x 2, 4 x 4 ... tiles, the smallest of which they touch at most 16, and a tile has the lists of
-/// all cells that it is in. So memory is at most 64 bytes a splat whatever its size, and a splat is
-/// met by about twice as many tiles as it touches, at most four times; by more only if it is over 16
-/// tiles long and thinner than one in 16 of that.
+/// all cells that it is in. So memory is at most 64 bytes a splat whatever its size. A splat is met by
+/// about twice as many tiles as it touches (at most four times in the tests, of up to 13 x 10 tiles),
+/// and by many more if it is far longer than 16 tiles and thin.
 #[derive(Clone, Debug, Default)]
 pub struct Bins {
     /// Columns of tiles.

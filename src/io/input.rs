@@ -25,6 +25,14 @@ pub(super) fn open(path: &Path) -> io::Result<(File, u64)> {
 /// As [`open`], and if it cannot be read.
 pub(super) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     let (file, length) = open(path)?;
+    rest(file, length)
+}
+
+/// All bytes of a file from where it stands, at most `length`, even if it grows meanwhile.
+///
+/// # Errors
+/// If there may not be so much memory, or the file cannot be read.
+pub(super) fn rest(file: File, length: u64) -> io::Result<Vec<u8>> {
     memory::try_ask(length, || "the file".to_owned())
         .map_err(|what| io::Error::new(io::ErrorKind::OutOfMemory, what))?;
     let mut bytes = Vec::new();

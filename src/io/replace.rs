@@ -114,6 +114,7 @@ fn partial_files() -> MutexGuard<'static, Vec<PathBuf>> {
 /// Removes the partial files of this process, for a program that is about to end early, such as in
 /// answer to a signal. As long as the returned guard is held, no other partial file is made, and
 /// none is put in its place.
+#[must_use = "others may write again when it goes"]
 pub fn remove_partial_files() -> impl Sized {
     let mut files = partial_files();
     for path in files.drain(..) {

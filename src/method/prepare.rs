@@ -72,14 +72,13 @@ impl<R: Exact, S: Send> Prepared<R, S> {
     {
         let mut gathered = Vec::with_capacity(self.count(tile));
         for (splats, bins) in &self.batches {
-            let touches = |splat: &S| !bounds(splat).intersection(rect).is_empty();
-            if bins.is_exact() {
-                bins.for_each(tile, |i| gathered.push(splats[i as usize]));
-            } else {
-                bins.for_each(tile, |i| {
-                    gathered.extend(Some(splats[i as usize]).filter(touches));
-                });
-            }
+            let exact = bins.is_exact();
+            bins.for_each(tile, |i| {
+                let splat = &splats[i as usize];
+                if exact || !bounds(splat).intersection(rect).is_empty() {
+                    gathered.push(*splat);
+                }
+            });
         }
         gathered
     }

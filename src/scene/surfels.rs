@@ -10,9 +10,9 @@ use glam::{DVec3, Vec3};
 ///
 /// Guarantees, kept by construction: at least one surfel, but for [`Surfels::none`]; positions
 /// finite; normals of length 1 within 2^-20; radii finite and > 0; colours in
-/// [0, [`crate::scene::light::MAX_RADIANCE`]] and opacities in [0, 1], none of them -0; tangents finite and not parallel. (Whether they are perpendicular to each
-/// other and to the normal is the business of whoever gives them.) An array that the scene does not
-/// need is not allocated.
+/// [0, [`crate::scene::light::MAX_RADIANCE`]] and opacities in [0, 1], none of them -0; tangents
+/// finite and not parallel. (Whether they are perpendicular to each other and to the normal is the
+/// business of whoever gives them.) An array that the scene does not need is not allocated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surfels {
     position: Vec<Vec3>,

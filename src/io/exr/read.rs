@@ -40,11 +40,8 @@ const LEAST_BLOCK: u64 = 16;
 /// subsampled channels, a data window that is not the display window, parts of different sizes, two
 /// channels of one name.
 pub fn read(path: &Path) -> Result<Image> {
-    let (mut file, length) = open(path)?;
-    let mut bytes = Vec::new();
-    // Bounded by the length taken once: the budget holds even if the file grows meanwhile.
-    let all = (&mut file).take(length).read_to_end(&mut bytes);
-    all.map_err(|source| Error::io(path, source))?;
+    let (file, length) = open(path)?;
+    let bytes = input::rest(file, length).map_err(|source| Error::io(path, source))?;
     guarded(|| decode(&bytes)).map_err(|what| Error::format(path, what))
 }
 

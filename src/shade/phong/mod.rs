@@ -85,18 +85,19 @@ impl<R: Exact> Shader<R> {
     pub fn new(view: View<R>, lights: &[Light], material: Phong) -> Self {
         // -0 becomes 0.
         let material = Phong { color: material.color + Vec3::ZERO, ..material };
+        let radiance = |color: Vec3| (color + Vec3::ZERO).to_array().map(R::from_f32);
         let place = |light: &Light| match *light {
             Light::Directional { towards, color } => {
                 let towards = view.direction(Vector3::from_glam(towards)).normalized();
-                (PlacedLight::Towards(towards), (color + Vec3::ZERO).to_array().map(R::from_f32))
+                (PlacedLight::Towards(towards), radiance(color))
             }
             Light::Headlight { towards, color } => {
                 let towards = Vector3::from_glam(towards).normalized();
-                (PlacedLight::Towards(towards), (color + Vec3::ZERO).to_array().map(R::from_f32))
+                (PlacedLight::Towards(towards), radiance(color))
             }
             Light::Point { position, color } => {
                 let position = view.point(Vector3::from_glam(position));
-                (PlacedLight::At(position), (color + Vec3::ZERO).to_array().map(R::from_f32))
+                (PlacedLight::At(position), radiance(color))
             }
         };
         Self { view, lights: lights.iter().map(place).collect(), material }
