@@ -2,6 +2,7 @@
 //!
 //! - [`block`]: marked blocks of the pages under `docs/`.
 //! - [`chart`]: a chart as an SVG.
+//! - [`mesh`]: a mesh as it is.
 //! - [`models`]: scans, and denser samplings of their surfaces.
 //! - [`report`]: arguments, and tables on stdout and in `docs/`.
 //! - [`shot`]: the planes that are measured, drawn or true.
@@ -11,6 +12,7 @@
 
 pub(crate) mod block;
 pub(crate) mod chart;
+pub(crate) mod mesh;
 pub(crate) mod models;
 pub(crate) mod report;
 pub(crate) mod shot;

@@ -8,6 +8,8 @@ use crate::source::hybrid::HalfSpace;
 pub enum Draw {
     /// Its points as surfels.
     Points,
+    /// Its triangles as elliptical surfels, one each: [`crate::source::derive::facets`].
+    Facets,
     /// Its triangles as polygons.
     Polygons,
     /// Triangles in this half space, in the model's own coordinates, as polygons, the rest as
@@ -37,7 +39,7 @@ impl Draw {
     pub(super) fn check(self, source: &Source) -> Result<(), String> {
         let (fits, choice) = match source {
             Source::File { .. } => {
-                (self != Self::Lines, "points, polygons, hybrid, ribbons or tubes")
+                (self != Self::Lines, "points, facets, polygons, hybrid, ribbons or tubes")
             }
             Source::Shape { .. } => (self == Self::Points, "points"),
             Source::Tree { .. } => {
@@ -75,12 +77,13 @@ impl Draw {
             }
             (None, None) => Self::of(source),
             (Some("points"), None) => Self::Points,
+            (Some("facets"), None) => Self::Facets,
             (Some("polygons"), None) => Self::Polygons,
             (Some("ribbons"), None) => Self::Ribbons,
             (Some("tubes"), None) => Self::Tubes,
             (Some("lines"), None) => Self::Lines,
             (Some(word), None) => {
-                let all = "points, polygons, hybrid, ribbons, tubes, lines";
+                let all = "points, facets, polygons, hybrid, ribbons, tubes, lines";
                 return Err(format!("draw `{word}`; give one of {all}"));
             }
         };
@@ -93,6 +96,7 @@ impl Draw {
     pub fn word(&self) -> &'static str {
         match self {
             Self::Points => "points",
+            Self::Facets => "facets",
             Self::Polygons => "polygons",
             Self::Hybrid(_) => "hybrid",
             Self::Ribbons => "ribbons",

@@ -105,7 +105,7 @@ impl ModelParts {
 /// Whether a model can be drawn as it says, and may have its opacity.
 fn check_draw(model: &Model) -> Result<()> {
     model.draw.check(&model.source).map_err(Error::Invalid)?;
-    if model.opacity.is_some() && model.draw != Draw::Points {
+    if model.opacity.is_some() && !matches!(model.draw, Draw::Points | Draw::Facets) {
         let (name, word) = (model.source.name(), model.draw.word());
         let what = format!("{name}: what is drawn as {word} is opaque; remove the opacity");
         return Err(Error::Invalid(what));
@@ -148,6 +148,10 @@ fn of_file(
     Ok(match draw {
         Draw::Points => {
             let (surfels, derived) = derive::surfels(cloud, options, exec, progress)?;
+            ModelParts::new(surfels, none, derived)
+        }
+        Draw::Facets => {
+            let (surfels, derived) = derive::facets(cloud)?;
             ModelParts::new(surfels, none, derived)
         }
         Draw::Polygons => {

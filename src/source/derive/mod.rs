@@ -11,7 +11,7 @@
 //!    nearest neighbour.
 //! 4. [`Surfels::new`] checks the rest.
 //!
-//! [`polygons`], [`hybrid`], [`ribbons`] and [`tubes`] begin with step 1 too.
+//! [`facets`], [`polygons`], [`hybrid`], [`ribbons`] and [`tubes`] begin with step 1 too.
 //!
 //! `Decided:` neighbours are other *places*: points at one place count once, and share what is
 //! derived. If there are fewer places than asked for, all are taken.
@@ -31,6 +31,7 @@
 mod check;
 mod distinct;
 mod faces;
+mod facets;
 mod neighbours;
 mod orient;
 mod places;
@@ -39,6 +40,7 @@ mod primitives;
 #[cfg(test)]
 mod tests;
 
+pub use facets::facets;
 pub use primitives::{hybrid, polygons, ribbons, tubes};
 
 use crate::error::{Error, Result};

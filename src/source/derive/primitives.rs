@@ -107,10 +107,10 @@ pub fn tubes(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived)>
     finish(before, cloud, tangent, radius, edges)
 }
 
-fn some_triangles(cloud: &Cloud) -> Result<()> {
+/// Whether there are triangles.
+pub(super) fn some_triangles(cloud: &Cloud) -> Result<()> {
     if cloud.triangles.is_empty() {
-        let what =
-            "there are no triangles to draw as polygons; give an element face, or draw points";
+        let what = "there are no triangles to draw; give an element face, or draw points";
         return Err(Error::Invalid(what.into()));
     }
     Ok(())

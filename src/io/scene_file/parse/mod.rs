@@ -122,8 +122,9 @@ impl RawModel {
     fn model(mut self) -> std::result::Result<Model, String> {
         let source = self.source()?;
         let draw = Draw::choose(self.draw.as_deref(), self.split.map(|split| split.0), &source)?;
-        if draw == Draw::Polygons && matches!(source, Source::File { radius: Some(_), .. }) {
-            return Err("`radius` means nothing to polygons: remove it".into());
+        let without = matches!(draw, Draw::Polygons | Draw::Facets);
+        if without && matches!(source, Source::File { radius: Some(_), .. }) {
+            return Err(format!("`radius` means nothing to {}: remove it", draw.word()));
         }
         if let Some(key) = self.left() {
             let of = match &source {

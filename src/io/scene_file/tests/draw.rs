@@ -55,9 +55,12 @@ fn counts(triangles: usize, ribbons: usize, tubes: usize) -> Counts {
 fn the_words_of_draw() {
     let draw = |more: &str| parse(&model(more)).models[0].draw;
     assert_eq!((draw(""), draw("draw = \"points\"\n")), (Draw::Points, Draw::Points));
-    for (word, expected) in
-        [("polygons", Draw::Polygons), ("ribbons", Draw::Ribbons), ("tubes", Draw::Tubes)]
-    {
+    for (word, expected) in [
+        ("facets", Draw::Facets),
+        ("polygons", Draw::Polygons),
+        ("ribbons", Draw::Ribbons),
+        ("tubes", Draw::Tubes),
+    ] {
         let found = draw(&format!("draw = \"{word}\"\n"));
         assert_eq!((found, found.word()), (expected, word));
     }
@@ -71,11 +74,11 @@ fn keys_that_do_not_go_together_are_refused() {
     for (more, what) in [
         (
             "draw = \"lines\"\n",
-            "a is drawn as points, polygons, hybrid, ribbons or tubes, not as lines",
+            "a is drawn as points, facets, polygons, hybrid, ribbons or tubes, not as lines",
         ),
         (
             "draw = \"dots\"\n",
-            "draw `dots`; give one of points, polygons, hybrid, ribbons, tubes, lines",
+            "draw `dots`; give one of points, facets, polygons, hybrid, ribbons, tubes, lines",
         ),
         ("draw = \"hybrid\"\n", "a hybrid needs split = [a, b, c, d]"),
         ("split = [0, 1, 0, 0]\n", "`split` means nothing without draw = \"hybrid\""),
@@ -84,6 +87,7 @@ fn keys_that_do_not_go_together_are_refused() {
         ("draw = \"hybrid\"\nsplit = [0, nan, 0, 1]\n", "a half space of 0, NaN, 0, 1"),
         ("draw = \"hybrid\"\nsplit = [0, 1, 0]\n", "length"),
         ("draw = \"polygons\"\nradius = 1\n", "`radius` means nothing to polygons: remove it"),
+        ("draw = \"facets\"\nradius = 1\n", "`radius` means nothing to facets: remove it"),
     ] {
         let found = refused(&model(more));
         assert!(found.contains(what) && found.contains("line "), "{found}");
@@ -197,8 +201,8 @@ fn what_a_file_lacks_is_one_line_with_its_name() {
     let bare = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
                 property float z\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
     for (more, what) in [
-        ("draw = \"polygons\"\n", "there are no triangles to draw as polygons"),
-        ("draw = \"hybrid\"\nsplit = [1, 0, 0, 0]\n", "there are no triangles to draw as polygons"),
+        ("draw = \"polygons\"\n", "there are no triangles to draw"),
+        ("draw = \"hybrid\"\nsplit = [1, 0, 0, 0]\n", "there are no triangles to draw"),
         ("draw = \"ribbons\"\n", "there are no edges to draw as ribbons"),
         ("draw = \"tubes\"\n", "there are no edges to draw as tubes"),
     ] {

@@ -1,0 +1,175 @@
+//! The triangles of a mesh as elliptical surfels, one each.
+
+use super::{Derived, Origin, drop_nowhere, primitives};
+use crate::error::{Error, Result};
+use crate::memory;
+use crate::scene::{Cloud, Surfels};
+use glam::{DVec3, Vec3};
+use std::ops::{Add, Div};
+
+/// The triangles of a cloud as surfels, in their order: each the Steiner circumellipse, the ellipse of
+/// least area that holds the triangle. It has the triangle's plane and its centroid, goes through its
+/// corners, and has 4 pi / sqrt(27), about 2.4, times its area.
+///
+/// Of the corners a, b, c, in f64:
+///
+/// ```text
+///   place      g = (a + b + c) / 3
+///   tangents   p = c - g       q = (b - a) / sqrt(3)        two conjugate half axes
+///   radius     sqrt((p.p + q.q + h) / 2)                    the longer one of the ellipse's axes
+///              h = sqrt(d d + m m), d = p.p - q.q, m = 2 (p.q)
+///   normal     (b - a) x (c - a), divided by its length
+/// ```
+///
+/// each rounded to `f32` once; products x.y and lengths are sums in the order x, y, z. Colour and opacity are the means of the corners', ((a + b) + c) / 3 in
+/// `f32`. Normals, radii and tangents of the file are not looked at. A triangle without area becomes a
+/// surfel without a normal, which is dropped and counted.
+///
+/// # Errors
+/// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if the points have groups,
+/// which say nothing of triangles.
+pub fn facets(mut cloud: Cloud) -> Result<(Surfels, Derived)> {
+    primitives::some_triangles(&cloud)?;
+    cloud.check()?;
+    if cloud.groups.is_some() {
+        return Err(Error::Invalid("facets have no groups: draw points, or remove `group`".into()));
+    }
+    let nowhere = drop_nowhere(&mut cloud)?;
+    let count = cloud.triangles.len();
+    memory::ask(count as u64 * BYTES_A_FACET, || format!("{count} facets"))?;
+    let (surfels, mut dropped) = Surfels::new(ellipses(&cloud))?;
+    dropped.position += nowhere;
+    let (normals, radii) = (Origin::Triangles, Origin::Triangles);
+    Ok((surfels, Derived { normals, radii, dropped, dropped_primitives: 0 }))
+}
+
+/// What a facet takes, and its checks.
+const BYTES_A_FACET: u64 = 128;
+
+/// One complete point a triangle.
+fn ellipses(cloud: &Cloud) -> Cloud {
+    let Cloud { position, triangles, color, opacity, .. } = cloud;
+    let found: Vec<Facet> = triangles
+        .iter()
+        .map(|triangle| Facet::new(triangle.map(|i| position[i as usize].as_dvec3())))
+        .collect();
+    let color = color
+        .as_ref()
+        .map(|all| triangles.iter().map(|t| mean(t.map(|i| all[i as usize]))).collect());
+    let opacity = opacity
+        .as_ref()
+        .map(|all| triangles.iter().map(|t| mean(t.map(|i| all[i as usize]))).collect());
+    Cloud {
+        position: found.iter().map(|f| f.place).collect(),
+        normal: Some(found.iter().map(|f| f.normal).collect()),
+        radius: Some(found.iter().map(|f| f.radius).collect()),
+        tangents: Some(found.iter().map(|f| f.tangents).collect()),
+        color,
+        opacity,
+        ..Cloud::default()
+    }
+}
+
+fn mean<T: Add<Output = T> + Div<f32, Output = T>>([a, b, c]: [T; 3]) -> T {
+    (a + b + c) / 3.0
+}
+
+/// The surfel of a triangle.
+struct Facet {
+    place: Vec3,
+    tangents: [Vec3; 2],
+    radius: f32,
+    normal: Vec3,
+}
+
+impl Facet {
+    fn new([a, b, c]: [DVec3; 3]) -> Self {
+        let g = (a + b + c) / 3.0;
+        let (p, q) = (c - g, (b - a) / 3.0_f64.sqrt());
+        let (pp, qq, m) = (p.dot(p), q.dot(q), 2.0 * p.dot(q));
+        let d = pp - qq;
+        let h = (d * d + m * m).sqrt();
+        let across = (b - a).cross(c - a);
+        let length = across.length();
+        Self {
+            place: g.as_vec3(),
+            tangents: [p, q].map(|axis| axis.as_vec3()),
+            radius: ((pp + qq + h) / 2.0).sqrt() as f32,
+            normal: if length > 0.0 { (across / length).as_vec3() } else { Vec3::ZERO },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::elementary::{cos, sin};
+    use crate::number::random::unit;
+    use crate::scene::Groups;
+
+    /// The ellipse goes through the corners and its area is 4 pi / sqrt(27) of the triangle's: the
+    /// only such ellipse around the centroid.
+    #[test]
+    fn the_ellipse_is_that_of_steiner() {
+        for seed in 0..200 {
+            let at = |k: u64| f64::from(unit(seed, k)) * 8.0 - 4.0;
+            let corner = |k: u64| DVec3::new(at(3 * k), at(3 * k + 1), at(3 * k + 2));
+            let corners = [corner(0), corner(1), corner(2)];
+            let facet = Facet::new(corners);
+            let [u, v] = facet.tangents.map(|t| t.as_dvec3());
+            let across = u.cross(v);
+            for corner in corners {
+                // Coordinates in the frame of the two tangents.
+                let offset = corner - facet.place.as_dvec3();
+                let x = offset.cross(v).dot(across) / across.length_squared();
+                let y = u.cross(offset).dot(across) / across.length_squared();
+                let close = (x * x + y * y - 1.0).abs();
+                assert!(close < 1e-4, "{corners:?}: {close:e}");
+                assert!(offset.dot(facet.normal.as_dvec3()).abs() < 1e-5, "its plane");
+            }
+            let [a, b, c] = corners;
+            let area = (b - a).cross(c - a).length() / 2.0;
+            let ratio = std::f64::consts::PI * across.length() / area;
+            assert!((ratio - 4.0 * std::f64::consts::PI / 27.0_f64.sqrt()).abs() < 1e-4);
+            // The farthest point of the rim, by a search.
+            let rim = |i: u32| {
+                let angle = f64::from(i) * std::f64::consts::TAU / 1e4;
+                (u * cos(angle) + v * sin(angle)).length()
+            };
+            let farthest = (0..10_000).map(rim).max_by(f64::total_cmp).unwrap();
+            assert!((farthest / f64::from(facet.radius) - 1.0).abs() < 1e-5, "{corners:?}");
+        }
+    }
+
+    fn cloud() -> Cloud {
+        let p = |x: f32, y: f32| Vec3::new(x, y, 1.0);
+        Cloud {
+            position: vec![p(0.0, 0.0), p(3.0, 0.0), p(0.0, 3.0), p(6.0, 0.0), p(f32::NAN, 0.0)],
+            color: Some((0..5).map(|i| Vec3::splat(i as f32)).collect()),
+            opacity: Some(vec![0.0, 0.5, 1.0, 1.0, 1.0]),
+            triangles: vec![[0, 1, 2], [0, 1, 3], [1, 4, 2], [2, 1, 0]],
+            ..Cloud::default()
+        }
+    }
+
+    #[test]
+    fn a_triangle_is_a_surfel_or_counted() {
+        let (surfels, derived) = facets(cloud()).unwrap();
+        assert_eq!(surfels.position(), [Vec3::new(1.0, 1.0, 1.0); 2]);
+        assert_eq!(surfels.normal(), [Vec3::Z, -Vec3::Z], "by the order of the corners");
+        assert_eq!(surfels.color(), Some([Vec3::ONE; 2].as_slice()));
+        assert_eq!(surfels.opacity(), Some([0.5; 2].as_slice()));
+        // A point that is nowhere, with its triangle, and a triangle without area.
+        assert_eq!((derived.dropped.position, derived.dropped.normal), (1, 1));
+    }
+
+    #[test]
+    fn points_with_groups_and_clouds_without_triangles_are_refused() {
+        let grouped = Groups::new(vec![0, 0, 0, 1, 1], Vec::new(), vec![1.0; 2]).unwrap();
+        for cloud in
+            [Cloud { groups: Some(grouped), ..cloud() }, Cloud { triangles: Vec::new(), ..cloud() }]
+        {
+            assert!(matches!(facets(cloud), Err(Error::Invalid(_))));
+        }
+    }
+}
