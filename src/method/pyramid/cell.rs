@@ -94,19 +94,25 @@ impl<R: Real> Cell<R> {
         })
     }
 
-    /// The average of the attributes; `displacements` are those from the new cell's centre.
+    /// The average of the attributes, see [`super::pull`]; `displacements` are those from the new
+    /// cell's centre, and `first` is the foremost, whose kind the new cell has.
     pub(super) fn average(
         cells: &[Self; 4],
         displacements: [Vector2<R>; 4],
         mean: &Mean<R>,
-        kind: SampleKind,
+        first: usize,
     ) -> Self {
-        let vector = |of: fn(&Self) -> Vector3<R>| {
-            let v = [0, 1, 2, 3].map(|j| of(&cells[j]));
+        let vector = |v: [Vector3<R>; 4]| {
             Vector3::new(mean.of(v.map(|v| v.x)), mean.of(v.map(|v| v.y)), mean.of(v.map(|v| v.z)))
         };
+        let front = cells[first].tangent;
+        let tangents = cells.map(|cell| {
+            let (own, opposite) = (cell.tangent, cell.tangent.dot(front).lt(R::ZERO));
+            let turned = |v: R| R::select(opposite, -v, v);
+            Vector3::new(turned(own.x), turned(own.y), turned(own.z))
+        });
         Self {
-            kind,
+            kind: cells[first].kind,
             front: mean.of(cells.map(|cell| cell.front)),
             back: mean.of(cells.map(|cell| cell.back)),
             extent: mean.of(cells.map(|cell| cell.extent)),
@@ -114,8 +120,8 @@ impl<R: Real> Cell<R> {
                 mean.of(displacements.map(|d| d.x)),
                 mean.of(displacements.map(|d| d.y)),
             ),
-            normal: vector(|cell| cell.normal),
-            tangent: vector(|cell| cell.tangent),
+            normal: vector(cells.map(|cell| cell.normal)),
+            tangent: vector(tangents),
             color: [0, 1, 2].map(|c| mean.of(cells.map(|cell| cell.color[c]))),
         }
     }

@@ -11,7 +11,9 @@
 //! and the new cell's centre is inside it if the ellipse holds the offset `v_j`. Of the valid cells
 //! for which that is so the foremost and those whose intervals overlap with its own are averaged
 //! ([`crate::composite::mean`], weights 1): normal, tangent, radius, colour and `v_j`, which is the
-//! new displacement. The interval is the hull: the least front and the greatest back. If there is
+//! new displacement. `Decided:` a tangent is an axis, whose sign means nothing: each whose dot
+//! product with that of the foremost is < 0 is turned first. So tubes whose tangents have other
+//! signs have the same picture, bit for bit, unless two meet at right angles. The interval is the hull: the least front and the greatest back. If there is
 //! no such cell the new one is empty.
 //!
 //! `v_j` is exact: multiples of 1/2 below 2^17, as long as a cell is passed on alone.
@@ -99,6 +101,6 @@ pub fn merge<R: Real>(
     Cell {
         front: mean.least(finer.map(|cell| cell.front)),
         back: mean.greatest(finer.map(|cell| cell.back)),
-        ..Cell::average(finer, *offsets, &mean, finer[first].kind)
+        ..Cell::average(finer, *offsets, &mean, first)
     }
 }

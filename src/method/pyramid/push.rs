@@ -17,8 +17,8 @@
 //! ```
 //!
 //! Of the valid ones whose ellipse holds the offset `v_j`, the foremost and those whose intervals
-//! overlap with its own are averaged ([`crate::composite::mean`]): front, back, normal, tangent,
-//! radius, colour and `v_j`, with weight 1 or `exp(-2 (form_j / square_j))`, see [`Weights`].
+//! overlap with its own are averaged ([`crate::composite::mean`], tangents turned as in the pull):
+//! front, back, normal, tangent, radius, colour and `v_j`, with weight 1 or `exp(-2 (form_j / square_j))`, see [`Weights`].
 //! `Decided:` "analogously to the pull phase" (section 3.3) means the test of depth too: without it
 //! front and back surface run into each other at every silhouette.
 //!
@@ -153,5 +153,5 @@ pub fn merge<R: Real>(
 ) -> Cell<R> {
     let of = |j: usize| if takes[j] { weight(&coarser[j], offsets[j], weights) } else { R::ONE };
     let mean = Mean::new(takes, [0, 1, 2, 3].map(of));
-    Cell::average(coarser, *offsets, &mean, coarser[first].kind)
+    Cell::average(coarser, *offsets, &mean, first)
 }

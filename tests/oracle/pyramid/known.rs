@@ -237,3 +237,47 @@ fn pyramid_directions_that_cancel() {
         assert_eq!(value(&frame, "Z", 27)[0], 4.0, "{name}");
     }
 }
+
+/// An arc of tubes, its tangents with the signs that agree or with any: one picture, bit for bit.
+#[test]
+fn pyramid_the_sign_of_a_tangent_means_nothing() {
+    let mut dice = Dice(24);
+    let angles: Vec<f32> = (0..24_u8).map(|i| 0.1 * f32::from(i)).collect();
+    let arc = |signs: Vec<f32>| {
+        let at = |a: &f32| Vec3::new(24.0 * a.cos(), 24.0 * a.sin(), -40.0 + 6.0 * a.sin());
+        let along = |a: &f32| Vec3::new(-24.0 * a.sin(), 24.0 * a.cos(), 6.0 * a.cos()).normalize();
+        let vertices = Vertices {
+            position: angles.iter().map(at).collect(),
+            direction: angles.iter().zip(signs).map(|(a, sign)| along(a) * sign).collect(),
+            radius: vec![4.0; angles.len()],
+            color: None,
+        };
+        let edges = (1..24).map(|i| [i - 1, i]).collect();
+        let tubes = Indexed::new(vertices, edges).expect("an arc").0;
+        let lights = vec![splatref::scene::Light::DEFAULT];
+        Scene { lights, ..with(Primitives { tubes, ..Primitives::default() }) }
+    };
+    let agreed = arc(vec![1.0; 24]);
+    let lots = [
+        (0..24).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect(),
+        (0..24).map(|_| if dice.below(2) == 0 { 1.0 } else { -1.0 }).collect::<Vec<_>>(),
+    ];
+    for signs in lots {
+        let frames = [&agreed, &arc(signs)]
+            .map(|scene| render::<f32>(scene, &plan([64, 64]), &Settings::default()));
+        let painted = filled(&frames[0]);
+        assert!(painted.len() > 400, "{}", painted.len());
+        assert_eq!(painted, filled(&frames[1]));
+        let mut turned = 0;
+        for i in painted {
+            for name in ["", "Z", "normal"] {
+                let [a, b] = [0, 1].map(|k| value(&frames[k], name, i));
+                assert_eq!(a, b, "{name} of {i}");
+            }
+            let [a, b] = [0, 1].map(|k| value(&frames[k], "tangent", i));
+            turned += usize::from(a != b);
+            assert!(a == b || a == b.map(|v| 0.0 - v), "{a:?} {b:?}");
+        }
+        assert!(turned > 50, "{turned}");
+    }
+}

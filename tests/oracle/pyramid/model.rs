@@ -258,9 +258,34 @@ fn average<const P: u32>(
         radius: number(&|n| Num::exact(n.cell.radius)),
         displacement: [0, 1].map(|i| number(&|n| n.v[i])),
         normal: vector(&|c| c.normal),
-        tangent: vector(&|c| c.tangent),
+        tangent: axes(all, (first, takes), weights),
         color: vector(&|c| c.color),
     }
+}
+
+/// The average of tangents, each on the side of the first; where rounding decides the side, either.
+fn axes<const P: u32>(
+    all: &[Neighbour<P>; 4],
+    (first, takes): (usize, [bool; 4]),
+    weights: [Num<P>; 4],
+) -> N3<P> {
+    let front: N3<P> = all[first].cell.tangent.map(Num::exact);
+    let sides: [Option<bool>; 4] = std::array::from_fn(|j| {
+        let own: N3<P> = all[j].cell.tangent.map(Num::exact);
+        let dot = (own[0] * front[0] + own[1] * front[1]) + own[2] * front[2];
+        if all[j].cell.tangent == [0.0; 3] { Some(false) } else { dot.less(Num::ZERO) }
+    });
+    [0, 1, 2].map(|axis| {
+        let term = |j: usize| {
+            let v: f64 = all[j].cell.tangent[axis];
+            match sides[j] {
+                Some(true) => Num::exact(-v),
+                Some(false) => Num::exact(v),
+                None => Num { v: 0.0, e: v.abs() },
+            }
+        };
+        mean(takes, weights, std::array::from_fn(term))
+    })
 }
 
 /// What the cell (x, y) of the next coarser level may be.

@@ -19,6 +19,11 @@ pub(super) const TILT: usize = 9;
 /// The first number that not every scene has.
 pub(super) const FURTHER: usize = 11;
 
+/// The first number of the tangent, in a scene with tubes; the end, in one without.
+pub(super) fn tangent(layout: &RowLayout, tubes: bool) -> usize {
+    layout.attributes - if tubes { 3 } else { 0 }
+}
+
 /// [`SampleKind::Tube`] as a number.
 pub(super) const TUBE: f32 = SampleKind::Tube as u8 as f32;
 

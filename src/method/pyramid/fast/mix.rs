@@ -31,6 +31,8 @@ pub(super) struct Mix {
     /// 1 divided by the sum of the weights.
     scale: Lanes,
     pub(super) kind: Lanes,
+    /// Which cell is the foremost, as a number.
+    first: Lanes,
 }
 
 impl FourCells {
@@ -41,7 +43,7 @@ impl FourCells {
     pub(super) fn mix<const GAUSSIAN: bool, const TUBES: bool>(&self) -> Mix {
         let mut weights = [[0.0; LANES]; 4];
         let mut distances = [[0.0; LANES]; 4];
-        let mut kinds = [0.0; LANES];
+        let (mut kinds, mut firsts) = ([0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {
             // -- Which ellipses hold the centre of the new cell
             let mut fronts = [0.0; 4];
@@ -57,14 +59,16 @@ impl FourCells {
                 distances[j][i] = if GAUSSIAN { form / ellipse.square } else { 0.0 };
             }
             // -- The foremost of them, and where its interval ends
-            let (mut nearest, mut end, mut kind) = (f32::INFINITY, f32::NEG_INFINITY, 0.0);
+            let (mut nearest, mut end) = (f32::INFINITY, f32::NEG_INFINITY);
+            let (mut kind, mut first) = (0.0, 0.0);
             for j in 0..4 {
                 let nearer = fronts[j] < nearest;
                 nearest = if nearer { fronts[j] } else { nearest };
                 end = if nearer { self.back[j][i] } else { end };
                 kind = if nearer { self.kind[j][i] } else { kind };
+                first = if nearer { j as f32 } else { first };
             }
-            kinds[i] = kind;
+            (kinds[i], firsts[i]) = (kind, first);
             // -- Those that begin before that end
             for j in 0..4 {
                 let alike = !TUBES | ((self.kind[j][i] == TUBE) == (kind == TUBE));
@@ -83,7 +87,7 @@ impl FourCells {
         }
         let [a, b, c, d] = &weights;
         let scale = each(|i| 1.0 / ((a[i] + b[i]) + (c[i] + d[i])));
-        Mix { weights, scale, kind: kinds }
+        Mix { weights, scale, kind: kinds, first: firsts }
     }
 
     /// From the new cell's centre to those of the ellipses, along an axis.
@@ -137,6 +141,30 @@ impl Mix {
             average[i] = (sum * self.scale[i]).at_least(least).at_most(greatest) + 0.0;
         }
         average
+    }
+
+    /// Tangents of the four cells, by axis, on the side of that of the foremost; see
+    /// [`super::super::Cell::average`].
+    #[inline(always)]
+    pub(super) fn aligned(&self, tangent: [[Lanes; 4]; 3]) -> [[Lanes; 4]; 3] {
+        let mut aligned = tangent;
+        for i in 0..LANES {
+            let mut front = [0.0; 3];
+            for axis in 0..3 {
+                for j in 0..4 {
+                    let own = tangent[axis][j][i];
+                    front[axis] = if self.first[i] == j as f32 { own } else { front[axis] };
+                }
+            }
+            for j in 0..4 {
+                let [x, y, z] = [tangent[0][j][i], tangent[1][j][i], tangent[2][j][i]];
+                let opposite = (x * front[0] + y * front[1]) + z * front[2] < 0.0;
+                aligned[0][j][i] = if opposite { -x } else { x };
+                aligned[1][j][i] = if opposite { -y } else { y };
+                aligned[2][j][i] = if opposite { -z } else { z };
+            }
+        }
+        aligned
     }
 
     /// The least of a number.

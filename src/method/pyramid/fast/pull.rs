@@ -1,6 +1,6 @@
 //! The pull phase in lanes; see [`super::super::pull`].
 
-use super::level::{BACK, CellLevel, FRONT, FURTHER, KIND, NORMAL, PLACE, RADIUS, TILT};
+use super::level::{BACK, CellLevel, FRONT, FURTHER, KIND, NORMAL, PLACE, RADIUS, TILT, tangent};
 use super::mix::{FourCells, pairs, tilts};
 use crate::frame::Exec;
 use crate::method::projection::fast::RowLayout;
@@ -84,8 +84,13 @@ vectorized!(
             (0..3).for_each(|axis| put(NORMAL + axis, &normal[axis]));
             let tilt = tilts(&normal);
             (0..2).for_each(|axis| put(TILT + axis, &tilt[axis]));
-            for attribute in FURTHER..layout.attributes {
+            let tangent = tangent(layout, TUBES);
+            for attribute in FURTHER..tangent {
                 put(attribute, &mix.of(&number(attribute)));
+            }
+            if TUBES {
+                let aligned = mix.aligned([0, 1, 2].map(|axis| number(tangent + axis)));
+                (0..3).for_each(|axis| put(tangent + axis, &mix.of(&aligned[axis])));
             }
         }
     }

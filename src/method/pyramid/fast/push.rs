@@ -6,7 +6,7 @@
     reason = "a lane is an index into several arrays, and such a loop becomes vectors"
 )]
 
-use super::level::{BACK, CellLevel, FRONT, FURTHER, KIND, NORMAL, PLACE, RADIUS, TILT};
+use super::level::{BACK, CellLevel, FRONT, FURTHER, KIND, NORMAL, PLACE, RADIUS, TILT, tangent};
 use super::mix::{FourCells, Mix, pairs, tilts};
 use crate::frame::Exec;
 use crate::method::projection::fast::{PAD, RowLayout};
@@ -126,8 +126,17 @@ vectorized!(
             }
             // -- What every level has of them
             put(fine, at(KIND), &cells, |_, new| new.mix.kind);
-            for attribute in [FRONT].into_iter().chain(FURTHER..layout.attributes) {
+            let tangent = tangent(layout, TUBES);
+            for attribute in [FRONT].into_iter().chain(FURTHER..tangent) {
                 put(fine, at(attribute), &cells, |odd, new| new.mix.of(&number(attribute, odd)));
+            }
+            if TUBES {
+                for axis in 0..3 {
+                    put(fine, at(tangent + axis), &cells, |odd, new| {
+                        let all = [0, 1, 2].map(|axis| number(tangent + axis, odd));
+                        new.mix.of(&new.mix.aligned(all)[axis])
+                    });
+                }
             }
             let mut normal = [[[0.0; LANES]; 3]; 2];
             for axis in 0..3 {
