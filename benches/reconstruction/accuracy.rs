@@ -22,11 +22,11 @@ use splatref::verify::metrics::{Region, coverage, regions, summary};
 
 /// What is measured of a picture.
 #[derive(Clone, Copy, Debug, Default)]
-struct Measures {
-    rmse: f64,
+pub(super) struct Measures {
+    pub(super) rmse: f64,
     ssim: f64,
     inside: f64,
-    holes: f64,
+    pub(super) holes: f64,
     spill: f64,
     edge: f64,
     behind: f64,
@@ -126,7 +126,7 @@ fn radius_in_pixels(subject: &Subject, frame: &Frame<f32>) -> f32 {
 }
 
 /// The measures of a picture against a reference.
-fn measure(subject: &Subject, shot: &Shot, reference: &Shot) -> Measures {
+pub(super) fn measure(subject: &Subject, shot: &Shot, reference: &Shot) -> Measures {
     let width = shot.alpha.width() as usize;
     let [a, b] = [shot, reference].map(|shot| Image::from(&shot.to_frame()));
     let (rmse, ssim) =

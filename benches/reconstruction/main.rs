@@ -6,7 +6,7 @@
 //! `--pictures DIR` every picture is kept there as a PNG.
 //! Pictures have 800 x 600 pixels, `f32`, from the default cameras, lit by the default headlight.
 //! Where the true picture is known it is **lit too**, in f64 by the same shader, so that errors of
-//! normals count as they are seen. Sections: [`accuracy`], [`stability`], [`reach`]; each states
+//! normals count as they are seen. Sections: [`accuracy`], [`levels`], [`mirror`], [`stability`], [`reach`]; each states
 //! what it measures.
 //!
 //! Scenes are shapes of 10 k and 200 k surfels, some under a parallel camera too, and scans: as
@@ -17,6 +17,8 @@
 mod accuracy;
 #[path = "../common/mod.rs"]
 mod common;
+mod levels;
+mod mirror;
 mod reach;
 mod stability;
 
@@ -56,6 +58,8 @@ fn main() -> Result<()> {
     let mut subjects = shapes(&bench.arguments.pattern)?;
     subjects.extend(bench.scans()?);
     bench.accuracy(&subjects)?;
+    bench.levels(&subjects)?;
+    bench.mirror(&subjects)?;
     bench.stability(&subjects)?;
     bench.reach()
 }
@@ -116,9 +120,12 @@ fn methods() -> Vec<(&'static str, Method)> {
         pyramid("occluded = outside", Weights::Gaussian, Occlusion::Outside),
         pyramid("box", Weights::Box, Occlusion::Behind),
         pyramid("box, outside", Weights::Box, Occlusion::Outside),
-        template("3 x 3", 3, LevelRule::Published),
-        template("5 x 5", 5, LevelRule::Published),
-        template("7 x 7", 7, LevelRule::Published),
+        template("3, radius", 3, LevelRule::Radius),
+        template("5, radius", 5, LevelRule::Radius),
+        template("7, radius", 7, LevelRule::Radius),
+        template("3, diameter", 3, LevelRule::Diameter),
+        template("5, diameter", 5, LevelRule::Diameter),
+        template("7, diameter", 7, LevelRule::Diameter),
         template("3, covering", 3, LevelRule::Covering),
         template("5, covering", 5, LevelRule::Covering),
         template("7, covering", 7, LevelRule::Covering),

@@ -24,8 +24,18 @@ const SIDE: u32 = 256;
 const PLACES: u64 = 64;
 const TILTS: [f64; 3] = [0.0, 45.0, 75.0];
 const RADII: [f32; 10] = [0.25, 0.5, 1.0, 1.5, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
-const METHODS: [&str; 7] =
-    ["pyramid", "3 x 3", "5 x 5", "7 x 7", "3, covering", "5, covering", "7, covering"];
+const METHODS: [&str; 10] = [
+    "pyramid",
+    "3, radius",
+    "5, radius",
+    "7, radius",
+    "3, diameter",
+    "5, diameter",
+    "7, diameter",
+    "3, covering",
+    "5, covering",
+    "7, covering",
+];
 
 /// Pixels of discs, and how many of them are painted; and painted ones beyond.
 #[derive(Default)]

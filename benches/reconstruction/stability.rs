@@ -36,7 +36,7 @@ const SCENES: [&str; 9] = [
     "koala",
 ];
 const METHODS: [&str; 6] =
-    ["pyramid", "occluded = outside", "5 x 5", "3, covering", "5, covering", "7, covering"];
+    ["pyramid", "occluded = outside", "3, radius", "5, radius", "5, diameter", "7, diameter"];
 
 impl Bench {
     /// The table.

@@ -25,6 +25,12 @@
 //!   else                        blended: added to the sums; the front if t < t_f
 //! ```
 //!
+//! The result depends on the order: of three centres, each within the sum of radii of the next in
+//! depth, all are blended if the front comes nearer by and by, and two if the nearest comes first. So
+//! a mirrored scene gives another picture (bench `reconstruction`, `mirror`): in six scenes 4 to 11
+//! per mille of the pixels of a 5 x 5 template show a normal that is more than a degree off, at worst
+//! by 60 degrees.
+//!
 //! Sums of w, w t, w normal and w colour. `Decided:` the test is against the nearest centre, as in
 //! the propagation; the paper's words leave open what depth a blended pixel has. `Decided:` the
 //! least weight, so that the rim, d = 1, is painted with a defined colour; no `f32` below 1 is

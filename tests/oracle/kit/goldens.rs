@@ -67,7 +67,13 @@ taken! {
         "mkc08_odd_size_box",
         "mkc08_sphere",
     ];
-    template::Settings, Template: ["moc08_f64_7", "moc08_odd_size_published", "moc08_sphere_3"];
+    template::Settings, Template: [
+        "moc08_covering_3",
+        "moc08_f64_7",
+        "moc08_odd_size_radius",
+        "moc08_sphere_3",
+        "moc08_torus_5",
+    ];
 }
 
 /// The goldens of a method, ready to be drawn; a test that takes them has them all.

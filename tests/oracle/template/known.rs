@@ -59,8 +59,13 @@ fn highest(frame: &Frame<f32>) -> usize {
 fn a_radius_that_just_fits_stays() {
     for (k, h) in [(3, 1.0), (5, 2.0), (7, 3.0)] {
         for level in 0..4 {
-            for (levels, reach) in [(LevelRule::Covering, h), (LevelRule::Published, 2.0 * h + 1.0)]
-            {
+            let rules = [
+                (LevelRule::Radius, 2.0 * h + 1.0),
+                (LevelRule::Diameter, h + 0.5),
+                (LevelRule::Covering, h),
+                (LevelRule::BySize, if k == 3 { 3.0 } else { h + 0.5 }),
+            ];
+            for (levels, reach) in rules {
                 let settings = Settings { levels, ..settings(k) };
                 let fits = reach * (level as f32).exp2();
                 assert_eq!(settings.reach(level), fits);
@@ -251,7 +256,7 @@ fn the_count_ends_at_255_and_the_sums_do_not() {
         }
     }
     assert_eq!(discs.len(), 280);
-    let settings = Settings { levels: LevelRule::Published, ..settings(7) };
+    let settings = Settings { levels: LevelRule::Radius, ..settings(7) };
     let frame = drawn::<f32>([512, 512], &discs, &settings);
     assert_eq!(number(&frame, "gathered.count", pixel), 255.0);
     let weight = f64::from(number(&frame, "weight", pixel));

@@ -169,7 +169,7 @@ fn centers(discs: &[Dot], size: u32, settings: Settings) -> Option<usize> {
 #[test]
 fn larger_templates_tend_to_merge_less() {
     let mut dice = Dice(17);
-    for levels in [LevelRule::Covering, LevelRule::Published] {
+    for levels in [LevelRule::Radius, LevelRule::Diameter, LevelRule::Covering] {
         let (mut total, mut rises) = ([0; 3], [0; 2]);
         for _ in 0..60 {
             let discs = crowd(&mut dice, 32, 150);

@@ -111,8 +111,10 @@ impl<const P: u32> Template<P> {
     pub(crate) fn stays(&self, level: usize, center: &Center) -> bool {
         let k = f64::from(self.settings.size);
         let cells = match self.settings.levels {
+            LevelRule::Radius => k,
+            LevelRule::Diameter => k / 2.0,
+            LevelRule::BySize => k / if k == 3.0 { 1.0 } else { 2.0 },
             LevelRule::Covering => (k - 1.0) / 2.0,
-            LevelRule::Published => k,
         };
         level == self.top() || center.extent <= cells * (level as f64).exp2()
     }

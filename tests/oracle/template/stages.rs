@@ -219,9 +219,9 @@ impl<R: Exact, const P: u32> TemplateStages<'_, R, P> {
     }
 }
 
-/// All templates under both rules.
+/// All templates under all rules.
 pub(crate) fn all_settings(cull: bool) -> Vec<Settings> {
-    let rules = [LevelRule::Covering, LevelRule::Published];
+    let rules = [LevelRule::Radius, LevelRule::Diameter, LevelRule::Covering];
     let sizes = [3, 5, 7].into_iter();
     sizes.flat_map(|size| rules.map(|levels| Settings { size, levels, cull })).collect()
 }
