@@ -20,7 +20,7 @@ pub struct SplatSettings {
 impl SplatSettings {
     /// The default, seen from both sides: the far side of a transparent object is seen.
     pub const BOTH_SIDES: Self =
-        Self { kernel: Kernel::DEFAULT, epsilon: Epsilon::MedianRadii(1.0), cull: false };
+        Self { kernel: Kernel::DEFAULT, epsilon: Epsilon::DEFAULT, cull: false };
 
     /// Whether the numbers are in range.
     ///
@@ -112,14 +112,15 @@ pub enum Epsilon {
     MedianRadii(f32),
 }
 
-impl Default for Epsilon {
-    /// One median radius.
-    fn default() -> Self {
-        Self::MedianRadii(1.0)
-    }
-}
-
 impl Epsilon {
+    /// Two median radii. `Decided:` by measurement against true pictures (bench `epsilon`, six
+    /// shapes and six scans in three sizes): scans whose sampling is uneven, or whose surface is
+    /// curved within a radius, are torn below; above, surfaces that lie closely behind each other
+    /// bleed into one another, as touching balls do at every epsilon. `Decided:` the median is the
+    /// unit. With the radius of each splat as the unit the RMSE of the six scans at two units was 7 %
+    /// less in one, 2 % less in another, and within 1 % in the rest.
+    pub const DEFAULT: Self = Self::MedianRadii(2.0);
+
     /// The depth in world units; the product with the median is rounded once.
     #[must_use]
     pub fn resolve(&self, surfels: &Surfels) -> f32 {
