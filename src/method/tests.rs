@@ -3,6 +3,7 @@
 mod explanations;
 mod extremes;
 mod stages;
+mod ties;
 
 use crate::frame::{Frame, Plane, Samples};
 use crate::number::Exact;

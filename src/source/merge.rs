@@ -10,7 +10,19 @@ use glam::{DVec3, Vec3};
 /// other.
 ///
 /// What only some of them have is filled in for the others: colour by `color`, opacity by 1, the
-/// half axes of a disc by two perpendicular ones of the length of its radius.
+/// half axes of a disc by two perpendicular ones of the length of its radius. These half axes are,
+/// in f64, with n the normal and r the radius of the surfel as they are, in `f32`:
+///
+/// ```text
+///   a    = the coordinate axis, of components 0 and 1, along which n is shortest:
+///          x if |n.x| <= |n.y| and |n.x| <= |n.z|, else y if |n.y| <= |n.z|, else z
+///   c    = a x n                      (a.y n.z - n.y a.z, a.z n.x - n.z a.x, a.x n.y - n.x a.y)
+///   u    = c (1 / |c|)                |c| = sqrt((c.x c.x + c.y c.y) + c.z c.z)
+///   v    = n x u                      not divided by its length
+///   half axes u r, then v r           each component times r, rounded to f32 once
+/// ```
+///
+/// u x v points along n. A single cloud is left as it is: nothing is filled in.
 #[must_use]
 pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
     let colored = clouds.iter().any(|c| c.color.is_some());
@@ -92,10 +104,7 @@ fn append<T: Clone>(to: &mut Option<Vec<T>>, values: Option<Vec<T>>, n: usize, m
     }
 }
 
-/// Two perpendicular half axes of a disc, u x v along its normal, in f64 and rounded once.
-///
-/// The first is perpendicular to the coordinate axis along which the normal is shortest; ties go to
-/// the earlier axis.
+/// Two perpendicular half axes of a disc, see [`merge`].
 fn disc(normal: Vec3, radius: f32) -> [Vec3; 2] {
     let n = normal.as_dvec3();
     let [x, y, z] = normal.abs().to_array();
