@@ -2,6 +2,7 @@
 
 mod explanations;
 mod extremes;
+mod planes;
 mod stages;
 mod ties;
 
