@@ -155,6 +155,34 @@ mod tests {
     }
 
     #[test]
+    fn half_axes_have_the_bits_of_their_formula() {
+        let third = 1.0_f32 / 3.0_f32.sqrt();
+        let cases = [
+            (Vec3::splat(third), 0),
+            (Vec3::Z, 0),
+            (-Vec3::X, 1),
+            (Vec3::new(0.6, -0.8, 0.0), 2),
+            (Vec3::new(0.48, 0.6, -0.64), 0),
+            (Vec3::new(-0.64, 0.48, 0.6), 1),
+            (Vec3::new(0.6, 0.48, 0.48), 1),
+        ];
+        for (normal, shortest) in cases {
+            let n = normal.to_array().map(f64::from);
+            let mut axis = [0.0; 3];
+            axis[shortest] = 1.0;
+            let cross = |a: [f64; 3], b: [f64; 3]| {
+                [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]]
+            };
+            let c = cross(axis, n);
+            let inverse = 1.0 / ((c[0] * c[0] + c[1] * c[1]) + c[2] * c[2]).sqrt();
+            let u = c.map(|component| component * inverse);
+            let bits = |half: [f64; 3]| half.map(|c| ((c * f64::from(0.3_f32)) as f32).to_bits());
+            let found = disc(normal, 0.3).map(|half| half.to_array().map(f32::to_bits));
+            assert_eq!(found, [bits(u), bits(cross(n, u))], "{normal}");
+        }
+    }
+
+    #[test]
     fn primitives_are_joined_kind_by_kind() {
         let line = |x: f32, color: Option<Vec3>| {
             let vertices = Vertices {

@@ -18,7 +18,7 @@
 //!
 //! The plane `margin` says how far the closest decision at a pixel was from flipping. The unit is a
 //! step between neighbouring numbers of the arithmetic, `ulps(a, b)` of
-//! [`Real::ulps_to`](crate::number::Real::ulps_to). Each distance is rounded to `f32`.
+//! [`ulps_to`](crate::number::Exact::ulps_to). Each distance is rounded to `f32`.
 //!
 //! A fragment is asked if its splat is drawn ([`Fate::Visible`](crate::splat::Fate)) and if the
 //! [bounds](mod@crate::splat::bounds) of the splat hold the pixel. With q, the clamped nearness w and

@@ -107,6 +107,9 @@
 //!       position = (low.x + (column + e(s)) dx, low.y + (row + f(s)) dy, z)
 //! ```
 
+#[cfg(test)]
+mod rebuilt;
+
 use crate::error::Result;
 use crate::number::random;
 use crate::scene::{Cloud, Surfels};
