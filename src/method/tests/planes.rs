@@ -14,6 +14,9 @@ const PAGE: &str = include_str!("../planes.md");
 /// The line of a row.
 fn line(stage: &Stage, row: &PlaneRow) -> String {
     let PlaneRow { name, unit, meaning, .. } = row;
+    // Formulas as code: an underscore is markup else.
+    let word = |word: &str| if word.contains('_') { format!("`{word}`") } else { word.to_owned() };
+    let meaning = meaning.split(' ').map(word).collect::<Vec<_>>().join(" ");
     let name = if name.is_empty() { "no name".to_owned() } else { format!("`{name}`") };
     let (holds, when) = (row.holds.words(), row.when.words());
     format!("| {} | {name} | {holds} | {unit} | {when} | {meaning} |\n", stage.name)

@@ -30,7 +30,7 @@
 //! decide, not nearnesses: the depth is t = 1/w (or -w under an orthographic camera), rounded to
 //! the number type, so that two groups of different nearness can tie. Of equal depths the lower
 //! surfel index wins ([`crate::composite::decide::before_or_lower`]). A group without a fragment has
-//! the depth +inf and the surfel 0xFFFF_FFFF.
+//! the depth +inf and the surfel `0xFFFF_FFFF`.
 //!
 //! `Decided:` within a group the depth test is the one of the bins. A fragment that is nearer than
 //! the layer before, but in the same bin, is dropped, and leaves no depth. So `Z` can be deeper than

@@ -18,6 +18,9 @@ const PALETTE: [V; 8] = [
     [0.375, 0.1875, 0.625],
 ];
 
+/// Low, high, z, normal, colour.
+type Plate = ([f64; 2], [f64; 2], f64, V, V);
+
 /// Surfels as the page makes them: position, normal, radius, colour.
 struct Page {
     seed: u64,
@@ -122,8 +125,7 @@ impl Page {
         }
     }
 
-    /// Plates: low, high, z, normal, colour.
-    fn plates(&mut self, plates: &[([f64; 2], [f64; 2], f64, V, V)], count: f64) {
+    fn plates(&mut self, plates: &[Plate], count: f64) {
         let size = |low: [f64; 2], high: [f64; 2]| [high[0] - low[0], high[1] - low[1]];
         let mut area = 0.0;
         for &(low, high, ..) in plates {
