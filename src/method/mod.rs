@@ -12,6 +12,8 @@
 //! - [`pyramid`]: pull-push interpolation, with ribbons, tubes and polygons \[MKC08\].
 //! - [`template`]: reconstruction with templates of k x k pixels \[MOC08\].
 //!
+//! [`mod@planes`] lists the planes that each of them leaves.
+//!
 //! [`mod@projection`] is a scene as one sample a pixel, which the last two begin with.
 //!
 //! # The files of a method
@@ -48,6 +50,7 @@ mod fragment;
 mod given;
 pub mod peeling;
 mod picture;
+pub mod planes;
 mod prepare;
 pub mod projection;
 pub mod pyramid;

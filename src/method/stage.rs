@@ -86,6 +86,24 @@ impl Holds {
     }
 }
 
+impl When {
+    /// The condition in words, those of [`mod@super::planes`].
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Always => "always",
+            Self::Lit => "lit",
+            Self::Tubes => "tubes",
+            Self::Stages => "stages",
+            Self::Colored => "stages, colours",
+            Self::StagesOfTubes => "stages, tubes",
+            Self::Settings => "stages, setting",
+            Self::Whole => "stages, whole",
+            Self::Alone => "alone",
+        }
+    }
+}
+
 impl PlaneRow {
     /// A row.
     #[must_use]

@@ -2,7 +2,9 @@
 
 mod explanations;
 mod extremes;
+mod planes;
 mod stages;
+mod ties;
 
 use crate::frame::{Frame, Plane, Samples};
 use crate::number::Exact;

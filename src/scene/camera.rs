@@ -10,6 +10,21 @@
 //!   orthographic  X = cx + fx x        fx, fy in pixels per world unit
 //!                 Y = cy - fy y
 //! ```
+//!
+//! # Arithmetic
+//!
+//! A camera is computed in f64, each operation rounded, in the order of the formulas of
+//! [`Camera::new`], [`Camera::framing`] and [`Camera::eye`]. No operation is fused. For vectors in
+//! f64
+//!
+//! ```text
+//!   |a|    = sqrt((a.x a.x + a.y a.y) + a.z a.z)
+//!   a x b  = (a.y b.z - b.y a.z, a.z b.x - b.z a.x, a.x b.y - b.x a.y)
+//!   unit a = a (1 / |a|)                            each component times one quotient
+//! ```
+//!
+//! and the quotient or product of a vector and a number is taken component by component. The fields
+//! of [`Camera`] are rounded to `f32` at the end, once.
 
 use crate::error::{Error, Result};
 use glam::{DMat4, DVec3, Mat4};
@@ -24,6 +39,17 @@ pub enum Projection {
 }
 
 /// The opening of a camera, in the terms a person gives it.
+///
+/// The lens gives the scale, [`Camera::fx`] and [`Camera::fy`] alike, for a picture of `height`
+/// pixels; computed in f64 and rounded to `f32` once:
+///
+/// ```text
+///   FieldOfView(d)    (height / 2) / tan((d (PI / 180)) / 2)
+///   Focal(p)          p
+///   Orthographic(u)   height / u
+/// ```
+///
+/// PI / 180 is the quotient in f64. The tangent is [`crate::number::elementary::tan`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lens {
     /// Vertical field of view in degrees, in (0, 180).
@@ -79,9 +105,25 @@ pub const MAX_DISTANCE: f64 = 1e38;
 impl Camera {
     /// A camera at `pose`, the principal point in the middle of the picture.
     ///
-    /// Everything is computed in f64 and rounded once. The near plane is at 1/1024 of the distance
-    /// from eye to target. An `up` whose largest component is not in [1e-100, 1e100] is divided by
-    /// this component first.
+    /// The near plane is at 1/1024 of the distance from eye to target. In f64, in the terms of the
+    /// [module](self#arithmetic):
+    ///
+    /// ```text
+    ///   distance = |target - eye|
+    ///   b = (eye - target) / distance                      towards the viewer: +z of view space
+    ///   u = up, or up / m unless 1e-100 <= m <= 1e100       m = the largest |component| of up
+    ///   r = unit (u x b)                                   right: +x
+    ///   v = b x r                                          up: +y
+    ///   near = distance / 1024      cx = width / 2      cy = height / 2      fx, fy: see Lens
+    /// ```
+    ///
+    /// The rows of the view matrix are those of r, v and b, and (0, 0, 0, 1). The row of a is
+    ///
+    /// ```text
+    ///   a.x + 0    a.y + 0    a.z + 0    ((a.x (-eye.x) + a.y (-eye.y)) + a.z (-eye.z)) + 0
+    /// ```
+    ///
+    /// (+ 0 turns a -0 into +0, and is nothing else).
     ///
     /// # Errors
     /// [`Error::Invalid`] if the picture has no pixels or more than [`MAX_EXTENT`] a side or
@@ -142,7 +184,18 @@ impl Camera {
     ///
     /// The sphere touches the nearer pair of picture edges, with a margin of 5 %. `lens` must be
     /// [`Lens::FieldOfView`] or [`Lens::Focal`] for a perspective camera; the height of
-    /// [`Lens::Orthographic`] is kept.
+    /// [`Lens::Orthographic`] is kept. In f64, in the terms of the [module](self#arithmetic), with
+    /// the scale of the lens as rounded to `f32`:
+    ///
+    /// ```text
+    ///   R = radius 1.05 if radius > 0, else 1
+    ///   g = (the lesser of width and height / 2) / scale        tangent of half the opening
+    ///   distance = (R sqrt(1 + g g)) / g                        orthographic: 2 R
+    ///   eye = center + (unit from) distance
+    ///   up = -z if from.x and from.z are 0, else +y             -z is (-0, -0, -1)
+    /// ```
+    ///
+    /// Then [`Camera::new`] of this eye, with the target `center`.
     ///
     /// # Errors
     /// As [`Camera::new`].
@@ -225,7 +278,20 @@ impl Camera {
         [self.width, self.height]
     }
 
-    /// The position of the camera in world space, in f64.
+    /// The position of the camera in world space, in f64: the last column of the inverse of the
+    /// view matrix, whose last row is (0, 0, 0, 1).
+    ///
+    /// With V(i,j) the element of row i and column j, counted from 0, from `f32`:
+    ///
+    /// ```text
+    ///   a = V12 V23 - V13 V22      b = V02 V23 - V03 V22      c = V02 V13 - V03 V12
+    ///   d = V11 V23 - V13 V21      e = V01 V23 - V03 V21      f = V01 V13 - V03 V11
+    ///   x = -((V01 a - V11 b) + V21 c)
+    ///   y =   (V00 a - V10 b) + V20 c
+    ///   z = -((V00 d - V10 e) + V20 f)
+    ///   D = (V00 (V11 V22 - V12 V21) + V10 (-(V01 V22 - V21 V02))) + V20 (V01 V12 - V11 V02)
+    ///   eye = (x, y, z) (1 / D)                                   each component times the quotient
+    /// ```
     #[must_use]
     pub fn eye(&self) -> DVec3 {
         self.view_from_world.as_dmat4().inverse().w_axis.truncate()
@@ -253,3 +319,6 @@ fn scale(height: u32, lens: Lens) -> Result<(Projection, f32)> {
     }
     Ok((projection, scale as f32))
 }
+
+#[cfg(test)]
+mod tests;

@@ -10,7 +10,19 @@ use glam::{DVec3, Vec3};
 /// other.
 ///
 /// What only some of them have is filled in for the others: colour by `color`, opacity by 1, the
-/// half axes of a disc by two perpendicular ones of the length of its radius.
+/// half axes of a disc by two perpendicular ones of the length of its radius. These half axes are,
+/// in f64, with n the normal and r the radius of the surfel as they are, in `f32`:
+///
+/// ```text
+///   a    = the coordinate axis, of components 0 and 1, along which n is shortest:
+///          x if |n.x| <= |n.y| and |n.x| <= |n.z|, else y if |n.y| <= |n.z|, else z
+///   c    = a x n                      (a.y n.z - n.y a.z, a.z n.x - n.z a.x, a.x n.y - n.x a.y)
+///   u    = c (1 / |c|)                |c| = sqrt((c.x c.x + c.y c.y) + c.z c.z)
+///   v    = n x u                      not divided by its length
+///   half axes u r, then v r           each component times r, rounded to f32 once
+/// ```
+///
+/// u x v points along n. A single cloud is left as it is: nothing is filled in.
 #[must_use]
 pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
     let colored = clouds.iter().any(|c| c.color.is_some());
@@ -92,10 +104,7 @@ fn append<T: Clone>(to: &mut Option<Vec<T>>, values: Option<Vec<T>>, n: usize, m
     }
 }
 
-/// Two perpendicular half axes of a disc, u x v along its normal, in f64 and rounded once.
-///
-/// The first is perpendicular to the coordinate axis along which the normal is shortest; ties go to
-/// the earlier axis.
+/// Two perpendicular half axes of a disc, see [`merge`].
 fn disc(normal: Vec3, radius: f32) -> [Vec3; 2] {
     let n = normal.as_dvec3();
     let [x, y, z] = normal.abs().to_array();
@@ -143,6 +152,34 @@ mod tests {
         let normal = DVec3::new(0.6, 0.0, 0.8);
         assert!((u.length() - 2.0).abs() < 1e-6 && (v.length() - 2.0).abs() < 1e-6);
         assert!((u.cross(v) - 4.0 * normal).length() < 1e-6, "right-handed with the normal");
+    }
+
+    #[test]
+    fn half_axes_have_the_bits_of_their_formula() {
+        let third = 1.0_f32 / 3.0_f32.sqrt();
+        let cases = [
+            (Vec3::splat(third), 0),
+            (Vec3::Z, 0),
+            (-Vec3::X, 1),
+            (Vec3::new(0.6, -0.8, 0.0), 2),
+            (Vec3::new(0.48, 0.6, -0.64), 0),
+            (Vec3::new(-0.64, 0.48, 0.6), 1),
+            (Vec3::new(0.6, 0.48, 0.48), 1),
+        ];
+        for (normal, shortest) in cases {
+            let n = normal.to_array().map(f64::from);
+            let mut axis = [0.0; 3];
+            axis[shortest] = 1.0;
+            let cross = |a: [f64; 3], b: [f64; 3]| {
+                [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]]
+            };
+            let c = cross(axis, n);
+            let inverse = 1.0 / ((c[0] * c[0] + c[1] * c[1]) + c[2] * c[2]).sqrt();
+            let u = c.map(|component| component * inverse);
+            let bits = |half: [f64; 3]| half.map(|c| ((c * f64::from(0.3_f32)) as f32).to_bits());
+            let found = disc(normal, 0.3).map(|half| half.to_array().map(f32::to_bits));
+            assert_eq!(found, [bits(u), bits(cross(n, u))], "{normal}");
+        }
     }
 
     #[test]

@@ -1,4 +1,44 @@
 //! Bounds of a disc that reaches the near plane: its projection is no ellipse.
+//!
+//! The part at t >= near is convex, so its projection ends, in each direction of the screen, either
+//! where the rim's tangent is an axis of the picture or where the rim meets the near plane. The
+//! bounds are the box around these points, widened. In view space, with p the centre, n the normal
+//! and r the radius:
+//!
+//! ```text
+//!   a = (1, 0, 0) if |n.x| < |n.y|, else (0, 1, 0)         n x a divided by its length: h
+//!   u = h r      v = (n x h) r                             of an ellipse: its tangents, turned
+//!   x(c, s) = (p.x + u.x c) + v.x s         x0 = p.x, x1 = u.x, x2 = v.x, and so for y
+//!   t(c, s) = (-p.z + -u.z c) + -v.z s      t0 = -p.z, t1 = -u.z, t2 = -v.z
+//! ```
+//!
+//! The points (c, s) of the unit circle with f0 + f1 c + f2 s = 0 are none unless rest >= 0, else
+//! two:
+//!
+//! ```text
+//!   L = sqrt(f1 f1 + f2 f2)      a = f1 / L      b = f2 / L      d = f0 / L
+//!   rest = 1 - d d               root = sqrt(rest)
+//!   (-(d a) - root b, -(d b) + root a)      (-(d a) + root b, -(d b) - root a)
+//! ```
+//!
+//! They are taken for three equations, each point with a depth:
+//!
+//! ```text
+//!   (t0 - near, t1, t2)                                         depth near
+//!   (x2 t1 - x1 t2, x2 t0 - x0 t2, x0 t1 - x1 t0), and of y     depth t(c, s), only if > near
+//! ```
+//!
+//! The box goes from the least to the greatest X = cx + fx (x(c, s) / depth) and Y = cy - fy (y(c,
+//! s) / depth), and is moved outwards by
+//!
+//! ```text
+//!   e  = (R 2^-20) / near        R: r, or sqrt(U . U + V . V) of an ellipse of tangents U and V
+//!   mx = ((greatest X - least X) 0.001 + fx e) + 1       my likewise with fy; 0.001 from f32
+//! ```
+//!
+//! A point of the rim is exact to a few roundings of the radius, which the near plane magnifies by
+//! f/near: hence e. The thousandth and the pixel leave room for the roundings of q. A test has discs
+//! that lose pixels without e, and without the thousandth.
 
 use super::shape::PlacedDisc;
 use super::{Disc, View};
@@ -20,15 +60,8 @@ fn basis<R: Real>(view: &View<R>, placed: &PlacedDisc<R>, disc: &Disc<R>) -> [Ve
     [u * disc.radius, n.cross(u) * disc.radius]
 }
 
-/// The corners of the box around the visible part of a disc p + c u + s v, c c + s s <= 1.
-///
-/// The part at t >= near is convex, so its projection ends, in each direction of the screen, either
-/// where the rim's tangent is an axis of the picture or where the rim meets the near plane. All
-/// these points are solutions of A c + B s + C = 0 on the unit circle.
-///
-/// A point of the rim is exact to a few roundings of the radius, which the near plane magnifies by
-/// f/near; the box is widened by 2^-20 radii there, and by 1 px and a thousandth of its size. A
-/// point that may be a solution is in the box too: bounds are a guarantee.
+/// The corners of the box around the visible part of a disc, see the module. A point that may be a
+/// solution is in the box too: bounds are a guarantee.
 pub(super) fn corners<R: Real>(
     view: &View<R>,
     placed: &PlacedDisc<R>,

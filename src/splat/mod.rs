@@ -16,7 +16,7 @@
 pub mod batch;
 pub mod bounds;
 pub mod clip;
-mod crossing;
+pub mod crossing;
 mod disc;
 pub mod ellipse;
 mod fate;
@@ -25,6 +25,8 @@ pub mod project;
 pub mod record;
 pub mod settings;
 mod shape;
+#[cfg(test)]
+mod tests;
 pub mod view;
 
 pub use batch::Tally;

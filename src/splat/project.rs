@@ -84,7 +84,7 @@
 //! ```
 //!
 //! Bounds: those of the exact outline and of the filter's circle of radius k sqrt(h), both; a disc
-//! that reaches the near plane has those of its visible part. The outline's are k sqrt(xx) and
+//! that reaches the near plane has those of its visible part ([`mod@super::crossing`]). The outline's are k sqrt(xx) and
 //! k sqrt(yy) about its centre, each times 1 + (stretch ratio) 2^-18 with stretch = (sqrt(xx)
 //! sqrt(yy)) / area and ratio = t / (t - half) (1 under an orthographic camera), and at the end all
 //! are moved outwards by 1/128 px.

@@ -9,8 +9,8 @@ use crate::method::tiled::Tiled;
 use crate::number::{Exact, Real};
 use crate::splat::{Shared, Splat};
 
-/// The margin of each pixel in units of the last place: the least of all its fragments; +inf where
-/// nothing was decided.
+/// The margin of each pixel, see the page of the method: the least of all its fragments that are
+/// asked; +inf where there is none.
 pub(super) fn margins<R: Exact>(
     job: &Job<'_>,
     splats: &Prepared<R, Splat<R>>,

@@ -14,9 +14,42 @@
 //!    weight. A pixel without weight is empty.
 //! 5. **Deferred shading**, see [`crate::shade`].
 //!
+//! # The margin
+//!
+//! The plane `margin` says how far the closest decision at a pixel was from flipping. The unit is a
+//! step between neighbouring numbers of the arithmetic, `ulps(a, b)` of
+//! [`ulps_to`](crate::number::Exact::ulps_to). Each distance is rounded to `f32`.
+//!
+//! A fragment is asked if its splat is drawn ([`Fate::Visible`](crate::splat::Fate)) and if the
+//! [bounds](mod@crate::splat::bounds) of the splat hold the pixel. With q, the clamped nearness w and
+//! t = 1/w (or -w) of the fragment, and with `w_1`, `t_1` and `id` of the nearest fragment of the
+//! pixel (of an empty pixel: those of t = +inf), a fragment that is asked gives
+//!
+//! ```text
+//!   ulps(q, k k)                   if t <= t_1 + epsilon: a hidden fragment changes nothing
+//!   ulps(t, t_1 + epsilon)         if q <= k k
+//!   ulps(w, w_1)                   if q <= k k, and the surfel is not id
+//! ```
+//!
+//! The margin is the least of all that is given, and +inf where nothing is: where no fragment was
+//! asked, or where all fragments that were asked are both outside and hidden. An empty pixel has a
+//! margin where bounds hold the pixel.
+//!
+//! Bounds cut work away before the decision, and the margin knows nothing of what they cut. So the
+//! margin is a function of the bounds too, which are defined to the bit. A fragment beyond its bounds
+//! has q > k k, and would have given `ulps(q, k k)`. The bounds reach at least 1/128 px beyond the
+//! extent. So such a fragment of an ellipse that extends e px from its centre, along x or y, has q >=
+//! k k (1 + 1/(128 e))^2 in exact arithmetic: in `f32` it is at least about 2^17 / e steps away.
+//! Likewise the margin knows nothing of the decisions about whole splats: facing, the near plane,
+//! the sides of the view.
+//!
+//! A distance in steps is no distance in rounding errors. The operands carry the errors of all
+//! operations before, of hundreds of steps where a splat is thin or grazing. A small margin warns; a
+//! large margin promises nothing.
+//!
 //! The definition is over any [`Exact`] number, one fragment at a time; `fast` gives the same bits
 //! for `f32`. [`explain`] lists every decision at one pixel. What each stage leaves:
-//! [`Algorithm::STAGES`].
+//! [`mod@super::planes`].
 //!
 //! [`Splat`]: crate::splat::Splat
 //! [`Exact`]: crate::number::Exact

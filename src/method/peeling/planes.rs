@@ -18,28 +18,28 @@ const LAYER_COLOR: PlaneRow = PlaneRow::new(
     Holds::Color,
     "linear RGB",
     "shaded colour C_j of layer j, not multiplied by its opacity; black where there is no layer",
-    When::Settings,
+    When::Stages,
 );
 const LAYER_ALPHA: PlaneRow = PlaneRow::new(
     "layer#.A",
     Holds::Scalar,
     "",
     "opacity a_j of layer j in [0, 1]; 0 where there is no layer",
-    When::Settings,
+    When::Stages,
 );
 const LAYER_DEPTH: PlaneRow = PlaneRow::new(
     "layer#.Z",
     Holds::Scalar,
     "world units",
     "depth t_j of the nearest fragment of layer j; +inf where there is no layer",
-    When::Settings,
+    When::Stages,
 );
 const LAYER_COUNT: PlaneRow = PlaneRow::new(
     "layer#.count",
     Holds::Count,
     "fragments",
     "how many fragments layer j averages, up to 255; 0 where there is no layer",
-    When::Settings,
+    When::Stages,
 );
 const LAYERS: PlaneRow = PlaneRow::new(
     "layers",
@@ -49,10 +49,7 @@ const LAYERS: PlaneRow = PlaneRow::new(
     When::Always,
 );
 
-/// The stages. The first [`STAGES`] layers leave planes, or as many as the settings ask for.
-///
-/// On somebody's planes the stage `layers` begins anew if there are none of layers. With those of
-/// the layers up to j - 1 it gives the planes of layer j alone.
+/// The stages, see [`mod@crate::method::planes`].
 pub(super) const ROWS: &[Stage] = &[
     Stage { name: "projection", reads: &[], leaves: &[] },
     Stage {

@@ -44,7 +44,7 @@
 //! There the group keeps the nearer fragment alone.
 //!
 //! The definition is over any [`Exact`] number; `fast` gives the same bits for `f32`. [`explain`]
-//! lists every decision at one pixel. What each stage leaves: [`Algorithm::STAGES`].
+//! lists every decision at one pixel. What each stage leaves: [`mod@super::planes`].
 //!
 //! [`Splat`]: crate::splat::Splat
 //! [`Exact`]: crate::number::Exact

@@ -19,7 +19,7 @@ pub(in crate::method) struct GroupAverage<R> {
     pub(in crate::method) layers: R,
     /// Least depth of any group.
     pub(in crate::method) depth: R,
-    /// Its surfel; ties: the lower one.
+    /// Its surfel; of equal depths the lower one.
     pub(in crate::method) surfel: u32,
 }
 

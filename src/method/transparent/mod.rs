@@ -17,9 +17,24 @@
 //!    sum of opacities (section 5.2.3), and one to its count of layers. `Departs:` an opaque
 //!    fragment sets that sum to 0 and marks the pixel as hiding what is behind: eq. 11 is made for
 //!    one opacity everywhere.
+//!    The pixel takes the depth t and the surfel of the fragment, too: the depth and the surfel of
+//!    the group are those of the fragment that passed last. A count of 255 stays 255.
 //! 4. **Compositing pass.** The average of the images, see [`Holes`]: colour, opacity, sum of
-//!    opacities, hidden part; each is a sum in the order of the groups, divided once by their
-//!    count.
+//!    opacities, hidden part, count of layers; each is a sum in the order of the groups, divided
+//!    once by the count of the groups that [`Holes`] takes. The sums begin at 0. The average of no
+//!    group is 0.
+//!
+//! # The nearest surfel
+//!
+//! The planes `Z` and `id` of the picture come from one group: the group of the least depth. Depths
+//! decide, not nearnesses: the depth is t = 1/w (or -w under an orthographic camera), rounded to
+//! the number type, so that two groups of different nearness can tie. Of equal depths the lower
+//! surfel index wins ([`crate::composite::decide::before_or_lower`]). A group without a fragment has
+//! the depth +inf and the surfel `0xFFFF_FFFF`.
+//!
+//! `Decided:` within a group the depth test is the one of the bins. A fragment that is nearer than
+//! the layer before, but in the same bin, is dropped, and leaves no depth. So `Z` can be deeper than
+//! the nearest fragment that is inside.
 //!
 //! An environment is behind everything: colour + (1 - A) env(ray of the pixel), and A becomes 1.
 //! Without one colours are over black, that is, multiplied by A.

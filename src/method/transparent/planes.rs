@@ -8,7 +8,7 @@ use crate::frame::NamedPlane;
 use crate::method::algorithm::Job;
 use crate::method::given::Given;
 use crate::method::picture::before_environment;
-use crate::method::resolved::{ALPHA, DEPTH, ID, SHADED};
+use crate::method::resolved::{self, ALPHA, SHADED};
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
@@ -105,6 +105,14 @@ const AVERAGE_LAYERS: PlaneRow = PlaneRow::new(
     "average of the groups' counts of layers",
     When::Stages,
 );
+const DEPTH: PlaneRow = PlaneRow {
+    meaning: "least depth of the groups, each that of the layer blended last; +inf where there is none",
+    ..resolved::DEPTH
+};
+const ID: PlaneRow = PlaneRow {
+    meaning: "surfel of that layer, of equal depths the lower; 0xFFFF_FFFF where there is none",
+    ..resolved::ID
+};
 const LAYERS: PlaneRow = PlaneRow::new(
     "layers",
     Holds::Scalar,

@@ -69,8 +69,8 @@ impl<'a, R: Exact> Through<'a, R> {
     }
 }
 
-/// l of \[ZP06, section 5.2.3\]: the sum of all opacities over that of the nearest layer; 0 where
-/// that is 0.
+/// l of \[ZP06, section 5.2.3\]: 1 + the sum of the other opacities over that of the nearest
+/// layer; 0 where that is 0.
 pub(super) fn count_by_opacity<R: Exact>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
     let alpha = near.opacity;
     if alpha > R::ZERO { R::ONE + optics::layers(others.opacity, alpha) } else { R::ZERO }

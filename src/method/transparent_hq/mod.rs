@@ -16,6 +16,27 @@
 //! With [`Settings::refraction`] and an environment, that sum is the one of
 //! [`crate::shade::optics`]. The environment is otherwise as in [`mod@super::transparent`].
 //!
+//! # Counts of layers
+//!
+//! Two planes count layers. They are different numbers.
+//!
+//! - `layers`, in every picture: the average count of pass 2, plus 1 where pass 1 left a layer, that
+//!   is, where Z is finite. Where pass 1 left nothing, pass 2 left nothing either: the count is 0.
+//!   The average is that of [`mod@super::transparent`]: a sum over the groups, divided once, of how
+//!   many fragments each group blended. So the count is no integer in general. The depth test of
+//!   the bins makes the layers, and the opacities play no part.
+//! - `l`, with the planes of the stages: l of section 5.2.3, by opacity. With alpha the average
+//!   opacity of pass 1 and S the average sum of opacities of pass 2, l = 1 + S / alpha where alpha >
+//!   0, else 0. An opaque fragment has set the sum of its group to 0. The plane is the same with
+//!   and without refraction, and with one and with many layers that bend.
+//!
+//! The setting `bends` says how many layers refraction counts
+//! ([`BendingLayers`](crate::shade::optics::BendingLayers)). With `multiple` the count is
+//! l = 1 + S / alpha, and 1 where alpha is 0 (there the plane `l` has 0). With `single` the count is
+//! 1, and the other layers are left out altogether. The count is the exponent of
+//! [`refract`](crate::shade::optics::refract) and of
+//! [`absorption`](crate::shade::optics::absorption); `layers` is the exponent of nothing.
+//!
 //! `Departs:` section 5.2.3 interpolates the position too, "if necessary". Here the position that
 //! Phong lighting takes is that of the nearest fragment: on the ray of the pixel, at the depth Z of
 //! pass 1. Reflection and refraction need none, as the environment is infinitely far away.

@@ -53,8 +53,8 @@ const LAYERS_BY_OPACITY: PlaneRow = PlaneRow::new(
     "l",
     Holds::Scalar,
     "layers",
-    "sum of all opacities over the opacity of the nearest layer: how many layers light is \
-     refracted and absorbed by; 0 where the nearest layer is not, or has an opacity of 0",
+    "1 + the average sum of opacities of the other layers over the opacity of the nearest layer; 0 \
+     where the nearest layer is not, or has an opacity of 0",
     When::Stages,
 );
 const LAYERS: PlaneRow = PlaneRow::new(

@@ -41,12 +41,14 @@ use crate::number::{Exact, Vector3};
 use crate::scene::Environment;
 use crate::setting::Words;
 
-/// How many surfaces bend the light.
+/// How many surfaces bend the light: the count l of the module page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BendingLayers {
-    /// The nearest alone; nothing but the environment is seen behind it.
+    /// The nearest alone: l = 1. Nothing but the environment is seen behind the nearest surface:
+    /// `C_O` and `hidden` count as 0.
     Single,
-    /// As many as the accumulated opacity tells.
+    /// As many as the accumulated opacity tells: l = 1 + [`layers`], not rounded to an integer; 1
+    /// where alpha is 0.
     Multiple,
 }
 

@@ -4,9 +4,7 @@ use glam::{DVec3, Vec3};
 
 /// Area-weighted vertex normals, of length 1.
 ///
-/// For each triangle abc in ascending order, `(b - a) x (c - a)` in f64 is added to its corners;
-/// each sum is divided by its length and rounded to `f32` once. Null where there is no triangle, or
-/// where the triangles cancel.
+/// See the arithmetic of [`super`]. Null where there is no triangle, or where the triangles cancel.
 pub(super) fn normals(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; points.len()];
     for triangle in triangles {

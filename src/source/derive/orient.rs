@@ -6,15 +6,10 @@ use glam::{DVec3, Vec3};
 /// the far ones are those across a gap.
 pub(super) const TIES: usize = 8;
 
-/// Flips normals so that neighbours agree.
+/// Flips normals so that neighbours agree, see the arithmetic of [`super`].
 ///
-/// Each place is tied to its nearest ones by edges of weight `1 - |n . n'|` (f64, at least 0,
-/// rounded to `f32`). Along a minimum spanning tree, ties of weight by the lower pair of indices,
-/// the normals of two ends get a dot product >= 0.
-///
-/// `Decided:` each connected part is then flipped as a whole so that the volume behind it is
-/// positive, see [`Side::is_inner`]. Hoppe's choice, the normal of one extreme point, turns a whole
-/// scan inside out where that point is on a thin tip.
+/// The ties are the edges of a minimum spanning tree, along which the normals of two ends get a dot
+/// product >= 0.
 pub(super) fn agree(places: &[Vec3], ties: &[[u32; TIES]], normals: &mut [Vec3]) {
     let mut parts = Forest::new(places.len());
     for (_, a, b) in edges(ties, normals) {
@@ -83,12 +78,8 @@ impl Side {
         self.facing += normal.as_dvec3() * area;
     }
 
-    /// Whether the normals have to be flipped.
-    ///
-    /// By the divergence theorem the sum of `n . (p - c)` over a closed surface is three times its
-    /// volume for any c. On an open part, with c its mean, it tells the convex side. If it is at
-    /// most 1/256 of what a sphere would give, the part is flat: then the largest component, the
-    /// first of equal ones, of its mean normal becomes positive.
+    /// Whether the normals have to be flipped. On an open part, with c its mean, the volume tells
+    /// the convex side.
     fn is_inner(&self) -> bool {
         if 256.0 * self.volume.abs() > self.size {
             return self.volume < 0.0;

@@ -5,10 +5,9 @@ use glam::{DVec3, Vec3};
 
 /// The direction in which a point and its neighbours vary least, of length 1.
 ///
-/// The eigenvector of the smallest eigenvalue of their covariance: offsets from `points[of]` in
-/// f64, their mean, and the sums of the products of what is left, each in ascending index. Of
-/// equal eigenvalues the first wins, so that collinear points get some direction across the line.
-/// The result is rounded to `f32` once; its sign has no meaning.
+/// The eigenvector of the smallest eigenvalue of their covariance, see the arithmetic of [`super`].
+/// Of equal eigenvalues the first wins, so that collinear points get some direction across the line.
+/// The sign of the result has no meaning.
 pub(super) fn normal(points: &[Vec3], of: u32, neighbours: &[Neighbour]) -> Vec3 {
     let center = points[of as usize].as_dvec3();
     let mut ids: Vec<u32> = neighbours.iter().map(|n| n.id).chain([of]).collect();

@@ -40,7 +40,7 @@ mod ball;
 mod checkerboard;
 mod picture;
 mod plate;
-mod sampling;
+pub mod sampling;
 #[cfg(test)]
 mod tests;
 mod torus;
@@ -143,7 +143,8 @@ impl Shape {
         }
     }
 
-    /// About `count` surfels that cover the shape, with exact normals and colours, rounded once.
+    /// About `count` surfels that cover the shape, with exact normals and colours, rounded once;
+    /// [`mod@sampling`] has every step.
     ///
     /// Sphere and torus give exactly `count`, the cluster `count` but at least one for each sphere.
     /// The others give what their grids can hold: within 5 % of `count` from 10,000 on. The seed

@@ -1,4 +1,114 @@
-//! Collecting surfels: cells of a grid and golden spirals.
+//! The surfels of each shape, step by step: enough to rebuild their bits.
+//!
+//! All numbers are f64, and each operation is rounded, in the order written; a product or quotient
+//! without brackets is taken from the left. PI and TAU are the f64 nearest to pi and 2 pi; sin and
+//! cos are those of [`crate::number::elementary`] in f64. N is the count that was asked for, u(i) is
+//! [`random::unit`] of the seed and i, as f64. Surfels are numbered s = 0, 1, ... over the whole
+//! shape, in the order in which they are made. Each component of position, normal and colour, and
+//! the radius, is rounded to `f32` once at the end. Nothing is dropped: see
+//! [`Surfels::new`](crate::scene::Surfels::new).
+//!
+//! ```text
+//!   round(x)       = floor(x + 1/2)
+//!   e(s), f(s)     = 1/2 + (u(2 s) - 1/2) / 4, and so with u(2 s + 1)
+//!   cell(a, b)     = sqrt((a a + b b) / 2)                the radius in a cell of sides a and b
+//!   pattern(p)     = (1/2 + 3/8 sin(9 p.x), 1/2 + 3/8 sin(11 p.y + 1), 1/2 + 3/8 sin(7 p.z + 2))
+//! ```
+//!
+//! | k | colour k of the palette |
+//! |---|---|
+//! | 0 | 0.875, 0.25, 0.0625 |
+//! | 1 | 0.0625, 0.25, 0.75 |
+//! | 2 | 0.875, 0.625, 0.0625 |
+//! | 3 | 0.125, 0.5, 0.25 |
+//! | 4 | 0.625, 0.0625, 0.375 |
+//! | 5 | 0.125, 0.625, 0.75 |
+//! | 6 | 0.75, 0.75, 0.6875 |
+//! | 7 | 0.375, 0.1875, 0.625 |
+//!
+//! # Sphere and cluster
+//!
+//! The sphere is one ball of centre c = 0 and radius r = 1. The cluster is 32 balls; with v(i) =
+//! [`random::unit`] of seed 6 and i, whatever the seed of the surfels, ball k has
+//!
+//! ```text
+//!   c = (v(4 k) 2 - 1, v(4 k + 1) 2 - 1, v(4 k + 2) 2 - 1)      r = 1/8 + 1/4 v(4 k + 3)
+//! ```
+//!
+//! The surfels of the balls, ball by ball. S is the sum of r r over all balls, B that up to this
+//! one, this one included, both added in the order of the balls; the first ball has first = 0.
+//!
+//! ```text
+//!   end    = round(N (B / S))       n = end - first if end > first, else 1       first += n
+//!   radius = r sqrt(4 PI / n)
+//!   for i = 0 to n - 1:
+//!     y = 1 - (2 i + 1) / n         ring = sqrt(1 - y y)
+//!     angle = floor(T / 2^11) (TAU / 2^53)
+//!     T = (bits + i G) modulo 2^64  bits: random::bits of the seed and 0; G: random::GOLDEN
+//!     normal = (ring cos(angle), y, ring sin(angle))
+//!     position = c + normal r
+//!     colour = pattern(position), of the cluster colour k modulo 8
+//! ```
+//!
+//! # Torus
+//!
+//! ```text
+//!   spacing = sqrt(TAU TAU (3/8) / N)
+//!   rows    = round(TAU (3/8) / spacing), at least 1        h = TAU / rows        first = 0
+//!   for row = 0 to rows - 1:
+//!     edge   = (row + 1) h
+//!     end    = round(N ((edge + (3/8) sin(edge)) / TAU))    n = end - first       first = end
+//!     around = TAU (1 + (3/8) cos(edge - h / 2))
+//!     radius = cell((3/8) h, around / n)
+//!     for i = 0 to n - 1:
+//!       a = (i + e(s)) (TAU / n)    b = (row + f(s)) h      out = 1 + (3/8) cos(b)
+//!       normal   = (cos(b) cos(a), sin(b), cos(b) sin(a))
+//!       position = (out cos(a), (3/8) sin(b), out sin(a))
+//!       colour   = pattern(position)
+//! ```
+//!
+//! # Checkerboard
+//!
+//! ```text
+//!   half = round(sqrt(N / 8.5) / 2), at least 1
+//!   for ring = 0 to 10:
+//!     side = 4 2^ring / half        radius = cell(side, side)
+//!     for row = 0 to 2 half - 1, for column = 0 to 2 half - 1:
+//!       left out if ring > 0 and both row and column are in the hole:
+//!         i is in the hole if 2 i >= half and 2 i + 2 <= 3 half
+//!       position = (((column - half) + e(s)) side, 0, ((row - half) + f(s)) side)
+//!       normal   = (0, 1, 0)
+//! ```
+//!
+//! The colour is that of the position p after rounding to `f32`: with m = floor(p.x / square) +
+//! floor(p.z / square), light, (0.875, 0.84375, 0.75), if m is even, else dark, (0.0625, 0.09375,
+//! 0.1875).
+//!
+//! # Sheets and staircase
+//!
+//! Plates, each low <= (x, y) <= high at one z, one after the other:
+//!
+//! | shape | plate | low | high | z | normal | colour |
+//! |---|---|---|---|---|---|---|
+//! | sheets | front | (-1, -1) | (1, 1) | 0 | (0, 0, 1) | 0 |
+//! | | back | (-3/2, -3/2) | (3/2, 3/2) | -gap | (0, 0, 1) | 1 |
+//! | staircase, k = 0 to 7 | front k | (-1, k/4 - 9/8) | (1, (k/4 - 9/8) + 1/2) | (-k) step | (0, 0, 1) | k |
+//! | | back k, after front k | the same | the same | (-k) step - thickness | (-0, -0, -1) | 1 - colour k |
+//!
+//! The z of front 0 is -0.
+//!
+//! ```text
+//!   spacing = sqrt(A / N)           A: the sum of width height over the plates in their order,
+//!                                   width = high.x - low.x, height = high.y - low.y
+//!   for each plate:
+//!     columns = round(width / spacing), at least 1       rows = round(height / spacing), likewise
+//!     dx = width / columns          dy = height / rows          radius = cell(dx, dy)
+//!     for row = 0 to rows - 1, for column = 0 to columns - 1:
+//!       position = (low.x + (column + e(s)) dx, low.y + (row + f(s)) dy, z)
+//! ```
+
+#[cfg(test)]
+mod rebuilt;
 
 use crate::error::Result;
 use crate::number::random;

@@ -1,0 +1,42 @@
+//! Which planes each method leaves, when, and what they hold.
+//!
+//! A plane has the size of the picture. The column *when* says which pictures have the plane:
+//!
+//! | when | the plane is there |
+//! |---|---|
+//! | always | in every picture |
+//! | lit | in every picture of a scene with lights, and with the planes of the stages |
+//! | tubes | in every picture of a scene with tubes |
+//! | stages | with the planes of the stages |
+//! | stages, colours | the same, if the scene has colours |
+//! | stages, tubes | the same, if the scene has tubes |
+//! | stages, setting | the same, under the setting that the last column names |
+//! | stages, whole | with the planes of the stages of a whole picture; not where the stage runs alone |
+//! | alone | where the stage runs alone: what the next stage reads, and no picture keeps |
+//!
+//! With the planes of the stages means [`Session::define`] with `stages`. A scene has colours if its
+//! surfels have, for the methods that draw primitives also if any primitives have. Opacities, an
+//! environment and the number type change no set of planes, and the fast paths leave those of a
+//! picture without stages. A stage that runs alone ([`Session::stage`]) leaves the rows of its
+//! stage as with the planes of the stages, but for *stages, whole*, and *alone* too.
+//!
+//! A `#` stands for a digit of a number:
+//!
+//! | name | number |
+//! |---|---|
+//! | `group##`, `blended.group##`, `nearest.group##` | the group, 0 to K - 1 of K groups |
+//! | `layer#` | the layer, 1 to the setting `layers`, at most [`peeling::STAGES`]; also those that no pixel has |
+//! | `pull##` | the level, 1 to L, the last of [`crate::frame::pyramid::sizes`] |
+//! | `push##` | the level, 0 to L - 1 |
+//! | `level##` | the level, 1 to the top of [`mod@super::template`] |
+//!
+//! The stage `layers` of [`mod@super::peeling`], run alone, begins anew if it is given no planes of
+//! layers. Given those of the layers up to j - 1, it leaves the planes of layer j alone.
+//!
+//! A stage without rows leaves no planes: its records are those of [`crate::splat::record`].
+//!
+//! [`Session::define`]: super::Session::define
+//! [`Session::stage`]: super::Session::stage
+//! [`peeling::STAGES`]: super::peeling::STAGES
+//!
+#![doc = include_str!("planes.md")]
