@@ -6,7 +6,8 @@
 //! scans in the folder that `SPLATREF_MODELS` names (`../shared/models` if it is not set), those
 //! that are missing are skipped, and procedural ones. Pictures have 800 x 600 pixels, `f32`, lit by
 //! a headlight. RMSE and SSIM are of R, G and B against the picture named in the title; where both
-//! are background counts too. With `--pictures DIR` every picture is kept there.
+//! are background counts too. Off is the share of the pixels inside, whose neighbours are covered
+//! too, of which R, G or B differs by more than 8/255 as sRGB. With `--pictures DIR` every picture is kept there.
 
 mod common;
 
@@ -14,10 +15,11 @@ use common::models;
 use common::report::{Arguments, Table};
 use splatref::Result;
 use splatref::frame::Exec;
-use splatref::frame::image::Image;
+use splatref::frame::image::{Image, Values};
 use splatref::index::grouping::Grouping;
 use splatref::index::grouping::{Extension, Rules};
 use splatref::io::scene_file::SceneFile;
+use splatref::io::srgb::from_linear;
 use splatref::io::{exr, provenance};
 use splatref::method::ewa;
 use splatref::method::single_pass::{self, BinCount, DepthTest};
@@ -26,7 +28,7 @@ use splatref::method::transparent_hq;
 use splatref::method::{Method, Session, peeling};
 use splatref::scene::{Camera, Groups, Scene};
 use splatref::splat::Epsilon;
-use splatref::verify::metrics::summary;
+use splatref::verify::metrics::{Region, regions, summary};
 use std::path::Path;
 use std::time::Instant;
 
@@ -76,7 +78,7 @@ const VARIANTS: [(f32, usize, Extension, Holes); 9] = [
     (2.0, 8, ADD, Holes::Skipped),
     (2.0, 8, Extension::Enlarge, Holes::Skipped),
 ];
-const COLUMNS: [&str; 12] = [
+const COLUMNS: [&str; 14] = [
     "scene",
     "epsilon",
     "K",
@@ -84,9 +86,11 @@ const COLUMNS: [&str; 12] = [
     "holes",
     "Algorithm 2: RMSE",
     "SSIM",
+    "off, %",
     "ms",
     "Algorithm 3: RMSE",
     "SSIM",
+    "off, %",
     "ms",
     "peeling: ms",
 ];
@@ -133,9 +137,11 @@ impl Bench {
             "K",
             "plain: RMSE",
             "SSIM",
+            "off, %",
             "ms",
             "Voronoi: RMSE",
             "SSIM",
+            "off, %",
             "ms",
             "2+1: ms",
         ]);
@@ -155,7 +161,7 @@ impl Bench {
                             k = shot.groups;
                             cells.push(against(&shot, &truth));
                         }
-                        Err(error) => cells.push(format!("{error} | | ")),
+                        Err(error) => cells.push(format!("{error} | | | ")),
                     }
                 }
                 table.row(&format!(
@@ -252,17 +258,36 @@ impl Bench {
     }
 }
 
-/// RMSE, SSIM and time of a picture against another.
+/// RMSE, SSIM, what is off, and time of a picture against another.
 fn against(shot: &Shot, truth: &Shot) -> String {
     match summary(&shot.image, &truth.image) {
         Some(found) => format!(
-            "{:.4} | {} | {:.1}",
+            "{:.4} | {} | {:.1} | {:.1}",
             found.rmse,
             found.ssim.map_or_else(|| "-".into(), |ssim| format!("{ssim:.4}")),
+            off(&shot.image, &truth.image),
             shot.milliseconds
         ),
-        None => "- | - | -".into(),
+        None => "- | - | - | -".into(),
     }
+}
+
+/// Pixels of the truth's inside of which R, G or B is more than 8/255 off as sRGB, per cent.
+fn off(picture: &Image, truth: &Image) -> f64 {
+    let channel = |image: &Image, name: &str| match image.channel(name) {
+        Some(Values::Float(values)) => values.clone(),
+        _ => Vec::new(),
+    };
+    let stored = |image: &Image| {
+        let of = |name| channel(image, name).iter().map(|x| from_linear(f64::from(*x))).collect();
+        ["R", "G", "B"].map(of)
+    };
+    let (a, b): ([Vec<f64>; 3], [Vec<f64>; 3]) = (stored(picture), stored(truth));
+    let all = regions(&channel(truth, "A"), truth.width as usize);
+    let inside = |i: &usize| all[*i] == Region::Interior;
+    let pixels: Vec<usize> = (0..all.len()).filter(inside).collect();
+    let differs = |i: &&usize| (0..3).any(|c| (a[c][**i] - b[c][**i]).abs() > 8.0 / 255.0);
+    1e2 * pixels.iter().filter(differs).count() as f64 / pixels.len().max(1) as f64
 }
 
 fn word(extension: Extension) -> &'static str {

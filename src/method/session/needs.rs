@@ -47,7 +47,7 @@ impl Session<'_> {
         let groups = self.index.groups.as_ref().map_or(1, |groups| groups.len() as u64);
         let copies = |row: &PlaneRow| match row.name {
             name if !name.contains('#') => 1,
-            name if name.starts_with("group") => groups,
+            name if name.contains("group##") => groups,
             name if name.starts_with("layer") => u64::from(peeling::STAGES),
             _ => levels,
         };
