@@ -70,6 +70,18 @@ impl Exec {
         }
     }
 
+    /// Runs two jobs, in parallel, and returns the results of both.
+    pub fn join<A: Send, B: Send>(
+        &self,
+        first: impl FnOnce() -> A + Send,
+        second: impl FnOnce() -> B + Send,
+    ) -> (A, B) {
+        match &self.pool {
+            None => (first(), second()),
+            Some(pool) => pool.join(first, second),
+        }
+    }
+
     /// Runs `size` neighbouring items a job, in parallel; with the index of the first of them.
     pub(crate) fn chunks<T: Send>(
         &self,

@@ -52,7 +52,7 @@ impl SceneFile {
         let environment = match &self.environment {
             None => None,
             Some(EnvironmentChoice::Sky) => Some(Environment::Sky),
-            Some(EnvironmentChoice::File(path)) => Some(environment::read(path)?),
+            Some(EnvironmentChoice::File(path)) => Some(environment::read(path, exec)?),
         };
         let (mut models, mut clouds, mut primitives) = (Vec::new(), Vec::new(), Vec::new());
         let (mut dropped, mut dropped_primitives) = (Dropped::default(), 0);
