@@ -112,11 +112,19 @@ impl Table<'_> {
         let row = |i: usize| &self.bytes[i * stride..][..stride];
         // What most files have, without a question for each number.
         if numbers.iter().all(Number::is_plain) {
-            self.exec.extend(to, count, |i| of(numbers.map(|number| number.plain(row(i)))));
+            self.exec.extend(to, count, |i| of(each(&numbers, |number| number.plain(row(i)))));
         } else {
-            self.exec.extend(to, count, |i| of(numbers.map(|number| number.value(row(i)))));
+            self.exec.extend(to, count, |i| of(each(&numbers, |number| number.value(row(i)))));
         }
     }
+}
+
+/// A value for each number: `array::map`, which is not inlined here and takes five times as long.
+#[inline]
+fn each<const N: usize>(numbers: &[Number; N], of: impl Fn(Number) -> f32) -> [f32; N] {
+    let mut values = [0.0; N];
+    values.iter_mut().zip(numbers).for_each(|(value, &number)| *value = of(number));
+    values
 }
 
 impl Number {
@@ -125,10 +133,12 @@ impl Number {
         matches!((self.scalar, self.decode), (Scalar::F32, Decode::Keep))
     }
 
+    #[inline]
     fn plain(self, row: &[u8]) -> f32 {
         f32::from_le_bytes(self.of(row))
     }
 
+    #[inline]
     fn value(self, row: &[u8]) -> f32 {
         self.decode.apply(match self.scalar {
             Scalar::I8 => f64::from(i8::from_le_bytes(self.of(row))),
@@ -143,6 +153,7 @@ impl Number {
     }
 
     /// Its bytes, which a row has.
+    #[inline]
     fn of<const N: usize>(self, row: &[u8]) -> [u8; N] {
         row[self.at..].first_chunk().copied().unwrap_or([0; N])
     }
