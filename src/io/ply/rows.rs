@@ -119,7 +119,7 @@ impl Table<'_> {
     }
 }
 
-/// A value for each number: `array::map`, which is not inlined here and takes five times as long.
+/// A value for each number; `array::map` is not inlined in builds of many units.
 #[inline]
 fn each<const N: usize>(numbers: &[Number; N], of: impl Fn(Number) -> f32) -> [f32; N] {
     let mut values = [0.0; N];
