@@ -1,7 +1,7 @@
 //! `splatref compare`: two pictures, plane by plane.
 
 use super::{Ended, Ending, report, say};
-use splatref::frame::Image;
+use splatref::frame::{Exec, Image};
 use splatref::io::{exr, npy, png};
 use splatref::verify::compare::{Criteria, Tolerance, Verdict, compare};
 use splatref::verify::metrics;
@@ -98,7 +98,7 @@ impl PictureFile {
                 let name = args.name.as_deref().unwrap_or(&stem);
                 Ok(Self::Npy(npy::read(path, name)?, path.to_owned()))
             }
-            _ => exr::read(path).map(Self::Exr),
+            _ => exr::read_with(path, &Exec::new(0, 32)?).map(Self::Exr),
         }
     }
 

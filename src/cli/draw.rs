@@ -28,13 +28,13 @@ pub(super) fn draw<'s>(
     output: OutputSettings,
 ) -> Result<Cow<'s, Picture<f32>>> {
     Ok(match output {
-        OutputSettings { number: Number::F32, stages: false } => {
+        OutputSettings { number: Number::F32, stages: false, .. } => {
             Cow::Borrowed(session.render(camera)?)
         }
-        OutputSettings { number: Number::F32, stages: true } => {
+        OutputSettings { number: Number::F32, stages: true, .. } => {
             Cow::Owned(session.define::<f32>(camera, true)?)
         }
-        OutputSettings { number: Number::F64, stages } => {
+        OutputSettings { number: Number::F64, stages, .. } => {
             let Picture { frame, tally, timings } = session.define::<f64>(camera, stages)?;
             Cow::Owned(Picture { frame: frame.to_f32(), tally, timings })
         }

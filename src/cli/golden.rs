@@ -4,8 +4,9 @@ use super::options::ExecOptions;
 use super::{Ended, Ending, draw, say};
 use splatref::frame::image::{Image, Values};
 use splatref::frame::{Exec, Frame, Plane, Samples};
+use splatref::io::exr::{self, Compression};
 use splatref::io::scene_file::{Ready, SceneFile};
-use splatref::io::{exr, png, provenance};
+use splatref::io::{png, provenance};
 use splatref::verify::compare::{Comparison, Criteria, Relation, Verdict, compare};
 use splatref::verify::digest;
 use splatref::{Error, Result};
@@ -89,7 +90,7 @@ fn check(args: &Args, exec: &Exec, name: &str) -> Result<(Image, bool)> {
     let actual = Image::from(&case.frame);
     let stored = match fs::exists(&case.picture) {
         Ok(false) => Err("there is no picture yet".to_owned()),
-        _ => exr::read(&case.picture).map_err(|error| error.to_string()),
+        _ => exr::read_with(&case.picture, exec).map_err(|error| error.to_string()),
     };
     let exact = Criteria::default();
     let report = match &stored {
@@ -105,7 +106,8 @@ fn check(args: &Args, exec: &Exec, name: &str) -> Result<(Image, bool)> {
         Err(why) => say(format!("different  {name}: {why}")),
     }
     if args.bless {
-        exr::write(&case.picture, &case.frame, &case.text)?;
+        // Kept for long: small is worth the time.
+        exr::pending(&case.picture, &case.frame, &case.text, Compression::Zip, exec)?.put()?;
         say(format!("  blessed: wrote {}", case.picture.display()));
     } else {
         keep(name, &case, stored.as_ref().ok())?;

@@ -1,7 +1,7 @@
 //! `splatref render`: a scene into an EXR and a PNG.
 
 use super::options::{ExecOptions, SceneOptions};
-use super::rows::{OfStages, RowOptions};
+use super::rows::{OfFiles, RowOptions};
 use super::{Ended, Ending, draw, output, progress, report};
 use splatref::io::replace::Pending;
 use splatref::io::scene_file::{FileKind, Ready, SceneFile};
@@ -30,7 +30,7 @@ pub(super) struct Args {
     #[arg(short, long, value_name = "FILE.exr")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    stages: RowOptions<OfStages>,
+    files: RowOptions<OfFiles>,
     /// Render N times; print the minimum and the median of each stage
     #[arg(long, value_name = "N", default_value_t = 1,
         value_parser = clap::value_parser!(u32).range(1..))]
@@ -44,7 +44,7 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args) -> Ended {
     let start = Instant::now();
     let mut file = args.options.scene_file(&args.scene)?;
-    file.output = args.stages.chosen.on(file.output, "the output")?;
+    file.output = args.files.chosen.on(file.output, "the output")?;
     let exec = args.exec.exec()?;
     let picture = place(args, &file)?;
     let preview = picture.with_extension("png");
@@ -53,7 +53,8 @@ pub(super) fn run(args: &Args) -> Ended {
     let loading = start.elapsed();
     let Ready { loaded, camera, method, .. } = &ready;
     let scene = &loaded.scene;
-    let text = provenance::text(scene, session.groups(), camera, method, file.output.number);
+    // The picture may lie in the session.
+    let groups = session.groups().cloned();
 
     let mut times = Vec::new();
     let drawing = progress::during("rendering", || -> Result<_> {
@@ -68,10 +69,17 @@ pub(super) fn run(args: &Args) -> Ended {
         let folder = Path::new(FOLDER);
         fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
     }
-    progress::during("writing", || {
+    progress::during("writing", || -> Result<()> {
+        let frame = &drawing.frame;
+        let text = || provenance::text(scene, groups.as_ref(), camera, method, file.output.number);
+        let compression = file.output.compression;
+        let (small, large) = exec.join(
+            || png::pending_frame(&preview, frame),
+            || exr::pending(&picture, frame, &text(), compression, &exec),
+        );
         // Both are written before one is put in its place.
-        let small = png::pending_frame(&preview, &drawing.frame)?;
-        exr::pending(&picture, &drawing.frame, &text)?.put()?;
+        let (small, large) = (small?, large?);
+        large.put()?;
         small.map_or(Ok(()), Pending::put)
     })?;
     let (writing, tally) = (writing.elapsed(), drawing.tally);

@@ -28,8 +28,8 @@ pub(super) struct OfGroupsAlone;
 /// The arithmetic of a picture.
 pub(super) struct OfNumber;
 
-/// Whether stages are kept.
-pub(super) struct OfStages;
+/// What the files of a picture hold, and how.
+pub(super) struct OfFiles;
 
 /// What was chosen by the options of some rows.
 pub(super) struct RowOptions<R> {
@@ -98,9 +98,9 @@ impl Rows for OfNumber {
     }
 }
 
-impl Rows for OfStages {
+impl Rows for OfFiles {
     fn rows() -> Vec<Setting> {
-        OutputSettings::rows().into_iter().filter(|row| row.name == "stages").collect()
+        OutputSettings::rows().into_iter().filter(|row| row.name != "number").collect()
     }
 
     fn heading(row: &Setting) -> String {

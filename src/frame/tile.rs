@@ -70,6 +70,31 @@ impl Exec {
         }
     }
 
+    /// Runs two jobs, in parallel, and returns the results of both.
+    pub fn join<A: Send, B: Send>(
+        &self,
+        first: impl FnOnce() -> A + Send,
+        second: impl FnOnce() -> B + Send,
+    ) -> (A, B) {
+        match &self.pool {
+            None => (first(), second()),
+            Some(pool) => pool.join(first, second),
+        }
+    }
+
+    /// Appends `of(i)` for each `i` below `count`, in parallel.
+    pub(crate) fn extend<T: Send>(
+        &self,
+        to: &mut Vec<T>,
+        count: usize,
+        of: impl Fn(usize) -> T + Sync + Send,
+    ) {
+        match &self.pool {
+            None => to.extend((0..count).map(of)),
+            Some(pool) => pool.install(|| to.par_extend((0..count).into_par_iter().map(of))),
+        }
+    }
+
     /// Runs `size` neighbouring items a job, in parallel; with the index of the first of them.
     pub(crate) fn chunks<T: Send>(
         &self,

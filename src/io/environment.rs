@@ -2,24 +2,24 @@
 
 use super::exr;
 use crate::error::{Error, Result};
-use crate::frame::Plane;
 use crate::frame::image::Values;
+use crate::frame::{Exec, Plane};
 use crate::scene::environment::{Environment, Map};
 use std::path::Path;
 
 /// Reads the latitude-longitude map at `path`: the channels `R`, `G` and `B` of a flat EXR, `HALF`
-/// or `FLOAT`, as [`exr::read`] takes it; [`crate::scene::environment::map`] tells its orientation.
+/// or `FLOAT`, as [`exr::read`] takes it, on the threads of `exec`; [`crate::scene::environment::map`] tells its orientation.
 /// Other channels are passed over.
 ///
 /// # Errors
 /// Those of [`exr::read`]; [`Error::Format`] if a channel is absent or holds integers, or as
 /// [`Map::new`].
-pub fn read(path: &Path) -> Result<Environment> {
+pub fn read(path: &Path, exec: &Exec) -> Result<Environment> {
     // Before anything large is read.
     let header = exr::read_header(path)?;
     Map::check_size(header.width, header.height)
         .map_err(|error| Error::format(path, error.to_string()))?;
-    let mut image = exr::read(path)?;
+    let mut image = exr::read_with(path, exec)?;
     let mut channel = |name: &str| {
         let found = image.channels.iter_mut().find(|(of, _)| of == name);
         match found.map(|(_, values)| values) {
@@ -69,7 +69,7 @@ mod tests {
     }
 
     fn refused(path: &Path) -> String {
-        let line = read(path).unwrap_err().to_string();
+        let line = read(path, &Exec::sequential()).unwrap_err().to_string();
         assert!(!line.contains('\n') && line.starts_with(&path.display().to_string()), "{line}");
         line
     }
@@ -83,7 +83,10 @@ mod tests {
             let ids = FlatSamples::U32(vec![7; 32]);
             let channels = [("R", samples(0)), ("G", samples(1)), ("B", samples(2)), ("id", ids)];
             let path = file(8, 4, &channels);
-            assert_eq!(read(&path).unwrap(), Environment::Map(expected.clone()));
+            assert_eq!(
+                read(&path, &Exec::sequential()).unwrap(),
+                Environment::Map(expected.clone())
+            );
         }
     }
 

@@ -1,7 +1,7 @@
 //! Triangles and polylines: vertices with attributes, and what joins them.
 
+use super::degenerate::unit;
 use super::light::is_color;
-use super::surfels::unit;
 use crate::error::{Error, Result};
 use glam::Vec3;
 

@@ -4,6 +4,7 @@
 //! - [`cloud`]: points as a file holds them, nothing derived, nothing checked.
 //! - [`surfels`]: the checked structure of arrays that every method takes.
 //! - [`camera`]: perspective and orthographic cameras.
+//! - `degenerate`: which points can be no surfels.
 //! - [`environment`]: the light that surrounds a scene.
 //! - [`groups`]: which surfels share a depth-image.
 //! - [`hash`]: the identity of a scene.
@@ -14,6 +15,7 @@
 pub mod bounds;
 pub mod camera;
 pub mod cloud;
+mod degenerate;
 pub mod environment;
 pub mod groups;
 pub mod hash;

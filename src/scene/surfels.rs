@@ -2,9 +2,11 @@
 
 use super::Cloud;
 use super::Groups;
+use super::degenerate::{CHUNK, Points};
 use crate::error::{Error, Result};
-use crate::scene::light::is_color;
+use crate::frame::Exec;
 use glam::{DVec3, Vec3};
+use std::ops::Range;
 
 /// Surfels as a structure of arrays, each of one length.
 ///
@@ -66,8 +68,16 @@ impl Surfels {
     /// [`Error::Invalid`] if normals or radii are missing, if an array has the wrong length, if
     /// nothing is left, or if there are more than 2^32 - 2 surfels.
     pub fn new(cloud: Cloud) -> Result<(Self, Dropped)> {
+        Self::new_with(cloud, &Exec::sequential())
+    }
+
+    /// [`Surfels::new`] on several threads; the result is the same.
+    ///
+    /// # Errors
+    /// As [`Surfels::new`].
+    pub fn new_with(cloud: Cloud, exec: &Exec) -> Result<(Self, Dropped)> {
         let n = cloud.position.len();
-        let (surfels, dropped) = Self::new_or_none(cloud)?;
+        let (surfels, dropped) = Self::new_or_none(cloud, exec)?;
         if surfels.is_empty() {
             return Err(Error::Invalid(format!(
                 "the scene is empty: none of its {n} points can be a surfel"
@@ -76,12 +86,12 @@ impl Surfels {
         Ok((surfels, dropped))
     }
 
-    /// As [`Surfels::new`], for a part of a scene that has other primitives too: [`Surfels::none`]
+    /// As [`Surfels::new_with`], for a part of a scene that has other primitives too: [`Surfels::none`]
     /// if nothing is left.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Surfels::new`], but for that.
-    pub fn new_or_none(cloud: Cloud) -> Result<(Self, Dropped)> {
+    pub fn new_or_none(cloud: Cloud, exec: &Exec) -> Result<(Self, Dropped)> {
         let n = cloud.position.len();
         let Cloud { position, normal, radius, color, opacity, tangents, groups, .. } = cloud;
         let mut normal =
@@ -94,32 +104,20 @@ impl Surfels {
             )));
         }
 
-        let mut dropped = Dropped::default();
-        let mut keep = vec![true; n];
-        for (i, keep) in keep.iter_mut().enumerate() {
-            let reason = if !position[i].is_finite() {
-                &mut dropped.position
-            } else if !unit(&mut normal[i]) {
-                &mut dropped.normal
-            } else if !(radius[i] > 0.0 && radius[i].is_finite()) {
-                &mut dropped.radius
-            } else if !color.as_ref().is_none_or(|c| is_color(c[i]))
-                || !opacity.as_ref().is_none_or(|o| (0.0..=1.0).contains(&o[i]))
-                || !tangents.as_ref().is_none_or(|t| spans_a_plane(t[i]))
-            {
-                &mut dropped.attribute
-            } else {
-                continue;
-            };
-            *reason += 1;
-            *keep = false;
-        }
+        let points = Points {
+            position: &position,
+            radius: &radius,
+            color: color.as_deref(),
+            opacity: opacity.as_deref(),
+            tangents: tangents.as_deref(),
+        };
+        let (keep, dropped) = points.keep(&mut normal, exec);
         if dropped.total() == n as u64 {
             return Ok((Self::none(), dropped));
         }
         let radius = retain(radius, &keep);
         let mut surfels = Self {
-            median_radius: lower_median(radius.clone()),
+            median_radius: 0.0,
             bounding_sphere: (DVec3::ZERO, 0.0),
             position: retain(position, &keep),
             normal: retain(normal, &keep),
@@ -130,7 +128,8 @@ impl Surfels {
             tangents: tangents.map(|t| retain(t, &keep)),
             groups: groups.map(|g| g.retain(&keep)),
         };
-        surfels.bounding_sphere = surfels.sphere();
+        (surfels.median_radius, surfels.bounding_sphere) =
+            exec.join(|| lower_median(surfels.radius.clone()), || surfels.sphere(exec));
         Ok((surfels, dropped))
     }
 
@@ -226,16 +225,24 @@ impl Surfels {
         self.bounding_sphere
     }
 
-    fn sphere(&self) -> (DVec3, f64) {
+    fn sphere(&self, exec: &Exec) -> (DVec3, f64) {
         let (low, high) = self.bounds();
         let center = (low.as_dvec3() + high.as_dvec3()) / 2.0;
-        (center, self.reach(center))
+        let firsts = (0..self.len()).step_by(CHUNK).collect();
+        let far = exec
+            .ordered(firsts, |first| self.reach_of(first..self.len().min(first + CHUNK), center));
+        (center, far.into_iter().fold(0.0, |most, far| if far > most { far } else { most }))
     }
 
     /// The largest distance from a point to a surfel plus its reach; 0 if there is none.
     pub(super) fn reach(&self, center: DVec3) -> f64 {
+        self.reach_of(0..self.len(), center)
+    }
+
+    /// [`Surfels::reach`] of some of them.
+    fn reach_of(&self, surfels: Range<usize>, center: DVec3) -> f64 {
         let mut most = 0.0;
-        for (i, position) in self.position.iter().enumerate() {
+        for i in surfels {
             let reach = match &self.tangents {
                 None => f64::from(self.radius[i]),
                 Some(tangents) => {
@@ -243,7 +250,7 @@ impl Surfels {
                     (u.length_squared() + v.length_squared()).sqrt()
                 }
             };
-            let far = (position.as_dvec3() - center).length() + reach;
+            let far = (self.position[i].as_dvec3() - center).length() + reach;
             most = if far > most { far } else { most };
         }
         most
@@ -297,25 +304,6 @@ fn check_lengths(
     Ok(())
 }
 
-/// Makes a normal a unit vector; false if it has no direction.
-pub(super) fn unit(normal: &mut Vec3) -> bool {
-    let n = normal.as_dvec3();
-    let length = n.length();
-    // 2^-80: what is shorter is the rounding error of a sum that cancelled.
-    if !(length >= 1.0 / 1_208_925_819_614_629_174_706_176.0 && length.is_finite()) {
-        return false;
-    }
-    if (length - 1.0).abs() > 1.0 / 1_048_576.0 {
-        *normal = (n / length).as_vec3();
-    }
-    true
-}
-
-/// Whether two half axes are finite and span a plane, by the f64 area of their parallelogram.
-fn spans_a_plane([u, v]: [Vec3; 2]) -> bool {
-    u.is_finite() && v.is_finite() && u.as_dvec3().cross(v.as_dvec3()).length_squared() > 0.0
-}
-
 /// The elements marked in `keep`, in order; without a copy if all are.
 fn retain<T>(values: Vec<T>, keep: &[bool]) -> Vec<T> {
     if keep.iter().all(|&k| k) {
@@ -341,6 +329,27 @@ mod tests {
         assert_eq!(dropped, Dropped { position: 1, normal: 1, radius: 2, attribute: 0 });
         assert_eq!(surfels.position(), [Vec3::X]);
         assert_eq!(surfels.normal(), [Vec3::Z], "made a unit vector");
+    }
+
+    #[test]
+    fn threads_change_nothing() {
+        let number = |i: usize, salt: u32| (i as u32 ^ salt).wrapping_mul(0x9E37_79B9);
+        // Any bits: of every kind of degenerate surfel there are some, in every chunk.
+        let any = |i, salt| f32::from_bits(number(i, salt));
+        let vector = |i, salt| Vec3::new(any(i, salt), any(i, salt + 1), any(i, salt + 2));
+        let unit = |i, salt| number(i, salt) as f32 / u32::MAX as f32;
+        let indices = 0..5 * CHUNK + 7;
+        let mut p: Vec<_> = indices.clone().map(|i| Vec3::splat(unit(i, 1))).collect();
+        indices.clone().step_by(9).for_each(|i| p[i] = vector(i, 11));
+        let n = indices.clone().map(|i| vector(i, 21)).collect();
+        let r = indices.clone().map(|i| any(i, 31)).collect();
+        let color = indices.map(|i| Vec3::splat(unit(i, 41) - 0.125)).collect();
+        let all = Cloud { color: Some(color), ..cloud(p, n, r) };
+        let alone = Surfels::new(all.clone()).unwrap();
+        let Dropped { position, normal, radius, attribute } = alone.1;
+        assert!([position, normal, radius, attribute].iter().all(|&count| count > 50));
+        assert!(alone.0.len() > 1000);
+        assert!(Surfels::new_with(all, &Exec::new(3, 32).unwrap()).unwrap() == alone);
     }
 
     #[test]

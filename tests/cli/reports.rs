@@ -71,7 +71,7 @@ fn info_describes_every_kind_of_file() {
     let at = TempDir::new().unwrap();
     succeeds(at.path(), &small(&["-o", "a.exr", "--stages"]));
     let said = succeeds(at.path(), &["info", "a.exr"]);
-    for word in ["32 x 24", "visibility.Z: float", "id: uint", "zip", "sha256 = ", "[camera]"] {
+    for word in ["32 x 24", "visibility.Z: float", "id: uint", "rle", "sha256 = ", "[camera]"] {
         assert!(said.contains(word), "{word} in {said}");
     }
     let header = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n\

@@ -1,6 +1,7 @@
 //! File to image, trusting nothing.
 
-use super::{ATTRIBUTE, ChannelType, PictureHeader};
+use super::{ATTRIBUTE, ChannelType, PictureHeader, batch};
+use crate::frame::Exec;
 use crate::frame::image::{Image, Values};
 use crate::io::{Reason, input};
 use crate::memory;
@@ -25,14 +26,15 @@ const MOST_EXPANSION: u64 = 1376;
 /// A block has an entry of 8 bytes in the table of offsets, and its place and size in 8 more.
 const LEAST_BLOCK: u64 = 16;
 
-/// Reads every channel of the flat EXR file at `path`, whoever wrote it.
+/// Reads every channel of the flat EXR file at `path`, whoever wrote it, on one thread.
 ///
 /// Scan lines or tiles, of which only the full resolution is read; compressed in any way but DWA
 /// and HTJ2K; one part or several. A channel of a file with several parts is called `part.channel`.
 /// `HALF` values are widened exactly (a signalling NaN becomes quiet); all other bits are kept.
 ///
 /// Memory beside the file's own bytes: the planes, at most 1376 bytes (twice that for `HALF`) for a
-/// byte of the file, the most that any compression of the format can hold.
+/// byte of the file, the most that any compression of the format can hold; and two batches of a few
+/// blocks a thread.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be read. [`Error::Format`] if it is not an EXR, is damaged,
@@ -40,9 +42,17 @@ const LEAST_BLOCK: u64 = 16;
 /// subsampled channels, a data window that is not the display window, parts of different sizes, two
 /// channels of one name.
 pub fn read(path: &Path) -> Result<Image> {
+    read_with(path, &Exec::sequential())
+}
+
+/// [`read()`] on several threads; the image, or the error, is the same.
+///
+/// # Errors
+/// As [`read()`].
+pub fn read_with(path: &Path, exec: &Exec) -> Result<Image> {
     let (file, length) = open(path)?;
     let bytes = input::rest(file, length).map_err(|source| Error::io(path, source))?;
-    guarded(|| decode(&bytes)).map_err(|what| Error::format(path, what))
+    guarded(|| decode(&bytes, exec)).map_err(|what| Error::format(path, what))
 }
 
 /// Reads what the header of the EXR file at `path` promises, and no pixel.
@@ -86,9 +96,10 @@ pub(super) fn guarded<T>(decode: impl FnOnce() -> Reason<T>) -> Reason<T> {
             }
         }));
     });
-    SILENT.set(true);
+    // One may run inside another: a block inside its file, where there is one thread.
+    let outside = SILENT.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(decode));
-    SILENT.set(false);
+    SILENT.set(outside);
     result
         .unwrap_or_else(|_| Err("damaged in a way the decoder gives up on; write it again".into()))
 }
@@ -191,34 +202,86 @@ fn reason(place: &str, error: exr::error::Error) -> String {
 }
 
 /// A whole file.
-pub(super) fn decode(bytes: &[u8]) -> Reason<Image> {
+pub(super) fn decode(bytes: &[u8], exec: &Exec) -> Reason<Image> {
     let mut rest = bytes;
     let meta = metadata(&mut rest, bytes.len() as u64)?;
     let PictureHeader { width, height, text, .. } = summary(&meta);
     let planes = meta.headers.iter().map(|part| part.channels.list.len() as u64).sum::<u64>();
+    let batches = meta.headers.iter().map(|part| batch::most_bytes(part, exec)).max();
     let needed = planes * 4 * u64::from(width) * u64::from(height);
-    memory::try_ask(needed, || {
+    memory::try_ask(needed.saturating_add(batches.unwrap_or(0)), || {
         format!("a picture of {width} x {height} pixels, {planes} channels")
     })?;
     let mut channels = Vec::new();
     for (part, header) in meta.headers.iter().enumerate() {
-        let mut planes = empty_planes(header);
-        for (index, tile) in header.blocks_increasing_y_order().enumerate() {
-            let place = || format!("part {part}, block {index}");
-            let offset = take(&mut rest).ok_or_else(|| ends_early(&place()))?;
-            if tile.location.level_index == Vec2(0, 0) {
-                let chunk = chunk(bytes, u64::from_le_bytes(offset), &meta, part, tile.location)
-                    .map_err(|what| format!("{}: {what}", place()))?;
-                let block = UncompressedBlock::decompress_chunk(chunk, &meta, true)
-                    .map_err(|error| reason(&place(), error))?;
-                fill(&mut planes, header, &block);
-            }
-        }
+        let planes = decode_part(bytes, &mut rest, &meta, part, exec)?;
         let names = header.channels.list.iter().map(|c| full_name(&meta, header, &c.name));
         channels.extend(names.zip(planes));
     }
     channels.sort_by(|a, b| a.0.cmp(&b.0));
     Ok(Image { width, height, channels, text })
+}
+
+/// The planes of a part, whose table of offsets is the next of `rest`: a batch of blocks is copied
+/// to them while the next is decompressed.
+fn decode_part(
+    bytes: &[u8],
+    rest: &mut &[u8],
+    meta: &MetaData,
+    part: usize,
+    exec: &Exec,
+) -> Reason<Vec<Values>> {
+    let header = &meta.headers[part];
+    let mut planes = empty_planes(header);
+    let mut places = header.blocks_increasing_y_order().map(|tile| tile.location).enumerate();
+    let size = batch::blocks(header, exec) as usize;
+    let mut blocks = Vec::new();
+    loop {
+        let batch: Vec<_> = places
+            .by_ref()
+            .take(size)
+            .map(|(index, location)| (index, location, take(rest)))
+            .collect();
+        let is_last = batch.is_empty();
+        let (filled, next) = exec.join(
+            || -> Reason<()> {
+                for block in blocks {
+                    if let Some(block) = block? {
+                        fill(&mut planes, header, &block);
+                    }
+                }
+                Ok(())
+            },
+            || exec.ordered(batch, |place| decode_block(bytes, meta, part, place)),
+        );
+        filled?;
+        blocks = next;
+        if is_last {
+            return Ok(planes);
+        }
+    }
+}
+
+/// A block, given its index, its place and where its bytes begin; none of a lower resolution.
+fn decode_block(
+    bytes: &[u8],
+    meta: &MetaData,
+    part: usize,
+    (index, location, offset): (usize, TileCoordinates, Option<[u8; 8]>),
+) -> Reason<Option<UncompressedBlock>> {
+    let place = || format!("part {part}, block {index}");
+    let offset = offset.ok_or_else(|| ends_early(&place()))?;
+    if location.level_index != Vec2(0, 0) {
+        return Ok(None);
+    }
+    let chunk = chunk(bytes, u64::from_le_bytes(offset), meta, part, location)
+        .map_err(|what| format!("{}: {what}", place()))?;
+    // Guarded here too: this may be another thread.
+    guarded(|| {
+        UncompressedBlock::decompress_chunk(chunk, meta, true)
+            .map(Some)
+            .map_err(|error| reason(&place(), error))
+    })
 }
 
 /// The planes of a part, all 0.
@@ -268,6 +331,12 @@ fn chunk(
         }
     }
     let size = usize::try_from(number()?).map_err(|_| early())?;
+    if size as u64 > batch::block_bytes(header) {
+        // Every thread holds the bytes of a block.
+        return Err(format!(
+            "byte {offset}: a block of {size} bytes, more than its pixels have; write the file again"
+        ));
+    }
     let compressed_pixels_le = rest.get(..size).ok_or_else(early)?.to_vec();
     let compressed_block = match header.blocks {
         BlockDescription::ScanLines => CompressedBlock::ScanLine(CompressedScanLineBlock {

@@ -1,49 +1,60 @@
 //! Frame to file.
 
-use super::ATTRIBUTE;
+use super::{ATTRIBUTE, Compression, batch, zip};
 use crate::frame::named::LONGEST_NAME;
-use crate::frame::{Channel, ChannelData, Frame};
+use crate::frame::{Channel, ChannelData, Exec, Frame};
 use crate::io::replace::Pending;
 use crate::{Error, Result};
+use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock};
 use exr::block::lines::LineRefMut;
 use exr::block::writer::ChunksWriter;
-use exr::block::{self, UncompressedBlock};
+use exr::block::{self, BlockIndex, UncompressedBlock};
 use exr::error::UnitResult;
 use exr::meta::attribute::{
     AttributeValue, ChannelDescription, LineOrder, SampleType, Text as ExrText,
 };
 use exr::meta::header::{Header, LayerAttributes};
 use exr::meta::{BlockDescription, Headers, MetaData};
-use exr::prelude::Compression;
+use exr::prelude::Compression as Codec;
 use std::io::{self, Seek, Write};
 use std::path::Path;
 
-/// Writes all channels of `frame` and `text`, the attribute [`ATTRIBUTE`], to the file at `path`.
+/// Writes all channels of `frame` and `text`, the attribute [`ATTRIBUTE`], to the file at `path`, on
+/// one thread and by the default [`Compression`].
 ///
-/// One part of scan lines, ZIP-compressed 16 lines at a time, lossless: [`ChannelData::Float`] as
-/// `FLOAT`, [`ChannelData::Index`] and [`ChannelData::Count`] as `UINT`. The bytes of the file are
-/// a function of `frame` and `text`. The planes are not copied: beside them stands one block of 16
-/// lines at a time, raw and compressed.
+/// One part of scan lines, lossless: [`ChannelData::Float`] as `FLOAT`, [`ChannelData::Index`] and
+/// [`ChannelData::Count`] as `UINT`.
 ///
 /// # Errors
 /// [`Error::Invalid`] if the frame has no channel, no pixel, a plane of another size, or a channel
 /// name that is empty, longer than 31 bytes or given twice; [`Error::Io`] if the file cannot be
 /// written, and then nothing is left of it.
 pub fn write(path: &Path, frame: &Frame<f32>, text: &str) -> Result<()> {
-    pending(path, frame, text)?.put()
+    pending(path, frame, text, Compression::default(), &Exec::sequential())?.put()
 }
 
 /// [`write()`] up to the moment when the file is put in its place, for files that belong together.
 ///
+/// The bytes of the file are a function of `frame`, `text` and `compression`. The planes are not
+/// copied: beside them stand two batches of a few blocks a thread, one that is compressed and one
+/// that is written.
+///
 /// # Errors
 /// As [`write()`].
-pub fn pending(path: &Path, frame: &Frame<f32>, text: &str) -> Result<Pending> {
+pub fn pending(
+    path: &Path,
+    frame: &Frame<f32>,
+    text: &str,
+    compression: Compression,
+    exec: &Exec,
+) -> Result<Pending> {
     let channels = frame.channels();
     check(frame, &channels)?;
-    let headers: Headers = std::iter::once(header(frame, &channels, text)).collect();
+    let header = header(frame, &channels, text, compression);
+    let headers: Headers = std::iter::once(header).collect();
     MetaData::validate(&headers, true).map_err(|e| Error::Invalid(format!("no EXR: {e}")))?;
     Pending::write(path, |file| {
-        encode(file, headers, &channels).map_err(|error| match error {
+        encode(file, headers, &channels, exec).map_err(|error| match error {
             exr::error::Error::Io(error) => error,
             other => io::Error::other(other.to_string()),
         })
@@ -80,7 +91,12 @@ fn check(frame: &Frame<f32>, channels: &[Channel<'_>]) -> Result<()> {
 }
 
 /// The header of the one part.
-fn header(frame: &Frame<f32>, channels: &[Channel<'_>], text: &str) -> Header {
+fn header(
+    frame: &Frame<f32>,
+    channels: &[Channel<'_>],
+    text: &str,
+    compression: Compression,
+) -> Header {
     let described = channels.iter().map(|channel| {
         let sample_type = match channel.data {
             ChannelData::Float { .. } => SampleType::F32,
@@ -94,8 +110,14 @@ fn header(frame: &Frame<f32>, channels: &[Channel<'_>], text: &str) -> Header {
         other: std::iter::once((bytes(ATTRIBUTE), AttributeValue::Text(bytes(text)))).collect(),
         ..LayerAttributes::default()
     };
+    let codec = match compression {
+        Compression::Rle => Codec::RLE,
+        Compression::Zip => Codec::ZIP16,
+        Compression::Piz => Codec::PIZ,
+        Compression::None => Codec::Uncompressed,
+    };
     Header::new(bytes(""), size, described.collect())
-        .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
+        .with_encoding(codec, BlockDescription::ScanLines, LineOrder::Increasing)
         .with_attributes(attributes)
 }
 
@@ -104,21 +126,61 @@ fn bytes(text: &str) -> ExrText {
     ExrText::from_slice_unchecked(text.as_bytes())
 }
 
-/// Header and blocks, in the order of the lines.
+/// Header and blocks, in the order of the lines: a batch is written while the next is compressed.
 fn encode(
-    write: &mut (impl Write + Seek),
+    write: &mut (impl Write + Seek + Send),
     headers: Headers,
     channels: &[Channel<'_>],
+    exec: &Exec,
 ) -> UnitResult {
     block::write(write, headers, true, |meta, chunks| {
-        let list = &meta.headers[0].channels;
-        let mut compressor = chunks.sequential_blocks_compressor(&meta);
-        for (index, place) in meta.enumerate_ordered_header_block_indices() {
-            let block = UncompressedBlock::from_lines(list, place, |line| fill(line, channels));
-            compressor.compress_block(index, block)?;
+        let mut places = meta.enumerate_ordered_header_block_indices();
+        let size = batch::blocks(&meta.headers[0], exec) as usize;
+        let mut compressed = Vec::new();
+        loop {
+            let batch: Vec<_> = places.by_ref().take(size).collect();
+            let is_last = batch.is_empty();
+            let (written, next) = exec.join(
+                || compressed.into_iter().try_for_each(|(index, c)| chunks.write_chunk(index, c)),
+                || compress(batch, &meta, channels, exec),
+            );
+            written?;
+            compressed = next?;
+            if is_last {
+                return Ok(());
+            }
         }
-        Ok(())
     })
+}
+
+/// The blocks of a batch, each with its index.
+fn compress(
+    batch: Vec<(usize, BlockIndex)>,
+    meta: &MetaData,
+    channels: &[Channel<'_>],
+    exec: &Exec,
+) -> exr::error::Result<Vec<(usize, Chunk)>> {
+    let compressed = exec.ordered(batch, |(index, place)| {
+        let list = &meta.headers[0].channels;
+        let block = UncompressedBlock::from_lines(list, place, |line| fill(line, channels));
+        let chunk = match meta.headers[0].compression {
+            Codec::ZIP16 => zip_chunk(block)?,
+            _ => block.compress_to_chunk(&meta.headers)?,
+        };
+        Ok((index, chunk))
+    });
+    compressed.into_iter().collect()
+}
+
+/// What the exr crate would make of a block, but for the level.
+fn zip_chunk(UncompressedBlock { index, data }: UncompressedBlock) -> exr::error::Result<Chunk> {
+    let lines = CompressedScanLineBlock {
+        // The data window begins at 0.
+        y_coordinate: i32::try_from(index.pixel_position.y())
+            .map_err(|_| exr::error::Error::Invalid("a picture of too many lines".into()))?,
+        compressed_pixels_le: zip::compress(data),
+    };
+    Ok(Chunk { layer_index: 0, compressed_block: CompressedBlock::ScanLine(lines) })
 }
 
 /// One line of one channel, as bytes of this machine's order; the exr crate turns them if need be.

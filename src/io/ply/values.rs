@@ -6,6 +6,8 @@ use super::header::{Element, Format, PlyHeader, PropertyKind, Scalar, quote};
 #[derive(Debug)]
 pub(super) struct BodyValues<'a> {
     bytes: &'a [u8],
+    /// The bytes of the file before these.
+    before: u64,
     format: Format,
     /// The next byte to be read.
     at: usize,
@@ -26,7 +28,24 @@ pub(super) enum Event {
 impl<'a> BodyValues<'a> {
     pub(super) fn new(bytes: &'a [u8], header: &PlyHeader) -> Self {
         let PlyHeader { format, body, line, .. } = *header;
-        Self { bytes, format, at: body, last: body, line }
+        Self { bytes, before: 0, format, at: body, last: body, line }
+    }
+
+    /// The rest of a binary body, after `before` bytes of the file.
+    pub(super) fn rest(bytes: &'a [u8], before: u64, format: Format) -> Self {
+        Self { bytes, before, format, at: 0, last: 0, line: 0 }
+    }
+
+    pub(super) fn format(&self) -> Format {
+        self.format
+    }
+
+    /// All of an element of a binary body, each row of which has `stride` bytes.
+    pub(super) fn rows(&mut self, element: &Element, stride: usize) -> Result<&'a [u8], String> {
+        self.check_room(element)?;
+        let (rows, _) = self.bytes[self.at..].split_at(element.count as usize * stride);
+        self.at += rows.len();
+        Ok(rows)
     }
 
     /// Reads all of an element and gives each number to `visit`, whose errors get the same
@@ -223,7 +242,7 @@ impl<'a> BodyValues<'a> {
     fn place(&self) -> String {
         match self.format {
             Format::Ascii => format!("line {}", self.line),
-            Format::Little | Format::Big => format!("byte {}", self.last),
+            Format::Little | Format::Big => format!("byte {}", self.before + self.last as u64),
         }
     }
 
@@ -231,7 +250,7 @@ impl<'a> BodyValues<'a> {
     fn next_place(&self) -> String {
         match self.format {
             Format::Ascii => format!("line {}", self.line),
-            Format::Little | Format::Big => format!("byte {}", self.at),
+            Format::Little | Format::Big => format!("byte {}", self.before + self.at as u64),
         }
     }
 }

@@ -2,7 +2,9 @@
 
 use super::groups;
 use super::header::{Element, PropertyKind, Scalar, quote};
+use super::rows::Rows;
 use super::values::{BodyValues, Event};
+use crate::frame::Exec;
 use crate::io::srgb;
 use crate::scene::Cloud;
 use glam::Vec3;
@@ -14,20 +16,20 @@ const NAMES: [&str; 20] = [
     "x", "y", "z", "nx", "ny", "nz", "radius", "red", "green", "blue", "opacity", "tux", "tuy",
     "tuz", "tvx", "tvy", "tvz", "tx", "ty", "tz",
 ];
-const POSITION: Range<usize> = 0..3;
-const NORMAL: Range<usize> = 3..6;
-const RADIUS: Range<usize> = 6..7;
-const COLOR: Range<usize> = 7..10;
-const OPACITY: Range<usize> = 10..11;
-const TANGENTS: Range<usize> = 11..17;
-const TANGENT: Range<usize> = 17..20;
+pub(super) const POSITION: Range<usize> = 0..3;
+pub(super) const NORMAL: Range<usize> = 3..6;
+pub(super) const RADIUS: Range<usize> = 6..7;
+pub(super) const COLOR: Range<usize> = 7..10;
+pub(super) const OPACITY: Range<usize> = 10..11;
+pub(super) const TANGENTS: Range<usize> = 11..17;
+pub(super) const TANGENT: Range<usize> = 17..20;
 
 static SRGB_8: LazyLock<Vec<f32>> = LazyLock::new(|| srgb::table(u8::MAX.into()));
 static SRGB_16: LazyLock<Vec<f32>> = LazyLock::new(|| srgb::table(u16::MAX));
 
 /// How a number of the file becomes one of the cloud.
 #[derive(Clone, Copy)]
-enum Decode {
+pub(super) enum Decode {
     /// Rounded to `f32`.
     Keep,
     /// Divided by the code of 1, rounded to `f32`.
@@ -37,7 +39,7 @@ enum Decode {
 }
 
 impl Decode {
-    fn apply(self, value: f64) -> f32 {
+    pub(super) fn apply(self, value: f64) -> f32 {
         match self {
             Self::Keep => value as f32,
             Self::Divide(one) => (value / one) as f32,
@@ -48,11 +50,51 @@ impl Decode {
 
 /// What becomes of a property.
 #[derive(Clone, Copy)]
-enum PropertyUse {
+pub(super) enum PropertyUse {
     Skip,
     /// A number goes to a place of the row.
     Number(usize, Decode),
     Group(groups::GroupPart),
+}
+
+/// What the vertices of a file hold.
+pub(super) struct Layout {
+    /// What becomes of each property.
+    pub(super) slots: Vec<PropertyUse>,
+    /// Whether each number of [`NAMES`] is there.
+    given: [bool; NAMES.len()],
+}
+
+impl Layout {
+    pub(super) fn new(element: &Element, groups: &groups::Reader) -> Result<Self, String> {
+        let slots = element.properties.iter().map(|p| slot(&p.name, p.kind, groups));
+        let slots: Vec<PropertyUse> = slots.collect::<Result<_, _>>()?;
+        let mut given = [false; NAMES.len()];
+        let numbers = slots.iter().filter_map(|slot| match slot {
+            PropertyUse::Number(place, _) => Some(*place),
+            PropertyUse::Skip | PropertyUse::Group(_) => None,
+        });
+        for place in numbers {
+            if std::mem::replace(&mut given[place], true) {
+                return Err("element vertex has both opacity and alpha; keep one".into());
+            }
+        }
+        if !has(&given, POSITION)? {
+            return Err("element vertex has no properties x, y, z; declare them".into());
+        }
+        Ok(Self { slots, given })
+    }
+
+    /// Gives `cloud` the arrays of what is there, empty.
+    pub(super) fn arrays(&self, cloud: &mut Cloud) -> Result<(), String> {
+        cloud.normal = has(&self.given, NORMAL)?.then(Vec::new);
+        cloud.radius = has(&self.given, RADIUS)?.then(Vec::new);
+        cloud.color = has(&self.given, COLOR)?.then(Vec::new);
+        cloud.opacity = has(&self.given, OPACITY)?.then(Vec::new);
+        cloud.tangents = has(&self.given, TANGENTS)?.then(Vec::new);
+        cloud.tangent = has(&self.given, TANGENT)?.then(Vec::new);
+        Ok(())
+    }
 }
 
 /// Reads all vertices into the empty arrays of `cloud`.
@@ -61,33 +103,19 @@ pub(super) fn read(
     values: &mut BodyValues<'_>,
     cloud: &mut Cloud,
     groups: &mut groups::Reader,
+    exec: &Exec,
 ) -> Result<(), String> {
-    let slots = element.properties.iter().map(|p| slot(&p.name, p.kind, groups));
-    let slots: Vec<PropertyUse> = slots.collect::<Result<_, _>>()?;
-    let mut given = [false; NAMES.len()];
-    let numbers = slots.iter().filter_map(|slot| match slot {
-        PropertyUse::Number(place, _) => Some(*place),
-        PropertyUse::Skip | PropertyUse::Group(_) => None,
-    });
-    for place in numbers {
-        if std::mem::replace(&mut given[place], true) {
-            return Err("element vertex has both opacity and alpha; keep one".into());
-        }
+    let layout = Layout::new(element, groups)?;
+    layout.arrays(cloud)?;
+    if let Some(rows) = Rows::new(element, &layout, values.format()) {
+        let bytes = values.rows(element, rows.stride())?;
+        rows.append(bytes, cloud, exec);
+        return Ok(());
     }
-    if !has(&given, POSITION)? {
-        return Err("element vertex has no properties x, y, z; declare them".into());
-    }
-    cloud.normal = has(&given, NORMAL)?.then(Vec::new);
-    cloud.radius = has(&given, RADIUS)?.then(Vec::new);
-    cloud.color = has(&given, COLOR)?.then(Vec::new);
-    cloud.opacity = has(&given, OPACITY)?.then(Vec::new);
-    cloud.tangents = has(&given, TANGENTS)?.then(Vec::new);
-    cloud.tangent = has(&given, TANGENT)?.then(Vec::new);
-
     let mut row = [0.0; NAMES.len()];
     values.walk(element, |event| {
         match event {
-            Event::Value(property, value) => match slots[property] {
+            Event::Value(property, value) => match layout.slots[property] {
                 PropertyUse::Skip => {}
                 PropertyUse::Number(place, decode) => row[place] = decode.apply(value),
                 PropertyUse::Group(part) => groups.put(part, value)?,

@@ -32,12 +32,7 @@ pub fn write_frame(path: &Path, frame: &Frame<f32>) -> Result<()> {
 /// As [`write()`].
 pub fn pending_frame(path: &Path, frame: &Frame<f32>) -> Result<Option<Pending>> {
     let Ok(color) = frame.color("") else { return Ok(None) };
-    let Ok(alpha) = frame.scalar("A") else { return pending(path, color, None).map(Some) };
-    let mut color = color.clone();
-    for (pixel, alpha) in color.values_mut().iter_mut().zip(alpha.values()) {
-        *pixel = pixel.map(|value| straight(value, *alpha));
-    }
-    pending(path, &color, Some(alpha)).map(Some)
+    pending(path, color, frame.scalar("A").ok(), straight).map(Some)
 }
 
 /// A colour over black as one that is not multiplied by alpha.
@@ -56,10 +51,17 @@ fn straight(value: f32, alpha: f32) -> f32 {
 /// [`Error::Invalid`] if the planes have no pixel or are not of one size; [`Error::Io`] if the file
 /// cannot be written, and then nothing is left of it.
 pub fn write(path: &Path, color: &Plane<[f32; 3]>, alpha: Option<&Plane<f32>>) -> Result<()> {
-    pending(path, color, alpha)?.put()
+    pending(path, color, alpha, |value, _| value)?.put()
 }
 
-fn pending(path: &Path, color: &Plane<[f32; 3]>, alpha: Option<&Plane<f32>>) -> Result<Pending> {
+/// [`write()`] up to the moment when the file is put in its place, of `value` for each value of
+/// `color` and its alpha, if there is alpha.
+fn pending(
+    path: &Path,
+    color: &Plane<[f32; 3]>,
+    alpha: Option<&Plane<f32>>,
+    value: impl Fn(f32, f32) -> f32,
+) -> Result<Pending> {
     let (width, height) = (color.width(), color.height());
     if width == 0 || height == 0 {
         return Err(Error::Invalid(format!(
@@ -78,10 +80,13 @@ fn pending(path: &Path, color: &Plane<[f32; 3]>, alpha: Option<&Plane<f32>>) -> 
             (pixels, ExtendedColorType::Rgb8)
         }
         Some(alpha) => {
-            let pixels = color.values().iter().zip(alpha.values()).flat_map(|(&[r, g, b], &a)| {
-                [srgb.encode(r), srgb.encode(g), srgb.encode(b), quantize(f64::from(a), 255) as u8]
-            });
-            (pixels.collect::<Vec<u8>>(), ExtendedColorType::Rgba8)
+            let mut pixels = vec![0; 4 * color.values().len()];
+            let values = color.values().iter().zip(alpha.values());
+            for (pixel, (color, &a)) in pixels.as_chunks_mut().0.iter_mut().zip(values) {
+                let [r, g, b] = color.map(|v| srgb.encode(value(v, a)));
+                *pixel = [r, g, b, quantize(f64::from(a), 255) as u8];
+            }
+            (pixels, ExtendedColorType::Rgba8)
         }
     };
     Pending::write(path, |file| {
@@ -104,13 +109,22 @@ fn exact(linear: f32) -> u8 {
     quantize(srgb::from_linear(f64::from(linear)), 255) as u8
 }
 
-/// The function [`exact`] as the smallest `f32` of each code but 0.
-struct Srgb([f32; 255]);
+/// The function [`exact`] as a table.
+struct Srgb {
+    /// The smallest `f32` of each code but 0.
+    least: [f32; 255],
+    /// The code of each `f32` from [`Srgb::FIRST`] to 1 that has only its upper 16 bits.
+    codes: Vec<u8>,
+}
 
 impl Srgb {
+    /// 2^-12: below it are the codes 0 and 1 alone. From here on, two numbers that share their upper
+    /// 16 bits are at most a code apart.
+    const FIRST: f32 = 1.0 / 4096.0;
+
     /// Each code's smallest value, by bisection over the `f32` in [0, 1], whose bits ascend.
     fn new() -> Self {
-        Self(std::array::from_fn(|i| {
+        let least = std::array::from_fn(|i| {
             let (mut below, mut above) = (0.0_f32.to_bits(), 1.0_f32.to_bits());
             while above - below > 1 {
                 let middle = below + (above - below) / 2;
@@ -121,12 +135,29 @@ impl Srgb {
                 }
             }
             f32::from_bits(above)
-        }))
+        });
+        let upper = Self::upper(Self::FIRST)..=Self::upper(1.0);
+        let code = |upper: u32| {
+            let value = f32::from_bits(upper << 16);
+            least.partition_point(|&smallest| smallest <= value) as u8
+        };
+        Self { least, codes: upper.map(code).collect() }
+    }
+
+    fn upper(value: f32) -> u32 {
+        value.to_bits() >> 16
     }
 
     /// The code of a linear value.
     fn encode(&self, linear: f32) -> u8 {
-        self.0.partition_point(|&smallest| smallest <= linear) as u8
+        if linear >= 1.0 {
+            return 255;
+        }
+        if !(linear >= Self::FIRST) {
+            return u8::from(linear >= self.least[0]);
+        }
+        let code = self.codes[(Self::upper(linear) - Self::upper(Self::FIRST)) as usize];
+        code + u8::from(self.least.get(usize::from(code)).is_some_and(|&next| next <= linear))
     }
 }
 
@@ -163,7 +194,8 @@ mod tests {
     fn the_table_is_the_formula() {
         let srgb = Srgb::new();
         let sample = (0..=1.0_f32.to_bits()).step_by(9973);
-        let edges = srgb.0.iter().flat_map(|v| v.to_bits() - 2..=v.to_bits().min(0x3F7F_FFFE) + 1);
+        let edges =
+            srgb.least.iter().flat_map(|v| v.to_bits() - 2..=v.to_bits().min(0x3F7F_FFFE) + 1);
         for bits in sample.chain(edges) {
             let linear = f32::from_bits(bits);
             assert_eq!(srgb.encode(linear), exact(linear), "{linear:e}");

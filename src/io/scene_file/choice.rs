@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::index::grouping::{Extension, Grouping, Rules};
+use crate::io::exr::Compression;
 use crate::method::Method;
 use crate::setting::{Field, Fields, Refused, Setting, Slot, Value, Visit, Words};
 
@@ -166,6 +167,8 @@ pub struct OutputSettings {
     pub number: Number,
     /// Whether the planes of every stage are kept.
     pub stages: bool,
+    /// How the blocks of the EXR are compressed.
+    pub compression: Compression,
 }
 
 impl Fields for OutputSettings {
@@ -173,6 +176,9 @@ impl Fields for OutputSettings {
         each(Field::new("number", "the arithmetic", Slot::Word(&mut self.number)));
         let stages = "whether the planes of every stage are kept";
         each(Field::new("stages", stages, Slot::Switch(&mut self.stages)));
+        let compression = "how the EXR is compressed, which loses no bit: fast, as most programs do, \
+                           smallest, or not at all";
+        each(Field::new("compression", compression, Slot::Word(&mut self.compression)));
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, stem};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::{environment, ply};
-use crate::scene::{Cloud, Counts, Dropped, Environment, Primitives, Scene, Surfels};
+use crate::scene::{Cloud, Counts, Dropped, Environment, Primitives, Scene, Similarity, Surfels};
 use crate::source::derive::{self, Derive, Derived};
 use crate::source::merge::{join, merge};
 use crate::source::plant;
@@ -52,12 +52,12 @@ impl SceneFile {
         let environment = match &self.environment {
             None => None,
             Some(EnvironmentChoice::Sky) => Some(Environment::Sky),
-            Some(EnvironmentChoice::File(path)) => Some(environment::read(path)?),
+            Some(EnvironmentChoice::File(path)) => Some(environment::read(path, exec)?),
         };
-        let (mut models, mut clouds, mut primitives) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut models, mut parts, mut primitives) = (Vec::new(), Vec::new(), Vec::new());
         let (mut dropped, mut dropped_primitives) = (Dropped::default(), 0);
         for model in &self.models {
-            let ModelParts { surfels, primitives: more, derived } = parts(model, exec, progress)?;
+            let ModelParts { surfels, primitives: more, derived } = read(model, exec, progress)?;
             let counts = more.counts();
             let name = model.source.name();
             models.push(ModelReport { name, surfels: surfels.len(), primitives: counts, derived });
@@ -68,7 +68,9 @@ impl SceneFile {
                 }
                 model.transform.apply_to_vertices(vertices);
             })?;
-            clouds.push(placed(model, surfels));
+            if !surfels.is_empty() {
+                parts.push((model, surfels));
+            }
             primitives.push(more);
             dropped_primitives += lost;
             if let Some(derived) = derived {
@@ -77,15 +79,28 @@ impl SceneFile {
             }
         }
         let primitives = join(primitives, self.material.color)?;
-        clouds.retain(|cloud| !cloud.position.is_empty());
-        let all = merge(clouds, self.material.color);
-        let (surfels, lost) =
-            if primitives.is_empty() { Surfels::new(all) } else { Surfels::new_or_none(all) }?;
+        let (surfels, lost) = self.join_surfels(parts, primitives.is_empty(), exec)?;
         dropped += lost;
         let (name, lights) = (self.name.clone(), self.lights.clone());
         let scene =
             Scene { name, surfels, primitives, lights, material: self.material, environment };
         Ok(Loaded { scene, models, dropped, dropped_primitives })
+    }
+
+    /// The surfels of all models, in their places; there must be some if they are `alone`.
+    fn join_surfels(
+        &self,
+        mut parts: Vec<(&Model, Surfels)>,
+        alone: bool,
+        exec: &Exec,
+    ) -> Result<(Surfels, Dropped)> {
+        if parts.len() == 1 && is_as_read(parts[0].0) {
+            // The usual case, checked already.
+            return Ok((parts.remove(0).1, Dropped::default()));
+        }
+        let clouds = parts.into_iter().map(|(model, surfels)| placed(model, surfels));
+        let all = merge(clouds.collect(), self.material.color);
+        if alone { Surfels::new_with(all, exec) } else { Surfels::new_or_none(all, exec) }
     }
 }
 
@@ -113,10 +128,10 @@ fn check_draw(model: &Model) -> Result<()> {
     Ok(())
 }
 
-fn parts(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<ModelParts> {
+fn read(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<ModelParts> {
     match &model.source {
         Source::File { path, radius } => {
-            let cloud = ply::read(path)?;
+            let cloud = ply::read_with(path, exec)?;
             let options = Derive { radius: *radius };
             of_file(cloud, &model.draw, &options, exec, progress).map_err(|error| match error {
                 Error::Invalid(what) => Error::format(path, what),
@@ -174,6 +189,12 @@ fn of_file(
         // Refused before any file is read.
         Draw::Lines => return Err(Error::Invalid("only a tree is drawn as lines".into())),
     })
+}
+
+/// Whether the surfels of a model are what its source gives.
+fn is_as_read(model: &Model) -> bool {
+    let Model { color, opacity, transform, .. } = model;
+    color.is_none() && opacity.is_none() && *transform == Similarity::IDENTITY
 }
 
 /// The surfels of a model in its place and colour.

@@ -3,7 +3,7 @@ mod draw;
 use super::*;
 use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples};
 use crate::index::grouping::Extension;
-use crate::io::exr;
+use crate::io::exr::{self, Compression};
 use crate::method::Method;
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::{transparent, transparent_hq};
@@ -88,7 +88,8 @@ fn the_example_says_what_it_says() {
     assert_eq!(grouping.rules.coplanar.unwrap().cosine, 0.99);
     assert_eq!(grouping.extension, Extension::Add { most: 0.5 });
     assert_eq!(bunny.opacity, Some(0.5));
-    assert_eq!(file.output, OutputSettings { number: Number::F32, stages: true });
+    let compression = Compression::Zip;
+    assert_eq!(file.output, OutputSettings { number: Number::F32, stages: true, compression });
 }
 
 #[test]

@@ -180,7 +180,7 @@ pub fn surfels(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<(Surfels, Derived)> {
     let (cloud, mut derived) = complete(cloud, options, exec, progress)?;
-    let (surfels, dropped) = Surfels::new(cloud)?;
+    let (surfels, dropped) = Surfels::new_with(cloud, exec)?;
     derived.dropped += dropped;
     Ok((surfels, derived))
 }

@@ -53,7 +53,7 @@ pub fn hybrid(
     let (cloud, mut derived) = complete(cloud, options, exec, progress)?;
     let nowhere = (before - cloud.triangles.len()) as u64;
     let (points, mut mesh) = split(&cloud, half)?;
-    let (surfels, dropped) = Surfels::new_or_none(points)?;
+    let (surfels, dropped) = Surfels::new_or_none(points, exec)?;
     derived.dropped += dropped;
     let corners = std::mem::take(&mut mesh.triangles);
     let (normal, radius) = (mesh.normal.take(), mesh.radius.take());

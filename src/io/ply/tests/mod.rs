@@ -1,6 +1,7 @@
 //! What is read, what is refused and how, and that no bytes make the reader panic.
 
 mod refused;
+mod rows;
 
 use super::*;
 use crate::scene::Groups;

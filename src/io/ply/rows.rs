@@ -1,0 +1,160 @@
+//! Vertices that all have one length in bytes, decoded in parallel.
+//!
+//! They are what large files consist of: binary, little-endian, without lists and groups. A row
+//! cannot fail, as values are not judged; the walk of [`super::values`] reads all other vertices.
+
+use super::header::{Element, Format, PropertyKind, Scalar};
+use super::vertices::{
+    COLOR, Decode, Layout, NORMAL, OPACITY, POSITION, PropertyUse, RADIUS, TANGENT, TANGENTS,
+};
+use crate::frame::Exec;
+use crate::scene::Cloud;
+use glam::Vec3;
+use std::ops::Range;
+
+/// How to decode a row.
+pub(super) struct Rows {
+    /// Bytes of a row.
+    stride: usize,
+    /// By the place of a number in [`super::vertices::NAMES`].
+    numbers: Vec<Option<Number>>,
+}
+
+/// A number of a row.
+#[derive(Clone, Copy)]
+struct Number {
+    /// Its first byte.
+    at: usize,
+    scalar: Scalar,
+    decode: Decode,
+}
+
+impl Rows {
+    /// None if the vertices are to be read one number after another.
+    pub(super) fn new(element: &Element, layout: &Layout, format: Format) -> Option<Self> {
+        if format != Format::Little {
+            return None;
+        }
+        let mut rows = Self { stride: 0, numbers: vec![None; TANGENT.end] };
+        for (property, slot) in element.properties.iter().zip(&layout.slots) {
+            let PropertyKind::One(scalar) = property.kind else { return None };
+            match *slot {
+                PropertyUse::Skip => {}
+                PropertyUse::Number(place, decode) => {
+                    rows.numbers[place] = Some(Number { at: rows.stride, scalar, decode });
+                }
+                PropertyUse::Group(_) => return None,
+            }
+            rows.stride += scalar.size() as usize;
+        }
+        Some(rows)
+    }
+
+    /// The bytes of a row.
+    pub(super) fn stride(&self) -> usize {
+        self.stride
+    }
+
+    /// Makes room for so many rows, for no array to be copied as it grows.
+    pub(super) fn reserve(&self, count: usize, cloud: &mut Cloud) {
+        cloud.position.reserve_exact(count);
+        [&mut cloud.normal, &mut cloud.color, &mut cloud.tangent]
+            .into_iter()
+            .flatten()
+            .for_each(|vectors| vectors.reserve_exact(count));
+        [&mut cloud.radius, &mut cloud.opacity]
+            .into_iter()
+            .flatten()
+            .for_each(|numbers| numbers.reserve_exact(count));
+        cloud.tangents.iter_mut().for_each(|pairs| pairs.reserve_exact(count));
+    }
+
+    /// Appends the rows of `bytes` to the arrays that `cloud` has.
+    pub(super) fn append(&self, bytes: &[u8], cloud: &mut Cloud, exec: &Exec) {
+        let table = Table { rows: self, bytes, exec };
+        table.vectors(&mut cloud.position, POSITION);
+        let vectors =
+            [(&mut cloud.normal, NORMAL), (&mut cloud.color, COLOR), (&mut cloud.tangent, TANGENT)];
+        for (to, places) in vectors {
+            to.iter_mut().for_each(|to| table.vectors(to, places.clone()));
+        }
+        for (to, places) in [(&mut cloud.radius, RADIUS), (&mut cloud.opacity, OPACITY)] {
+            to.iter_mut().for_each(|to| table.put(to, places.clone(), |[number]| number));
+        }
+        let pair = |[a, b, c, d, e, f]: [f32; 6]| [Vec3::new(a, b, c), Vec3::new(d, e, f)];
+        cloud.tangents.iter_mut().for_each(|to| table.put(to, TANGENTS, pair));
+    }
+}
+
+/// Rows to be decoded.
+struct Table<'a> {
+    rows: &'a Rows,
+    bytes: &'a [u8],
+    exec: &'a Exec,
+}
+
+impl Table<'_> {
+    fn vectors(&self, to: &mut Vec<Vec3>, places: Range<usize>) {
+        self.put(to, places, Vec3::from_array);
+    }
+
+    /// Appends a value a row, made of the numbers at `places`, of which there are `N`.
+    fn put<T: Send, const N: usize>(
+        &self,
+        to: &mut Vec<T>,
+        places: Range<usize>,
+        of: impl Fn([f32; N]) -> T + Sync + Send,
+    ) {
+        let stride = self.rows.stride;
+        let numbers = self.rows.numbers[places].iter().flatten().copied().collect::<Vec<_>>();
+        let Some(&numbers) = numbers.first_chunk::<N>() else { return };
+        let count = self.bytes.len() / stride;
+        let row = |i: usize| &self.bytes[i * stride..][..stride];
+        // What most files have, without a question for each number.
+        if numbers.iter().all(Number::is_plain) {
+            self.exec.extend(to, count, |i| of(each(&numbers, |number| number.plain(row(i)))));
+        } else {
+            self.exec.extend(to, count, |i| of(each(&numbers, |number| number.value(row(i)))));
+        }
+    }
+}
+
+/// A value for each number; `array::map` is not inlined in builds of many units.
+#[inline]
+fn each<const N: usize>(numbers: &[Number; N], of: impl Fn(Number) -> f32) -> [f32; N] {
+    let mut values = [0.0; N];
+    values.iter_mut().zip(numbers).for_each(|(value, &number)| *value = of(number));
+    values
+}
+
+impl Number {
+    /// Whether this is an `f32` that is kept.
+    fn is_plain(&self) -> bool {
+        matches!((self.scalar, self.decode), (Scalar::F32, Decode::Keep))
+    }
+
+    #[inline]
+    fn plain(self, row: &[u8]) -> f32 {
+        f32::from_le_bytes(self.of(row))
+    }
+
+    #[inline]
+    fn value(self, row: &[u8]) -> f32 {
+        self.decode.apply(match self.scalar {
+            Scalar::I8 => f64::from(i8::from_le_bytes(self.of(row))),
+            Scalar::U8 => f64::from(u8::from_le_bytes(self.of(row))),
+            Scalar::I16 => f64::from(i16::from_le_bytes(self.of(row))),
+            Scalar::U16 => f64::from(u16::from_le_bytes(self.of(row))),
+            Scalar::I32 => f64::from(i32::from_le_bytes(self.of(row))),
+            Scalar::U32 => f64::from(u32::from_le_bytes(self.of(row))),
+            Scalar::F32 => f64::from(f32::from_le_bytes(self.of(row))),
+            Scalar::F64 => f64::from_le_bytes(self.of(row)),
+        })
+    }
+
+    /// Its bytes, which a row has.
+    #[inline]
+    fn of<const N: usize>(self, row: &[u8]) -> [u8; N] {
+        row[self.at..].first_chunk().copied().unwrap_or([0; N])
+    }
+}

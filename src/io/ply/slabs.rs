@@ -1,0 +1,113 @@
+//! Large files: vertices that are decoded while the next are read.
+
+use super::groups;
+use super::header::{self, PlyHeader};
+use super::rows::Rows;
+use super::values::BodyValues;
+use super::vertices::Layout;
+use super::{ask, other, vertex};
+use crate::frame::Exec;
+use crate::scene::Cloud;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+
+/// A header of more bytes than these is of a file that is read whole.
+const MOST_HEADER: u64 = 1 << 16;
+/// Rows of a slab: few enough for their bytes to stay in a cache until they are decoded.
+const ROWS: u64 = 1 << 16;
+
+/// Why a file is not read, without its name.
+pub(super) enum Error {
+    Io(io::Error),
+    Format(String),
+}
+
+impl From<io::Error> for Error {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+impl From<String> for Error {
+    fn from(what: String) -> Self {
+        Self::Format(what)
+    }
+}
+
+/// A file that begins with vertices of one length, all of which it has.
+pub(super) struct Start {
+    header: PlyHeader,
+    layout: Layout,
+    rows: Rows,
+}
+
+/// Looks at the start of a file of `length` bytes. None is one that must be read whole, or in which
+/// something is wrong, which is then found.
+pub(super) fn start(file: &mut File, length: u64) -> io::Result<Option<Start>> {
+    let mut bytes = Vec::new();
+    file.take(MOST_HEADER).read_to_end(&mut bytes)?;
+    let Ok(header) = header::parse(&bytes) else { return Ok(None) };
+    Ok(Start::new(header, length))
+}
+
+impl Start {
+    fn new(header: PlyHeader, length: u64) -> Option<Self> {
+        let vertex = vertex(&header).ok()?;
+        if header.elements.first()?.name != vertex.name {
+            return None;
+        }
+        let layout = Layout::new(vertex, &groups::Reader::new(vertex)).ok()?;
+        let rows = Rows::new(vertex, &layout, header.format)?;
+        let bytes = vertex.count.checked_mul(rows.stride() as u64)?;
+        let there = length.checked_sub(header.body as u64)?;
+        (bytes <= there).then_some(Self { header, layout, rows })
+    }
+
+    /// Reads all of the file.
+    pub(super) fn read(self, mut file: File, length: u64, exec: &Exec) -> Result<Cloud, Error> {
+        let Self { header, layout, rows } = self;
+        let vertex = vertex(&header)?;
+        let stride = rows.stride() as u64;
+        let after = header.body as u64 + vertex.count * stride;
+        let slab = ROWS.min(vertex.count) * stride;
+        ask(&header, length, 2 * slab + (length - after))?;
+        let mut cloud = Cloud::default();
+        layout.arrays(&mut cloud)?;
+        rows.reserve(vertex.count as usize, &mut cloud);
+        file.seek(SeekFrom::Start(header.body as u64))?;
+        slabs(&rows, &mut file, vertex.count, &mut cloud, exec)?;
+
+        let mut rest = Vec::new();
+        file.take(length - after).read_to_end(&mut rest)?;
+        let mut values = BodyValues::rest(&rest, after, header.format);
+        // Their vertices have none.
+        let mut groups = groups::Reader::new(vertex);
+        for element in &header.elements[1..] {
+            other(element, &mut values, vertex.count, &mut cloud, &mut groups)?;
+        }
+        values.finish()?;
+        Ok(cloud)
+    }
+}
+
+/// Reads `count` rows from where the file stands: a slab is decoded while the next is read.
+fn slabs(
+    rows: &Rows,
+    file: &mut File,
+    count: u64,
+    cloud: &mut Cloud,
+    exec: &Exec,
+) -> io::Result<()> {
+    let (mut next, mut current) = (Vec::new(), Vec::new());
+    let mut left = count;
+    while left > 0 || !current.is_empty() {
+        let size = left.min(ROWS);
+        left -= size;
+        next.resize(size as usize * rows.stride(), 0);
+        let (read, ()) =
+            exec.join(|| file.read_exact(&mut next), || rows.append(&current, cloud, exec));
+        read?;
+        std::mem::swap(&mut next, &mut current);
+    }
+    Ok(())
+}

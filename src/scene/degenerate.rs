@@ -1,0 +1,82 @@
+//! Which points of a cloud can be no surfels.
+
+use super::surfels::Dropped;
+use crate::frame::Exec;
+use crate::scene::light::is_color;
+use glam::Vec3;
+
+/// So many points are looked at by one job.
+pub(super) const CHUNK: usize = 1 << 14;
+
+/// What is known of points besides their normals, in arrays of one length.
+pub(super) struct Points<'a> {
+    pub(super) position: &'a [Vec3],
+    pub(super) radius: &'a [f32],
+    pub(super) color: Option<&'a [Vec3]>,
+    pub(super) opacity: Option<&'a [f32]>,
+    pub(super) tangents: Option<&'a [[Vec3; 2]]>,
+}
+
+impl Points<'_> {
+    /// Which points are kept, and how many are not; normals become unit vectors.
+    pub(super) fn keep(&self, normal: &mut [Vec3], exec: &Exec) -> (Vec<bool>, Dropped) {
+        let mut keep = vec![true; normal.len()];
+        let chunks = keep.chunks_mut(CHUNK).zip(normal.chunks_mut(CHUNK)).enumerate();
+        let counts = exec.ordered(chunks.collect(), |(chunk, (keep, normal))| {
+            let mut dropped = Dropped::default();
+            for (i, (keep, normal)) in keep.iter_mut().zip(normal).enumerate() {
+                if let Some(reason) = self.reason(chunk * CHUNK + i, normal, &mut dropped) {
+                    *reason += 1;
+                    *keep = false;
+                }
+            }
+            dropped
+        });
+        let mut dropped = Dropped::default();
+        counts.into_iter().for_each(|count| dropped += count);
+        (keep, dropped)
+    }
+
+    /// The first reason to drop point `i`, of all that are counted.
+    fn reason<'d>(
+        &self,
+        i: usize,
+        normal: &mut Vec3,
+        dropped: &'d mut Dropped,
+    ) -> Option<&'d mut u64> {
+        let radius = self.radius[i];
+        if !self.position[i].is_finite() {
+            Some(&mut dropped.position)
+        } else if !unit(normal) {
+            Some(&mut dropped.normal)
+        } else if !(radius > 0.0 && radius.is_finite()) {
+            Some(&mut dropped.radius)
+        } else if !self.color.is_none_or(|c| is_color(c[i]))
+            || !self.opacity.is_none_or(|o| (0.0..=1.0).contains(&o[i]))
+            || !self.tangents.is_none_or(|t| spans_a_plane(t[i]))
+        {
+            Some(&mut dropped.attribute)
+        } else {
+            None
+        }
+    }
+}
+
+/// Makes a normal a unit vector; false if it has no direction.
+pub(super) fn unit(normal: &mut Vec3) -> bool {
+    let n = normal.as_dvec3();
+    let length = n.length();
+    // 2^-80: what is shorter is the rounding error of a sum that cancelled.
+    if !(length >= 1.0 / 1_208_925_819_614_629_174_706_176.0 && length.is_finite()) {
+        return false;
+    }
+    if (length - 1.0).abs() > 1.0 / 1_048_576.0 {
+        *normal = (n / length).as_vec3();
+    }
+    true
+}
+
+/// Whether two half axes are finite and span a plane, by the f64 area of their parallelogram.
+fn spans_a_plane([u, v]: [Vec3; 2]) -> bool {
+    u.is_finite() && v.is_finite() && u.as_dvec3().cross(v.as_dvec3()).length_squared() > 0.0
+}
