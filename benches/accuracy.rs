@@ -114,7 +114,7 @@ impl Bench {
             }
             let file = match *name {
                 "cluster" => "shape = \"cluster\"".to_owned(),
-                _ => format!("file = \"{}\"", model.display()),
+                _ => format!("file = \"{}\"\ndraw = \"points\"", model.display()),
             };
             let more = if *name == "balls" { BALLS } else { "" };
             let text =

@@ -52,7 +52,7 @@ fn points(path: &Path) -> Result<()> {
 
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let found = derive::surfels(cloud, &Derive::default(), &Exec::new(0, 32)?, &show);
+    let found = derive::facets_or_surfels(cloud, &Derive::default(), &Exec::new(0, 32)?, &show);
     drop(steps);
     let (surfels, derived) = match found {
         Ok(found) => found,
@@ -79,7 +79,7 @@ fn scene(path: &Path) -> Result<()> {
             "source",
             match &model.source {
                 Source::File { path, .. } => match model.draw {
-                    Draw::Points => path.display().to_string(),
+                    Draw::Surfels => path.display().to_string(),
                     draw => format!("{}, drawn as {}", path.display(), draw.word()),
                 },
                 Source::Shape { shape, count, seed } => {

@@ -74,11 +74,14 @@ pub(super) fn radius(surfels: &Surfels) {
     }
 }
 
+const FACETS: &str = "of ellipses, a triangle each";
+
 pub(super) fn normals(origin: Origin) -> &'static str {
     match origin {
         Origin::File | Origin::Given => "from the file",
         Origin::Tangents => "derived from the tangents",
         Origin::Triangles => "derived from the triangles",
+        Origin::Facets => FACETS,
         Origin::Neighbours => "derived from the nearest neighbours",
         Origin::Edges => "derived from the edges",
         Origin::Zero => "0",
@@ -90,6 +93,7 @@ pub(super) fn radii(origin: Origin) -> &'static str {
         Origin::File => "from the file",
         Origin::Given => "as the scene says",
         Origin::Tangents => "derived from the tangents",
+        Origin::Facets => FACETS,
         Origin::Triangles | Origin::Edges => "derived from the edges",
         Origin::Zero => "0",
         Origin::Neighbours => "derived from the nearest neighbours",

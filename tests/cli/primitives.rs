@@ -43,7 +43,7 @@ fn info_counts_what_there_is() {
         words.iter().for_each(|word| assert!(said.contains(word), "{word} in {said}"));
         said
     };
-    says("mesh.ply", &["triangles  2", "edges      1", "surfels    4"]);
+    says("mesh.ply", &["triangles  2", "edges      1", "surfels    2", "a triangle each"]);
     says("line.ply", &["has        radii, tangents", "surfels    none: normals"]);
     let words = ["polygons: 2 triangles, normals derived from the triangles\n", "(4, 2, 0)"];
     let said = says("polygons.toml", &words);

@@ -6,6 +6,9 @@ use crate::source::hybrid::HalfSpace;
 /// As what a model is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Draw {
+    /// Facets of a mesh whose points have no extent of their own, points of anything else:
+    /// [`crate::source::derive::facets_or_surfels`].
+    Surfels,
     /// Its points as surfels.
     Points,
     /// Its triangles as elliptical surfels, one each: [`crate::source::derive::facets`].
@@ -27,7 +30,8 @@ impl Draw {
     /// As what a model from this source is drawn if nobody says.
     pub(super) fn of(source: &Source) -> Self {
         match source {
-            Source::File { .. } | Source::Shape { .. } => Self::Points,
+            Source::File { .. } => Self::Surfels,
+            Source::Shape { .. } => Self::Points,
             Source::Tree { .. } => Self::Lines,
         }
     }
@@ -39,7 +43,7 @@ impl Draw {
     pub(super) fn check(self, source: &Source) -> Result<(), String> {
         let (fits, choice) = match source {
             Source::File { .. } => {
-                (self != Self::Lines, "points, facets, polygons, hybrid, ribbons or tubes")
+                (self != Self::Lines, "surfels, points, facets, polygons, hybrid, ribbons or tubes")
             }
             Source::Shape { .. } => (self == Self::Points, "points"),
             Source::Tree { .. } => {
@@ -76,6 +80,7 @@ impl Draw {
                 return Err("`split` means nothing without draw = \"hybrid\": remove it".into());
             }
             (None, None) => Self::of(source),
+            (Some("surfels"), None) => Self::Surfels,
             (Some("points"), None) => Self::Points,
             (Some("facets"), None) => Self::Facets,
             (Some("polygons"), None) => Self::Polygons,
@@ -83,7 +88,7 @@ impl Draw {
             (Some("tubes"), None) => Self::Tubes,
             (Some("lines"), None) => Self::Lines,
             (Some(word), None) => {
-                let all = "points, facets, polygons, hybrid, ribbons, tubes, lines";
+                let all = "surfels, points, facets, polygons, hybrid, ribbons, tubes, lines";
                 return Err(format!("draw `{word}`; give one of {all}"));
             }
         };
@@ -95,6 +100,7 @@ impl Draw {
     #[must_use]
     pub fn word(&self) -> &'static str {
         match self {
+            Self::Surfels => "surfels",
             Self::Points => "points",
             Self::Facets => "facets",
             Self::Polygons => "polygons",

@@ -120,7 +120,8 @@ impl ModelParts {
 /// Whether a model can be drawn as it says, and may have its opacity.
 fn check_draw(model: &Model) -> Result<()> {
     model.draw.check(&model.source).map_err(Error::Invalid)?;
-    if model.opacity.is_some() && !matches!(model.draw, Draw::Points | Draw::Facets) {
+    if model.opacity.is_some() && !matches!(model.draw, Draw::Surfels | Draw::Points | Draw::Facets)
+    {
         let (name, word) = (model.source.name(), model.draw.word());
         let what = format!("{name}: what is drawn as {word} is opaque; remove the opacity");
         return Err(Error::Invalid(what));
@@ -161,6 +162,10 @@ fn of_file(
 ) -> Result<ModelParts> {
     let none = Primitives::default();
     Ok(match draw {
+        Draw::Surfels => {
+            let (surfels, derived) = derive::facets_or_surfels(cloud, options, exec, progress)?;
+            ModelParts::new(surfels, none, derived)
+        }
         Draw::Points => {
             let (surfels, derived) = derive::surfels(cloud, options, exec, progress)?;
             ModelParts::new(surfels, none, derived)

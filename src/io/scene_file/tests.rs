@@ -49,7 +49,7 @@ fn the_example_says_what_it_says() {
     let path = Path::new("a").join("bunny.ply");
     assert_eq!(bunny.source, Source::File { path, radius: Some(0.002) });
     assert_eq!(bunny.color, Some(Vec3::new(0.75, 0.5, 0.25)));
-    assert_eq!(bunny.draw, Draw::Points);
+    assert_eq!(bunny.draw, Draw::Surfels);
     assert_eq!((bunny.transform.scale, bunny.transform.translation), (10.0, -DVec3::Y));
     let shape = Shape::Sheets { gap: 0.25 };
     assert_eq!(sheets.source, Source::Shape { shape, count: 20_000, seed: 1 });

@@ -107,7 +107,7 @@ mod primitives;
 #[cfg(test)]
 mod tests;
 
-pub use facets::facets;
+pub use facets::{facets, facets_or_surfels};
 pub use primitives::{hybrid, polygons, ribbons, tubes};
 
 use crate::error::{Error, Result};
@@ -142,6 +142,8 @@ pub enum Origin {
     Tangents,
     /// Derived from the triangles.
     Triangles,
+    /// Those of [`facets`].
+    Facets,
     /// Derived from the nearest neighbours.
     Neighbours,
     /// Derived from the edges, as tangents are.

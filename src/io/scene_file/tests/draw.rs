@@ -54,7 +54,7 @@ fn counts(triangles: usize, ribbons: usize, tubes: usize) -> Counts {
 #[test]
 fn the_words_of_draw() {
     let draw = |more: &str| parse(&model(more)).models[0].draw;
-    assert_eq!((draw(""), draw("draw = \"points\"\n")), (Draw::Points, Draw::Points));
+    assert_eq!((draw(""), draw("draw = \"points\"\n")), (Draw::Surfels, Draw::Points));
     for (word, expected) in [
         ("facets", Draw::Facets),
         ("polygons", Draw::Polygons),
@@ -74,11 +74,11 @@ fn keys_that_do_not_go_together_are_refused() {
     for (more, what) in [
         (
             "draw = \"lines\"\n",
-            "a is drawn as points, facets, polygons, hybrid, ribbons or tubes, not as lines",
+            "a is drawn as surfels, points, facets, polygons, hybrid, ribbons or tubes, not as lines",
         ),
         (
             "draw = \"dots\"\n",
-            "draw `dots`; give one of points, facets, polygons, hybrid, ribbons, tubes, lines",
+            "draw `dots`; give one of surfels, points, facets, polygons, hybrid, ribbons, tubes, lines",
         ),
         ("draw = \"hybrid\"\n", "a hybrid needs split = [a, b, c, d]"),
         ("split = [0, 1, 0, 0]\n", "`split` means nothing without draw = \"hybrid\""),
@@ -163,7 +163,7 @@ fn models_of_all_kinds_are_joined() {
         + &model("draw = \"tubes\"\nradius = 1\n[model.transform]\ntranslate = [5, 0, 0]\n")
         + SHAPE
         + &model("draw = \"polygons\"\ncolor = [1, 0, 0]\n")
-        + &model("")
+        + &model("draw = \"points\"\n")
         + "[material]\ncolor = [0, 0, 1]\n";
     let Loaded { scene, models, dropped, dropped_primitives } = loaded(&ply(&[], ""), &all);
     assert_eq!((scene.surfels.len(), scene.primitives.counts()), (105, counts(8, 0, 2)));
