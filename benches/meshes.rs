@@ -58,7 +58,8 @@ fn main() -> Result<()> {
     ]);
     for (name, cloud) in clouds.into_iter().filter(|c| c.0.contains(&arguments.pattern)) {
         let points = derive::surfels(cloud.clone(), &Derive::default(), &exec, &|_, _, _| ())?.0;
-        let (points, facets) = (lit(&name, points), lit(&name, derive::facets(cloud.clone())?.0));
+        let (points, facets) =
+            (lit(&name, points), lit(&name, derive::facets(cloud.clone(), &exec)?.0));
         let mesh = Mesh::new(cloud, &points, &exec)?;
         let sphere = points.surfels.bounding_sphere();
         let truths = HEIGHTS.map(|height| true_picture(&mesh, sphere, height, &exec));

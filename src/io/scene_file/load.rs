@@ -171,7 +171,7 @@ fn of_file(
             ModelParts::new(surfels, none, derived)
         }
         Draw::Facets => {
-            let (surfels, derived) = derive::facets(cloud)?;
+            let (surfels, derived) = derive::facets(cloud, exec)?;
             ModelParts::new(surfels, none, derived)
         }
         Draw::Polygons => {

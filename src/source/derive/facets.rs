@@ -31,7 +31,7 @@ use std::ops::{Add, Div};
 /// # Errors
 /// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if the points have groups,
 /// which say nothing of triangles.
-pub fn facets(mut cloud: Cloud) -> Result<(Surfels, Derived)> {
+pub fn facets(mut cloud: Cloud, exec: &Exec) -> Result<(Surfels, Derived)> {
     primitives::some_triangles(&cloud)?;
     cloud.check()?;
     if cloud.groups.is_some() {
@@ -40,7 +40,7 @@ pub fn facets(mut cloud: Cloud) -> Result<(Surfels, Derived)> {
     let nowhere = drop_nowhere(&mut cloud)?;
     let count = cloud.triangles.len();
     memory::ask(count as u64 * BYTES_A_FACET, || format!("{count} facets"))?;
-    let (surfels, mut dropped) = Surfels::new(ellipses(&cloud))?;
+    let (surfels, mut dropped) = Surfels::new_with(ellipses(&cloud), exec)?;
     dropped.position += nowhere;
     let (normals, radii) = (Origin::Facets, Origin::Facets);
     Ok((surfels, Derived { normals, radii, dropped, dropped_primitives: 0 }))
@@ -63,7 +63,7 @@ pub fn facets_or_surfels(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<(Surfels, Derived)> {
     if is_bare_mesh(&cloud, options) {
-        facets(cloud)
+        facets(cloud, exec)
     } else {
         super::surfels(cloud, options, exec, progress)
     }
@@ -198,13 +198,13 @@ mod tests {
 
     #[test]
     fn a_triangle_is_a_surfel_or_counted() {
-        let (surfels, derived) = facets(cloud()).unwrap();
+        let (surfels, derived) = facets(cloud(), &Exec::sequential()).unwrap();
         assert_eq!(surfels.position(), [Vec3::new(1.0, 1.0, 1.0); 2]);
         assert_eq!(surfels.normal(), [Vec3::Z, -Vec3::Z], "by the order of the corners");
         assert_eq!(surfels.color(), Some([Vec3::ONE; 2].as_slice()));
         assert_eq!(surfels.opacity(), Some([0.5; 2].as_slice()));
         let normal = Some(vec![Vec3::Z, Vec3::Z, Vec3::new(0.0, 1.0, -1.5), Vec3::Z, Vec3::Z]);
-        let turned = facets(Cloud { normal, ..cloud() }).unwrap().0;
+        let turned = facets(Cloud { normal, ..cloud() }, &Exec::sequential()).unwrap().0;
         assert_eq!(turned.normal(), [Vec3::Z; 2], "the corners' normals say the side");
         // A point that is nowhere, with its triangle, and a triangle without area.
         assert_eq!((derived.dropped.position, derived.dropped.normal), (1, 1));
@@ -231,7 +231,7 @@ mod tests {
         for cloud in
             [Cloud { groups: Some(grouped), ..cloud() }, Cloud { triangles: Vec::new(), ..cloud() }]
         {
-            assert!(matches!(facets(cloud), Err(Error::Invalid(_))));
+            assert!(matches!(facets(cloud, &Exec::sequential()), Err(Error::Invalid(_))));
         }
     }
 }
