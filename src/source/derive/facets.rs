@@ -4,6 +4,7 @@ use super::{Derive, Derived, Origin, drop_nowhere, primitives};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
+use crate::scene::light::is_color;
 use crate::scene::{Cloud, Surfels};
 use glam::{DVec3, Vec3};
 use std::ops::{Add, Div};
@@ -24,9 +25,11 @@ use std::ops::{Add, Div};
 /// ```
 ///
 /// each rounded to `f32` once; products x.y and lengths are sums in the order x, y, z. Colour and
-/// opacity are the means of the corners', ((a + b) + c) / 3 in `f32`. `Decided:` the corners' normals say which side is the front, since files wind their triangles
-/// either way. Radii and tangents of the file are not looked at. A triangle without area becomes a
-/// surfel without a normal, which is dropped and counted.
+/// opacity are the means of the corners', ((a + b) + c) / 3 in `f32`; a triangle with a corner whose
+/// colour or opacity cannot be is dropped and counted, as the corner would be. `Decided:` the
+/// corners' normals say which side is the front, since files wind their triangles either way. Radii
+/// and tangents of the file are not looked at. A triangle without area becomes a surfel without a
+/// normal, which is dropped and counted.
 ///
 /// # Errors
 /// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if the points have groups,
@@ -51,8 +54,8 @@ pub fn facets(mut cloud: Cloud, exec: &Exec) -> Result<(Surfels, Derived)> {
 /// and no radius is asked for.
 ///
 /// `Decided:` by measurement. Against the mesh itself the error of facets is less than that of points
-/// with derived radii in six scans and three cylinders, by four methods (bench `meshes`): facets end
-/// where the surface ends.
+/// with derived radii in six scans and three cylinders, by four methods, each in one view and three
+/// sizes (bench `meshes`): facets end where the surface ends.
 ///
 /// # Errors
 /// As those two.
@@ -91,12 +94,9 @@ fn ellipses(cloud: &Cloud) -> Cloud {
             Facet::new(triangle.map(|i| position[i as usize].as_dvec3()), side)
         })
         .collect();
-    let color = color
-        .as_ref()
-        .map(|all| triangles.iter().map(|t| mean(t.map(|i| all[i as usize]))).collect());
-    let opacity = opacity
-        .as_ref()
-        .map(|all| triangles.iter().map(|t| mean(t.map(|i| all[i as usize]))).collect());
+    let color = color.as_ref().map(|all| means(triangles, all, |c| is_color(*c), Vec3::NAN));
+    let is_opacity = |o: &f32| (0.0..=1.0).contains(o);
+    let opacity = opacity.as_ref().map(|all| means(triangles, all, is_opacity, f32::NAN));
     Cloud {
         position: found.iter().map(|f| f.place).collect(),
         normal: Some(found.iter().map(|f| f.normal).collect()),
@@ -108,8 +108,19 @@ fn ellipses(cloud: &Cloud) -> Cloud {
     }
 }
 
-fn mean<T: Add<Output = T> + Div<f32, Output = T>>([a, b, c]: [T; 3]) -> T {
-    (a + b + c) / 3.0
+/// The mean of the corners of each triangle; `none`, which is dropped, if a corner has what cannot be.
+fn means<T: Copy + Add<Output = T> + Div<f32, Output = T>>(
+    triangles: &[[u32; 3]],
+    all: &[T],
+    can_be: impl Fn(&T) -> bool,
+    none: T,
+) -> Vec<T> {
+    let mean = |triangle: &[u32; 3]| {
+        let corners = triangle.map(|i| all[i as usize]);
+        let [a, b, c] = corners;
+        if corners.iter().all(&can_be) { (a + b + c) / 3.0 } else { none }
+    };
+    triangles.iter().map(mean).collect()
 }
 
 /// The surfel of a triangle.
@@ -208,6 +219,27 @@ mod tests {
         assert_eq!(turned.normal(), [Vec3::Z; 2], "the corners' normals say the side");
         // A point that is nowhere, with its triangle, and a triangle without area.
         assert_eq!((derived.dropped.position, derived.dropped.normal), (1, 1));
+    }
+
+    /// -1 and 3 are 1 in the mean: a corner that would be dropped as a point spoils its triangles.
+    #[test]
+    fn what_no_corner_may_have_is_not_averaged_away() {
+        let two = || Cloud { triangles: vec![[0, 1, 2], [1, 3, 2]], ..cloud() };
+        let whole = facets(two(), &Exec::sequential()).unwrap().0;
+        assert_eq!(whole.len(), 2);
+        for wrong in [-1.0, f32::NAN, 3e38] {
+            let mut color = vec![Vec3::ONE; 5];
+            color[3].y = wrong;
+            let mut opacity = vec![0.5; 5];
+            opacity[3] = if wrong == 3e38 { 1.25 } else { wrong };
+            let colored = Cloud { color: Some(color), ..two() };
+            let dim = Cloud { opacity: Some(opacity), ..two() };
+            for cloud in [colored, dim] {
+                let (surfels, derived) = facets(cloud, &Exec::sequential()).unwrap();
+                assert_eq!(surfels.position(), &whole.position()[..1], "{wrong}");
+                assert_eq!(derived.dropped.attribute, 1, "{wrong}");
+            }
+        }
     }
 
     #[test]
