@@ -49,7 +49,9 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Ended {
-    let pair = [PictureFile::read(&args.first, args)?, PictureFile::read(&args.second, args)?];
+    let exec = Exec::new(0, 32)?;
+    let read = |path| PictureFile::read(path, args, &exec);
+    let pair = [read(&args.first)?, read(&args.second)?];
     let stored = pair.iter().any(|file| matches!(file, PictureFile::Png(_)));
     let (first, second) = alike(pair)?;
     let found = compare(&first, &second, &args.criteria())?;
@@ -89,7 +91,7 @@ enum PictureFile {
 }
 
 impl PictureFile {
-    fn read(path: &Path, args: &Args) -> Result<Self> {
+    fn read(path: &Path, args: &Args, exec: &Exec) -> Result<Self> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
             Some("png") => png::read(path).map(Self::Png),
@@ -98,7 +100,7 @@ impl PictureFile {
                 let name = args.name.as_deref().unwrap_or(&stem);
                 Ok(Self::Npy(npy::read(path, name)?, path.to_owned()))
             }
-            _ => exr::read_with(path, &Exec::new(0, 32)?).map(Self::Exr),
+            _ => exr::read_with(path, exec).map(Self::Exr),
         }
     }
 

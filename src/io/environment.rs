@@ -8,8 +8,8 @@ use crate::scene::environment::{Environment, Map};
 use std::path::Path;
 
 /// Reads the latitude-longitude map at `path`: the channels `R`, `G` and `B` of a flat EXR, `HALF`
-/// or `FLOAT`, as [`exr::read`] takes it, on the threads of `exec`; [`crate::scene::environment::map`] tells its orientation.
-/// Other channels are passed over.
+/// or `FLOAT`, as [`exr::read`] takes it, on the threads of `exec`; other channels are passed over.
+/// [`crate::scene::environment::map`] tells its orientation.
 ///
 /// # Errors
 /// Those of [`exr::read`]; [`Error::Format`] if a channel is absent or holds integers, or as

@@ -39,7 +39,8 @@ pub struct PictureHeader {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Compression {
     /// Runs of equal bytes, line by line. The mantissas of a picture are noise, of which deflate
-    /// saves little and for which it takes long: this file is a tenth larger, and written sooner.
+    /// saves little and for which it takes long. In the bench `files`, one scene of one size, this file
+    /// is 10 % larger than by deflate, 17 % with all stages, and written sooner.
     #[default]
     Rle,
     /// Deflate, 16 lines at a time, as most programs write EXR files.

@@ -1,7 +1,6 @@
 //! ZIP blocks by the fastest level of deflate.
 //!
-//! The exr crate has one level, 4. The first one takes a third of its time, for files a twentieth
-//! larger. What is before deflate is that of the format, and undone by every reader.
+//! The exr crate has one level, 4, which is slower. What is before deflate is that of the format, and undone by every reader.
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 

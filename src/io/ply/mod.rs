@@ -67,9 +67,9 @@ use values::BodyValues;
 const BYTES_A_VERTEX: u64 = 128;
 const BYTES_A_FACE: u64 = 24;
 
-/// Reads a file, on one thread. It needs memory for the file and the cloud, and about 0.1 s for a
-/// million points of text; binary ones without lists and groups take a tenth of that, and need no
-/// memory for the file.
+/// Reads a file, on one thread. It needs memory for the file and the cloud; little-endian ones without
+/// lists and groups of vertices need none for the file, and are decoded as they are read. Times are
+/// those of the bench `files`.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be read, [`Error::Format`] as [`parse`].

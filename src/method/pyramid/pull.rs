@@ -13,8 +13,8 @@
 //! ([`crate::composite::mean`], weights 1): normal, tangent, radius, colour and `v_j`, which is the
 //! new displacement. `Decided:` a tangent is an axis, whose sign means nothing: each whose dot
 //! product with that of the foremost is < 0 is turned first. So tubes whose tangents have other
-//! signs have the same picture, bit for bit, unless two meet at right angles. The interval is the hull: the least front and the greatest back. If there is
-//! no such cell the new one is empty.
+//! signs have the same picture, bit for bit, unless two meet at right angles. The interval is the
+//! hull: the least front and the greatest back. If there is no such cell the new one is empty.
 //!
 //! `v_j` is exact: multiples of 1/2 below 2^17, as long as a cell is passed on alone.
 //!

@@ -18,8 +18,8 @@
 //!
 //! Of the valid ones whose ellipse holds the offset `v_j`, the foremost and those whose intervals
 //! overlap with its own are averaged ([`crate::composite::mean`], tangents turned as in the pull):
-//! front, back, normal, tangent, radius, colour and `v_j`, with weight 1 or `exp(-2 (form_j / square_j))`, see [`Weights`].
-//! `Decided:` "analogously to the pull phase" (section 3.3) means the test of depth too: without it
+//! front, back, normal, tangent, radius, colour and `v_j`, with weight 1 or
+//! `exp(-2 (form_j / square_j))`, see [`Weights`]. `Decided:` "analogously to the pull phase" (section 3.3) means the test of depth too: without it
 //! front and back surface run into each other at every silhouette.
 //!
 //! If there is no such cell: an empty cell stays empty, and an occluded one is copied. `Departs:`

@@ -46,8 +46,8 @@
 //!
 //! **Plane.** A place p and its neighbours up to the 16th, all in ascending number: the offsets o of
 //! these places from p, `o = q - p`, are summed up from 0, and the sum is divided by their count to
-//! their mean m. The covariance M is, from 0, the sum of the products of the components of o - m, with all nine
-//! elements. Its eigenvectors are found by eight sweeps; a sweep is one rotation for each (p, q) of
+//! their mean m. The covariance M is, from 0, the sum of the products of the components of o - m,
+//! with all nine elements. Its eigenvectors are found by eight sweeps; a sweep is one rotation for each (p, q) of
 //! (0, 1), (0, 2), (1, 2), in this order, none where M(p,q) is 0. With r the third index and V0, V1,
 //! V2 the vectors, at first x, y, z:
 //!

@@ -31,7 +31,7 @@ pub(super) struct Mix {
     /// 1 divided by the sum of the weights.
     scale: Lanes,
     pub(super) kind: Lanes,
-    /// Which cell is the foremost, as a number.
+    /// Which cell is the foremost, as a number; only for tubes.
     first: Lanes,
 }
 
@@ -66,7 +66,7 @@ impl FourCells {
                 nearest = if nearer { fronts[j] } else { nearest };
                 end = if nearer { self.back[j][i] } else { end };
                 kind = if nearer { self.kind[j][i] } else { kind };
-                first = if nearer { j as f32 } else { first };
+                first = if TUBES & nearer { j as f32 } else { first };
             }
             (kinds[i], firsts[i]) = (kind, first);
             // -- Those that begin before that end

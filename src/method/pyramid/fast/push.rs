@@ -28,8 +28,8 @@ pub(super) struct PushRules<'a> {
     pub(super) settings: &'a Settings,
 }
 
-/// The cells of a level that are empty or occluded, from the coarser level. Each row is then handed to `done`, while it is in the cache, with what `beside`
-/// has for it.
+/// The cells of a level that are empty or occluded, from the coarser level. Each row is then handed to
+/// `done`, while it is in the cache, with what `beside` has for it.
 pub(super) fn push<T: Send>(
     fine: &mut CellLevel,
     coarse: &CellLevel,
@@ -131,11 +131,14 @@ vectorized!(
                 put(fine, at(attribute), &cells, |odd, new| new.mix.of(&number(attribute, odd)));
             }
             if TUBES {
+                let all = |odd: usize| [0, 1, 2].map(|axis| number(tangent + axis, odd));
+                let aligned = [0, 1].map(|odd| {
+                    let none = [[[0.0; LANES]; 4]; 3];
+                    cells[odd].as_ref().map_or(none, |new| new.mix.aligned(all(odd)))
+                });
                 for axis in 0..3 {
-                    put(fine, at(tangent + axis), &cells, |odd, new| {
-                        let all = [0, 1, 2].map(|axis| number(tangent + axis, odd));
-                        new.mix.of(&new.mix.aligned(all)[axis])
-                    });
+                    let value = |odd: usize, new: &NewCells| new.mix.of(&aligned[odd][axis]);
+                    put(fine, at(tangent + axis), &cells, value);
                 }
             }
             let mut normal = [[[0.0; LANES]; 3]; 2];
