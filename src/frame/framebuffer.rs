@@ -1,7 +1,7 @@
 //! The framebuffer: depth, stencil and floating accumulation.
 
-use super::tile::TileMut;
-use super::{Exec, Grid, NO_ID, Plane, Rect};
+use super::tile::{Strip, StripMut};
+use super::{Exec, Grid, NO_ID, Plane};
 use crate::number::Real;
 
 /// Which planes a picture needs besides depth, id and weight.
@@ -42,25 +42,25 @@ pub struct Framebuffer<R> {
     pub margin: Option<Plane<R>>,
 }
 
-/// One tile of a [`Framebuffer`], writable.
+/// One strip of a [`Framebuffer`], writable.
 #[derive(Debug)]
-pub struct FramebufferTile<'a, R> {
-    /// The pixels of the tile.
-    pub rect: Rect,
+pub struct FramebufferStrip<'a, R> {
+    /// Where it is.
+    pub strip: Strip,
     /// See [`Framebuffer::depth`].
-    pub depth: TileMut<'a, R>,
+    pub depth: StripMut<'a, R>,
     /// See [`Framebuffer::id`].
-    pub id: TileMut<'a, u32>,
+    pub id: StripMut<'a, u32>,
     /// See [`Framebuffer::weight`].
-    pub weight: TileMut<'a, R>,
+    pub weight: StripMut<'a, R>,
     /// See [`Framebuffer::normal`].
-    pub normal: Option<TileMut<'a, [R; 3]>>,
+    pub normal: Option<StripMut<'a, [R; 3]>>,
     /// See [`Framebuffer::color`].
-    pub color: Option<TileMut<'a, [R; 3]>>,
+    pub color: Option<StripMut<'a, [R; 3]>>,
     /// See [`Framebuffer::stencil`].
-    pub stencil: Option<TileMut<'a, u8>>,
+    pub stencil: Option<StripMut<'a, u8>>,
     /// See [`Framebuffer::margin`].
-    pub margin: Option<TileMut<'a, R>>,
+    pub margin: Option<StripMut<'a, R>>,
 }
 
 impl<R: Real> Framebuffer<R> {
@@ -81,8 +81,8 @@ impl<R: Real> Framebuffer<R> {
         }
     }
 
-    /// The tiles of every plane, row by row.
-    pub fn tiles(&mut self, grid: &Grid, exec: &Exec) -> Vec<FramebufferTile<'_, R>> {
+    /// The strips of every plane, row by row.
+    pub fn strips(&mut self, grid: &Grid, exec: &Exec) -> Vec<FramebufferStrip<'_, R>> {
         let mut depth = grid.bands(&mut self.depth);
         let mut id = grid.bands(&mut self.id);
         let mut weight = grid.bands(&mut self.weight);
@@ -90,9 +90,12 @@ impl<R: Real> Framebuffer<R> {
         let mut color = self.color.as_mut().map(|plane| grid.bands(plane));
         let mut stencil = self.stencil.as_mut().map(|plane| grid.bands(plane));
         let mut margin = self.margin.as_mut().map(|plane| grid.bands(plane));
-        let bands = (0..grid.rows).filter_map(|row| {
+        let strips = grid.strips();
+        let rows = strips.chunk_by(|a, b| a.rect.y0 == b.rect.y0);
+        let bands = rows.filter_map(|strips| {
+            let strips = strips.to_vec();
             Some(Band {
-                row,
+                strips,
                 depth: depth.next()?,
                 id: id.next()?,
                 weight: weight.next()?,
@@ -102,15 +105,15 @@ impl<R: Real> Framebuffer<R> {
                 margin: margin.as_mut().and_then(Iterator::next),
             })
         });
-        // A tile is many short rows: cutting them out is work enough to be shared.
-        let tiles = exec.ordered(bands.collect(), |band| band.tiles(grid));
-        tiles.into_iter().flatten().collect()
+        // A strip is many short rows: cutting them out is work enough to be shared.
+        let cut = exec.ordered(bands.collect(), |band| band.cut(grid));
+        cut.into_iter().flatten().collect()
     }
 }
 
-/// A row of tiles of every plane.
+/// A row of strips of every plane.
 struct Band<'a, R> {
-    row: u32,
+    strips: Vec<Strip>,
     depth: &'a mut [R],
     id: &'a mut [u32],
     weight: &'a mut [R],
@@ -121,7 +124,7 @@ struct Band<'a, R> {
 }
 
 impl<'a, R: Real> Band<'a, R> {
-    fn tiles(self, grid: &Grid) -> Vec<FramebufferTile<'a, R>> {
+    fn cut(self, grid: &Grid) -> Vec<FramebufferStrip<'a, R>> {
         let mut depth = grid.split(self.depth);
         let mut id = grid.split(self.id);
         let mut weight = grid.split(self.weight);
@@ -129,9 +132,9 @@ impl<'a, R: Real> Band<'a, R> {
         let mut color = self.color.map(|band| grid.split(band));
         let mut stencil = self.stencil.map(|band| grid.split(band));
         let mut margin = self.margin.map(|band| grid.split(band));
-        let tiles = (0..grid.columns).filter_map(|column| {
-            Some(FramebufferTile {
-                rect: grid.rect(column, self.row),
+        let strips = self.strips.into_iter().filter_map(|strip| {
+            Some(FramebufferStrip {
+                strip,
                 depth: depth.next()?,
                 id: id.next()?,
                 weight: weight.next()?,
@@ -141,6 +144,6 @@ impl<'a, R: Real> Band<'a, R> {
                 margin: margin.as_mut().and_then(Iterator::next),
             })
         });
-        tiles.collect()
+        strips.collect()
     }
 }

@@ -188,31 +188,82 @@ impl Grid {
         plane.values_mut().chunks_mut(rows.max(1))
     }
 
-    /// One of the [`Grid::bands`] cut into its tiles, disjoint and writable, from left to right.
-    pub fn split<'a, T>(&self, band: &'a mut [T]) -> std::vec::IntoIter<TileMut<'a, T>> {
-        let (width, tile) = (self.width.max(1) as usize, self.tile as usize);
-        let empty = || TileMut { rows: Vec::with_capacity(band.len() / width) };
-        let mut tiles: Vec<_> = std::iter::repeat_with(empty).take(self.columns as usize).collect();
+    /// The strips of the picture, row by row.
+    #[must_use]
+    pub fn strips(&self) -> Vec<Strip> {
+        let step = self.strip();
+        let starts = (0..self.rows).flat_map(|row| {
+            (0..self.columns).step_by(step as usize).map(move |column| (column, row))
+        });
+        let strip = |(column, row)| {
+            let last = self.columns.min(column + step) - 1;
+            let rect = Rect { x1: self.rect(last, row).x1, ..self.rect(column, row) };
+            let first = (row * self.columns + column) as usize;
+            Strip { first, rect, tile: self.tile }
+        };
+        starts.map(strip).collect()
+    }
+
+    /// Tiles of a strip.
+    fn strip(&self) -> u32 {
+        (STRIP / self.tile).max(1)
+    }
+
+    /// One of the [`Grid::bands`] cut into its strips, disjoint and writable, from left to right.
+    pub fn split<'a, T>(&self, band: &'a mut [T]) -> std::vec::IntoIter<StripMut<'a, T>> {
+        let (width, side) = (self.width.max(1) as usize, (self.strip() * self.tile) as usize);
+        let empty = || StripMut { rows: Vec::with_capacity(band.len() / width) };
+        let mut strips: Vec<_> = std::iter::repeat_with(empty).take(width.div_ceil(side)).collect();
         for row in band.chunks_mut(width) {
-            for (tile, part) in tiles.iter_mut().zip(row.chunks_mut(tile)) {
-                tile.rows.push(part);
+            for (strip, part) in strips.iter_mut().zip(row.chunks_mut(side)) {
+                strip.rows.push(part);
             }
         }
-        tiles.into_iter()
+        strips.into_iter()
     }
 }
 
-/// The pixels of one tile of a plane, writable.
+/// The least width of a strip in pixels, if the picture is as wide: what a job costs is shared by
+/// as many pixels, however small the tiles are.
+const STRIP: u32 = 64;
+
+/// Neighbouring tiles of one row of tiles: what one job draws.
+#[derive(Clone, Copy, Debug)]
+pub struct Strip {
+    /// The number of its first tile, counted row by row.
+    first: usize,
+    /// The pixels of all its tiles.
+    pub rect: Rect,
+    tile: u32,
+}
+
+impl Strip {
+    /// The tiles from left to right: number and pixels.
+    pub fn tiles(self) -> impl Iterator<Item = (usize, Rect)> {
+        let Self { first, rect, tile } = self;
+        let starts = (rect.x0..rect.x1).step_by(tile as usize);
+        let pixels = starts.map(move |x0| Rect { x0, x1: rect.x1.min(x0 + tile), ..rect });
+        (first..).zip(pixels)
+    }
+}
+
+/// The pixels of one strip of a plane, writable.
 #[derive(Debug)]
-pub struct TileMut<'a, T> {
+pub struct StripMut<'a, T> {
     rows: Vec<&'a mut [T]>,
 }
 
-impl<T> TileMut<'_, T> {
-    /// A row, counted from the top of the tile.
+impl<T> StripMut<'_, T> {
+    /// A row, counted from the top of the strip.
     #[inline(always)]
     pub fn row(&mut self, y: usize) -> &mut [T] {
         self.rows[y]
+    }
+
+    /// The value at a column and row of the picture that lie in its strip.
+    #[inline(always)]
+    pub fn at(&mut self, strip: &Strip, [x, y]: [u32; 2]) -> &mut T {
+        &mut self.rows[(y - strip.rect.y0) as usize][(x - strip.rect.x0) as usize]
     }
 }
 
@@ -223,20 +274,25 @@ mod tests {
     #[test]
     fn tiles_partition_the_picture() {
         let exec = Exec::new(3, 16).unwrap();
-        for (width, height) in [(1, 1), (16, 16), (17, 33), (64, 5), (100, 1)] {
+        for (width, height) in [(1, 1), (16, 16), (17, 33), (64, 5), (100, 1), (129, 20)] {
             let grid = exec.grid(width, height);
             let mut plane = Plane::filled(width, height, 0_u32);
-            let tiles = grid.bands(&mut plane).flat_map(|band| grid.split(band));
-            let jobs: Vec<_> = grid.rects().into_iter().zip(tiles).collect();
-            let written = exec.ordered(jobs, |(rect, mut tile)| {
-                for y in rect.y0..rect.y1 {
-                    for (i, value) in tile.row((y - rect.y0) as usize).iter_mut().enumerate() {
-                        *value += 1 + (rect.x0 + i as u32) + width * y;
+            let strips = grid.bands(&mut plane).flat_map(|band| grid.split(band));
+            let jobs: Vec<_> = grid.strips().into_iter().zip(strips).collect();
+            let written = exec.ordered(jobs, |(strip, mut pixels)| {
+                let tiles: Vec<_> = strip.tiles().collect();
+                for (_, rect) in &tiles {
+                    for y in rect.y0..rect.y1 {
+                        let row = pixels.row((y - strip.rect.y0) as usize);
+                        for x in rect.x0..rect.x1 {
+                            row[(x - strip.rect.x0) as usize] += 1 + x + width * y;
+                        }
                     }
                 }
-                rect
+                tiles
             });
-            assert_eq!(written, grid.rects(), "results come in the order of the jobs");
+            let tiles: Vec<_> = grid.rects().into_iter().enumerate().collect();
+            assert_eq!(written.concat(), tiles, "results come in the order of the jobs");
             let expected: Vec<_> = (1..=width * height).collect();
             assert_eq!(plane.values(), expected, "each pixel written once: {width} x {height}");
         }

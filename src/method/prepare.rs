@@ -2,7 +2,7 @@
 
 use super::algorithm::Job;
 use crate::frame::{Bins, Rect};
-use crate::number::Exact;
+use crate::number::{Exact, Real};
 use crate::splat::SplatSettings;
 use crate::splat::{Projector, Shared, Splat, Tally, View, batch};
 use std::ops::Range;
@@ -18,7 +18,7 @@ pub(super) struct Prepared<R, S> {
     batches: Vec<(Vec<S>, Bins)>,
 }
 
-impl<R: Exact, S: Send> Prepared<R, S> {
+impl<R: Real, S: Send> Prepared<R, S> {
     /// Projects `count` items and sorts the splats into tiles.
     ///
     /// `project` makes the records of a range of items; `bounds` gives the pixels of a record.
@@ -64,23 +64,24 @@ impl<R: Exact, S: Send> Prepared<R, S> {
         }
     }
 
-    /// The splats that touch a tile of these pixels, in the order of the items.
+    /// The splats that touch a tile, in the order of the items, in the place of what was `gathered`
+    /// before; `touches` tells of a splat near the tile whether the splat may touch the tile.
     #[inline(always)]
-    pub(super) fn gather(&self, tile: usize, rect: &Rect, bounds: impl Fn(&S) -> Rect) -> Vec<S>
+    pub(super) fn gather(&self, tile: usize, touches: impl Fn(&S) -> bool, gathered: &mut Vec<S>)
     where
         S: Copy,
     {
-        let mut gathered = Vec::with_capacity(self.count(tile));
+        gathered.clear();
+        gathered.reserve(self.count(tile));
         for (splats, bins) in &self.batches {
             let exact = bins.is_exact();
             bins.for_each(tile, |i| {
                 let splat = &splats[i as usize];
-                if exact || !bounds(splat).intersection(rect).is_empty() {
+                if exact || touches(splat) {
                     gathered.push(*splat);
                 }
             });
         }
-        gathered
     }
 }
 

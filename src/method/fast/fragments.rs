@@ -48,9 +48,7 @@ fn fragments<const RAY_CAST: bool>(
 
 /// The blocks of one row that a splat may touch: first column and column after the last.
 ///
-/// Splats of few columns keep their bounds. For a wide one the ellipse is cut into bands of
-/// [`SIDE`] pixel rows: in the band, |v| is at least `v`, so |u| is at most sqrt(limit - v v), and
-/// dx lies within that over ux about -(uy/ux) dy. Widened for rounding, as the bounds are.
+/// Splats of few columns keep their bounds. A wide one has its [`span`] in these rows of pixels.
 #[inline(always)]
 fn columns<const RAY_CAST: bool>(
     record: &Record,
@@ -62,9 +60,25 @@ fn columns<const RAY_CAST: bool>(
     if RAY_CAST || blocks.x1 - blocks.x0 < WIDE {
         return (blocks.x0, blocks.x1);
     }
-    let f = &record.footprint;
-    let top = (tile.y0 + row * SIDE) as f32 + 0.5 - f.center.y;
-    let bottom = top + (SIDE - 1) as f32;
+    let [left, right] = span(&record.footprint, tile.y0 + row * SIDE, SIDE, limit);
+    let origin = record.footprint.center.x - tile.x0 as f32;
+    let first = (origin + left - 0.5) * (1.0 / SIDE as f32);
+    let last = (origin + right - 0.5) * (1.0 / SIDE as f32) + 1.0;
+    let (start, end) = (blocks.x0 as f32, blocks.x1 as f32);
+    // Comparisons that NaN fails: such a row keeps its bounds.
+    let first = if first > start { first.at_most(end) } else { start };
+    let last = if last < end { last.at_least(0.0) } else { end };
+    (first.to_pixel(), last.to_pixel())
+}
+
+/// The columns, as offsets from the centre, that an ellipse may reach in a band of pixel rows.
+///
+/// In the band, |v| is at least `v`, so |u| is at most sqrt(limit - v v), and dx lies within that
+/// over ux about -(uy/ux) dy. Widened for rounding, as the bounds are.
+#[inline(always)]
+fn span(f: &Footprint<f32>, row: u32, rows: u32, limit: f32) -> [f32; 2] {
+    let top = row as f32 + 0.5 - f.center.y;
+    let bottom = top + (rows - 1) as f32;
     let closest = if top > 0.0 {
         top
     } else if bottom < 0.0 {
@@ -79,14 +93,24 @@ fn columns<const RAY_CAST: bool>(
     let (a, b) = (skew * top, skew * bottom);
     let (left, right) = if a < b { (a, b) } else { (b, a) };
     let slack = 1.0 / 64.0 + (reach + (a.abs() + b.abs())) * (1.0 / 65_536.0);
-    let origin = f.center.x - tile.x0 as f32;
-    let first = (origin + left - reach - slack - 0.5) * (1.0 / SIDE as f32);
-    let last = (origin + right + reach + slack - 0.5) * (1.0 / SIDE as f32) + 1.0;
-    let (start, end) = (blocks.x0 as f32, blocks.x1 as f32);
-    // Comparisons that NaN fails: such a row keeps its bounds.
-    let first = if first > start { first.at_most(end) } else { start };
-    let last = if last < end { last.at_least(0.0) } else { end };
-    (first.to_pixel(), last.to_pixel())
+    [left - reach - slack, right + reach + slack]
+}
+
+/// Whether a splat may touch a tile: its bounds do, and if these are wide, its ellipse does in the
+/// rows of the tile.
+#[inline(always)]
+pub(in crate::method) fn touches(record: &Record, tile: &Rect, shared: &Shared<f32>) -> bool {
+    let bounds = record.bounds();
+    if bounds.intersection(tile).is_empty() {
+        return false;
+    }
+    if shared.ray_cast || bounds.x1 - bounds.x0 < WIDE * SIDE {
+        return true;
+    }
+    let [left, right] = span(&record.footprint, tile.y0, tile.y1 - tile.y0, shared.limit);
+    let [first, last] = [tile.x0, tile.x1 - 1].map(|x| x as f32 + 0.5 - record.footprint.center.x);
+    // Comparisons that NaN fails: such a splat keeps its bounds.
+    !((left > last) | (right < first))
 }
 
 /// Columns of blocks from which on the rows of a splat are cut to its ellipse.

@@ -43,22 +43,25 @@ pub(super) fn draw<const N: usize>(
     stages: impl Fn(&mut Tile) -> [Duration; N] + Sync + Send,
 ) -> [Duration; N] {
     let start = Instant::now();
-    let tiles = target.tiles(&job.grid(), job.exec).into_iter().enumerate().collect();
-    let times = job.exec.ordered(tiles, |(index, mut pixels)| {
-        let start = Instant::now();
-        let mut tile = Tile::gather(prepared, index, &pixels);
+    let times = job.exec.ordered(target.strips(&job.grid(), job.exec), |mut pixels| {
         let mut times = [Duration::ZERO; N];
-        if tile.splats.is_empty() {
-            store::clear(&mut pixels);
-            times[0] = start.elapsed();
-            return times;
+        let mut tile = Tile::new(&pixels);
+        for (index, rect) in pixels.strip.tiles() {
+            let start = Instant::now();
+            tile.gather(prepared, index, rect);
+            if tile.splats.is_empty() {
+                store::clear(&rect, &mut pixels);
+                times[0] += start.elapsed();
+                continue;
+            }
+            let gathered = Instant::now();
+            let passes = stages(&mut tile);
+            let drawn = Instant::now();
+            store::store(&tile, &mut pixels);
+            times.iter_mut().zip(passes).for_each(|(sum, time)| *sum += time);
+            times[0] += gathered - start;
+            times[N - 1] += drawn.elapsed();
         }
-        let gathered = start.elapsed();
-        times = stages(&mut tile);
-        let start = Instant::now();
-        store::store(&tile, &mut pixels);
-        times[0] += gathered;
-        times[N - 1] += start.elapsed();
         times
     });
     let wall = start.elapsed();

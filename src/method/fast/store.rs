@@ -1,37 +1,51 @@
 //! From the blocks of a tile to the rows of the framebuffer.
 
-use super::tile::{PixelBlock, ROW, Tile};
-use crate::frame::{FramebufferTile, NO_ID};
+use super::tile::{BlockGrid, PixelBlock, ROW, Tile};
+use crate::frame::{FramebufferStrip, NO_ID, Rect};
 use crate::number::lanes::{LANES, Lanes};
+use std::ops::Range;
 
 /// Writes a tile without splats.
-pub(super) fn clear(tile: &mut FramebufferTile<'_, f32>) {
-    for y in 0..(tile.rect.y1 - tile.rect.y0) as usize {
-        tile.depth.row(y).fill(f32::INFINITY);
-        tile.id.row(y).fill(NO_ID);
-        tile.weight.row(y).fill(0.0);
-        for plane in [&mut tile.normal, &mut tile.color].into_iter().flatten() {
-            plane.row(y).fill([0.0; 3]);
+pub(super) fn clear(rect: &Rect, pixels: &mut FramebufferStrip<'_, f32>) {
+    let columns = columns(rect, pixels);
+    for y in 0..(rect.y1 - rect.y0) as usize {
+        pixels.depth.row(y)[columns.clone()].fill(f32::INFINITY);
+        pixels.id.row(y)[columns.clone()].fill(NO_ID);
+        pixels.weight.row(y)[columns.clone()].fill(0.0);
+        for plane in [&mut pixels.normal, &mut pixels.color].into_iter().flatten() {
+            plane.row(y)[columns.clone()].fill([0.0; 3]);
         }
     }
 }
 
-/// Copies the blocks into the rows of the framebuffer.
-pub(super) fn store(tile: &Tile, pixels: &mut FramebufferTile<'_, f32>) {
-    let columns = tile.grid.columns as usize;
-    for y in 0..(pixels.rect.y1 - pixels.rect.y0) as usize {
-        let blocks = &tile.blocks[y / ROW * columns..][..columns];
-        let first = y % ROW * ROW;
-        store_row(blocks, pixels.depth.row(y), |block| row(&block.nearest, first));
-        store_row(blocks, pixels.id.row(y), |block| row(&block.id, first));
-        store_row(blocks, pixels.weight.row(y), |block| row(&block.weight, first));
+/// Copies the blocks of a tile into the rows of the framebuffer.
+pub(super) fn store(tile: &Tile, pixels: &mut FramebufferStrip<'_, f32>) {
+    let BlockGrid { rect, columns: wide } = tile.grid;
+    let columns = columns(&rect, pixels);
+    for y in 0..(rect.y1 - rect.y0) as usize {
+        let blocks = &tile.blocks[y / ROW * wide as usize..][..wide as usize];
+        let (first, columns) = (y % ROW * ROW, columns.clone());
+        let to = &mut pixels.depth.row(y)[columns.clone()];
+        store_row(blocks, to, |block| row(&block.nearest, first));
+        let to = &mut pixels.id.row(y)[columns.clone()];
+        store_row(blocks, to, |block| row(&block.id, first));
+        let to = &mut pixels.weight.row(y)[columns.clone()];
+        store_row(blocks, to, |block| row(&block.weight, first));
         if let Some(normal) = &mut pixels.normal {
-            store_row(blocks, normal.row(y), |block| interleaved(&block.normal, first));
+            let to = &mut normal.row(y)[columns.clone()];
+            store_row(blocks, to, |block| interleaved(&block.normal, first));
         }
         if let Some(color) = &mut pixels.color {
-            store_row(blocks, color.row(y), |block| interleaved(&block.color, first));
+            let to = &mut color.row(y)[columns];
+            store_row(blocks, to, |block| interleaved(&block.color, first));
         }
     }
+}
+
+/// Where the rows of a tile are in those of its strip.
+fn columns(tile: &Rect, pixels: &FramebufferStrip<'_, f32>) -> Range<usize> {
+    let left = pixels.strip.rect.x0;
+    (tile.x0 - left) as usize..(tile.x1 - left) as usize
 }
 
 /// Copies one row of pixels, a block at a time; the last may be cut by the edge of the picture.

@@ -1,6 +1,7 @@
 //! What a fast path works with: records of splats, and the blocks of a tile.
 
-use crate::frame::{FramebufferTile, NO_ID, Rect};
+use super::fragments::touches;
+use crate::frame::{FramebufferStrip, NO_ID, Rect};
 use crate::method::fragment::facing;
 use crate::method::prepare::Prepared;
 use crate::number::lanes::{LANES, Lanes};
@@ -101,17 +102,29 @@ pub(in crate::method) struct Tile {
 }
 
 impl Tile {
-    /// The splats of a tile, and its empty blocks; no blocks if there are no splats.
+    /// The memory that the tiles of a strip use one after the other.
+    pub(in crate::method) fn new(pixels: &FramebufferStrip<'_, f32>) -> Self {
+        Self {
+            splats: Vec::new(),
+            blocks: Vec::new(),
+            grid: BlockGrid { rect: Rect::default(), columns: 0 },
+            normal: pixels.normal.is_some(),
+            color: pixels.color.is_some(),
+        }
+    }
+
+    /// Becomes a tile: its splats, and its empty blocks; no blocks if there are no splats.
     pub(in crate::method) fn gather(
+        &mut self,
         prepared: &Prepared<f32, Record>,
         index: usize,
-        tile: &FramebufferTile<'_, f32>,
-    ) -> Self {
-        let rect = tile.rect;
-        let splats = prepared.gather(index, &rect, Record::bounds);
+        rect: Rect,
+    ) {
+        let shared = &prepared.shared;
+        prepared.gather(index, |splat| touches(splat, &rect, shared), &mut self.splats);
         let columns = (rect.x1 - rect.x0).div_ceil(SIDE);
         let rows = (rect.y1 - rect.y0).div_ceil(SIDE);
-        let count = if splats.is_empty() { 0 } else { columns * rows };
+        let count = if self.splats.is_empty() { 0 } else { columns * rows };
         let zero = [0.0; LANES];
         let empty = PixelBlock {
             nearest: [prepared.shared.empty(); LANES],
@@ -121,8 +134,8 @@ impl Tile {
             normal: [zero; 3],
             color: [zero; 3],
         };
-        let (normal, color) = (tile.normal.is_some(), tile.color.is_some());
-        let (blocks, grid) = (vec![empty; count as usize], BlockGrid { rect, columns });
-        Self { splats, blocks, grid, normal, color }
+        self.blocks.clear();
+        self.blocks.resize(count as usize, empty);
+        self.grid = BlockGrid { rect, columns };
     }
 }

@@ -5,7 +5,7 @@ use super::{PixelSample, Projected, SceneProjector};
 use crate::composite::decide;
 use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
-use crate::frame::{Bins, Exec, Plane, Rect};
+use crate::frame::{Bins, Exec, Plane, Rect, Strip, StripMut};
 use crate::number::{Exact, Vector3};
 use crate::scene::{Camera, Scene};
 use crate::splat::{Fate, Tally};
@@ -79,25 +79,26 @@ fn draw<R: Exact>(
     });
     let Projected { samples, tally } = projected;
     *tally = batches.iter().fold(*tally, |sum, (_, tally)| sum.plus(tally));
-    let tiles = grid.bands(samples).flat_map(|band| grid.split(band));
-    let jobs = grid.rects().into_iter().zip(tiles).enumerate().collect();
-    exec.ordered(jobs, |(index, (rect, mut tile)): (usize, (Rect, _))| {
-        for ((drawn, bins), _) in &batches {
-            bins.for_each(index, |i| match &drawn[i as usize] {
-                DrawnItem::Pixel([x, y], sample) => {
-                    let kept = &mut tile.row((y - rect.y0) as usize)[(x - rect.x0) as usize];
-                    if decide::before(sample.depth, kept.depth) {
-                        *kept = *sample;
+    let strips = grid.bands(samples).flat_map(|band| grid.split(band));
+    let jobs = grid.strips().into_iter().zip(strips).collect();
+    exec.ordered(jobs, |(strip, mut pixels): (Strip, StripMut<'_, _>)| {
+        for (tile, rect) in strip.tiles() {
+            for ((drawn, bins), _) in &batches {
+                bins.for_each(tile, |i| match &drawn[i as usize] {
+                    DrawnItem::Pixel(at, sample) => {
+                        let kept = pixels.at(&strip, *at);
+                        if decide::before(sample.depth, kept.depth) {
+                            *kept = *sample;
+                        }
                     }
-                }
-                DrawnItem::Piece(piece) => piece.for_each(&rect, |at| {
-                    let row = tile.row((at.y - rect.y0) as usize);
-                    let kept = &mut row[(at.x - rect.x0) as usize];
-                    if decide::before(-at.p.z, kept.depth) {
-                        *kept = piece.sample(projector, &at);
-                    }
-                }),
-            });
+                    DrawnItem::Piece(piece) => piece.for_each(&rect, |at| {
+                        let kept = pixels.at(&strip, [at.x, at.y]);
+                        if decide::before(-at.p.z, kept.depth) {
+                            *kept = piece.sample(projector, &at);
+                        }
+                    }),
+                });
+            }
         }
     });
 }
