@@ -133,7 +133,8 @@
 //! | opacity | alpha, the part of the light from behind that a surfel blocks |
 //! | plane | one quantity for every pixel |
 //! | tile, bin | a square of pixels that one thread owns; the list of its splats |
-//! | margin | how far a decision was from flipping, in units of the last place |
+//! | ball | all values that a right implementation may have: a midpoint and a radius |
+//! | margin | how far a decision is from being undecided, in radii of its operands' balls |
 //!
 //! # Sources
 //!

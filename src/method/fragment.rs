@@ -3,7 +3,7 @@
 use super::prepare::Prepared;
 use crate::composite::decide;
 use crate::frame::Rect;
-use crate::number::Exact;
+use crate::number::{Exact, Real};
 use crate::splat::{Shared, Splat, fragment};
 
 /// The splats that may touch some pixels, all of one tile.
@@ -55,7 +55,7 @@ impl<'a, R: Exact> TileSplats<'a, R> {
 /// Runs `draw` for the pixels of `rect` in the bounds of a splat: the pixel, counted row by row, q
 /// and nearness.
 #[inline(always)]
-pub(super) fn each_in_bounds<R: Exact>(
+pub(super) fn each_in_bounds<R: Real>(
     shared: &Shared<R>,
     splat: &Splat<R>,
     rect: &Rect,

@@ -63,9 +63,9 @@ impl<R: Exact> Decision<R> {
         Self::new("depth", [t, limit], decide::beyond(t, limit), ["> ", "<="], words)
     }
 
-    /// How far the decision is from flipping, in units of the last place.
+    /// How far apart the operands are, in units of the last place.
     #[must_use]
-    pub fn margin(&self) -> f32 {
+    pub fn ulps(&self) -> f32 {
         self.own.ulps_to(self.against)
     }
 }
@@ -79,7 +79,7 @@ impl<R: Exact> fmt::Display for Decision<R> {
             "depth" | "bin" => write!(f, "{word}  {quantity} {own} {sign} {against}")?,
             _ => write!(f, "{word}  {quantity} {own:.9} {sign} {against:.9}")?,
         }
-        write!(f, "  (margin {} ulp)", self.margin())
+        write!(f, "  ({} ulp)", self.ulps())
     }
 }
 

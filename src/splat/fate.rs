@@ -33,6 +33,14 @@ pub struct Reasons<R: Real> {
     pub outside: R::Truth,
 }
 
+impl<R: Real> Reasons<R> {
+    /// Whether there is any reason.
+    #[must_use]
+    pub fn any(&self) -> R::Truth {
+        self.behind | self.degenerate | self.back_facing | self.outside
+    }
+}
+
 impl<R: Exact> Reasons<R> {
     /// The first reason there is; without a branch, so that a loop over surfels vectorizes.
     #[inline(always)]

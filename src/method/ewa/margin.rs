@@ -1,100 +1,258 @@
-//! How close the decisions at each pixel came to flipping.
+//! How close the decisions at each pixel come to being undecided.
 
+use super::Settings;
 use super::visibility::Foremost;
 use crate::composite::decide;
+use crate::frame::{NO_ID, Rect};
 use crate::method::algorithm::Job;
-use crate::method::fragment::TileSplats;
+use crate::method::fragment::each_in_bounds;
 use crate::method::prepare::Prepared;
 use crate::method::tiled::Tiled;
-use crate::number::{Exact, Real};
-use crate::splat::{Shared, Splat};
+use crate::number::{Ball, Exact, Truth};
+use crate::splat::project::project_as;
+use crate::splat::{Disc, Projector, Splat, Tally, batch};
 
-/// The margin of each pixel, see the page of the method: the least of all its fragments that are
-/// asked; +inf where there is none.
+/// A surfel that may be drawn.
+#[derive(Debug)]
+struct PossibleSplat {
+    splat: Splat<Ball>,
+    /// Whether it certainly is, and with this outline.
+    certain: bool,
+}
+
+/// The margin of each pixel, see the page of the method.
 pub(super) fn margins<R: Exact>(
     job: &Job<'_>,
-    splats: &Prepared<R, Splat<R>>,
+    settings: &Settings,
     visible: &Tiled<Foremost<R>>,
 ) -> Tiled<R> {
+    margins_of(job, &project(job, settings), visible)
+}
+
+/// The surfels that may be drawn.
+fn project(job: &Job<'_>, settings: &Settings) -> Prepared<Ball, PossibleSplat> {
+    let surfels = &job.scene.surfels;
+    let [x1, y1] = job.camera.size();
+    let picture = Rect { x1, y1, ..Rect::default() };
+    Prepared::new(
+        job,
+        settings,
+        surfels.len(),
+        |projector, range, splats| {
+            for i in range {
+                let disc = batch::disc(surfels, i);
+                each_possible(projector, &disc, i as u32, |mut splat, certain| {
+                    splat.bounds = splat.bounds.intersection(&picture);
+                    if !splat.bounds.is_empty() {
+                        splats.push(PossibleSplat { splat, certain });
+                    }
+                });
+            }
+            Tally::default()
+        },
+        |possible| possible.splat.bounds,
+    )
+}
+
+/// What a surfel may become: one splat, two if it is not certain whether it reaches the near plane,
+/// or none; and whether that is certain.
+fn each_possible(
+    projector: &Projector<Ball>,
+    disc: &Disc<Ball>,
+    surfel: u32,
+    mut each: impl FnMut(Splat<Ball>, bool),
+) {
+    let crosses = projector.crosses(disc);
+    for alternative in [false, true] {
+        let possible = if alternative { crosses.possibly() } else { !crosses.certainly() };
+        if possible {
+            let (splat, reasons) = project_as(projector, disc, surfel, alternative);
+            let dropped = reasons.any();
+            if !dropped.certainly() {
+                each(splat, !dropped.possibly() && crosses.decided().is_some());
+            }
+        }
+    }
+}
+
+/// The least margin of the fragments that may be inside.
+fn margins_of<R: Exact>(
+    job: &Job<'_>,
+    splats: &Prepared<Ball, PossibleSplat>,
+    visible: &Tiled<Foremost<R>>,
+) -> Tiled<R> {
+    let shared = &splats.shared;
     Tiled::new(job, |tile, rect| {
-        let (splats, visible) = (TileSplats::new(splats, tile, rect), visible.tile(tile));
-        let (shared, epsilon) = (splats.shared(), splats.epsilon());
-        let mut margins = vec![R::INFINITY; rect.pixels()];
-        splats.each_in_bounds(|splat, pixel, q, w| {
-            let Foremost { nearness: nearest, depth, id } = visible[pixel];
-            let limit = decide::limit(depth, epsilon);
-            let decisions = Decisions { q, t: shared.depth(w), w, nearest, limit };
-            let margin = decisions.margin(shared, id == splat.surfel);
-            margins[pixel] = margins[pixel].at_most(margin);
+        let ids = visible.tile(tile);
+        // The nearness of the nearest fragment of each pixel; if it has none, that of nothing.
+        let mut nearest = vec![shared.empty(); rect.pixels()];
+        splats.for_each(tile, |PossibleSplat { splat, .. }| {
+            each_in_bounds(shared, splat, &rect, |pixel, _, w| {
+                if ids[pixel].id == splat.surfel {
+                    nearest[pixel] = w;
+                }
+            });
         });
-        margins
+        let mut margins = vec![f64::INFINITY; rect.pixels()];
+        splats.for_each(tile, |PossibleSplat { splat, certain }| {
+            each_in_bounds(shared, splat, &rect, |pixel, q, w| {
+                if decide::inside(q, shared.limit).possibly() {
+                    let (id, nearest) = (ids[pixel].id, nearest[pixel]);
+                    let limit = decide::limit(shared.depth(nearest), splats.epsilon);
+                    let operands = Operands { q, cutoff: shared.limit, t: shared.depth(w), limit };
+                    let own = if *certain {
+                        operands.margin([w, nearest], id, splat.surfel)
+                    } else {
+                        0.0
+                    };
+                    if own < margins[pixel] {
+                        margins[pixel] = own;
+                    }
+                }
+            });
+        });
+        margins.into_iter().map(|margin| R::from_f32(margin as f32)).collect()
     })
 }
 
 /// The operands of the decisions on one fragment.
 #[derive(Clone, Copy, Debug)]
-struct Decisions<R> {
-    q: R,
-    t: R,
-    w: R,
-    /// Nearness of the nearest fragment of the pixel.
-    nearest: R,
+struct Operands {
+    q: Ball,
+    /// What q is compared with.
+    cutoff: Ball,
+    t: Ball,
     /// The greatest visible depth of the pixel.
-    limit: R,
+    limit: Ball,
 }
 
-impl<R: Exact> Decisions<R> {
-    /// How far the closest decision on this fragment is from flipping, in units of the last place.
-    ///
-    /// Inside: q against k^2, if the fragment is visible; a hidden one changes nothing. Epsilon: t
-    /// against the limit, if it is inside. Depth: nearness against that of the nearest, if it is
-    /// inside and another one.
-    fn margin(&self, shared: &Shared<R>, is_nearest: bool) -> R {
-        let inside = decide::inside(self.q, shared.limit);
-        let visible = decide::visible(self.t, self.limit);
-        let mut margin = f32::INFINITY;
-        if visible {
-            margin = margin.at_most(self.q.ulps_to(shared.limit));
-        }
-        if inside {
-            margin = margin.at_most(self.t.ulps_to(self.limit));
-            if !is_nearest {
-                margin = margin.at_most(self.w.ulps_to(self.nearest));
+impl Operands {
+    /// The margin of the fragment of a surfel, of this nearness beside that of the nearest.
+    fn margin(&self, [w, nearest]: [Ball; 2], id: u32, surfel: u32) -> f64 {
+        let mut margin = f64::INFINITY;
+        let mut ask = |distance: f64| {
+            if distance < margin {
+                margin = distance;
             }
+        };
+        if decide::visible(self.t, self.limit).possibly() {
+            ask(self.q.distance(self.cutoff));
         }
-        R::from_f32(margin)
+        if id != surfel && id != NO_ID {
+            ask(self.t.distance(self.limit));
+            ask(w.distance(nearest));
+        }
+        margin
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Camera, Lens, Pose};
-    use crate::splat::{Kernel, View};
-    use glam::DVec3;
+    use crate::frame::Exec;
+    use crate::index::Index;
+    use crate::method::ewa::visibility::visibility;
+    use crate::scene::{Camera, Scene};
+    use crate::source::procedural::Shape;
+    use crate::splat::{Shared, View, fragment};
 
-    fn shared() -> Shared<f32> {
-        let pose = Pose { eye: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y };
-        let camera = Camera::new(8, 8, pose, Lens::Focal(8.0)).unwrap();
-        Shared::new(&View::new(&camera), &Kernel::DEFAULT)
-    }
-
-    /// A number some steps up from another.
-    fn up(value: f32, steps: u32) -> f32 {
-        f32::from_bits(value.to_bits() + steps)
+    fn ball(middle: f64, radius: f64) -> Ball {
+        Ball::new(middle, radius)
     }
 
     #[test]
     fn the_margin_is_that_of_the_closest_decision_that_matters() {
-        let nearest = Decisions { q: 1.0, t: 2.0, w: 0.5, nearest: 0.5, limit: up(2.0, 700) };
-        assert_eq!(nearest.margin(&shared(), true), 700.0, "epsilon: t against the limit");
-        let rim = Decisions { q: up(4.0, 3), ..nearest };
-        assert_eq!(rim.margin(&shared(), false), 3.0, "inside: q against k^2 = 4");
-        let second = Decisions { w: up(0.5, 5), nearest: up(0.5, 7), ..nearest };
-        assert_eq!(second.margin(&shared(), false), 2.0, "depth: against the nearest");
-        let hidden = Decisions { q: up(4.0, 3), t: 3.0, ..nearest };
-        assert_eq!(hidden.margin(&shared(), false), f32::INFINITY, "outside and hidden: no matter");
-        let behind = Decisions { t: up(2.0, 709), w: 0.25, ..nearest };
-        assert_eq!(behind.margin(&shared(), false), 9.0, "inside, but beyond the limit by 9");
+        let nearest = Operands {
+            q: ball(1.0, 0.25),
+            cutoff: ball(4.0, 0.0),
+            t: ball(2.0, 0.5),
+            limit: ball(4.0, 0.5),
+        };
+        let w = [ball(0.5, 0.125); 2];
+        assert_eq!(nearest.margin(w, 7, 7), 12.0, "inside: (4 - 1) / 0.25; no other question");
+        assert_eq!(nearest.margin(w, NO_ID, 7), 12.0, "nothing is there to be nearer than");
+        assert_eq!(nearest.margin(w, 3, 7), 0.0, "nearer: as near as the nearest");
+        let second = [ball(0.25, 0.03125), ball(0.5, 0.03125)];
+        assert_eq!(nearest.margin(second, 3, 7), 2.0, "epsilon: (4 - 2) / (0.5 + 0.5)");
+        let hidden = Operands { q: ball(4.0, 0.25), t: ball(9.0, 0.5), ..nearest };
+        assert_eq!(hidden.margin(second, 3, 7), 4.0, "the rim of a hidden one changes nothing");
+        let exact = Operands { q: ball(4.0, 0.0), ..nearest };
+        assert_eq!(exact.margin(w, 7, 7), f64::INFINITY, "at the limit, and nothing was rounded");
+    }
+
+    /// Runs a test of a shape, its picture, and its visibility in both numbers.
+    fn each_shape(
+        mut test: impl FnMut(&Job<'_>, &Settings, &Tiled<Foremost<f32>>, &Tiled<Foremost<f64>>),
+    ) {
+        let exec = Exec::new(1, 16).unwrap();
+        for (shape, kernel) in [
+            (Shape::Sphere, crate::splat::Kernel::DEFAULT),
+            (Shape::Cluster, crate::splat::Kernel::ZPVBG01),
+            (Shape::Torus, crate::splat::Kernel::ZP06),
+        ] {
+            let scene = Scene::unlit("shape", shape.surfels(900, 5).unwrap());
+            let camera = Camera::new(57, 43, shape.default_pose(), shape.default_lens()).unwrap();
+            let settings = Settings { kernel, ..Settings::default() };
+            let job = Job { scene: &scene, index: &Index::default(), camera: &camera, exec: &exec };
+            let single = visibility(&job, &Prepared::splats(&job, &settings));
+            let double = visibility(&job, &Prepared::splats(&job, &settings));
+            test(&job, &settings, &single, &double);
+        }
+    }
+
+    /// The fragments that are inside, of all pixels of the picture: surfel and pixel.
+    fn inside<R: Exact>(job: &Job<'_>, settings: &Settings) -> Vec<(u32, [u32; 2])> {
+        let projector = Projector::<R>::new(View::new(job.camera), &settings.kernel, settings.cull);
+        let shared = Shared::new(&View::new(job.camera), &settings.kernel);
+        let [width, height] = job.camera.size();
+        let mut found = Vec::new();
+        batch::splats(&projector, &job.scene.surfels, 0..job.scene.surfels.len(), |splat| {
+            for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+                let (q, _) = fragment(&shared, &splat.footprint, (x, y));
+                if decide::inside(q, shared.limit) {
+                    found.push((splat.surfel, [x, y]));
+                }
+            }
+        });
+        found
+    }
+
+    #[test]
+    fn the_bounds_in_balls_hold_whatever_is_inside() {
+        each_shape(|job, settings, _, _| {
+            let [x1, y1] = job.camera.size();
+            let mut asked = std::collections::HashSet::new();
+            let (splats, picture) = (project(job, settings), Rect { x1, y1, ..Rect::default() });
+            for (tile, rect) in job.grid().rects().into_iter().enumerate() {
+                splats.for_each(tile, |PossibleSplat { splat, .. }| {
+                    let Rect { x0, y0, x1, y1 } = splat.bounds.intersection(&rect);
+                    let pixels = (y0..y1).flat_map(|y| (x0..x1).map(move |x| [x, y]));
+                    asked.extend(pixels.map(|pixel| (splat.surfel, pixel)));
+                });
+            }
+            let single = inside::<f32>(job, settings);
+            assert!(!single.is_empty() && asked.len() < 900 * picture.pixels());
+            for fragment in single.iter().chain(&inside::<f64>(job, settings)) {
+                assert!(asked.contains(fragment), "{fragment:?}");
+            }
+        });
+    }
+
+    #[test]
+    fn beyond_one_the_numbers_agree_on_the_nearest_surfel() {
+        each_shape(|job, settings, single, double| {
+            let margins = margins(job, settings, single).plane(|margin| *margin);
+            let [single, double] = [single.plane(|p| p.id), double.plane(|p| p.id)];
+            let ids = single.values().iter().zip(double.values());
+            let mut certain = 0;
+            for ((single, double), margin) in ids.zip(margins.values()) {
+                if *margin > 1.0 {
+                    assert_eq!(single, double, "a margin of {margin}");
+                    certain += usize::from(*single != NO_ID);
+                }
+            }
+            let covered = single.values().iter().filter(|id| **id != NO_ID).count();
+            assert!(2 * certain > covered, "{certain} of {covered} pixels are certain");
+        });
     }
 }

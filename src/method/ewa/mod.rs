@@ -16,36 +16,37 @@
 //!
 //! # The margin
 //!
-//! The plane `margin` says how far the closest decision at a pixel was from flipping. The unit is a
-//! step between neighbouring numbers of the arithmetic, `ulps(a, b)` of
-//! [`ulps_to`](crate::number::Exact::ulps_to). Each distance is rounded to `f32`.
+//! The plane `margin` says how far the closest decision at a pixel is from being undecided, in units
+//! of the rounding error that the decision's operands may carry. Beyond 1 every renderer that rounds
+//! each operation once, to nearest, and may fuse a product with the sum it goes into, takes the same
+//! decisions at the pixel: the same nearest surfel, the same fragments in the sums. Up to 1 two
+//! right renderers may differ.
 //!
-//! A fragment is asked if its splat is drawn ([`Fate::Visible`](crate::splat::Fate)) and if the
-//! [bounds](mod@crate::splat::bounds) of the splat hold the pixel. With q, the clamped nearness w and
-//! t = 1/w (or -w) of the fragment, and with `w_1`, `t_1` and `id` of the nearest fragment of the
-//! pixel (of an empty pixel: those of t = +inf), a fragment that is asked gives
+//! The surfels are projected in [`Ball`](crate::number::ball)s of the profile
+//! [`Ieee`](crate::number::ball::Ieee), whatever the number of the picture, and so are their
+//! fragments. `distance(a, b)` of two balls is the distance of their midpoints divided by the sum of
+//! their radii: +inf if both radii are 0, 0 if a radius is not finite.
+//!
+//! A surfel is asked unless there certainly is a reason not to draw it. A fragment of it is asked
+//! unless it certainly is outside: its q certainly is beyond k k, or its pixel is not in the
+//! [bounds](mod@crate::splat::bounds) of the splat in balls, which hold whatever may be inside. (The
+//! bounds of the picture's own splats have no part in it. Those in balls are needed: the ball of q
+//! forgets that `ux dx` and `uy dy` cancel, so that along a thin ellipse q alone would never be
+//! certain.) Of the pixel, `id` is the nearest surfel that the picture has; `w_1` and `t_1` are
+//! nearness and depth of its fragment, in balls. With q, w and t of a fragment that is asked:
 //!
 //! ```text
-//!   ulps(q, k k)                   if t <= t_1 + epsilon: a hidden fragment changes nothing
-//!   ulps(t, t_1 + epsilon)         if q <= k k
-//!   ulps(w, w_1)                   if q <= k k, and the surfel is not id
+//!   distance(q, k k)               unless certainly t > t_1 + epsilon: a hidden fragment changes
+//!                                  nothing
+//!   distance(t, t_1 + epsilon)     unless the surfel is id, or the pixel is empty
+//!   distance(w, w_1)               likewise
+//!   0                              if it is not certain that the surfel is drawn, or (perspective
+//!                                  outline, ray casting) whether it reaches the near plane
 //! ```
 //!
-//! The margin is the least of all that is given, and +inf where nothing is: where no fragment was
-//! asked, or where all fragments that were asked are both outside and hidden. An empty pixel has a
-//! margin where bounds hold the pixel.
-//!
-//! Bounds cut work away before the decision, and the margin knows nothing of what they cut. So the
-//! margin is a function of the bounds too, which are defined to the bit. A fragment beyond its bounds
-//! has q > k k, and would have given `ulps(q, k k)`. The bounds reach at least 1/128 px beyond the
-//! extent. So such a fragment of an ellipse that extends e px from its centre, along x or y, has q >=
-//! k k (1 + 1/(128 e))^2 in exact arithmetic: in `f32` it is at least about 2^17 / e steps away.
-//! Likewise the margin knows nothing of the decisions about whole splats: facing, the near plane,
-//! the sides of the view.
-//!
-//! A distance in steps is no distance in rounding errors. The operands carry the errors of all
-//! operations before, of hundreds of steps where a splat is thin or grazing. A small margin warns; a
-//! large margin promises nothing.
+//! The margin is the least of these, rounded to `f32`; +inf where nothing was asked, or all that was
+//! asked is exact. Of coplanar surfels the nearest is not certain, and the margin is small: the sums
+//! need not differ for that.
 //!
 //! The definition is over any [`Exact`] number, one fragment at a time; `fast` gives the same bits
 //! for `f32`. [`explain`] lists every decision at one pixel. What each stage leaves:

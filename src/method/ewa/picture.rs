@@ -36,7 +36,7 @@ pub(super) fn define<R: Exact>(
     if stages {
         left.extend(planes::visibility(&visible));
         left.extend(planes::attributes(job, &sums));
-        left.push(planes::margin(&margins(job, &splats, &visible)));
+        left.push(planes::margin(&margins(job, settings, &visible)));
         left.extend(resolved::colors(job, &averages));
     }
     let target = resolved::framebuffer(job, &averages, wanted(job.scene, stages));

@@ -57,9 +57,10 @@ const COUNT: PlaneRow = PlaneRow::new(
 const MARGIN: PlaneRow = PlaneRow::new(
     "margin",
     Holds::Scalar,
-    "ulp",
-    "how far the closest decision at the pixel was from flipping: q against k^2, depth against the \
-     end of the visible band, nearness against that of the nearest; +inf where nothing was decided",
+    "radii",
+    "how far the closest decision at the pixel is from being undecided: q against k^2, depth against \
+     the end of the visible band, nearness against that of the nearest; beyond 1 all right renderers \
+     agree; +inf where nothing was decided",
     When::Whole,
 );
 

@@ -133,7 +133,7 @@ impl<R: Exact> fmt::Display for PixelProjection<R> {
 
 /// A comparison with its operands and its margin.
 pub(in crate::method) fn compared<R: Exact>(a: R, sign: &str, b: R) -> String {
-    format!("{} {sign} {}  (margin {} ulp)", a.to_f64(), b.to_f64(), a.ulps_to(b))
+    format!("{} {sign} {}  ({} ulp)", a.to_f64(), b.to_f64(), a.ulps_to(b))
 }
 
 /// How a form that an ellipse does not hold compares with the ellipse's square; an ellipse that is

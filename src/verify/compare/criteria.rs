@@ -38,7 +38,7 @@ pub struct Criteria {
 }
 
 /// Whether a channel only observes how a picture was made: `margin`, alone or in a layer, the
-/// distance in ulp of the closest decision of a pixel from flipping. A backend has no such plane.
+/// distance of the closest decision of a pixel from being undecided. A backend has no such plane.
 #[must_use]
 pub fn is_observation(channel: &str) -> bool {
     channel.rsplit('.').next() == Some("margin")

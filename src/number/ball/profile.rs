@@ -1,0 +1,129 @@
+//! How an implementation may round.
+
+use super::Ball;
+
+/// What an implementation promises about its operations, in units of u = 2^-24 of the result.
+pub trait Profile: Copy + Send + Sync + 'static {
+    /// What a ball must know of the sum that it is, so that its terms may be added in another order.
+    type Terms: Copy + Send + Sync;
+    /// What it must know of a number that is no sum.
+    const NO_SUM: Self::Terms;
+
+    /// Whether an operation gives the `f32` nearest to the exact result, so that what needs no
+    /// rounding is exact.
+    const ROUNDS_TO_NEAREST: bool;
+    /// Whether numbers below the normal ones may become 0.
+    const FLUSHES: bool;
+    /// Rounding of a product.
+    const PRODUCT: f64;
+    /// Of a quotient.
+    const QUOTIENT: f64;
+    /// The largest divisor of which a quotient keeps that promise.
+    const LARGEST_DIVISOR: f64;
+    /// Of a square root.
+    const ROOT: f64;
+    /// The most that an operation loses below the normal numbers.
+    const TINY: f64;
+
+    /// Rounding of the exponential of a number of at most this absolute value.
+    fn exponential(argument: f64) -> f64;
+    /// A bounded sum, of midpoint `middle`.
+    fn sum(middle: f64, terms: [&Ball<Self>; 2]) -> Ball<Self>;
+}
+
+/// Each operation rounds once, to nearest, and a product may be fused with the sum it goes into:
+/// IEEE 754, the definition of the crate.
+#[derive(Clone, Copy, Debug)]
+pub struct Ieee;
+
+/// Half the distance of neighbouring denormal `f32`, 2^-150, and a little more.
+const HALF_DENORMAL: f64 = f32::from_bits(1) as f64 * 0.500_001;
+
+impl Profile for Ieee {
+    type Terms = ();
+    const NO_SUM: () = ();
+    const ROUNDS_TO_NEAREST: bool = true;
+    const FLUSHES: bool = false;
+    const PRODUCT: f64 = 1.0;
+    const QUOTIENT: f64 = 1.0;
+    const LARGEST_DIVISOR: f64 = f64::INFINITY;
+    const ROOT: f64 = 1.0;
+    const TINY: f64 = HALF_DENORMAL;
+
+    fn exponential(_argument: f64) -> f64 {
+        1.0
+    }
+    #[inline(always)]
+    fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {
+        // A sum below the normal numbers is exact.
+        Ball::rounded(middle, a.radius + b.radius, 1.0, 0.0)
+    }
+}
+
+/// What WGSL and Vulkan publish for `f32`: a correctly rounded operation gives either neighbour of
+/// the exact value; a quotient is 2.5 ulp, an inverse square root 2 ulp and e^x 3 + 2 |x| ulp off; a
+/// square root is the inverse of the inverse square root; products are fused with sums, the terms of
+/// sums added in any order, and numbers below the normal ones flushed to 0.
+///
+/// A compiler adds the terms of a sum in any order across the functions of a formula, and not every
+/// such sum has a name. So a ball carries the magnitude of its terms, how many additions there are,
+/// and the radius that the terms brought along:
+///
+/// ```text
+///   magnitude = sum of |m| + r       n = additions since the last other operation
+///   radius = sum of r + 2 u |midpoint| if n = 1,  + 2 u n magnitude if n > 1
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Gpu;
+
+/// The terms of a sum; without additions, of a number that is none.
+#[derive(Clone, Copy, Debug)]
+pub struct SumTerms {
+    magnitude: f64,
+    additions: f64,
+    radius: f64,
+}
+
+impl SumTerms {
+    #[inline(always)]
+    fn of(ball: &Ball<Gpu>) -> Self {
+        let Ball { middle, radius, terms } = *ball;
+        let one = Self { magnitude: middle.abs() + radius, additions: 0.0, radius };
+        if terms.additions == 0.0 { one } else { terms }
+    }
+}
+
+/// The least normal `f32`, 2^-126.
+const LEAST_NORMAL: f64 = f32::MIN_POSITIVE as f64;
+
+impl Profile for Gpu {
+    type Terms = SumTerms;
+    const NO_SUM: SumTerms = SumTerms { magnitude: 0.0, additions: 0.0, radius: 0.0 };
+    const ROUNDS_TO_NEAREST: bool = false;
+    const FLUSHES: bool = true;
+    const PRODUCT: f64 = 2.0;
+    const QUOTIENT: f64 = 5.0;
+    const LARGEST_DIVISOR: f64 = 1.0 / LEAST_NORMAL;
+    const ROOT: f64 = 9.0;
+    const TINY: f64 = LEAST_NORMAL;
+
+    fn exponential(argument: f64) -> f64 {
+        6.0 + 4.0 * argument
+    }
+    #[inline(always)]
+    fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {
+        let [a, b] = [a, b].map(SumTerms::of);
+        let terms = SumTerms {
+            magnitude: a.magnitude + b.magnitude,
+            additions: a.additions + b.additions + 1.0,
+            radius: a.radius + b.radius,
+        };
+        let sum = if terms.additions == 1.0 {
+            Ball::rounded(middle, terms.radius, 2.0, Self::TINY)
+        } else {
+            let lost = 2.0 * terms.additions * super::U * terms.magnitude;
+            Ball::rounded(middle, terms.radius + lost, 0.0, terms.additions * Self::TINY)
+        };
+        Ball { terms, ..sum }
+    }
+}

@@ -1,0 +1,232 @@
+//! Problems that the formulas of a splat and a fragment are evaluated on.
+
+use super::{Ball, Profile};
+use crate::number::random::{bits, unit};
+use crate::number::{Real, Truth, Vector3};
+use crate::scene::{Camera, Lens, Pose};
+use crate::splat::project::project_as;
+use crate::splat::{Disc, Footprint, Kernel, Outline, Projector, Shared, View, fragment};
+use glam::Vec3;
+
+/// What is evaluated: the projection and a fragment from the scene, and the fragment from the
+/// client's own record.
+pub(super) const QUANTITIES: [&str; 19] = [
+    "center.x",
+    "center.y",
+    "ux",
+    "uy",
+    "vy",
+    "w0",
+    "wx",
+    "wy",
+    "w_far",
+    "w_near",
+    "amplitude",
+    "q",
+    "w",
+    "t",
+    "weight",
+    "own q",
+    "own w",
+    "own t",
+    "own weight",
+];
+
+/// Where surfels are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// Of 0.5 to 50 px at depths of 0.2 to 20, facing anywhere.
+    Random,
+    /// Within 0.1 to 0.00001 of edge-on.
+    EdgeOn,
+    /// At the near plane.
+    Near,
+    /// By ray casting.
+    RayCast,
+    /// Without low-pass filter, by the exact outline.
+    NoFilter,
+    /// A thousand units from the origin.
+    Far,
+    /// Ellipses.
+    Ellipse,
+    /// Numbers that are 0, denormal or huge, under an orthographic camera or a perspective one.
+    Extreme,
+}
+
+pub(super) const KINDS: [Kind; 8] = [
+    Kind::Random,
+    Kind::EdgeOn,
+    Kind::Near,
+    Kind::RayCast,
+    Kind::NoFilter,
+    Kind::Far,
+    Kind::Ellipse,
+    Kind::Extreme,
+];
+
+/// A surfel, a camera, and a pixel.
+pub(super) struct Problem {
+    pub(super) index: u64,
+    camera: Camera,
+    kernel: Kernel,
+    disc: Disc<f32>,
+    /// Where the pixel is, in extents of the splat about its centre.
+    offset: [f32; 2],
+}
+
+/// What a number found.
+pub(super) struct Quantities<R> {
+    pub(super) values: Vec<R>,
+    /// Whether the disc reaches the near plane.
+    pub(super) crosses: bool,
+}
+
+/// Two numbers: of any exponent, or near each other.
+pub(super) fn operands(index: u64) -> [f32; 2] {
+    let any = |part: u64| {
+        let value = f32::from_bits(bits(8 + part, index) as u32);
+        if value.is_finite() { value } else { unit(20 + part, index) }
+    };
+    let near = |part: u64| 1.0 + unit(30 + part, index);
+    if index.is_multiple_of(2) { [any(0), any(1)] } else { [near(0), near(1)] }
+}
+
+/// A number whose logarithm is uniform.
+fn log(random: f32, low: f32, high: f32) -> f32 {
+    (f64::from(low) * (f64::from(high) / f64::from(low)).powf(random.into())) as f32
+}
+
+impl Problem {
+    pub(super) fn new(kind: Kind, seed: u64, index: u64) -> Self {
+        let mut next = 0;
+        let mut random = || {
+            next += 1;
+            unit(bits(seed, kind as u64), 32 * index + next)
+        };
+        let mut direction = || {
+            let v = Vec3::new(random() - 0.5, random() - 0.5, random() - 0.5);
+            v.try_normalize().unwrap_or(Vec3::Z)
+        };
+        let home = if kind == Kind::Far { 577.0 } else { 1.0 };
+        let eye = Vec3::splat(home) + direction();
+        let (forward, normal, tangent) = (direction(), direction(), direction());
+        let up = if forward.y.abs() > 0.9 { Vec3::X } else { Vec3::Y };
+        let pose =
+            Pose { eye: eye.as_dvec3(), target: (eye + forward).as_dvec3(), up: up.as_dvec3() };
+        let extreme = kind == Kind::Extreme;
+        let lens = if extreme && random() < 0.5 {
+            Lens::Orthographic(log(random(), 1e-3, 1e3).into())
+        } else {
+            Lens::FieldOfView(f64::from(20.0 + 80.0 * random()))
+        };
+        let camera = Camera::new(512, 512, pose, lens).expect("a camera");
+        let depth = match kind {
+            Kind::Near => camera.near * log(random(), 0.99, 1.5),
+            _ => log(random(), 0.2, 20.0),
+        };
+        let size = log(random(), 0.5, 50.0) / 512.0 * depth;
+        let side = forward.cross(up).normalize();
+        let across = (random() - 0.5) * side + (random() - 0.5) * side.cross(forward);
+        let position = eye + depth * (forward + across);
+        let normal = if kind == Kind::EdgeOn {
+            let ray = (position - eye).normalize();
+            let edge = ray.any_orthonormal_vector();
+            (edge + log(random(), 1e-5, 1e-1) * normal).normalize()
+        } else {
+            normal
+        };
+        let u = normal.cross(tangent).normalize_or(normal.any_orthonormal_vector());
+        let tangents = (kind == Kind::Ellipse).then(|| {
+            [u * size, normal.cross(u) * (size * log(random(), 1e-3, 1.0))]
+                .map(|v| Vector3::from_glam(v))
+        });
+        let mut odd = |value: f32| match (extreme, (random() * 12.0) as u32) {
+            (true, 0) => 0.0,
+            (true, 1) => f32::from_bits((random() * 1e6) as u32),
+            (true, 2) => value * 1e18,
+            (true, 3) => value * 1e-18,
+            _ => value,
+        };
+        let disc = Disc {
+            position: Vector3::from_glam(position.map(&mut odd)),
+            normal: Vector3::from_glam(normal.map(&mut odd)),
+            radius: odd(size),
+            tangents,
+        };
+        let kernel = match kind {
+            Kind::RayCast => Kernel { outline: Outline::RayCast, ..Kernel::DEFAULT },
+            Kind::NoFilter => {
+                Kernel { outline: Outline::Perspective, low_pass: 0.0, ..Kernel::DEFAULT }
+            }
+            _ => Kernel::DEFAULT,
+        };
+        let offset = [random(), random()].map(|random| 2.0 * random - 1.0);
+        Self { index, camera, kernel, disc, offset }
+    }
+
+    /// Everything in a number that decides by itself, and the record it stores.
+    pub(super) fn evaluate<R: Real<Truth = bool>>(&self) -> (Quantities<R>, Footprint<f32>) {
+        let crosses = self.projector::<R>().crosses(&self.disc());
+        let mut values = Vec::new();
+        let footprint = self.from_scene::<R>(crosses, &mut values);
+        let record = footprint.map(R::to_f32);
+        self.fragment(&record.map(R::from_f32), &mut values);
+        (Quantities { values, crosses }, record)
+    }
+
+    /// Everything in balls, the last of it from a client's record.
+    pub(super) fn judge<P: Profile>(
+        &self,
+        crosses: bool,
+        record: &Footprint<f32>,
+    ) -> Quantities<Ball<P>> {
+        let mut values = Vec::new();
+        self.from_scene::<Ball<P>>(crosses, &mut values);
+        self.fragment(&record.map(Ball::from_f32), &mut values);
+        let may_cross = self.projector::<Ball<P>>().crosses(&self.disc());
+        assert!(if crosses { may_cross.possibly() } else { !may_cross.certainly() }, "crosses");
+        Quantities { values, crosses }
+    }
+
+    fn projector<R: Real>(&self) -> Projector<R> {
+        Projector::new(View::new(&self.camera), &self.kernel, false)
+    }
+
+    fn disc<R: Real>(&self) -> Disc<R> {
+        let Disc { position, normal, radius, tangents } = self.disc;
+        let own = |v: Vector3<f32>| v.map(R::from_f32);
+        Disc {
+            position: own(position),
+            normal: own(normal),
+            radius: R::from_f32(radius),
+            tangents: tangents.map(|pair| pair.map(own)),
+        }
+    }
+
+    fn from_scene<R: Real>(&self, crosses: bool, values: &mut Vec<R>) -> Footprint<R> {
+        let (splat, _) = project_as(&self.projector(), &self.disc(), 0, crosses);
+        let f = splat.footprint;
+        values.extend([f.center.x, f.center.y, f.ux, f.uy, f.vy, f.w0, f.wx, f.wy, f.w_far]);
+        values.extend([f.w_near, f.amplitude]);
+        self.fragment(&f, values);
+        f
+    }
+
+    /// q, w, t and the weight at the pixel of the problem, which is the same in every number.
+    fn fragment<R: Real>(&self, footprint: &Footprint<R>, values: &mut Vec<R>) {
+        let shared = Shared::new(&View::new(&self.camera), &self.kernel);
+        let (q, w) = fragment(&shared, footprint, self.pixel());
+        values.extend([q, w, shared.depth(w), footprint.weight(q)]);
+    }
+
+    /// A pixel in the ellipse, or near it, by `f64`.
+    fn pixel(&self) -> (u32, u32) {
+        let (splat, _) = project_as(&self.projector::<f64>(), &self.disc(), 0, false);
+        let f = splat.footprint;
+        let [u, v] = self.offset.map(|offset| 2.2 * f64::from(offset));
+        let dy = v / f.vy;
+        let dx = (u - f.uy * dy) / f.ux;
+        let at = |position: f64| position.clamp(0.0, 65_535.0) as u32;
+        (at(f.center.x + dx), at(f.center.y + dy))
+    }
+}
