@@ -55,6 +55,8 @@ struct CenterAnswer<R> {
     holds: bool,
     own: bool,
     /// What the pixel had gathered before, and the ternary test against it.
+    /// What it weighs there.
+    weight: R,
     before: Gathered<R>,
     test: Placement,
 }
@@ -80,12 +82,25 @@ pub(super) fn explain<R: Exact>(
     let (mut gathered, mut asked) = (Gathered::empty(), Vec::new());
     each_asked(&levels, settings, pixel, |a| {
         let (before, test) = (gathered, gathered.test(a.center));
+        let given = weight(settings.weights, a.form, a.square);
         if a.holds || a.own {
-            gathered.add(a.center, weight(a.form, a.square));
+            gathered.add(a.center, given);
         }
         let (level, cell, center, form, square) = (a.level, a.cell, *a.center, a.form, a.square);
         let (holds, own) = (a.holds, a.own);
-        asked.push(CenterAnswer { level, cell, center, form, square, holds, own, before, test });
+        let weight = given;
+        asked.push(CenterAnswer {
+            level,
+            cell,
+            center,
+            form,
+            square,
+            holds,
+            own,
+            weight,
+            before,
+            test,
+        });
     });
     let one = normalize(&Plane::filled(1, 1, gathered), camera, Has::of(scene), false);
     Ok(TemplateReplay {
@@ -162,7 +177,6 @@ impl<R: Exact> fmt::Display for CenterAnswer<R> {
             (false, true) => write!(f, "holds as the pixel's own, form {form}")?,
             (false, false) => return writeln!(f, "outside, form {form}"),
         }
-        let weight = weight(self.form, self.square).to_f64();
         let (t, front) = (self.center.depth, self.before.depth);
         let sum = self.center.radius + self.before.radius;
         match self.test {
@@ -182,7 +196,7 @@ impl<R: Exact> fmt::Display for CenterAnswer<R> {
                 write!(f, "; blended: {}", compared(t - front, "<=", sum))?;
             }
         }
-        writeln!(f, "; depth {}, weight {weight}", t.to_f64())
+        writeln!(f, "; depth {}, weight {}", t.to_f64(), self.weight.to_f64())
     }
 }
 

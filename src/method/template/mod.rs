@@ -31,7 +31,7 @@ mod settings;
 mod tests;
 
 pub use center::Center;
-pub use settings::{LevelRule, Settings};
+pub use settings::{LevelRule, Settings, Weights};
 
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};

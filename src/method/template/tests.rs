@@ -14,7 +14,10 @@ use crate::method::tests::{cameras, scene, surfels};
 use crate::scene::{Camera, Scene};
 
 fn settings() -> [Settings; 2] {
-    [Settings::default(), Settings { size: 3, levels: LevelRule::Covering, cull: false }]
+    [
+        Settings::default(),
+        Settings { size: 3, levels: LevelRule::Covering, weights: Weights::Linear, cull: false },
+    ]
 }
 
 #[test]

@@ -13,7 +13,7 @@ use glam::Vec3;
 use splatref::Error;
 use splatref::frame::{Frame, NO_ID};
 use splatref::method::Method;
-use splatref::method::template::{LevelRule, Settings};
+use splatref::method::template::{LevelRule, Settings, Weights};
 use splatref::scene::{Camera, Scene};
 use std::collections::BTreeMap;
 
@@ -173,8 +173,13 @@ fn larger_templates_tend_to_merge_less() {
         let (mut total, mut rises) = ([0; 3], [0; 2]);
         for _ in 0..60 {
             let discs = crowd(&mut dice, 32, 150);
-            let found =
-                [3, 5, 7].map(|size| centers(&discs, 32, Settings { size, levels, cull: false }));
+            let found = [3, 5, 7].map(|size| {
+                centers(
+                    &discs,
+                    32,
+                    Settings { size, levels, weights: Weights::Linear, cull: false },
+                )
+            });
             let [Some(a), Some(b), Some(c)] = found else { continue };
             let found = [a, b, c];
             (0..3).for_each(|i| total[i] += found[i]);
@@ -199,7 +204,11 @@ fn a_larger_template_can_merge_more() {
     let discs = [[8.0, 8.0], [12.0, 8.0], [8.0, 12.0], [12.0, 12.0]].map(|[x, y]| group(x, y));
     let discs: Vec<Dot> = discs.into_iter().flatten().collect();
     let left = [5, 7].map(|size| {
-        centers(&discs, 64, Settings { size, levels: LevelRule::Covering, cull: false })
+        centers(
+            &discs,
+            64,
+            Settings { size, levels: LevelRule::Covering, weights: Weights::Linear, cull: false },
+        )
     });
     assert_eq!(left, [Some(8), Some(5)], "of 12");
 }

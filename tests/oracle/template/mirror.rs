@@ -13,7 +13,7 @@ use crate::template::known::{id, number};
 use crate::template::stages::all_settings;
 use glam::Vec3;
 use splatref::frame::{Frame, NO_ID};
-use splatref::method::template::{LevelRule, Settings};
+use splatref::method::template::{LevelRule, Settings, Weights};
 
 /// Left and right exchanged (0), or top and bottom (1).
 const AXES: [usize; 2] = [0, 1];
@@ -151,7 +151,8 @@ fn the_ternary_test_does_not_mirror() {
 #[test]
 fn cells_mirror_for_powers_of_two_only() {
     let discs = [Dot::new(1.5, 4.5, 3.0), Dot::new(2.5, 4.5, 3.0)];
-    let settings = Settings { size: 3, levels: LevelRule::Covering, cull: false };
+    let settings =
+        Settings { size: 3, levels: LevelRule::Covering, weights: Weights::Linear, cull: false };
     for (width, merged) in [(16, 0), (13, 1)] {
         let size = [width, 16];
         let frame = drawn(size, &mirrored(size, &discs, 0), &settings);

@@ -8,7 +8,7 @@ use crate::kit::eye::V3;
 use crate::kit::number::{N3, Num, exact, normalized};
 use crate::kit::projection::Sight;
 use splatref::frame::NO_ID;
-use splatref::method::template::{LevelRule, Settings};
+use splatref::method::template::{LevelRule, Settings, Weights};
 
 /// What a cell of a level holds.
 #[derive(Clone, Copy, Debug)]
@@ -228,7 +228,10 @@ impl<const P: u32> Template<P> {
         match square.less(form) {
             None => Err(()),
             Some(true) => outside,
-            Some(false) => Ok(Some((Num::exact(1.0) - (form / square).sqrt()).at_least(LEAST))),
+            Some(false) => Ok(Some(match self.settings.weights {
+                Weights::Linear => (Num::exact(1.0) - (form / square).sqrt()).at_least(LEAST),
+                Weights::Gaussian => (Num::exact(-2.0) * (form / square)).exp(),
+            })),
         }
     }
 }

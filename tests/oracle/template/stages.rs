@@ -14,7 +14,7 @@ use crate::template::model::{Center, Grid, Staying, Sums, Template, average, dir
 use crate::template::tolerance::TEMPLATE;
 use splatref::frame::{Frame, NO_ID};
 use splatref::method::Picture;
-use splatref::method::template::{LevelRule, Settings};
+use splatref::method::template::{LevelRule, Settings, Weights};
 use splatref::number::Exact;
 
 /// A level as the picture shows it.
@@ -219,11 +219,16 @@ impl<R: Exact, const P: u32> TemplateStages<'_, R, P> {
     }
 }
 
-/// All templates under all rules.
+/// All templates under all rules, and one rule with the other weight.
 pub(crate) fn all_settings(cull: bool) -> Vec<Settings> {
-    let rules = [LevelRule::Radius, LevelRule::Diameter, LevelRule::Covering];
-    let sizes = [3, 5, 7].into_iter();
-    sizes.flat_map(|size| rules.map(|levels| Settings { size, levels, cull })).collect()
+    let rules = [
+        (LevelRule::Radius, Weights::Linear),
+        (LevelRule::Diameter, Weights::Linear),
+        (LevelRule::Diameter, Weights::Gaussian),
+        (LevelRule::Covering, Weights::Linear),
+    ];
+    let of = |size| rules.map(|(levels, weights)| Settings { size, levels, weights, cull });
+    [3, 5, 7].into_iter().flat_map(of).collect()
 }
 
 /// Scenes by lot under all settings, and the goldens as they are.

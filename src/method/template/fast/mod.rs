@@ -12,7 +12,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-use super::{Settings, propagation};
+use super::{Settings, Weights, propagation};
 use crate::frame::{Exec, Framebuffer, Plane, pyramid};
 use crate::method::picture::{Clock, Laps};
 use crate::method::projection::Has;
@@ -102,11 +102,13 @@ impl CenterLevels {
         let (which, levels): (Vec<usize>, Vec<&CenterLevel>) = searched.unzip();
         let (view, half) = (View::new(camera), settings.half() as usize);
         exec.ordered(rows(target).enumerate().collect(), |(y, mut row): (usize, Target<'_>)| {
-            if colored {
-                search::search_row::<true>(&levels, &which, half, y, &view, &mut row);
-            } else {
-                search::search_row::<false>(&levels, &which, half, y, &view, &mut row);
-            }
+            let search = match (colored, settings.weights) {
+                (false, Weights::Linear) => search::search_row::<false, false>,
+                (false, Weights::Gaussian) => search::search_row::<false, true>,
+                (true, Weights::Linear) => search::search_row::<true, false>,
+                (true, Weights::Gaussian) => search::search_row::<true, true>,
+            };
+            search(&levels, &which, half, y, &view, &mut row);
         });
     }
 }

@@ -10,6 +10,7 @@ use crate::composite::sum;
 use crate::frame::NO_ID;
 use crate::method::projection::fast::PAD;
 use crate::method::projection::world;
+use crate::method::template::Weights;
 use crate::method::template::reconstruction::weight;
 use crate::number::lanes::{
     LANES, Lanes, Mask, any, components, each, load, mask, store_first, vectorized,
@@ -49,7 +50,7 @@ pub(super) struct Target<'a> {
 
 vectorized!(
     /// A row of pixels: reconstruction and normalization; `half` is h.
-    pub(super) fn search_row<const COLORED: bool>(
+    pub(super) fn search_row<const COLORED: bool, const GAUSSIAN: bool>(
         levels: &[&CenterLevel],
         which: &[usize],
         half: usize,
@@ -66,8 +67,12 @@ vectorized!(
                     let row = cells.row(cy);
                     match (row.has[0], level) {
                         (false, _) => {}
-                        (true, 0) => beside::<COLORED>(&mut gathered, row, (x, y, cy == y), half),
-                        (true, _) => around::<COLORED>(&mut gathered, row, (x, y, level), half),
+                        (true, 0) => {
+                            beside::<COLORED, GAUSSIAN>(&mut gathered, row, (x, y, cy == y), half)
+                        }
+                        (true, _) => {
+                            around::<COLORED, GAUSSIAN>(&mut gathered, row, (x, y, level), half)
+                        }
                     }
                 }
             }
@@ -78,7 +83,7 @@ vectorized!(
 
 /// Gathers one row of the templates at level 0: centres beside one another.
 #[inline(always)]
-fn beside<const COLORED: bool>(
+fn beside<const COLORED: bool, const GAUSSIAN: bool>(
     gathered: &mut GatheredLanes,
     row: CenterRow<'_>,
     (x, y, own_row): (usize, usize, bool),
@@ -105,13 +110,13 @@ fn beside<const COLORED: bool>(
             normal: row.load_vectors(NORMAL, first),
             color: if COLORED { row.load_vectors(COLOR, first) } else { [[0.0; LANES]; 3] },
         };
-        gathered.add::<COLORED>(&centers, &inside, &form, &square);
+        gathered.add::<COLORED, GAUSSIAN>(&centers, &inside, &form, &square);
     }
 }
 
 /// Gathers one row of the templates at a coarser level: each centre for all pixels around it.
 #[inline(always)]
-fn around<const COLORED: bool>(
+fn around<const COLORED: bool, const GAUSSIAN: bool>(
     gathered: &mut GatheredLanes,
     row: CenterRow<'_>,
     (x, y, level): (usize, usize, usize),
@@ -150,7 +155,7 @@ fn around<const COLORED: bool>(
             normal: three(NORMAL),
             color: if COLORED { three(COLOR) } else { [[0.0; LANES]; 3] },
         };
-        gathered.add::<COLORED>(&centers, &inside, &form, &[square; LANES]);
+        gathered.add::<COLORED, GAUSSIAN>(&centers, &inside, &form, &[square; LANES]);
     }
 }
 
@@ -171,13 +176,14 @@ impl GatheredLanes {
 
     /// The ternary test, and the sums, in the lanes that are inside.
     #[inline(always)]
-    fn add<const COLORED: bool>(
+    fn add<const COLORED: bool, const GAUSSIAN: bool>(
         &mut self,
         c: &CenterLanes,
         inside: &Mask,
         form: &Lanes,
         square: &Lanes,
     ) {
+        let kind = if GAUSSIAN { Weights::Gaussian } else { Weights::Linear };
         // -- The ternary test
         let (mut anew, mut takes, mut weights) = ([0; LANES], [0; LANES], [0.0; LANES]);
         for i in 0..LANES {
@@ -187,7 +193,7 @@ impl GatheredLanes {
             let behind = !before & (c.depth[i] - depth > sum);
             let taken = (inside[i] != 0) & !behind;
             let first = (inside[i] != 0) & before;
-            weights[i] = weight(form[i], square[i]);
+            weights[i] = weight(kind, form[i], square[i]);
             let front = taken & (first | (c.depth[i] < depth));
             self.id[i] = if front { c.id[i] } else { self.id[i] };
             self.depth[i] = if front { c.depth[i] } else { depth };
