@@ -82,7 +82,7 @@ pub(super) fn explain<R: Exact>(
     let (mut gathered, mut asked) = (Gathered::empty(), Vec::new());
     each_asked(&levels, settings, pixel, |a| {
         let (before, test) = (gathered, gathered.test(a.center));
-        let given = weight(settings.weights, a.form, a.square);
+        let given = weight(settings.falloff, a.form, a.square);
         if a.holds || a.own {
             gathered.add(a.center, given);
         }

@@ -31,7 +31,7 @@ mod settings;
 mod tests;
 
 pub use center::Center;
-pub use settings::{LevelRule, Settings, Weights};
+pub use settings::{Falloff, LevelRule, Settings};
 
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};

@@ -11,7 +11,7 @@
 //!   form <= square        d = sqrt(form / square)        w = 1 - d, at least 2^-24
 //! ```
 //!
-//! or, with [`Weights::Gaussian`], w = exp(-2 (form / square)).
+//! or, with [`Falloff::Gaussian`], w = exp(-2 (form / square)).
 //!
 //! `Decided:` the pixel that a centre staying at level 0 was projected to is held by it too, with w
 //! = 2^-24 if its ellipse does not hold it. A disc smaller than a pixel can miss every pixel's
@@ -38,7 +38,7 @@
 //! least weight, so that the rim, d = 1, is painted with a defined colour; no `f32` below 1 is
 //! closer to it, so nothing else changes.
 
-use super::{Center, Settings, Weights, propagation};
+use super::{Center, Falloff, Settings, propagation};
 use crate::composite::{decide, sum};
 use crate::frame::{Exec, NO_ID, Plane};
 use crate::number::{Exact, Real};
@@ -125,11 +125,11 @@ pub(super) enum Placement {
 
 /// The weight of a form, see the module page; also for one that is outside or NaN.
 #[inline(always)]
-pub(in crate::method::template) fn weight<R: Real>(weights: Weights, form: R, square: R) -> R {
+pub(in crate::method::template) fn weight<R: Real>(falloff: Falloff, form: R, square: R) -> R {
     let (ratio, least) = (form / square, R::from_f32(LEAST));
-    let weight = match weights {
-        Weights::Linear => R::ONE - ratio.sqrt(),
-        Weights::Gaussian => {
+    let weight = match falloff {
+        Falloff::Linear => R::ONE - ratio.sqrt(),
+        Falloff::Gaussian => {
             let weight = (R::from_f32(-2.0) * ratio).exp();
             R::select(decide::holds(form, square), weight, least)
         }
@@ -154,7 +154,7 @@ pub fn gather<R: Exact>(
         for (x, pixel) in (0..).zip(row) {
             each_asked(levels, settings, (x, y), |asked| {
                 if asked.holds || asked.own {
-                    pixel.add(asked.center, weight(settings.weights, asked.form, asked.square));
+                    pixel.add(asked.center, weight(settings.falloff, asked.form, asked.square));
                 }
             });
         }

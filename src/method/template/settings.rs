@@ -35,7 +35,7 @@ pub enum LevelRule {
 /// How the centres that a pixel gathers are weighted, by the elliptical distance d of the pixel
 /// from each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Weights {
+pub enum Falloff {
     /// 1 - d \[MOC08, eq. 2\].
     #[default]
     Linear,
@@ -51,8 +51,8 @@ pub struct Settings {
     pub size: u32,
     /// See [`LevelRule`].
     pub levels: LevelRule,
-    /// See [`Weights`].
-    pub weights: Weights,
+    /// See [`Falloff`].
+    pub falloff: Falloff,
     /// Whether surfels seen from behind are dropped.
     pub cull: bool,
 }
@@ -60,7 +60,7 @@ pub struct Settings {
 impl Default for Settings {
     /// 5 x 5, which \[MOC08, section 5\] finds sufficient.
     fn default() -> Self {
-        Self { size: 5, levels: LevelRule::default(), weights: Weights::default(), cull: true }
+        Self { size: 5, levels: LevelRule::default(), falloff: Falloff::default(), cull: true }
     }
 }
 
@@ -74,8 +74,8 @@ impl Fields for Settings {
         );
         let levels = "the level of an ellipse: eq. 1 of its radius or its diameter (by-size: radius for 3), or the one that covers it";
         each(Field::new("levels", levels, Slot::Word(&mut self.levels)));
-        let weights = "weights of the interpolation within an ellipse";
-        each(Field::new("weights", weights, Slot::Word(&mut self.weights)));
+        let falloff = "how the weight within an ellipse falls from the centre";
+        each(Field::new("falloff", falloff, Slot::Word(&mut self.falloff)));
         each(culling(&mut self.cull));
     }
 }
@@ -89,7 +89,7 @@ impl Words for LevelRule {
     ];
 }
 
-impl Words for Weights {
+impl Words for Falloff {
     const WORDS: &'static [(&'static str, Self)] =
         &[("linear", Self::Linear), ("gaussian", Self::Gaussian)];
 }

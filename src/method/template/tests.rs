@@ -16,7 +16,7 @@ use crate::scene::{Camera, Scene};
 fn settings() -> [Settings; 2] {
     [
         Settings::default(),
-        Settings { size: 3, levels: LevelRule::Covering, weights: Weights::Linear, cull: false },
+        Settings { size: 3, levels: LevelRule::Covering, falloff: Falloff::Linear, cull: false },
     ]
 }
 

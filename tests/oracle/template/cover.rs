@@ -8,7 +8,7 @@ use crate::template::model::{Center, Template};
 use crate::template::stages::grid;
 use glam::Vec3;
 use splatref::frame::NO_ID;
-use splatref::method::template::{LevelRule, Settings, Weights};
+use splatref::method::template::{Falloff, LevelRule, Settings};
 use splatref::scene::{Camera, Projection, Scene};
 
 const SIZES: [[u32; 2]; 8] =
@@ -108,7 +108,7 @@ fn a_disc_alone_paints_the_pixels_that_find_it() {
                 (LevelRule::Covering, (k_cells - 1.0) / 2.0),
             ];
             for (rule, (levels, reach)) in rules.into_iter().enumerate() {
-                let settings = Settings { size: k, levels, weights: Weights::Linear, cull: false };
+                let settings = Settings { size: k, levels, falloff: Falloff::Linear, cull: false };
                 let frame = Drawing::new(&scene, &camera, settings).frame::<f32>();
                 let template = Template::new(settings, shape);
                 let sample = grid(&frame, 0, shape);

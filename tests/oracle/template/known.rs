@@ -6,14 +6,14 @@ use crate::kit::planes;
 use crate::template::cases::{Dot, exact_camera, exact_scene};
 use glam::Vec3;
 use splatref::frame::{Frame, NO_ID, Samples};
-use splatref::method::template::{LevelRule, Settings, Weights};
+use splatref::method::template::{Falloff, LevelRule, Settings};
 use splatref::number::Exact;
 
 /// 2^-24.
 const LEAST: f32 = 1.0 / 16_777_216.0;
 
 fn settings(size: u32) -> Settings {
-    Settings { size, levels: LevelRule::Covering, weights: Weights::Linear, cull: false }
+    Settings { size, levels: LevelRule::Covering, falloff: Falloff::Linear, cull: false }
 }
 
 fn drawn<R: Exact>(size: [u32; 2], discs: &[Dot], settings: &Settings) -> Frame<R> {

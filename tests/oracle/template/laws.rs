@@ -13,7 +13,7 @@ use glam::Vec3;
 use splatref::Error;
 use splatref::frame::{Frame, NO_ID};
 use splatref::method::Method;
-use splatref::method::template::{LevelRule, Settings, Weights};
+use splatref::method::template::{Falloff, LevelRule, Settings};
 use splatref::scene::{Camera, Scene};
 use std::collections::BTreeMap;
 
@@ -177,7 +177,7 @@ fn larger_templates_tend_to_merge_less() {
                 centers(
                     &discs,
                     32,
-                    Settings { size, levels, weights: Weights::Linear, cull: false },
+                    Settings { size, levels, falloff: Falloff::Linear, cull: false },
                 )
             });
             let [Some(a), Some(b), Some(c)] = found else { continue };
@@ -207,7 +207,7 @@ fn a_larger_template_can_merge_more() {
         centers(
             &discs,
             64,
-            Settings { size, levels: LevelRule::Covering, weights: Weights::Linear, cull: false },
+            Settings { size, levels: LevelRule::Covering, falloff: Falloff::Linear, cull: false },
         )
     });
     assert_eq!(left, [Some(8), Some(5)], "of 12");

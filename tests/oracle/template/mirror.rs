@@ -13,7 +13,7 @@ use crate::template::known::{id, number};
 use crate::template::stages::all_settings;
 use glam::Vec3;
 use splatref::frame::{Frame, NO_ID};
-use splatref::method::template::{LevelRule, Settings, Weights};
+use splatref::method::template::{Falloff, LevelRule, Settings};
 
 /// Left and right exchanged (0), or top and bottom (1).
 const AXES: [usize; 2] = [0, 1];
@@ -111,7 +111,7 @@ fn a_surface_mirrors_up_to_rounding_and_not_bit_for_bit() {
                         let [a, b] = all(name).map(f64::from);
                         same += usize::from(a == b);
                         rounded += usize::from(a != b);
-                        // Weights near the rim are differences of numbers near 1.
+                        // Falloff near the rim are differences of numbers near 1.
                         let terms =
                             f64::from(count) * if name == "gathered.depths" { 6.0 } else { 1.0 };
                         let units = (a - b).abs() / (Num::<24>::unit() * terms.max(1.0));
@@ -152,7 +152,7 @@ fn the_ternary_test_does_not_mirror() {
 fn cells_mirror_for_powers_of_two_only() {
     let discs = [Dot::new(1.5, 4.5, 3.0), Dot::new(2.5, 4.5, 3.0)];
     let settings =
-        Settings { size: 3, levels: LevelRule::Covering, weights: Weights::Linear, cull: false };
+        Settings { size: 3, levels: LevelRule::Covering, falloff: Falloff::Linear, cull: false };
     for (width, merged) in [(16, 0), (13, 1)] {
         let size = [width, 16];
         let frame = drawn(size, &mirrored(size, &discs, 0), &settings);

@@ -8,7 +8,7 @@ use crate::kit::eye::V3;
 use crate::kit::number::{N3, Num, exact, normalized};
 use crate::kit::projection::Sight;
 use splatref::frame::NO_ID;
-use splatref::method::template::{LevelRule, Settings, Weights};
+use splatref::method::template::{Falloff, LevelRule, Settings};
 
 /// What a cell of a level holds.
 #[derive(Clone, Copy, Debug)]
@@ -228,9 +228,9 @@ impl<const P: u32> Template<P> {
         match square.less(form) {
             None => Err(()),
             Some(true) => outside,
-            Some(false) => Ok(Some(match self.settings.weights {
-                Weights::Linear => (Num::exact(1.0) - (form / square).sqrt()).at_least(LEAST),
-                Weights::Gaussian => (Num::exact(-2.0) * (form / square)).exp(),
+            Some(false) => Ok(Some(match self.settings.falloff {
+                Falloff::Linear => (Num::exact(1.0) - (form / square).sqrt()).at_least(LEAST),
+                Falloff::Gaussian => (Num::exact(-2.0) * (form / square)).exp(),
             })),
         }
     }

@@ -14,7 +14,7 @@ use crate::template::model::{Center, Grid, Staying, Sums, Template, average, dir
 use crate::template::tolerance::TEMPLATE;
 use splatref::frame::{Frame, NO_ID};
 use splatref::method::Picture;
-use splatref::method::template::{LevelRule, Settings, Weights};
+use splatref::method::template::{Falloff, LevelRule, Settings};
 use splatref::number::Exact;
 
 /// A level as the picture shows it.
@@ -222,12 +222,12 @@ impl<R: Exact, const P: u32> TemplateStages<'_, R, P> {
 /// All templates under all rules, and one rule with the other weight.
 pub(crate) fn all_settings(cull: bool) -> Vec<Settings> {
     let rules = [
-        (LevelRule::Radius, Weights::Linear),
-        (LevelRule::Diameter, Weights::Linear),
-        (LevelRule::Diameter, Weights::Gaussian),
-        (LevelRule::Covering, Weights::Linear),
+        (LevelRule::Radius, Falloff::Linear),
+        (LevelRule::Diameter, Falloff::Linear),
+        (LevelRule::Diameter, Falloff::Gaussian),
+        (LevelRule::Covering, Falloff::Linear),
     ];
-    let of = |size| rules.map(|(levels, weights)| Settings { size, levels, weights, cull });
+    let of = |size| rules.map(|(levels, falloff)| Settings { size, levels, falloff, cull });
     [3, 5, 7].into_iter().flat_map(of).collect()
 }
 

@@ -12,7 +12,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-use super::{Settings, Weights, propagation};
+use super::{Falloff, Settings, propagation};
 use crate::frame::{Exec, Framebuffer, Plane, pyramid};
 use crate::method::picture::{Clock, Laps};
 use crate::method::projection::Has;
@@ -102,11 +102,11 @@ impl CenterLevels {
         let (which, levels): (Vec<usize>, Vec<&CenterLevel>) = searched.unzip();
         let (view, half) = (View::new(camera), settings.half() as usize);
         exec.ordered(rows(target).enumerate().collect(), |(y, mut row): (usize, Target<'_>)| {
-            let search = match (colored, settings.weights) {
-                (false, Weights::Linear) => search::search_row::<false, false>,
-                (false, Weights::Gaussian) => search::search_row::<false, true>,
-                (true, Weights::Linear) => search::search_row::<true, false>,
-                (true, Weights::Gaussian) => search::search_row::<true, true>,
+            let search = match (colored, settings.falloff) {
+                (false, Falloff::Linear) => search::search_row::<false, false>,
+                (false, Falloff::Gaussian) => search::search_row::<false, true>,
+                (true, Falloff::Linear) => search::search_row::<true, false>,
+                (true, Falloff::Gaussian) => search::search_row::<true, true>,
             };
             search(&levels, &which, half, y, &view, &mut row);
         });

@@ -10,7 +10,7 @@ use crate::composite::sum;
 use crate::frame::NO_ID;
 use crate::method::projection::fast::PAD;
 use crate::method::projection::world;
-use crate::method::template::Weights;
+use crate::method::template::Falloff;
 use crate::method::template::reconstruction::weight;
 use crate::number::lanes::{
     LANES, Lanes, Mask, any, components, each, load, mask, store_first, vectorized,
@@ -183,7 +183,7 @@ impl GatheredLanes {
         form: &Lanes,
         square: &Lanes,
     ) {
-        let kind = if GAUSSIAN { Weights::Gaussian } else { Weights::Linear };
+        let falloff = if GAUSSIAN { Falloff::Gaussian } else { Falloff::Linear };
         // -- The ternary test
         let (mut anew, mut takes, mut weights) = ([0; LANES], [0; LANES], [0.0; LANES]);
         for i in 0..LANES {
@@ -193,7 +193,7 @@ impl GatheredLanes {
             let behind = !before & (c.depth[i] - depth > sum);
             let taken = (inside[i] != 0) & !behind;
             let first = (inside[i] != 0) & before;
-            weights[i] = weight(kind, form[i], square[i]);
+            weights[i] = weight(falloff, form[i], square[i]);
             let front = taken & (first | (c.depth[i] < depth));
             self.id[i] = if front { c.id[i] } else { self.id[i] };
             self.depth[i] = if front { c.depth[i] } else { depth };

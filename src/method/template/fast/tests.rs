@@ -20,13 +20,13 @@ fn every_pixel_has_the_bits_of_the_definition() {
     for (i, camera) in cameras().into_iter().enumerate() {
         for (count, radius) in [(1, 1e30), (37, 0.4), (3000, 0.05), (50_000, 0.01)] {
             let scene = scene(surfels(count, radius, count % 2 == 1, i as u64));
-            for (size, rule, weights) in [
-                (3, LevelRule::Covering, Weights::Linear),
-                (5, LevelRule::Diameter, Weights::Gaussian),
-                (5, LevelRule::Radius, Weights::Linear),
-                (7, LevelRule::Covering, Weights::Gaussian),
+            for (size, rule, falloff) in [
+                (3, LevelRule::Covering, Falloff::Linear),
+                (5, LevelRule::Diameter, Falloff::Gaussian),
+                (5, LevelRule::Radius, Falloff::Linear),
+                (7, LevelRule::Covering, Falloff::Gaussian),
             ] {
-                let settings = Settings { size, levels: rule, weights, cull: count != 3000 };
+                let settings = Settings { size, levels: rule, falloff, cull: count != 3000 };
                 let color = scene.surfels.color().is_some();
                 let wanted = Wanted { normal: true, color, observed: false };
                 let mut found = Framebuffer::new(camera.width, camera.height, 9.0, wanted);
