@@ -49,7 +49,9 @@ struct Shot {
 fn main() -> Result<()> {
     let bench = Bench { arguments: Arguments::parse()?, exec: Exec::new(0, 32)? };
     bench.figure_8_and_9(&bench.subjects(&OPAQUE)?)?;
-    bench.figure_12_and_13(&bench.subjects(&TRANSPARENT)?)
+    let transparent = bench.subjects(&TRANSPARENT)?;
+    bench.figure_12_and_13(&transparent)?;
+    bench.arcs(&transparent)
 }
 
 const OPAQUE: [&str; 4] = ["bunny", "dragon", "igea", "cluster"];
@@ -93,6 +95,18 @@ const COLUMNS: [&str; 14] = [
     "off, %",
     "ms",
     "peeling: ms",
+];
+/// How many bins of depth.
+const BINS: [BinCount; 9] = [
+    BinCount::Count(4),
+    BinCount::Count(8),
+    BinCount::Count(16),
+    BinCount::Count(32),
+    BinCount::Count(64),
+    BinCount::Count(128),
+    BinCount::Count(256),
+    BinCount::Count(512),
+    BinCount::Epsilon,
 ];
 const ADD: Extension = Extension::Add { most: 0.5 };
 
@@ -220,6 +234,37 @@ impl Bench {
             }
         }
         table.publish_times(&self.arguments, "zp06.md", "transparent")
+    }
+
+    /// Algorithms 2 and 3 by the number of bins, against depth peeling: what is off.
+    fn arcs(&self, subjects: &[Subject]) -> Result<()> {
+        println!("What is off, %, by the number of depth bins");
+        let titles = BINS.map(|bins| match bins {
+            BinCount::Epsilon => "of epsilon".to_owned(),
+            BinCount::Count(count) => count.to_string(),
+        });
+        let columns = ["scene", "algorithm"].into_iter().chain(titles.iter().map(String::as_str));
+        let mut table = Table::new(&columns.collect::<Vec<_>>());
+        let splats = ewa::Settings { cull: false, ..ewa::Settings::default() };
+        let rules = Rules { overlap: 1.0, opposite: true, coplanar: None };
+        let grouping = Grouping { rules, count: Some(4), extension: ADD };
+        for subject in subjects {
+            let method = Method::Peeling(peeling::Settings { splats, layers: 64 });
+            let truth = self.shoot(subject, "peeling", None, &method)?;
+            let mut rows = [const { Vec::new() }; 2];
+            for bins in BINS {
+                let layers = transparent::Settings { splats, bins, ..Default::default() };
+                let behind = transparent_hq::Settings { layers, ..Default::default() };
+                for (row, method) in rows.iter_mut().zip([layers.into(), behind.into()]) {
+                    let shot = self.shoot(subject, "bins", Some(&grouping), &method)?;
+                    row.push(format!("{:.1}", off(&shot.image, &truth.image)));
+                }
+            }
+            for (algorithm, row) in (2..).zip(rows) {
+                table.row(&format!("{} | {algorithm} | {}", subject.name, row.join(" | ")));
+            }
+        }
+        table.publish(&self.arguments, "zp06.md", "arcs")
     }
 
     /// Draws a picture, and again five times for the median of the time.

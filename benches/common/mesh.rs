@@ -18,8 +18,12 @@ impl Mesh {
     pub(crate) fn new(cloud: Cloud, like: &Scene, exec: &Exec) -> Result<Self> {
         let (triangles, _) = derive::polygons(cloud, exec, &|_, _, _| ())?;
         let primitives = Primitives { triangles, ..Primitives::default() };
-        let surfels = Surfels::none();
-        Ok(Self(Scene { surfels, primitives, ..like.clone() }))
+        Ok(Self::of(Scene { surfels: Surfels::none(), primitives, ..like.clone() }))
+    }
+
+    /// The triangles of a scene that has nothing else.
+    pub(crate) fn of(scene: Scene) -> Self {
+        Self(scene)
     }
 
     /// The triangles rasterized at the pixels' centres, both sides of them, with interpolated

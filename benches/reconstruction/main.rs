@@ -17,6 +17,7 @@
 mod accuracy;
 #[path = "../common/mod.rs"]
 mod common;
+mod falloff;
 mod levels;
 mod mirror;
 mod reach;
@@ -60,6 +61,7 @@ fn main() -> Result<()> {
     bench.accuracy(&subjects)?;
     bench.levels(&subjects)?;
     bench.mirror(&subjects)?;
+    bench.falloffs(&subjects)?;
     bench.stability(&subjects)?;
     bench.reach()
 }

@@ -162,7 +162,8 @@ impl<R: Exact> Shader<R> {
 
     /// The colour of a surfel, shaded once at its centre: p is its position, n its normal, turned
     /// towards the side that is seen, both in world space.
-    pub(crate) fn surfel(&self, p: Vector3<R>, n: Vector3<R>, surface: [R; 3]) -> [R; 3] {
+    #[must_use]
+    pub fn surfel(&self, p: Vector3<R>, n: Vector3<R>, surface: [R; 3]) -> [R; 3] {
         self.lit(self.view.point(p), self.form(n, Vector3::ZERO), surface)
     }
 
