@@ -1,4 +1,5 @@
-//! Table 1 of Zhang and Pajarola 2006, measured again, and what covering the surface takes.
+//! Table 1 of Zhang and Pajarola 2006, measured again, what covering the surface takes, and how long
+//! scenes of up to ten million surfels take.
 //!
 //! `cargo bench --bench groups` prints Markdown, and with `--write` puts the tables into
 //! `docs/zp06.md`; an argument is a pattern that the names of models must contain. Of each model
@@ -13,9 +14,14 @@ use common::models::{models, resample};
 use common::report::{Arguments, Table};
 use splatref::Result;
 use splatref::frame::Exec;
-use splatref::index::grouping::{Extension, GroupingReport, Rules, extend, group, group_into};
+use splatref::index::grouping::{
+    Extension, Grouping, GroupingReport, Rules, extend, group, group_into,
+};
+use splatref::method::{Method, single_pass, transparent};
 use splatref::scene::{Cloud, Surfels};
+use splatref::source::Shape;
 use splatref::source::derive::{self, Derive};
+use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
 /// The paper's models: points, and K / max degree / average degree at each c.
@@ -86,7 +92,51 @@ fn main() -> Result<()> {
             table.row(&covering(name, &scene, most, &exec));
         }
     }
-    table.publish_times(&arguments, "zp06.md", "covering")
+    table.publish_times(&arguments, "zp06.md", "covering")?;
+    let mut table = Table::new(&["surfels", "groups", "K", "time", "of it"]);
+    for count in [100_000, 1_000_000, 10_000_000] {
+        let sphere = Shape::Sphere.surfels(count, 0)?;
+        // Enlarging ten million takes minutes, and no method asks for it.
+        let enlarged = usize::from(count < 10_000_000);
+        for (name, grouping) in &defaults()[..2 + enlarged] {
+            table.row(&steps(name, &sphere, grouping, &exec));
+        }
+    }
+    table.publish_times(&arguments, "zp06.md", "grouping")
+}
+
+/// The groups that methods ask for, and the other extension of those with few.
+fn defaults() -> [(&'static str, Grouping); 3] {
+    let of = |method: Method| method.grouping().expect("a method with groups");
+    let four = of(transparent::Settings::default().into());
+    [
+        ("of the single pass", of(single_pass::Settings::default().into())),
+        ("of transparent splats", four),
+        ("the same, enlarged", Grouping { extension: Extension::Enlarge, ..four }),
+    ]
+}
+
+/// How long groups take, and the steps of which it takes a tenth or more.
+fn steps(name: &str, surfels: &Surfels, grouping: &Grouping, exec: &Exec) -> String {
+    let seen = RefCell::new((Instant::now(), String::new(), Vec::<(String, f64)>::new()));
+    let note = |step: &str| {
+        let (since, last, steps) = &mut *seen.borrow_mut();
+        let time = since.elapsed().as_secs_f64();
+        match steps.iter_mut().find(|step| step.0 == *last) {
+            Some(step) => step.1 += time,
+            None => steps.push((last.clone(), time)),
+        }
+        (*since, *last) = (Instant::now(), step.to_owned());
+    };
+    let start = Instant::now();
+    let found = grouping.groups(surfels, exec, &|step, _, _| note(step)).expect("groups");
+    let time = start.elapsed().as_secs_f64();
+    note("");
+    let (_, _, steps) = seen.into_inner();
+    let large = steps.into_iter().filter(|step| step.1 > 0.1 * time);
+    let parts = large.map(|(step, part)| format!("{step} {:.0} %", 100.0 * part / time));
+    let parts = parts.collect::<Vec<_>>().join(", ");
+    format!("{} | {name} | {} | {time:.2} s | {parts}", surfels.len(), found.0.len())
 }
 
 fn surfels(cloud: Cloud, exec: &Exec) -> Surfels {

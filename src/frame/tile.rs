@@ -95,6 +95,14 @@ impl Exec {
         }
     }
 
+    /// Sorts values of which no two are equal, in parallel.
+    pub(crate) fn sort<T: Ord + Send>(&self, values: &mut [T]) {
+        match &self.pool {
+            None => values.sort_unstable(),
+            Some(pool) => pool.install(|| values.par_sort_unstable()),
+        }
+    }
+
     /// Runs `size` neighbouring items a job, in parallel; with the index of the first of them.
     pub(crate) fn chunks<T: Send>(
         &self,

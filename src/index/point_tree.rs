@@ -88,7 +88,7 @@ fn halve<'a>((entries, axes): HalfOfTree<'a>) -> [HalfOfTree<'a>; 2] {
 }
 
 /// The axis of the largest extent of some points, the first of equal ones.
-pub(crate) fn widest(points: impl Iterator<Item = Vec3>) -> usize {
+fn widest(points: impl Iterator<Item = Vec3>) -> usize {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for point in points {
         low = low.min(point);

@@ -1,43 +1,171 @@
 //! Extension (1): surfels of other groups are added to a group \[ZP06, section 4.2.2\].
 
-use super::clipped::{DiscSamples, SAMPLES};
-use super::disc_tree::DiscTree;
-use super::graph::Graph;
+use super::clipped::{SAMPLES, areas, covered_by};
+use super::extend::GroupCoverage;
+use super::overlaps::Overlaps;
+use super::settle::settle;
+use crate::scene::Groups;
+use std::ops::Range;
+use std::sync::atomic::AtomicU8;
+use std::sync::atomic::Ordering::Relaxed;
 
-/// The surfels that are added to group `k`, in the order in which they are.
-///
-/// The paper's queue needs no queue. A surfel is taken out at the priority p; if it has grown
-/// since, it goes back with a larger one. All others were at p or below and have not been looked at
-/// since: it is the first again, nothing has changed, and step 2b adds it. So each surfel is
-/// decided when its turn comes, in the order of the priorities that step 1 gave.
-pub(super) fn added(tree: &DiscTree, graph: &Graph, own: &[u8], k: u8, most: f32) -> Vec<u32> {
-    let group = |place: usize| own[tree.surfel[place] as usize];
-    let too_big = |covered: u64| covered.count_ones() as f32 / SAMPLES as f32 > most;
-    let mut covered = vec![0; own.len()];
-    let join = |covered: &mut [u64], place: usize| {
-        let by = tree.disc(place);
-        for &other in graph.of(place) {
-            let mask = &mut covered[other as usize];
-            if *mask != u64::MAX {
-                *mask |= DiscSamples::of(tree.disc(other as usize)).covered_by(&by);
+/// Groups that are extended at once: each neighbour is looked at once for all of them.
+const BATCH: usize = 4;
+
+/// What adding surfels came to.
+pub(super) struct Added {
+    /// A divided by pi.
+    pub(super) target: f64,
+    /// (surfel, group), ascending.
+    pub(super) further: Vec<(u32, u8)>,
+    pub(super) groups: Vec<GroupCoverage>,
+}
+
+/// Adds surfels to all groups, and measures how much of the surface each covers.
+pub(super) fn add(
+    overlaps: &Overlaps<'_>,
+    groups: &Groups,
+    most: f32,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Added {
+    let &Overlaps { tree, exec, .. } = overlaps;
+    let (n, count) = (tree.surfel.len(), groups.len());
+    let mut own = Vec::new();
+    exec.extend(&mut own, n, |place| groups.own()[tree.surfel[place] as usize]);
+    // What all that are lower cover, and what those of the same group do.
+    let show = |done, of| progress("measuring the surface", done, of);
+    let sets = |i, j| u32::from(overlaps.lower(i, j)) * (1 | u32::from(own[i] == own[j]) << 1);
+    let covered = overlaps.covered::<2>(sets, &show);
+    let target = areas(tree, 1, |_| 0, |place| covered[place][0])[0].0;
+    let group = |surfel: usize| groups.own()[surfel].into();
+    let before = areas(tree, count, group, |place| covered[place][1]);
+    drop(covered);
+
+    let groups = Members { overlaps, own: &own, most };
+    let mut coverages = Vec::new();
+    let mut added = vec![0_u64; n];
+    for first in (0..count).step_by(BATCH) {
+        let batch = first..count.min(first + BATCH);
+        let show = |part: u64, done: u64, of: u64| {
+            let here = (part * of + done) * batch.len() as u64;
+            progress("extending groups", 2 * of * first as u64 + here, 2 * of * count as u64);
+        };
+        let members = groups.extended(batch.clone(), &|done, of| show(0, done, of));
+        for (place, members) in members.iter().enumerate() {
+            let further = members & !groups.own(first, place);
+            if further != 0 {
+                added[tree.rank[place] as usize] |= u64::from(further) << first;
             }
         }
-    };
-    for place in (0..own.len()).filter(|&place| group(place) == k) {
-        join(&mut covered, place);
+        let sets =
+            |i: usize, j: usize| if overlaps.lower(i, j) { members[i] & members[j] } else { 0 };
+        let covered = overlaps.covered::<BATCH>(sets, &|done, of| show(1, done, of));
+        coverages.extend(exec.ordered(batch.clone().collect(), |group| {
+            let set = group - first;
+            let is_member = |place: usize| members[place] >> set & 1 == 1;
+            // Of those that are no members, nothing is open.
+            let covered = |place| if is_member(place) { covered[place][set] } else { u64::MAX };
+            let after = areas(tree, 1, |_| 0, covered)[0].0 / target;
+            let surfels = (0..n).filter(|&place| is_member(place)).count() as u64;
+            let before = before[group].0 / target;
+            GroupCoverage { surfels, scale: 1.0, converged: true, before, after }
+        }));
     }
-    let mut queue: Vec<(u32, u32, u32)> = (0..own.len())
-        .filter(|&place| group(place) != k && !too_big(covered[place]))
-        .map(|place| (covered[place].count_zeros(), tree.surfel[place], place as u32))
-        .collect();
-    // By priority, the largest first, and by index.
-    queue.sort_unstable();
-    let mut added = Vec::new();
-    for (_, surfel, place) in queue {
-        if !too_big(covered[place as usize]) {
-            added.push(surfel);
-            join(&mut covered, place as usize);
+    let bits = |groups: u64| (0..count as u8).filter(move |group| groups >> group & 1 == 1);
+    let of = |(surfel, groups)| bits(groups).map(move |group| (surfel, group));
+    let further = (0..).zip(added).filter(|added| added.1 != 0).flat_map(of).collect();
+    Added { target, further, groups: coverages }
+}
+
+/// Who is in which group.
+struct Members<'a> {
+    overlaps: &'a Overlaps<'a>,
+    /// The group of each place.
+    own: &'a [u8],
+    most: f32,
+}
+
+impl Members<'_> {
+    /// The bit of the group of a place, of those groups from `first` on.
+    fn own(&self, first: usize, place: usize) -> u32 {
+        let group = usize::from(self.own[place]).wrapping_sub(first);
+        if group < BATCH { 1 << group } else { 0 }
+    }
+
+    /// For each place a bit for each group of a batch that it is in, or is added to.
+    fn extended(&self, batch: Range<usize>, progress: &dyn Fn(u64, u64)) -> Vec<u32> {
+        let Overlaps { exec, .. } = *self.overlaps;
+        let (n, first) = (self.own.len(), batch.start);
+        let own = |place| self.own(first, place);
+        let sets = |i, j| own(j) & !own(i);
+        let covered = self.overlaps.covered::<BATCH>(sets, progress);
+        let mut members = Vec::new();
+        exec.extend(&mut members, n, own);
+        for group in batch {
+            let set = group - first;
+            let added = self.added(group as u8, |place| covered[place][set]);
+            for (members, added) in members.iter_mut().zip(added) {
+                *members |= u32::from(added) << set;
+            }
         }
+        members
     }
-    added
+}
+
+/// A candidate that was added; the rest is its priority.
+const ADDED: u8 = 128;
+/// No candidate, or none any more.
+const OUT: u8 = 255;
+
+impl Members<'_> {
+    /// Which places are added to a group; `covered` is what it covers of each to begin with.
+    ///
+    /// The paper's queue needs no queue. A surfel is taken out at the priority p; if it has grown
+    /// since, it goes back with a larger one. All others were at p or below and have not been
+    /// looked at since: it is the first again, nothing has changed, and step 2b adds it. So each
+    /// surfel is decided when its turn comes, in the order of the priorities that step 1 gave.
+    fn added(&self, group: u8, covered: impl Fn(usize) -> u64 + Sync + Send) -> Vec<bool> {
+        let &Overlaps { tree, graph, exec } = self.overlaps;
+        let too_big = |covered: u64| covered.count_ones() as f32 / SAMPLES as f32 > self.most;
+        // The priority of a candidate that is not decided.
+        let begin = |place: usize| {
+            let out = self.own[place] == group || too_big(covered(place));
+            AtomicU8::new(if out { OUT } else { covered(place).count_ones() as u8 })
+        };
+        let mut state = Vec::new();
+        exec.extend(&mut state, self.own.len(), begin);
+        settle(self.own.len(), exec, &|_, _| (), |open| {
+            let place = open.place;
+            let priority = state[place].load(Relaxed);
+            if priority >= ADDED {
+                return None;
+            }
+            if open.asked == 0 {
+                open.mask = covered(place);
+            }
+            let mut samples = None;
+            while let Some(&other) = graph.of(place).get(open.asked) {
+                let other = other as usize;
+                let theirs = state[other].load(Relaxed);
+                let first = theirs & !ADDED;
+                let before = first > priority
+                    || (first == priority && tree.surfel[other] < tree.surfel[place]);
+                if theirs != OUT && before {
+                    if theirs < ADDED {
+                        return Some(other);
+                    }
+                    let samples = samples.get_or_insert_with(|| tree.samples(place));
+                    open.mask |= covered_by(samples, &tree.discs[other]);
+                    if too_big(open.mask) {
+                        state[place].store(OUT, Relaxed);
+                        return None;
+                    }
+                }
+                open.asked += 1;
+            }
+            state[place].store(ADDED | priority, Relaxed);
+            None
+        });
+        state.into_iter().map(|state| (ADDED..OUT).contains(&state.into_inner())).collect()
+    }
 }

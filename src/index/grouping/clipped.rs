@@ -2,10 +2,11 @@
 
 use super::budget::Budget;
 use super::disc::{SpaceDisc, dot};
-use super::disc_tree::{DISCS, DiscTree};
+use super::disc_tree::{DISCS, DiscTree, NearBlocks};
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::elementary::{cos, sin};
+use crate::number::lanes::vectorized;
 use crate::number::random;
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -38,30 +39,33 @@ static PATTERN: LazyLock<Pattern> = LazyLock::new(|| {
 
 /// The samples of a disc.
 pub(super) struct DiscSamples {
+    pattern: &'static Pattern,
     disc: SpaceDisc,
     u: DVec3,
     v: DVec3,
 }
 
 impl DiscSamples {
-    #[inline]
-    pub(super) fn of(disc: SpaceDisc) -> Self {
-        let (u, v) = axes(disc.normal);
-        let (c, s) = PATTERN.turn[(random::bits(0, disc.surfel.into()) >> 58) as usize];
-        Self { disc, u: c * u + s * v, v: c * v - s * u }
+    /// Of the disc of a surfel.
+    #[inline(always)]
+    pub(super) fn of(disc: SpaceDisc, surfel: u32) -> Self {
+        let (u, v) = axes(disc.normal.as_dvec3());
+        let pattern = &*PATTERN;
+        let (c, s) = pattern.turn[(random::bits(0, surfel.into()) >> 58) as usize];
+        Self { pattern, disc, u: c * u + s * v, v: c * v - s * u }
     }
 
     /// Bit m is set if sample m is covered by a disc, see the [module](super).
-    #[inline]
+    #[inline(always)]
     pub(super) fn covered_by(&self, other: &SpaceDisc) -> u64 {
-        if dot(self.disc.normal, other.normal) < 0.0 {
+        if self.disc.cosine(other) < 0.0 {
             return 0;
         }
-        let d = self.disc.center - other.center;
+        let d = self.disc.center.as_dvec3() - other.center.as_dvec3();
         let r = self.disc.radius;
         let (a, b) = (2.0 * r * dot(d, self.u), 2.0 * r * dot(d, self.v));
         let (r2, most) = (r * r, other.radius * other.radius - dot(d, d));
-        let Pattern { x, y, q, .. } = &*PATTERN;
+        let Pattern { x, y, q, .. } = self.pattern;
         let mut covered = 0;
         for m in 0..SAMPLES {
             covered |= u64::from((a * x[m] + b * y[m]) + r2 * q[m] <= most) << m;
@@ -73,6 +77,7 @@ impl DiscSamples {
 /// Two perpendicular axes of the plane across a unit normal; no length has to be divided by.
 ///
 /// Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017.
+#[inline(always)]
 fn axes(n: DVec3) -> (DVec3, DVec3) {
     let sign = if n.z < 0.0 { -1.0 } else { 1.0 };
     let a = -1.0 / (sign + n.z);
@@ -80,11 +85,6 @@ fn axes(n: DVec3) -> (DVec3, DVec3) {
     let u = DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x);
     let v = DVec3::new(b, sign + n.y * n.y * a, -n.y);
     (u, v)
-}
-
-/// The part of a disc that a mask of covered samples leaves, in [0, 1].
-pub(super) fn open(covered: u64) -> f64 {
-    f64::from(covered.count_zeros()) / SAMPLES as f64
 }
 
 /// For each place, the samples that surfels of a lower index cover, all radii times `scale`.
@@ -95,18 +95,32 @@ pub(super) fn by_lower(
     progress: &dyn Fn(u64, u64),
 ) -> Result<Vec<u64>> {
     let budget = Budget::new(tree.surfel.len(), scale);
-    let job = |blocks: Range<usize>| {
-        let first = tree.places(blocks.start).start;
+    let mut covered = Vec::with_capacity(tree.surfel.len());
+    let job = |blocks| covered_by_lower(tree, blocks, scale, &budget);
+    tree.parts(exec, progress, job, |part: Vec<u64>| covered.extend(part))?;
+    Ok(covered)
+}
+
+vectorized!(
+    /// [`by_lower`] for the places of some blocks.
+    fn covered_by_lower(
+        tree: &DiscTree,
+        blocks: Range<usize>,
+        scale: f64,
+        budget: &Budget,
+    ) -> Result<Vec<u64>> {
         let disc = |place: usize| {
-            let disc = tree.disc(place);
+            let disc = tree.discs[place];
             SpaceDisc { radius: scale * disc.radius, ..disc }
         };
+        let first = tree.places(blocks.start).start;
         let mut covered = vec![0; tree.places(blocks.end - 1).end - first];
+        let mut room = NearBlocks::default();
         for block in blocks {
             let samples: Vec<DiscSamples> =
-                tree.places(block).map(|i| DiscSamples::of(disc(i))).collect();
+                tree.places(block).map(|i| DiscSamples::of(disc(i), tree.surfel[i])).collect();
             let mut seen = 0;
-            tree.near(block, scale, |i, j| {
+            tree.near(block, scale, &mut room, |i, j| {
                 let mask = &mut covered[i - first];
                 seen += 1;
                 if tree.surfel[j] < tree.surfel[i] {
@@ -117,22 +131,41 @@ pub(super) fn by_lower(
             budget.spend(seen)?;
         }
         Ok(covered)
-    };
-    let mut covered = Vec::with_capacity(tree.surfel.len());
-    tree.parts(exec, progress, job, |part: Vec<u64>| covered.extend(part))?;
-    Ok(covered)
-}
+    }
+);
 
 /// The covered area of eq. 7 for all radii times `scale`, divided by pi scale^2, and the sum of the
 /// squared radii: sums in ascending index.
 pub(super) fn area(tree: &DiscTree, covered: &[u64]) -> (f64, f64) {
-    let mut order: Vec<u32> = (0..covered.len() as u32).collect();
-    order.sort_unstable_by_key(|&place| tree.surfel[place as usize]);
-    let (mut area, mut sum) = (0.0, 0.0);
-    for place in order {
-        let r = tree.disc(place as usize).radius;
-        area += r * r * open(covered[place as usize]);
-        sum += r * r;
-    }
-    (area, sum)
+    areas(tree, 1, |_| 0, |place| covered[place])[0]
 }
+
+/// [`area`] of each of `count` groups; `group` is asked by rank, and `covered` by place.
+pub(super) fn areas(
+    tree: &DiscTree,
+    count: usize,
+    group: impl Fn(usize) -> usize,
+    covered: impl Fn(usize) -> u64,
+) -> Vec<(f64, f64)> {
+    let mut open = vec![0_u8; tree.surfel.len()];
+    for (place, &rank) in tree.rank.iter().enumerate() {
+        let mask = covered(place);
+        if mask != u64::MAX {
+            open[rank as usize] = mask.count_zeros() as u8;
+        }
+    }
+    let mut areas = vec![(0.0, 0.0); count];
+    for (rank, (open, square)) in open.into_iter().zip(&tree.square).enumerate() {
+        let (area, sum) = &mut areas[group(rank)];
+        *area += square * (f64::from(open) / SAMPLES as f64);
+        *sum += square;
+    }
+    areas
+}
+
+vectorized!(
+    /// [`DiscSamples::covered_by`], for those who are not compiled for vectors.
+    pub(super) fn covered_by(samples: &DiscSamples, other: &SpaceDisc) -> u64 {
+        samples.covered_by(other)
+    }
+);

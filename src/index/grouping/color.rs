@@ -3,10 +3,13 @@
 use super::disc_tree::DiscTree;
 use super::graph::{Graph, conflicts};
 use super::rules::Rules;
+use super::settle::{Open, settle};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::scene::groups::{MAX_GROUPS, check_count};
 use crate::scene::{Groups, Surfels};
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicBool, AtomicU32};
 
 /// What [`group`] found: a row of Table 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,15 +41,8 @@ pub fn group(
 ) -> Result<(Groups, GroupingReport)> {
     rules.check()?;
     progress("sorting surfels", 0, 1);
-    let tree = DiscTree::new(surfels, 0..surfels.len() as u32);
-    let (color, report) = color(surfels, &tree, rules, rules.overlap, exec, progress)?;
-    if report.groups > MAX_GROUPS {
-        return Err(Error::Invalid(format!(
-            "c = {} needs {} groups, and at most {MAX_GROUPS} can be: give a lower c or smaller radii",
-            rules.overlap, report.groups
-        )));
-    }
-    Ok((groups(&tree, &color, report.groups)?, report))
+    let tree = DiscTree::new(surfels, 0..surfels.len() as u32, exec);
+    Coloring { surfels, tree: &tree, rules, exec, progress }.group(None)
 }
 
 /// As [`group`], with the largest c that gives at most `count` groups, as the [module](super)
@@ -64,44 +60,95 @@ pub fn group_into(
     rules.check()?;
     check_count(count)?;
     progress("sorting surfels", 0, 1);
-    let tree = DiscTree::new(surfels, 0..surfels.len() as u32);
-    let colored = |c: f32| color(surfels, &tree, rules, c, exec, progress);
-    // c = 0 has no edges, and so fits; what is above the c of the rules does not.
-    let mut best = colored(0.0)?;
-    let (mut fits, mut fails) = (0, (64.0 * rules.overlap) as u16 + 1);
-    while fails - fits > 1 {
-        let middle = u16::midpoint(fits, fails);
-        match colored(f32::from(middle) / 64.0) {
-            Ok(found) if found.1.groups <= count => (fits, best) = (middle, found),
-            _ => fails = middle,
-        }
-    }
-    let (color, report) = best;
-    Ok((groups(&tree, &color, report.groups)?, report))
+    let tree = DiscTree::new(surfels, 0..surfels.len() as u32, exec);
+    Coloring { surfels, tree: &tree, rules, exec, progress }.group_into(count, None)
 }
 
-/// The colour of every place, by the rules with another c.
-fn color(
-    surfels: &Surfels,
-    tree: &DiscTree,
-    rules: &Rules,
-    overlap: f32,
-    exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
-) -> Result<(Vec<u32>, GroupingReport)> {
-    let graph = conflicts(surfels, tree, rules, overlap, exec, progress)?;
-    progress("colouring", 0, 1);
-    let color = largest_first(&graph, &tree.surfel);
-    let n = surfels.len();
-    let report = GroupingReport {
-        surfels: n as u64,
-        overlap,
-        groups: color.iter().fold(0, |most, &color| most.max(color)) as usize + 1,
-        edges: graph.edges(),
-        max_degree: (0..n).map(|place| graph.degree(place)).fold(0, u32::max),
-        average_degree: 2.0 * graph.edges() as f64 / n as f64,
-    };
-    Ok((color, report))
+/// What is coloured, and how.
+pub(super) struct Coloring<'a> {
+    pub(super) surfels: &'a Surfels,
+    /// Of all surfels.
+    pub(super) tree: &'a DiscTree,
+    pub(super) rules: &'a Rules,
+    pub(super) exec: &'a Exec,
+    pub(super) progress: &'a dyn Fn(&str, u64, u64),
+}
+
+impl Coloring<'_> {
+    /// The groups at the c of the rules. `overlaps` is the graph of all pairs that are near by 1, if
+    /// there is one.
+    pub(super) fn group(&self, overlaps: Option<&Graph>) -> Result<(Groups, GroupingReport)> {
+        let overlap = self.rules.overlap;
+        let graph = self.graph(overlap, overlaps)?;
+        let (color, report) =
+            self.color(&graph, overlap, usize::MAX).expect("as many colours as it takes");
+        if report.groups > MAX_GROUPS {
+            return Err(Error::Invalid(format!(
+                "c = {overlap} needs {} groups, and at most {MAX_GROUPS} can be: give a lower c or \
+                 smaller radii",
+                report.groups
+            )));
+        }
+        Ok((groups(self.tree, &color, report.groups)?, report))
+    }
+
+    /// The groups at the largest c that gives at most `count`.
+    pub(super) fn group_into(
+        &self,
+        count: usize,
+        overlaps: Option<&Graph>,
+    ) -> Result<(Groups, GroupingReport)> {
+        // What is above the c of the rules does not fit. The graph of a c that does not has the
+        // edges of every smaller one.
+        let (mut fits, mut fails) = (0, (64.0 * self.rules.overlap) as u16 + 1);
+        let (mut best, mut wider) = (None, None);
+        while fails - fits > 1 {
+            let middle = u16::midpoint(fits, fails);
+            let overlap = f32::from(middle) / 64.0;
+            let graph = self.graph(overlap, wider.as_ref().or(overlaps)).ok();
+            match graph.as_ref().and_then(|graph| self.color(graph, overlap, count)) {
+                Some(found) => (fits, best) = (middle, Some(found)),
+                None => (fails, wider) = (middle, graph.or(wider)),
+            }
+        }
+        // c = 0 has no edges, and so fits.
+        let (color, report) = best.unwrap_or_else(|| {
+            let n = self.surfels.len();
+            (vec![0; n], self.report(0.0, 1, &Graph::empty(n)))
+        });
+        Ok((groups(self.tree, &color, report.groups)?, report))
+    }
+
+    fn graph(&self, overlap: f32, wider: Option<&Graph>) -> Result<Graph> {
+        let Self { surfels, tree, rules, exec, progress } = *self;
+        conflicts(surfels, tree, rules, overlap, wider, exec, progress)
+    }
+
+    /// The colour of every place; none if it takes more than `most`.
+    fn color(
+        &self,
+        graph: &Graph,
+        overlap: f32,
+        most: usize,
+    ) -> Option<(Vec<u32>, GroupingReport)> {
+        let show = |done, of| (self.progress)("colouring", done, of);
+        let color = largest_first(graph, &self.tree.surfel, most, self.exec, &show)?;
+        let groups = color.iter().fold(0, |most, &color| most.max(color)) as usize + 1;
+        let report = self.report(overlap, groups, graph);
+        Some((color, report))
+    }
+
+    fn report(&self, overlap: f32, groups: usize, graph: &Graph) -> GroupingReport {
+        let n = self.surfels.len();
+        GroupingReport {
+            surfels: n as u64,
+            overlap,
+            groups,
+            edges: graph.edges(),
+            max_degree: (0..n).map(|place| graph.degree(place)).fold(0, u32::max),
+            average_degree: 2.0 * graph.edges() as f64 / n as f64,
+        }
+    }
 }
 
 /// The groups of the colour of every place.
@@ -114,28 +161,55 @@ fn groups(tree: &DiscTree, color: &[u32], groups: usize) -> Result<Groups> {
 }
 
 /// The colour of every place: those with more neighbours first, of those with equally many the
-/// lower `index`; each gets the smallest colour that no neighbour has.
-pub(super) fn largest_first(graph: &Graph, index: &[u32]) -> Vec<u32> {
+/// lower `index`; each gets the smallest colour that no neighbour has. None if one gets `most` or a
+/// larger one.
+fn largest_first(
+    graph: &Graph,
+    index: &[u32],
+    most: usize,
+    exec: &Exec,
+    progress: &dyn Fn(u64, u64),
+) -> Option<Vec<u32>> {
     const NONE: u32 = u32::MAX;
-    let mut order: Vec<u32> = (0..index.len() as u32).collect();
-    order.sort_unstable_by_key(|&place| {
-        (std::cmp::Reverse(graph.degree(place as usize)), index[place as usize])
+    let n = index.len();
+    let mut turn = Vec::new();
+    exec.extend(&mut turn, n, |place| {
+        u64::from(u32::MAX - graph.degree(place)) << 32 | u64::from(index[place])
     });
-    let mut color = vec![NONE; index.len()];
-    // For each colour, the last place that found it taken.
-    let mut taken: Vec<u32> = Vec::new();
-    for place in order {
-        for &neighbour in graph.of(place as usize) {
-            let theirs = color[neighbour as usize];
-            if theirs != NONE {
-                taken[theirs as usize] = place;
+    let color: Vec<AtomicU32> = (0..n).map(|_| AtomicU32::new(NONE)).collect();
+    let color_of = |place: u32| color[place as usize].load(Relaxed);
+    let too_many = AtomicBool::new(false);
+    settle(n, exec, progress, |open| {
+        let &mut Open { place, .. } = open;
+        if color_of(place as u32) != NONE || too_many.load(Relaxed) {
+            return None;
+        }
+        let before = |&&other: &&u32| turn[other as usize] < turn[place];
+        let neighbours = graph.of(place);
+        while let Some(other) = neighbours.get(open.asked) {
+            if before(&other) {
+                match color_of(*other) {
+                    NONE => return Some(*other as usize),
+                    taken @ 0..64 => open.mask |= 1 << taken,
+                    _ => {}
+                }
             }
+            open.asked += 1;
         }
-        let free = taken.iter().position(|&by| by != place).unwrap_or(taken.len());
-        if free == taken.len() {
-            taken.push(NONE);
+        let (mut free, mut full) = (open.mask.trailing_ones(), open.mask == u64::MAX);
+        while full {
+            // The next 64 colours; all that come before are coloured by now.
+            let taken = neighbours.iter().filter(before).map(|&other| color_of(other));
+            let here = taken.filter(|taken| taken / 64 == free / 64);
+            let mask = here.fold(0_u64, |mask, taken| mask | 1 << (taken % 64));
+            (free, full) = (free + mask.trailing_ones(), mask == u64::MAX);
         }
-        color[place as usize] = free as u32;
-    }
-    color
+        color[place].store(free, Relaxed);
+        if free as usize >= most {
+            too_many.store(true, Relaxed);
+        }
+        None
+    });
+    let color = color.into_iter().map(AtomicU32::into_inner).collect();
+    (!too_many.into_inner()).then_some(color)
 }

@@ -1,19 +1,34 @@
 //! A disc in space, and the dot product of this room.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// A disc in space.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpaceDisc {
-    /// Which surfel it is of.
-    pub(super) surfel: u32,
-    pub(super) center: DVec3,
+    pub(super) center: Vec3,
     /// Of length 1.
-    pub(super) normal: DVec3,
+    pub(super) normal: Vec3,
     pub(super) radius: f64,
 }
 
+impl SpaceDisc {
+    /// Whether two discs are near by a factor, see the [module](super).
+    #[inline(always)]
+    pub(super) fn is_near(&self, other: &Self, factor: f64) -> bool {
+        let d = self.center.as_dvec3() - other.center.as_dvec3();
+        let reach = factor * (self.radius + other.radius);
+        dot(d, d) < reach * reach
+    }
+
+    /// The cosine between the normals.
+    #[inline(always)]
+    pub(super) fn cosine(&self, other: &Self) -> f64 {
+        dot(self.normal.as_dvec3(), other.normal.as_dvec3())
+    }
+}
+
 /// `(x x' + y y') + z z'`.
+#[inline(always)]
 pub(super) fn dot(a: DVec3, b: DVec3) -> f64 {
     (a.x * b.x + a.y * b.y) + a.z * b.z
 }

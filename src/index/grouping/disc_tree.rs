@@ -1,14 +1,16 @@
 //! Discs in space, and which of them are near each other.
 //!
-//! A balanced tree over blocks of [`DISCS`] discs: like a k-d tree it does not care how unevenly
-//! they are spread, and as each box knows the largest radius in it, nor how their sizes differ. One
-//! block is searched for at a time, and pairs are tested a block at a time. What is found depends
-//! on the discs alone; the tree leaves no trace but the order in which it is found.
+//! A balanced tree over blocks of [`DISCS`] discs that follow each other along a [curve]: it does
+//! not care how unevenly they are spread, and as each box knows the largest radius in it, nor how
+//! their sizes differ. One block is searched for at a time, and pairs are tested a block at a time.
+//! What is found depends on the discs alone; the tree leaves no trace but the order in which it is
+//! found.
 
+use super::clipped::DiscSamples;
+use super::curve;
 use super::disc::SpaceDisc;
 use crate::error::Result;
 use crate::frame::Exec;
-use crate::index::point_tree::widest;
 use crate::scene::Surfels;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
@@ -21,7 +23,12 @@ pub(super) const DISCS: usize = 8;
 pub(super) struct DiscTree {
     /// The surfel at each place.
     pub(super) surfel: Vec<u32>,
-    normal: Vec<Vec3>,
+    /// How many surfels of the tree have a lower index than that at each place.
+    pub(super) rank: Vec<u32>,
+    /// The squared radius of each rank.
+    pub(super) square: Vec<f64>,
+    /// The disc at each place.
+    pub(super) discs: Vec<SpaceDisc>,
     blocks: Vec<DiscBlock>,
     /// Boxes around 1, 2, 4 ... blocks, up to the one around all.
     levels: Vec<Vec<Bounds>>,
@@ -45,31 +52,35 @@ struct Bounds {
 }
 
 impl DiscTree {
-    /// Of some surfels, by index, each once.
-    pub(super) fn new(surfels: &Surfels, members: impl Iterator<Item = u32>) -> Self {
-        let position = surfels.position();
-        let mut entries: Vec<_> = members.map(|id| (position[id as usize], id)).collect();
-        split(&mut entries);
+    /// Of some surfels, by index in ascending order.
+    pub(super) fn new(surfels: &Surfels, members: impl Iterator<Item = u32>, exec: &Exec) -> Self {
+        let members: Vec<u32> = members.collect();
+        let n = members.len();
+        let points: Vec<Vec3> = members.iter().map(|&id| surfels.position()[id as usize]).collect();
+        let rank = curve::along(&points, DISCS, exec);
         let radius = radii(surfels);
-        let block = |entries: &[(Vec3, u32)]| {
-            let [x, y, z, r] = [[f64::NAN; DISCS]; 4];
-            let mut block = DiscBlock { x, y, z, r };
-            for (lane, &(p, id)) in entries.iter().enumerate() {
-                let p = p.as_dvec3();
-                (block.x[lane], block.y[lane], block.z[lane]) = (p.x, p.y, p.z);
-                block.r[lane] = radius(id);
-            }
-            block
-        };
-        let blocks: Vec<DiscBlock> = entries.chunks(DISCS).map(block).collect();
+        let (mut surfel, mut discs, mut blocks) = (Vec::new(), Vec::new(), Vec::new());
+        exec.extend(&mut surfel, n, |place| members[rank[place] as usize]);
+        exec.extend(&mut discs, n, |place| {
+            let id = surfel[place];
+            let (center, normal) = (points[rank[place] as usize], surfels.normal()[id as usize]);
+            SpaceDisc { center, normal, radius: radius(id) }
+        });
+        exec.extend(&mut blocks, n.div_ceil(DISCS), |block| {
+            DiscBlock::of(&discs[block * DISCS..n.min((block + 1) * DISCS)])
+        });
+        let mut square = Vec::new();
+        exec.extend(&mut square, n, |rank| {
+            let r = radius(members[rank]);
+            r * r
+        });
         let mut levels = vec![blocks.iter().map(Bounds::of).collect::<Vec<_>>()];
         while let Some(below) = levels.last().filter(|level| level.len() > 1) {
             let pair = |pair: &[Bounds]| pair[1..].iter().fold(pair[0], Bounds::and);
             let level = below.chunks(2).map(pair).collect();
             levels.push(level);
         }
-        let normal = entries.iter().map(|&(_, id)| surfels.normal()[id as usize]).collect();
-        Self { surfel: entries.into_iter().map(|(_, id)| id).collect(), normal, blocks, levels }
+        Self { surfel, rank, square, discs, blocks, levels }
     }
 
     /// The places of a block.
@@ -78,43 +89,50 @@ impl DiscTree {
         first..self.surfel.len().min(first + DISCS)
     }
 
-    /// The disc at a place.
-    #[inline]
-    pub(super) fn disc(&self, place: usize) -> SpaceDisc {
-        let (block, lane) = (&self.blocks[place / DISCS], place % DISCS);
-        SpaceDisc {
-            surfel: self.surfel[place],
-            center: DVec3::new(block.x[lane], block.y[lane], block.z[lane]),
-            normal: self.normal[place].as_dvec3(),
-            radius: block.r[lane],
-        }
+    /// The samples of the disc at a place.
+    #[inline(always)]
+    pub(super) fn samples(&self, place: usize) -> DiscSamples {
+        DiscSamples::of(self.discs[place], self.surfel[place])
     }
 
     /// Visits the pairs of places (i, j), i of the block and j any other, that are near:
     /// `|p_i - p_j| < factor (r_i + r_j)`, as the [module](super) evaluates it.
     ///
-    /// Ascending by i, for one i by j. If a visit returns false, the rest of its i is skipped.
+    /// Those j first that are close by in the order of the tree. If a visit returns false, the rest
+    /// of its i is skipped. `room` is memory that is used again.
+    #[inline(always)]
     pub(super) fn near(
         &self,
         block: usize,
         factor: f64,
+        room: &mut NearBlocks,
         mut visit: impl FnMut(usize, usize) -> bool,
     ) {
-        let near = self.near_blocks(block, factor);
-        for i in self.places(block) {
-            'rest: for &other in &near {
-                let other = other as usize;
-                let mut hits = self.blocks[other].hits(&self.blocks[block], i % DISCS, factor);
-                if other == block {
-                    hits &= !(1 << (i % DISCS));
+        let places = self.places(block);
+        // A bit for each i that is not skipped.
+        let mut wanted = (1_u32 << places.len()) - 1;
+        self.near_blocks(block, factor, room);
+        for blocks in room.found.chunks(PART) {
+            let part = DiscPart::of(blocks.iter().map(|&other| &self.blocks[other as usize]));
+            for i in places.clone() {
+                if wanted >> (i % DISCS) & 1 == 0 {
+                    continue;
                 }
-                while hits != 0 {
-                    let j = other * DISCS + hits.trailing_zeros() as usize;
-                    if !visit(i, j) {
-                        break 'rest;
+                let near = part.near(&self.blocks[block], i % DISCS, factor);
+                'rest: for (&other, near) in blocks.iter().zip(near.chunks_exact(DISCS)) {
+                    let mut near = u64::from_le_bytes([0, 1, 2, 3, 4, 5, 6, 7].map(|l| near[l]));
+                    while near != 0 {
+                        let j = other as usize * DISCS + near.trailing_zeros() as usize / 8;
+                        if j != i && !visit(i, j) {
+                            wanted &= !(1 << (i % DISCS));
+                            break 'rest;
+                        }
+                        near &= near - 1;
                     }
-                    hits &= hits - 1;
                 }
+            }
+            if wanted == 0 {
+                return;
             }
         }
     }
@@ -144,11 +162,27 @@ impl DiscTree {
         Ok(())
     }
 
-    /// The blocks that may hold a disc near one of a block, ascending.
-    fn near_blocks(&self, block: usize, factor: f64) -> Vec<u32> {
-        let bounds = &self.levels[0][block];
-        let mut found = Vec::new();
-        let mut ahead = vec![(self.levels.len() - 1, 0)]; // a block is asked for: there is one
+    /// The blocks that may hold a disc near one of a block, those first whose number is close.
+    fn near_blocks(&self, block: usize, factor: f64, room: &mut NearBlocks) {
+        let NearBlocks { found, around, of } = room;
+        // Neighbouring blocks have much the same around them: the tree is searched for a few at a
+        // time, from a box around them.
+        let level = self.levels.len().min(3) - 1;
+        if *of != Some((block >> level, factor)) {
+            *of = Some((block >> level, factor));
+            self.blocks_near(&self.levels[level][block >> level], factor, around);
+        }
+        let (own, boxes) = (&self.levels[0][block], &self.levels[0]);
+        let near = around.iter().filter(|&&other| boxes[other as usize].may_be_near(own, factor));
+        found.clear();
+        found.extend(near);
+        found.sort_unstable_by_key(|&other| other.abs_diff(block as u32));
+    }
+
+    /// The blocks that may hold a disc near one of a box.
+    fn blocks_near(&self, bounds: &Bounds, factor: f64, found: &mut Vec<u32>) {
+        found.clear();
+        let mut ahead = vec![(self.levels.len() - 1, 0)]; // somebody asks: there is a block
         while let Some((level, index)) = ahead.pop() {
             if !self.levels[level][index].may_be_near(bounds, factor) {
                 continue;
@@ -157,13 +191,63 @@ impl DiscTree {
                 found.push(index as u32);
                 continue;
             }
-            let (below, left) = (level - 1, 2 * index);
-            if left + 1 < self.levels[below].len() {
-                ahead.push((below, left + 1));
-            }
-            ahead.push((below, left));
+            let halves = [2 * index, 2 * index + 1].into_iter();
+            let there = halves.filter(|&index| index < self.levels[level - 1].len());
+            ahead.extend(there.map(|index| (level - 1, index)));
         }
-        found
+    }
+}
+
+/// The blocks that are searched, in memory that is used again.
+#[derive(Debug, Default)]
+pub(super) struct NearBlocks {
+    found: Vec<u32>,
+    /// Near a box of several blocks.
+    around: Vec<u32>,
+    /// Which box, and near by which factor.
+    of: Option<(usize, f64)>,
+}
+
+/// Blocks whose discs are tested at once.
+const PART: usize = 8;
+const LANES: usize = PART * DISCS;
+
+/// The discs of up to [`PART`] blocks, then NaN, which is near nothing.
+#[derive(Clone, Debug)]
+struct DiscPart {
+    x: [f64; LANES],
+    y: [f64; LANES],
+    z: [f64; LANES],
+    r: [f64; LANES],
+}
+
+impl DiscPart {
+    #[inline(always)]
+    fn of<'a>(blocks: impl Iterator<Item = &'a DiscBlock>) -> Self {
+        let [x, y, z, r] = [[f64::NAN; LANES]; 4];
+        let mut part = Self { x, y, z, r };
+        for (at, block) in blocks.enumerate() {
+            let lanes = at * DISCS..(at + 1) * DISCS;
+            part.x[lanes.clone()].copy_from_slice(&block.x);
+            part.y[lanes.clone()].copy_from_slice(&block.y);
+            part.z[lanes.clone()].copy_from_slice(&block.z);
+            part.r[lanes].copy_from_slice(&block.r);
+        }
+        part
+    }
+
+    /// 1 for each disc here that is near the disc in a lane of a block, else 0.
+    #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "a lane is an index into several arrays")]
+    fn near(&self, block: &DiscBlock, lane: usize, factor: f64) -> [u8; LANES] {
+        let (x, y, z, r) = (block.x[lane], block.y[lane], block.z[lane], block.r[lane]);
+        let mut near = [0; LANES];
+        for l in 0..LANES {
+            let (dx, dy, dz) = (x - self.x[l], y - self.y[l], z - self.z[l]);
+            let reach = factor * (r + self.r[l]);
+            near[l] = u8::from((dx * dx + dy * dy) + dz * dz < reach * reach);
+        }
+        near
     }
 }
 
@@ -182,32 +266,17 @@ pub(super) fn radii(surfels: &Surfels) -> impl Fn(u32) -> f64 {
     }
 }
 
-/// Orders points so that blocks, pairs of blocks, pairs of those ... are close together: the first
-/// 2^k blocks, k as large as can be, lie below the others along the widest axis; so again in both.
-fn split(entries: &mut [(Vec3, u32)]) {
-    if entries.len() <= DISCS {
-        return;
-    }
-    let axis = widest(entries.iter().map(|(point, _)| *point));
-    let middle = DISCS * (entries.len().div_ceil(DISCS).next_power_of_two() / 2);
-    entries.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]));
-    let (below, above) = entries.split_at_mut(middle);
-    split(below);
-    split(above);
-}
-
 impl DiscBlock {
-    /// A bit for each disc here that is near the disc in a lane of another block.
-    #[inline]
-    fn hits(&self, of: &Self, lane: usize, factor: f64) -> u32 {
-        let (x, y, z, r) = (of.x[lane], of.y[lane], of.z[lane], of.r[lane]);
-        let mut hits = [0; DISCS];
-        for (l, hit) in hits.iter_mut().enumerate() {
-            let (dx, dy, dz) = (x - self.x[l], y - self.y[l], z - self.z[l]);
-            let reach = factor * (r + self.r[l]);
-            *hit = u32::from((dx * dx + dy * dy) + dz * dz < reach * reach) << l;
+    /// Of at most as many discs as there are lanes.
+    fn of(discs: &[SpaceDisc]) -> Self {
+        let [x, y, z, r] = [[f64::NAN; DISCS]; 4];
+        let mut block = Self { x, y, z, r };
+        for (lane, disc) in discs.iter().enumerate() {
+            let p = disc.center.as_dvec3();
+            (block.x[lane], block.y[lane], block.z[lane]) = (p.x, p.y, p.z);
+            block.r[lane] = disc.radius;
         }
-        hits.iter().fold(0, |all, hit| all | hit)
+        block
     }
 }
 

@@ -3,6 +3,7 @@
 use super::clipped::{area, by_lower};
 use super::disc_tree::DiscTree;
 use super::graph::Graph;
+use super::overlaps::Overlaps;
 use super::{add, enlarge};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
@@ -97,7 +98,8 @@ impl Extension {
 ///
 /// # Errors
 /// [`Error::Invalid`] as [`Extension::check`]; if the groups are of another number of surfels; if
-/// more than 64 pairs a surfel, and a million, overlap at c = 1, or do so in a group.
+/// more than 64 pairs a surfel, and a million, overlap at c = 1, or if radii are enlarged in a
+/// group; pairs whose samples are all covered by others are not counted then.
 pub fn extend(
     surfels: &Surfels,
     groups: &Groups,
@@ -107,87 +109,83 @@ pub fn extend(
 ) -> Result<(Groups, Extended)> {
     extension.check()?;
     groups.check(surfels)?;
-    let (n, count) = (surfels.len(), groups.len());
     progress("sorting surfels", 0, 1);
-    let tree = DiscTree::new(surfels, 0..n as u32);
-    let show = |done, of| progress("measuring the surface", done, of);
-    let (target, _) = area(&tree, &by_lower(&tree, 1.0, exec, &show)?);
-    let graph = match extension {
-        Extension::Add { .. } => Graph::new(&tree, 1.0, |_, _| true, exec, progress)?,
-        Extension::None | Extension::Enlarge => Graph::default(),
-    };
-    let work = Work { surfels, groups, extension, tree, graph, target, exec };
-
-    let (mut further, mut scale, mut coverages) = (Vec::new(), Vec::new(), Vec::new());
-    // Groups in parallel, a few at a time so that it is seen how far it is.
-    let all: Vec<u8> = (0..count as u8).collect();
-    for batch in all.chunks(2 * exec.threads()) {
-        progress("extending groups", batch[0].into(), count as u64);
-        for (&k, found) in batch.iter().zip(exec.ordered(batch.to_vec(), |k| work.extend(k))) {
-            let (added, coverage) = found?;
-            further.extend(added.into_iter().map(|surfel| (surfel, k)));
-            scale.push(coverage.scale);
-            coverages.push(coverage);
-        }
-    }
-    progress("extending groups", count as u64, count as u64);
-    let added = further.len() as u64;
-    let extended = Groups::new(groups.own().to_vec(), further, scale)?;
-    let percent = 100.0 * added as f64 / n as f64;
-    Ok((extended, Extended { area: PI * target, added, percent, groups: coverages }))
+    let tree = DiscTree::new(surfels, 0..surfels.len() as u32, exec);
+    Work { surfels, tree: &tree, exec, progress }.extend(groups, extension, None)
 }
 
-/// What the groups share.
-struct Work<'a> {
-    surfels: &'a Surfels,
-    groups: &'a Groups,
-    extension: &'a Extension,
+/// What groups are extended on.
+pub(super) struct Work<'a> {
+    pub(super) surfels: &'a Surfels,
     /// Of all surfels.
-    tree: DiscTree,
-    /// Of those that overlap, if surfels are to be added.
-    graph: Graph,
-    /// A divided by pi.
-    target: f64,
-    exec: &'a Exec,
+    pub(super) tree: &'a DiscTree,
+    pub(super) exec: &'a Exec,
+    pub(super) progress: &'a dyn Fn(&str, u64, u64),
 }
 
 impl Work<'_> {
-    /// Extends a group; the surfels that are added to it.
-    fn extend(&self, k: u8) -> Result<(Vec<u32>, GroupCoverage)> {
-        let own: Vec<u32> =
-            (0_u32..).zip(self.groups.own()).filter(|g| *g.1 == k).map(|g| g.0).collect();
-        let before = self.coverage(own.iter().copied(), 1.0)?;
-        let mut added = Vec::new();
-        let mut coverage = GroupCoverage {
-            surfels: own.len() as u64,
-            scale: 1.0,
-            converged: true,
-            before,
-            after: before,
-        };
-        match *self.extension {
-            Extension::None => {}
+    /// Extends groups; `overlaps` is the graph of all that overlap, if it is there.
+    pub(super) fn extend(
+        &self,
+        groups: &Groups,
+        extension: &Extension,
+        overlaps: Option<Graph>,
+    ) -> Result<(Groups, Extended)> {
+        let &Self { tree, exec, progress, .. } = self;
+        let (target, further, coverages) = match *extension {
             Extension::Add { most } => {
-                added = add::added(&self.tree, &self.graph, self.groups.own(), k, most);
-                coverage.surfels += added.len() as u64;
-                coverage.after =
-                    self.coverage(own.into_iter().chain(added.iter().copied()), 1.0)?;
+                let graph = match overlaps {
+                    Some(graph) => graph,
+                    None => Graph::new(tree, 1.0, |_, _| true, exec, progress)?,
+                };
+                let overlaps = Overlaps { tree, graph: &graph, exec };
+                let found = add::add(&overlaps, groups, most, progress);
+                (found.target, found.further, found.groups)
             }
-            Extension::Enlarge if own.is_empty() => coverage.converged = false,
-            Extension::Enlarge => {
-                let tree = DiscTree::new(self.surfels, own.iter().copied());
-                let enlarged = enlarge::enlarged(&tree, self.target, self.exec)?;
-                (coverage.scale, coverage.converged) = (enlarged.scale, enlarged.converged);
-                coverage.after = self.coverage(own.into_iter(), enlarged.scale.into())?;
+            Extension::None | Extension::Enlarge => {
+                let (target, coverages) =
+                    self.measured(groups, *extension == Extension::Enlarge)?;
+                (target, Vec::new(), coverages)
             }
-        }
-        Ok((added, coverage))
+        };
+        let added = further.len() as u64;
+        let scale = coverages.iter().map(|group| group.scale).collect();
+        let extended = Groups::new(groups.own().to_vec(), further, scale)?;
+        let percent = 100.0 * added as f64 / self.surfels.len() as f64;
+        Ok((extended, Extended { area: PI * target, added, percent, groups: coverages }))
     }
 
-    /// The area that some surfels cover, all radii times `scale`, as a part of A.
-    fn coverage(&self, members: impl Iterator<Item = u32>, scale: f64) -> Result<f64> {
-        let tree = DiscTree::new(self.surfels, members);
-        let (area, _) = area(&tree, &by_lower(&tree, scale, self.exec, &|_, _| ())?);
-        Ok(scale * scale * area / self.target)
+    /// A divided by pi, and the groups by themselves, with radii enlarged or not.
+    fn measured(&self, groups: &Groups, enlarge: bool) -> Result<(f64, Vec<GroupCoverage>)> {
+        let show = |done, of| (self.progress)("measuring the surface", done, of);
+        let (target, _) = area(self.tree, &by_lower(self.tree, 1.0, self.exec, &show)?);
+        let mut coverages = Vec::new();
+        for k in 0..groups.len() {
+            (self.progress)("extending groups", k as u64, groups.len() as u64);
+            let own = (0_u32..).zip(groups.own()).filter(|g| usize::from(*g.1) == k).map(|g| g.0);
+            let tree = DiscTree::new(self.surfels, own, self.exec);
+            let covered = |scale: f64| -> Result<f64> {
+                let (area, _) = area(&tree, &by_lower(&tree, scale, self.exec, &|_, _| ())?);
+                Ok(scale * scale * area / target)
+            };
+            let before = covered(1.0)?;
+            let mut coverage = GroupCoverage {
+                surfels: tree.surfel.len() as u64,
+                scale: 1.0,
+                converged: true,
+                before,
+                after: before,
+            };
+            if enlarge && tree.surfel.is_empty() {
+                coverage.converged = false;
+            } else if enlarge {
+                let enlarged = enlarge::enlarged(&tree, target, self.exec)?;
+                (coverage.scale, coverage.converged) = (enlarged.scale, enlarged.converged);
+                coverage.after = covered(enlarged.scale.into())?;
+            }
+            coverages.push(coverage);
+        }
+        (self.progress)("extending groups", groups.len() as u64, groups.len() as u64);
+        Ok((target, coverages))
     }
 }

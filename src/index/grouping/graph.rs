@@ -2,22 +2,61 @@
 
 use super::budget::Budget;
 use super::disc::dot;
-use super::disc_tree::DiscTree;
+use super::disc_tree::{DISCS, DiscTree, NearBlocks};
 use super::rules::{Coplanar, Rules};
 use crate::error::Result;
 use crate::frame::Exec;
+use crate::number::lanes::vectorized;
 use crate::scene::Surfels;
 use std::ops::Range;
 
 /// The neighbours of every place of a tree, as one array.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Graph {
     /// Where the neighbours of each place start, and last how many there are in all.
     start: Vec<usize>,
     neighbour: Vec<u32>,
 }
 
+/// The rows of some places: how many neighbours each has, and all of them.
+type Rows = (Vec<u32>, Vec<u32>);
+
+vectorized!(
+    /// The rows of some blocks.
+    fn near_rows<K: Fn(usize, usize) -> bool>(
+        tree: &DiscTree,
+        blocks: Range<usize>,
+        factor: f64,
+        keep: &K,
+        budget: &Budget,
+    ) -> Result<Rows> {
+        let (mut degree, mut neighbour) = (Vec::new(), Vec::new());
+        let (mut room, mut rows) = (NearBlocks::default(), [const { Vec::new() }; DISCS]);
+        for block in blocks {
+            let mut seen = 0;
+            tree.near(block, factor, &mut room, |i, j| {
+                seen += 1;
+                if keep(i, j) {
+                    rows[i % DISCS].push(j as u32);
+                }
+                true
+            });
+            budget.spend(seen)?;
+            for (_, row) in tree.places(block).zip(&mut rows) {
+                degree.push(row.len() as u32);
+                neighbour.append(row);
+            }
+        }
+        Ok((degree, neighbour))
+    }
+);
+
 impl Graph {
+    /// Without edges.
+    pub(super) fn empty(places: usize) -> Self {
+        Self { start: vec![0; places + 1], neighbour: Vec::new() }
+    }
+
     /// Of the pairs of places that are [near](DiscTree::near) and are kept.
     pub(super) fn new(
         tree: &DiscTree,
@@ -26,31 +65,50 @@ impl Graph {
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Self> {
-        let n = tree.surfel.len();
-        let budget = Budget::new(n, factor);
-        let job = |blocks: Range<usize>| {
-            let first = tree.places(blocks.start).start;
-            let mut degree = vec![0_u32; tree.places(blocks.end - 1).end - first];
-            let mut neighbour = Vec::new();
-            for block in blocks {
-                let mut seen = 0;
-                tree.near(block, factor, |i, j| {
-                    seen += 1;
-                    if keep(i, j) {
-                        degree[i - first] += 1;
-                        neighbour.push(j as u32);
-                    }
-                    true
-                });
-                budget.spend(seen)?;
+        let budget = Budget::new(tree.surfel.len(), factor);
+        let rows = |blocks| near_rows(tree, blocks, factor, &keep, &budget);
+        Self::of_rows(tree, rows, exec, progress)
+    }
+
+    /// Of the edges (i, j) that `keep(i)(j)` keeps.
+    pub(super) fn kept<F: Fn(usize) -> bool>(
+        &self,
+        tree: &DiscTree,
+        keep: impl Fn(usize) -> F + Sync,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Self> {
+        let rows = |blocks: Range<usize>| {
+            let places = tree.places(blocks.start).start..tree.places(blocks.end - 1).end;
+            // Written where the next one goes, kept or not: whether it is cannot be foreseen.
+            let mut neighbour = vec![0; self.start[places.end] - self.start[places.start] + 1];
+            let (mut degree, mut end) = (Vec::with_capacity(places.len()), 0);
+            for i in places {
+                let (before, keep) = (end, keep(i));
+                for &j in self.of(i) {
+                    neighbour[end] = j;
+                    end += usize::from(keep(j as usize));
+                }
+                degree.push((end - before) as u32);
             }
+            neighbour.truncate(end);
             Ok((degree, neighbour))
         };
-        let mut graph = Self { start: Vec::with_capacity(n + 1), neighbour: Vec::new() };
+        Self::of_rows(tree, rows, exec, progress)
+    }
+
+    fn of_rows(
+        tree: &DiscTree,
+        rows: impl Fn(Range<usize>) -> Result<Rows> + Sync + Send,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Self> {
+        let start = Vec::with_capacity(tree.surfel.len() + 1);
+        let mut graph = Self { start, neighbour: Vec::new() };
         graph.start.push(0);
         let mut end = 0;
         let show = |done, of| progress("finding overlaps", done, of);
-        tree.parts(exec, &show, job, |(degrees, neighbours): (Vec<u32>, Vec<u32>)| {
+        tree.parts(exec, &show, rows, |(degrees, neighbours): Rows| {
             graph.start.extend(degrees.into_iter().map(|degree| {
                 end += degree as usize;
                 end
@@ -60,7 +118,7 @@ impl Graph {
         Ok(graph)
     }
 
-    /// The neighbours of a place, ascending.
+    /// The neighbours of a place.
     #[inline]
     pub(super) fn of(&self, place: usize) -> &[u32] {
         &self.neighbour[self.start[place]..self.start[place + 1]]
@@ -76,34 +134,43 @@ impl Graph {
     }
 }
 
-/// The graph of some rules, at their c or another.
+/// The graph of some rules, at their c or another; of the edges of a graph with a larger c, if there
+/// is one, which has all of these and maybe some that the rules take away.
 pub(super) fn conflicts(
     surfels: &Surfels,
     tree: &DiscTree,
     rules: &Rules,
     overlap: f32,
+    wider: Option<&Graph>,
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Graph> {
-    let keep = |i: usize, j: usize| {
-        let [i, j] = [i, j].map(|place| tree.surfel[place] as usize);
-        !relaxed(surfels, rules, i, j)
-    };
-    let all = |_, _| true;
-    if rules.opposite || rules.coplanar.is_some() {
-        Graph::new(tree, overlap.into(), keep, exec, progress)
-    } else {
-        Graph::new(tree, overlap.into(), all, exec, progress)
+    let factor = f64::from(overlap);
+    let keep = |i: usize, j: usize| !relaxed(surfels, tree, rules, i, j);
+    match wider {
+        None => Graph::new(tree, factor, keep, exec, progress),
+        Some(wider) => {
+            let keep = |i: usize| {
+                let disc = tree.discs[i];
+                let keep = &keep;
+                move |j: usize| disc.is_near(&tree.discs[j], factor) && keep(i, j)
+            };
+            wider.kept(tree, keep, exec, progress)
+        }
     }
 }
 
-/// Whether modification 1 or 2 takes the edge of two surfels away.
-pub(super) fn relaxed(surfels: &Surfels, rules: &Rules, i: usize, j: usize) -> bool {
-    let [a, b] = [i, j].map(|i| surfels.normal()[i].as_dvec3());
-    let cosine = dot(a, b);
+/// Whether modification 1 or 2 takes the edge of two places away.
+#[inline(always)]
+fn relaxed(surfels: &Surfels, tree: &DiscTree, rules: &Rules, i: usize, j: usize) -> bool {
+    if !rules.opposite && rules.coplanar.is_none() {
+        return false;
+    }
+    let cosine = tree.discs[i].cosine(&tree.discs[j]);
     if rules.opposite && cosine < 0.0 {
         return true;
     }
+    let [i, j] = [i, j].map(|place| tree.surfel[place] as usize);
     rules.coplanar.is_some_and(|rule| {
         cosine >= f64::from(rule.cosine)
             && within_planes(surfels, &rule, i, j)

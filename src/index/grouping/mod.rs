@@ -109,12 +109,15 @@ mod add;
 mod budget;
 mod clipped;
 mod color;
+mod curve;
 mod disc;
 mod disc_tree;
 mod enlarge;
 mod extend;
 mod graph;
+mod overlaps;
 mod rules;
+mod settle;
 #[cfg(test)]
 mod tests;
 
@@ -128,6 +131,10 @@ use crate::frame::Exec;
 use crate::scene::groups::check_count;
 use crate::scene::{Groups, Surfels};
 use crate::setting::{Field, Fields, Slot, Visit};
+use color::Coloring;
+use disc_tree::DiscTree;
+use extend::Work;
+use graph::Graph;
 
 /// How surfels are divided into groups.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -179,14 +186,28 @@ impl Grouping {
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<(Groups, GroupingReport, Option<Extended>)> {
+        self.rules.check()?;
+        self.extension.check()?;
+        self.count.map_or(Ok(()), check_count)?;
+        progress("sorting surfels", 0, 1);
+        let tree = DiscTree::new(surfels, 0..surfels.len() as u32, exec);
+        // To be extended by surfels, groups need the graph of all that overlap, which has the edges
+        // of every other one. If it has too many, there may be groups all the same.
+        let overlaps = match self.extension {
+            Extension::Add { .. } => Graph::new(&tree, 1.0, |_, _| true, exec, progress).map(Some),
+            Extension::None | Extension::Enlarge => Ok(None),
+        };
+        let wider = overlaps.as_ref().ok().and_then(Option::as_ref);
+        let coloring = Coloring { surfels, tree: &tree, rules: &self.rules, exec, progress };
         let (groups, report) = match self.count {
-            None => group(surfels, &self.rules, exec, progress)?,
-            Some(count) => group_into(surfels, &self.rules, count, exec, progress)?,
+            None => coloring.group(wider)?,
+            Some(count) => coloring.group_into(count, wider)?,
         };
         if self.extension == Extension::None {
             return Ok((groups, report, None));
         }
-        let (groups, extended) = extend(surfels, &groups, &self.extension, exec, progress)?;
+        let work = Work { surfels, tree: &tree, exec, progress };
+        let (groups, extended) = work.extend(&groups, &self.extension, overlaps?)?;
         Ok((groups, report, Some(extended)))
     }
 }

@@ -1,6 +1,6 @@
 //! What part of a disc is covered.
 
-use super::super::clipped::{DiscSamples, area, by_lower};
+use super::super::clipped::{area, by_lower};
 use super::super::disc_tree::DiscTree;
 use super::*;
 use crate::number::random::unit;
@@ -33,9 +33,9 @@ pub(super) fn naive_cover(surfels: &Surfels, i: usize, j: usize, scale: f64) -> 
 }
 
 fn cover(surfels: &Surfels, i: usize, j: usize) -> u64 {
-    let tree = DiscTree::new(surfels, 0..surfels.len() as u32);
+    let tree = DiscTree::new(surfels, 0..surfels.len() as u32, &Exec::sequential());
     let at = |i: usize| tree.surfel.iter().position(|&s| s as usize == i).unwrap();
-    DiscSamples::of(tree.disc(at(i))).covered_by(&tree.disc(at(j)))
+    tree.samples(at(i)).covered_by(&tree.discs[at(j)])
 }
 
 /// The area that two circles share, divided by that of the first.
@@ -112,7 +112,7 @@ proptest! {
     #[test]
     fn lower_surfels_cover_what_they_do_one_by_one(seed in 0..200_u64, scale in 1.0..4.0_f64) {
         let scene = cluttered(seed, 60, [8.0, 8.0, 0.5], 0.5);
-        let tree = DiscTree::new(&scene, (0..60).filter(|i| i % 3 != 1));
+        let tree = DiscTree::new(&scene, (0..60).filter(|i| i % 3 != 1), &Exec::sequential());
         let covered = by_lower(&tree, scale, &Exec::sequential(), &|_, _| ()).unwrap();
         for (place, &i) in tree.surfel.iter().enumerate() {
             let lower = (0..i as usize).filter(|j| j % 3 != 1);
@@ -127,7 +127,7 @@ fn the_covered_area_is_that_of_the_union() {
     // 300 discs in a plane; their union by a grid of 1500 x 1500 points, off by its perimeter times
     // half a cell at most, and in fact far less.
     let flat = cluttered(5, 300, [30.0, 30.0, 0.0], 0.0);
-    let tree = DiscTree::new(&flat, 0..300);
+    let tree = DiscTree::new(&flat, 0..300, &Exec::sequential());
     let covered = by_lower(&tree, 1.0, &Exec::sequential(), &|_, _| ()).unwrap();
     let (part, sum) = area(&tree, &covered);
     let (cells, low, side) = (1500, -2.0, 34.0);
@@ -149,7 +149,7 @@ fn the_covered_area_is_that_of_the_union() {
 #[test]
 fn the_area_of_a_sphere_is_4_pi() {
     let sphere = crate::source::Shape::Sphere.surfels(50_000, 0).unwrap();
-    let tree = DiscTree::new(&sphere, 0..50_000);
+    let tree = DiscTree::new(&sphere, 0..50_000, &Exec::sequential());
     let covered = by_lower(&tree, 1.0, &Exec::sequential(), &|_, _| ()).unwrap();
     let ratio = area(&tree, &covered).0 / 4.0;
     assert!((ratio - 1.0).abs() < 0.004, "{ratio}");

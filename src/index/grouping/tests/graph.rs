@@ -52,9 +52,9 @@ proptest! {
 
     #[test]
     fn the_graph_is_that_of_the_definition(surfels in scene(), rules in rules()) {
-        let tree = DiscTree::new(&surfels, 0..surfels.len() as u32);
+        let tree = DiscTree::new(&surfels, 0..surfels.len() as u32, &Exec::sequential());
         let exec = Exec::sequential();
-        let graph = conflicts(&surfels, &tree, &rules, rules.overlap, &exec, &silent).unwrap();
+        let graph = conflicts(&surfels, &tree, &rules, rules.overlap, None, &exec, &silent).unwrap();
         let mut found = vec![Vec::new(); surfels.len()];
         for (place, &surfel) in tree.surfel.iter().enumerate() {
             let neighbours = graph.of(place).iter().map(|&j| tree.surfel[j as usize] as usize);
@@ -161,6 +161,8 @@ fn the_smallest_scenes_are_grouped() {
     assert_eq!(count(&heap(1000), &Rules { overlap: 0.0, ..Rules::default() }), 1);
     let line = group(&heap(65), &Rules::default(), &exec, &silent).unwrap_err().to_string();
     assert!(line.contains("c = 1 needs 65 groups"), "{line}");
+    let line = group(&heap(200), &Rules::default(), &exec, &silent).unwrap_err().to_string();
+    assert!(line.contains("c = 1 needs 200 groups"), "{line}");
     let (_, report) = group_into(&heap(65), &Rules::default(), 64, &exec, &silent).unwrap();
     assert_eq!((report.overlap, report.groups), (0.0, 1));
 }
@@ -225,6 +227,24 @@ fn threads_change_nothing() {
     let one = with(1);
     assert_eq!(one, with(2));
     assert_eq!(one, with(5));
+}
+
+#[test]
+fn a_row_where_each_waits_for_the_last_is_settled() {
+    // Against the order of the tree, each disc waits for the one before: colours alternate.
+    let n = 30_000_u16;
+    let centers: Vec<[f32; 3]> = (0..n).rev().map(|i| [f32::from(i), 0.0, 0.0]).collect();
+    let row = discs(&centers, &vec![0.75; centers.len()]);
+    for threads in [1, 3] {
+        let exec = Exec::new(threads, 32).unwrap();
+        let (groups, _) = group(&row, &Rules::default(), &exec, &silent).unwrap();
+        // The ends have one edge and come last.
+        assert!(groups.own()[1..].iter().zip([0, 1].iter().cycle()).all(|(a, b)| a == b));
+        let add = Extension::Add { most: 0.5 };
+        let (all, _) = extend(&row, &groups, &add, &exec, &silent).unwrap();
+        let sequential = extend(&row, &groups, &add, &Exec::sequential(), &silent).unwrap().0;
+        assert_eq!(all, sequential);
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Groups against their definitions, evaluated one pair and one sample after the other.
 
 mod clipped;
+mod curve;
 mod extension;
 mod graph;
 
