@@ -18,7 +18,7 @@ use splatref::method::{Session, pyramid};
 use splatref::scene::{Camera, Lens, Polylines, Pose, Primitives, Triangles, Vertices};
 
 const SIDE: u32 = 512;
-const RADII: [f32; 6] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
+const RADII: [f32; 6] = [1.3, 2.6, 5.2, 10.4, 20.8, 41.6];
 /// Degrees from upright.
 const ANGLES: [f64; 5] = [0.0, 5.0, 15.0, 30.0, 45.0];
 
