@@ -15,25 +15,39 @@ pub(in crate::method) fn each_block<const RAY_CAST: bool>(
     shared: &Shared<f32>,
     mut draw: impl FnMut(usize, &Lanes, &Lanes),
 ) {
-    let (rect, footprint) = (grid.rect, splat.footprint);
+    let footprint = splat.footprint;
+    each_place::<RAY_CAST, _>(splat, grid, shared.limit, |block, corner| {
+        let (q, w) = fragments::<RAY_CAST>(shared, &footprint, corner);
+        draw(block, &q, &w);
+    });
+}
+
+/// Calls `visit` for each block of a tile that a splat may touch: with the place of the block in
+/// the list of the tile, and with column and row of its first pixel.
+#[inline(always)]
+pub(super) fn each_place<const RAY_CAST: bool, A>(
+    splat: &Record<A>,
+    grid: &BlockGrid,
+    limit: f32,
+    mut visit: impl FnMut(usize, (u32, u32)),
+) {
+    let rect = grid.rect;
     let blocks = splat.blocks(&rect);
     for row in blocks.y0..blocks.y1 {
-        let (first, last) = columns::<RAY_CAST>(splat, &blocks, row, &rect, shared.limit);
+        let (first, last) = columns::<RAY_CAST>(&splat.footprint, &blocks, row, &rect, limit);
         for column in first..last {
-            let (x, y) = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
-            let (q, w) = fragments::<RAY_CAST>(shared, &footprint, x, y);
-            draw((row * grid.columns + column) as usize, &q, &w);
+            let corner = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
+            visit((row * grid.columns + column) as usize, corner);
         }
     }
 }
 
 /// q and nearness of a splat at the pixels of a block whose first pixel is (x, y).
 #[inline(always)]
-fn fragments<const RAY_CAST: bool>(
+pub(in crate::method) fn fragments<const RAY_CAST: bool>(
     shared: &Shared<f32>,
     footprint: &Footprint<f32>,
-    x: u32,
-    y: u32,
+    (x, y): (u32, u32),
 ) -> (Lanes, Lanes) {
     let shared = Shared { ray_cast: RAY_CAST, ..*shared };
     let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
@@ -53,7 +67,7 @@ fn fragments<const RAY_CAST: bool>(
 /// dx lies within that over ux about -(uy/ux) dy. Widened for rounding, as the bounds are.
 #[inline(always)]
 fn columns<const RAY_CAST: bool>(
-    record: &Record,
+    f: &Footprint<f32>,
     blocks: &Rect,
     row: u32,
     tile: &Rect,
@@ -62,7 +76,6 @@ fn columns<const RAY_CAST: bool>(
     if RAY_CAST || blocks.x1 - blocks.x0 < WIDE {
         return (blocks.x0, blocks.x1);
     }
-    let f = &record.footprint;
     let top = (tile.y0 + row * SIDE) as f32 + 0.5 - f.center.y;
     let bottom = top + (SIDE - 1) as f32;
     let closest = if top > 0.0 {

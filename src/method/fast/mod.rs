@@ -2,8 +2,11 @@
 //! with a block whatever the method. The layout: [`crate::method`].
 
 pub(super) mod fragments;
+pub(super) mod groups;
+pub(super) mod layered;
+pub(super) mod lists;
 pub(super) mod resolve;
-mod store;
+pub(super) mod store;
 pub(super) mod tile;
 
 use super::algorithm::Job;
@@ -12,7 +15,7 @@ use crate::frame::Framebuffer;
 use crate::splat::SplatSettings;
 use crate::splat::batch;
 use std::time::{Duration, Instant};
-use tile::{Record, Tile};
+use tile::{Record, Surface, Tile};
 
 /// Projection and binning.
 pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, Record> {
@@ -24,7 +27,7 @@ pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, 
         surfels.len(),
         |projector, range, records| {
             batch::splats_f32(projector, surfels, range, |splat| {
-                records.push(Record::new(&splat, surfels.normal(), colors));
+                records.push(Record::new(&splat, Surface::new(&splat, surfels.normal(), colors)));
             })
         },
         Record::bounds,
@@ -46,7 +49,8 @@ pub(super) fn draw<const N: usize>(
     let tiles = target.tiles(&job.grid(), job.exec).into_iter().enumerate().collect();
     let times = job.exec.ordered(tiles, |(index, mut pixels)| {
         let start = Instant::now();
-        let mut tile = Tile::gather(prepared, index, &pixels);
+        let wanted = [pixels.normal.is_some(), pixels.color.is_some()];
+        let mut tile = Tile::gather(prepared, index, pixels.rect, wanted);
         let mut times = [Duration::ZERO; N];
         if tile.splats.is_empty() {
             store::clear(&mut pixels);

@@ -1,6 +1,6 @@
 //! From the blocks of a tile to the rows of the framebuffer.
 
-use super::tile::{PixelBlock, ROW, Tile};
+use super::tile::{ROW, Tile};
 use crate::frame::{FramebufferTile, NO_ID};
 use crate::number::lanes::{LANES, Lanes};
 
@@ -36,11 +36,7 @@ pub(super) fn store(tile: &Tile, pixels: &mut FramebufferTile<'_, f32>) {
 
 /// Copies one row of pixels, a block at a time; the last may be cut by the edge of the picture.
 #[inline(always)]
-fn store_row<T: Copy>(
-    blocks: &[PixelBlock],
-    pixels: &mut [T],
-    row: impl Fn(&PixelBlock) -> [T; ROW],
-) {
+pub(super) fn store_row<B, T: Copy>(blocks: &[B], pixels: &mut [T], row: impl Fn(&B) -> [T; ROW]) {
     let (whole, rest) = pixels.as_chunks_mut::<ROW>();
     for (block, pixels) in blocks.iter().zip(whole.iter_mut()) {
         *pixels = row(block);
@@ -52,13 +48,13 @@ fn store_row<T: Copy>(
 
 /// The row of a block that starts at a lane.
 #[inline(always)]
-fn row<T: Copy>(lanes: &[T; LANES], first: usize) -> [T; ROW] {
+pub(in crate::method) fn row<T: Copy>(lanes: &[T; LANES], first: usize) -> [T; ROW] {
     std::array::from_fn(|x| lanes[first + x])
 }
 
 /// The row of three components that starts at a lane.
 #[inline(always)]
-fn interleaved(components: &[Lanes; 3], first: usize) -> [[f32; 3]; ROW] {
+pub(in crate::method) fn interleaved(components: &[Lanes; 3], first: usize) -> [[f32; 3]; ROW] {
     let [a, b, c] = components.each_ref().map(|lanes| row(lanes, first));
     std::array::from_fn(|x| [a[x], b[x], c[x]])
 }

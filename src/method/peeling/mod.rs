@@ -59,6 +59,7 @@
 
 mod blending;
 pub mod explain;
+mod fast;
 mod layers;
 mod picture;
 mod planes;
@@ -70,7 +71,7 @@ pub use planes::STAGES;
 pub use settings::{MAX_LAYERS, Settings};
 
 use crate::error::Result;
-use crate::frame::NamedPlane;
+use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage};
@@ -95,6 +96,10 @@ impl Algorithm for Settings {
 
     fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         picture::define(job, self, stages)
+    }
+
+    fn draw(&self, job: &Job<'_>, (): &mut (), pool: &mut Pool) -> Result<Picture<f32>> {
+        Ok(fast::draw(job, self, pool))
     }
 
     fn stage<R: Exact>(

@@ -55,6 +55,7 @@
 pub(super) mod averaging;
 pub(super) mod blending;
 pub mod explain;
+pub(super) mod fast;
 pub(super) mod picture;
 pub(super) mod planes;
 mod settings;
@@ -62,7 +63,7 @@ mod settings;
 pub use settings::{Holes, Settings};
 
 use crate::error::Result;
-use crate::frame::NamedPlane;
+use crate::frame::{NamedPlane, Pool};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
@@ -98,6 +99,10 @@ impl Algorithm for Settings {
 
     fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         picture::define(job, self, stages)
+    }
+
+    fn draw(&self, job: &Job<'_>, (): &mut (), pool: &mut Pool) -> Result<Picture<f32>> {
+        fast::draw(job, self, pool)
     }
 
     fn stage<R: Exact>(

@@ -50,6 +50,7 @@
 
 mod compositing;
 pub mod explain;
+mod fast;
 mod nearest;
 mod picture;
 mod planes;
@@ -58,7 +59,7 @@ mod settings;
 pub use settings::Settings;
 
 use crate::error::Result;
-use crate::frame::NamedPlane;
+use crate::frame::{NamedPlane, Pool};
 use crate::index::grouping::Grouping;
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
@@ -87,6 +88,10 @@ impl Algorithm for Settings {
 
     fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         picture::define(job, self, stages)
+    }
+
+    fn draw(&self, job: &Job<'_>, (): &mut (), pool: &mut Pool) -> Result<Picture<f32>> {
+        fast::draw(job, self, pool)
     }
 
     fn stage<R: Exact>(
