@@ -50,6 +50,8 @@
 //!
 //! The truth that it is held against is [`super::peeling`].
 //!
+//! The definition is over any [`Exact`] number; `fast` gives the same bits for `f32`.
+//!
 //! [`Groups`]: crate::scene::Groups
 
 pub(super) mod averaging;
@@ -87,6 +89,7 @@ impl Algorithm for Settings {
     const STAGES: &'static [Stage] = planes::STAGES;
     const GROUPING: Option<Grouping> = Some(GROUPING);
     const BACK_TO_FRONT: bool = true;
+    const FAST_BYTES_A_PIXEL: Option<u64> = Some(48);
     type Memory = ();
 
     fn splats(&self) -> Option<&SplatSettings> {

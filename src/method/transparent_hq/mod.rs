@@ -47,6 +47,8 @@
 //! behind itself, where the nearest layer clamps its depth to its own radius (see
 //! [`mod@crate::splat::project`]) and epsilon < (scale - 1) r, and, as depths of another radius
 //! round otherwise, anywhere with an epsilon of 0.
+//!
+//! The definition is over any [`Exact`] number; `fast` gives the same bits for `f32`.
 
 mod compositing;
 pub mod explain;
@@ -76,6 +78,7 @@ impl Algorithm for Settings {
     const STAGES: &'static [Stage] = planes::STAGES;
     const GROUPING: Option<Grouping> = Some(transparent::GROUPING);
     const BACK_TO_FRONT: bool = true;
+    const FAST_BYTES_A_PIXEL: Option<u64> = Some(72);
     type Memory = ();
 
     fn splats(&self) -> Option<&SplatSettings> {

@@ -67,8 +67,8 @@ fn group<R: Exact>(
     let mut color = surface;
     if !shader.lights.is_empty() {
         let mut points = [[R::ZERO; LANES]; 3];
-        for i in 0..LANES {
-            put_vector(&mut points, i, shader.position(first + i, row.y, depth[i]));
+        for (i, &t) in depth.iter().enumerate() {
+            put_vector(&mut points, i, shader.position(first + i, row.y, t));
         }
         let normal = gather(row.normal, first).unwrap_or([[R::ZERO; LANES]; 3]);
         color = match gather(row.tangent, first) {
@@ -104,17 +104,17 @@ impl<R: Exact> Shader<R> {
         let mut color = *surface;
         if !self.lights.is_empty() {
             let (x, y, mut points) = (x as usize, y as usize, [[R::ZERO; LANES]; 3]);
-            for i in 0..LANES {
-                let point = self.position(x + i % COLUMNS, y + i / COLUMNS, depth[i]);
+            for (i, &t) in depth.iter().enumerate() {
+                let point = self.position(x + i % COLUMNS, y + i / COLUMNS, t);
                 put_vector(&mut points, i, point);
             }
             let turned = |i| self.view.direction(vector(normal, i));
             let form = |i| Form { normal: turned(i), tangent: Vector3::ZERO };
             color = lit(self, &points, form, surface);
         }
-        for c in 0..3 {
-            for i in 0..LANES {
-                color[c][i] = if depth[i].is_finite() { color[c][i] } else { R::ZERO };
+        for channel in &mut color {
+            for (value, &t) in channel.iter_mut().zip(depth) {
+                *value = if t.is_finite() { *value } else { R::ZERO };
             }
         }
         color

@@ -57,7 +57,7 @@ vectorized!(
             let splat = &splats[index as usize];
             let (q, w) = fragments::<RAY_CAST>(&shared, &splat.footprint, corner);
             let nearness = inside(&q, &w, shared.limit);
-            if any(&mask(|i| nearness[i] == nearness[i])) {
+            if any(&mask(|i| !nearness[i].is_nan())) {
                 let amplitude = splat.footprint.amplitude;
                 let weight = each(|i| amplitude * exp_f32_in_range(q[i] * -0.5));
                 found.left.push(FragmentBlock { nearness, weight });

@@ -40,9 +40,7 @@ impl FastPeeling<'_> {
         let mut through = [1.0; LANES];
         for layer in 0..self.most {
             let Some(nearest) = foremost(fragments, shared) else { break };
-            let mut least = [0.0; LANES];
-            let sums =
-                sums(fragments, attributes, (&nearest, &mut least), shared, self.prepared.epsilon);
+            let sums = sums(fragments, attributes, &nearest, shared, self.prepared.epsilon);
             if layer == 0 {
                 block.id = nearest.id;
             }
@@ -74,16 +72,15 @@ vectorized!(
     fn sums(
         fragments: &mut Fragments,
         attributes: &[Attributes],
-        (nearest, least): (&Foremost, &mut Lanes),
+        nearest: &Foremost,
         shared: &Shared<f32>,
         epsilon: f32,
     ) -> Sums {
         let shared = *shared;
-        for i in 0..LANES {
-            let limit = decide::limit(shared.depth(nearest.nearness[i]), epsilon);
-            least[i] = least_nearness(&shared, limit);
+        let mut least = [0.0; LANES];
+        for (least, &nearness) in least.iter_mut().zip(&nearest.nearness) {
+            *least = least_nearness(&shared, decide::limit(shared.depth(nearness), epsilon));
         }
-        let least = *least;
         let Fragments { left, splats } = fragments;
         let (mut sums, mut kept) = ([[0.0; LANES]; 8], 0);
         for index in 0..left.len() {
@@ -93,11 +90,9 @@ vectorized!(
             if any(&visible) {
                 let weight = select(&visible, &weight, &[0.0; LANES]);
                 let attributes = &attributes[splats[index][1] as usize];
-                for (sum, &value) in sums.iter_mut().zip(attributes) {
-                    add(sum, &weight, value);
-                }
+                add_all(&mut sums, &weight, attributes);
                 rest = select(&visible, &[f32::NAN; LANES], &nearness);
-                if !any(&mask(|i| rest[i] == rest[i])) {
+                if !any(&mask(|i| !rest[i].is_nan())) {
                     continue;
                 }
             }
@@ -110,6 +105,20 @@ vectorized!(
         sums
     }
 );
+
+/// Adds the attributes of a splat, times its weights. Line by line: a loop over the sums would
+/// become the vector, and its lanes be gathered and scattered.
+#[inline(always)]
+fn add_all(sums: &mut Sums, weight: &Lanes, attributes: &Attributes) {
+    add(&mut sums[0], weight, attributes[0]);
+    add(&mut sums[1], weight, attributes[1]);
+    add(&mut sums[2], weight, attributes[2]);
+    add(&mut sums[3], weight, attributes[3]);
+    add(&mut sums[4], weight, attributes[4]);
+    add(&mut sums[5], weight, attributes[5]);
+    add(&mut sums[6], weight, attributes[6]);
+    add(&mut sums[7], weight, attributes[7]);
+}
 
 vectorized!(
     /// Normalization, shading, and blending under the layers before.

@@ -42,9 +42,10 @@ impl AverageBlock {
     /// Adds a group; one without a fragment would add zeros.
     #[inline(always)]
     pub(super) fn add<const TOTALS: bool>(&mut self, layers: &LayersBlock) {
-        for (sum, value) in self.color.iter_mut().zip(&layers.color) {
-            plus(sum, value);
-        }
+        // Line by line: a loop over the channels would become the vector.
+        plus(&mut self.color[0], &layers.color[0]);
+        plus(&mut self.color[1], &layers.color[1]);
+        plus(&mut self.color[2], &layers.color[2]);
         plus(&mut self.alpha, &layers.alpha);
         if TOTALS {
             plus(&mut self.opacity, &layers.opacity);
@@ -69,9 +70,9 @@ impl AverageBlock {
             Holes::Skipped => each(|i| if self.groups[i] > 0.0 { self.groups[i] } else { 1.0 }),
             Holes::Background => [groups as f32; LANES],
         };
-        for sum in &mut self.color {
-            over(sum, &count);
-        }
+        over(&mut self.color[0], &count);
+        over(&mut self.color[1], &count);
+        over(&mut self.color[2], &count);
         over(&mut self.alpha, &count);
         if TOTALS {
             over(&mut self.opacity, &count);

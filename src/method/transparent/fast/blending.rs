@@ -9,7 +9,7 @@ use crate::frame::NO_ID;
 use crate::method::fast::fragments::{fragments, inside};
 use crate::method::fast::tile::Record;
 use crate::method::transparent::Holes;
-use crate::number::lanes::{LANES, Lanes, any, each, mask, select, select_u32, vectorized};
+use crate::number::lanes::{LANES, Lanes, Mask, any, each, mask, select, select_u32, vectorized};
 use crate::splat::Shared;
 
 /// What the image of the group that is being drawn holds at the pixels of a block.
@@ -67,9 +67,9 @@ impl FastBlending {
         corner: (u32, u32),
         nearest: &Nearest,
     ) {
-        let (shared, settings) = (&self.prepared.shared, &self.settings);
+        let shared = &self.prepared.shared;
         let blocks = (average, corner, nearest);
-        let groups = (settings.holes, self.groups);
+        let groups = (self.holes, self.groups);
         if shared.ray_cast {
             blend::<true, BEHIND>(blocks, splats, list, (shared, &self.bins), groups);
         } else {
@@ -104,7 +104,7 @@ vectorized!(
                 let before = nearest.0;
                 left = each(|i| if left[i] >= before[i] { f32::NAN } else { left[i] });
             }
-            if any(&mask(|i| left[i] == left[i])) {
+            if any(&mask(|i| !left[i].is_nan())) {
                 layers.meet::<BEHIND>(splat, &left, &shared, &bins);
             }
         }
@@ -134,16 +134,14 @@ impl LayersBlock {
             bin[i] = bins.bin(depth[i]);
         }
         let passes = mask(|i| bin[i] < before.bin[i]);
-        let Layer { color, alpha, .. } = splat.attributes;
-        let through = 1.0 - alpha;
-        let over = |value: f32, below: &Lanes| -> Lanes {
-            let own = alpha * value;
-            each(|i| own + through * below[i])
-        };
-        for c in 0..3 {
-            self.color[c] = select(&passes, &over(color[c], &before.color[c]), &before.color[c]);
-        }
-        self.alpha = select(&passes, &each(|i| alpha + through * before.alpha[i]), &before.alpha);
+        let Layer { color: [r, g, b], alpha, .. } = splat.attributes;
+        let [red, green, blue] = &before.color;
+        self.color = [
+            over(&passes, alpha, alpha * r, red),
+            over(&passes, alpha, alpha * g, green),
+            over(&passes, alpha, alpha * b, blue),
+        ];
+        self.alpha = over(&passes, alpha, alpha, &before.alpha);
         if TOTALS {
             let (opacity, hidden) = if decide::opaque(alpha) {
                 ([0.0; LANES], [1.0; LANES])
@@ -159,4 +157,12 @@ impl LayersBlock {
         self.depth = select(&passes, &depth, &before.depth);
         self.id = select_u32(&passes, &[splat.surfel; LANES], &before.id);
     }
+}
+
+/// A channel of a layer of opacity `alpha` before what was below it, where it passes; `own` is the
+/// channel times alpha.
+#[inline(always)]
+fn over(passes: &Mask, alpha: f32, own: f32, below: &Lanes) -> Lanes {
+    let through = 1.0 - alpha;
+    select(passes, &each(|i| own + through * below[i]), below)
 }

@@ -11,7 +11,7 @@ mod projection;
 pub(in crate::method) use averaging::AverageBlock;
 pub(in crate::method) use blending::Nearest;
 
-use super::{Settings, planes};
+use super::{Holes, Settings, planes};
 use crate::composite::bins::DepthBins;
 use crate::error::Result;
 use crate::frame::{Pool, Rect};
@@ -29,8 +29,7 @@ use std::time::Instant;
 pub(in crate::method) struct FastBlending {
     pub(in crate::method) prepared: Prepared<f32, Record<Layer>>,
     bins: DepthBins<f32>,
-    /// See [`super::Holes`].
-    settings: Settings,
+    holes: Holes,
     groups: usize,
 }
 
@@ -46,7 +45,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
         let start = Instant::now();
         let Some(averages) = blending.averages::<false>(index, tile.rect, |_| Nearest::NONE) else {
             tile.clear(0.0);
-            return [start.elapsed(); 1];
+            return [start.elapsed()];
         };
         let blocks: Vec<_> = averages.iter().map(AverageBlock::layers).collect();
         tile.store(&blocks, |layers| layers);

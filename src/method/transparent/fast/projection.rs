@@ -54,7 +54,7 @@ impl FastBlending {
             },
             Record::bounds,
         );
-        Ok(Self { prepared, bins, settings: *settings, groups: groups.len() })
+        Ok(Self { prepared, bins, holes: settings.holes, groups: groups.len() })
     }
 }
 
