@@ -10,13 +10,11 @@
 
 mod common;
 
-use common::models::{models, resample};
+use common::models::{divide, models, resample, scaled};
 use common::report::{Arguments, Table};
 use splatref::Result;
 use splatref::frame::Exec;
-use splatref::index::grouping::{
-    Extension, Grouping, GroupingReport, Rules, extend, group, group_into,
-};
+use splatref::index::grouping::{Extension, Grouping, Rules, extend, group_into};
 use splatref::method::{Method, single_pass, transparent};
 use splatref::scene::{Cloud, Surfels};
 use splatref::source::Shape;
@@ -167,29 +165,6 @@ fn row(name: &str, surfels: &Surfels, radii: &str, exec: &Exec) -> String {
     let [first, all] = [times[0], all].map(|time| format!("{:.2} s", time.as_secs_f64()));
     let cells = cells.join(" | ");
     format!("{name} | {} | {radii} | {cells} | {first} | {all}", surfels.len())
-}
-
-fn divide(surfels: &Surfels, overlap: f32, exec: &Exec) -> Option<GroupingReport> {
-    let rules = Rules { overlap, ..Rules::default() };
-    group(surfels, &rules, exec, &|_, _, _| ()).ok().map(|found| found.1)
-}
-
-/// Radii times a factor, which is found in three steps as the degree is that of an area.
-fn scaled(surfels: &Surfels, degree: f64, exec: &Exec) -> (Surfels, f64) {
-    // The degree of a graph with few enough edges to be made.
-    let mut factor = 0.5;
-    for _ in 0..3 {
-        let found = divide(&times(surfels, factor), 1.0, exec).expect("few groups");
-        factor *= (degree / found.average_degree).sqrt();
-    }
-    (times(surfels, factor), factor)
-}
-
-fn times(surfels: &Surfels, factor: f64) -> Surfels {
-    let mut cloud = surfels.clone().into_cloud();
-    let radii = cloud.radius.iter_mut().flatten();
-    radii.for_each(|radius| *radius = (f64::from(*radius) * factor) as f32);
-    Surfels::new(cloud).expect("surfels").0
 }
 
 /// Surfels added so that four groups cover the surface.

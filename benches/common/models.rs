@@ -2,9 +2,11 @@
 
 use super::report::Arguments;
 use splatref::Result;
+use splatref::frame::Exec;
+use splatref::index::grouping::{GroupingReport, Rules, group};
 use splatref::io::ply;
 use splatref::number::random::bits;
-use splatref::scene::Cloud;
+use splatref::scene::{Cloud, Surfels};
 use std::path::PathBuf;
 
 /// The scan of a name in the folder `SPLATREF_MODELS`, or `../shared/models` if that is not set.
@@ -66,4 +68,29 @@ pub(crate) fn resample(cloud: &Cloud, count: usize, seed: u64) -> Cloud {
     let (position, (normal, color)): (_, (_, Vec<_>)) = (0..count).map(sample).unzip();
     let color = color.into_iter().collect();
     Cloud { position, normal: Some(normal), color, ..Cloud::default() }
+}
+
+/// What comes of grouping with this c; none if there are too many groups.
+pub(crate) fn divide(surfels: &Surfels, overlap: f32, exec: &Exec) -> Option<GroupingReport> {
+    let rules = Rules { overlap, ..Rules::default() };
+    group(surfels, &rules, exec, &|_, _, _| ()).ok().map(|found| found.1)
+}
+
+/// Radii times a factor, so that the average degree at c = 1 is this: the factor is found in three
+/// steps as the degree is that of an area.
+pub(crate) fn scaled(surfels: &Surfels, degree: f64, exec: &Exec) -> (Surfels, f64) {
+    // The degree of a graph with few enough edges to be made.
+    let mut factor = 0.5;
+    for _ in 0..3 {
+        let found = divide(&times(surfels, factor), 1.0, exec).expect("few groups");
+        factor *= (degree / found.average_degree).sqrt();
+    }
+    (times(surfels, factor), factor)
+}
+
+fn times(surfels: &Surfels, factor: f64) -> Surfels {
+    let mut cloud = surfels.clone().into_cloud();
+    let radii = cloud.radius.iter_mut().flatten();
+    radii.for_each(|radius| *radius = (f64::from(*radius) * factor) as f32);
+    Surfels::new(cloud).expect("surfels").0
 }

@@ -1,6 +1,6 @@
 //! The framebuffer: depth, stencil and floating accumulation.
 
-use super::tile::{Strip, StripMut};
+use super::tile::StripMut;
 use super::{Exec, Grid, NO_ID, Plane};
 use crate::number::Real;
 
@@ -42,11 +42,9 @@ pub struct Framebuffer<R> {
     pub margin: Option<Plane<R>>,
 }
 
-/// One strip of a [`Framebuffer`], writable.
+/// One strip of the planes that a fast path writes.
 #[derive(Debug)]
 pub struct FramebufferStrip<'a, R> {
-    /// Where it is.
-    pub strip: Strip,
     /// See [`Framebuffer::depth`].
     pub depth: StripMut<'a, R>,
     /// See [`Framebuffer::id`].
@@ -57,10 +55,6 @@ pub struct FramebufferStrip<'a, R> {
     pub normal: Option<StripMut<'a, [R; 3]>>,
     /// See [`Framebuffer::color`].
     pub color: Option<StripMut<'a, [R; 3]>>,
-    /// See [`Framebuffer::stencil`].
-    pub stencil: Option<StripMut<'a, u8>>,
-    /// See [`Framebuffer::margin`].
-    pub margin: Option<StripMut<'a, R>>,
 }
 
 impl<R: Real> Framebuffer<R> {
@@ -81,67 +75,21 @@ impl<R: Real> Framebuffer<R> {
         }
     }
 
-    /// The strips of every plane, row by row.
+    /// The strips, row by row.
     pub fn strips(&mut self, grid: &Grid, exec: &Exec) -> Vec<FramebufferStrip<'_, R>> {
-        let mut depth = grid.bands(&mut self.depth);
-        let mut id = grid.bands(&mut self.id);
-        let mut weight = grid.bands(&mut self.weight);
-        let mut normal = self.normal.as_mut().map(|plane| grid.bands(plane));
-        let mut color = self.color.as_mut().map(|plane| grid.bands(plane));
-        let mut stencil = self.stencil.as_mut().map(|plane| grid.bands(plane));
-        let mut margin = self.margin.as_mut().map(|plane| grid.bands(plane));
-        let strips = grid.strips();
-        let rows = strips.chunk_by(|a, b| a.rect.y0 == b.rect.y0);
-        let bands = rows.filter_map(|strips| {
-            let strips = strips.to_vec();
-            Some(Band {
-                strips,
-                depth: depth.next()?,
-                id: id.next()?,
-                weight: weight.next()?,
-                normal: normal.as_mut().and_then(Iterator::next),
-                color: color.as_mut().and_then(Iterator::next),
-                stencil: stencil.as_mut().and_then(Iterator::next),
-                margin: margin.as_mut().and_then(Iterator::next),
-            })
-        });
-        // A strip is many short rows: cutting them out is work enough to be shared.
-        let cut = exec.ordered(bands.collect(), |band| band.cut(grid));
-        cut.into_iter().flatten().collect()
-    }
-}
-
-/// A row of strips of every plane.
-struct Band<'a, R> {
-    strips: Vec<Strip>,
-    depth: &'a mut [R],
-    id: &'a mut [u32],
-    weight: &'a mut [R],
-    normal: Option<&'a mut [[R; 3]]>,
-    color: Option<&'a mut [[R; 3]]>,
-    stencil: Option<&'a mut [u8]>,
-    margin: Option<&'a mut [R]>,
-}
-
-impl<'a, R: Real> Band<'a, R> {
-    fn cut(self, grid: &Grid) -> Vec<FramebufferStrip<'a, R>> {
-        let mut depth = grid.split(self.depth);
-        let mut id = grid.split(self.id);
-        let mut weight = grid.split(self.weight);
-        let mut normal = self.normal.map(|band| grid.split(band));
-        let mut color = self.color.map(|band| grid.split(band));
-        let mut stencil = self.stencil.map(|band| grid.split(band));
-        let mut margin = self.margin.map(|band| grid.split(band));
-        let strips = self.strips.into_iter().filter_map(|strip| {
+        let depth = grid.cut(&mut self.depth, exec);
+        let mut id = grid.cut(&mut self.id, exec).into_iter();
+        let mut weight = grid.cut(&mut self.weight, exec).into_iter();
+        let cut = |plane| grid.cut(plane, exec).into_iter();
+        let mut normal = self.normal.as_mut().map(cut);
+        let mut color = self.color.as_mut().map(cut);
+        let strips = depth.into_iter().filter_map(|depth| {
             Some(FramebufferStrip {
-                strip,
-                depth: depth.next()?,
+                depth,
                 id: id.next()?,
                 weight: weight.next()?,
                 normal: normal.as_mut().and_then(Iterator::next),
                 color: color.as_mut().and_then(Iterator::next),
-                stencil: stencil.as_mut().and_then(Iterator::next),
-                margin: margin.as_mut().and_then(Iterator::next),
             })
         });
         strips.collect()

@@ -31,6 +31,20 @@ impl Rect {
         }
     }
 
+    /// How many columns there are, of a rectangle that is not empty.
+    #[inline(always)]
+    #[must_use]
+    pub fn columns(&self) -> usize {
+        (self.x1 - self.x0) as usize
+    }
+
+    /// How many rows there are, likewise.
+    #[inline(always)]
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        (self.y1 - self.y0) as usize
+    }
+
     /// Whether the pixel is inside.
     #[must_use]
     pub fn contains(&self, x: u32, y: u32) -> bool {

@@ -6,7 +6,6 @@
 use super::{Plane, Rect};
 use crate::error::{Error, Result};
 use rayon::prelude::*;
-use std::slice::ChunksMut;
 
 /// Threads and tile size: how, never what.
 #[derive(Debug)]
@@ -190,12 +189,6 @@ impl Grid {
         plane
     }
 
-    /// A plane cut into its rows of tiles.
-    pub fn bands<'a, T>(&self, plane: &'a mut Plane<T>) -> ChunksMut<'a, T> {
-        let rows = self.width as usize * self.tile as usize;
-        plane.values_mut().chunks_mut(rows.max(1))
-    }
-
     /// The strips of the picture, row by row.
     #[must_use]
     pub fn strips(&self) -> Vec<Strip> {
@@ -217,17 +210,25 @@ impl Grid {
         (STRIP / self.tile).max(1)
     }
 
-    /// One of the [`Grid::bands`] cut into its strips, disjoint and writable, from left to right.
-    pub fn split<'a, T>(&self, band: &'a mut [T]) -> std::vec::IntoIter<StripMut<'a, T>> {
-        let (width, side) = (self.width.max(1) as usize, (self.strip() * self.tile) as usize);
-        let empty = || StripMut { rows: Vec::with_capacity(band.len() / width) };
-        let mut strips: Vec<_> = std::iter::repeat_with(empty).take(width.div_ceil(side)).collect();
-        for row in band.chunks_mut(width) {
-            for (strip, part) in strips.iter_mut().zip(row.chunks_mut(side)) {
-                strip.rows.push(part);
+    /// A plane cut into its strips, disjoint and writable.
+    pub fn cut<'a, T: Send>(&self, plane: &'a mut Plane<T>, exec: &Exec) -> Vec<StripMut<'a, T>> {
+        let (width, strips) = (self.width.max(1) as usize, self.strips());
+        let rows = strips.chunk_by(|a, b| a.rect.y0 == b.rect.y0);
+        let bands = plane.values_mut().chunks_mut(width * self.tile as usize);
+        // A strip is many short rows: cutting them out is work enough to be shared.
+        let cut = exec.ordered(rows.zip(bands).collect(), |(strips, band)| {
+            let empty = |&strip: &Strip| StripMut { strip, rows: Vec::with_capacity(64) };
+            let mut cut: Vec<_> = strips.iter().map(empty).collect();
+            for mut row in band.chunks_mut(width) {
+                for strip in &mut cut {
+                    let (part, rest) = row.split_at_mut(strip.strip.rect.columns());
+                    strip.rows.push(part);
+                    row = rest;
+                }
             }
-        }
-        strips.into_iter()
+            cut
+        });
+        cut.into_iter().flatten().collect()
     }
 }
 
@@ -258,20 +259,24 @@ impl Strip {
 /// The pixels of one strip of a plane, writable.
 #[derive(Debug)]
 pub struct StripMut<'a, T> {
+    /// Where it is.
+    pub strip: Strip,
     rows: Vec<&'a mut [T]>,
 }
 
 impl<T> StripMut<'_, T> {
-    /// A row, counted from the top of the strip.
+    /// A row of one of its tiles, counted from the top.
     #[inline(always)]
-    pub fn row(&mut self, y: usize) -> &mut [T] {
-        self.rows[y]
+    pub fn row(&mut self, tile: &Rect, y: usize) -> &mut [T] {
+        let first = (tile.x0 - self.strip.rect.x0) as usize;
+        &mut self.rows[y][first..first + tile.columns()]
     }
 
-    /// The value at a column and row of the picture that lie in its strip.
+    /// The value at a column and row of the picture.
     #[inline(always)]
-    pub fn at(&mut self, strip: &Strip, [x, y]: [u32; 2]) -> &mut T {
-        &mut self.rows[(y - strip.rect.y0) as usize][(x - strip.rect.x0) as usize]
+    pub fn at(&mut self, [x, y]: [u32; 2]) -> &mut T {
+        let Rect { x0, y0, .. } = self.strip.rect;
+        &mut self.rows[(y - y0) as usize][(x - x0) as usize]
     }
 }
 
@@ -285,15 +290,13 @@ mod tests {
         for (width, height) in [(1, 1), (16, 16), (17, 33), (64, 5), (100, 1), (129, 20)] {
             let grid = exec.grid(width, height);
             let mut plane = Plane::filled(width, height, 0_u32);
-            let strips = grid.bands(&mut plane).flat_map(|band| grid.split(band));
-            let jobs: Vec<_> = grid.strips().into_iter().zip(strips).collect();
-            let written = exec.ordered(jobs, |(strip, mut pixels)| {
-                let tiles: Vec<_> = strip.tiles().collect();
+            let written = exec.ordered(grid.cut(&mut plane, &exec), |mut pixels| {
+                let tiles: Vec<_> = pixels.strip.tiles().collect();
                 for (_, rect) in &tiles {
                     for y in rect.y0..rect.y1 {
-                        let row = pixels.row((y - strip.rect.y0) as usize);
-                        for x in rect.x0..rect.x1 {
-                            row[(x - strip.rect.x0) as usize] += 1 + x + width * y;
+                        let row = pixels.row(rect, (y - rect.y0) as usize);
+                        for (x, value) in (rect.x0..rect.x1).zip(row) {
+                            *value += 1 + x + width * y;
                         }
                     }
                 }

@@ -54,9 +54,22 @@ impl Index {
     /// [`Error::Invalid`] if there are no groups or no order.
     pub fn back_to_front(&self, camera: &Camera) -> Result<Vec<Item>> {
         let (groups, order) = (self.groups()?, self.order()?);
-        let mut items = Vec::with_capacity(groups.own().len() + groups.added().len());
+        let (own, added) = (groups.own(), groups.added());
+        // Where the further groups of each surfel end: searched for one by one they would take
+        // longer than the order.
+        let mut ends = vec![0_u32; own.len()];
+        let mut end = 0;
+        for (surfel, place) in (0_u32..).zip(&mut ends) {
+            end += added[end..].iter().take_while(|(other, _)| *other == surfel).count();
+            *place = end as u32;
+        }
+        let mut items = Vec::with_capacity(own.len() + added.len());
         for surfel in order.walk(camera) {
-            items.extend(groups.of(surfel).map(|group| Item { surfel, group }));
+            let i = surfel as usize;
+            let start = if i == 0 { 0 } else { ends[i - 1] };
+            items.push(Item { surfel, group: own[i] });
+            let further = &added[start as usize..ends[i] as usize];
+            items.extend(further.iter().map(|&(_, group)| Item { surfel, group }));
         }
         Ok(items)
     }

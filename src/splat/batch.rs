@@ -90,17 +90,54 @@ pub fn splats_f32(
     }
     let lanes = range.start..range.end - range.len() % LANES;
     let rest = lanes.end..range.end;
-    let tally = in_lanes(projector, surfels, lanes, &mut draw);
+    let tally = in_lanes(projector, surfels, lanes, |i| (i, 1.0), &mut |_, splat| draw(splat));
     tally.plus(&splats(projector, surfels, rest, draw))
 }
 
+/// Calls `draw` for each visible splat of a list, with its place in the list: of surfels, each with
+/// the factor by which it is enlarged. Affine discs in lanes, to the same bits.
+pub(crate) fn enlarged_f32(
+    projector: &Projector<f32>,
+    surfels: &Surfels,
+    list: &[(u32, f32)],
+    mut draw: impl FnMut(usize, Splat<f32>),
+) -> Tally {
+    let in_lanes_to = match (projector.outline, surfels.tangents()) {
+        (Outline::Affine, None) => list.len() - list.len() % LANES,
+        _ => 0,
+    };
+    let item = |i: usize| (list[i].0 as usize, list[i].1);
+    let mut tally = in_lanes(projector, surfels, 0..in_lanes_to, item, &mut draw);
+    for (place, &(surfel, scale)) in list.iter().enumerate().skip(in_lanes_to) {
+        let (splat, reasons) = project(projector, &enlarged(surfels, surfel, scale), surfel);
+        let fate = reasons.fate();
+        tally.count(fate);
+        if fate == Fate::Visible {
+            draw(place, splat);
+        }
+    }
+    tally
+}
+
+/// A surfel whose radius, or tangents, are multiplied by a number.
+pub(crate) fn enlarged<R: Real>(surfels: &Surfels, surfel: u32, scale: f32) -> Disc<R> {
+    let (disc, scale): (Disc<R>, _) = (disc(surfels, surfel as usize), R::from_f32(scale));
+    Disc {
+        radius: disc.radius * scale,
+        tangents: disc.tangents.map(|[u, v]| [u * scale, v * scale]),
+        ..disc
+    }
+}
+
 vectorized!(
-    /// [`LANES`] surfels at a time: gathered into arrays, projected in one straight loop, scattered.
+    /// [`LANES`] splats at a time: gathered into arrays, projected in one straight loop, scattered.
+    /// `item` gives the surfel of a splat, and what its radius is multiplied by.
     fn in_lanes(
         projector: &Projector<f32>,
         surfels: &Surfels,
         range: Range<usize>,
-        draw: &mut impl FnMut(Splat<f32>),
+        item: impl Fn(usize) -> (usize, f32),
+        draw: &mut impl FnMut(usize, Splat<f32>),
     ) -> Tally {
         let projector = *projector;
         let mut counts = [0_u64; 8];
@@ -109,8 +146,9 @@ vectorized!(
             let mut input = [[0.0_f32; LANES]; 7];
             let (positions, normals) = (surfels.position(), surfels.normal());
             for i in 0..LANES {
-                let (p, n) = (positions[first + i], normals[first + i]);
-                let values = [p.x, p.y, p.z, n.x, n.y, n.z, surfels.radius()[first + i]];
+                let (surfel, scale) = item(first + i);
+                let (p, n) = (positions[surfel], normals[surfel]);
+                let values = [p.x, p.y, p.z, n.x, n.y, n.z, surfels.radius()[surfel] * scale];
                 for (lanes, value) in input.iter_mut().zip(values) {
                     lanes[i] = value;
                 }
@@ -129,7 +167,7 @@ vectorized!(
             for i in 0..LANES {
                 counts[fates[i] as usize & 7] += 1;
                 if fates[i] == Fate::Visible as u32 {
-                    draw(splats.get(i, (first + i) as u32));
+                    draw(first + i, splats.get(i, item(first + i).0 as u32));
                 }
             }
         }

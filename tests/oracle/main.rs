@@ -42,6 +42,7 @@ mod composite;
 mod counter;
 mod ewa;
 mod kit;
+mod layered;
 mod peeling;
 mod pyramid;
 mod single_pass;

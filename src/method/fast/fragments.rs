@@ -15,25 +15,39 @@ pub(in crate::method) fn each_block<const RAY_CAST: bool>(
     shared: &Shared<f32>,
     mut draw: impl FnMut(usize, &Lanes, &Lanes),
 ) {
-    let (rect, footprint) = (grid.rect, splat.footprint);
+    let footprint = splat.footprint;
+    each_place::<RAY_CAST, _>(splat, grid, shared.limit, |block, corner| {
+        let (q, w) = fragments::<RAY_CAST>(shared, &footprint, corner);
+        draw(block, &q, &w);
+    });
+}
+
+/// Calls `visit` for each block of a tile that a splat may touch: with the place of the block in
+/// the list of the tile, and with column and row of its first pixel.
+#[inline(always)]
+pub(super) fn each_place<const RAY_CAST: bool, A>(
+    splat: &Record<A>,
+    grid: &BlockGrid,
+    limit: f32,
+    mut visit: impl FnMut(usize, (u32, u32)),
+) {
+    let rect = grid.rect;
     let blocks = splat.blocks(&rect);
     for row in blocks.y0..blocks.y1 {
-        let (first, last) = columns::<RAY_CAST>(splat, &blocks, row, &rect, shared.limit);
+        let (first, last) = columns::<RAY_CAST>(&splat.footprint, &blocks, row, &rect, limit);
         for column in first..last {
-            let (x, y) = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
-            let (q, w) = fragments::<RAY_CAST>(shared, &footprint, x, y);
-            draw((row * grid.columns + column) as usize, &q, &w);
+            let corner = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
+            visit((row * grid.columns + column) as usize, corner);
         }
     }
 }
 
 /// q and nearness of a splat at the pixels of a block whose first pixel is (x, y).
 #[inline(always)]
-fn fragments<const RAY_CAST: bool>(
+pub(in crate::method) fn fragments<const RAY_CAST: bool>(
     shared: &Shared<f32>,
     footprint: &Footprint<f32>,
-    x: u32,
-    y: u32,
+    (x, y): (u32, u32),
 ) -> (Lanes, Lanes) {
     let shared = Shared { ray_cast: RAY_CAST, ..*shared };
     let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
@@ -51,7 +65,7 @@ fn fragments<const RAY_CAST: bool>(
 /// Splats of few columns keep their bounds. A wide one has its [`span`] in these rows of pixels.
 #[inline(always)]
 fn columns<const RAY_CAST: bool>(
-    record: &Record,
+    f: &Footprint<f32>,
     blocks: &Rect,
     row: u32,
     tile: &Rect,
@@ -60,8 +74,8 @@ fn columns<const RAY_CAST: bool>(
     if RAY_CAST || blocks.x1 - blocks.x0 < WIDE {
         return (blocks.x0, blocks.x1);
     }
-    let [left, right] = span(&record.footprint, tile.y0 + row * SIDE, SIDE, limit);
-    let origin = record.footprint.center.x - tile.x0 as f32;
+    let [left, right] = span(f, tile.y0 + row * SIDE, SIDE, limit);
+    let origin = f.center.x - tile.x0 as f32;
     let first = (origin + left - 0.5) * (1.0 / SIDE as f32);
     let last = (origin + right - 0.5) * (1.0 / SIDE as f32) + 1.0;
     let (start, end) = (blocks.x0 as f32, blocks.x1 as f32);
@@ -99,7 +113,7 @@ fn span(f: &Footprint<f32>, row: u32, rows: u32, limit: f32) -> [f32; 2] {
 /// Whether a splat may touch a tile: its bounds do, and if these are wide, its ellipse does in the
 /// rows of the tile.
 #[inline(always)]
-pub(in crate::method) fn touches(record: &Record, tile: &Rect, shared: &Shared<f32>) -> bool {
+pub(super) fn touches<A>(record: &Record<A>, tile: &Rect, shared: &Shared<f32>) -> bool {
     let bounds = record.bounds();
     if bounds.intersection(tile).is_empty() {
         return false;

@@ -2,8 +2,11 @@
 //! with a block whatever the method. The layout: [`crate::method`].
 
 pub(super) mod fragments;
+pub(super) mod groups;
+pub(super) mod layered;
+pub(super) mod lists;
 pub(super) mod resolve;
-mod store;
+pub(super) mod store;
 pub(super) mod tile;
 
 use super::algorithm::Job;
@@ -12,7 +15,7 @@ use crate::frame::Framebuffer;
 use crate::splat::SplatSettings;
 use crate::splat::batch;
 use std::time::{Duration, Instant};
-use tile::{Record, Tile};
+use tile::{Record, Surface, Tile};
 
 /// Projection and binning.
 pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, Record> {
@@ -24,7 +27,7 @@ pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, 
         surfels.len(),
         |projector, range, records| {
             batch::splats_f32(projector, surfels, range, |splat| {
-                records.push(Record::new(&splat, surfels.normal(), colors));
+                records.push(Record::new(&splat, Surface::new(&splat, surfels.normal(), colors)));
             })
         },
         Record::bounds,
@@ -45,8 +48,8 @@ pub(super) fn draw<const N: usize>(
     let start = Instant::now();
     let times = job.exec.ordered(target.strips(&job.grid(), job.exec), |mut pixels| {
         let mut times = [Duration::ZERO; N];
-        let mut tile = Tile::new(&pixels);
-        for (index, rect) in pixels.strip.tiles() {
+        let mut tile = Tile::new([pixels.normal.is_some(), pixels.color.is_some()]);
+        for (index, rect) in pixels.depth.strip.tiles() {
             let start = Instant::now();
             tile.gather(prepared, index, rect);
             if tile.splats.is_empty() {

@@ -1,7 +1,7 @@
 //! What a fast path works with: records of splats, and the blocks of a tile.
 
 use super::fragments::touches;
-use crate::frame::{FramebufferStrip, NO_ID, Rect};
+use crate::frame::{NO_ID, Rect};
 use crate::method::fragment::facing;
 use crate::method::prepare::Prepared;
 use crate::number::lanes::{LANES, Lanes};
@@ -29,34 +29,50 @@ pub(in crate::method) struct PixelBlock {
     pub(in crate::method) color: [Lanes; 3],
 }
 
-/// A splat with its attributes: 80 bytes, so that a tile finds all it needs in one place.
+/// A splat with its attributes, so that a tile finds all it needs in one place: 80 bytes with those
+/// of a surface.
 #[derive(Clone, Copy)]
-pub(in crate::method) struct Record {
+pub(in crate::method) struct Record<A = Surface> {
     pub(in crate::method) footprint: Footprint<f32>,
     pub(in crate::method) surfel: u32,
     /// First and last column, first and last row.
     pub(in crate::method) bounds: [u16; 4],
+    pub(in crate::method) attributes: A,
+}
+
+/// What is averaged where splats are a surface.
+#[derive(Clone, Copy)]
+pub(in crate::method) struct Surface {
     /// The normal of the side that is seen.
     pub(in crate::method) normal: [f32; 3],
     pub(in crate::method) color: [f32; 3],
 }
 
-impl Record {
+impl Surface {
     #[inline(always)]
     pub(in crate::method) fn new(
         splat: &Splat<f32>,
         normals: &[Vec3],
         colors: Option<&[Vec3]>,
     ) -> Self {
-        let Rect { x0, y0, x1, y1 } = splat.bounds;
         let i = splat.surfel as usize;
+        Self {
+            normal: facing(normals[i].to_array(), splat.back),
+            color: colors.map_or([0.0; 3], |c| c[i].to_array()),
+        }
+    }
+}
+
+impl<A> Record<A> {
+    #[inline(always)]
+    pub(in crate::method) fn new(splat: &Splat<f32>, attributes: A) -> Self {
+        let Rect { x0, y0, x1, y1 } = splat.bounds;
         Self {
             footprint: splat.footprint,
             surfel: splat.surfel,
             // Pictures have at most 65,536 pixels a side, so the last pixel fits.
             bounds: [x0, x1 - 1, y0, y1 - 1].map(|pixel| pixel as u16),
-            normal: facing(normals[i].to_array(), splat.back),
-            color: colors.map_or([0.0; 3], |c| c[i].to_array()),
+            attributes,
         }
     }
 
@@ -90,6 +106,25 @@ pub(in crate::method) struct BlockGrid {
     pub(in crate::method) columns: u32,
 }
 
+impl BlockGrid {
+    /// The blocks of these pixels.
+    pub(in crate::method) fn new(rect: Rect) -> Self {
+        Self { rect, columns: (rect.x1 - rect.x0).div_ceil(SIDE) }
+    }
+
+    /// How many blocks there are.
+    pub(in crate::method) fn len(&self) -> usize {
+        (self.columns * (self.rect.y1 - self.rect.y0).div_ceil(SIDE)) as usize
+    }
+
+    /// Column and row of the first pixel of a block.
+    #[inline(always)]
+    pub(in crate::method) fn corner(&self, block: usize) -> (u32, u32) {
+        let (column, row) = (block as u32 % self.columns, block as u32 / self.columns);
+        (self.rect.x0 + column * SIDE, self.rect.y0 + row * SIDE)
+    }
+}
+
 /// What one tile works with.
 pub(in crate::method) struct Tile {
     pub(in crate::method) splats: Vec<Record>,
@@ -102,29 +137,23 @@ pub(in crate::method) struct Tile {
 }
 
 impl Tile {
-    /// The memory that the tiles of a strip use one after the other.
-    pub(in crate::method) fn new(pixels: &FramebufferStrip<'_, f32>) -> Self {
-        Self {
-            splats: Vec::new(),
-            blocks: Vec::new(),
-            grid: BlockGrid { rect: Rect::default(), columns: 0 },
-            normal: pixels.normal.is_some(),
-            color: pixels.color.is_some(),
-        }
+    /// Memory that tiles use one after the other; normals and colours are there if they are wanted.
+    pub(in crate::method) fn new([normal, color]: [bool; 2]) -> Self {
+        let grid = BlockGrid::new(Rect::default());
+        Self { splats: Vec::new(), blocks: Vec::new(), grid, normal, color }
     }
 
-    /// Becomes a tile: its splats, and its empty blocks; no blocks if there are no splats.
+    /// Becomes a tile of these pixels: its splats, and its empty blocks; no blocks if there are no
+    /// splats.
     pub(in crate::method) fn gather(
         &mut self,
         prepared: &Prepared<f32, Record>,
         index: usize,
         rect: Rect,
     ) {
-        let shared = &prepared.shared;
-        prepared.gather(index, |splat| touches(splat, &rect, shared), &mut self.splats);
-        let columns = (rect.x1 - rect.x0).div_ceil(SIDE);
-        let rows = (rect.y1 - rect.y0).div_ceil(SIDE);
-        let count = if self.splats.is_empty() { 0 } else { columns * rows };
+        prepared.gather_f32(index, &rect, &mut self.splats);
+        self.grid = BlockGrid::new(rect);
+        let count = if self.splats.is_empty() { 0 } else { self.grid.len() };
         let zero = [0.0; LANES];
         let empty = PixelBlock {
             nearest: [prepared.shared.empty(); LANES],
@@ -135,7 +164,19 @@ impl Tile {
             color: [zero; 3],
         };
         self.blocks.clear();
-        self.blocks.resize(count as usize, empty);
-        self.grid = BlockGrid { rect, columns };
+        self.blocks.resize(count, empty);
+    }
+}
+
+impl<A: Copy + Send> Prepared<f32, Record<A>> {
+    /// The splats that may touch a tile of these pixels, in the order of the items, in the place of
+    /// what was `gathered` before.
+    pub(in crate::method) fn gather_f32(
+        &self,
+        tile: usize,
+        rect: &Rect,
+        gathered: &mut Vec<Record<A>>,
+    ) {
+        self.gather(tile, |splat| touches(splat, rect, &self.shared), gathered);
     }
 }

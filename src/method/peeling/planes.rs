@@ -72,11 +72,20 @@ pub(super) fn layer<R: Exact>(number: usize, layer: &Tiled<PeeledLayer<R>>) -> [
 
 /// The planes of all layers together.
 pub(super) fn pixels<R: Exact>(pixels: &Tiled<PeeledPixel<R>>) -> [NamedPlane<R>; 3] {
-    [
-        DEPTH.scalar(0, pixels.plane(|pixel| pixel.depth)),
-        ID.index(0, pixels.plane(|pixel| pixel.id)),
-        LAYERS.count(0, pixels.plane(|pixel| pixel.layers.min(255) as u8)),
-    ]
+    pixel_planes(
+        pixels.plane(|pixel| pixel.depth),
+        pixels.plane(|pixel| pixel.id),
+        pixels.plane(|pixel| pixel.layers.min(255) as u8),
+    )
+}
+
+/// The same of planes.
+pub(super) fn pixel_planes<R: Exact>(
+    depth: Plane<R>,
+    id: Plane<u32>,
+    layers: Plane<u8>,
+) -> [NamedPlane<R>; 3] {
+    [DEPTH.scalar(0, depth), ID.index(0, id), LAYERS.count(0, layers)]
 }
 
 /// The planes of the picture.

@@ -5,7 +5,7 @@ use super::{PixelSample, Projected, SceneProjector};
 use crate::composite::decide;
 use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
-use crate::frame::{Bins, Exec, Plane, Rect, Strip, StripMut};
+use crate::frame::{Bins, Exec, Plane, Rect};
 use crate::number::{Exact, Vector3};
 use crate::scene::{Camera, Scene};
 use crate::splat::{Fate, Tally};
@@ -79,20 +79,18 @@ fn draw<R: Exact>(
     });
     let Projected { samples, tally } = projected;
     *tally = batches.iter().fold(*tally, |sum, (_, tally)| sum.plus(tally));
-    let strips = grid.bands(samples).flat_map(|band| grid.split(band));
-    let jobs = grid.strips().into_iter().zip(strips).collect();
-    exec.ordered(jobs, |(strip, mut pixels): (Strip, StripMut<'_, _>)| {
-        for (tile, rect) in strip.tiles() {
+    exec.ordered(grid.cut(samples, exec), |mut pixels| {
+        for (tile, rect) in pixels.strip.tiles() {
             for ((drawn, bins), _) in &batches {
                 bins.for_each(tile, |i| match &drawn[i as usize] {
                     DrawnItem::Pixel(at, sample) => {
-                        let kept = pixels.at(&strip, *at);
+                        let kept = pixels.at(*at);
                         if decide::before(sample.depth, kept.depth) {
                             *kept = *sample;
                         }
                     }
                     DrawnItem::Piece(piece) => piece.for_each(&rect, |at| {
-                        let kept = pixels.at(&strip, [at.x, at.y]);
+                        let kept = pixels.at([at.x, at.y]);
                         if decide::before(-at.p.z, kept.depth) {
                             *kept = piece.sample(projector, &at);
                         }

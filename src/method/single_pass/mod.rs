@@ -52,7 +52,7 @@
 
 pub(super) mod compositing;
 pub mod explain;
-mod fast;
+pub(super) mod fast;
 pub(super) mod geometry;
 pub(super) mod picture;
 pub(super) mod planes;

@@ -134,7 +134,7 @@ impl Settings {
     }
 
     /// The bins of the Voronoi depth test; none for the plain one.
-    pub(super) fn bins<R: Exact>(
+    pub(in crate::method) fn bins<R: Exact>(
         &self,
         surfels: &Surfels,
         camera: &Camera,

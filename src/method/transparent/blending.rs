@@ -14,7 +14,7 @@ use crate::method::prepare::Prepared;
 use crate::number::{Exact, Vector3};
 use crate::scene::Scene;
 use crate::shade::phong::Shader;
-use crate::splat::{Disc, Fate, Projector, Reasons, Shared, Splat, Tally, View, batch, project};
+use crate::splat::{Fate, Shared, Splat, Tally, View, batch, project};
 
 /// A surfel in one of its groups, on the screen.
 #[derive(Clone, Copy, Debug)]
@@ -104,7 +104,8 @@ impl<R: Exact> Blending<R> {
                 let mut tally = Tally::default();
                 for &Item { surfel, group } in &items[range] {
                     let scale = groups.scale()[usize::from(group)];
-                    let (splat, reasons) = place(scene, surfel, scale, projector);
+                    let disc = batch::enlarged(surfels, surfel, scale);
+                    let (splat, reasons) = project(projector, &disc, surfel);
                     let fate = reasons.fate();
                     tally.count(fate);
                     if fate == Fate::Visible {
@@ -179,23 +180,6 @@ impl<R: Exact> Blending<R> {
             each_in_bounds(self.shared(), &drawn.splat, &rect, |_, q, w| visit(drawn, q, w));
         });
     }
-}
-
-/// Projects a surfel that is enlarged.
-fn place<R: Exact>(
-    scene: &Scene,
-    surfel: u32,
-    scale: f32,
-    projector: &Projector<R>,
-) -> (Splat<R>, Reasons<R>) {
-    let scale = R::from_f32(scale);
-    let disc: Disc<R> = batch::disc(&scene.surfels, surfel as usize);
-    let disc = Disc {
-        radius: disc.radius * scale,
-        tangents: disc.tangents.map(|[u, v]| [u * scale, v * scale]),
-        ..disc
-    };
-    project(projector, &disc, surfel)
 }
 
 /// The shaded colour and the opacity of a surfel.

@@ -50,11 +50,14 @@
 //!
 //! The truth that it is held against is [`super::peeling`].
 //!
+//! The definition is over any [`Exact`] number; `fast` gives the same bits for `f32`.
+//!
 //! [`Groups`]: crate::scene::Groups
 
 pub(super) mod averaging;
 pub(super) mod blending;
 pub mod explain;
+pub(super) mod fast;
 pub(super) mod picture;
 pub(super) mod planes;
 mod settings;
@@ -62,7 +65,7 @@ mod settings;
 pub use settings::{Holes, Settings};
 
 use crate::error::Result;
-use crate::frame::NamedPlane;
+use crate::frame::{NamedPlane, Pool};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
@@ -86,6 +89,7 @@ impl Algorithm for Settings {
     const STAGES: &'static [Stage] = planes::STAGES;
     const GROUPING: Option<Grouping> = Some(GROUPING);
     const BACK_TO_FRONT: bool = true;
+    const FAST_BYTES_A_PIXEL: Option<u64> = Some(48);
     type Memory = ();
 
     fn splats(&self) -> Option<&SplatSettings> {
@@ -98,6 +102,10 @@ impl Algorithm for Settings {
 
     fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         picture::define(job, self, stages)
+    }
+
+    fn draw(&self, job: &Job<'_>, (): &mut (), pool: &mut Pool) -> Result<Picture<f32>> {
+        fast::draw(job, self, pool)
     }
 
     fn stage<R: Exact>(

@@ -4,7 +4,7 @@ use super::averaging::GroupAverage;
 use super::blending::GroupLayers;
 use crate::composite::over::Blend;
 use crate::error::Result;
-use crate::frame::NamedPlane;
+use crate::frame::{NamedPlane, Plane};
 use crate::method::algorithm::Job;
 use crate::method::given::Given;
 use crate::method::picture::before_environment;
@@ -248,16 +248,33 @@ pub(in crate::method) fn shown<R: Exact>(
     job: &Job<'_>,
     shown: &Tiled<Blend<R>>,
 ) -> [NamedPlane<R>; 2] {
-    let (color, alpha) = (shown.plane(|pixel| pixel.color), shown.plane(|pixel| pixel.alpha));
+    before(job, shown.plane(|pixel| pixel.color), shown.plane(|pixel| pixel.alpha))
+}
+
+/// The same of planes.
+pub(in crate::method) fn before<R: Exact>(
+    job: &Job<'_>,
+    color: Plane<[R; 3]>,
+    alpha: Plane<R>,
+) -> [NamedPlane<R>; 2] {
     let (color, alpha) = before_environment(job.scene, job.camera, color, alpha, job.exec);
     [SHADED.triple(0, color), ALPHA.scalar(0, alpha)]
 }
 
 /// The planes of every picture beside its colour.
 pub(super) fn nearest<R: Exact>(averages: &Tiled<GroupAverage<R>>) -> [NamedPlane<R>; 3] {
-    [
-        DEPTH.scalar(0, averages.plane(|pixel| pixel.depth)),
-        ID.index(0, averages.plane(|pixel| pixel.surfel)),
-        LAYERS.scalar(0, averages.plane(|pixel| pixel.layers)),
-    ]
+    nearest_planes(
+        averages.plane(|pixel| pixel.depth),
+        averages.plane(|pixel| pixel.surfel),
+        averages.plane(|pixel| pixel.layers),
+    )
+}
+
+/// The same of planes.
+pub(super) fn nearest_planes<R: Exact>(
+    depth: Plane<R>,
+    id: Plane<u32>,
+    layers: Plane<R>,
+) -> [NamedPlane<R>; 3] {
+    [DEPTH.scalar(0, depth), ID.index(0, id), LAYERS.scalar(0, layers)]
 }

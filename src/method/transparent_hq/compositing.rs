@@ -40,6 +40,11 @@ impl<'a, R: Exact> Through<'a, R> {
         Self { scene: job.scene, settings, view: View::new(job.camera) }
     }
 
+    /// Whether light is bent at the nearest layer.
+    pub(super) fn bends(&self) -> bool {
+        self.settings.refraction.is_some() && self.scene.environment.is_some()
+    }
+
     /// The colour and the opacity of a pixel at a column and row.
     pub(super) fn pixel(
         &self,

@@ -47,9 +47,12 @@
 //! behind itself, where the nearest layer clamps its depth to its own radius (see
 //! [`mod@crate::splat::project`]) and epsilon < (scale - 1) r, and, as depths of another radius
 //! round otherwise, anywhere with an epsilon of 0.
+//!
+//! The definition is over any [`Exact`] number; `fast` gives the same bits for `f32`.
 
 mod compositing;
 pub mod explain;
+mod fast;
 mod nearest;
 mod picture;
 mod planes;
@@ -58,7 +61,7 @@ mod settings;
 pub use settings::Settings;
 
 use crate::error::Result;
-use crate::frame::NamedPlane;
+use crate::frame::{NamedPlane, Pool};
 use crate::index::grouping::Grouping;
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
@@ -75,6 +78,7 @@ impl Algorithm for Settings {
     const STAGES: &'static [Stage] = planes::STAGES;
     const GROUPING: Option<Grouping> = Some(transparent::GROUPING);
     const BACK_TO_FRONT: bool = true;
+    const FAST_BYTES_A_PIXEL: Option<u64> = Some(72);
     type Memory = ();
 
     fn splats(&self) -> Option<&SplatSettings> {
@@ -87,6 +91,10 @@ impl Algorithm for Settings {
 
     fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         picture::define(job, self, stages)
+    }
+
+    fn draw(&self, job: &Job<'_>, (): &mut (), pool: &mut Pool) -> Result<Picture<f32>> {
+        fast::draw(job, self, pool)
     }
 
     fn stage<R: Exact>(

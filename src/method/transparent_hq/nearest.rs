@@ -13,7 +13,8 @@ use crate::shade::phong::Shader;
 use crate::splat::View;
 
 /// The stencil of pixels that the nearest layer covers: 1.
-const MASK: Stencil = Stencil { reference: 1, pass: Operation::Replace, ..Stencil::DISABLED };
+pub(super) const MASK: Stencil =
+    Stencil { reference: 1, pass: Operation::Replace, ..Stencil::DISABLED };
 
 /// Fragments of the other layers pass where the nearest layer is.
 const BEHIND: Stencil = Stencil { function: Function::Equal, pass: Operation::Keep, ..MASK };

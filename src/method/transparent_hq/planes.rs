@@ -5,7 +5,7 @@ use super::compositing::{count, count_by_opacity};
 use super::nearest::FrontLayer;
 use crate::composite::over::Blend;
 use crate::error::Result;
-use crate::frame::{NO_ID, NamedPlane};
+use crate::frame::{NO_ID, NamedPlane, Plane};
 use crate::method::algorithm::Job;
 use crate::method::given::Given;
 use crate::method::resolved::{self, ALPHA, DEPTH, ID, SHADED, WEIGHT};
@@ -112,12 +112,22 @@ pub(super) fn nearest_stages<R: Exact>(nearest: &Tiled<FrontLayer<R>>) -> [Named
 
 /// What the nearest layer leaves in every picture.
 pub(super) fn nearest<R: Exact>(nearest: &Tiled<FrontLayer<R>>) -> [NamedPlane<R>; 4] {
-    [
-        DEPTH.scalar(0, nearest.plane(|pixel| pixel.depth)),
-        NORMAL.triple(0, nearest.plane(|pixel| pixel.normal)),
-        WEIGHT.scalar(0, nearest.plane(|pixel| pixel.weight)),
-        ID.index(0, nearest.plane(|pixel| pixel.id)),
-    ]
+    nearest_planes(
+        nearest.plane(|pixel| pixel.depth),
+        nearest.plane(|pixel| pixel.normal),
+        nearest.plane(|pixel| pixel.weight),
+        nearest.plane(|pixel| pixel.id),
+    )
+}
+
+/// The same of planes.
+pub(super) fn nearest_planes<R: Exact>(
+    depth: Plane<R>,
+    normal: Plane<[R; 3]>,
+    weight: Plane<R>,
+    id: Plane<u32>,
+) -> [NamedPlane<R>; 4] {
+    [DEPTH.scalar(0, depth), NORMAL.triple(0, normal), WEIGHT.scalar(0, weight), ID.index(0, id)]
 }
 
 /// Somebody's nearest layer, as the other layers need it: without surfel and weight.
@@ -152,6 +162,11 @@ pub(super) fn compositing<R: Exact>(
     others: &Tiled<GroupAverage<R>>,
 ) -> Vec<NamedPlane<R>> {
     let mut planes: Vec<_> = shown(job, blends).into();
-    planes.push(LAYERS.scalar(0, nearest.with(others, count).plane(|count| *count)));
+    planes.push(layers(nearest.with(others, count).plane(|count| *count)));
     planes
+}
+
+/// The counts of layers.
+pub(super) fn layers<R: Exact>(layers: Plane<R>) -> NamedPlane<R> {
+    LAYERS.scalar(0, layers)
 }

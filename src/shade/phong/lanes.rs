@@ -66,16 +66,20 @@ fn group<R: Exact>(
     };
     let mut color = surface;
     if !shader.lights.is_empty() {
+        let mut points = [[R::ZERO; LANES]; 3];
+        for (i, &t) in depth.iter().enumerate() {
+            put_vector(&mut points, i, shader.position(first + i, row.y, t));
+        }
         let normal = gather(row.normal, first).unwrap_or([[R::ZERO; LANES]; 3]);
         color = match gather(row.tangent, first) {
             None => {
                 let turned = |i| shader.view.direction(vector(&normal, i));
                 let form = |i| Form { normal: turned(i), tangent: Vector3::ZERO };
-                lit(shader, (first, row.y), &depth, form, &surface)
+                lit(shader, &points, form, &surface)
             }
             Some(tangent) => {
                 let form = |i| shader.form(vector(&normal, i), vector(&tangent, i));
-                lit(shader, (first, row.y), &depth, form, &surface)
+                lit(shader, &points, form, &surface)
             }
         }
     }
@@ -86,22 +90,69 @@ fn group<R: Exact>(
     }
 }
 
-/// The colours of the pixels from (first, y) on, at these depths, before the lights of a scene.
+impl<R: Exact> Shader<R> {
+    /// [`Shader::pixel`] of surfaces at a block of pixels, in rows of so many columns, whose first
+    /// is (x, y).
+    #[inline(always)]
+    pub(crate) fn block<const COLUMNS: usize>(
+        &self,
+        (x, y): (u32, u32),
+        depth: &Lanes<R>,
+        normal: &[Lanes<R>; 3],
+        surface: &[Lanes<R>; 3],
+    ) -> [Lanes<R>; 3] {
+        let mut color = *surface;
+        if !self.lights.is_empty() {
+            let (x, y, mut points) = (x as usize, y as usize, [[R::ZERO; LANES]; 3]);
+            for (i, &t) in depth.iter().enumerate() {
+                let point = self.position(x + i % COLUMNS, y + i / COLUMNS, t);
+                put_vector(&mut points, i, point);
+            }
+            let turned = |i| self.view.direction(vector(normal, i));
+            let form = |i| Form { normal: turned(i), tangent: Vector3::ZERO };
+            color = lit(self, &points, form, surface);
+        }
+        for channel in &mut color {
+            for (value, &t) in channel.iter_mut().zip(depth) {
+                *value = if t.is_finite() { *value } else { R::ZERO };
+            }
+        }
+        color
+    }
+
+    /// [`Shader::surfel`] of several surfels: their positions and normals in world space.
+    #[inline(always)]
+    pub(crate) fn surfels(
+        &self,
+        positions: &[Lanes<R>; 3],
+        normals: &[Lanes<R>; 3],
+        surface: &[Lanes<R>; 3],
+    ) -> [Lanes<R>; 3] {
+        if self.lights.is_empty() {
+            return *surface;
+        }
+        let mut points = [[R::ZERO; LANES]; 3];
+        for i in 0..LANES {
+            put_vector(&mut points, i, self.view.point(vector(positions, i)));
+        }
+        let turned = |i| self.view.direction(vector(normals, i));
+        let form = |i| Form { normal: turned(i), tangent: Vector3::ZERO };
+        lit(self, &points, form, surface)
+    }
+}
+
+/// The colours of these points in view space, before the lights of a scene.
 #[inline(always)]
 fn lit<R: Exact>(
     shader: &Shader<R>,
-    (first, y): (usize, usize),
-    depth: &Lanes<R>,
+    points: &[Lanes<R>; 3],
     form: impl Fn(usize) -> Form<R>,
     surface: &[Lanes<R>; 3],
 ) -> [Lanes<R>; 3] {
     let answer = Answer::new(&shader.material);
-    let (mut points, mut eyes) = ([[R::ZERO; LANES]; 3], [[R::ZERO; LANES]; 3]);
-    let mut color = [[R::ZERO; LANES]; 3];
+    let (mut eyes, mut color) = ([[R::ZERO; LANES]; 3], [[R::ZERO; LANES]; 3]);
     for i in 0..LANES {
-        let p = shader.position(first + i, y, depth[i]);
-        put_vector(&mut points, i, p);
-        put_vector(&mut eyes, i, shader.towards_eye(p));
+        put_vector(&mut eyes, i, shader.towards_eye(vector(points, i)));
         for c in 0..3 {
             color[c][i] = answer.ambient * surface[c][i];
         }
@@ -109,7 +160,7 @@ fn lit<R: Exact>(
     for (place, light) in &shader.lights {
         let (mut cosine, mut gloss) = ([R::ZERO; LANES], [R::ZERO; LANES]);
         for i in 0..LANES {
-            let l = place.from(vector(&points, i));
+            let l = place.from(vector(points, i));
             let (n, n_l) = form(i).towards(l);
             let r_v = mirrored(n, n_l, l, vector(&eyes, i));
             cosine[i] = n_l;

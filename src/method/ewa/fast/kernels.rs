@@ -61,12 +61,12 @@ vectorized!(
                 };
                 add(&mut block.weight, &weight, 1.0);
                 if NORMAL {
-                    for (sum, value) in block.normal.iter_mut().zip(splat.normal) {
+                    for (sum, value) in block.normal.iter_mut().zip(splat.attributes.normal) {
                         add(sum, &weight, value);
                     }
                 }
                 if COLOR {
-                    for (sum, value) in block.color.iter_mut().zip(splat.color) {
+                    for (sum, value) in block.color.iter_mut().zip(splat.attributes.color) {
                         add(sum, &weight, value);
                     }
                 }

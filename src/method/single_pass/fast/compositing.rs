@@ -9,7 +9,7 @@ use crate::splat::Shared;
 
 impl GroupImages {
     /// The nearest fragment of each pixel.
-    pub(super) fn nearest(&self, tile: &mut Tile) {
+    pub(in crate::method) fn nearest(&self, tile: &mut Tile) {
         for (block, nearest) in tile.blocks.iter_mut().zip(&self.nearest) {
             block.nearest = nearest.nearness;
             for (id, &splat) in block.id.iter_mut().zip(&nearest.splat) {
@@ -19,7 +19,7 @@ impl GroupImages {
     }
 
     /// The sums over what passes the epsilon-z test; fragments that do not pass lose their weight.
-    pub(super) fn composite(&mut self, tile: &mut Tile, shared: &Shared<f32>) {
+    pub(in crate::method) fn composite(&mut self, tile: &mut Tile, shared: &Shared<f32>) {
         composite(self, tile, shared);
     }
 }
@@ -50,6 +50,9 @@ vectorized!(
                         *sum += image.weight[i] * attribute;
                     }
                 }
+            }
+            if let Some(opacities) = images.opacities.get_mut(index) {
+                *opacities = sums.map(|[.., opacity]| opacity);
             }
             for (i, [r, g, b, weight, x, y, z, _]) in sums.into_iter().enumerate() {
                 block.weight[i] = weight;

@@ -24,7 +24,7 @@ struct KeptFragments {
 impl GroupImages {
     /// Draws every splat into the image of its group, with the plain depth test if there are no
     /// bins.
-    pub(super) fn draw(
+    pub(in crate::method) fn draw(
         &mut self,
         tile: &Tile,
         shared: &Shared<f32>,

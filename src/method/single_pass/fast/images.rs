@@ -1,12 +1,12 @@
 //! The depth-images of the groups in one tile: only the blocks that a splat touches.
 
 use crate::frame::NO_ID;
-use crate::method::fast::tile::Tile;
+use crate::method::fast::groups::sorted;
+use crate::method::fast::tile::{Surface, Tile};
 use crate::number::lanes::{LANES, Lanes};
 use crate::scene::Groups;
 
-/// Colour, 1 and normal of a splat, so that all sums of a pixel are those of one vector; the last
-/// number means nothing.
+/// Colour, 1, normal and opacity of a splat, so that all sums of a pixel are those of one vector.
 pub(super) type Attributes = [f32; 8];
 
 /// What the image of a group keeps at the pixels of a block.
@@ -31,7 +31,7 @@ pub(super) struct NearestFragments {
 }
 
 /// The images of all groups in one tile.
-pub(super) struct GroupImages {
+pub(in crate::method) struct GroupImages {
     /// The splats of the tile, by group and then ascending.
     pub(super) order: Vec<u32>,
     /// Each group that has splats: where it ends in `order`.
@@ -49,12 +49,19 @@ pub(super) struct GroupImages {
     pub(super) counts: Vec<usize>,
     /// Of each block.
     pub(super) nearest: Vec<NearestFragments>,
+    /// Of each block, if they are wanted, the sums of weighted opacities.
+    pub(in crate::method) opacities: Vec<Lanes>,
 }
 
 impl GroupImages {
     /// Sorts the splats of a tile by group; nothing is touched yet. `empty` is the nearness of an
-    /// empty pixel.
-    pub(super) fn new(tile: &Tile, groups: &Groups, empty: f32) -> Self {
+    /// empty pixel; `opacity` gives that of a surfel, if opacities are wanted.
+    pub(in crate::method) fn new(
+        tile: &Tile,
+        groups: &Groups,
+        empty: f32,
+        opacity: Option<impl Fn(u32) -> f32>,
+    ) -> Self {
         let (splats, blocks) = (tile.splats.len(), tile.blocks.len());
         // A loop of its own: the groups are far away, and a short loop waits for many at once.
         let own: Vec<u8> = tile.splats.iter().map(|s| groups.own()[s.surfel as usize]).collect();
@@ -62,9 +69,10 @@ impl GroupImages {
         let mut surfels = Vec::with_capacity(splats + 1);
         let mut attributes = Vec::with_capacity(splats + 1);
         for splat in &tile.splats {
-            let ([r, g, b], [x, y, z]) = (splat.color, splat.normal);
+            let Surface { normal: [x, y, z], color: [r, g, b] } = splat.attributes;
             surfels.push(splat.surfel);
-            attributes.push([r, g, b, 1.0, x, y, z, 0.0]);
+            let opacity = opacity.as_ref().map_or(0.0, |of| of(splat.surfel));
+            attributes.push([r, g, b, 1.0, x, y, z, opacity]);
         }
         surfels.push(NO_ID);
         attributes.push([0.0; 8]);
@@ -80,32 +88,7 @@ impl GroupImages {
             lists: vec![0; most],
             counts: vec![0; blocks],
             nearest: vec![none; blocks],
+            opacities: opacity.map_or_else(Vec::new, |_| vec![[0.0; LANES]; blocks]),
         }
     }
-}
-
-/// The indices of a list of groups, sorted by group and then ascending, and where each group that
-/// occurs ends.
-fn sorted(groups: &[u8], count: usize) -> (Vec<u32>, Vec<usize>) {
-    let mut next = vec![0; count];
-    for &group in groups {
-        next[usize::from(group)] += 1;
-    }
-    let mut ends = Vec::new();
-    let mut sum = 0;
-    for count in &mut next {
-        let start = sum;
-        sum += *count;
-        if *count > 0 {
-            ends.push(sum);
-        }
-        *count = start;
-    }
-    let mut order = vec![0; groups.len()];
-    for (i, &group) in groups.iter().enumerate() {
-        let place = &mut next[usize::from(group)];
-        order[*place] = i as u32;
-        *place += 1;
-    }
-    (order, ends)
 }

@@ -12,7 +12,7 @@
 
 mod compositing;
 mod geometry;
-mod images;
+pub(in crate::method) mod images;
 
 use super::Settings;
 use crate::error::Result;
@@ -52,7 +52,7 @@ pub(super) fn render(
     let shared = &prepared.shared;
     let passes = draw(job, &prepared, target, |tile| {
         let start = Instant::now();
-        let mut images = GroupImages::new(tile, groups, shared.empty());
+        let mut images = GroupImages::new(tile, groups, shared.empty(), None::<fn(u32) -> f32>);
         images.draw(tile, shared, bins.as_ref());
         let drawn = Instant::now();
         images.nearest(tile);

@@ -1,0 +1,27 @@
+//! The splats of a tile, group by group.
+
+/// The indices of a list of groups, sorted by group and then ascending, and where each group that
+/// occurs ends.
+pub(in crate::method) fn sorted(groups: &[u8], count: usize) -> (Vec<u32>, Vec<usize>) {
+    let mut next = vec![0; count];
+    for &group in groups {
+        next[usize::from(group)] += 1;
+    }
+    let mut ends = Vec::new();
+    let mut sum = 0;
+    for count in &mut next {
+        let start = sum;
+        sum += *count;
+        if *count > 0 {
+            ends.push(sum);
+        }
+        *count = start;
+    }
+    let mut order = vec![0; groups.len()];
+    for (i, &group) in groups.iter().enumerate() {
+        let place = &mut next[usize::from(group)];
+        order[*place] = i as u32;
+        *place += 1;
+    }
+    (order, ends)
+}

@@ -1,0 +1,110 @@
+//! Pictures of transparent layers: the planes that they have, and the blocks of a tile.
+
+use super::store::{clear_plane, interleaved, row, store_plane};
+use crate::frame::{Exec, Grid, NO_ID, Plane, Pool, Rect, StripMut};
+use crate::number::lanes::{LANES, Lanes};
+
+/// What the layers of the pixels of a block come to.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(in crate::method) struct LayeredBlock {
+    /// Over black.
+    pub(in crate::method) color: [Lanes; 3],
+    pub(in crate::method) alpha: Lanes,
+    /// Depth of the nearest fragment; +inf where there is none.
+    pub(in crate::method) depth: Lanes,
+    /// Its surfel; [`NO_ID`] where there is none.
+    pub(in crate::method) id: [u32; LANES],
+    /// How many layers.
+    pub(in crate::method) layers: Lanes,
+}
+
+impl LayeredBlock {
+    /// Nothing is seen.
+    pub(in crate::method) const EMPTY: Self = Self {
+        color: [[0.0; LANES]; 3],
+        alpha: [0.0; LANES],
+        depth: [f32::INFINITY; LANES],
+        id: [NO_ID; LANES],
+        layers: [0.0; LANES],
+    };
+}
+
+/// The planes of a picture, before its environment.
+pub(in crate::method) struct LayeredPlanes<L> {
+    pub(in crate::method) color: Plane<[f32; 3]>,
+    pub(in crate::method) alpha: Plane<f32>,
+    pub(in crate::method) depth: Plane<f32>,
+    pub(in crate::method) id: Plane<u32>,
+    pub(in crate::method) layers: Plane<L>,
+}
+
+/// One strip of them, writable.
+pub(in crate::method) struct LayeredStrip<'a, L> {
+    color: StripMut<'a, [f32; 3]>,
+    alpha: StripMut<'a, f32>,
+    pub(in crate::method) depth: StripMut<'a, f32>,
+    id: StripMut<'a, u32>,
+    layers: StripMut<'a, L>,
+}
+
+impl<L: Send> LayeredPlanes<L> {
+    /// Planes in memory that is used again: the values are any.
+    pub(in crate::method) fn new(size: [u32; 2], layers: Plane<L>, pool: &mut Pool) -> Self {
+        Self {
+            color: pool.triple(size),
+            alpha: pool.scalar(size),
+            depth: pool.scalar(size),
+            id: pool.index(size),
+            layers,
+        }
+    }
+
+    /// The strips, row by row.
+    pub(in crate::method) fn strips(
+        &mut self,
+        grid: &Grid,
+        exec: &Exec,
+    ) -> Vec<LayeredStrip<'_, L>> {
+        let color = grid.cut(&mut self.color, exec).into_iter();
+        let alpha = grid.cut(&mut self.alpha, exec);
+        let depth = grid.cut(&mut self.depth, exec);
+        let id = grid.cut(&mut self.id, exec);
+        let layers = grid.cut(&mut self.layers, exec);
+        let planes = color.zip(alpha).zip(depth).zip(id).zip(layers);
+        planes
+            .map(|((((color, alpha), depth), id), layers)| LayeredStrip {
+                color,
+                alpha,
+                depth,
+                id,
+                layers,
+            })
+            .collect()
+    }
+}
+
+impl<L: Copy> LayeredStrip<'_, L> {
+    /// Writes a tile without splats.
+    pub(in crate::method) fn clear(&mut self, rect: &Rect, none: L) {
+        clear_plane(rect, &mut self.color, [0.0; 3]);
+        clear_plane(rect, &mut self.alpha, 0.0);
+        clear_plane(rect, &mut self.depth, f32::INFINITY);
+        clear_plane(rect, &mut self.id, NO_ID);
+        clear_plane(rect, &mut self.layers, none);
+    }
+
+    /// Copies the blocks of a tile into its rows.
+    pub(in crate::method) fn store(
+        &mut self,
+        rect: &Rect,
+        blocks: &[LayeredBlock],
+        layers: impl Fn(f32) -> L,
+    ) {
+        store_plane(rect, blocks, &mut self.color, |block, i| interleaved(&block.color, i));
+        store_plane(rect, blocks, &mut self.alpha, |block, i| row(&block.alpha, i));
+        store_plane(rect, blocks, &mut self.depth, |block, i| row(&block.depth, i));
+        store_plane(rect, blocks, &mut self.id, |block, i| row(&block.id, i));
+        store_plane(rect, blocks, &mut self.layers, |block, i| row(&block.layers, i).map(&layers));
+    }
+}

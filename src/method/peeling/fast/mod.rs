@@ -1,0 +1,106 @@
+//! The fast path for `f32`: the bits of the definition, from another layout, see [`crate::method`].
+//!
+//! Block after block is finished: the fragments of its splats are computed once, with their
+//! weights, and then layer after layer is taken from them. A fragment that is in a layer is struck
+//! out, and a splat without fragments left is dropped, so that a layer costs what lies at it and
+//! beyond it. Splats stay in ascending order, and so do the sums.
+
+mod fragments;
+mod layers;
+
+use super::{Settings, planes};
+use crate::frame::{Pool, Rect};
+use crate::method::algorithm::Job;
+use crate::method::fast::layered::{LayeredBlock, LayeredPlanes};
+use crate::method::fast::lists::BlockLists;
+use crate::method::fast::prepare;
+use crate::method::fast::tile::{BlockGrid, Record, Surface};
+use crate::method::picture::{Clock, Picture, before_environment};
+use crate::method::prepare::Prepared;
+use crate::scene::Surfels;
+use crate::shade::phong::Shader;
+use crate::splat::View;
+use fragments::Fragments;
+use std::time::Instant;
+
+/// A picture whose splats are projected and sorted into tiles.
+struct FastPeeling<'a> {
+    surfels: &'a Surfels,
+    prepared: Prepared<f32, Record>,
+    shader: Shader<f32>,
+    /// The colour of surfels that have none.
+    own: Option<[f32; 3]>,
+    /// The most layers of a pixel.
+    most: u32,
+}
+
+/// What is averaged of a splat: colour, opacity, normal, and 1, so that all sums of a pixel are
+/// those of one list.
+type Attributes = [f32; 8];
+
+/// The picture.
+pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Picture<f32> {
+    let mut clock = Clock::default();
+    let peeling = FastPeeling::project(job, settings);
+    clock.lap("projection");
+    let (size, grid) = (job.camera.size(), job.grid());
+    let mut target = LayeredPlanes::new(size, pool.count(size), pool);
+    let times = job.exec.ordered(target.strips(&grid, job.exec), |mut pixels| {
+        let start = Instant::now();
+        for (index, rect) in pixels.depth.strip.tiles() {
+            match peeling.tile(index, rect) {
+                Some(blocks) => pixels.store(&rect, &blocks, |layers| layers as u8),
+                None => pixels.clear(&rect, 0),
+            }
+        }
+        [start.elapsed()]
+    });
+    clock.shares(["layers"], &times);
+    let LayeredPlanes { color, alpha, depth, id, layers } = target;
+    let shown = before_environment(job.scene, job.camera, color, alpha, job.exec);
+    let mut left: Vec<_> = planes::shown(shown).into();
+    left.extend(planes::pixel_planes(depth, id, layers));
+    clock.lap("blending");
+    let (frame, timings) = (job.frame(left), clock.into_laps());
+    Picture { frame, tally: peeling.prepared.tally, timings }
+}
+
+impl<'a> FastPeeling<'a> {
+    fn project(job: &Job<'a>, settings: &Settings) -> Self {
+        let scene = job.scene;
+        let colored = scene.surfels.color().is_some();
+        Self {
+            surfels: &scene.surfels,
+            prepared: prepare(job, &settings.splats),
+            shader: Shader::new(View::new(job.camera), &scene.lights, scene.material),
+            own: (!colored).then(|| scene.material.color.to_array()),
+            most: settings.layers,
+        }
+    }
+
+    /// The layers of the blocks of a tile; none if it has no splats.
+    fn tile(&self, tile: usize, rect: Rect) -> Option<Vec<LayeredBlock>> {
+        let mut splats = Vec::new();
+        self.prepared.gather_f32(tile, &rect, &mut splats);
+        if splats.is_empty() {
+            return None;
+        }
+        let (grid, shared) = (BlockGrid::new(rect), &self.prepared.shared);
+        let lists = BlockLists::new(&splats, 0..splats.len() as u32, &grid, shared);
+        let attributes: Vec<_> = splats.iter().map(|splat| self.attributes(splat)).collect();
+        let mut fragments = Fragments::default();
+        let mut blocks = vec![LayeredBlock::EMPTY; grid.len()];
+        for (block, list) in lists.blocks() {
+            let corner = grid.corner(block);
+            fragments.collect(&splats, list, corner, shared);
+            self.peel(&mut blocks[block], &mut fragments, &attributes, corner);
+        }
+        Some(blocks)
+    }
+
+    fn attributes(&self, splat: &Record) -> Attributes {
+        let Surface { normal: [x, y, z], color: [r, g, b] } = splat.attributes;
+        let opacity = self.surfels.opacity().map_or(1.0, |all| all[splat.surfel as usize]);
+        [r, g, b, opacity, x, y, z, 1.0]
+    }
+}

@@ -1,0 +1,93 @@
+//! The compositing pass over a block of pixels: the average of the groups.
+
+use super::blending::LayersBlock;
+use crate::frame::NO_ID;
+use crate::method::transparent::Holes;
+use crate::number::lanes::{LANES, Lanes, each, mask, select, select_u32};
+
+/// The groups of the pixels of a block together: sums first, then averages.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(in crate::method) struct AverageBlock {
+    /// Over black.
+    pub(in crate::method) color: [Lanes; 3],
+    pub(in crate::method) alpha: Lanes,
+    /// See [`LayersBlock::opacity`].
+    pub(in crate::method) opacity: Lanes,
+    /// See [`LayersBlock::hidden`].
+    pub(in crate::method) hidden: Lanes,
+    /// Count of layers.
+    pub(in crate::method) layers: Lanes,
+    /// Least depth of any group.
+    pub(in crate::method) depth: Lanes,
+    /// Its surfel; of equal depths the lower one.
+    pub(in crate::method) id: [u32; LANES],
+    /// How many groups have a fragment.
+    groups: Lanes,
+}
+
+impl AverageBlock {
+    /// No group.
+    pub(in crate::method) const EMPTY: Self = Self {
+        color: [[0.0; LANES]; 3],
+        alpha: [0.0; LANES],
+        opacity: [0.0; LANES],
+        hidden: [0.0; LANES],
+        layers: [0.0; LANES],
+        depth: [f32::INFINITY; LANES],
+        id: [NO_ID; LANES],
+        groups: [0.0; LANES],
+    };
+
+    /// Adds a group; one without a fragment would add zeros.
+    #[inline(always)]
+    pub(super) fn add<const TOTALS: bool>(&mut self, layers: &LayersBlock) {
+        // Line by line: a loop over the channels would become the vector.
+        plus(&mut self.color[0], &layers.color[0]);
+        plus(&mut self.color[1], &layers.color[1]);
+        plus(&mut self.color[2], &layers.color[2]);
+        plus(&mut self.alpha, &layers.alpha);
+        if TOTALS {
+            plus(&mut self.opacity, &layers.opacity);
+            plus(&mut self.hidden, &layers.hidden);
+        }
+        plus(&mut self.layers, &layers.count);
+        plus(&mut self.groups, &each(|i| if layers.count[i] > 0.0 { 1.0 } else { 0.0 }));
+        let (depth, id) = (self.depth, self.id);
+        let wins = mask(|i| {
+            let equal = (layers.depth[i] <= depth[i]) & (layers.id[i] < id[i]);
+            (layers.depth[i] < depth[i]) | equal
+        });
+        self.depth = select(&wins, &layers.depth, &depth);
+        self.id = select_u32(&wins, &layers.id, &id);
+    }
+
+    /// Divides the sums by the count of the groups that count.
+    #[inline(always)]
+    pub(super) fn divide<const TOTALS: bool>(&mut self, holes: Holes, groups: usize) {
+        let count = match holes {
+            // An average of no group is 0, as its sums are.
+            Holes::Skipped => each(|i| if self.groups[i] > 0.0 { self.groups[i] } else { 1.0 }),
+            Holes::Background => [groups as f32; LANES],
+        };
+        over(&mut self.color[0], &count);
+        over(&mut self.color[1], &count);
+        over(&mut self.color[2], &count);
+        over(&mut self.alpha, &count);
+        if TOTALS {
+            over(&mut self.opacity, &count);
+            over(&mut self.hidden, &count);
+        }
+        over(&mut self.layers, &count);
+    }
+}
+
+#[inline(always)]
+fn plus(sum: &mut Lanes, value: &Lanes) {
+    *sum = each(|i| sum[i] + value[i]);
+}
+
+#[inline(always)]
+fn over(sum: &mut Lanes, count: &Lanes) {
+    *sum = each(|i| sum[i] / count[i]);
+}

@@ -1,0 +1,101 @@
+//! Pass 1: the fast path of the single pass, with opacities, and the shading of what it leaves.
+
+use crate::composite::bins::DepthBins;
+use crate::composite::sum;
+use crate::error::Result;
+use crate::frame::Rect;
+use crate::method::algorithm::Job;
+use crate::method::fast::prepare;
+use crate::method::fast::tile::{PixelBlock, ROW, Record, Tile};
+use crate::method::prepare::Prepared;
+use crate::method::single_pass::fast::images::GroupImages;
+use crate::method::transparent_hq::Settings;
+use crate::method::transparent_hq::nearest::single_pass;
+use crate::number::Real;
+use crate::number::lanes::{LANES, Lanes, vectorized};
+use crate::scene::{Groups, Scene};
+use crate::shade::phong::Shader;
+use crate::splat::View;
+
+/// The splats of the nearest layer, projected and sorted into tiles.
+pub(super) struct FastNearest<'a> {
+    scene: &'a Scene,
+    groups: &'a Groups,
+    pub(super) prepared: Prepared<f32, Record>,
+    /// The bins of the Voronoi depth test; none for the plain one.
+    bins: Option<DepthBins<f32>>,
+    shader: Shader<f32>,
+}
+
+/// What the nearest layer shows at the pixels of a block.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct FrontBlock {
+    /// `C_F`: Phong-shaded.
+    pub(super) color: [Lanes; 3],
+    /// alpha: the average opacity, in [0, 1].
+    pub(super) opacity: Lanes,
+}
+
+impl<'a> FastNearest<'a> {
+    /// Projection.
+    pub(super) fn project(job: &Job<'a>, settings: &Settings) -> Result<Self> {
+        let (scene, settings) = (job.scene, single_pass(settings));
+        let (groups, bins) = (job.index.groups()?, settings.bins(&scene.surfels, job.camera)?);
+        let prepared = prepare(job, &settings.splats);
+        let shader = Shader::new(View::new(job.camera), &scene.lights, scene.material);
+        Ok(Self { scene, groups, prepared, bins, shader })
+    }
+
+    /// The geometry pass over a tile; none if it has no splats.
+    pub(super) fn geometry(&self, index: usize, rect: Rect) -> Option<(Tile, GroupImages)> {
+        let (surfels, shared) = (&self.scene.surfels, &self.prepared.shared);
+        let mut tile = Tile::new([true, surfels.color().is_some()]);
+        tile.gather(&self.prepared, index, rect);
+        if tile.splats.is_empty() {
+            return None;
+        }
+        let opacity = |surfel: u32| surfels.opacity().map_or(1.0, |all| all[surfel as usize]);
+        let mut images = GroupImages::new(&tile, self.groups, shared.empty(), Some(opacity));
+        images.draw(&tile, shared, self.bins.as_ref());
+        Some((tile, images))
+    }
+
+    /// The compositing pass, normalization and shading: leaves depth, surfel, weight and normal in
+    /// the blocks of the tile, and the least nearness that is within epsilon.
+    pub(super) fn resolve(&self, tile: &mut Tile, images: &mut GroupImages) -> Vec<FrontBlock> {
+        let shared = &self.prepared.shared;
+        images.nearest(tile);
+        tile.limits(shared, self.prepared.epsilon);
+        images.composite(tile, shared);
+        tile.normalize(shared);
+        let (grid, material) = (tile.grid, self.scene.material.color.to_array());
+        let own = (!tile.color).then_some(material);
+        let blocks = tile.blocks.iter().zip(&images.opacities).enumerate();
+        let front = |(index, (block, opacity)): (usize, (&PixelBlock, &Lanes))| {
+            shaded(&self.shader, block, opacity, (grid.corner(index), own))
+        };
+        blocks.map(front).collect()
+    }
+}
+
+vectorized!(
+    /// The colour and the opacity of the nearest layer at a block, whose first pixel is `corner`;
+    /// `own` is the colour of surfels that have none.
+    fn shaded(
+        shader: &Shader<f32>,
+        block: &PixelBlock,
+        opacity: &Lanes,
+        (corner, own): ((u32, u32), Option<[f32; 3]>),
+    ) -> FrontBlock {
+        let surface = own.map_or(block.color, |own| own.map(|value| [value; LANES]));
+        let color = shader.block::<ROW>(corner, &block.nearest, &block.normal, &surface);
+        let (weight, sums, mut opacity) = (block.weight, *opacity, [0.0; LANES]);
+        for i in 0..LANES {
+            let [alpha, ..] = sum::average([sums[i], 0.0, 0.0], weight[i]);
+            // The quotient of two sums may exceed 1 by their rounding.
+            opacity[i] = alpha.at_most(1.0);
+        }
+        FrontBlock { color, opacity }
+    }
+);
