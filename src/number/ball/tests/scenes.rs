@@ -64,15 +64,29 @@ pub(super) const KINDS: [Kind; 8] = [
     Kind::Extreme,
 ];
 
-/// A surfel, a camera, and a pixel.
+/// A surfel, a camera, and pixels.
 pub(super) struct Problem {
     pub(super) index: u64,
     camera: Camera,
     kernel: Kernel,
     disc: Disc<f32>,
-    /// Where the pixel is, in extents of the splat about its centre.
-    offset: [f32; 2],
+    /// Where the pixels are, in extents of the splat about its centre.
+    offsets: [[f32; 2]; PIXELS],
 }
+
+/// Pixels of a problem.
+const PIXELS: usize = 8;
+/// How many of the quantities are those of the splat; the others are of each pixel.
+const OF_SPLAT: usize = 11;
+
+/// The place among [`QUANTITIES`] of the value of this number.
+pub(super) fn quantity(value: usize) -> usize {
+    let of_pixel = QUANTITIES.len() - OF_SPLAT;
+    if value < OF_SPLAT { value } else { OF_SPLAT + (value - OF_SPLAT) % of_pixel }
+}
+
+/// The values of a problem.
+pub(super) const VALUES: usize = OF_SPLAT + PIXELS * (QUANTITIES.len() - OF_SPLAT);
 
 /// What a number found.
 pub(super) struct Quantities<R> {
@@ -101,7 +115,7 @@ impl Problem {
         let mut next = 0;
         let mut random = || {
             next += 1;
-            unit(bits(seed, kind as u64), 32 * index + next)
+            unit(bits(seed, kind as u64), 64 * index + next)
         };
         let mut direction = || {
             let v = Vec3::new(random() - 0.5, random() - 0.5, random() - 0.5);
@@ -160,17 +174,16 @@ impl Problem {
             }
             _ => Kernel::DEFAULT,
         };
-        let offset = [random(), random()].map(|random| 2.0 * random - 1.0);
-        Self { index, camera, kernel, disc, offset }
+        let offsets = [(); PIXELS].map(|()| [random(), random()].map(|random| 2.0 * random - 1.0));
+        Self { index, camera, kernel, disc, offsets }
     }
 
     /// Everything in a number that decides by itself, and the record it stores.
     pub(super) fn evaluate<R: Real<Truth = bool>>(&self) -> (Quantities<R>, Footprint<f32>) {
         let crosses = self.projector::<R>().crosses(&self.disc());
-        let mut values = Vec::new();
-        let footprint = self.from_scene::<R>(crosses, &mut values);
+        let footprint = self.footprint::<R>(crosses);
         let record = footprint.map(R::to_f32);
-        self.fragment(&record.map(R::from_f32), &mut values);
+        let values = self.values(&footprint, &record.map(R::from_f32));
         (Quantities { values, crosses }, record)
     }
 
@@ -180,9 +193,7 @@ impl Problem {
         crosses: bool,
         record: &Footprint<f32>,
     ) -> Quantities<Ball<P>> {
-        let mut values = Vec::new();
-        self.from_scene::<Ball<P>>(crosses, &mut values);
-        self.fragment(&record.map(Ball::from_f32), &mut values);
+        let values = self.values::<Ball<P>>(&self.footprint(crosses), &record.map(Ball::from_f32));
         let may_cross = self.projector::<Ball<P>>().crosses(&self.disc());
         assert!(if crosses { may_cross.possibly() } else { !may_cross.certainly() }, "crosses");
         Quantities { values, crosses }
@@ -203,30 +214,34 @@ impl Problem {
         }
     }
 
-    fn from_scene<R: Real>(&self, crosses: bool, values: &mut Vec<R>) -> Footprint<R> {
-        let (splat, _) = project_as(&self.projector(), &self.disc(), 0, crosses);
-        let f = splat.footprint;
+    fn footprint<R: Real>(&self, crosses: bool) -> Footprint<R> {
+        project_as(&self.projector(), &self.disc(), 0, crosses).0.footprint
+    }
+
+    /// The quantities of a footprint from the scene, and of the client's own one.
+    fn values<R: Real>(&self, f: &Footprint<R>, own: &Footprint<R>) -> Vec<R> {
+        let shared = Shared::new(&View::new(&self.camera), &self.kernel);
+        let mut values = Vec::with_capacity(VALUES);
         values.extend([f.center.x, f.center.y, f.ux, f.uy, f.vy, f.w0, f.wx, f.wy, f.w_far]);
         values.extend([f.w_near, f.amplitude]);
-        self.fragment(&f, values);
-        f
+        for pixel in self.pixels() {
+            for footprint in [f, own] {
+                let (q, w) = fragment(&shared, footprint, pixel);
+                values.extend([q, w, shared.depth(w), footprint.weight(q)]);
+            }
+        }
+        values
     }
 
-    /// q, w, t and the weight at the pixel of the problem, which is the same in every number.
-    fn fragment<R: Real>(&self, footprint: &Footprint<R>, values: &mut Vec<R>) {
-        let shared = Shared::new(&View::new(&self.camera), &self.kernel);
-        let (q, w) = fragment(&shared, footprint, self.pixel());
-        values.extend([q, w, shared.depth(w), footprint.weight(q)]);
-    }
-
-    /// A pixel in the ellipse, or near it, by `f64`.
-    fn pixel(&self) -> (u32, u32) {
-        let (splat, _) = project_as(&self.projector::<f64>(), &self.disc(), 0, false);
-        let f = splat.footprint;
-        let [u, v] = self.offset.map(|offset| 2.2 * f64::from(offset));
-        let dy = v / f.vy;
-        let dx = (u - f.uy * dy) / f.ux;
+    /// Pixels in the ellipse, or near it, by `f64`: the same for every number.
+    fn pixels(&self) -> [(u32, u32); PIXELS] {
+        let f = self.footprint::<f64>(false);
         let at = |position: f64| position.clamp(0.0, 65_535.0) as u32;
-        (at(f.center.x + dx), at(f.center.y + dy))
+        self.offsets.map(|offset| {
+            let [u, v] = offset.map(|offset| 2.2 * f64::from(offset));
+            let dy = v / f.vy;
+            let dx = (u - f.uy * dy) / f.ux;
+            (at(f.center.x + dx), at(f.center.y + dy))
+        })
     }
 }
