@@ -70,6 +70,7 @@ taken! {
     template::Settings, Template: [
         "moc08_covering_3",
         "moc08_f64_7",
+        "moc08_gaussian_5",
         "moc08_odd_size_radius",
         "moc08_sphere_3",
         "moc08_torus_5",

@@ -170,15 +170,22 @@ impl<R: Exact, const P: u32> TemplateStages<'_, R, P> {
         assert_eq!((depth, radius), (expected.depth, expected.radius), "{place}: front");
         assert_eq!(value("weight"), value("gathered.weight"), "{place}: weight");
         assert_eq!(value("A"), [1.0; 3], "{place}: A");
-        for (key, expected) in [
+        // Exponentials have rows of their own: two libraries may give two of them.
+        let row = match self.template.settings.falloff {
+            Falloff::Linear => {
+                ["gathered.weight", "gathered.depths", "gathered.normal", "gathered"]
+            }
+            Falloff::Gaussian => GAUSSIAN,
+        };
+        for (row, (plane, expected)) in row.into_iter().zip([
             ("gathered.weight", [expected.weight; 3]),
             ("gathered.depths", [expected.depths; 3]),
             ("gathered.normal", expected.normal),
-        ] {
-            self.measure(key, value(key), expected, [x, y]);
+        ]) {
+            self.measure(row, value(plane), expected, [x, y]);
         }
         if let Some(color) = color {
-            self.measure("gathered", color, expected.color, [x, y]);
+            self.measure(row[3], color, expected.color, [x, y]);
         }
     }
 
@@ -218,6 +225,9 @@ impl<R: Exact, const P: u32> TemplateStages<'_, R, P> {
         self.check.best(outcomes, || format!("shaded ({x}, {y})"));
     }
 }
+
+/// The rows of what is gathered with exponential weights.
+const GAUSSIAN: [&str; 4] = ["gaussian.weight", "gaussian.depths", "gaussian.normal", "gaussian"];
 
 /// All templates under all rules, and one rule with the other weight.
 pub(crate) fn all_settings(cull: bool) -> Vec<Settings> {

@@ -2,12 +2,14 @@
 //!
 //! The unit is the running error bound of [`crate::kit::number`]: the sum of all roundings on the
 //! way, which the same operations cannot exceed. In f64 the oracle rounds as the documentation says,
-//! so that no bit may differ, but in the power of Phong's formula.
+//! so that no bit may differ, but in exponentials and the power of Phong's formula.
 
 use crate::kit::tolerance::Arithmetic::{F32, F64};
 use crate::kit::tolerance::{Row, row};
 
 const SAME: &str = "the documented operations in the documented order";
+
+const EXP: &str = "std's exp is off by a unit or so, the rest is the same";
 
 const COPIED: &str = "given, not computed";
 
@@ -51,6 +53,14 @@ pub(crate) const TEMPLATE: &[Row] = &[
     row("gathered.normal", F64, 0.0, SAME),
     row("gathered", F32, 1.0, "a product more than the weight"),
     row("gathered", F64, 0.0, SAME),
+    row("gaussian.weight", F32, 1.0, "the form, a quotient, an exponential, one sum a centre"),
+    row("gaussian.weight", F64, 0.5, EXP),
+    row("gaussian.depths", F32, 1.0, "a product more than the weight"),
+    row("gaussian.depths", F64, 0.5, EXP),
+    row("gaussian.normal", F32, 1.0, "a product more than the weight"),
+    row("gaussian.normal", F64, 0.5, EXP),
+    row("gaussian", F32, 1.0, "a product more than the weight"),
+    row("gaussian", F64, 0.5, EXP),
     row("Z", F32, 1.0, "one quotient"),
     row("Z", F64, 0.0, SAME),
     row("normal", F32, 1.0, "a quotient, a column of the view matrix, a length, a quotient"),
