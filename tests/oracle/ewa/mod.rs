@@ -3,6 +3,7 @@
 pub(crate) mod cases;
 mod known;
 mod laws;
+mod margin;
 pub(crate) mod model;
 pub(crate) mod splat;
 pub(crate) mod stages;
