@@ -378,7 +378,8 @@ impl<R: Real> Projector<R> {
             & f.vy.le(largest)
             & f.center.x.abs().le(largest)
             & f.center.y.abs().le(largest)
-            & f.w_far.le(f.w_near);
+            & f.w_far.is_finite()
+            & f.w_near.is_finite();
         let touches = self.frustum.touches(placed.p, placed.t, radius);
         Reasons {
             behind: !placed.t.gt(self.view.near),

@@ -37,7 +37,7 @@
 //!
 //! - **Exact operations.** Where operations round to nearest, both radii are 0 and the midpoint of the
 //!   result is an `f32`, the radius is 0; an infinity is an `f32`, so 1 / 0 of exact numbers is
-//!   exactly +inf. 0 times a bounded ball, and 0 divided by one that cannot be 0, are exactly 0.
+//!   exactly +inf, and so is a bounded ball and +inf. 0 times a bounded ball, and 0 divided by one that cannot be 0, are exactly 0.
 //! - **Unbounded.** A radius of +inf stands for any number or infinity, a radius of NaN for NaN too:
 //!   a quotient whose divisor may be 0, a result that may exceed the largest `f32`. Whether such a
 //!   ball is finite is undecided.
@@ -186,11 +186,14 @@ impl<P: Profile> Add for Ball<P> {
         if is_exact::<P>(middle, spread) {
             return Self::exact(middle);
         }
-        if self.is_bounded() | other.is_bounded() {
-            return P::sum(middle, [&self, &other]);
+        match (self.is_bounded(), other.is_bounded()) {
+            (true, true) => P::sum(middle, [&self, &other]),
+            // Infinite exactly, or unbounded.
+            (true, false) => Self::new(middle, other.radius),
+            (false, true) => Self::new(middle, self.radius),
+            // Infinities of both signs.
+            (false, false) => Self::unbounded(middle, true),
         }
-        // Infinities of both signs.
-        Self::unbounded(middle, true)
     }
 }
 

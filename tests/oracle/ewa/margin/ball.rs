@@ -115,6 +115,9 @@ impl Add for Ball {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         let middle = self.middle + other.middle;
+        if other.radius == 0.0 && other.middle.is_infinite() && self.radius.is_finite() {
+            return Self::exact(middle);
+        }
         Self::rounded([self, other], middle, self.radius + other.radius, 0.0)
     }
 }

@@ -70,15 +70,6 @@ impl Model {
         let cover = if hidden { f64::INFINITY } else { cover };
         cover.min(fragment.t.distance(limit)).min(fragment.w.distance(nearest.w))
     }
-
-    /// Whether the program is known to differ from the page at a pixel, and to say 0.
-    ///
-    /// It takes a splat for one that may be degenerate where the balls of `w_far` and `w_near`
-    /// overlap: discs that face a perspective camera, discs that are small beside the rounding of
-    /// their depth. The page has no such reason, and no rounding can exchange the two.
-    fn disputed(&self, pixel: [u32; 2]) -> bool {
-        self.asked(pixel).any(|(_, s, _)| s.range[0].compare(s.range[1]).is_none())
-    }
 }
 
 /// How many pixels had a margin of each kind.
@@ -88,14 +79,12 @@ struct Seen {
     below: u32,
     above: u32,
     infinite: u32,
-    disputed: u32,
 }
 
 impl Seen {
-    fn note(&mut self, found: f32, disputed: bool) {
-        self.disputed += u32::from(disputed);
+    fn note(&mut self, found: f32) {
         match found {
-            0.0 => self.zero += u32::from(!disputed),
+            0.0 => self.zero += 1,
             f32::INFINITY => self.infinite += 1,
             _ if found <= 1.0 => self.below += 1,
             _ => self.above += 1,
@@ -110,20 +99,14 @@ fn the_margin_is_that_of_the_page() {
         let frame: Frame<f32> = case.drawing().frame();
         let (model, found) = (Model::new(&case), scalars(&frame, "margin"));
         for (i, x, y) in case.pixels() {
-            let page = model.margin([x, y], index(&frame, "id", i));
-            let disputed = model.disputed([x, y]);
-            let (found, expected) = (found[i], if disputed { 0.0 } else { page });
+            let (found, expected) = (found[i], model.margin([x, y], index(&frame, "id", i)));
             // Infinities are equal or not; their difference is no number.
             let close = found == expected || (found - expected).abs() <= STEP * expected.abs();
-            assert!(
-                close,
-                "pixel ({x}, {y}) of {}: {found}, but {expected}, disputed {disputed}",
-                case.name
-            );
-            seen.note(found, disputed);
+            assert!(close, "pixel ({x}, {y}) of {}: {found}, but {expected}", case.name);
+            seen.note(found);
         }
     }
-    let Seen { zero, below, above, infinite, disputed } = seen;
-    let least = [zero, below, above, infinite, disputed].into_iter().min();
+    let Seen { zero, below, above, infinite } = seen;
+    let least = [zero, below, above, infinite].into_iter().min();
     assert!(least > Some(100), "each kind of margin is met: {seen:?}");
 }
