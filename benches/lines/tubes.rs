@@ -18,7 +18,7 @@ use splatref::method::{Session, pyramid};
 use splatref::scene::{Camera, Lens, Polylines, Pose, Primitives, Triangles, Vertices};
 
 const SIDE: u32 = 512;
-const RADII: [f32; 6] = [1.3, 2.6, 5.2, 10.4, 20.8, 41.6];
+const RADII: [f32; 12] = [1.3, 2.6, 4.0, 5.2, 6.5, 8.0, 10.4, 13.0, 16.0, 20.8, 26.0, 32.0];
 /// Degrees from upright.
 const ANGLES: [f64; 5] = [0.0, 5.0, 15.0, 30.0, 45.0];
 

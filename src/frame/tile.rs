@@ -217,7 +217,8 @@ impl Grid {
         let bands = plane.values_mut().chunks_mut(width * self.tile as usize);
         // A strip is many short rows: cutting them out is work enough to be shared.
         let cut = exec.ordered(rows.zip(bands).collect(), |(strips, band)| {
-            let empty = |&strip: &Strip| StripMut { strip, rows: Vec::with_capacity(64) };
+            let empty =
+                |&strip: &Strip| StripMut { strip, rows: Vec::with_capacity(self.tile as usize) };
             let mut cut: Vec<_> = strips.iter().map(empty).collect();
             for mut row in band.chunks_mut(width) {
                 for strip in &mut cut {

@@ -32,9 +32,9 @@ impl<R: Real, S: Send> Prepared<R, S> {
         let (view, grid) = (View::new(job.camera), job.grid());
         let projector = Projector::new(view, &settings.kernel, settings.cull);
         // Many batches, so that threads end together, of at most 8192 surfels, which fit the cache;
-        // but at least two items for each tile, so that the starts of its bins take about 2 bytes
-        // an item.
-        let size = (count / 64).min(8192).max(2 * grid.len());
+        // but of two items for each tile, so that the starts of its bins take about 2 bytes an item;
+        // where tiles are so many that this would be all, four batches.
+        let size = (count / 64).min(8192).max(2 * grid.len()).min(count.div_ceil(4).max(1));
         let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
         let results = job.exec.ordered(ranges.collect(), |range: Range<usize>| {
             let mut splats = Vec::with_capacity(range.len());

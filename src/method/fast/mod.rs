@@ -34,38 +34,49 @@ pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, 
     )
 }
 
+/// The times of the stages of the tiles of a strip; whatever is done between two laps belongs to the
+/// second.
+pub(super) struct Stopwatch<const N: usize> {
+    last: Instant,
+    times: [Duration; N],
+}
+
+impl<const N: usize> Stopwatch<N> {
+    /// Stage `stage` ends.
+    pub(super) fn lap(&mut self, stage: usize) {
+        let now = Instant::now();
+        self.times[stage] += now - self.last;
+        self.last = now;
+    }
+}
+
 /// Draws every tile of a framebuffer, and gives the stages' shares of the wall time.
 ///
 /// `stages` leaves depths, averages and directions in the blocks of a tile that has splats, and
-/// tells how long each stage took; the first includes gathering the splats, the last storing the
-/// pixels.
+/// ends a lap after each stage but the last; the first includes gathering the splats, the last
+/// storing the pixels.
 pub(super) fn draw<const N: usize>(
     job: &Job<'_>,
     prepared: &Prepared<f32, Record>,
     target: &mut Framebuffer<f32>,
-    stages: impl Fn(&mut Tile) -> [Duration; N] + Sync + Send,
+    stages: impl Fn(&mut Tile, &mut Stopwatch<N>) + Sync + Send,
 ) -> [Duration; N] {
     let start = Instant::now();
     let times = job.exec.ordered(target.strips(&job.grid(), job.exec), |mut pixels| {
-        let mut times = [Duration::ZERO; N];
+        let mut watch = Stopwatch { last: Instant::now(), times: [Duration::ZERO; N] };
         let mut tile = Tile::new([pixels.normal.is_some(), pixels.color.is_some()]);
         for (index, rect) in pixels.depth.strip.tiles() {
-            let start = Instant::now();
             tile.gather(prepared, index, rect);
             if tile.splats.is_empty() {
                 store::clear(&rect, &mut pixels);
-                times[0] += start.elapsed();
-                continue;
+                watch.lap(0);
+            } else {
+                stages(&mut tile, &mut watch);
+                store::store(&tile, &mut pixels);
+                watch.lap(N - 1);
             }
-            let gathered = Instant::now();
-            let passes = stages(&mut tile);
-            let drawn = Instant::now();
-            store::store(&tile, &mut pixels);
-            times.iter_mut().zip(passes).for_each(|(sum, time)| *sum += time);
-            times[0] += gathered - start;
-            times[N - 1] += drawn.elapsed();
         }
-        times
+        watch.times
     });
     let wall = start.elapsed();
     let zero = [Duration::ZERO; N];

@@ -17,6 +17,15 @@
 //! are never averaged: neither their light nor their vectors agree (\[MKC08\] 5.2 excludes it too).
 //! The average has the kind of the foremost.
 //!
+//! # What it gets wrong
+//!
+//! - The projection is without sub-pixel accuracy (section 3.6): a sample lies at the centre of its
+//!   pixel.
+//! - The silhouette of a wide tube zig-zags. A tube is reconstructed of discs parallel to the view,
+//!   at most one for each cell of a coarse level, and discs a cell apart leave notches between them.
+//!   The paper calls its tubes "only appropriate for thin projections". `docs/image-space.md` has the
+//!   size of the notches by radius and angle (bench `lines`).
+//!
 //! The passes are the definition, over any [`crate::number::Real`]; [`planes`] has every plane that
 //! they leave.
 

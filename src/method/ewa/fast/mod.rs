@@ -8,7 +8,6 @@ use crate::method::algorithm::Job;
 use crate::method::fast::{draw, prepare};
 use crate::method::picture::{Clock, Laps};
 use crate::splat::Tally;
-use std::time::Instant;
 
 /// Draws a scene into a framebuffer: both geometry passes and the normalization. The wall times of
 /// the fused passes are shares of their common time; visibility splatting includes the gathering of
@@ -29,15 +28,13 @@ pub(super) fn render(
     let prepared = prepare(job, settings);
     clock.lap("projection");
     let shared = &prepared.shared;
-    let passes = draw(job, &prepared, target, |tile| {
-        let start = Instant::now();
+    let passes = draw::<3>(job, &prepared, target, |tile, watch| {
         tile.visibility(shared);
-        let visible = Instant::now();
+        watch.lap(0);
         tile.limits(shared, prepared.epsilon);
         tile.attributes(shared);
-        let added = Instant::now();
+        watch.lap(1);
         tile.normalize(shared);
-        [visible - start, added - visible, added.elapsed()]
     });
     let mut laps = clock.into_laps();
     laps.extend(["visibility", "attributes", "normalization"].into_iter().zip(passes));

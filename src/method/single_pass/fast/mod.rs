@@ -22,7 +22,6 @@ use crate::method::fast::{draw, prepare};
 use crate::method::picture::{Clock, Laps};
 use crate::splat::Tally;
 use images::GroupImages;
-use std::time::Instant;
 
 /// Draws a scene into a framebuffer: the geometry pass, the compositing pass and the normalization.
 /// The wall times of the fused passes are shares of their common time; the geometry pass includes
@@ -50,16 +49,14 @@ pub(super) fn render(
     let prepared = prepare(job, &settings.splats);
     clock.lap("projection");
     let shared = &prepared.shared;
-    let passes = draw(job, &prepared, target, |tile| {
-        let start = Instant::now();
+    let passes = draw::<2>(job, &prepared, target, |tile, watch| {
         let mut images = GroupImages::new(tile, groups, shared.empty(), None::<fn(u32) -> f32>);
         images.draw(tile, shared, bins.as_ref());
-        let drawn = Instant::now();
+        watch.lap(0);
         images.nearest(tile);
         tile.limits(shared, prepared.epsilon);
         images.composite(tile, shared);
         tile.normalize(shared);
-        [drawn - start, drawn.elapsed()]
     });
     let mut laps = clock.into_laps();
     laps.extend(["geometry", "compositing"].into_iter().zip(passes));
