@@ -76,7 +76,7 @@ fn what_a_gpu_may_do_escapes_from_balls_that_round_once() {
 }
 
 #[test]
-#[ignore = "10^9 values, about ten minutes: run by .ci/run"]
+#[ignore = "10^9 values, minutes: longer than .ci/run may take"]
 fn no_lawful_value_escapes_of_a_billion() {
     let each = (KINDS.len() * VALUES) as u64;
     let problems = 500_000_000_u64.div_ceil(each);
