@@ -10,7 +10,7 @@ use crate::common::shot::{Shot, lit};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::method::{Method, Session, ewa, pyramid, template};
-use splatref::number::Vector3;
+use splatref::number::{Real, Vector3};
 use splatref::scene::{Camera, Phong, Scene};
 use splatref::shade::phong::Shader;
 use splatref::source::Shape;
@@ -37,7 +37,7 @@ pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
                 let shot = Shot::of(frame);
                 let [a, b] = [&shot, &truth].map(|shot| shot.color.values().as_flattened());
                 let [brightest, true_one] =
-                    [a, b].map(|v| v.iter().fold(0.0_f32, |m, v| m.max(*v)));
+                    [a, b].map(|v| v.iter().fold(0.0_f32, |most, v| most.at_least(*v)));
                 Ok(format!("{:.4}, {:.2}", rmse(a, b), brightest / true_one))
             });
             let [deferred, before]: [Result<String>; 2] = cells;

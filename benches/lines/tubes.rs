@@ -15,6 +15,7 @@ use glam::{DVec3, Vec3};
 use splatref::Result;
 use splatref::frame::{Exec, Plane};
 use splatref::method::{Session, pyramid};
+use splatref::number::Real;
 use splatref::scene::{Camera, Lens, Polylines, Pose, Primitives, Triangles, Vertices};
 
 const SIDE: u32 = 512;
@@ -120,6 +121,6 @@ fn outline(alpha: &Plane<f32>, radius: f64, angle: f64) -> String {
     }
     let mean = away.iter().sum::<f64>() / away.len() as f64;
     let square = away.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>() / away.len() as f64;
-    let worst = away.iter().fold(0.0_f64, |worst, d| worst.max(d.abs()));
+    let worst = away.iter().fold(0.0_f64, |worst, d| worst.at_least(d.abs()));
     format!("{mean:.2}, {:.2}, {worst:.1}", square.sqrt())
 }

@@ -221,7 +221,7 @@ mod tests {
     fn the_bounds_in_balls_hold_whatever_is_inside() {
         each_shape(|job, settings, _, _| {
             let [x1, y1] = job.camera.size();
-            let mut asked = std::collections::HashSet::new();
+            let mut asked = std::collections::BTreeSet::new();
             let (splats, picture) = (project(job, settings), Rect { x1, y1, ..Rect::default() });
             for (tile, rect) in job.grid().rects().into_iter().enumerate() {
                 splats.for_each(tile, |PossibleSplat { splat, .. }| {

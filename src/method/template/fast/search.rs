@@ -68,10 +68,10 @@ vectorized!(
                     match (row.has[0], level) {
                         (false, _) => {}
                         (true, 0) => {
-                            beside::<COLORED, GAUSSIAN>(&mut gathered, row, (x, y, cy == y), half)
+                            beside::<COLORED, GAUSSIAN>(&mut gathered, row, (x, y, cy == y), half);
                         }
                         (true, _) => {
-                            around::<COLORED, GAUSSIAN>(&mut gathered, row, (x, y, level), half)
+                            around::<COLORED, GAUSSIAN>(&mut gathered, row, (x, y, level), half);
                         }
                     }
                 }

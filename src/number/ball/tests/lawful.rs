@@ -82,10 +82,7 @@ impl From<f32> for Lawful {
 fn plus(a: Lawful, b: f32) -> Lawful {
     let value = match a.product {
         // A product of two `f32` is exact in `f64`; its sum is rounded there, far below an ulp.
-        Some((x, y)) if toss() && law() == Law::Gpu => {
-            rounded(f64::from(x) * f64::from(y) + f64::from(b), 0)
-        }
-        Some((x, y)) if toss() => x.mul_add(y, b),
+        Some((x, y)) if toss() => rounded(f64::from(x) * f64::from(y) + f64::from(b), 0),
         _ => rounded(f64::from(a.value) + f64::from(b), 0),
     };
     Lawful { value, product: None, sum: Some((a.value, b)) }

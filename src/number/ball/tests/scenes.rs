@@ -2,7 +2,7 @@
 
 use super::{Ball, Profile};
 use crate::number::random::{bits, unit};
-use crate::number::{Real, Truth, Vector3};
+use crate::number::{Exact, Real, Truth, Vector3};
 use crate::scene::{Camera, Lens, Pose};
 use crate::splat::project::project_as;
 use crate::splat::{Disc, Footprint, Kernel, Outline, Projector, Shared, View, fragment};
@@ -107,7 +107,22 @@ pub(super) fn operands(index: u64) -> [f32; 2] {
 
 /// A number whose logarithm is uniform.
 fn log(random: f32, low: f32, high: f32) -> f32 {
-    (f64::from(low) * (f64::from(high) / f64::from(low)).powf(random.into())) as f32
+    (f64::from(low) * (f64::from(high) / f64::from(low)).pow(random.into())) as f32
+}
+
+fn camera(pose: [Vec3; 3], lens: Lens) -> Camera {
+    let [eye, target, up] = pose.map(Vec3::as_dvec3);
+    Camera::new(512, 512, Pose { eye, target, up }, lens).expect("a camera")
+}
+
+fn kernel(kind: Kind) -> Kernel {
+    match kind {
+        Kind::RayCast => Kernel { outline: Outline::RayCast, ..Kernel::DEFAULT },
+        Kind::NoFilter => {
+            Kernel { outline: Outline::Perspective, low_pass: 0.0, ..Kernel::DEFAULT }
+        }
+        _ => Kernel::DEFAULT,
+    }
 }
 
 impl Problem {
@@ -125,15 +140,13 @@ impl Problem {
         let eye = Vec3::splat(home) + direction();
         let (forward, normal, tangent) = (direction(), direction(), direction());
         let up = if forward.y.abs() > 0.9 { Vec3::X } else { Vec3::Y };
-        let pose =
-            Pose { eye: eye.as_dvec3(), target: (eye + forward).as_dvec3(), up: up.as_dvec3() };
         let extreme = kind == Kind::Extreme;
         let lens = if extreme && random() < 0.5 {
             Lens::Orthographic(log(random(), 1e-3, 1e3).into())
         } else {
             Lens::FieldOfView(f64::from(20.0 + 80.0 * random()))
         };
-        let camera = Camera::new(512, 512, pose, lens).expect("a camera");
+        let camera = camera([eye, eye + forward, up], lens);
         let depth = match kind {
             Kind::Near => camera.near * log(random(), 0.99, 1.5),
             _ => log(random(), 0.2, 20.0),
@@ -151,8 +164,7 @@ impl Problem {
         };
         let u = normal.cross(tangent).normalize_or(normal.any_orthonormal_vector());
         let tangents = (kind == Kind::Ellipse).then(|| {
-            [u * size, normal.cross(u) * (size * log(random(), 1e-3, 1.0))]
-                .map(|v| Vector3::from_glam(v))
+            [u * size, normal.cross(u) * (size * log(random(), 1e-3, 1.0))].map(Vector3::from_glam)
         });
         let mut odd = |value: f32| match (extreme, (random() * 12.0) as u32) {
             (true, 0) => 0.0,
@@ -167,15 +179,8 @@ impl Problem {
             radius: odd(size),
             tangents,
         };
-        let kernel = match kind {
-            Kind::RayCast => Kernel { outline: Outline::RayCast, ..Kernel::DEFAULT },
-            Kind::NoFilter => {
-                Kernel { outline: Outline::Perspective, low_pass: 0.0, ..Kernel::DEFAULT }
-            }
-            _ => Kernel::DEFAULT,
-        };
         let offsets = [(); PIXELS].map(|()| [random(), random()].map(|random| 2.0 * random - 1.0));
-        Self { index, camera, kernel, disc, offsets }
+        Self { index, camera, kernel: kernel(kind), disc, offsets }
     }
 
     /// Everything in a number that decides by itself, and the record it stores.
@@ -236,7 +241,7 @@ impl Problem {
     /// Pixels in the ellipse, or near it, by `f64`: the same for every number.
     fn pixels(&self) -> [(u32, u32); PIXELS] {
         let f = self.footprint::<f64>(false);
-        let at = |position: f64| position.clamp(0.0, 65_535.0) as u32;
+        let at = |position: f64| position.clamped(0.0, 65_535.0) as u32;
         self.offsets.map(|offset| {
             let [u, v] = offset.map(|offset| 2.2 * f64::from(offset));
             let dy = v / f.vy;
