@@ -2,7 +2,8 @@
 //! "leaves clear silhouette traces of the elliptical splats".
 //!
 //! RMSE to EWA, and *traces*: the mean angle between the normals of neighbouring pixels, those inside
-//! both pictures, in parts of EWA's. A picture as smooth as EWA's has 1.
+//! both pictures, in parts of EWA's. A picture as smooth as EWA's has 1; a plane, where EWA's normals are
+//! one, has none.
 
 use super::{Bench, Subject, splatting};
 use crate::common::report::Table;
@@ -22,25 +23,35 @@ impl Bench {
             SIZES.iter().flat_map(|size| FALLOFFS.map(|(name, _)| format!("{size}, {name}")));
         let columns: Vec<_> = ["scene".to_owned()].into_iter().chain(columns).collect();
         let mut table = Table::new(&columns.iter().map(String::as_str).collect::<Vec<_>>());
-        let mut sums = vec![[0.0; 2]; columns.len() - 1];
+        let mut all = vec![Vec::new(); columns.len() - 1];
         for subject in subjects {
             let truth = self.draw(subject, &subject.camera, &splatting())?;
             let mut cells = Vec::new();
-            let all = SIZES.iter().flat_map(|size| FALLOFFS.map(|(_, falloff)| (*size, falloff)));
-            for (sum, (size, falloff)) in sums.iter_mut().zip(all) {
+            let settings =
+                SIZES.iter().flat_map(|size| FALLOFFS.map(|(_, falloff)| (*size, falloff)));
+            for (found, (size, falloff)) in all.iter_mut().zip(settings) {
                 let settings =
                     template::Settings { size, falloff, ..template::Settings::default() };
-                let found = self.draw(subject, &subject.camera, &Method::Template(settings))?;
-                let measured = against(found, truth.clone());
-                (0..2).for_each(|i| sum[i] += measured[i] / subjects.len() as f64);
-                cells.push(format!("{:.4}, {:.2}", measured[0], measured[1]));
+                let drawn = self.draw(subject, &subject.camera, &Method::Template(settings))?;
+                found.push(against(drawn, truth.clone()));
+                cells.push(cell(&found[found.len() - 1..]));
             }
             table.row(&format!("{} | {}", subject.name, cells.join(" | ")));
         }
-        let means: Vec<_> = sums.iter().map(|[a, b]| format!("{a:.4}, {b:.2}")).collect();
+        let means: Vec<_> = all.iter().map(|found| cell(found)).collect();
         table.row(&format!("mean | {}", means.join(" | ")));
         table.publish(&self.arguments, "image-space.md", "weights")
     }
+}
+
+/// The means of RMSE and of traces, where there are any.
+fn cell(found: &[[f64; 2]]) -> String {
+    let mean = |i: usize| {
+        let known: Vec<_> = found.iter().map(|of| of[i]).filter(|v| v.is_finite()).collect();
+        known.iter().sum::<f64>() / known.len() as f64
+    };
+    let traces = if mean(1).is_finite() { format!("{:.2}", mean(1)) } else { "-".into() };
+    format!("{:.4}, {traces}", mean(0))
 }
 
 /// RMSE and traces.
