@@ -65,12 +65,12 @@ fn every_link_to_a_file_leads_to_one() {
 fn every_block_is_written_by_a_bench_and_every_bench_finds_its_block() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches");
     let mut sources = String::new();
-    for folder in [root.clone(), root.join("reconstruction")] {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_file() {
-                sources += &fs::read_to_string(path).unwrap();
-            }
+    let mut ahead = vec![root];
+    while let Some(path) = ahead.pop() {
+        if path.is_dir() {
+            ahead.extend(fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()));
+        } else {
+            sources += &fs::read_to_string(path).unwrap();
         }
     }
     let pages = pages();
