@@ -250,14 +250,16 @@ impl Bench {
         let grouping = Grouping { rules, count: Some(4), extension: ADD };
         for subject in subjects {
             let method = Method::Peeling(peeling::Settings { splats, layers: 64 });
-            let truth = self.shoot(subject, "peeling", None, &method)?;
+            let truth = self.image(subject, None, &method)?;
+            let silent = |_: &str, _, _| ();
+            let (groups, ..) = grouping.groups(&subject.scene.surfels, &self.exec, &silent)?;
             let mut rows = [const { Vec::new() }; 2];
             for bins in BINS {
                 let layers = transparent::Settings { splats, bins, ..Default::default() };
                 let behind = transparent_hq::Settings { layers, ..Default::default() };
                 for (row, method) in rows.iter_mut().zip([layers.into(), behind.into()]) {
-                    let shot = self.shoot(subject, "bins", Some(&grouping), &method)?;
-                    row.push(format!("{:.1}", off(&shot.image, &truth.image)));
+                    let image = self.image(subject, Some(groups.clone()), &method)?;
+                    row.push(format!("{:.1}", off(&image, &truth)));
                 }
             }
             for (algorithm, row) in (2..).zip(rows) {
@@ -265,6 +267,12 @@ impl Bench {
             }
         }
         table.publish(&self.arguments, "zp06.md", "arcs")
+    }
+
+    /// A picture alone.
+    fn image(&self, subject: &Subject, groups: Option<Groups>, method: &Method) -> Result<Image> {
+        let mut session = Session::with_groups(&subject.scene, *method, groups, &self.exec)?;
+        Ok(Image::from(&session.render(&subject.camera)?.frame))
     }
 
     /// Draws a picture, and again five times for the median of the time.

@@ -6,8 +6,8 @@
 //! (`../shared/models` if it is not set), sampled at random with the points of the paper's models
 //! and with radii that give the average degree of its Table 1. The paper does not say how large
 //! its pictures are, nor on which model it timed transparency; ours have 1024 x 1024 pixels, and
-//! its rates of transparency stand beside the Dragon, whose rate at 2+1 passes is the one that it
-//! repeats there. Opacity is 0.4 and light the headlight. Every method has its default settings:
+//! its rates of transparency stand beside the Dragon, whose rate at 2+1 passes is close to the one
+//! that it gives there. Opacity is 0.4 and light the headlight. Every method has its default settings:
 //! the opaque ones cull what is seen from behind, but for the row of both sides. Every round draws
 //! one frame of each row. Times are of whole frames, from the scene to shaded planes: the median
 //! over the rounds, the minimum in brackets. The ratio is the median over the rounds of the time of

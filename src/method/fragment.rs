@@ -52,8 +52,24 @@ impl<'a, R: Exact> TileSplats<'a, R> {
     }
 }
 
-/// Runs `draw` for the pixels of `rect` in the bounds of a splat: the pixel, counted row by row, q
-/// and nearness.
+/// Runs `visit` for the pixels of `rect` in the bounds of a splat: the pixel, counted row by row, and
+/// its column and row.
+#[inline(always)]
+pub(super) fn each_pixel<R: Real>(
+    splat: &Splat<R>,
+    rect: &Rect,
+    mut visit: impl FnMut(usize, (u32, u32)),
+) {
+    let columns = rect.x1 - rect.x0;
+    let Rect { x0, y0, x1, y1 } = splat.bounds.intersection(rect);
+    for y in y0..y1 {
+        for x in x0..x1 {
+            visit(((y - rect.y0) * columns + (x - rect.x0)) as usize, (x, y));
+        }
+    }
+}
+
+/// Runs `draw` for these pixels: the pixel, counted row by row, q and nearness.
 #[inline(always)]
 pub(super) fn each_in_bounds<R: Real>(
     shared: &Shared<R>,
@@ -61,14 +77,10 @@ pub(super) fn each_in_bounds<R: Real>(
     rect: &Rect,
     mut draw: impl FnMut(usize, R, R),
 ) {
-    let columns = rect.x1 - rect.x0;
-    let Rect { x0, y0, x1, y1 } = splat.bounds.intersection(rect);
-    for y in y0..y1 {
-        for x in x0..x1 {
-            let (q, w) = fragment(shared, &splat.footprint, (x, y));
-            draw(((y - rect.y0) * columns + (x - rect.x0)) as usize, q, w);
-        }
-    }
+    each_pixel(splat, rect, |pixel, at| {
+        let (q, w) = fragment(shared, &splat.footprint, at);
+        draw(pixel, q, w);
+    });
 }
 
 /// The same for the fragments that are inside.

@@ -5,12 +5,12 @@ use super::visibility::Foremost;
 use crate::composite::decide;
 use crate::frame::{NO_ID, Rect};
 use crate::method::algorithm::Job;
-use crate::method::fragment::each_in_bounds;
+use crate::method::fragment::{each_in_bounds, each_pixel};
 use crate::method::prepare::Prepared;
 use crate::method::tiled::Tiled;
 use crate::number::{Ball, Exact, Truth};
 use crate::splat::project::project_as;
-use crate::splat::{Disc, Projector, Splat, Tally, batch};
+use crate::splat::{Disc, Projector, Splat, Tally, batch, fragment};
 
 /// A surfel that may be drawn.
 #[derive(Debug)]
@@ -87,9 +87,9 @@ fn margins_of<R: Exact>(
         // The nearness of the nearest fragment of each pixel; if it has none, that of nothing.
         let mut nearest = vec![shared.empty(); rect.pixels()];
         splats.for_each(tile, |PossibleSplat { splat, .. }| {
-            each_in_bounds(shared, splat, &rect, |pixel, _, w| {
+            each_pixel(splat, &rect, |pixel, at| {
                 if ids[pixel].id == splat.surfel {
-                    nearest[pixel] = w;
+                    nearest[pixel] = fragment(shared, &splat.footprint, at).1;
                 }
             });
         });
@@ -151,10 +151,11 @@ mod tests {
     use super::*;
     use crate::frame::Exec;
     use crate::index::Index;
+    use crate::method::ewa::attributes::attributes;
     use crate::method::ewa::visibility::visibility;
     use crate::scene::{Camera, Scene};
     use crate::source::procedural::Shape;
-    use crate::splat::{Shared, View, fragment};
+    use crate::splat::{Shared, View};
 
     fn ball(middle: f64, radius: f64) -> Ball {
         Ball::new(middle, radius)
@@ -239,9 +240,17 @@ mod tests {
     }
 
     #[test]
-    fn beyond_one_the_numbers_agree_on_the_nearest_surfel() {
+    fn beyond_one_the_numbers_agree_on_the_nearest_surfel_and_on_what_is_summed() {
         each_shape(|job, settings, single, double| {
             let margins = margins(job, settings, single).plane(|margin| *margin);
+            let counts = [
+                attributes(job, &Prepared::splats(job, settings), single).plane(|p| p.count),
+                attributes(job, &Prepared::splats(job, settings), double).plane(|p| p.count),
+            ];
+            let [one, other] = counts.each_ref().map(|counts| counts.values().iter());
+            for ((one, other), margin) in one.zip(other).zip(margins.values()) {
+                assert!(one == other || *margin <= 1.0, "{one}, {other}: a margin of {margin}");
+            }
             let [single, double] = [single.plane(|p| p.id), double.plane(|p| p.id)];
             let ids = single.values().iter().zip(double.values());
             let mut certain = 0;

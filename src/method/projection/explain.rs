@@ -131,7 +131,7 @@ impl<R: Exact> fmt::Display for PixelProjection<R> {
     }
 }
 
-/// A comparison with its operands and its margin.
+/// A comparison with its operands, and how many ulp they are apart.
 pub(in crate::method) fn compared<R: Exact>(a: R, sign: &str, b: R) -> String {
     format!("{} {sign} {}  ({} ulp)", a.to_f64(), b.to_f64(), a.ulps_to(b))
 }

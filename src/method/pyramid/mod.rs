@@ -21,10 +21,10 @@
 //!
 //! - The projection is without sub-pixel accuracy (section 3.6): a sample lies at the centre of its
 //!   pixel.
-//! - The silhouette of a wide tube zig-zags. A tube is reconstructed of discs parallel to the view,
-//!   at most one for each cell of a coarse level, and discs a cell apart leave notches between them.
-//!   The paper calls its tubes "only appropriate for thin projections". `docs/image-space.md` has the
-//!   size of the notches by radius and angle (bench `lines`).
+//! - The silhouette of a wide tube zig-zags, by up to 30 % of the radius of the one straight tube that
+//!   was measured (bench `lines`, `docs/image-space.md`: by radius and angle, orthographic). A tube is
+//!   reconstructed of discs parallel to the view, which the paper calls "only appropriate for thin
+//!   projections".
 //!
 //! The passes are the definition, over any [`crate::number::Real`]; [`planes`] has every plane that
 //! they leave.

@@ -38,7 +38,9 @@ impl Session<'_> {
         };
         // Planes of stages are there twice: as records and as planes, or in numbers of two types.
         let a_pixel = fast.unwrap_or(number * OF_A_PIXEL + 2 * kept);
-        pixels * a_pixel + items as u64 * number * OF_A_SPLAT
+        let mut rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
+        let balls = if kept > 0 && rows.any(|row| row.name == "margin") { OF_A_BALL } else { 0 };
+        pixels * a_pixel + items as u64 * (number * OF_A_SPLAT + balls)
     }
 
     /// The planes of all stages, a pixel.
@@ -75,3 +77,5 @@ impl Session<'_> {
 const OF_A_PIXEL: u64 = 80;
 /// Numbers of a splat, with the bins that list it.
 const OF_A_SPLAT: u64 = 64;
+/// Bytes of a splat in balls, with the bins that list it: what a margin is computed from.
+const OF_A_BALL: u64 = 288;

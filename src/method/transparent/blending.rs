@@ -86,16 +86,33 @@ pub(in crate::method) struct Blending<R: Exact> {
     groups: usize,
 }
 
+/// What is known before anything is projected.
+pub(super) struct Ground<R: Exact> {
+    /// Every surfel in each of its groups, from back to front.
+    pub(super) items: Vec<Item>,
+    pub(super) bins: DepthBins<R>,
+    pub(super) shader: Shader<R>,
+}
+
+impl<R: Exact> Ground<R> {
+    pub(super) fn new(job: &Job<'_>, settings: &Settings) -> Result<Self> {
+        let Job { scene, index, camera, .. } = *job;
+        let epsilon = settings.splats.epsilon.resolve(&scene.surfels);
+        let bins = settings.bins.resolve(&scene.surfels, camera, epsilon)?;
+        Ok(Self {
+            items: index.back_to_front(camera)?,
+            bins: DepthBins::new(&bins),
+            shader: Shader::new(View::new(camera), &scene.lights, scene.material),
+        })
+    }
+}
+
 impl<R: Exact> Blending<R> {
     /// Order, projection and shading.
     pub(in crate::method) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
-        let Job { scene, index, camera, .. } = *job;
-        let groups = index.groups()?;
+        let (scene, groups) = (job.scene, job.index.groups()?);
         let surfels = &scene.surfels;
-        let epsilon = settings.splats.epsilon.resolve(surfels);
-        let bins = DepthBins::new(&settings.bins.resolve(surfels, camera, epsilon)?);
-        let items = index.back_to_front(camera)?;
-        let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
+        let Ground { items, bins, shader } = Ground::new(job, settings)?;
         let prepared = Prepared::new(
             job,
             &settings.splats,

@@ -1,7 +1,6 @@
 //! Order, projection and shading.
 
 use super::FastBlending;
-use crate::composite::bins::DepthBins;
 use crate::error::Result;
 use crate::index::Item;
 use crate::method::algorithm::Job;
@@ -9,11 +8,12 @@ use crate::method::fast::tile::Record;
 use crate::method::fragment::facing;
 use crate::method::prepare::Prepared;
 use crate::method::transparent::Settings;
+use crate::method::transparent::blending::Ground;
 use crate::number::Vector3;
 use crate::number::lanes::{LANES, Lanes, components, put_vector, vectorized};
 use crate::scene::Scene;
 use crate::shade::phong::Shader;
-use crate::splat::{View, batch};
+use crate::splat::batch;
 
 /// What is blended where a splat is one of a group.
 #[derive(Clone, Copy)]
@@ -29,13 +29,9 @@ pub(in crate::method) struct Layer {
 impl FastBlending {
     /// Every surfel in each of its groups, from back to front.
     pub(in crate::method) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
-        let Job { scene, index, camera, .. } = *job;
-        let groups = index.groups()?;
+        let (scene, groups) = (job.scene, job.index.groups()?);
         let surfels = &scene.surfels;
-        let epsilon = settings.splats.epsilon.resolve(surfels);
-        let bins = DepthBins::new(&settings.bins.resolve(surfels, camera, epsilon)?);
-        let items = index.back_to_front(camera)?;
-        let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
+        let Ground { items, bins, shader } = Ground::new(job, settings)?;
         let prepared = Prepared::new(
             job,
             &settings.splats,

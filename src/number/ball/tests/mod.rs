@@ -6,6 +6,7 @@ mod scenes;
 
 use super::*;
 use crate::frame::Exec;
+use crate::number::random::bits;
 use crate::number::{Pixel, Truth};
 use lawful::{Law, Lawful};
 use scenes::{KINDS, Problem, QUANTITIES, Quantities, VALUES, quantity};
@@ -33,7 +34,7 @@ fn soundness<P: Profile>(law: Law, seed: u64, count: u64) -> Found {
 
 impl Found {
     fn ask<P: Profile>(&mut self, law: Law, seed: u64, problem: &Problem) {
-        lawful::begin(law, bits_of(seed, problem));
+        lawful::begin(law, bits(seed, problem.index));
         let (client, records) = problem.evaluate::<Lawful>();
         let balls = problem.judge::<P>(client.crosses, &records);
         for (i, (value, ball)) in client.values.iter().zip(&balls.values).enumerate() {
@@ -53,10 +54,6 @@ impl Found {
         }
         self
     }
-}
-
-fn bits_of(seed: u64, problem: &Problem) -> u64 {
-    crate::number::random::bits(seed, problem.index)
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Scenes for the margin: those of the method, and two made for the rules that those never need.
 
-use crate::ewa::cases::{Kind, case};
+use crate::ewa::cases::{KINDS, case};
 use crate::kit::case::Case;
 use crate::kit::goldens;
 use crate::kit::scene::{discs, near, scene, straight, surfels};
@@ -72,17 +72,7 @@ fn drawn() -> Vec<Case<Settings>> {
         Epsilon::World(0.125),
         Epsilon::World(f32::INFINITY),
     ];
-    let shapes = [0, 1, 2, 4, 5].map(Kind::Shape);
-    let kinds = [
-        Kind::Discs,
-        Kind::Axes,
-        Kind::Ellipses,
-        Kind::Tilted,
-        Kind::Sizes,
-        Kind::Layers,
-        Kind::Degenerate,
-    ];
-    for (i, kind) in kinds.into_iter().chain(shapes).enumerate() {
+    for (i, kind) in KINDS.into_iter().enumerate() {
         for ortho in [false, true] {
             let (kernel, epsilon) = (kernels[i % 5], bands[i % 4]);
             let settings = Settings { kernel, epsilon, cull: (i % 2 == 0) == ortho };
