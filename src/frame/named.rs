@@ -287,12 +287,12 @@ impl Frame<f32> {
 }
 
 /// The components of a colour.
-const COLOR: [&str; 3] = ["R", "G", "B"];
+pub(crate) const COLOR: [&str; 3] = ["R", "G", "B"];
 /// The components of a vector.
-const VECTOR: [&str; 3] = ["X", "Y", "Z"];
+pub(crate) const VECTOR: [&str; 3] = ["X", "Y", "Z"];
 
 /// The channel name of a component of the plane called `name`.
-fn component(name: &str, letter: &str) -> String {
+pub(crate) fn component(name: &str, letter: &str) -> String {
     if name.is_empty() { letter.to_owned() } else { format!("{name}.{letter}") }
 }
 

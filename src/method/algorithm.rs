@@ -7,9 +7,12 @@ use crate::frame::{Exec, Frame, Grid, NamedPlane, Pool};
 use crate::index::Index;
 use crate::index::grouping::Grouping;
 use crate::number::Exact;
+use crate::number::ball::Profile;
 use crate::scene::{Camera, Scene};
 use crate::setting::Fields;
 use crate::splat::SplatSettings;
+use crate::verify::client::Client;
+use crate::verify::verdict::Verdict;
 use std::fmt::{Debug, Display};
 
 /// What a picture is made of, and how.
@@ -112,6 +115,14 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     /// # Errors
     /// [`crate::Error::Usage`] if the pixel is outside the picture; else as [`Algorithm::define`].
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display>;
+
+    /// Judges the planes of a client: what a right implementation may leave of each stage. A picture
+    /// whose share of undecided sums exceeds `budget` cannot be judged. None: the method has no
+    /// rules yet.
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
+        let _ = (job, client, budget);
+        None
+    }
 
     /// What the settings come to in a scene: names and values as TOML, for the text of a picture.
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {

@@ -100,6 +100,6 @@ pub(super) fn each_inside<R: Exact>(
 
 /// The normal, reversed if the back is seen.
 #[inline(always)]
-pub(super) fn facing<R: Exact>(normal: [R; 3], back: bool) -> [R; 3] {
-    if back { normal.map(|component| -component) } else { normal }
+pub(super) fn facing<R: Real>(normal: [R; 3], back: R::Truth) -> [R; 3] {
+    normal.map(|component| R::select(back, -component, component))
 }

@@ -26,6 +26,7 @@
 //! | `planes.rs` | the planes of every [`Stage`], out and in |
 //! | `picture.rs` | all stages in one call |
 //! | `explain.rs` | the decisions at one pixel |
+//! | `verify/` | what a right implementation may leave of each stage |
 //! | `fast/` | the bits of the definition for `f32`, from another layout |
 //!
 //! A new method is its folder, a row in `table.rs`, its scenes under `golden/` and its oracle under
@@ -53,6 +54,7 @@ pub mod ewa;
 mod fast;
 mod fragment;
 mod given;
+mod judged;
 pub mod peeling;
 mod picture;
 pub mod planes;

@@ -7,13 +7,16 @@ pub use needs::Making;
 use super::algorithm::Job;
 use super::table::Memory;
 use super::{Method, Picture};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::frame::{Exec, Frame, Pool};
 use crate::index::Index;
 use crate::index::grouping::{Extended, Grouping, GroupingReport};
 use crate::index::order::BackToFront;
 use crate::number::Exact;
+use crate::number::ball::{Gpu, Ieee};
 use crate::scene::{Camera, Groups, Scene};
+use crate::verify::client::{Client, Rounding};
+use crate::verify::verdict::Verdict;
 
 /// A scene, a method, what the method prepared of the scene, and memory that is used again.
 ///
@@ -186,6 +189,37 @@ impl<'a> Session<'a> {
         let job = self.job(camera)?;
         camera.check_pixel(pixel.0, pixel.1)?;
         self.method.explain::<R>(&job, pixel)
+    }
+
+    /// Judges the planes of a client, stage by stage: whether a right implementation may leave them.
+    /// A picture in which the sums of more than the share `budget` of its pixels are undecided cannot
+    /// be judged, see [`Verdict::BUDGET`].
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if no plane is one of the method's, if the picture has another size than
+    /// the camera's, or if the method has no rules; else as [`Session::render`].
+    pub fn verify(&self, camera: &Camera, client: &Client, budget: f64) -> Result<Verdict> {
+        let job = self.job(camera)?;
+        let frame = client.frame();
+        let (found, picture) = ([frame.width, frame.height], camera.size());
+        if found != picture {
+            let [width, height] = found;
+            return Err(Error::Invalid(format!(
+                "planes of {width} x {height}, but the camera's picture has {} x {}",
+                picture[0], picture[1]
+            )));
+        }
+        if frame.planes.is_empty() {
+            let what = format!("no plane is called as one of the method {}", self.method.name());
+            return Err(Error::Invalid(what));
+        }
+        let verdict = match client.rounding {
+            Rounding::Gpu => self.method.verify::<Gpu>(&job, client, budget),
+            Rounding::Ieee => self.method.verify::<Ieee>(&job, client, budget),
+        };
+        verdict.ok_or_else(|| {
+            Error::Invalid(format!("the method {} has no rules for verdicts", self.method.name()))
+        })
     }
 
     fn job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {

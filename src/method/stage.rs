@@ -1,6 +1,7 @@
 //! Stages as values: the passes of a method, what each reads, and the planes that each leaves.
 
 use crate::error::Error;
+use crate::frame::named::{COLOR, VECTOR, component};
 use crate::frame::{Frame, NamedPlane, Plane, Samples};
 
 /// A pass of a method.
@@ -127,6 +128,16 @@ impl PlaneRow {
             Some((before, after)) => {
                 format!("{before}{number}{}", after.trim_start_matches('#'))
             }
+        }
+    }
+
+    /// The names that the channels of the plane have in a file.
+    #[must_use]
+    pub fn channels(&self) -> Vec<String> {
+        match self.holds {
+            Holds::Color => COLOR.map(|letter| component(self.name, letter)).to_vec(),
+            Holds::Vector => VECTOR.map(|letter| component(self.name, letter)).to_vec(),
+            Holds::Scalar | Holds::Index | Holds::Count => vec![self.name.to_owned()],
         }
     }
 

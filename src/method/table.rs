@@ -9,9 +9,12 @@ use crate::error::{Error, Result};
 use crate::frame::{Frame, Pool};
 use crate::index::grouping::Grouping;
 use crate::number::Exact;
+use crate::number::ball::Profile;
 use crate::scene::{Camera, Scene};
 use crate::setting::{Fields, Visit};
 use crate::splat::SplatSettings;
+use crate::verify::client::Client;
+use crate::verify::verdict::Verdict;
 
 /// Makes the enum of methods, and hands every question on to the settings of the method that is
 /// asked.
@@ -130,6 +133,17 @@ macro_rules! methods {
                     $(Self::$method(settings) => {
                         Ok(settings.explain::<R>(job, at)?.to_string())
                     })*
+                }
+            }
+
+            pub(super) fn verify<P: Profile>(
+                &self,
+                job: &Job<'_>,
+                client: &Client,
+                budget: f64,
+            ) -> Option<Verdict> {
+                match self {
+                    $(Self::$method(settings) => settings.verify::<P>(job, client, budget),)*
                 }
             }
 

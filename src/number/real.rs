@@ -55,6 +55,9 @@ pub trait Real:
     fn abs(self) -> Self;
     /// e to this power, see [`elementary`].
     fn exp(self) -> Self;
+    /// This number to the power of `exponent`, see [`elementary`]; `self` is not negative.
+    #[must_use]
+    fn pow(self, exponent: Self) -> Self;
     /// Whether this number is neither infinite nor NaN.
     fn is_finite(self) -> Self::Truth;
 
@@ -92,9 +95,7 @@ pub trait Real:
 pub trait Exact: Real<Truth = bool, Pixel = u32> + PartialOrd {
     /// The integer part, towards 0; the nearest `i64` if out of range, 0 for NaN.
     fn to_i64(self) -> i64;
-    /// This number to the power of `exponent`, see [`elementary`]; `self` is not negative.
-    fn pow(self, exponent: Self) -> Self;
-    /// [`Exact::pow`] of several numbers.
+    /// [`Real::pow`] of several numbers.
     #[inline(always)]
     #[must_use]
     fn powers(bases: &[Self; LANES], exponent: Self) -> [Self; LANES] {
@@ -201,6 +202,10 @@ impl Real for f32 {
         elementary::exp_f32(self)
     }
     #[inline(always)]
+    fn pow(self, exponent: Self) -> Self {
+        elementary::pow_f32(self, exponent)
+    }
+    #[inline(always)]
     fn is_finite(self) -> bool {
         self.is_finite()
     }
@@ -210,10 +215,6 @@ impl Exact for f32 {
     #[inline(always)]
     fn to_i64(self) -> i64 {
         self as i64
-    }
-    #[inline(always)]
-    fn pow(self, exponent: Self) -> Self {
-        elementary::pow_f32(self, exponent)
     }
     #[inline(always)]
     fn powers(bases: &[Self; LANES], exponent: Self) -> [Self; LANES] {
@@ -276,6 +277,10 @@ impl Real for f64 {
         elementary::exp(self)
     }
     #[inline(always)]
+    fn pow(self, exponent: Self) -> Self {
+        elementary::pow(self, exponent)
+    }
+    #[inline(always)]
     fn is_finite(self) -> bool {
         self.is_finite()
     }
@@ -285,10 +290,6 @@ impl Exact for f64 {
     #[inline(always)]
     fn to_i64(self) -> i64 {
         self as i64
-    }
-    #[inline(always)]
-    fn pow(self, exponent: Self) -> Self {
-        elementary::pow(self, exponent)
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {

@@ -8,7 +8,7 @@ use crate::method::algorithm::Job;
 use crate::method::fragment::{TileSplats, facing};
 use crate::method::prepare::Prepared;
 use crate::method::tiled::Tiled;
-use crate::number::Exact;
+use crate::number::{Exact, Real};
 use crate::scene::Surfels;
 use crate::splat::Splat;
 
@@ -52,13 +52,13 @@ pub(in crate::method) fn sums<R: Exact>(
     tile.each_inside(|splat, pixel, q, w| {
         let limit = decide::limit(nearest[pixel].depth, epsilon);
         if candidate(pixel, w) && decide::visible(shared.depth(w), limit) {
-            pixels[pixel].add(surfels, splat, splat.footprint.weight(q));
+            pixels[pixel].add(surfels, (splat.surfel, splat.back), splat.footprint.weight(q));
         }
     });
     pixels
 }
 
-impl<R: Exact> Sums<R> {
+impl<R: Real> Sums<R> {
     /// No fragment.
     pub(in crate::method) const NONE: Self = Self {
         weight: R::ZERO,
@@ -68,10 +68,10 @@ impl<R: Exact> Sums<R> {
         count: 0,
     };
 
-    /// Adds the attributes of a fragment.
-    fn add(&mut self, surfels: &Surfels, splat: &Splat<R>, weight: R) {
-        let i = splat.surfel as usize;
-        let normal = facing(surfels.normal()[i].to_array().map(R::from_f32), splat.back);
+    /// Adds the attributes of a fragment of a surfel, of which the back is seen or not.
+    pub(super) fn add(&mut self, surfels: &Surfels, (surfel, back): (u32, R::Truth), weight: R) {
+        let i = surfel as usize;
+        let normal = facing(surfels.normal()[i].to_array().map(R::from_f32), back);
         let opacity = surfels.opacity().map_or(R::ONE, |all| R::from_f32(all[i]));
         if let Some(colors) = surfels.color() {
             self.color = sum::add(self.color, weight, colors[i].to_array().map(R::from_f32));

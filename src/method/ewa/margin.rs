@@ -1,24 +1,16 @@
 //! How close the decisions at each pixel come to being undecided.
 
 use super::Settings;
+use super::possible::{PossibleSplat, PossibleSplats, project};
 use super::visibility::Foremost;
 use crate::composite::decide;
-use crate::frame::{NO_ID, Rect};
+use crate::frame::NO_ID;
 use crate::method::algorithm::Job;
 use crate::method::fragment::{each_in_bounds, each_pixel};
-use crate::method::prepare::Prepared;
 use crate::method::tiled::Tiled;
+use crate::number::ball::Ieee;
 use crate::number::{Ball, Exact, Truth};
-use crate::splat::project::project_as;
-use crate::splat::{Disc, Projector, Splat, Tally, batch, fragment};
-
-/// A surfel that may be drawn.
-#[derive(Debug)]
-struct PossibleSplat {
-    splat: Splat<Ball>,
-    /// Whether it certainly is, and with this outline.
-    certain: bool,
-}
+use crate::splat::fragment;
 
 /// The margin of each pixel, see the page of the method.
 pub(super) fn margins<R: Exact>(
@@ -29,56 +21,10 @@ pub(super) fn margins<R: Exact>(
     margins_of(job, &project(job, settings), visible)
 }
 
-/// The surfels that may be drawn.
-fn project(job: &Job<'_>, settings: &Settings) -> Prepared<Ball, PossibleSplat> {
-    let surfels = &job.scene.surfels;
-    let [x1, y1] = job.camera.size();
-    let picture = Rect { x1, y1, ..Rect::default() };
-    Prepared::new(
-        job,
-        settings,
-        surfels.len(),
-        |projector, range, splats| {
-            for i in range {
-                let disc = batch::disc(surfels, i);
-                each_possible(projector, &disc, i as u32, |mut splat, certain| {
-                    splat.bounds = splat.bounds.intersection(&picture);
-                    if !splat.bounds.is_empty() {
-                        splats.push(PossibleSplat { splat, certain });
-                    }
-                });
-            }
-            Tally::default()
-        },
-        |possible| possible.splat.bounds,
-    )
-}
-
-/// What a surfel may become: one splat, two if it is not certain whether it reaches the near plane,
-/// or none; and whether that is certain.
-fn each_possible(
-    projector: &Projector<Ball>,
-    disc: &Disc<Ball>,
-    surfel: u32,
-    mut each: impl FnMut(Splat<Ball>, bool),
-) {
-    let crosses = projector.crosses(disc);
-    for alternative in [false, true] {
-        let possible = if alternative { crosses.possibly() } else { !crosses.certainly() };
-        if possible {
-            let (splat, reasons) = project_as(projector, disc, surfel, alternative);
-            let dropped = reasons.any();
-            if !dropped.certainly() {
-                each(splat, !dropped.possibly() && crosses.decided().is_some());
-            }
-        }
-    }
-}
-
 /// The least margin of the fragments that may be inside.
 fn margins_of<R: Exact>(
     job: &Job<'_>,
-    splats: &Prepared<Ball, PossibleSplat>,
+    splats: &PossibleSplats<Ieee>,
     visible: &Tiled<Foremost<R>>,
 ) -> Tiled<R> {
     let shared = &splats.shared;
@@ -149,13 +95,14 @@ impl Operands {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Exec;
+    use crate::frame::{Exec, Rect};
     use crate::index::Index;
     use crate::method::ewa::attributes::attributes;
     use crate::method::ewa::visibility::visibility;
+    use crate::method::prepare::Prepared;
     use crate::scene::{Camera, Scene};
     use crate::source::procedural::Shape;
-    use crate::splat::{Shared, View};
+    use crate::splat::{Projector, Shared, View, batch};
 
     fn ball(middle: f64, radius: f64) -> Ball {
         Ball::new(middle, radius)
@@ -223,7 +170,8 @@ mod tests {
         each_shape(|job, settings, _, _| {
             let [x1, y1] = job.camera.size();
             let mut asked = std::collections::BTreeSet::new();
-            let (splats, picture) = (project(job, settings), Rect { x1, y1, ..Rect::default() });
+            let (splats, picture) =
+                (project::<Ieee>(job, settings), Rect { x1, y1, ..Rect::default() });
             for (tile, rect) in job.grid().rects().into_iter().enumerate() {
                 splats.for_each(tile, |PossibleSplat { splat, .. }| {
                     let Rect { x0, y0, x1, y1 } = splat.bounds.intersection(&rect);

@@ -62,6 +62,8 @@ mod margin;
 pub(super) mod normalization;
 mod picture;
 mod planes;
+mod possible;
+mod verify;
 pub(super) mod visibility;
 
 pub use crate::splat::SplatSettings as Settings;
@@ -72,6 +74,9 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
+use crate::number::ball::Profile;
+use crate::verify::client::Client;
+use crate::verify::verdict::Verdict;
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -104,6 +109,10 @@ impl Algorithm for Settings {
         given: &Given<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
+    }
+
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
+        Some(verify::verify::<P>(job, self, client, budget))
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {

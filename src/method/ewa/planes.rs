@@ -12,42 +12,42 @@ use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::View;
 
-const NEAREST: PlaneRow = PlaneRow::new(
+pub(super) const NEAREST: PlaneRow = PlaneRow::new(
     "visibility.Z",
     Holds::Scalar,
     "world units",
     "depth of the nearest fragment; +inf where there is none",
     When::Stages,
 );
-const NEAREST_ID: PlaneRow = PlaneRow::new(
+pub(super) const NEAREST_ID: PlaneRow = PlaneRow::new(
     "visibility.id",
     Holds::Index,
     "surfel",
     "surfel of the nearest fragment; 0xFFFF_FFFF where there is none",
     When::Stages,
 );
-const COLOR_SUM: PlaneRow = PlaneRow::new(
+pub(super) const COLOR_SUM: PlaneRow = PlaneRow::new(
     "attributes",
     Holds::Color,
     "linear RGB",
     "sum of weight times colour over the visible fragments; 0 where there is none",
     When::Colored,
 );
-const NORMAL_SUM: PlaneRow = PlaneRow::new(
+pub(super) const NORMAL_SUM: PlaneRow = PlaneRow::new(
     "attributes.normal",
     Holds::Vector,
     "",
     "sum of weight times normal over the visible fragments, in world space; 0 where there is none",
     When::Stages,
 );
-const WEIGHT_SUM: PlaneRow = PlaneRow::new(
+pub(super) const WEIGHT_SUM: PlaneRow = PlaneRow::new(
     "attributes.weight",
     Holds::Scalar,
     "",
     "sum of the weights of the visible fragments; 0 where there is none",
     When::Stages,
 );
-const COUNT: PlaneRow = PlaneRow::new(
+pub(super) const COUNT: PlaneRow = PlaneRow::new(
     "attributes.count",
     Holds::Count,
     "fragments",

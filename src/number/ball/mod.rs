@@ -17,6 +17,7 @@
 //!   x / y          (|m| s + |n| r) / (|n| (|n| - s))        unbounded unless |n| > s
 //!   sqrt x         r / (sqrt m + sqrt(m - r))               NaN is possible unless m >= r
 //!   e^x            (e^(m + r) - e^m) + 2^-50 e^(m + r)
+//!   x^y            max(x^y - (m - r)^y, (m + r)^y - x^y) + 2^-50 (m + r)^y    y >= 0 exact, x >= 0
 //!   floor x        max(floor m - floor(m - r), floor(m + r) - floor m)
 //!   -x, |x|        r
 //! ```
@@ -118,6 +119,23 @@ impl<P: Profile> Ball<P> {
             f64::INFINITY
         } else if reach.is_finite() {
             (self.middle - other.middle).abs() / reach
+        } else {
+            0.0
+        }
+    }
+
+    /// How far the midpoint is from that of a number that is known: in units of the sum of their
+    /// radii, as [`Ball::distance`], but 0 for equal ones, +inf for two that are exact and differ,
+    /// and for NaN unless the ball has it.
+    #[must_use]
+    pub fn misfit(self, found: Self) -> f64 {
+        let reach = self.radius + found.radius;
+        if self.middle == found.middle || self.radius.is_nan() {
+            0.0
+        } else if found.middle.is_nan() || reach == 0.0 {
+            f64::INFINITY
+        } else if reach.is_finite() {
+            (self.middle - found.middle).abs() / (reach * SLACK)
         } else {
             0.0
         }
@@ -253,6 +271,24 @@ impl<P: Profile> Real for Ball<P> {
         // The argument that costs most is the greatest of the ball.
         let units = P::exponential(self.middle.abs() + self.radius);
         Self::rounded(middle, spread, units, P::TINY)
+    }
+
+    #[inline]
+    fn pow(self, exponent: Self) -> Self {
+        let middle = self.middle.pow(exponent.middle);
+        if is_exact::<P>(middle, self.radius + exponent.radius) {
+            return Self::exact(middle);
+        }
+        let ends = [self.low(), self.high()];
+        // Comparisons that NaN fails.
+        if !(exponent.radius == 0.0 && exponent.middle >= 0.0 && ends[1].is_finite()) {
+            return Self::unbounded(middle, true);
+        }
+        // A number below 0 is one that is 0 but for its radius.
+        let bases = ends.map(|end| larger(end, 0.0));
+        let [least, most] = bases.map(|base| base.pow(exponent.middle));
+        let spread = larger(middle - least, most - middle) + most / 1_125_899_906_842_624.0;
+        Self::rounded(middle, spread, P::power(bases, exponent.middle), P::TINY)
     }
 
     #[inline(always)]

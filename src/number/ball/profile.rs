@@ -1,6 +1,7 @@
 //! How an implementation may round.
 
 use super::Ball;
+use crate::number::{Real, elementary};
 
 /// What an implementation promises about its operations, in units of u = 2^-24 of the result.
 pub trait Profile: Copy + Send + Sync + 'static {
@@ -27,6 +28,8 @@ pub trait Profile: Copy + Send + Sync + 'static {
 
     /// Rounding of the exponential of a number of at most this absolute value.
     fn exponential(argument: f64) -> f64;
+    /// Rounding of a power of a base between two.
+    fn power(bases: [f64; 2], exponent: f64) -> f64;
     /// A bounded sum, of midpoint `middle`.
     fn sum(middle: f64, terms: [&Ball<Self>; 2]) -> Ball<Self>;
 }
@@ -53,6 +56,9 @@ impl Profile for Ieee {
     fn exponential(_argument: f64) -> f64 {
         1.0
     }
+    fn power(_bases: [f64; 2], _exponent: f64) -> f64 {
+        1.0
+    }
     #[inline(always)]
     fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {
         // A sum below the normal numbers is exact.
@@ -62,7 +68,8 @@ impl Profile for Ieee {
 
 /// What WGSL and Vulkan publish for `f32`: a correctly rounded operation gives either neighbour of
 /// the exact value; a quotient is 2.5 ulp, an inverse square root 2 ulp and e^x 3 + 2 |x| ulp off; a
-/// square root is the inverse of the inverse square root; products are fused with sums, the terms of
+/// square root is the inverse of the inverse square root; x^y is e2^(y log2 x), of a base-2 exponential
+/// 3 + 2 |z| ulp off and a logarithm 3 ulp or 2^-21 off; products are fused with sums, the terms of
 /// sums added in any order, and numbers below the normal ones flushed to 0.
 ///
 /// A compiler adds the terms of a sum in any order across the functions of a formula, and not every
@@ -109,6 +116,20 @@ impl Profile for Gpu {
 
     fn exponential(argument: f64) -> f64 {
         6.0 + 4.0 * argument
+    }
+    fn power(bases: [f64; 2], exponent: f64) -> f64 {
+        if exponent == 0.0 {
+            return Self::exponential(0.0);
+        }
+        // What is smaller than 2^-150 is flushed, so that the argument of exp2 is no larger.
+        let argument = |base| {
+            let logarithm = elementary::ln(base) / std::f64::consts::LN_2;
+            (exponent * logarithm).abs().at_most(150.0)
+        };
+        let argument = argument(bases[0]).at_least(argument(bases[1]));
+        // The logarithm is 3 ulp or 2^-21 = 8 u off, times the exponent; the product 2 u.
+        let lost = 8.0 * exponent + 8.0 * argument;
+        Self::exponential(argument) + lost
     }
     #[inline(always)]
     fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {

@@ -13,7 +13,8 @@
 //! l is a vector of view space: of a directional light its `towards`, turned to view space
 //! ([`View::direction`]) and then divided by its length; of a headlight its `towards` divided by its
 //! length; of a point light (q - p) divided by its length, q its position in view space
-//! ([`View::point`]). n and v are divided by their lengths too. Lights are added in the order of the
+//! ([`View::point`]). v is divided by its length too; n, of length 1 in world
+//! space, is turned to view space and not divided again. Lights are added in the order of the
 //! scene.
 //!
 //! A light with n . l <= 0 adds nothing; a highlight needs r . v > 0. Without any light the colour
@@ -46,7 +47,7 @@ mod lanes;
 mod tests;
 
 use crate::frame::{Exec, Plane};
-use crate::number::{Exact, Vector3};
+use crate::number::{Exact, Real, Truth, Vector3};
 use crate::scene::{Light, Phong};
 use crate::splat::View;
 use glam::Vec3;
@@ -60,7 +61,7 @@ enum PlacedLight<R> {
     At(Vector3<R>),
 }
 
-impl<R: Exact> PlacedLight<R> {
+impl<R: Real> PlacedLight<R> {
     /// l: the direction towards the light from p.
     #[inline(always)]
     fn from(&self, p: Vector3<R>) -> Vector3<R> {
@@ -79,7 +80,7 @@ pub struct Shader<R> {
     material: Phong,
 }
 
-impl<R: Exact> Shader<R> {
+impl<R: Real> Shader<R> {
     /// Places the lights before a camera.
     #[must_use]
     pub fn new(view: View<R>, lights: &[Light], material: Phong) -> Self {
@@ -103,6 +104,79 @@ impl<R: Exact> Shader<R> {
         Self { view, lights: lights.iter().map(place).collect(), material }
     }
 
+    /// The colour of a point p in view space; `towards` gives n and n . l for a direction l.
+    #[inline(always)]
+    fn lit(
+        &self,
+        p: Vector3<R>,
+        towards: impl Fn(Vector3<R>) -> (Vector3<R>, R),
+        surface: [R; 3],
+    ) -> [R; 3] {
+        if self.lights.is_empty() {
+            return surface;
+        }
+        let v = self.towards_eye(p);
+        let answer = Answer::<R>::new(&self.material);
+        let mut color = surface.map(|s| answer.ambient * s);
+        for (place, light) in &self.lights {
+            let l = place.from(p);
+            let (n, cosine) = towards(l);
+            let faces = cosine.gt(R::ZERO);
+            if faces.possibly() {
+                let mirrored = mirrored(n, cosine, l, v);
+                let shines = mirrored.gt(R::ZERO) & answer.specular.gt(R::ZERO);
+                let highlight = if shines.possibly() {
+                    let power = mirrored.at_least(R::ZERO).pow(answer.shininess);
+                    R::select(shines, answer.specular * power, R::ZERO)
+                } else {
+                    R::ZERO
+                };
+                let more = answer.add(color, *light, cosine, surface, highlight);
+                color = std::array::from_fn(|c| R::select(faces, more[c], color[c]));
+            }
+        }
+        color
+    }
+
+    /// The colour of a surface at depth t of a pixel, whose normal is in world space; of no empty
+    /// pixel.
+    pub(crate) fn surface(
+        &self,
+        (x, y): (usize, usize),
+        t: R,
+        normal: Vector3<R>,
+        surface: [R; 3],
+    ) -> [R; 3] {
+        let normal = self.view.direction(normal);
+        self.lit(self.position(x, y, t), |l| (normal, normal.dot(l)), surface)
+    }
+
+    /// The colour of surfaces in a scene without colours.
+    pub(crate) fn plain(&self) -> [R; 3] {
+        self.material.color.to_array().map(R::from_f32)
+    }
+
+    /// p: the point at depth t of a pixel.
+    #[inline(always)]
+    fn position(&self, x: usize, y: usize, t: R) -> Vector3<R> {
+        let view = &self.view;
+        let px = (R::from_f32(x as f32 + 0.5) - view.cx) / view.fx;
+        let py = -((R::from_f32(y as f32 + 0.5) - view.cy) / view.fy);
+        if view.perspective { Vector3::new(px * t, py * t, -t) } else { Vector3::new(px, py, -t) }
+    }
+
+    /// v: the direction from p towards the eye.
+    #[inline(always)]
+    fn towards_eye(&self, p: Vector3<R>) -> Vector3<R> {
+        if self.view.perspective {
+            (-p).normalized()
+        } else {
+            Vector3::new(R::ZERO, R::ZERO, R::ONE)
+        }
+    }
+}
+
+impl<R: Exact> Shader<R> {
     /// Shades every pixel; `color` may be reused as the result.
     ///
     /// `depth` is +inf where a pixel is empty; only an unlit scene can do without normals.
@@ -132,7 +206,7 @@ impl<R: Exact> Shader<R> {
         (pixels, colored): (&mut Plane<[R; 3]>, bool),
         exec: &Exec,
     ) {
-        let own = (!colored).then(|| self.material.color.to_array().map(R::from_f32));
+        let own = (!colored).then(|| self.plain());
         let row = depth.width() as usize;
         exec.ordered(
             pixels.rows_mut().enumerate().collect(),
@@ -157,57 +231,16 @@ impl<R: Exact> Shader<R> {
         if !t.is_finite() {
             return [R::ZERO; 3];
         }
-        self.lit(self.position(x, y, t), self.form(normal, tangent), surface)
+        let form = self.form(normal, tangent);
+        self.lit(self.position(x, y, t), |l| form.towards(l), surface)
     }
 
     /// The colour of a surfel, shaded once at its centre: p is its position, n its normal, turned
     /// towards the side that is seen, both in world space.
     #[must_use]
     pub fn surfel(&self, p: Vector3<R>, n: Vector3<R>, surface: [R; 3]) -> [R; 3] {
-        self.lit(self.view.point(p), self.form(n, Vector3::ZERO), surface)
-    }
-
-    /// The colour of a point p in view space.
-    fn lit(&self, p: Vector3<R>, form: Form<R>, surface: [R; 3]) -> [R; 3] {
-        if self.lights.is_empty() {
-            return surface;
-        }
-        let v = self.towards_eye(p);
-        let answer = Answer::new(&self.material);
-        let mut color = surface.map(|s| answer.ambient * s);
-        for (place, light) in &self.lights {
-            let l = place.from(p);
-            let (n, cosine) = form.towards(l);
-            if cosine > R::ZERO {
-                let mirrored = mirrored(n, cosine, l, v);
-                let highlight = if mirrored > R::ZERO && answer.specular > R::ZERO {
-                    answer.specular * mirrored.pow(answer.shininess)
-                } else {
-                    R::ZERO
-                };
-                color = answer.add(color, *light, cosine, surface, highlight);
-            }
-        }
-        color
-    }
-
-    /// p: the point at depth t of a pixel.
-    #[inline(always)]
-    fn position(&self, x: usize, y: usize, t: R) -> Vector3<R> {
-        let view = &self.view;
-        let px = (R::from_f32(x as f32 + 0.5) - view.cx) / view.fx;
-        let py = -((R::from_f32(y as f32 + 0.5) - view.cy) / view.fy);
-        if view.perspective { Vector3::new(px * t, py * t, -t) } else { Vector3::new(px, py, -t) }
-    }
-
-    /// v: the direction from p towards the eye.
-    #[inline(always)]
-    fn towards_eye(&self, p: Vector3<R>) -> Vector3<R> {
-        if self.view.perspective {
-            (-p).normalized()
-        } else {
-            Vector3::new(R::ZERO, R::ZERO, R::ONE)
-        }
+        let form = self.form(n, Vector3::ZERO);
+        self.lit(self.view.point(p), |l| form.towards(l), surface)
     }
 
     /// What has this normal and tangent in world space.
@@ -243,7 +276,7 @@ impl<R: Exact> Form<R> {
 
 /// r . v: how far the mirrored light goes towards the eye.
 #[inline(always)]
-fn mirrored<R: Exact>(n: Vector3<R>, cosine: R, l: Vector3<R>, v: Vector3<R>) -> R {
+fn mirrored<R: Real>(n: Vector3<R>, cosine: R, l: Vector3<R>, v: Vector3<R>) -> R {
     (n * (cosine + cosine) - l).dot(v)
 }
 
@@ -256,7 +289,7 @@ struct Answer<R> {
     shininess: R,
 }
 
-impl<R: Exact> Answer<R> {
+impl<R: Real> Answer<R> {
     fn new(material: &Phong) -> Self {
         Self {
             ambient: R::from_f32(material.ambient),

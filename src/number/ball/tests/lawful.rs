@@ -188,6 +188,14 @@ impl Real for Lawful {
         }
         Real::exp(self.value).into()
     }
+    fn pow(self, exponent: Self) -> Self {
+        if law() == Law::Gpu && toss() && self.value.is_normal() {
+            let logarithm = rounded(libm::log2(self.value.into()), 2);
+            let argument = rounded(f64::from(logarithm) * f64::from(exponent.value), 0);
+            return rounded(Real::exp(f64::from(argument) * std::f64::consts::LN_2), 2).into();
+        }
+        Real::pow(self.value, exponent.value).into()
+    }
     fn is_finite(self) -> bool {
         self.value.is_finite()
     }

@@ -102,6 +102,9 @@ macro_rules! twin {
             fn exponential(argument: f64) -> f64 {
                 Ieee::exponential(argument)
             }
+            fn power(bases: [f64; 2], exponent: f64) -> f64 {
+                Ieee::power(bases, exponent)
+            }
             fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {
                 Ball::rounded(middle, a.radius + b.radius, $sum, 0.0)
             }

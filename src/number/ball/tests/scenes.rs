@@ -2,7 +2,7 @@
 
 use super::{Ball, Profile};
 use crate::number::random::{bits, unit};
-use crate::number::{Exact, Real, Truth, Vector3};
+use crate::number::{Real, Truth, Vector3};
 use crate::scene::{Camera, Lens, Pose};
 use crate::splat::project::project_as;
 use crate::splat::{Disc, Footprint, Kernel, Outline, Projector, Shared, View, fragment};

@@ -1,0 +1,67 @@
+//! The splats of a picture in balls: every surfel that a right implementation may draw.
+
+use super::Settings;
+use crate::frame::Rect;
+use crate::method::algorithm::Job;
+use crate::method::prepare::Prepared;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Truth};
+use crate::splat::project::project_as;
+use crate::splat::{Disc, Projector, Splat, Tally, batch};
+
+/// A surfel that may be drawn.
+#[derive(Debug)]
+pub(super) struct PossibleSplat<P: Profile> {
+    pub(super) splat: Splat<Ball<P>>,
+    /// Whether it certainly is, and with this outline.
+    pub(super) certain: bool,
+}
+
+/// The splats of a picture, each with the pixels that may be inside.
+pub(super) type PossibleSplats<P> = Prepared<Ball<P>, PossibleSplat<P>>;
+
+/// The surfels that may be drawn.
+pub(super) fn project<P: Profile>(job: &Job<'_>, settings: &Settings) -> PossibleSplats<P> {
+    let surfels = &job.scene.surfels;
+    let [x1, y1] = job.camera.size();
+    let picture = Rect { x1, y1, ..Rect::default() };
+    Prepared::new(
+        job,
+        settings,
+        surfels.len(),
+        |projector, range, splats| {
+            for i in range {
+                let disc = batch::disc(surfels, i);
+                each_possible(projector, &disc, i as u32, |mut splat, certain| {
+                    splat.bounds = splat.bounds.intersection(&picture);
+                    if !splat.bounds.is_empty() {
+                        splats.push(PossibleSplat { splat, certain });
+                    }
+                });
+            }
+            Tally::default()
+        },
+        |possible| possible.splat.bounds,
+    )
+}
+
+/// What a surfel may become: one splat, two if it is not certain whether it reaches the near plane,
+/// or none; and whether that is certain.
+fn each_possible<P: Profile>(
+    projector: &Projector<Ball<P>>,
+    disc: &Disc<Ball<P>>,
+    surfel: u32,
+    mut each: impl FnMut(Splat<Ball<P>>, bool),
+) {
+    let crosses = projector.crosses(disc);
+    for alternative in [false, true] {
+        let possible = if alternative { crosses.possibly() } else { !crosses.certainly() };
+        if possible {
+            let (splat, reasons) = project_as(projector, disc, surfel, alternative);
+            let dropped = reasons.any();
+            if !dropped.certainly() {
+                each(splat, !dropped.possibly() && crosses.decided().is_some());
+            }
+        }
+    }
+}

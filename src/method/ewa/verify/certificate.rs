@@ -1,0 +1,199 @@
+//! The visibility pass of a client: what may be the nearest fragment, and what certainly is not.
+
+use super::handed::Handed;
+use crate::composite::decide;
+use crate::frame::{NO_ID, Rect};
+use crate::method::ewa::possible::{PossibleSplat, PossibleSplats};
+use crate::method::fragment::{each_in_bounds, each_pixel};
+use crate::method::judged::{Marks, PixelMarks};
+use crate::method::tiled::pixels;
+use crate::number::ball::{Profile, Three};
+use crate::number::{Ball, Real, Truth};
+use crate::splat::{Shared, fragment};
+use crate::verify::verdict::{Doubt, Fault};
+
+/// The nearest fragment of a pixel, as the client has it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nearest<P: Profile> {
+    /// The depth that later passes work with.
+    pub(super) depth: Ball<P>,
+    /// The surfel, if the client says which.
+    pub(super) id: Option<u32>,
+}
+
+/// What is known of a pixel before other fragments are held against it.
+#[derive(Clone, Copy, Debug)]
+struct Claim<P: Profile> {
+    nearest: Nearest<P>,
+    /// By how many bounds the claim itself fails: of the fragments that may be meant, that which
+    /// fails least.
+    error: f64,
+    /// The depth of that fragment.
+    closest: Ball<P>,
+    /// If the client says nothing: the least depth that may be the nearest, and the greatest.
+    range: [f64; 2],
+}
+
+/// Judges the nearest fragments of a tile, and says what later passes work with.
+pub(super) fn judge<P: Profile>(
+    splats: &PossibleSplats<P>,
+    handed: &Handed<'_>,
+    (tile, rect): (usize, &Rect),
+    marks: &mut Marks,
+) -> Vec<Nearest<P>> {
+    let mut claims = claims(splats, handed, (tile, rect));
+    splats.for_each(tile, |possible| {
+        each_in_bounds(&splats.shared, &possible.splat, rect, |pixel, q, w| {
+            let claim = &mut claims[pixel];
+            let fragment = Against::new(&splats.shared, possible, q, w);
+            if handed.nothing() {
+                fragment.bound(&mut claim.range);
+            } else if claim.nearest.id != Some(possible.splat.surfel) {
+                fragment.judge(claim, &mut marks.at(pixel));
+            }
+        });
+    });
+    for (pixel, claim) in claims.iter_mut().enumerate() {
+        if handed.nothing() {
+            claim.nearest.depth = between(claim.range);
+        } else {
+            claim.judge(handed, &mut marks.at(pixel));
+        }
+    }
+    claims.into_iter().map(|claim| claim.nearest).collect()
+}
+
+/// What the client says of each pixel.
+fn claims<P: Profile>(
+    splats: &PossibleSplats<P>,
+    handed: &Handed<'_>,
+    (tile, rect): (usize, &Rect),
+) -> Vec<Claim<P>> {
+    let mut claims: Vec<Claim<P>> = pixels(*rect)
+        .map(|at| {
+            let id = handed.id.map(|ids| *ids.plane.at(at.0, at.1));
+            let depth = handed.depth.map_or(Ball::INFINITY, |depth| depth.ball(at));
+            let nothing = depth.middle == f64::INFINITY && id.is_none_or(|id| id == NO_ID);
+            let error = if nothing { 0.0 } else { f64::INFINITY };
+            let range = [f64::INFINITY; 2];
+            Claim { nearest: Nearest { depth, id }, error, closest: Ball::INFINITY, range }
+        })
+        .collect();
+    let shared = &splats.shared;
+    splats.for_each(tile, |PossibleSplat { splat, .. }| {
+        each_pixel(splat, rect, |pixel, at| {
+            let claim = &mut claims[pixel];
+            if claim.nearest.id.map_or(handed.depth.is_some(), |id| id == splat.surfel) {
+                let (q, w) = fragment(shared, &splat.footprint, at);
+                claim.meet(shared, q, w, handed.depth.is_some());
+            }
+        });
+    });
+    claims
+}
+
+impl<P: Profile> Claim<P> {
+    /// A fragment that may be the one that the client means.
+    fn meet(&mut self, shared: &Shared<Ball<P>>, q: Ball<P>, w: Ball<P>, has_depth: bool) {
+        let inside = decide::inside(q, shared.limit);
+        let outside = if inside.possibly() { 0.0 } else { q.distance(shared.limit) };
+        let t = shared.depth(w);
+        let misfit = if has_depth { t.misfit(self.nearest.depth) } else { 0.0 };
+        let error = if misfit > outside { misfit } else { outside };
+        if error < self.error {
+            (self.error, self.closest) = (error, t);
+            if !has_depth {
+                self.nearest.depth = t;
+            }
+        }
+    }
+
+    /// Whether the claim itself can be.
+    fn judge(&self, handed: &Handed<'_>, pixel: &mut PixelMarks<'_>) {
+        let Nearest { depth, id } = self.nearest;
+        let channel = || handed.depth.map_or_else(String::new, |depth| depth.name.to_owned());
+        pixel.found(self.error, || match id {
+            Some(NO_ID) => Fault::Value {
+                channel: channel(),
+                found: depth.middle,
+                truth: f64::INFINITY,
+                radius: 0.0,
+            },
+            Some(surfel) if self.closest.middle == f64::INFINITY => Fault::Absent { surfel },
+            Some(_) => Fault::Value {
+                channel: channel(),
+                found: depth.middle,
+                truth: self.closest.middle,
+                radius: self.closest.radius + depth.radius,
+            },
+            None => Fault::NoSuchDepth { found: depth.middle, closest: self.closest.middle },
+        });
+    }
+}
+
+/// A fragment that the client did not choose.
+struct Against<P: Profile> {
+    surfel: u32,
+    /// Whether it is drawn.
+    drawn: bool,
+    inside: Three,
+    /// How certain that is.
+    rim: f64,
+    t: Ball<P>,
+}
+
+impl<P: Profile> Against<P> {
+    fn new(shared: &Shared<Ball<P>>, possible: &PossibleSplat<P>, q: Ball<P>, w: Ball<P>) -> Self {
+        Self {
+            surfel: possible.splat.surfel,
+            drawn: possible.certain,
+            inside: decide::inside(q, shared.limit),
+            rim: q.distance(shared.limit),
+            t: shared.depth(w),
+        }
+    }
+
+    /// Whether the fragment certainly is nearer than what the client has, or may be.
+    fn judge(&self, claim: &Claim<P>, pixel: &mut PixelMarks<'_>) {
+        if !self.inside.possibly() {
+            return;
+        }
+        let depth = claim.nearest.depth;
+        let nearer = decide::before(self.t, depth);
+        if self.drawn && (self.inside & nearer).certainly() {
+            // As certain as the least certain of the two.
+            let gap = self.t.distance(depth);
+            pixel.found(if gap < self.rim { gap } else { self.rim }, || Fault::LeftOut {
+                surfel: self.surfel,
+                depth: self.t.middle,
+                found: depth.middle,
+            });
+        } else if nearer.possibly() {
+            pixel.doubt(Doubt::Nearer, !nearer.certainly());
+            pixel.doubt(Doubt::CutOff, !self.inside.certainly());
+            pixel.doubt(Doubt::Fate, !self.drawn);
+        }
+    }
+
+    /// The nearest depth that a pixel may have, if the client says nothing of it.
+    fn bound(&self, [least, most]: &mut [f64; 2]) {
+        if self.inside.possibly() {
+            let Ball { middle, radius, .. } = self.t;
+            *least = least.at_most(middle - radius);
+            if self.drawn && self.inside.certainly() {
+                *most = most.at_most(middle + radius);
+            }
+        }
+    }
+}
+
+/// The ball of an interval of depths; of one without an end, any depth.
+fn between<P: Profile>([least, most]: [f64; 2]) -> Ball<P> {
+    if least == f64::INFINITY {
+        Ball::INFINITY
+    } else if most == f64::INFINITY {
+        Ball::new(least, f64::INFINITY)
+    } else {
+        Ball::new(0.5 * (least + most), 0.5 * (most - least))
+    }
+}

@@ -1,0 +1,77 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Surfels are projected in [`Ball`](crate::number::Ball)s of a [`Profile`]; a fragment is asked as for the
+//! [margin](super#the-margin). Each stage is judged from what the client has of the stage before,
+//! as it is stored; what the client has not is taken from the balls.
+//!
+//! **Visibility**, a certificate. Z and id are those of `visibility`, else of the picture.
+//!
+//! 1. The surfel of the id has a fragment at the pixel that possibly is inside.
+//! 2. Z is in the ball of its depth. With Z alone some fragment must satisfy 1 and 2.
+//! 3. No other surfel that certainly is drawn has a fragment that certainly is inside and whose depth
+//!    certainly is less than Z; without Z, than the depth of the id's fragment. Of an empty pixel
+//!    Z is +inf, so that no fragment certainly is inside.
+//!
+//! The id of near ties is one of a set, and harmless: the sums take their limit from the client's Z.
+//!
+//! **Attributes.** A fragment is in the sums if it is drawn, inside, and of a depth of at most Z +
+//! epsilon; that of the id always passes. Where that is undecided, both continuations are kept, 2^n
+//! for n <= 4 fragments; a pixel is right if one of them fits every plane. With more than four
+//! the sums are not judged. Without Z and id, Z is any depth from the least that may be the nearest
+//! to the least that certainly is inside.
+//!
+//! **Normalization and shading**: the formulas of the crate in balls. Where an environment is seen,
+//! the colour is not judged.
+//!
+//! The error of a number is the distance from the midpoint of its ball, divided by the sum of the
+//! ball's radius and of what its format may lose: up to 1 is right. The error of a certificate that
+//! fails is the distance of the decision that had to be otherwise; of an id or a count it is +inf.
+
+mod certificate;
+mod handed;
+mod pixel;
+mod sums;
+#[cfg(test)]
+mod tests;
+
+use super::Settings;
+use super::possible::project;
+use crate::method::algorithm::Job;
+use crate::method::judged::{Marks, counted, judged};
+use crate::number::ball::Profile;
+use crate::verify::client::Client;
+use crate::verify::verdict::{Doubt, Verdict};
+use handed::Handed;
+use pixel::PixelJudge;
+
+/// Judges the planes of a client.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Verdict {
+    let handed = Handed::new(client);
+    let splats = project::<P>(job, settings);
+    let judge = PixelJudge::<P>::new(job, &handed);
+    let tiles = job.grid().rects().into_iter().enumerate().collect();
+    let found = job.exec.ordered(tiles, |(tile, rect)| {
+        let mut first = Marks::new(rect);
+        let mut rest = [(); 3].map(|()| Marks::new(rect));
+        let nearest = certificate::judge(&splats, &handed, (tile, &rect), &mut first);
+        let surfels = &job.scene.surfels;
+        let sums = sums::continuations(&splats, surfels, &nearest, (tile, &rect), &mut rest[0]);
+        let mut covered = 0;
+        for (pixel, at) in counted(rect) {
+            judge.judge((pixel, at), &nearest[pixel], &sums[pixel], &mut rest);
+            covered += u64::from(nearest[pixel].depth.middle.is_finite());
+        }
+        let [a, b, c] = rest;
+        ([first, a, b, c], covered)
+    });
+    let covered = found.iter().map(|(_, covered)| covered).sum();
+    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
+    let stages = judged(job, handed.stages(), tiles);
+    let undecided = stages[1].doubtful(Doubt::OF_SUMS);
+    Verdict { stages, covered, undecided, budget }
+}

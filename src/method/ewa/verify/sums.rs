@@ -1,0 +1,165 @@
+//! The attribute pass of a client: the sums over the fragments that certainly are visible, and both
+//! continuations of every decision that may be either way.
+
+use super::certificate::Nearest;
+use crate::composite::decide;
+use crate::frame::Rect;
+use crate::method::ewa::attributes::Sums;
+use crate::method::ewa::possible::{PossibleSplat, PossibleSplats};
+use crate::method::fragment::each_in_bounds;
+use crate::method::judged::{Marks, PixelMarks};
+use crate::number::ball::{Profile, Three};
+use crate::number::{Ball, Truth};
+use crate::scene::Surfels;
+use crate::verify::verdict::Doubt;
+
+/// The most undecided fragments of a pixel of which all continuations are followed, 2^n of them.
+const MOST: u32 = 4;
+
+/// What the sums of a pixel may be.
+#[derive(Clone, Debug)]
+pub(super) enum Continuations<P: Profile> {
+    /// No decision is undecided.
+    One(Sums<Ball<P>>),
+    /// One of these.
+    Several(Vec<Sums<Ball<P>>>),
+    /// More than are followed: anything.
+    Many,
+}
+
+/// The fragments of a pixel whose sums are undecided.
+type Fragments<P> = Vec<(usize, Part<P>)>;
+
+/// A fragment that is or may be in the sums.
+#[derive(Clone, Copy, Debug)]
+struct Part<P: Profile> {
+    surfel: u32,
+    back: Three,
+    weight: Ball<P>,
+    /// Whether it certainly is.
+    certain: bool,
+}
+
+/// The sums of each pixel of a tile, given the nearest fragments.
+pub(super) fn continuations<P: Profile>(
+    splats: &PossibleSplats<P>,
+    surfels: &Surfels,
+    nearest: &[Nearest<P>],
+    (tile, rect): (usize, &Rect),
+    marks: &mut Marks,
+) -> Vec<Continuations<P>> {
+    let mut sums = vec![(Sums::NONE, 0_u32); rect.pixels()];
+    each_part(splats, nearest, (tile, rect), |pixel, part, asked| {
+        let (sums, undecided) = &mut sums[pixel];
+        if part.certain {
+            sums.add(surfels, (part.surfel, part.back), part.weight);
+        } else {
+            *undecided += 1;
+            asked.mark(&mut marks.at(pixel));
+        }
+        marks.at(pixel).doubt(Doubt::Side, part.back.decided().is_none());
+    });
+    let parts = undecided_parts(splats, nearest, (tile, rect), &sums);
+    let of_pixel = |pixel, undecided| match undecided {
+        0 => None,
+        1..=MOST => Some(Continuations::Several(several(surfels, &parts, pixel, undecided))),
+        _ => Some(Continuations::Many),
+    };
+    sums.into_iter()
+        .enumerate()
+        .map(|(pixel, (sums, undecided))| {
+            of_pixel(pixel, undecided).unwrap_or(Continuations::One(sums))
+        })
+        .collect()
+}
+
+/// The decisions on a fragment.
+struct Asked {
+    drawn: bool,
+    inside: Three,
+    visible: Three,
+}
+
+impl Asked {
+    fn mark(&self, pixel: &mut PixelMarks<'_>) {
+        pixel.doubt(Doubt::CutOff, self.inside.decided().is_none());
+        pixel.doubt(Doubt::Epsilon, self.visible.decided().is_none());
+        pixel.doubt(Doubt::Fate, !self.drawn);
+    }
+}
+
+/// Runs `take` for every fragment that is or may be in the sums, in ascending surfel index.
+fn each_part<P: Profile>(
+    splats: &PossibleSplats<P>,
+    nearest: &[Nearest<P>],
+    (tile, rect): (usize, &Rect),
+    mut take: impl FnMut(usize, Part<P>, &Asked),
+) {
+    let shared = &splats.shared;
+    splats.for_each(tile, |PossibleSplat { splat, certain }| {
+        each_in_bounds(shared, splat, rect, |pixel, q, w| {
+            let inside = decide::inside(q, shared.limit);
+            if !inside.possibly() {
+                return;
+            }
+            let Nearest { depth, id } = nearest[pixel];
+            // The nearest fragment always passes: it is the law of the test.
+            let visible = if id == Some(splat.surfel) {
+                true.into()
+            } else {
+                decide::visible(shared.depth(w), decide::limit(depth, splats.epsilon))
+            };
+            if visible.possibly() {
+                let asked = Asked { drawn: *certain, inside, visible };
+                let certain = *certain && (inside & visible).certainly();
+                let weight = splat.footprint.weight(q);
+                let part = Part { surfel: splat.surfel, back: splat.back, weight, certain };
+                take(pixel, part, &asked);
+            }
+        });
+    });
+}
+
+/// All fragments of the pixels with an undecided one, as far as they are followed.
+fn undecided_parts<P: Profile>(
+    splats: &PossibleSplats<P>,
+    nearest: &[Nearest<P>],
+    tile: (usize, &Rect),
+    sums: &[(Sums<Ball<P>>, u32)],
+) -> Fragments<P> {
+    let mut parts = Vec::new();
+    if sums.iter().any(|(_, undecided)| (1..=MOST).contains(undecided)) {
+        each_part(splats, nearest, tile, |pixel, part, _| {
+            if (1..=MOST).contains(&sums[pixel].1) {
+                parts.push((pixel, part));
+            }
+        });
+        // Those of a pixel stay in their order.
+        parts.sort_by_key(|(pixel, _)| *pixel);
+    }
+    parts
+}
+
+/// The sums of a pixel with each choice of its undecided fragments.
+fn several<P: Profile>(
+    surfels: &Surfels,
+    parts: &Fragments<P>,
+    pixel: usize,
+    undecided: u32,
+) -> Vec<Sums<Ball<P>>> {
+    let first = parts.partition_point(|(at, _)| *at < pixel);
+    let parts = parts[first..].iter().take_while(|(at, _)| *at == pixel);
+    (0..1_u32 << undecided)
+        .map(|choice| {
+            let (mut sums, mut bit) = (Sums::NONE, 0);
+            for (_, part) in parts.clone() {
+                let taken = part.certain || choice >> bit & 1 == 1;
+                bit += u32::from(!part.certain);
+                if taken {
+                    sums.add(surfels, (part.surfel, part.back), part.weight);
+                }
+            }
+            sums
+        })
+        .collect()
+}

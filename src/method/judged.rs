@@ -1,0 +1,102 @@
+//! What is found of a client, tile by tile, until it is planes.
+
+use super::algorithm::Job;
+use super::tiled::{Tiled, pixels};
+use crate::frame::Rect;
+use crate::verify::verdict::{Doubt, Fault, Finding, Judged};
+
+/// What was found of one stage at the pixels of a tile.
+#[derive(Debug)]
+pub(super) struct Marks {
+    rect: Rect,
+    found: Vec<(f32, u8)>,
+    worst: Option<Finding>,
+}
+
+/// The marks of one pixel.
+pub(super) struct PixelMarks<'a> {
+    marks: &'a mut Marks,
+    pixel: usize,
+}
+
+impl Marks {
+    /// Nothing found yet.
+    pub(super) fn new(rect: Rect) -> Self {
+        Self { rect, found: vec![(0.0, 0); rect.pixels()], worst: None }
+    }
+
+    /// The marks of a pixel, counted row by row.
+    pub(super) fn at(&mut self, pixel: usize) -> PixelMarks<'_> {
+        PixelMarks { marks: self, pixel }
+    }
+}
+
+impl PixelMarks<'_> {
+    /// What was found, and by how many bounds it errs; `fault` says what is wrong if that is above 1.
+    pub(super) fn found(&mut self, error: f64, fault: impl FnOnce() -> Fault) {
+        let Marks { rect, found, worst } = &mut *self.marks;
+        let at = &mut found[self.pixel].0;
+        // A comparison that NaN fails: an error that cannot be told is none.
+        if error > f64::from(*at) {
+            // Not rounded to 1 from above.
+            let single = error as f32;
+            *at = if error > 1.0 && single <= 1.0 { 1.0_f32.next_up() } else { single };
+        }
+        if error > 1.0 && worst.as_ref().is_none_or(|worst| error > worst.error) {
+            let columns = rect.columns();
+            let (x, y) = (self.pixel % columns, self.pixel / columns);
+            let pixel = (rect.x0 + x as u32, rect.y0 + y as u32);
+            *worst = Some(Finding { pixel, fault: fault(), error });
+        }
+    }
+
+    /// A decision that may be either way.
+    pub(super) fn doubt(&mut self, doubt: Doubt, there: bool) {
+        if there {
+            self.marks.found[self.pixel].1 |= doubt as u8;
+        }
+    }
+}
+
+/// The marks of all tiles as what was found of each of `stages`: their names, and the planes that were
+/// judged.
+pub(super) fn judged<const N: usize>(
+    job: &Job<'_>,
+    stages: [(&'static str, Vec<&'static str>); N],
+    tiles: Vec<[Marks; N]>,
+) -> Vec<Judged> {
+    let mut columns: [Vec<Marks>; N] = std::array::from_fn(|_| Vec::with_capacity(tiles.len()));
+    for tile in tiles {
+        for (column, marks) in columns.iter_mut().zip(tile) {
+            column.push(marks);
+        }
+    }
+    let all = stages.into_iter().zip(columns);
+    all.map(|((stage, planes), tiles)| one(job, stage, planes, tiles)).collect()
+}
+
+fn one(job: &Job<'_>, stage: &'static str, planes: Vec<&'static str>, tiles: Vec<Marks>) -> Judged {
+    let mut worst: Option<Finding> = None;
+    let mut found = Vec::with_capacity(tiles.len());
+    for tile in tiles {
+        if let Some(own) = tile.worst {
+            let place = |finding: &Finding| (finding.pixel.1, finding.pixel.0);
+            let worse = worst.as_ref().is_none_or(|worst| {
+                own.error > worst.error || (own.error == worst.error && place(&own) < place(worst))
+            });
+            if worse {
+                worst = Some(own);
+            }
+        }
+        found.push(tile.found);
+    }
+    let tiled = Tiled::from_tiles(job.grid(), found);
+    let (errors, doubts) = (tiled.plane(|at| at.0), tiled.plane(|at| at.1));
+    let wrong = errors.values().iter().filter(|error| **error > 1.0).count() as u64;
+    Judged { stage, planes, errors, doubts, wrong, worst }
+}
+
+/// The pixels of a tile with their count, row by row.
+pub(super) fn counted(rect: Rect) -> impl Iterator<Item = (usize, (u32, u32))> {
+    pixels(rect).enumerate()
+}
