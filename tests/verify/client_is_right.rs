@@ -64,6 +64,26 @@ fn checkerboard(outline: Outline) -> Case {
     (scene, camera(shape), SplatSettings { kernel, ..SplatSettings::default() })
 }
 
+/// The widest kernel, seen from both sides.
+fn wide_staircase() -> Case {
+    let shape = Shape::by_name("staircase").unwrap();
+    let scene = Scene::lit("staircase", shape.surfels(600, 5).unwrap());
+    let kernel = Kernel { outline: Outline::Perspective, cutoff: 4.0, low_pass: 16.0 };
+    let epsilon = Epsilon::MedianRadii(1.5);
+    (scene, camera(shape), SplatSettings { kernel, epsilon, cull: false })
+}
+
+/// From within: surfels are behind the camera, and beside the view.
+fn inside_the_cluster() -> Case {
+    let scene = Scene::lit("cluster", Shape::by_name("cluster").unwrap().surfels(900, 6).unwrap());
+    let eye = DVec3::new(0.1, 0.2, 0.3);
+    let pose = Pose { eye, target: DVec3::new(1.0, -0.25, -0.5), up: DVec3::Z };
+    let camera = Camera::new(61, 47, pose, Lens::FieldOfView(75.0)).unwrap();
+    let kernel = Kernel { outline: Outline::RayCast, ..Kernel::DEFAULT };
+    let epsilon = Epsilon::World(0.05);
+    (scene, camera, SplatSettings { kernel, epsilon, cull: false })
+}
+
 /// Discs that face the camera, whose standard deviation is 2 px and whose rim goes through centres
 /// of pixels; four lie in one plane, and one is smaller by less than the digits of q that matter.
 fn rims() -> Case {
@@ -91,6 +111,8 @@ fn cases() -> Vec<(&'static str, Case)> {
         ("ray-cast sphere", ray_cast_sphere()),
         ("perspective checkerboard", checkerboard(Outline::Perspective)),
         ("ray-cast checkerboard", checkerboard(Outline::RayCast)),
+        ("wide staircase", wide_staircase()),
+        ("inside the cluster", inside_the_cluster()),
         ("rims", rims()),
     ]
 }
@@ -132,7 +154,7 @@ fn the_plain_client_has_the_bits_of_the_crate() {
     let mut found = Vec::new();
     for (name, case) in cases() {
         let (scene, camera, settings) = &case;
-        let session = Session::new(scene, Method::Ewa(settings.clone()), &exec).unwrap();
+        let session = Session::new(scene, Method::Ewa(*settings), &exec).unwrap();
         let crates = session.define::<f32>(camera, true).unwrap().frame;
         let ours = draw(&case, How::default());
         let covered = ours.scalar("A").unwrap().values().iter().filter(|a| **a > 0.0).count();
@@ -153,14 +175,14 @@ fn the_plain_client_has_the_bits_of_the_crate() {
 
 #[test]
 fn habits_keep_the_ids() {
-    // Of coplanar discs the nearest is anybody's.
-    for (name, case) in cases().into_iter().filter(|(name, _)| !name.contains("checkerboard")) {
+    // Of many coplanar discs the nearest is anybody's.
+    let flat = |name: &str| name.contains("checkerboard") || name.contains("staircase");
+    for (name, case) in cases().into_iter().filter(|(name, _)| !flat(name)) {
         let plain = draw(&case, How::default());
         for &habit in Habit::ALL {
             let picture = draw(&case, How { habit, bug: None });
             let changed = differing(plain.plane("id").unwrap(), picture.plane("id").unwrap());
             let pixels = plain.width as usize * plain.height as usize;
-            println!("{name}, {}: {:?}", habit.name(), differences(&plain, &picture));
             assert!(10 * changed <= pixels, "{name}, {}: {changed} of {pixels}", habit.name());
         }
     }
@@ -170,18 +192,10 @@ fn habits_keep_the_ids() {
 fn every_bug_is_to_be_seen() {
     let cases = cases();
     let plain: Vec<_> = cases.iter().map(|(_, case)| draw(case, How::default())).collect();
-    let mut hidden = Vec::new();
     for &bug in Bug::ALL {
         let how = How { bug: Some(bug), ..How::default() };
-        let seen = cases
-            .iter()
-            .zip(&plain)
-            .filter(|((_, case), plain)| !differences(plain, &draw(case, how)).is_empty());
-        let seen: Vec<_> = seen.map(|((name, _), _)| *name).collect();
-        println!("{}: {seen:?}", bug.name());
-        if seen.is_empty() {
-            hidden.push(bug.name());
-        }
+        let mut all = cases.iter().zip(&plain);
+        let seen = all.any(|((_, case), plain)| !differences(plain, &draw(case, how)).is_empty());
+        assert!(seen, "{}", bug.name());
     }
-    assert!(hidden.is_empty(), "{hidden:?}");
 }

@@ -42,7 +42,7 @@ impl Habit {
         }
         let steps = scrambled(bits(value)) % (2 * most + 1);
         let off = (0..steps / 2).fold(value, |value, _| {
-            if steps % 2 == 0 { value.next_up() } else { value.next_down() }
+            if steps.is_multiple_of(2) { value.next_up() } else { value.next_down() }
         });
         self.number(off)
     }

@@ -53,9 +53,11 @@ impl<'a> Shader<'a> {
         }
         let p = self.point(pixel, shared.number(t));
         let v = self.eye(p);
+        // The page of shading has n divided by its length here. The crate only turns it, as the
+        // plane of normals holds unit vectors.
         let n = match shared.how.bug {
-            Some(Bug::NormalNotTurned) => unit(shared.vector(normal)),
-            _ => unit(shared.direction(Vec3::from_array(normal))),
+            Some(Bug::NormalNotTurned) => shared.vector(normal),
+            _ => shared.direction(Vec3::from_array(normal)),
         };
         let mut sum = s.map(|s| shared.number(material.ambient) * s);
         for (placed, radiance) in &self.lights {
