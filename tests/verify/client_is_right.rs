@@ -41,9 +41,8 @@ fn cluster() -> Case {
     (scene, camera(shape), settings)
 }
 
-/// Under every kind of light.
-fn ray_cast_sphere() -> Case {
-    let mut scene = Scene::lit("sphere", Shape::Sphere.surfels(500, 3).unwrap());
+/// A directional light and a point, beside the headlight.
+fn add_lights(scene: &mut Scene) {
     scene.lights.push(Light::Directional {
         towards: Vec3::new(2.0, -1.0, 0.5),
         color: Vec3::new(0.5, 0.25, 0.0),
@@ -52,6 +51,12 @@ fn ray_cast_sphere() -> Case {
         position: Vec3::new(-2.0, 1.0, 2.5),
         color: Vec3::new(0.0, 0.25, 0.75),
     });
+}
+
+/// Under every kind of light.
+fn ray_cast_sphere() -> Case {
+    let mut scene = Scene::lit("sphere", Shape::Sphere.surfels(500, 3).unwrap());
+    add_lights(&mut scene);
     let settings = SplatSettings { kernel: Kernel::ZP06, ..SplatSettings::default() };
     (scene, camera(Shape::Sphere), settings)
 }
@@ -75,7 +80,9 @@ fn wide_staircase() -> Case {
 
 /// From within: surfels are behind the camera, and beside the view.
 fn inside_the_cluster() -> Case {
-    let scene = Scene::lit("cluster", Shape::by_name("cluster").unwrap().surfels(900, 6).unwrap());
+    let shape = Shape::by_name("cluster").unwrap();
+    let mut scene = Scene::lit("cluster", shape.surfels(900, 6).unwrap());
+    add_lights(&mut scene);
     let eye = DVec3::new(0.1, 0.2, 0.3);
     let pose = Pose { eye, target: DVec3::new(1.0, -0.25, -0.5), up: DVec3::Z };
     let camera = Camera::new(61, 47, pose, Lens::FieldOfView(75.0)).unwrap();
