@@ -1,0 +1,60 @@
+//! A client: a second implementation of the method `ewa`, built as a renderer on a GPU is.
+//!
+//! It was written from the pages of the crate, without its code, and shares with it the types of
+//! what is given and what is handed in, and no formula. All arithmetic is f32. The passes:
+//!
+//! 1. [`project`]: surfels to records of splats, once a picture.
+//! 2. [`passes`]: quads on the screen, first into a depth buffer, then added up.
+//! 3. [`targets`]: the textures; normalization and the planes.
+//! 4. [`shade`]: deferred shading.
+//!
+//! [`habit`] lists what a right client may do otherwise, [`bug`] what a client does wrong. Formulas
+//! are written once, over a [`number`] that rounds by the habit. Elliptical surfels, environments
+//! and the plane `margin` are not supported; opacities play no part in the method.
+
+pub(crate) mod bug;
+pub(crate) mod habit;
+mod named;
+mod number;
+mod passes;
+mod project;
+mod shade;
+mod targets;
+mod view;
+
+pub(crate) use bug::Bug;
+pub(crate) use habit::Habit;
+
+use splatref::splat::SplatSettings;
+use splatref::{Camera, Frame, Scene};
+
+/// How a client draws: its lawful habits and at most one bug.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct How {
+    pub(crate) habit: Habit,
+    pub(crate) bug: Option<Bug>,
+}
+
+impl How {
+    /// Whether the client makes this mistake.
+    fn has(self, bug: Bug) -> bool {
+        self.bug == Some(bug)
+    }
+}
+
+/// What the client draws of a scene: every plane of every stage by the crate's names.
+pub(crate) fn render(
+    scene: &Scene,
+    camera: &Camera,
+    settings: &SplatSettings,
+    how: How,
+) -> Frame<f32> {
+    assert!(scene.surfels.tangents().is_none(), "the client draws no ellipses");
+    assert!(scene.environment.is_none(), "the client knows no environments");
+    let shared = view::Shared::new(scene, camera, settings, how);
+    let splats = project::project(&shared);
+    let mut targets = targets::Targets::new(&shared);
+    passes::visibility(&shared, &splats, &mut targets);
+    passes::attributes(&shared, &splats, &mut targets);
+    targets.finish(&shared)
+}

@@ -1,0 +1,9 @@
+//! The verifier, tried on a client that is no part of the crate.
+//!
+//! - [`client`]: a second implementation of the method `ewa`, from the pages of the crate alone.
+//! - [`client_is_right`]: its plain picture is the crate's, and its bugs are to be seen.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod client;
+mod client_is_right;
