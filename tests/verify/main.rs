@@ -2,8 +2,12 @@
 //!
 //! - [`client`]: a second implementation of the method `ewa`, from the pages of the crate alone.
 //! - [`client_is_right`]: its plain picture is the crate's, and its bugs are to be seen.
+//! - [`cases`]: the scenes.
+//! - [`verdicts`]: no lawful habit is called wrong, and every bug is found.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+mod cases;
 mod client;
 mod client_is_right;
+mod verdicts;

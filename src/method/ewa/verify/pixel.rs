@@ -69,21 +69,21 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             Continuations::Several(sums) => sums,
             Continuations::Many => &[],
         };
-        let mut best: (f64, Option<&Sums<Ball<P>>>) = (f64::INFINITY, all.first());
-        if all.len() > 1 {
-            for sums in all {
-                let mut worst = 0.0;
-                self.check(at, nearest, Some(sums), &mut |_, error, _| {
-                    if error > worst {
-                        worst = error;
-                    }
+        let mut best: Option<([f64; 3], &Sums<Ball<P>>)> = None;
+        for sums in all {
+            // What is right is equally right; a stage counts before those that follow it.
+            let mut worst = [1.0; 3];
+            if all.len() > 1 {
+                self.check(at, nearest, Some(sums), &mut |part, error, _| {
+                    worst[part as usize] = worst[part as usize].at_least(error);
                 });
-                if worst < best.0 {
-                    best = (worst, Some(sums));
-                }
+            }
+            if best.is_none_or(|(least, _)| worst < least) {
+                best = Some((worst, sums));
             }
         }
-        self.check(at, nearest, best.1, &mut |part, error, fault| {
+        let sums = best.map(|(_, sums)| sums);
+        self.check(at, nearest, sums, &mut |part, error, fault| {
             marks[part as usize].at(pixel).found(error, fault);
         });
     }
