@@ -116,6 +116,15 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     /// [`crate::Error::Usage`] if the pixel is outside the picture; else as [`Algorithm::define`].
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display>;
 
+    /// The surfels in the sums at a pixel, each with its weight, in `f64`.
+    ///
+    /// # Errors
+    /// As [`Algorithm::explain`].
+    fn weights(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<Vec<(u32, f64)>> {
+        let _ = (job, pixel);
+        Ok(Vec::new())
+    }
+
     /// Judges the planes of a client: what a right implementation may leave of each stage. A picture
     /// whose share of undecided sums exceeds `budget` cannot be judged. None: the method has no
     /// rules yet.

@@ -3,13 +3,16 @@
 use super::algorithm::Job;
 use super::tiled::{Tiled, pixels};
 use crate::frame::Rect;
-use crate::verify::verdict::{Doubt, Fault, Finding, Judged};
+use crate::verify::verdict::{Causes, Doubt, Fault, Finding, Judged};
+use std::collections::BTreeMap;
 
 /// What was found of one stage at the pixels of a tile.
 #[derive(Debug)]
 pub(super) struct Marks {
     rect: Rect,
     found: Vec<(f32, u8)>,
+    /// The worst fault of each wrong pixel.
+    faults: BTreeMap<usize, Fault>,
     worst: Option<Finding>,
 }
 
@@ -22,7 +25,7 @@ pub(super) struct PixelMarks<'a> {
 impl Marks {
     /// Nothing found yet.
     pub(super) fn new(rect: Rect) -> Self {
-        Self { rect, found: vec![(0.0, 0); rect.pixels()], worst: None }
+        Self { rect, found: vec![(0.0, 0); rect.pixels()], faults: BTreeMap::new(), worst: None }
     }
 
     /// The marks of a pixel, counted row by row.
@@ -34,19 +37,24 @@ impl Marks {
 impl PixelMarks<'_> {
     /// What was found, and by how many bounds it errs; `fault` says what is wrong if that is above 1.
     pub(super) fn found(&mut self, error: f64, fault: impl FnOnce() -> Fault) {
-        let Marks { rect, found, worst } = &mut *self.marks;
+        let Marks { rect, found, faults, worst } = &mut *self.marks;
         let at = &mut found[self.pixel].0;
         // A comparison that NaN fails: an error that cannot be told is none.
-        if error > f64::from(*at) {
-            // Not rounded to 1 from above.
-            let single = error as f32;
-            *at = if error > 1.0 && single <= 1.0 { 1.0_f32.next_up() } else { single };
+        if !(error > f64::from(*at)) {
+            return;
         }
-        if error > 1.0 && worst.as_ref().is_none_or(|worst| error > worst.error) {
-            let columns = rect.columns();
-            let (x, y) = (self.pixel % columns, self.pixel / columns);
-            let pixel = (rect.x0 + x as u32, rect.y0 + y as u32);
-            *worst = Some(Finding { pixel, fault: fault(), error });
+        // Not rounded to 1 from above.
+        let single = error as f32;
+        *at = if error > 1.0 && single <= 1.0 { 1.0_f32.next_up() } else { single };
+        if error > 1.0 {
+            let fault = fault();
+            if worst.as_ref().is_none_or(|worst| error > worst.error) {
+                let columns = rect.columns();
+                let (x, y) = (self.pixel % columns, self.pixel / columns);
+                let pixel = (rect.x0 + x as u32, rect.y0 + y as u32);
+                *worst = Some(Finding { pixel, fault: fault.clone(), error });
+            }
+            faults.insert(self.pixel, fault);
         }
     }
 
@@ -78,6 +86,7 @@ pub(super) fn judged<const N: usize>(
 fn one(job: &Job<'_>, stage: &'static str, planes: Vec<&'static str>, tiles: Vec<Marks>) -> Judged {
     let mut worst: Option<Finding> = None;
     let mut found = Vec::with_capacity(tiles.len());
+    let mut causes = Causes::default();
     for tile in tiles {
         if let Some(own) = tile.worst {
             let place = |finding: &Finding| (finding.pixel.1, finding.pixel.0);
@@ -88,12 +97,13 @@ fn one(job: &Job<'_>, stage: &'static str, planes: Vec<&'static str>, tiles: Vec
                 worst = Some(own);
             }
         }
+        tile.faults.values().for_each(|fault| causes.count(fault));
         found.push(tile.found);
     }
     let tiled = Tiled::from_tiles(job.grid(), found);
     let (errors, doubts) = (tiled.plane(|at| at.0), tiled.plane(|at| at.1));
     let wrong = errors.values().iter().filter(|error| **error > 1.0).count() as u64;
-    Judged { stage, planes, errors, doubts, wrong, worst }
+    Judged { stage, planes, errors, doubts, wrong, causes, worst }
 }
 
 /// The pixels of a tile with their count, row by row.

@@ -199,6 +199,17 @@ impl<'a> Session<'a> {
     /// [`Error::Invalid`] if no plane is one of the method's, if the picture has another size than
     /// the camera's, or if the method has no rules; else as [`Session::render`].
     pub fn verify(&self, camera: &Camera, client: &Client, budget: f64) -> Result<Verdict> {
+        self.verify_as(&self.method, camera, client, budget)
+    }
+
+    /// As [`Session::verify`], as if the method were another one, with the same scene and groups.
+    pub(crate) fn verify_as(
+        &self,
+        method: &Method,
+        camera: &Camera,
+        client: &Client,
+        budget: f64,
+    ) -> Result<Verdict> {
         let job = self.job(camera)?;
         let frame = client.frame();
         let (found, picture) = ([frame.width, frame.height], camera.size());
@@ -214,12 +225,25 @@ impl<'a> Session<'a> {
             return Err(Error::Invalid(what));
         }
         let verdict = match client.rounding {
-            Rounding::Gpu => self.method.verify::<Gpu>(&job, client, budget),
-            Rounding::Ieee => self.method.verify::<Ieee>(&job, client, budget),
+            Rounding::Gpu => method.verify::<Gpu>(&job, client, budget),
+            Rounding::Ieee => method.verify::<Ieee>(&job, client, budget),
         };
         verdict.ok_or_else(|| {
             Error::Invalid(format!("the method {} has no rules for verdicts", self.method.name()))
         })
+    }
+
+    /// The surfels that weigh most at a pixel, in `f64`, the heaviest first; none if the method does
+    /// not say.
+    ///
+    /// # Errors
+    /// As [`Session::explain`].
+    pub fn weights(&self, camera: &Camera, pixel: (u32, u32)) -> Result<Vec<(u32, f64)>> {
+        let job = self.job(camera)?;
+        camera.check_pixel(pixel.0, pixel.1)?;
+        let mut weights = self.method.weights(&job, pixel)?;
+        weights.sort_by(|a, b| b.1.total_cmp(&a.1));
+        Ok(weights)
     }
 
     fn job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {

@@ -136,6 +136,10 @@ macro_rules! methods {
                 }
             }
 
+            pub(super) fn weights(&self, job: &Job<'_>, at: (u32, u32)) -> Result<Vec<(u32, f64)>> {
+                match self { $(Self::$method(settings) => settings.weights(job, at),)* }
+            }
+
             pub(super) fn verify<P: Profile>(
                 &self,
                 job: &Job<'_>,

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::frame::image::Values;
-use crate::frame::{Frame, Image, NO_ID, Plane, Samples};
+use crate::frame::{Frame, Image, NO_ID, NamedPlane, Plane, Samples};
 use crate::method::{Holds, PlaneRow, Stage};
 use crate::number::ball::{Ball, Profile};
 use crate::setting::Words;
@@ -69,16 +69,35 @@ impl Words for Rounding {
     const WORDS: &'static [(&'static str, Self)] = &[("gpu", Self::Gpu), ("ieee", Self::Ieee)];
 }
 
+/// Which of equally near fragments a client says that it keeps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ties {
+    /// That of the lowest surfel index: the rule of this crate.
+    #[default]
+    Lowest,
+    /// That of the highest.
+    Last,
+    /// Any of them.
+    Any,
+}
+
+impl Words for Ties {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("lowest", Self::Lowest), ("last", Self::Last), ("any", Self::Any)];
+}
+
 /// The planes of a client.
 ///
 /// Depth is t in world units, +inf where a pixel is empty, whatever the client stores; ids are
 /// [`NO_ID`] there; rows run from the top.
 #[derive(Clone, Debug)]
 pub struct Client {
-    frame: Frame<f64>,
-    storage: BTreeMap<String, Storage>,
+    pub(super) frame: Frame<f64>,
+    pub(super) storage: BTreeMap<String, Storage>,
     /// What the client promises of its operations.
     pub rounding: Rounding,
+    /// Which of equally near fragments it says that it keeps.
+    pub ties: Ties,
     /// How the sums of the attribute pass are stored between two additions.
     pub accumulator: Storage,
     /// The channels of the file that are no planes of the method.
@@ -118,6 +137,7 @@ impl Client {
             frame,
             storage: BTreeMap::new(),
             rounding: Rounding::default(),
+            ties: Ties::default(),
             accumulator: Storage::Single,
             unknown: Vec::new(),
         }
@@ -154,6 +174,17 @@ impl Client {
     #[must_use]
     pub fn frame(&self) -> &Frame<f64> {
         &self.frame
+    }
+
+    /// The same client with other planes, each made of one by its name.
+    pub(crate) fn mapped(&self, of: impl Fn(&str, &Samples<f64>) -> Samples<f64>) -> Self {
+        let Frame { width, height, ref planes } = self.frame;
+        let planes = planes.iter().map(|NamedPlane { name, samples }| NamedPlane {
+            name: name.clone(),
+            samples: of(name, samples),
+        });
+        let frame = Frame { width, height, planes: planes.collect() };
+        Self { frame, ..self.clone() }
     }
 
     /// One number a pixel, if the plane was handed in.

@@ -72,6 +72,7 @@ use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
+use crate::method::replay::Touch;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::number::ball::Profile;
@@ -109,6 +110,12 @@ impl Algorithm for Settings {
         given: &Given<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
+    }
+
+    fn weights(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<Vec<(u32, f64)>> {
+        let replay = explain::explain::<f64>(job, self, pixel)?;
+        let given = |touch: &Touch<f64>| Some((touch.surfel, touch.gives?.1));
+        Ok(replay.visible.iter().filter_map(given).collect())
     }
 
     fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {

@@ -12,7 +12,11 @@
 //!    certainly is less than Z; without Z, than the depth of the id's fragment. Of an empty pixel
 //!    Z is +inf, so that no fragment certainly is inside.
 //!
-//! The id of near ties is one of a set, and harmless: the sums take their limit from the client's Z.
+//! 4. No surfel comes before that of the id, as the client says of ties, whose depth is equal and
+//!    exact in balls, or all of whose numbers are those of the id's surfel.
+//!
+//! The id of other near ties is one of a set, and harmless: the sums take their limit from the
+//! client's Z.
 //!
 //! **Attributes.** A fragment is in the sums if it is drawn, inside, and of a depth of at most Z +
 //! epsilon; that of the id always passes. Where that is undecided, both continuations are kept, 2^n
@@ -56,10 +60,10 @@ pub(super) fn verify<P: Profile>(
     let judge = PixelJudge::<P>::new(job, &handed);
     let tiles = job.grid().rects().into_iter().enumerate().collect();
     let found = job.exec.ordered(tiles, |(tile, rect)| {
+        let surfels = &job.scene.surfels;
         let mut first = Marks::new(rect);
         let mut rest = [(); 3].map(|()| Marks::new(rect));
-        let nearest = certificate::judge(&splats, &handed, (tile, &rect), &mut first);
-        let surfels = &job.scene.surfels;
+        let nearest = certificate::judge(&splats, (&handed, surfels), (tile, &rect), &mut first);
         let sums = sums::continuations(&splats, surfels, &nearest, (tile, &rect), &mut rest[0]);
         let mut covered = 0;
         for (pixel, at) in counted(rect) {
