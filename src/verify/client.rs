@@ -208,7 +208,7 @@ impl Client {
         self.frame.plane(row.name)
     }
 
-    fn of<'a, T>(&self, row: &PlaneRow, plane: &'a Plane<T>) -> Stored<'a, T> {
+    fn of<'a, T>(&'a self, row: &PlaneRow, plane: &'a Plane<T>) -> Stored<'a, T> {
         Stored {
             name: row.name,
             plane,
