@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// A plane that is looked for.
 #[derive(Clone, Debug)]
 pub(super) struct Wanted {
-    /// What the TOML file calls it.
+    /// What the TOML file calls it, as it is written there.
     pub(super) key: String,
     /// The name of the plane.
     pub(super) name: String,
@@ -30,7 +30,8 @@ impl Wanted {
     fn new(key: &str, name: &str, row: &'static PlaneRow, keys: PlaneKeys, all: DepthKeys) -> Self {
         let own_depth = keys.depth;
         let keys = PlaneKeys { depth: own_depth.or(all), ..keys };
-        Self { key: key.into(), name: name.into(), row, keys, own_depth }
+        let key = if key.contains('.') { format!("\"{key}\"") } else { key.to_owned() };
+        Self { key, name: name.into(), row, keys, own_depth }
     }
 
     /// Whether it holds depths t.
@@ -235,6 +236,7 @@ fn joined(mut planes: Vec<Read>) -> Result<Client> {
             let key = &wanted.key;
             Error::Invalid(format!("planes.{key}: `premultiplied` needs the plane `{name}`"))
         })?;
+        super::ask([color.width(), color.height()], 3).map_err(Error::Invalid)?;
         let (values, off) = straight((color, *storage), alpha);
         radii.push((wanted.name.clone(), off));
         planes[i].samples = Samples::Color(values);

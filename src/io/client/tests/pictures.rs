@@ -105,7 +105,10 @@ fn all_planes_have_one_size() {
     let client = at.read("[planes]\nA = \"w.raw\"\nZ = \"z.npy\"").unwrap();
     assert_eq!((client.frame().width, client.frame().height), (3, 1));
     let line = at.refusal("file = \"frame.exr\"\n[planes]\nZ = \"z.npy\"");
-    assert!(line.ends_with("planes.RGB: 2 x 2 pixels, but planes.Z is 3 x 1"), "{line}");
+    assert!(
+        line.ends_with("planes.\"attributes.count\": 2 x 2 pixels, but planes.Z is 3 x 1"),
+        "{line}"
+    );
     let line = at.refusal("size = [1, 3]\n[planes]\nZ = \"z.npy\"");
     assert!(line.ends_with("planes.Z: 3 x 1 pixels, but `size` is 1 x 3"), "{line}");
 }

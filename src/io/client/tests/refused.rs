@@ -46,6 +46,16 @@ fn what_is_no_file_of_planes() {
         ("planes.Z.format = \"f32\"", "planes.Z: no `file`, neither here nor for all planes"),
         ("planes.Z = \"a.tif\"", "a.tif\"; give an .exr, .npy, .png, .raw or .bin"),
         ("planes.Z = \"none.raw\"", "none.raw: "),
+    ] {
+        let line = at.refusal(toml);
+        assert!(line.contains(why), "{toml}: {line}");
+    }
+}
+
+#[test]
+fn raw_files_of_another_length() {
+    let at = folder();
+    for (toml, why) in [
         ("planes.Z = \"one.raw\"\nsize = [60000, 60000]", "14400000000 bytes, and the file has 1;"),
         (
             "planes.Z = \"one.raw\"",
@@ -58,7 +68,11 @@ fn what_is_no_file_of_planes() {
         (
             "[planes.Z]\nfile = \"a.raw\"\nrow_stride = 9223372036854775807\n\
              pixel_stride = 9223372036854775800",
-            "planes.Z: row_stride is 9223372036854775807, but a row has 9223372036854775804 bytes",
+            "planes.Z: 2 x 2 pixels of f32 take at least 18446744073709551611 bytes",
+        ),
+        (
+            "[planes.Z]\nfile = \"a.raw\"\nrow_stride = 16\npixel_stride = 9223372036854775800",
+            "planes.Z: row_stride is 16, but a row has 9223372036854775804 bytes",
         ),
         (
             "planes.normal = { file = \"a.raw\", pixel_stride = 4 }",
@@ -121,9 +135,21 @@ fn what_no_rule_covers() {
     for (plane, keys, why) in [
         ("Z", "meaning = \"linear\"\nnear = 1", "meaning is linear, which needs `far`: give it in"),
         ("Z", "meaning = \"near/t\"", "meaning is near/t, which needs `near`"),
-        ("Z", "meaning = \"z-buffer\"\nnear = 0\nfar = 1", "near = 0 and far = 1 cannot be"),
-        ("Z", "meaning = \"z-buffer\"\nnear = 2\nfar = 1", "near = 2 and far = 1 cannot be"),
-        ("Z", "meaning = \"linear\"\nnear = 2\nfar = inf", "near = 2 and far = inf cannot be"),
+        (
+            "Z",
+            "meaning = \"z-buffer\"\nnear = 0\nfar = 1",
+            "meaning is z-buffer, but near = 0 and far = 1 cannot be",
+        ),
+        (
+            "Z",
+            "meaning = \"z-buffer\"\nnear = 2\nfar = 1",
+            "meaning is z-buffer, but near = 2 and far = 1 cannot be",
+        ),
+        (
+            "Z",
+            "meaning = \"linear\"\nnear = 2\nfar = inf",
+            "meaning is linear, but near = 2 and far = inf cannot be",
+        ),
         ("Z", "range = [0, 2]", "`range` means nothing to f32, only to unorm: remove it"),
         ("Z", "channel = \"depth\"", "`channel` means nothing to a raw file: remove it"),
         ("Z", "id_base = 1", "`id_base` means nothing to depths: remove it"),
@@ -146,7 +172,7 @@ fn what_no_rule_covers() {
         ("id", "range = [0, 1]", "`range` means nothing to indices of 32 bits"),
     ] {
         let line = at.refusal(&format!("[planes.{plane}]\nfile = \"a.raw\"\n{keys}"));
-        let place = format!("planes.{plane}: {why}");
+        let place = format!(": planes.{plane}: {why}");
         assert!(line.contains(&place), "{line}");
     }
     let at = at.with("c.raw", &[0; 12]);
