@@ -42,7 +42,7 @@
 //!
 //! A raw file is little-endian and holds one number a pixel, or three next to each other, row by row.
 //! Without `offset` and strides it must be just as long as its pixels; with one of them, long enough.
-//! [`crate::io::npy`] says which arrays are read, [`crate::io::exr`] which EXR; `image` reads PNG, with
+//! [`crate::io::npy`] says which arrays are read, [`crate::io::exr`] which EXR; `io::png` how PNG is, with
 //! the feature `cli`.
 //!
 //! # Formats
