@@ -2,8 +2,8 @@
 //!
 //! Some mistakes show in what the wrong pixels have in common. For the others the client is judged
 //! again, as if a mistake were the rule: with another setting, another camera, or with its planes
-//! turned back. A mistake is named if of the wrong pixels of the first wrong stage at most one in
-//! twenty stay wrong; of several the one that leaves the fewest.
+//! turned back. A mistake is named if of the wrong pixels of all stages at most one in twenty stays
+//! wrong; of several the one that leaves the fewest.
 
 use super::client::{Client, Storage, Ties};
 use super::verdict::{Judged, Verdict};
@@ -34,25 +34,24 @@ pub fn signature(
     verdict: &Verdict,
 ) -> Result<Option<String>> {
     let Some(wrong) = verdict.first_wrong() else { return Ok(None) };
-    if let Some(seen) = seen(wrong) {
-        return Ok(Some(seen));
+    if let Some(plain) = plain(wrong) {
+        return Ok(Some(plain));
     }
+    let all: u64 = verdict.stages.iter().map(|stage| stage.wrong).sum();
     let mut best: Option<(u64, String)> = None;
     for Supposed { what, method, camera, client } in supposed(session, camera, client, wrong.stage)
     {
         let verdict = session.verify_as(&method, &camera, &client, verdict.budget)?;
         let left: u64 = verdict.stages.iter().map(|stage| stage.wrong).sum();
-        let own = verdict.stages.iter().find(|stage| stage.stage == wrong.stage);
-        let cured = own.is_some_and(|own| 20 * own.wrong <= wrong.wrong);
-        if cured && best.as_ref().is_none_or(|(least, _)| left < *least) {
+        if 20 * left <= all && best.as_ref().is_none_or(|(least, _)| left < *least) {
             best = Some((left, what));
         }
     }
-    Ok(best.map(|(_, what)| what))
+    Ok(best.map(|(_, what)| what).or_else(|| common(wrong)))
 }
 
-/// What the wrong pixels themselves say.
-fn seen(wrong: &Judged) -> Option<String> {
+/// What the wrong pixels of a stage plainly say.
+fn plain(wrong: &Judged) -> Option<String> {
     let causes = &wrong.causes;
     let all = |count: u64| count == wrong.wrong;
     if all(causes.nan) {
@@ -61,21 +60,26 @@ fn seen(wrong: &Judged) -> Option<String> {
     if all(causes.ties) {
         return Some("ties: of equally near surfels another is kept than the client says".into());
     }
-    let lacking = all(causes.lacking());
-    match causes.left_out.keys().next() {
-        Some(surfel) if lacking && causes.left_out.len() == 1 && wrong.wrong > 1 => {
-            Some(format!("surfel {surfel} is missing"))
-        }
-        Some(_) if lacking && causes.least_rim > 0.999 => {
-            Some("the cut-off: what lies just inside is left out".into())
-        }
-        Some(_) if lacking && causes.least_rim > 0.6 => {
-            Some("quads too small: what is left out lies near the rims of its splats".into())
-        }
-        _ if 20 * causes.outside >= 19 * wrong.wrong => {
-            Some("depth and id are those of fragments that should be discarded".into())
-        }
-        _ => None,
+    let surfel = causes.left_out.keys().next()?;
+    let one = causes.left_out.len() == 1 && wrong.wrong > 1 && all(causes.lacking());
+    one.then(|| format!("surfel {surfel} is missing"))
+}
+
+/// What the wrong pixels of a stage have in common, if no rule explains them.
+fn common(wrong: &Judged) -> Option<String> {
+    let causes = &wrong.causes;
+    let most = |count: u64| 20 * count >= 19 * wrong.wrong;
+    if most(causes.outside) {
+        return Some("depth and id are those of fragments that should be discarded".into());
+    }
+    if !most(causes.lacking()) {
+        None
+    } else if causes.least_rim > 0.999 {
+        Some("the cut-off is too small: what lies just inside is left out".into())
+    } else if causes.least_rim > 0.6 {
+        Some("quads too small: what is left out lies near the rims of its splats".into())
+    } else {
+        Some("surfels are left out".into())
     }
 }
 
@@ -132,9 +136,10 @@ fn supposed(session: &Session<'_>, camera: &Camera, client: &Client, stage: &str
 /// A setting that is wrong: its name, what follows from its value, and in words.
 type WrongSetting = (&'static str, fn(&Method, f32) -> Option<Value>, &'static str);
 
-const VISIBILITY: [WrongSetting; 4] = [
+const VISIBILITY: [WrongSetting; 5] = [
     ("low_pass", |_, _| Some(Value::Number(0.0)), "the low-pass filter is missing"),
     ("low_pass", |_, h| Some(Value::Number(2.0 * h)), "the low-pass filter is added twice"),
+    ("low_pass", |_, h| Some(Value::Number(0.5 * h)), "half of the low-pass filter is missing"),
     ("cutoff", |_, k| Some(Value::Number(k.sqrt())), "q is compared with k, not with k^2"),
     ("cull", switched, "culling is on where it should be off, or off where it should be on"),
 ];
@@ -179,7 +184,9 @@ fn settings(session: &Session<'_>, wrong: &[WrongSetting]) -> Vec<(String, Metho
 impl Client {
     /// The planes with their rows in the other order.
     fn flipped(&self) -> Self {
-        self.mapped(|_, samples| samples.flipped())
+        let radii = self.radii.iter().map(|(name, radii)| (name.clone(), radii.flipped()));
+        let radii = radii.collect();
+        Self { radii, ..self.mapped(|_, samples| samples.flipped()) }
     }
 
     /// The planes with other colours of the picture, or before it of the averages; each is told the

@@ -2,7 +2,7 @@
 
 use crate::cases::{Case, cases};
 use crate::client::{Bug, Habit, How, render};
-use splatref::frame::{Exec, Image};
+use splatref::frame::Exec;
 use splatref::method::{Method, Session};
 use splatref::verify::client::{Client, Rounding, Ties};
 use splatref::verify::verdict::Verdict;
@@ -11,8 +11,7 @@ use splatref::verify::verdict::Verdict;
 fn judge((scene, camera, settings): &Case, how: How, rounding: Rounding) -> Verdict {
     let exec = Exec::sequential();
     let session = Session::new(scene, Method::Ewa(*settings), &exec).unwrap();
-    let image = Image::from(&render(scene, camera, settings, how));
-    let mut client = Client::of_image(&image, session.method().stages()).unwrap();
+    let mut client = Client::from(&render(scene, camera, settings, how));
     client.rounding = rounding;
     if how.habit == Habit::TiesToTheLast {
         client.ties = Ties::Last;

@@ -5,9 +5,9 @@ mod report;
 use super::options::{ExecOptions, SceneOptions};
 use super::{Ended, Ending, draw, output, progress, say};
 use splatref::frame::{Exec, Frame, Samples};
-use splatref::io::exr;
 use splatref::io::replace::write_atomically;
 use splatref::io::scene_file::{FileKind, OutputSettings, SceneFile};
+use splatref::io::{client, exr};
 use splatref::method::Session;
 use splatref::scene::Camera;
 use splatref::setting::Word;
@@ -27,17 +27,20 @@ stage before: its interval is what an implementation may leave whose operations 
 Examples:
   splatref render sphere --stages -o out/mine.exr && splatref verify sphere out/mine.exr
   splatref verify scene.toml gpu.exr --promise ieee -o out/errors.exr --json out/verdict.json
+  splatref verify scene.toml gpu.toml
+
+The TOML file is described in the documentation of splatref::io::client.
 
 Exit codes: 0 right, 1 wrong, 2 could not be judged, 3 undecidable: too many sums may be either way.")]
 pub(super) struct Args {
     /// The scene, as for render
     scene: PathBuf,
-    /// What the client drew: an .exr
+    /// What the client drew: an .exr, or a .toml that says what is in which file
     client: PathBuf,
     /// What the client promises of its operations: gpu, what shading languages publish; ieee, one
-    /// rounding each, to nearest
-    #[arg(long, value_name = "gpu|ieee", default_value = "gpu", value_parser = rounding)]
-    promise: Rounding,
+    /// rounding each, to nearest [default: what the .toml says, else gpu]
+    #[arg(long, value_name = "gpu|ieee", value_parser = rounding)]
+    promise: Option<Rounding>,
     /// The greatest share of pixels with undecided sums of which a picture is judged
     #[arg(long, value_name = "X", default_value_t = Verdict::BUDGET, value_parser = share)]
     budget: f64,
@@ -64,7 +67,8 @@ fn judge(args: &Args) -> Ended {
     check(args, &file)?;
     let ready = draw::ready(&file, &exec)?;
     let (session, _) = draw::session(&ready, &exec)?;
-    let (camera, client) = (&ready.camera, read(args, &session, &exec)?);
+    let camera = &ready.camera;
+    let client = progress::during("reading", || read(args, &session, camera, &exec))?;
     let (verdict, likely) = progress::during("judging", || -> Result<_> {
         let verdict = session.verify(camera, &client, args.budget)?;
         let likely = signature(&session, camera, &client, &verdict)?;
@@ -106,11 +110,11 @@ fn check(args: &Args, file: &SceneFile) -> Result<()> {
 }
 
 /// The planes of the client.
-fn read(args: &Args, session: &Session<'_>, exec: &Exec) -> Result<Client> {
-    let image = exr::read_with(&args.client, exec)?;
-    let of_file = |error: Error| Error::format(&args.client, error.to_string());
-    let mut client = Client::of_image(&image, session.method().stages()).map_err(of_file)?;
-    client.rounding = args.promise;
+fn read(args: &Args, session: &Session<'_>, camera: &Camera, exec: &Exec) -> Result<Client> {
+    let mut client = client::read(&args.client, session.method().stages(), camera.size(), exec)?;
+    if let Some(rounding) = args.promise {
+        client.rounding = rounding;
+    }
     Ok(client)
 }
 
