@@ -12,7 +12,7 @@ use crate::scene::{Camera, Scene};
 use crate::setting::Fields;
 use crate::splat::SplatSettings;
 use crate::verify::client::Client;
-use crate::verify::verdict::Verdict;
+use crate::verify::verdict::{Check, Verdict};
 use std::fmt::{Debug, Display};
 
 /// What a picture is made of, and how.
@@ -131,6 +131,20 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
         let _ = (job, client, budget);
         None
+    }
+
+    /// Everything of a client that is judged at one pixel; nothing if the method has no rules.
+    ///
+    /// # Errors
+    /// As [`Algorithm::explain`].
+    fn checks<P: Profile>(
+        &self,
+        job: &Job<'_>,
+        client: &Client,
+        pixel: (u32, u32),
+    ) -> Result<Vec<Check>> {
+        let _ = (job, client, pixel);
+        Ok(Vec::new())
     }
 
     /// What the settings come to in a scene: names and values as TOML, for the text of a picture.

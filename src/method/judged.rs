@@ -3,7 +3,7 @@
 use super::algorithm::Job;
 use super::tiled::{Tiled, pixels};
 use crate::frame::Rect;
-use crate::verify::verdict::{Causes, Doubt, Fault, Finding, Judged};
+use crate::verify::verdict::{Causes, Check, Doubt, Fault, Finding, Judged};
 use std::collections::BTreeMap;
 
 /// What was found of one stage at the pixels of a tile.
@@ -14,6 +14,8 @@ pub(super) struct Marks {
     /// The worst fault of each wrong pixel.
     faults: BTreeMap<usize, Fault>,
     worst: Option<Finding>,
+    /// Everything that was checked, if somebody wants to know.
+    log: Option<Vec<(f64, Fault)>>,
 }
 
 /// The marks of one pixel.
@@ -25,7 +27,19 @@ pub(super) struct PixelMarks<'a> {
 impl Marks {
     /// Nothing found yet.
     pub(super) fn new(rect: Rect) -> Self {
-        Self { rect, found: vec![(0.0, 0); rect.pixels()], faults: BTreeMap::new(), worst: None }
+        let found = vec![(0.0, 0); rect.pixels()];
+        Self { rect, found, faults: BTreeMap::new(), worst: None, log: None }
+    }
+
+    /// The same, and everything that is checked will be told.
+    pub(super) fn logging(rect: Rect) -> Self {
+        Self { log: Some(Vec::new()), ..Self::new(rect) }
+    }
+
+    /// Everything that was checked.
+    pub(super) fn checks(self, stage: &'static str) -> impl Iterator<Item = Check> {
+        let log = self.log.into_iter().flatten();
+        log.map(move |(error, fault)| Check { stage, fault, error })
     }
 
     /// The marks of a pixel, counted row by row.
@@ -36,8 +50,15 @@ impl Marks {
 
 impl PixelMarks<'_> {
     /// What was found, and by how many bounds it errs; `fault` says what is wrong if that is above 1.
-    pub(super) fn found(&mut self, error: f64, fault: impl FnOnce() -> Fault) {
-        let Marks { rect, found, faults, worst } = &mut *self.marks;
+    pub(super) fn found(&mut self, error: f64, fault: impl Fn() -> Fault) {
+        let Marks { rect, found, faults, worst, log } = &mut *self.marks;
+        if let Some(log) = log {
+            let fault = fault();
+            let anything = matches!(&fault, Fault::Value { radius, .. } if radius.is_nan());
+            if !anything {
+                log.push((error, fault));
+            }
+        }
         let at = &mut found[self.pixel].0;
         // A comparison that NaN fails: an error that cannot be told is none.
         if !(error > f64::from(*at)) {

@@ -47,7 +47,7 @@ pub fn signature(
             best = Some((left, what));
         }
     }
-    Ok(best.map(|(_, what)| what).or_else(|| common(wrong)))
+    Ok(best.map(|(_, what)| what).or_else(|| common(verdict, wrong)))
 }
 
 /// What the wrong pixels of a stage plainly say.
@@ -66,13 +66,15 @@ fn plain(wrong: &Judged) -> Option<String> {
 }
 
 /// What the wrong pixels of a stage have in common, if no rule explains them.
-fn common(wrong: &Judged) -> Option<String> {
+fn common(verdict: &Verdict, wrong: &Judged) -> Option<String> {
     let causes = &wrong.causes;
     let most = |count: u64| 20 * count >= 19 * wrong.wrong;
     if most(causes.outside) {
         return Some("depth and id are those of fragments that should be discarded".into());
     }
-    if !most(causes.lacking()) {
+    // Where a surfel is left out its weight is missing too; more is wrong where shapes are.
+    let others = verdict.stages.iter().any(|stage| stage.wrong > 3 * wrong.wrong);
+    if !most(causes.lacking()) || others {
         None
     } else if causes.least_rim > 0.999 {
         Some("the cut-off is too small: what lies just inside is left out".into())

@@ -107,8 +107,12 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Value { channel, found, truth, radius } => {
-                let [low, high] = [truth - radius, truth + radius];
-                write!(f, "{channel} is {found}, right are {low} to {high}")
+                write!(f, "{channel} is {found}, ")?;
+                if *radius == 0.0 {
+                    write!(f, "right is {truth}")
+                } else {
+                    write!(f, "right are {} to {}", truth - radius, truth + radius)
+                }
             }
             Self::Whole { channel, found, truth } => {
                 write!(f, "{channel} is {}, right is {}", whole(*found), whole(*truth))
@@ -146,6 +150,26 @@ pub struct Finding {
     pub fault: Fault,
     /// By how many bounds: above 1; +inf if no bound can be given.
     pub error: f64,
+}
+
+/// One value of a client at a pixel, against what it may be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// The stage that leaves it.
+    pub stage: &'static str,
+    /// The value, and what may be there; wrong only if the error is above 1.
+    pub fault: Fault,
+    /// By how many bounds it errs.
+    pub error: f64,
+}
+
+impl fmt::Display for Check {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { stage, fault, error } = self;
+        let word = if *error > 1.0 { "WRONG" } else { "right" };
+        write!(f, "{stage:<14} {word}  {fault}")?;
+        if *error > 0.0 && error.is_finite() { write!(f, "  ({error:.3} bounds)") } else { Ok(()) }
+    }
 }
 
 /// What the wrong pixels of a stage have in common.

@@ -68,7 +68,9 @@ fn judge(args: &Args) -> Ended {
     let ready = draw::ready(&file, &exec)?;
     let (session, _) = draw::session(&ready, &exec)?;
     let camera = &ready.camera;
-    let client = progress::during("reading", || read(args, &session, camera, &exec))?;
+    let client = progress::during("reading", || {
+        read((&args.client, args.promise), &session, camera, &exec)
+    })?;
     let (verdict, likely) = progress::during("judging", || -> Result<_> {
         let verdict = session.verify(camera, &client, args.budget)?;
         let likely = signature(&session, camera, &client, &verdict)?;
@@ -109,12 +111,15 @@ fn check(args: &Args, file: &SceneFile) -> Result<()> {
     Ok(())
 }
 
-/// The planes of the client.
-fn read(args: &Args, session: &Session<'_>, camera: &Camera, exec: &Exec) -> Result<Client> {
-    let mut client = client::read(&args.client, session.method().stages(), camera.size(), exec)?;
-    if let Some(rounding) = args.promise {
-        client.rounding = rounding;
-    }
+/// The planes of a client, and what it promises if somebody says so.
+pub(super) fn read(
+    (path, promise): (&Path, Option<Rounding>),
+    session: &Session<'_>,
+    camera: &Camera,
+    exec: &Exec,
+) -> Result<Client> {
+    let mut client = client::read(path, session.method().stages(), camera.size(), exec)?;
+    client.rounding = promise.unwrap_or(client.rounding);
     Ok(client)
 }
 
@@ -129,7 +134,7 @@ fn errors(camera: &Camera, verdict: &Verdict) -> Result<Frame<f32>> {
 }
 
 /// The word of a promise.
-fn rounding(text: &str) -> std::result::Result<Rounding, String> {
+pub(super) fn rounding(text: &str) -> std::result::Result<Rounding, String> {
     let mut rounding = Rounding::default();
     if rounding.choose(text) { Ok(rounding) } else { Err("give gpu or ieee".into()) }
 }
@@ -140,12 +145,34 @@ fn share(text: &str) -> std::result::Result<f64, String> {
     share.ok_or_else(|| "give a share from 0 to 1".into())
 }
 
-/// What a client is called in a command.
-fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
-    if text.contains([' ', '\'', '"']) {
-        format!("'{}'", text.replace('\'', "'\\''"))
-    } else {
-        text
+impl Args {
+    /// The command that replays a pixel, with all options of this one that mean something there.
+    fn replay(&self, (x, y): (u32, u32)) -> String {
+        let mut words = vec!["splatref explain".to_owned(), quoted(&self.scene.to_string_lossy())];
+        words.extend([x.to_string(), y.to_string()]);
+        words.extend(["--client".to_owned(), quoted(&self.client.to_string_lossy())]);
+        let own = ["-o", "--output", "--json", "--budget"];
+        let mut paths = vec![self.scene.as_os_str(), self.client.as_os_str()];
+        let mut given = std::env::args_os().skip(1).skip_while(|word| word != "verify").skip(1);
+        while let Some(word) = given.next() {
+            let text = word.to_string_lossy();
+            let name = text.split_once('=').map_or(&*text, |(name, _)| name);
+            if own.contains(&name) {
+                if name == text {
+                    given.next();
+                }
+            } else if let Some(place) = paths.iter().position(|path| *path == word) {
+                paths.remove(place);
+            } else {
+                words.push(quoted(&text));
+            }
+        }
+        words.join(" ")
     }
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=:+@%".contains(c);
+    if word.chars().all(plain) { word.into() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }

@@ -1,6 +1,6 @@
 //! A verdict in about ten lines, and as JSON.
 
-use super::{Args, quoted};
+use super::Args;
 use crate::cli::report::short;
 use serde::Serialize;
 use splatref::Result;
@@ -63,8 +63,7 @@ impl<'a> Seen<'a> {
             if let Some(likely) = likely {
                 lines.push(labelled("looks like", likely));
             }
-            let scene = quoted(&args.scene);
-            lines.push(labelled("replay", format!("splatref explain {scene} {x} {y}")));
+            lines.push(labelled("replay", args.replay((x, y))));
         } else if let Some(next) = next(verdict) {
             lines.push(labelled("sharper", next));
         }

@@ -77,7 +77,7 @@ use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::number::ball::Profile;
 use crate::verify::client::Client;
-use crate::verify::verdict::Verdict;
+use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -120,6 +120,15 @@ impl Algorithm for Settings {
 
     fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
         Some(verify::verify::<P>(job, self, client, budget))
+    }
+
+    fn checks<P: Profile>(
+        &self,
+        job: &Job<'_>,
+        client: &Client,
+        pixel: (u32, u32),
+    ) -> Result<Vec<Check>> {
+        verify::checks::<P>(job, self, client, pixel)
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {

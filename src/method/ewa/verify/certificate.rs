@@ -124,6 +124,9 @@ impl<P: Profile> Claim<P> {
     /// Whether the claim itself can be.
     fn judge(&self, handed: &Handed<'_>, pixel: &mut PixelMarks<'_>) {
         let Nearest { depth, id } = self.nearest;
+        if handed.depth.is_none() && self.error <= 1.0 {
+            return;
+        }
         let channel = || handed.depth.map_or_else(String::new, |depth| depth.name.to_owned());
         pixel.found(self.error, || match id {
             Some(NO_ID) => Fault::Value {
