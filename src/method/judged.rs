@@ -2,7 +2,7 @@
 
 use super::algorithm::Job;
 use super::tiled::{Tiled, pixels};
-use crate::frame::Rect;
+use crate::frame::{Plane, Rect};
 use crate::verify::verdict::{Causes, Check, Doubt, Fault, Finding, Judged};
 use std::collections::BTreeMap;
 
@@ -34,6 +34,24 @@ impl Marks {
     /// The same, and everything that is checked will be told.
     pub(super) fn logging(rect: Rect) -> Self {
         Self { log: Some(Vec::new()), ..Self::new(rect) }
+    }
+
+    /// The marks of a whole picture as what was found of a stage.
+    pub(super) fn whole(self, stage: &'static str, planes: Vec<&'static str>) -> Judged {
+        let Rect { x1, y1, .. } = self.rect;
+        let mut causes = Causes::default();
+        self.faults.values().for_each(|fault| causes.count(fault));
+        let plane = |values| Plane::from_values(x1, y1, values);
+        let wrong = self.found.iter().filter(|(error, _)| *error > 1.0).count() as u64;
+        Judged {
+            stage,
+            planes,
+            errors: plane(self.found.iter().map(|at| at.0).collect()),
+            doubts: Plane::from_values(x1, y1, self.found.iter().map(|at| at.1).collect()),
+            wrong,
+            causes,
+            worst: self.worst,
+        }
     }
 
     /// Everything that was checked.

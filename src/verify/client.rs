@@ -9,6 +9,7 @@ use crate::frame::{Frame, NamedPlane, Plane, Samples};
 use crate::method::PlaneRow;
 use crate::number::ball::{Ball, Profile};
 use crate::setting::Words;
+use crate::splat::record::SplatRecord;
 use std::collections::BTreeMap;
 
 /// What a client promises of its operations.
@@ -58,6 +59,9 @@ pub struct Client {
     pub ties: Ties,
     /// How the sums of the attribute pass are stored between two additions.
     pub accumulator: Storage,
+    /// The splats that the client has projected, in ascending surfel index: the stages that follow are
+    /// judged from these.
+    pub records: Option<Vec<SplatRecord>>,
     /// The channels of the file that are no planes of the method.
     pub unknown: Vec<String>,
 }
@@ -122,6 +126,7 @@ impl Client {
             rounding: Rounding::default(),
             ties: Ties::default(),
             accumulator: Storage::Single,
+            records: None,
             unknown: Vec::new(),
         }
     }
