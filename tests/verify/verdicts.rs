@@ -1,18 +1,30 @@
 //! The verifier on the client: no lawful habit is called wrong, and every bug is found.
 
 use crate::cases::{Case, cases};
-use crate::client::{Bug, Habit, How, render};
+use crate::client::{Bug, Habit, How, records, render};
 use splatref::frame::Exec;
 use splatref::method::{Method, Session};
 use splatref::verify::client::{Client, Rounding, Ties};
+use splatref::verify::signature::signature;
 use splatref::verify::verdict::Verdict;
 
 /// What is said of a client's picture of a case, however much of it is undecided.
-fn judge((scene, camera, settings): &Case, how: How, rounding: Rounding) -> Verdict {
+fn judge(case: &Case, how: How, rounding: Rounding) -> Verdict {
+    judge_with(case, how, rounding, false)
+}
+
+/// The same of a client that hands in its records too, or does not.
+fn judge_with(
+    (scene, camera, settings): &Case,
+    how: How,
+    rounding: Rounding,
+    own_records: bool,
+) -> Verdict {
     let exec = Exec::sequential();
     let session = Session::new(scene, Method::Ewa(*settings), &exec).unwrap();
     let mut client = Client::from(&render(scene, camera, settings, how));
     client.rounding = rounding;
+    client.records = own_records.then(|| records(scene, camera, settings, how));
     if how.habit == Habit::TiesToTheLast {
         client.ties = Ties::Last;
     }
@@ -42,6 +54,38 @@ fn no_lawful_habit_is_called_wrong() {
                 assert!(share <= 0.005 || name == "rims", "{name}: {share}");
             }
         }
+    }
+}
+
+#[test]
+fn with_its_records_a_client_is_judged_more_sharply() {
+    let cases = cases();
+    for (name, case) in &cases {
+        for &habit in Habit::ALL {
+            let verdict = judge_with(case, How { habit, bug: None }, Rounding::Gpu, true);
+            let wrong = verdict.first_wrong().map(|stage| (stage.stage, &stage.worst));
+            assert_eq!(wrong, None, "{name}, {}", habit.name());
+        }
+    }
+    // One-sided mistakes that hide within the rounding of a projection.
+    for bug in [Bug::CutoffSmaller, Bug::CutoffLarger, Bug::FastExp] {
+        let how = How { habit: Habit::Plain, bug: Some(bug) };
+        let found = |own| {
+            let wrong = |(_, case): &&(_, Case)| {
+                judge_with(case, how, Rounding::Gpu, own).first_wrong().is_some()
+            };
+            cases.iter().filter(wrong).count()
+        };
+        println!("{}: {} {}", bug.name(), found(false), found(true));
+        assert!(found(true) > found(false) || found(false) == cases.len(), "{}", bug.name());
+    }
+    // What is wrong of a projection is said of the projection.
+    for bug in [Bug::NoHalfPixel, Bug::LowPassDoubled, Bug::SkewSign, Bug::SplatMissing] {
+        let how = How { habit: Habit::Plain, bug: Some(bug) };
+        let verdicts = cases.iter().map(|(_, case)| judge_with(case, how, Rounding::Gpu, true));
+        let stages: Vec<_> = verdicts.filter_map(|v| Some(v.first_wrong()?.stage)).collect();
+        let expected = if bug == Bug::NoHalfPixel { "visibility" } else { "projection" };
+        assert!(stages.len() > 1 && stages.iter().all(|stage| *stage == expected), "{stages:?}");
     }
 }
 
@@ -90,5 +134,46 @@ fn stage_of(bug: Bug) -> &'static str {
         Bug::ColorNotDivided | Bug::NormalNotUnit => "normalization",
         Bug::NormalNotTurned | Bug::SpecularSign | Bug::Srgb | Bug::PixelNan => "shading",
         _ => "visibility",
+    }
+}
+
+#[test]
+fn known_mistakes_are_named() {
+    let exec = Exec::sequential();
+    let cases = cases();
+    for (bug, words) in [
+        (Bug::NoHalfPixel, "half a pixel"),
+        (Bug::PrincipalPointOff, "half a pixel to the right"),
+        (Bug::LowPassMissing, "low-pass filter is missing"),
+        (Bug::LowPassDoubled, "low-pass filter is added twice"),
+        (Bug::CullingIgnored, "culling"),
+        (Bug::CutoffNotSquared, "compared with k"),
+        (Bug::QuadsTooSmall, "quads too small"),
+        (Bug::DiscardedWriteDepth, "should be discarded"),
+        (Bug::TiesReversed, "ties"),
+        (Bug::Depth16, "16 bits"),
+        (Bug::EpsilonHalf, "half as wide"),
+        (Bug::EpsilonDouble, "twice as wide"),
+        (Bug::EpsilonIgnored, "ignored"),
+        (Bug::HalfSums, "half floats"),
+        (Bug::SplatMissing, "is missing"),
+        (Bug::ColorNotDivided, "multiplied by the weight"),
+        (Bug::Srgb, "sRGB"),
+        (Bug::PixelNan, "NaN in 1 pixels"),
+        (Bug::RowsFlipped, "rows are flipped"),
+    ] {
+        let how = How { habit: Habit::Plain, bug: Some(bug) };
+        let said = cases.iter().filter_map(|(_, (scene, camera, settings))| {
+            let session = Session::new(scene, Method::Ewa(*settings), &exec).unwrap();
+            let mut client = Client::from(&render(scene, camera, settings, how));
+            client.rounding = Rounding::Ieee;
+            let verdict = session.verify(camera, &client, 1.0).unwrap();
+            verdict.first_wrong()?;
+            signature(&session, camera, &client, &verdict).unwrap()
+        });
+        let said: Vec<String> = said.collect();
+        let right = said.iter().filter(|said| said.contains(words)).count();
+        println!("{}: {right} of {}: {said:?}", bug.name(), said.len());
+        assert!(right > 0 && 2 * right > said.len(), "{}: {said:?}", bug.name());
     }
 }

@@ -26,6 +26,7 @@ pub(crate) use bug::Bug;
 pub(crate) use habit::Habit;
 
 use splatref::splat::SplatSettings;
+use splatref::splat::record::SplatRecord;
 use splatref::{Camera, Frame, Scene};
 
 /// How a client draws: its lawful habits and at most one bug.
@@ -40,6 +41,17 @@ impl How {
     fn has(self, bug: Bug) -> bool {
         self.bug == Some(bug)
     }
+}
+
+/// The records of the splats that the client draws.
+pub(crate) fn records(
+    scene: &Scene,
+    camera: &Camera,
+    settings: &SplatSettings,
+    how: How,
+) -> Vec<SplatRecord> {
+    let shared = view::Shared::new(scene, camera, settings, how);
+    project::project(&shared).iter().map(|splat| splat.record(&scene.surfels)).collect()
 }
 
 /// What the client draws of a scene: every plane of every stage by the crate's names.

@@ -13,6 +13,13 @@ pub(crate) struct Number {
     habit: Habit,
 }
 
+impl Number {
+    /// The number as memory gives it back: nobody knows any longer that it was a product.
+    pub(crate) fn stored(self) -> Self {
+        Self { factors: None, ..self }
+    }
+}
+
 impl Habit {
     /// A given value.
     pub(crate) fn number(self, value: f32) -> Number {

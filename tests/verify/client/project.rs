@@ -4,7 +4,9 @@ use super::bug::Bug;
 use super::habit::Habit;
 use super::number::{Number, Vector, dot};
 use super::view::Shared;
+use splatref::scene::Surfels;
 use splatref::splat::Outline;
+use splatref::splat::record::SplatRecord;
 
 /// What fits the footprint: 2^96, beyond which it is not drawn.
 const LARGEST: f32 = f32::from_bits((127 + 96) << 23);
@@ -29,6 +31,46 @@ pub(crate) struct Splat {
     pub(crate) w_near: Number,
     pub(crate) amplitude: Number,
     pub(crate) quad: Quad,
+}
+
+impl Splat {
+    /// The splat as the buffer between the passes holds it.
+    fn stored(self) -> Self {
+        let [x, y] = self.center;
+        Self {
+            center: [x.stored(), y.stored()],
+            ux: self.ux.stored(),
+            uy: self.uy.stored(),
+            vy: self.vy.stored(),
+            w0: self.w0.stored(),
+            wx: self.wx.stored(),
+            wy: self.wy.stored(),
+            w_far: self.w_far.stored(),
+            w_near: self.w_near.stored(),
+            amplitude: self.amplitude.stored(),
+            ..self
+        }
+    }
+
+    /// The splat with the attributes of its surfel, in the layout of the crate.
+    pub(crate) fn record(&self, surfels: &Surfels) -> SplatRecord {
+        let i = self.surfel as usize;
+        let normal = surfels.normal()[i].to_array();
+        let ([left, right], [top, bottom]) = (self.quad.x, self.quad.y);
+        SplatRecord {
+            center: self.center.map(|number| number.value),
+            conic: [self.ux, self.uy, self.vy].map(|number| number.value),
+            plane: [self.w0, self.wx, self.wy].map(|number| number.value),
+            range: [self.w_far, self.w_near].map(|number| number.value),
+            amplitude: self.amplitude.value,
+            surfel: self.surfel,
+            bounds: [left, top, right, bottom],
+            normal: if self.back { normal.map(|component| -component) } else { normal },
+            opacity: 1.0,
+            color: surfels.color().map_or([0.0; 3], |color| color[i].to_array()),
+            back: self.back.into(),
+        }
+    }
 }
 
 /// A rectangle of pixels, each side a first and a past-the-last one.
@@ -81,7 +123,8 @@ struct Shape {
 /// The splats that are drawn, in the order of their surfels.
 pub(crate) fn project(shared: &Shared<'_>) -> Vec<Splat> {
     let count = u32::try_from(shared.scene.surfels.len()).unwrap();
-    let mut splats: Vec<_> = (0..count).filter_map(|surfel| splat(shared, surfel)).collect();
+    let mut splats: Vec<_> =
+        (0..count).filter_map(|surfel| Some(splat(shared, surfel)?.stored())).collect();
     if shared.how.has(Bug::SplatMissing) && !splats.is_empty() {
         splats.remove(splats.len() / 2);
     }
