@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::frame::image::Values;
 use crate::frame::{Frame, Image, NO_ID, Plane, Samples};
+use crate::method::stage::numbered;
 use crate::method::{Holds, PlaneRow, Stage};
 use crate::number::ball::{Ball, Profile};
 use crate::setting::Words;
@@ -88,9 +89,19 @@ pub struct Client {
 /// A plane of a client.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stored<'a, T> {
+    /// The name of the row.
     pub(crate) name: &'static str,
+    /// What stands for `#` in it.
+    pub(crate) number: usize,
     pub(crate) plane: &'a Plane<T>,
     pub(crate) storage: Storage,
+}
+
+impl<T> Stored<'_, T> {
+    /// The name of the plane.
+    pub(crate) fn channel(&self) -> String {
+        numbered(self.name, self.number)
+    }
 }
 
 impl Stored<'_, f64> {
@@ -134,8 +145,12 @@ impl Client {
         let mut frame = Frame::new(image.width, image.height);
         let mut known = Vec::new();
         for row in stages.iter().flat_map(|stage| stage.leaves) {
-            if let Some(samples) = samples(image, row, &mut known)? {
-                frame.push(row.name, samples)?;
+            // Every number that the digits of a name can be.
+            let digits = row.name.bytes().filter(|&c| c == b'#').count();
+            for number in 0..10_usize.pow(digits as u32) {
+                if let Some(samples) = samples(image, row, number, &mut known)? {
+                    frame.push(&row.numbered(number), samples)?;
+                }
             }
         }
         let names = image.channels.iter().map(|(name, _)| name);
@@ -143,7 +158,7 @@ impl Client {
         Ok(Self { unknown, ..Self::new(frame) })
     }
 
-    /// Says how a plane is stored.
+    /// Says how a plane is stored; of planes that are numbered the name of their row says it of all.
     #[must_use]
     pub fn stored(mut self, plane: &str, storage: Storage) -> Self {
         self.storage.insert(plane.to_owned(), storage);
@@ -158,49 +173,75 @@ impl Client {
 
     /// One number a pixel, if the plane was handed in.
     pub(crate) fn scalar(&self, row: &PlaneRow) -> Option<Stored<'_, f64>> {
-        match self.samples(row)? {
-            Samples::Scalar(plane) => Some(self.of(row, plane)),
+        self.scalar_of(row, 0)
+    }
+
+    /// The same of a row that has numbers.
+    pub(crate) fn scalar_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, f64>> {
+        match self.samples(row, number)? {
+            Samples::Scalar(plane) => Some(self.of(row, number, plane)),
             _ => None,
         }
     }
 
     /// Colours or vectors, if the plane was handed in.
     pub(crate) fn triple(&self, row: &PlaneRow) -> Option<Stored<'_, [f64; 3]>> {
-        match self.samples(row)? {
-            Samples::Color(plane) | Samples::Vector(plane) => Some(self.of(row, plane)),
+        self.triple_of(row, 0)
+    }
+
+    /// The same of a row that has numbers.
+    pub(crate) fn triple_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, [f64; 3]>> {
+        match self.samples(row, number)? {
+            Samples::Color(plane) | Samples::Vector(plane) => Some(self.of(row, number, plane)),
             _ => None,
         }
     }
 
     /// Indices, if the plane was handed in.
     pub(crate) fn index(&self, row: &PlaneRow) -> Option<Stored<'_, u32>> {
-        match self.samples(row)? {
-            Samples::Index(plane) => Some(self.of(row, plane)),
+        self.index_of(row, 0)
+    }
+
+    /// The same of a row that has numbers.
+    pub(crate) fn index_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, u32>> {
+        match self.samples(row, number)? {
+            Samples::Index(plane) => Some(self.of(row, number, plane)),
             _ => None,
         }
     }
 
     /// Small counts, if the plane was handed in.
     pub(crate) fn count(&self, row: &PlaneRow) -> Option<Stored<'_, u8>> {
-        match self.samples(row)? {
-            Samples::Count(plane) => Some(self.of(row, plane)),
+        self.count_of(row, 0)
+    }
+
+    /// The same of a row that has numbers.
+    pub(crate) fn count_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, u8>> {
+        match self.samples(row, number)? {
+            Samples::Count(plane) => Some(self.of(row, number, plane)),
             _ => None,
         }
     }
 
-    fn samples(&self, row: &PlaneRow) -> Option<&Samples<f64>> {
-        self.frame.plane(row.name)
+    fn samples(&self, row: &PlaneRow, number: usize) -> Option<&Samples<f64>> {
+        self.frame.plane(&row.numbered(number))
     }
 
-    fn of<'a, T>(&self, row: &PlaneRow, plane: &'a Plane<T>) -> Stored<'a, T> {
-        let storage = self.storage.get(row.name).copied().unwrap_or_default();
-        Stored { name: row.name, plane, storage }
+    fn of<'a, T>(&self, row: &PlaneRow, number: usize, plane: &'a Plane<T>) -> Stored<'a, T> {
+        let own = self.storage.get(&row.numbered(number));
+        let storage = own.or_else(|| self.storage.get(row.name)).copied().unwrap_or_default();
+        Stored { name: row.name, number, plane, storage }
     }
 }
 
-/// The channels of a row, if all are there.
-fn samples(image: &Image, row: &PlaneRow, known: &mut Vec<String>) -> Result<Option<Samples<f64>>> {
-    let names = row.channels();
+/// The channels of a row of this number, if all are there.
+fn samples(
+    image: &Image,
+    row: &PlaneRow,
+    number: usize,
+    known: &mut Vec<String>,
+) -> Result<Option<Samples<f64>>> {
+    let names: Vec<_> = row.channels().iter().map(|name| numbered(name, number)).collect();
     let found: Option<Vec<&Values>> = names.iter().map(|name| image.channel(name)).collect();
     let Some(found) = found else { return Ok(None) };
     let plane = |values| Plane::from_values(image.width, image.height, values);
