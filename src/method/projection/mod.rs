@@ -45,7 +45,7 @@ pub(in crate::method) use project::project;
 
 use crate::frame::raster::Snap;
 use crate::frame::{NO_ID, Plane};
-use crate::number::{Exact, Real, Vector2, Vector3};
+use crate::number::{Real, Vector2, Vector3};
 use crate::scene::{Camera, Scene};
 use crate::splat::clip::Clip;
 use crate::splat::{Tally, View};
@@ -160,7 +160,7 @@ struct SceneProjector<'a, R> {
     size: [u32; 2],
 }
 
-impl<'a, R: Exact> SceneProjector<'a, R> {
+impl<'a, R: Real> SceneProjector<'a, R> {
     fn new(scene: &'a Scene, camera: &Camera, cull: bool, snap: Snap) -> Self {
         let view = View::new(camera);
         Self {

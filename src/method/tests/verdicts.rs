@@ -3,7 +3,7 @@
 use crate::frame::{Exec, Frame, Image, NO_ID, Samples};
 use crate::method::{Method, Session};
 use crate::scene::{Camera, Scene};
-use crate::verify::client::{Client, Rounding};
+use crate::verify::client::{Client, Rounding, Storage};
 use crate::verify::verdict::{Finding, Outcome, Verdict};
 
 /// What is said of a frame as a client's.
@@ -51,6 +51,50 @@ pub(in crate::method) fn assert_right(scene: &Scene, camera: &Camera, method: Me
     }
 }
 
+/// What a client leaves that keeps every plane in `f16` and works on with that is right.
+pub(in crate::method) fn assert_right_in_halves(scene: &Scene, camera: &Camera, method: Method) {
+    let exec = Exec::new(1, 16).unwrap();
+    let session = Session::new(scene, method, &exec).unwrap();
+    let mut frame = session.define::<f32>(camera, true).unwrap().frame;
+    for stage in method.stages() {
+        // A level is computed from the last, so that each is right after as many runs as there are.
+        loop {
+            let before = format!("{frame:?}");
+            let left = session.stage(camera, stage.name, &frame).unwrap();
+            for mut plane in left.planes {
+                round(&mut plane.samples);
+                let own = frame.planes.iter_mut().find(|own| own.name == plane.name).unwrap();
+                *own = plane;
+            }
+            if format!("{frame:?}") == before {
+                break;
+            }
+        }
+    }
+    let mut client = Client::of_image(&Image::from(&frame), method.stages()).unwrap();
+    for row in method.stages().iter().flat_map(|stage| stage.leaves) {
+        client = client.stored(row.name, Storage::Half);
+    }
+    for rounding in [Rounding::Ieee, Rounding::Gpu] {
+        client.rounding = rounding;
+        let found = session.verify(camera, &client, Verdict::BUDGET).unwrap();
+        assert_eq!(wrong(&found), None, "{rounding:?}");
+        assert_eq!(found.outcome(), Outcome::Right);
+    }
+}
+
+/// Rounds numbers to 11 binary digits.
+fn round(samples: &mut Samples<f32>) {
+    let half = |v: &mut f32| *v = f32::from_bits((v.to_bits() + 0x1000) & !0x1FFF);
+    match samples {
+        Samples::Scalar(p) => p.values_mut().iter_mut().for_each(half),
+        Samples::Color(p) | Samples::Vector(p) => {
+            p.values_mut().iter_mut().flatten().for_each(half);
+        }
+        Samples::Index(_) | Samples::Count(_) => {}
+    }
+}
+
 /// Whether a plane is of the row of this name.
 fn leaves_called(leaves: &[crate::method::PlaneRow], row: &str, plane: &str) -> bool {
     leaves.iter().any(|leaf| leaf.name == row && leaf.is_called(plane))
@@ -71,12 +115,23 @@ pub(in crate::method) enum Slip {
     Dropped,
 }
 
-/// Each slip is found in its stage; what is without one is right.
+/// Each slip is found in its stage: of a value in the middle of those that say something.
 pub(in crate::method) fn assert_found(
     scene: &Scene,
     camera: &Camera,
     method: Method,
     slips: &[(&str, Slip, &str)],
+) {
+    assert_found_where(scene, camera, method, slips, |_, _| true);
+}
+
+/// The same, of the values of pixels of which something holds.
+pub(in crate::method) fn assert_found_where(
+    scene: &Scene,
+    camera: &Camera,
+    method: Method,
+    slips: &[(&str, Slip, &str)],
+    holds: impl Fn(&Frame<f32>, usize) -> bool,
 ) {
     let exec = Exec::new(1, 16).unwrap();
     let session = Session::new(scene, method, &exec).unwrap();
@@ -84,7 +139,9 @@ pub(in crate::method) fn assert_found(
     for (plane, slip, stage) in slips {
         let mut frame = right.clone();
         let of = frame.planes.iter().find(|p| p.name == *plane).unwrap();
-        let place = place(&of.samples).unwrap_or_else(|| panic!("nothing in {plane}"));
+        let mut all = places(&of.samples);
+        all.retain(|place| holds(&right, *place));
+        let place = *all.get(all.len() / 2).unwrap_or_else(|| panic!("nothing in {plane}"));
         for plane in frame.planes.iter_mut().filter(|p| touches(&p.name, plane, *slip)) {
             let empty = match plane.name.rsplit('.').next() {
                 Some("Z" | "front") => f32::INFINITY,
@@ -107,19 +164,18 @@ fn touches(other: &str, plane: &str, slip: Slip) -> bool {
     other == plane || (matches!(slip, Slip::Dropped) && layer(other) == layer(plane))
 }
 
-/// A value that says something, in the middle of those that do.
-fn place(samples: &Samples<f32>) -> Option<usize> {
+/// The values that say something.
+fn places(samples: &Samples<f32>) -> Vec<usize> {
     let says = |v: f32| v != 0.0 && v.is_finite();
-    let all: Vec<usize> = match samples {
-        Samples::Scalar(p) => places(p.values(), |v| says(*v)),
-        Samples::Color(p) | Samples::Vector(p) => places(p.values(), |v| says(v[0])),
-        Samples::Index(p) => places(p.values(), |v| *v != NO_ID),
-        Samples::Count(p) => places(p.values(), |v| *v != 0),
-    };
-    all.get(all.len() / 2).copied()
+    match samples {
+        Samples::Scalar(p) => those(p.values(), |v| says(*v)),
+        Samples::Color(p) | Samples::Vector(p) => those(p.values(), |v| says(v[0])),
+        Samples::Index(p) => those(p.values(), |v| *v != NO_ID),
+        Samples::Count(p) => those(p.values(), |v| *v != 0),
+    }
 }
 
-fn places<T>(values: &[T], says: impl Fn(&T) -> bool) -> Vec<usize> {
+fn those<T>(values: &[T], says: impl Fn(&T) -> bool) -> Vec<usize> {
     (0..values.len()).filter(|&i| says(&values[i])).collect()
 }
 

@@ -2,36 +2,42 @@
 //!
 //! Surfels are placed in [`Ball`]s. A surfel *may lie* in a pixel if it is not certainly dropped and
 //! the pixel is one that its centre may fall into; it *lies* there if it certainly is drawn and
-//! there is no other such pixel.
+//! there is no other such pixel. The corners of triangles, ribbons and tubes are snapped to each
+//! place that their balls allow, at most 16 ways a primitive; from there on coverage is exact. A
+//! primitive may lie in a pixel that one of them covers; it lies there if there is one way alone.
 //!
-//! 1. The surfel of the id may lie in the pixel. An empty pixel has no surfel.
-//! 2. Every plane is in the ball of that surfel's sample; where both sides may be seen, of one of
-//!    the two. Of an empty pixel every plane is that of [`PixelSample::empty`].
-//! 3. No surfel lies in the pixel whose depth certainly is less than Z; without Z, than the depth
-//!    of the id's surfel. Of an empty pixel Z is +inf.
+//! 1. The surfel or primitive of the id may lie in the pixel. An empty pixel has none.
+//! 2. Every plane is in the ball of its sample there, of one of those that it may have: seen from
+//!    either side, snapped in either way, visited twice. Of an empty pixel every plane is that of
+//!    [`PixelSample::empty`].
+//! 3. Nothing else lies in the pixel whose depth certainly is less than Z; without Z, than the depth
+//!    of the id's sample. Of an empty pixel Z is +inf.
 //!
-//! Without ids the surfel is the one that errs least, of those that no other certainly hides.
+//! Without ids the sample is the one that errs least, of those that nothing certainly hides.
 //!
-//! **Not judged**: pixels of a triangle, a ribbon or a tube, but for rule 3 and for their kind,
-//! which is that of the id; whether a primitive was left out; in a scene of primitives, where a client
-//! gives neither ids nor kinds, whatever is not empty.
+//! **Not judged**: a primitive that is cut by the near plane or the guard band, or may be, and one with
+//! more ways to snap. Pixels of its id are judged by rule 3 and by their kind alone; without ids all
+//! pixels but empty ones and surfels are.
 
 mod planes;
+mod primitives;
 
 pub(in crate::method) use planes::SamplePlanes;
 
+use super::primitives::PiecePixel;
 use super::surfels::{PlacedPoint, PointProjector};
-use super::{Has, PixelSample, SampleKind};
+use super::{PixelSample, SampleKind, SceneProjector};
 use crate::composite::decide;
-use crate::frame::{Bins, Grid, NO_ID, Rect};
+use crate::frame::raster::Snap;
+use crate::frame::{Bins, Grid, Rect};
 use crate::method::algorithm::Job;
 use crate::method::judged::{Marks, PixelMarks, counted};
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Pixel, Real, Truth, Vector3};
 use crate::scene::Surfels;
-use crate::splat::View;
 use crate::verify::verdict::{Doubt, Fault, Judged};
 use planes::Says;
+use primitives::{Pieces, PossiblePiece};
 
 /// A surfel that may be drawn.
 struct Possible<P: Profile> {
@@ -47,12 +53,17 @@ struct Possible<P: Profile> {
 
 /// All that may be drawn, and where.
 struct AllPossible<'a, P: Profile> {
-    surfels: &'a Surfels,
-    /// Colours of surfels that have none of their own; if the scene has colours.
-    plain: [f32; 3],
-    has: Has,
-    projector: PointProjector<Ball<P>>,
-    batches: Vec<(Vec<Possible<P>>, Bins)>,
+    projector: SceneProjector<'a, Ball<P>>,
+    /// The surfels, batch by batch.
+    surfels: Vec<(Vec<Possible<P>>, Bins)>,
+    pieces: Pieces<P>,
+    bins: Bins,
+}
+
+/// What may lie in a pixel.
+enum Candidate<'a, P: Profile> {
+    Surfel(&'a Possible<P>),
+    Piece(&'a PossiblePiece<P>, PiecePixel<Ball<P>>),
 }
 
 /// What is known of a pixel.
@@ -60,22 +71,23 @@ struct Claim<P: Profile> {
     says: Says,
     /// The client's depth, if it was handed in.
     depth: Option<Ball<P>>,
-    /// Of the surfels that lie in the pixel the one whose greatest depth is least.
+    /// Of what lies in the pixel that whose greatest depth is least.
     front: Option<(u32, Ball<P>)>,
     /// Of the samples that may be meant the one that errs least, and by how much.
     best: Option<(f64, PixelSample<Ball<P>>)>,
 }
 
-/// Judges the planes of the projection.
+/// Judges the planes of the projection; `snap` is for triangles and lines.
 pub(in crate::method) fn judge<P: Profile>(
     job: &Job<'_>,
     cull: bool,
+    snap: Snap,
     planes: &SamplePlanes<'_>,
 ) -> Judged {
     let mut whole = Marks::whole(job);
     let names = planes.names();
     if !names.is_empty() {
-        let possible = AllPossible::<P>::new(job, cull);
+        let possible = AllPossible::<P>::new(job, cull, snap);
         let tiles = job.grid().rects().into_iter().enumerate().collect();
         let found = job.exec.ordered(tiles, |(tile, rect)| possible.judge(planes, (tile, rect)));
         found.into_iter().for_each(|marks| whole.put(marks));
@@ -84,81 +96,135 @@ pub(in crate::method) fn judge<P: Profile>(
 }
 
 impl<'a, P: Profile> AllPossible<'a, P> {
-    fn new(job: &Job<'a>, cull: bool) -> Self {
+    fn new(job: &Job<'a>, cull: bool, snap: Snap) -> Self {
         let (scene, grid) = (job.scene, job.grid());
-        let surfels = &scene.surfels;
-        let projector = PointProjector::new(View::new(job.camera), cull);
-        let ranges = (0..surfels.len()).step_by(8192);
-        let ranges = ranges.map(|first| first..surfels.len().min(first + 8192)).collect();
-        let batches = job.exec.ordered(ranges, |range: std::ops::Range<usize>| {
-            let place = |i| Possible::new(&projector, surfels, i, &grid);
+        let of = &scene.surfels;
+        let projector = SceneProjector::new(scene, job.camera, cull, snap);
+        let ranges = (0..of.len()).step_by(8192);
+        let ranges = ranges.map(|first| first..of.len().min(first + 8192)).collect();
+        let surfels = job.exec.ordered(ranges, |range: std::ops::Range<usize>| {
+            let place = |i| Possible::new(&projector.points, of, i, &grid);
             let possible: Vec<_> = range.filter_map(place).collect();
             let bins = Bins::new(&grid, possible.len(), |i| possible[i].bounds);
             (possible, bins)
         });
-        let plain = scene.material.color.to_array();
-        Self { surfels, plain, has: Has::of(scene), projector, batches }
+        let pieces = Pieces::new(&projector);
+        let bins = Bins::new(&grid, pieces.all.len(), |i| pieces.all[i].piece.bounds);
+        Self { projector, surfels, pieces, bins }
     }
 
-    /// Calls `visit` for each surfel that may lie in a pixel of a tile, with the count of the pixel
-    /// in the tile, and whether it does lie there.
-    fn each(&self, (tile, rect): (usize, &Rect), mut visit: impl FnMut(usize, &Possible<P>, bool)) {
-        for (possible, bins) in &self.batches {
+    /// Calls `visit` for all that may lie in a pixel of a tile, with the count of the pixel in the
+    /// tile.
+    fn each(&self, (tile, rect): (usize, &Rect), mut visit: impl FnMut(usize, Candidate<'_, P>)) {
+        let count =
+            |x: u32, y: u32| (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
+        for (possible, bins) in &self.surfels {
             bins.for_each(tile, |i| {
                 let one = &possible[i as usize];
                 let Rect { x0, y0, x1, y1 } = one.bounds.intersection(rect);
                 for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
-                    let pixel = (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
-                    visit(pixel, one, one.lies());
+                    visit(count(x, y), Candidate::Surfel(one));
                 }
             });
         }
+        self.bins.for_each(tile, |i| {
+            let one = &self.pieces.all[i as usize];
+            one.piece.for_each(rect, |at| visit(count(at.x, at.y), Candidate::Piece(one, at)));
+        });
     }
 
     /// The sample of a surfel, seen from its back or not.
-    fn sample(&self, one: &Possible<P>, back: bool) -> PixelSample<Ball<P>> {
-        let i = one.surfel as usize;
-        let own = || self.surfels.color().map_or(self.plain, |color| color[i].to_array());
-        let color = if self.has.color { own() } else { [0.0; 3] };
+    fn surfel(&self, one: &Possible<P>, back: bool) -> PixelSample<Ball<P>> {
+        let SceneProjector { scene, points, has, .. } = &self.projector;
+        let (i, of) = (one.surfel as usize, &scene.surfels);
+        let color = of.color().map_or(scene.material.color, |color| color[i]);
+        let color = if has.color { color.to_array() } else { [0.0; 3] };
         let g = if back { Ball::ONE } else { -Ball::ONE };
-        let radius = Ball::from_f32(self.surfels.radius()[i]);
-        let color = color.map(Ball::from_f32);
-        self.projector.sample(one.surfel, &one.placed, one.normal, g, radius, color)
+        let (radius, color) = (Ball::from_f32(of.radius()[i]), color.map(Ball::from_f32));
+        points.sample(one.surfel, &one.placed, one.normal, g, radius, color)
+    }
+
+    /// Calls `visit` for each sample that a candidate may have.
+    fn each_sample(&self, of: &Candidate<'_, P>, mut visit: impl FnMut(PixelSample<Ball<P>>)) {
+        match of {
+            Candidate::Surfel(one) => {
+                if !one.back.certainly() {
+                    visit(self.surfel(one, false));
+                }
+                if one.back.possibly() {
+                    visit(self.surfel(one, true));
+                }
+            }
+            Candidate::Piece(one, at) => visit(one.piece.sample(&self.projector, at)),
+        }
     }
 
     fn judge(&self, planes: &SamplePlanes<'_>, (tile, rect): (usize, Rect)) -> Marks {
         let mut marks = Marks::new(rect);
-        let mut claims: Vec<Claim<P>> =
-            counted(rect).map(|(_, at)| Claim::new(planes, at)).collect();
-        self.each((tile, &rect), |pixel, one, lies| {
-            if lies {
-                claims[pixel].meet(one.surfel, one.placed.t);
+        let claim = |(_, at)| Claim::new(planes, at, &self.pieces.unclear);
+        let mut claims: Vec<Claim<P>> = counted(rect).map(claim).collect();
+        self.each((tile, &rect), |pixel, one| {
+            if one.lies() {
+                claims[pixel].meet(one.id(), one.depth());
             }
         });
         let columns = rect.columns();
-        self.each((tile, &rect), |pixel, one, _| {
+        self.each((tile, &rect), |pixel, one| {
             let at = (rect.x0 + (pixel % columns) as u32, rect.y0 + (pixel / columns) as u32);
-            if claims[pixel].may_mean(one) {
-                for back in [false, true] {
-                    if if back { one.back.possibly() } else { !one.back.certainly() } {
-                        claims[pixel].consider(planes, at, self.sample(one, back));
-                    }
-                }
-                marks.at(pixel).doubt(Doubt::Side, one.back.decided().is_none());
+            if claims[pixel].may_mean(&one) {
+                self.each_sample(&one, |sample| claims[pixel].consider(planes, at, sample));
+                let side = matches!(one, Candidate::Surfel(of) if of.back.decided().is_none());
+                marks.at(pixel).doubt(Doubt::Side, side);
             }
         });
         for (pixel, at) in counted(rect) {
-            if matches!(claims[pixel].says, Says::Empty | Says::Nothing)
-                && claims[pixel].front.is_none()
-            {
-                claims[pixel].consider(planes, at, PixelSample::empty());
+            let claim = &mut claims[pixel];
+            if matches!(claim.says, Says::Empty | Says::Nothing) && claim.front.is_none() {
+                claim.consider(planes, at, PixelSample::empty());
             }
-            claims[pixel].judge(planes, at, &mut marks.at(pixel));
+            claim.judge(planes, at, &mut marks.at(pixel));
         }
-        self.each((tile, &rect), |pixel, one, lies| {
-            claims[pixel].doubt(one, lies, &mut marks.at(pixel));
-        });
+        self.each((tile, &rect), |pixel, one| claims[pixel].doubt(&one, &mut marks.at(pixel)));
         marks
+    }
+}
+
+impl<P: Profile> Candidate<'_, P> {
+    fn id(&self) -> u32 {
+        match self {
+            Self::Surfel(one) => one.surfel,
+            Self::Piece(one, _) => one.piece.id,
+        }
+    }
+
+    fn kind(&self) -> SampleKind {
+        match self {
+            Self::Surfel(_) => SampleKind::Surface,
+            Self::Piece(one, _) => one.piece.kind,
+        }
+    }
+
+    fn depth(&self) -> Ball<P> {
+        match self {
+            Self::Surfel(one) => one.placed.t,
+            Self::Piece(_, at) => -at.p.z,
+        }
+    }
+
+    /// Whether it certainly is drawn, somewhere.
+    fn drawn(&self) -> bool {
+        match self {
+            Self::Surfel(one) => one.drawn,
+            Self::Piece(one, _) => one.drawn,
+        }
+    }
+
+    /// Whether it certainly lies in the pixel.
+    fn lies(&self) -> bool {
+        match self {
+            Self::Surfel(one) => one.drawn && one.bounds.pixels() == 1,
+            Self::Piece(one, _) => one.drawn,
+        }
     }
 }
 
@@ -192,36 +258,33 @@ impl<P: Profile> Possible<P> {
         let drawn = !dropped.possibly();
         (!bounds.is_empty()).then_some(Self { surfel, bounds, drawn, placed, normal, back })
     }
-
-    /// Whether it certainly lies in the pixel that it may lie in.
-    fn lies(&self) -> bool {
-        self.drawn && self.bounds.pixels() == 1
-    }
 }
 
 impl<P: Profile> Claim<P> {
-    fn new(planes: &SamplePlanes<'_>, at: (u32, u32)) -> Self {
+    fn new(planes: &SamplePlanes<'_>, at: (u32, u32), unclear: &[u32]) -> Self {
         let depth = planes.depth.map(|plane| plane.ball(at));
-        Self { says: planes.says(at), depth, front: None, best: None }
+        Self { says: planes.says(at, unclear), depth, front: None, best: None }
     }
 
-    /// A surfel that lies in the pixel.
-    fn meet(&mut self, surfel: u32, t: Ball<P>) {
+    /// What lies in the pixel.
+    fn meet(&mut self, id: u32, t: Ball<P>) {
         let most = |t: Ball<P>| t.middle + t.radius;
         if self.front.is_none_or(|(_, front)| most(t) < most(front)) {
-            self.front = Some((surfel, t));
+            self.front = Some((id, t));
         }
     }
 
-    /// Whether the client may mean this surfel.
-    fn may_mean(&self, one: &Possible<P>) -> bool {
-        let hidden =
-            || self.front.is_some_and(|(_, t)| decide::before(t, one.placed.t).certainly());
+    /// Whether the client may mean this.
+    fn may_mean(&self, one: &Candidate<'_, P>) -> bool {
+        let hidden = || self.front.is_some_and(|(_, t)| decide::before(t, one.depth()).certainly());
         match self.says {
-            Says::Id(id) => id == one.surfel,
-            Says::Surfel => self.depth.is_some() || !hidden(),
+            Says::Id(id) => id == one.id(),
+            Says::Some(kind) => {
+                let fits = kind.is_none_or(|kind| kind == one.kind());
+                fits && (self.depth.is_some() || !hidden())
+            }
             Says::Nothing => !hidden(),
-            Says::Empty | Says::Primitive { .. } => false,
+            Says::Empty | Says::Unjudged(_) => false,
         }
     }
 
@@ -245,14 +308,12 @@ impl<P: Profile> Claim<P> {
             pixel.found(error, fault);
         };
         match (&self.best, self.says) {
-            (_, Says::Primitive { kind }) => {
-                planes.check_kind(at, kind, &mut report);
-            }
+            (_, Says::Unjudged(kind)) => planes.check_kind(at, kind, &mut report),
             (Some((_, sample)), _) => planes.check(at, sample, &mut report),
             (None, Says::Id(surfel)) => {
                 report(0, f64::INFINITY, &|| Fault::Absent { surfel });
             }
-            // A surfel lies here: rule 3. But other planes may say what they do not of nothing.
+            // Something lies here: rule 3. But other planes may say what they do not of nothing.
             (None, _) if self.depth().middle == f64::INFINITY => {
                 planes.check(at, &PixelSample::<Ball<P>>::empty(), &mut report);
             }
@@ -281,13 +342,13 @@ impl<P: Profile> Claim<P> {
     }
 
     /// Marks what may be in front.
-    fn doubt(&self, one: &Possible<P>, lies: bool, pixel: &mut PixelMarks<'_>) {
-        let nearer = decide::before(one.placed.t, self.depth());
-        let own = self.best.is_some_and(|(_, sample)| sample.id == one.surfel);
+    fn doubt(&self, one: &Candidate<'_, P>, pixel: &mut PixelMarks<'_>) {
+        let nearer = decide::before(one.depth(), self.depth());
+        let own = self.best.is_some_and(|(_, sample)| sample.id == one.id());
         if !own && nearer.possibly() {
             pixel.doubt(Doubt::Nearer, !nearer.certainly());
-            pixel.doubt(Doubt::CutOff, !lies && one.drawn);
-            pixel.doubt(Doubt::Fate, !one.drawn);
+            pixel.doubt(Doubt::CutOff, !one.lies() && one.drawn());
+            pixel.doubt(Doubt::Fate, !one.drawn());
         }
     }
 }
@@ -295,26 +356,4 @@ impl<P: Profile> Claim<P> {
 /// Any depth.
 fn anywhere<P: Profile>() -> Ball<P> {
     Ball::new(0.0, f64::INFINITY)
-}
-
-/// The kind of an id.
-fn kind_of(scene: &crate::scene::Scene, id: u32) -> Option<SampleKind> {
-    let of = &scene.primitives;
-    let mut first = 0;
-    let ranges = [
-        (scene.surfels.len(), SampleKind::Surface),
-        (of.triangles.len(), SampleKind::Polygon),
-        (of.ribbons.len(), SampleKind::Ribbon),
-        (of.tubes.len(), SampleKind::Tube),
-    ];
-    if id == NO_ID {
-        return Some(SampleKind::Empty);
-    }
-    for (count, kind) in ranges {
-        first += count;
-        if (id as usize) < first {
-            return Some(kind);
-        }
-    }
-    None
 }

@@ -1,6 +1,5 @@
 //! The planes of the projection that a client has handed in.
 
-use super::kind_of;
 use crate::frame::{NO_ID, Plane};
 use crate::method::Holds;
 use crate::method::checks::{Report, input, inputs, number, triple, whole};
@@ -33,14 +32,12 @@ pub(super) enum Says {
     /// It gives neither id, nor kind, nor depth.
     Nothing,
     Empty,
-    /// A surfel; or an id that the scene does not have.
+    /// This, which the scene may not have.
     Id(u32),
-    /// Some surfel.
-    Surfel,
-    /// A primitive, and of what kind if its id says so; or what may be one.
-    Primitive {
-        kind: Option<SampleKind>,
-    },
+    /// Something, of this kind if it says so.
+    Some(Option<SampleKind>),
+    /// What is not judged, but for its kind, if that is known.
+    Unjudged(Option<SampleKind>),
 }
 
 impl<'a> SamplePlanes<'a> {
@@ -78,28 +75,26 @@ impl<'a> SamplePlanes<'a> {
         there.into_iter().flatten().collect()
     }
 
-    /// What a pixel is said to have.
-    pub(super) fn says(&self, at: (u32, u32)) -> Says {
+    /// What a pixel is said to have; of some primitives it is not known what they come to.
+    pub(super) fn says(&self, at: (u32, u32), unclear: &[u32]) -> Says {
         if let Some(ids) = self.id {
-            let id = *ids.plane.at(at.0, at.1);
-            return match kind_of(self.scene, id) {
-                Some(SampleKind::Empty) => Says::Empty,
-                None | Some(SampleKind::Surface) => Says::Id(id),
-                kind => Says::Primitive { kind },
+            return match *ids.plane.at(at.0, at.1) {
+                NO_ID => Says::Empty,
+                id if unclear.binary_search(&id).is_ok() => Says::Unjudged(kind_of(self.scene, id)),
+                id => Says::Id(id),
             };
         }
-        let unknown = !self.scene.primitives.is_empty();
-        match (self.kind, self.depth) {
+        let says = match (self.kind, self.depth) {
             (Some(kinds), _) => match *kinds.plane.at(at.0, at.1) {
                 0 => Says::Empty,
-                2..=4 if unknown => Says::Primitive { kind: None },
-                _ => Says::Surfel,
+                kind => Says::Some(SampleKind::ALL.get(usize::from(kind)).copied()),
             },
             (None, Some(depths)) if *depths.plane.at(at.0, at.1) == f64::INFINITY => Says::Empty,
-            (None, _) if unknown => Says::Primitive { kind: None },
-            (None, Some(_)) => Says::Surfel,
+            (None, Some(_)) => Says::Some(None),
             (None, None) => Says::Nothing,
-        }
+        };
+        let sure = matches!(says, Says::Empty | Says::Some(Some(SampleKind::Surface)));
+        if sure || unclear.is_empty() { says } else { Says::Unjudged(None) }
     }
 
     /// Every plane at a pixel against a sample.
@@ -208,4 +203,23 @@ impl<'a> SamplePlanes<'a> {
             color: if has.color { three(&self.color) } else { [Ball::ZERO; 3] },
         }
     }
+}
+
+/// The kind of an id, if the scene has it.
+pub(super) fn kind_of(scene: &Scene, id: u32) -> Option<SampleKind> {
+    let of = &scene.primitives;
+    let counts = [
+        (scene.surfels.len(), SampleKind::Surface),
+        (of.triangles.len(), SampleKind::Polygon),
+        (of.ribbons.len(), SampleKind::Ribbon),
+        (of.tubes.len(), SampleKind::Tube),
+    ];
+    if id == NO_ID {
+        return Some(SampleKind::Empty);
+    }
+    let mut end = 0;
+    counts.into_iter().find_map(|(count, kind)| {
+        end += count;
+        ((id as usize) < end).then_some(kind)
+    })
 }

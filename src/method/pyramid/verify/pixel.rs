@@ -3,9 +3,7 @@
 use super::planes::{Level, PicturePlanes};
 use crate::method::Holds;
 use crate::method::algorithm::Job;
-use crate::method::checks::{
-    Report, Shading, Surface, anything, input, inputs, number, triple, whole,
-};
+use crate::method::checks::{Report, Shading, Surface, anything, number, triple, whole};
 use crate::method::judged::PixelMarks;
 use crate::method::projection::{Has, SampleKind, world};
 use crate::method::pyramid::Cell;
@@ -77,16 +75,17 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
-    /// Colour and opacity, from the client's own depth and vectors.
+    /// Colour and opacity, from the client's own depth and vectors: as they were before they were
+    /// stored or after, since the same pass leaves them.
     fn check_picture(&self, at: (u32, u32), cell: Option<&Cell<Ball<P>>>, report: &mut Report<'_>) {
         let handed = self.handed;
         let own = cell.map_or_else(anything, |cell| cell.front);
-        let depth = handed.depth.map_or(own, |plane| input(&plane, at));
+        let depth = handed.depth.map_or(own, |plane| plane.ball(at));
         if let Some(plane) = &handed.shaded {
             let normal = || cell.map_or([anything(); 3], |cell| world(&self.view, cell.normal));
             let surface = Surface {
                 depth,
-                normal: handed.normal.map_or_else(normal, |plane| inputs(&plane, at)),
+                normal: handed.normal.map_or_else(normal, |plane| plane.balls(at)),
                 tangent: self.tangent(at, cell),
                 color: cell.map_or([anything(); 3], |cell| cell.color),
             };
@@ -112,7 +111,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
                 None => unknown,
             }
         };
-        let tangent = self.handed.tangent.map_or_else(own, |plane| inputs(&plane, at));
+        let tangent = self.handed.tangent.map_or_else(own, |plane| plane.balls(at));
         let null = |part: &Ball<P>| part.middle == 0.0 && part.radius == 0.0;
         (!tangent.iter().all(null)).then_some(tangent)
     }

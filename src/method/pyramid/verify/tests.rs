@@ -1,8 +1,11 @@
 use crate::method::Method;
+use crate::method::projection::SampleKind;
 use crate::method::projection::tests::lit;
 use crate::method::pyramid::tests::indexed;
 use crate::method::pyramid::{Occlusion, Settings, Weights};
-use crate::method::tests::verdicts::{Slip, assert_found, assert_right};
+use crate::method::tests::verdicts::{
+    Slip, assert_found, assert_found_where, assert_right, assert_right_in_halves,
+};
 use crate::method::tests::{scene, surfels};
 use crate::scene::indexed::{Indexed, Vertices};
 use crate::scene::{Camera, Lens, Primitives, Scene};
@@ -106,10 +109,47 @@ fn each_slip_beside_primitives_is_found_in_its_stage() {
     let camera = camera(Shape::Sphere, [37, 29], None);
     let slips = [
         ("projection.kind", Slip::More, "projection"),
+        ("projection.tangent", Slip::Off(1e-4), "projection"),
         ("pull01.tangent", Slip::Off(1e-4), "pull"),
         ("push00.tangent", Slip::Off(1e-4), "push"),
         ("tangent", Slip::Off(1e-4), "shading"),
         ("", Slip::Off(1e-3), "shading"),
     ];
     assert_found(&hybrid(true), &camera, Method::Pyramid(Settings::default()), &slips);
+}
+
+#[test]
+fn each_slip_of_a_ribbon_a_tube_or_a_triangle_is_found() {
+    let slips = [
+        ("projection.Z", Slip::Off(1e-4), "projection"),
+        ("projection.id", Slip::More, "projection"),
+        ("projection.id", Slip::Dropped, "projection"),
+        ("projection.radius", Slip::Off(1e-4), "projection"),
+        ("projection.normal", Slip::Off(1e-3), "projection"),
+        ("projection", Slip::Off(1e-4), "projection"),
+        ("projection.kind", Slip::More, "projection"),
+    ];
+    for lens in [None, Some(Lens::Orthographic(3.0))] {
+        let camera = camera(Shape::Sphere, [37, 29], lens);
+        for kind in [SampleKind::Polygon, SampleKind::Ribbon, SampleKind::Tube] {
+            // The normal of a tube under an orthographic camera is (0, 0, 1).
+            let flat = lens.is_some() && kind == SampleKind::Tube;
+            let slips: Vec<_> =
+                slips.into_iter().filter(|of| !flat || of.0 != "projection.normal").collect();
+            let method = Method::Pyramid(rare());
+            assert_found_where(&hybrid(true), &camera, method, &slips, |frame, place| {
+                frame.count("projection.kind").unwrap().values()[place] == kind as u8
+            });
+        }
+    }
+}
+
+#[test]
+fn a_client_that_keeps_its_planes_in_halves_is_right() {
+    let scene = hybrid(true);
+    assert_right_in_halves(
+        &scene,
+        &camera(Shape::Sphere, [37, 29], None),
+        Method::Pyramid(Settings::default()),
+    );
 }

@@ -41,8 +41,8 @@ impl<'a, P: Profile> Levels<'a, P> {
     }
 
     /// The levels, if all are there.
-    pub(super) fn all(&self) -> Option<Vec<Level<P>>> {
-        self.levels.iter().cloned().collect()
+    pub(super) fn all(self) -> Option<Vec<Level<P>>> {
+        self.levels.into_iter().collect()
     }
 
     /// Judges each level whose finer one is there.

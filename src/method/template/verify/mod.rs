@@ -29,15 +29,19 @@ mod tests;
 
 use super::{Settings, propagation};
 use crate::frame::pyramid;
+use crate::frame::raster::Snap;
 use crate::method::algorithm::Job;
 use crate::method::judged::{Marks, counted, judged};
 use crate::method::projection::verify::{self as samples, SamplePlanes};
 use crate::number::ball::Profile;
 use crate::verify::client::Client;
-use crate::verify::verdict::{Doubt, Verdict};
+use crate::verify::verdict::Verdict;
 use levels::Levels;
 use pixel::PixelJudge;
 use planes::{CenterPlanes, PicturePlanes};
+
+/// All doubts: in the gathering each may move the sums.
+const ANY: u8 = u8::MAX;
 
 /// Judges the planes of a client.
 pub(super) fn verify<P: Profile>(
@@ -50,7 +54,7 @@ pub(super) fn verify<P: Profile>(
     sizes.truncate(propagation::top(settings, &sizes) + 1);
     let finest = SamplePlanes::new(client, job.scene);
     let coarser: Vec<_> = (1..sizes.len()).map(|level| CenterPlanes::new(client, level)).collect();
-    let projection = samples::judge::<P>(job, settings.cull, &finest);
+    let projection = samples::judge::<P>(job, settings.cull, Snap::default(), &finest);
     let levels = Levels::<P>::new(job, settings, &sizes, &finest, &coarser);
     let propagation = levels.judge();
     let handed = PicturePlanes::new(client);
@@ -64,6 +68,6 @@ pub(super) fn verify<P: Profile>(
     let tiles = found.into_iter().map(|(marks, _)| marks).collect();
     let mut stages = vec![projection, propagation];
     stages.extend(judged(job, handed.stages(judge.gathers()), tiles));
-    let undecided = stages[2].doubtful(Doubt::OF_SUMS);
+    let undecided = stages[2].doubtful(ANY);
     Verdict { stages, covered, undecided, budget }
 }

@@ -1,7 +1,7 @@
 use crate::method::Method;
 use crate::method::template::{Falloff, LevelRule, Settings};
 use crate::method::tests::surfels;
-use crate::method::tests::verdicts::{Slip, assert_found, assert_right};
+use crate::method::tests::verdicts::{Slip, assert_found, assert_right, assert_right_in_halves};
 use crate::scene::{Camera, Lens, Scene};
 use crate::source::Shape;
 
@@ -69,4 +69,14 @@ fn each_slip_is_found_in_its_stage() {
     ];
     let camera = camera(shape, [45, 37], None);
     assert_found(&scene, &camera, Method::Template(settings), &slips);
+}
+
+#[test]
+fn a_client_that_keeps_its_planes_in_halves_is_right() {
+    let scene = Scene::lit("", surfels(300, 0.4, true, 1));
+    assert_right_in_halves(
+        &scene,
+        &camera(Shape::Sphere, [37, 29], None),
+        Method::Template(Settings { size: 3, ..Settings::default() }),
+    );
 }
