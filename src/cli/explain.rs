@@ -1,8 +1,9 @@
 //! `splatref explain`: every decision at one pixel.
 
 use super::options::{ExecOptions, SceneOptions};
-use super::{Ended, Ending, draw, report, say};
+use super::{Ended, Ending, draw, report, say, verify};
 use splatref::io::scene_file::{Number, Ready};
+use splatref::verify::client::Rounding;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -10,7 +11,8 @@ use std::path::PathBuf;
 Examples:
   splatref explain cluster 512 384
   splatref explain bunny.ply 10 20 --size 64x64 --number f64
-  splatref explain bunny.ply 512 384 --method single-pass --overlap 0.8")]
+  splatref explain bunny.ply 512 384 --method single-pass --overlap 0.8
+  splatref explain scene.toml 512 384 --client gpu.exr")]
 pub(super) struct Args {
     /// The scene, as for render
     scene: PathBuf,
@@ -18,6 +20,12 @@ pub(super) struct Args {
     x: u32,
     /// Row of the pixel, from 0 at the top
     y: u32,
+    /// What another renderer drew, as for verify: each of its values beside what it may be
+    #[arg(long, value_name = "FILE")]
+    client: Option<PathBuf>,
+    /// What the other renderer promises, as for verify
+    #[arg(long, value_name = "gpu|ieee", value_parser = verify::rounding, requires = "client")]
+    promise: Option<Rounding>,
     #[command(flatten)]
     exec: ExecOptions,
     #[command(flatten)]
@@ -35,6 +43,13 @@ pub(super) fn run(args: &Args) -> Ended {
         Number::F32 => session.explain::<f32>(&ready.camera, pixel)?,
         Number::F64 => session.explain::<f64>(&ready.camera, pixel)?,
     };
+    let checks = match &args.client {
+        None => Vec::new(),
+        Some(path) => {
+            let client = verify::read((path, args.promise), &session, &ready.camera, &exec)?;
+            session.checks(&ready.camera, &client, pixel)?
+        }
+    };
     let Ready { loaded, camera, method, .. } = &ready;
     report::camera(camera);
     report::picture(camera, file.output);
@@ -42,5 +57,9 @@ pub(super) fn run(args: &Args) -> Ended {
     report::groups(session.groups(), made.as_ref());
     say("");
     say(text.trim_end());
+    if !checks.is_empty() {
+        say("\nthe client, stage by stage, each from what it has of the stage before:");
+        checks.iter().for_each(|check| say(format!("  {check}")));
+    }
     Ok(Ending::Good)
 }

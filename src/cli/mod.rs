@@ -2,6 +2,7 @@
 //!
 //! One file a command. What a command prints goes to stdout; an error is one line on stderr, and
 //! the exit code is 2 for wrong usage and 1 for everything else, a picture that differs included.
+//! `verify` has codes of its own.
 
 mod compare;
 mod draw;
@@ -18,6 +19,7 @@ mod project;
 mod render;
 mod report;
 mod rows;
+mod verify;
 mod words;
 
 use clap::error::ErrorKind;
@@ -44,6 +46,7 @@ Examples:
   splatref render                              a procedural scene, into out/
   splatref render bunny.ply --outline raycast  a scan, framed by the camera
   splatref compare a.exr b.exr                 exit code 0 if every plane is equal
+  splatref verify bunny.ply gpu.exr            whether a right renderer may draw this
   splatref explain bunny.ply 512 400           why this pixel is what it is
 
 Exit codes: 0 as it should be, 1 different or failed, 2 wrong usage.";
@@ -56,6 +59,8 @@ enum Command {
     Golden(golden::Args),
     /// Compare two pictures, plane by plane: EXR, PNG or NPY
     Compare(compare::Args),
+    /// Judge what another renderer drew, stage by stage
+    Verify(verify::Args),
     /// Print every decision at one pixel
     Explain(explain::Args),
     /// Divide a scene into groups that do not overlap, into a PLY
@@ -78,6 +83,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Golden(args) => golden::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Verify(args) => verify::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Group(args) => group::run(&args),
         Command::Project(args) => project::run(&args),
@@ -86,6 +92,7 @@ pub(crate) fn run() -> ExitCode {
     match outcome.and_then(|ending| printed().map(|()| ending)) {
         Ok(Ending::Good) => ExitCode::SUCCESS,
         Ok(Ending::Different) => ExitCode::FAILURE,
+        Ok(Ending::Undecidable) => ExitCode::from(3),
         Err(error) => {
             complain(&error);
             ExitCode::from(error.exit_code())
@@ -100,6 +107,8 @@ enum Ending {
     Good,
     /// Pictures that should be equal are not.
     Different,
+    /// Nothing can be said.
+    Undecidable,
 }
 
 /// How a command ended.

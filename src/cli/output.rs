@@ -23,6 +23,17 @@ fn check_folder(path: &Path) -> Result<()> {
     }
 }
 
+/// Whether a file that is to be written is not this one, which is read too.
+pub(super) fn check_other(path: &Path, read: &Path) -> Result<()> {
+    let place = fs::canonicalize(path).ok();
+    if place.is_some() && place == fs::canonicalize(read).ok() {
+        let path = path.display();
+        let what = format!("{path} is what is read; give another name for the output");
+        return Err(Error::Usage(what));
+    }
+    Ok(())
+}
+
 /// Whether a file that is to be written is none that is read.
 pub(super) fn check_unread(path: &Path, scene: &Path, file: &SceneFile) -> Result<()> {
     // What is not there yet is nothing that is read.

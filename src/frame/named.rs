@@ -34,6 +34,20 @@ impl<R> Samples<R> {
         }
     }
 
+    /// The values with their rows in the other order.
+    pub(crate) fn flipped(&self) -> Self
+    where
+        R: Copy,
+    {
+        match self {
+            Self::Scalar(p) => Self::Scalar(p.flipped()),
+            Self::Color(p) => Self::Color(p.flipped()),
+            Self::Vector(p) => Self::Vector(p.flipped()),
+            Self::Index(p) => Self::Index(p.flipped()),
+            Self::Count(p) => Self::Count(p.flipped()),
+        }
+    }
+
     /// What a value is, in words.
     fn kind(&self) -> &'static str {
         match self {

@@ -75,6 +75,14 @@ impl<T> Plane<T> {
         &self.values[y as usize * self.width as usize + x as usize]
     }
 
+    /// The values with their rows in the other order.
+    pub(crate) fn flipped(&self) -> Self
+    where
+        T: Copy,
+    {
+        Self::from_pixels([self.width, self.height], |x, y| *self.at(x, self.height - 1 - y))
+    }
+
     /// A plane of the same size, each value computed from this one's.
     #[must_use]
     pub fn map<U>(&self, f: impl Fn(&T) -> U) -> Plane<U> {

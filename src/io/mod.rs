@@ -1,5 +1,6 @@
 //! Files: everything that touches the disk. Only this module, `cli` and `main` know of them.
 //!
+//! - [`client`]: planes that somebody else drew, and the TOML file that describes them.
 //! - [`environment`]: environment maps from EXR files.
 //! - `input`: the files that are read.
 //! - [`exr`]: every plane of a frame, exactly; reading guards against lying files.
@@ -11,6 +12,7 @@
 //! - [`scene_file`]: scenes as TOML: models, lights, camera, settings.
 //! - [`srgb`]: the transfer function between stored colours and linear light.
 
+pub mod client;
 pub mod environment;
 pub mod exr;
 mod input;

@@ -12,7 +12,7 @@ use crate::scene::{Camera, Scene};
 use crate::setting::Fields;
 use crate::splat::SplatSettings;
 use crate::verify::client::Client;
-use crate::verify::verdict::Verdict;
+use crate::verify::verdict::{Check, Verdict};
 use std::fmt::{Debug, Display};
 
 /// What a picture is made of, and how.
@@ -116,12 +116,35 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     /// [`crate::Error::Usage`] if the pixel is outside the picture; else as [`Algorithm::define`].
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display>;
 
+    /// The surfels in the sums at a pixel, each with its weight, in `f64`.
+    ///
+    /// # Errors
+    /// As [`Algorithm::explain`].
+    fn weights(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<Vec<(u32, f64)>> {
+        let _ = (job, pixel);
+        Ok(Vec::new())
+    }
+
     /// Judges the planes of a client: what a right implementation may leave of each stage. A picture
     /// whose share of undecided sums exceeds `budget` cannot be judged. None: the method has no
     /// rules yet.
     fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
         let _ = (job, client, budget);
         None
+    }
+
+    /// Everything of a client that is judged at one pixel; nothing if the method has no rules.
+    ///
+    /// # Errors
+    /// As [`Algorithm::explain`].
+    fn checks<P: Profile>(
+        &self,
+        job: &Job<'_>,
+        client: &Client,
+        pixel: (u32, u32),
+    ) -> Result<Vec<Check>> {
+        let _ = (job, client, pixel);
+        Ok(Vec::new())
     }
 
     /// What the settings come to in a scene: names and values as TOML, for the text of a picture.

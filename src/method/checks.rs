@@ -24,27 +24,31 @@ pub(super) fn widened<P: Profile>(ball: Ball<P>, by: f64) -> Ball<P> {
     if by > 0.0 { Ball::new(ball.middle, ball.radius + by) } else { ball }
 }
 
-/// What the next stage reads of a stored value: floats as they are, in whatever format; of steps
-/// what they may stand for, as each reader turns them into a number.
-fn read<P: Profile>(value: f64, storage: Storage) -> Ball<P> {
+/// What the next stage reads of a stored value of this format: floats as they are; none of anything
+/// that each reader turns into a number.
+fn read<P: Profile>(value: f64, storage: Storage) -> Option<Ball<P>> {
     let flushed = P::FLUSHES && value.abs() < f64::from(f32::MIN_POSITIVE);
-    let radius = match storage {
-        _ if value.is_nan() => f64::NAN,
-        Storage::Single | Storage::Half if flushed => value.abs(),
-        Storage::Single | Storage::Half => 0.0,
-        Storage::Steps(_) | Storage::DepthBuffer { .. } => storage.radius(value),
+    let radius = if value.is_nan() {
+        f64::NAN
+    } else if flushed {
+        value.abs()
+    } else {
+        0.0
     };
-    Ball::new(value, radius)
+    matches!(storage, Storage::Single | Storage::Half).then_some(Ball::new(value, radius))
 }
 
 /// The number that the next stage reads at a pixel.
-pub(super) fn input<P: Profile>(plane: &Stored<'_, f64>, (x, y): (u32, u32)) -> Ball<P> {
-    read(*plane.plane.at(x, y), plane.storage)
+pub(super) fn input<P: Profile>(plane: &Stored<'_, f64>, at: (u32, u32)) -> Ball<P> {
+    let value = *plane.plane.at(at.0, at.1);
+    read(value, plane.storage).unwrap_or_else(|| plane.ball(at))
 }
 
 /// The three numbers that the next stage reads at a pixel.
-pub(super) fn inputs<P: Profile>(plane: &Stored<'_, [f64; 3]>, (x, y): (u32, u32)) -> [Ball<P>; 3] {
-    plane.plane.at(x, y).map(|value| read(value, plane.storage))
+pub(super) fn inputs<P: Profile>(plane: &Stored<'_, [f64; 3]>, at: (u32, u32)) -> [Ball<P>; 3] {
+    let balls = plane.balls(at);
+    let exact = |ball: Ball<P>| read(ball.middle, plane.storage).unwrap_or(ball);
+    if plane.radii.is_some() { balls } else { balls.map(exact) }
 }
 
 /// One number against what it may be.

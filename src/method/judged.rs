@@ -3,14 +3,19 @@
 use super::algorithm::Job;
 use super::tiled::pixels;
 use crate::frame::{Plane, Rect};
-use crate::verify::verdict::{Doubt, Fault, Finding, Judged};
+use crate::verify::verdict::{Causes, Check, Doubt, Fault, Finding, Judged};
+use std::collections::BTreeMap;
 
 /// What was found of one stage at the pixels of a tile.
 #[derive(Debug)]
 pub(super) struct Marks {
     rect: Rect,
     found: Vec<(f32, u8)>,
+    /// The worst fault of each wrong pixel.
+    faults: BTreeMap<usize, Fault>,
     worst: Option<Finding>,
+    /// Everything that was checked, if somebody wants to know.
+    log: Option<Vec<(f64, Fault)>>,
 }
 
 /// The marks of one pixel.
@@ -22,7 +27,19 @@ pub(super) struct PixelMarks<'a> {
 impl Marks {
     /// Nothing found yet.
     pub(super) fn new(rect: Rect) -> Self {
-        Self { rect, found: vec![(0.0, 0); rect.pixels()], worst: None }
+        let found = vec![(0.0, 0); rect.pixels()];
+        Self { rect, found, faults: BTreeMap::new(), worst: None, log: None }
+    }
+
+    /// The same, and everything that is checked will be told.
+    pub(super) fn logging(rect: Rect) -> Self {
+        Self { log: Some(Vec::new()), ..Self::new(rect) }
+    }
+
+    /// Everything that was checked.
+    pub(super) fn checks(self, stage: &'static str) -> impl Iterator<Item = Check> {
+        let log = self.log.into_iter().flatten();
+        log.map(move |(error, fault)| Check { stage, fault, error })
     }
 
     /// Nothing found yet in a whole picture.
@@ -32,7 +49,7 @@ impl Marks {
     }
 
     /// Adds what was found in a part of the picture: at each pixel the greater error, all doubts.
-    pub(super) fn put(&mut self, part: Self) {
+    pub(super) fn put(&mut self, mut part: Self) {
         let of = self.rect.columns();
         for (pixel, (x, y)) in counted(part.rect) {
             let (column, row) = ((x - self.rect.x0) as usize, (y - self.rect.y0) as usize);
@@ -40,6 +57,9 @@ impl Marks {
             let (own, more) = part.found[pixel];
             if own > *error {
                 *error = own;
+                if let Some(fault) = part.faults.remove(&pixel) {
+                    self.faults.insert(row * of + column, fault);
+                }
             }
             *doubts |= more;
         }
@@ -60,12 +80,15 @@ impl Marks {
         let errors = self.found.iter().map(|at| at.0).collect();
         let doubts = self.found.iter().map(|at| at.1).collect();
         let wrong = self.found.iter().filter(|at| at.0 > 1.0).count() as u64;
+        let mut causes = Causes::default();
+        self.faults.values().for_each(|fault| causes.count(fault));
         Judged {
             stage,
             planes,
             errors: Plane::from_values(width, height, errors),
             doubts: Plane::from_values(width, height, doubts),
             wrong,
+            causes,
             worst: self.worst,
         }
     }
@@ -78,20 +101,32 @@ impl Marks {
 
 impl PixelMarks<'_> {
     /// What was found, and by how many bounds it errs; `fault` says what is wrong if that is above 1.
-    pub(super) fn found(&mut self, error: f64, fault: impl FnOnce() -> Fault) {
-        let Marks { rect, found, worst } = &mut *self.marks;
+    pub(super) fn found(&mut self, error: f64, fault: impl Fn() -> Fault) {
+        let Marks { rect, found, faults, worst, log } = &mut *self.marks;
+        if let Some(log) = log {
+            let fault = fault();
+            let anything = matches!(&fault, Fault::Value { radius, .. } if radius.is_nan());
+            if !anything {
+                log.push((error, fault));
+            }
+        }
         let at = &mut found[self.pixel].0;
         // A comparison that NaN fails: an error that cannot be told is none.
-        if error > f64::from(*at) {
-            // Not rounded to 1 from above.
-            let single = error as f32;
-            *at = if error > 1.0 && single <= 1.0 { 1.0_f32.next_up() } else { single };
+        if !(error > f64::from(*at)) {
+            return;
         }
-        if error > 1.0 && worst.as_ref().is_none_or(|worst| error > worst.error) {
-            let columns = rect.columns();
-            let (x, y) = (self.pixel % columns, self.pixel / columns);
-            let pixel = (rect.x0 + x as u32, rect.y0 + y as u32);
-            *worst = Some(Finding { pixel, fault: fault(), error });
+        // Not rounded to 1 from above.
+        let single = error as f32;
+        *at = if error > 1.0 && single <= 1.0 { 1.0_f32.next_up() } else { single };
+        if error > 1.0 {
+            let fault = fault();
+            if worst.as_ref().is_none_or(|worst| error > worst.error) {
+                let columns = rect.columns();
+                let (x, y) = (self.pixel % columns, self.pixel / columns);
+                let pixel = (rect.x0 + x as u32, rect.y0 + y as u32);
+                *worst = Some(Finding { pixel, fault: fault.clone(), error });
+            }
+            faults.insert(self.pixel, fault);
         }
     }
 

@@ -16,7 +16,7 @@ use crate::number::Exact;
 use crate::number::ball::{Gpu, Ieee};
 use crate::scene::{Camera, Groups, Scene};
 use crate::verify::client::{Client, Rounding};
-use crate::verify::verdict::Verdict;
+use crate::verify::verdict::{Check, Verdict};
 
 /// A scene, a method, what the method prepared of the scene, and memory that is used again.
 ///
@@ -199,7 +199,48 @@ impl<'a> Session<'a> {
     /// [`Error::Invalid`] if no plane is one of the method's, if the picture has another size than
     /// the camera's, or if the method has no rules; else as [`Session::render`].
     pub fn verify(&self, camera: &Camera, client: &Client, budget: f64) -> Result<Verdict> {
+        self.verify_as(&self.method, camera, client, budget)
+    }
+
+    /// As [`Session::verify`], as if the method were another one, with the same scene and groups.
+    pub(crate) fn verify_as(
+        &self,
+        method: &Method,
+        camera: &Camera,
+        client: &Client,
+        budget: f64,
+    ) -> Result<Verdict> {
         let job = self.job(camera)?;
+        self.check_client(camera, client)?;
+        let verdict = match client.rounding {
+            Rounding::Gpu => method.verify::<Gpu>(&job, client, budget),
+            Rounding::Ieee => method.verify::<Ieee>(&job, client, budget),
+        };
+        verdict.ok_or_else(|| {
+            Error::Invalid(format!("the method {} has no rules for verdicts", self.method.name()))
+        })
+    }
+
+    /// Every value of a client at one pixel that is judged, against what it may be.
+    ///
+    /// # Errors
+    /// As [`Session::verify`] and [`Session::explain`].
+    pub fn checks(
+        &self,
+        camera: &Camera,
+        client: &Client,
+        pixel: (u32, u32),
+    ) -> Result<Vec<Check>> {
+        let job = self.job(camera)?;
+        self.check_client(camera, client)?;
+        match client.rounding {
+            Rounding::Gpu => self.method.checks::<Gpu>(&job, client, pixel),
+            Rounding::Ieee => self.method.checks::<Ieee>(&job, client, pixel),
+        }
+    }
+
+    /// Whether there is something to judge.
+    fn check_client(&self, camera: &Camera, client: &Client) -> Result<()> {
         let frame = client.frame();
         let (found, picture) = ([frame.width, frame.height], camera.size());
         if found != picture {
@@ -213,13 +254,20 @@ impl<'a> Session<'a> {
             let what = format!("no plane is called as one of the method {}", self.method.name());
             return Err(Error::Invalid(what));
         }
-        let verdict = match client.rounding {
-            Rounding::Gpu => self.method.verify::<Gpu>(&job, client, budget),
-            Rounding::Ieee => self.method.verify::<Ieee>(&job, client, budget),
-        };
-        verdict.ok_or_else(|| {
-            Error::Invalid(format!("the method {} has no rules for verdicts", self.method.name()))
-        })
+        Ok(())
+    }
+
+    /// The surfels that weigh most at a pixel, in `f64`, the heaviest first; none if the method does
+    /// not say.
+    ///
+    /// # Errors
+    /// As [`Session::explain`].
+    pub fn weights(&self, camera: &Camera, pixel: (u32, u32)) -> Result<Vec<(u32, f64)>> {
+        let job = self.job(camera)?;
+        camera.check_pixel(pixel.0, pixel.1)?;
+        let mut weights = self.method.weights(&job, pixel)?;
+        weights.sort_by(|a, b| b.1.total_cmp(&a.1));
+        Ok(weights)
     }
 
     fn job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {

@@ -14,7 +14,7 @@ use crate::scene::{Camera, Scene};
 use crate::setting::{Fields, Visit};
 use crate::splat::SplatSettings;
 use crate::verify::client::Client;
-use crate::verify::verdict::Verdict;
+use crate::verify::verdict::{Check, Verdict};
 
 /// Makes the enum of methods, and hands every question on to the settings of the method that is
 /// asked.
@@ -136,6 +136,10 @@ macro_rules! methods {
                 }
             }
 
+            pub(super) fn weights(&self, job: &Job<'_>, at: (u32, u32)) -> Result<Vec<(u32, f64)>> {
+                match self { $(Self::$method(settings) => settings.weights(job, at),)* }
+            }
+
             pub(super) fn verify<P: Profile>(
                 &self,
                 job: &Job<'_>,
@@ -145,6 +149,15 @@ macro_rules! methods {
                 match self {
                     $(Self::$method(settings) => settings.verify::<P>(job, client, budget),)*
                 }
+            }
+
+            pub(super) fn checks<P: Profile>(
+                &self,
+                job: &Job<'_>,
+                client: &Client,
+                at: (u32, u32),
+            ) -> Result<Vec<Check>> {
+                match self { $(Self::$method(settings) => settings.checks::<P>(job, client, at),)* }
             }
 
             pub(super) fn memory(&self) -> Memory {

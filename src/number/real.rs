@@ -51,6 +51,12 @@ pub trait Real:
     fn floor(self) -> Self;
     /// The square root, correctly rounded.
     fn sqrt(self) -> Self;
+    /// The square root of a sum of squares. A ball has forgotten that such a sum is not negative.
+    #[inline(always)]
+    #[must_use]
+    fn root_of_squares(self) -> Self {
+        self.sqrt()
+    }
     /// The absolute value.
     fn abs(self) -> Self;
     /// e to this power, see [`elementary`].

@@ -150,6 +150,18 @@ impl Surfels {
         }
     }
 
+    /// Whether two indices are those of surfels of the same place and shape, by all bits: what is drawn
+    /// of one is drawn of the other.
+    pub(crate) fn are_equal(&self, a: u32, b: u32) -> bool {
+        let [a, b] = [a, b].map(|i| i as usize);
+        a < self.len()
+            && b < self.len()
+            && self.position[a] == self.position[b]
+            && self.normal[a] == self.normal[b]
+            && self.radius[a] == self.radius[b]
+            && self.tangents.as_ref().is_none_or(|tangents| tangents[a] == tangents[b])
+    }
+
     /// How many there are: less than 2^32 - 1.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -74,7 +74,7 @@ impl<R: Real> Projector<R> {
             xy: -((rx * ry) * c.dot(e)),
             yy: (ry * ry) * e.dot(e),
             area: ((rx * ry) * g).abs(),
-            half: radius * (n.x * n.x + n.y * n.y).sqrt(),
+            half: radius * (n.x * n.x + n.y * n.y).root_of_squares(),
             tilt: Vector2::new((sx * (z.x + d.x * z.z)) * m, -((sy * (z.y + d.y * z.z)) * m)),
         }
     }
@@ -99,7 +99,7 @@ impl<R: Real> Projector<R> {
             xy: ux * uy + vx * vy,
             yy: uy * uy + vy * vy,
             area: ((sx * sy) * along).abs(),
-            half: self.cutoff * (u.z * u.z + v.z * v.z).sqrt(),
+            half: self.cutoff * (u.z * u.z + v.z * v.z).root_of_squares(),
             tilt: Vector2::new((ux * u.z + vx * v.z) * m, (uy * u.z + vy * v.z) * m),
         }
     }

@@ -1,6 +1,7 @@
 //! What was found of a client's planes: stage by stage, pixel by pixel, and in one word.
 
 use crate::frame::{NO_ID, Plane};
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// A decision that right implementations may take either way, as a bit of the ambiguity mask.
@@ -68,6 +69,13 @@ pub enum Fault {
         /// The surfel.
         surfel: u32,
     },
+    /// The surfel of the client has a fragment at the pixel, which is outside the cut-off.
+    Outside {
+        /// The surfel.
+        surfel: u32,
+        /// q of the fragment divided by the limit of q.
+        rim: f64,
+    },
     /// No fragment has the client's depth; one that comes closest.
     NoSuchDepth {
         /// The client's depth.
@@ -75,10 +83,19 @@ pub enum Fault {
         /// The closest.
         closest: f64,
     },
+    /// Of equally near surfels the client has another than it says.
+    Tie {
+        /// The surfel that should be there.
+        surfel: u32,
+        /// The client's.
+        found: u32,
+    },
     /// A surfel that certainly is in front was left out.
     LeftOut {
         /// The surfel.
         surfel: u32,
+        /// q of its fragment divided by the limit of q.
+        rim: f64,
         /// Its depth.
         depth: f64,
         /// The client's; +inf if the pixel is empty.
@@ -90,8 +107,12 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Value { channel, found, truth, radius } => {
-                let [low, high] = [truth - radius, truth + radius];
-                write!(f, "{channel} is {found}, right are {low} to {high}")
+                write!(f, "{channel} is {found}, ")?;
+                if *radius == 0.0 {
+                    write!(f, "right is {truth}")
+                } else {
+                    write!(f, "right are {} to {}", truth - radius, truth + radius)
+                }
             }
             Self::Whole { channel, found, truth } => {
                 write!(f, "{channel} is {}, right is {}", whole(*found), whole(*truth))
@@ -102,7 +123,13 @@ impl fmt::Display for Fault {
             Self::NoSuchDepth { found, closest } => {
                 write!(f, "no surfel has the depth {found}; the closest has {closest}")
             }
-            Self::LeftOut { surfel, depth, found } => {
+            Self::Tie { surfel, found } => {
+                write!(f, "the id is {found}; surfel {surfel} is equally near and comes first")
+            }
+            Self::Outside { surfel, rim } => {
+                write!(f, "the id is {surfel}, which is outside there: q is {rim} of its limit")
+            }
+            Self::LeftOut { surfel, depth, found, .. } => {
                 write!(f, "surfel {surfel} at depth {depth} is left out; the client has {found}")
             }
         }
@@ -125,6 +152,66 @@ pub struct Finding {
     pub error: f64,
 }
 
+/// One value of a client at a pixel, against what it may be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// The stage that leaves it.
+    pub stage: &'static str,
+    /// The value, and what may be there; wrong only if the error is above 1.
+    pub fault: Fault,
+    /// By how many bounds it errs.
+    pub error: f64,
+}
+
+impl fmt::Display for Check {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { stage, fault, error } = self;
+        let word = if *error > 1.0 { "WRONG" } else { "right" };
+        write!(f, "{stage:<14} {word}  {fault}")?;
+        if *error > 0.0 && error.is_finite() { write!(f, "  ({error:.3} bounds)") } else { Ok(()) }
+    }
+}
+
+/// What the wrong pixels of a stage have in common.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Causes {
+    /// How many pixels lack a surfel, by surfel.
+    pub left_out: BTreeMap<u32, u64>,
+    /// The least q of what is left out, divided by the limit of q; +inf if nothing is.
+    pub least_rim: f64,
+    /// How many have the id of a fragment that is outside.
+    pub outside: u64,
+    /// How many have the id of one of two equally near that should not be there.
+    pub ties: u64,
+    /// How many are NaN.
+    pub nan: u64,
+    /// How many are wrong otherwise.
+    pub others: u64,
+}
+
+impl Causes {
+    /// One more pixel with a fault.
+    pub(crate) fn count(&mut self, fault: &Fault) {
+        match fault {
+            Fault::LeftOut { surfel, rim, .. } => {
+                let least = if self.left_out.is_empty() { f64::INFINITY } else { self.least_rim };
+                self.least_rim = if *rim < least { *rim } else { least };
+                *self.left_out.entry(*surfel).or_default() += 1;
+            }
+            Fault::Outside { .. } => self.outside += 1,
+            Fault::Tie { .. } => self.ties += 1,
+            Fault::Value { found, .. } if found.is_nan() => self.nan += 1,
+            _ => self.others += 1,
+        }
+    }
+
+    /// How many pixels lack a surfel.
+    #[must_use]
+    pub fn lacking(&self) -> u64 {
+        self.left_out.values().sum()
+    }
+}
+
 /// What was found of one stage.
 #[derive(Clone, Debug)]
 pub struct Judged {
@@ -138,6 +225,8 @@ pub struct Judged {
     pub doubts: Plane<u8>,
     /// How many pixels are wrong.
     pub wrong: u64,
+    /// What they have in common.
+    pub causes: Causes,
     /// The worst of them; of equals the first.
     pub worst: Option<Finding>,
 }

@@ -123,6 +123,9 @@ impl Real for Counted {
     fn exp(self) -> Self {
         tick(Op::Exp, Real::exp(self.0))
     }
+    fn pow(self, exponent: Self) -> Self {
+        tick(Op::Pow, Real::pow(self.0, exponent.0))
+    }
     fn is_finite(self) -> bool {
         self.0.is_finite()
     }
@@ -155,9 +158,6 @@ impl Real for Counted {
 impl Exact for Counted {
     fn to_i64(self) -> i64 {
         Exact::to_i64(self.0)
-    }
-    fn pow(self, exponent: Self) -> Self {
-        tick(Op::Pow, Exact::pow(self.0, exponent.0))
     }
     fn atan2(self, x: Self) -> Self {
         Self(Exact::atan2(self.0, x.0))

@@ -201,6 +201,11 @@ impl Real for Interval {
         let [low, high] = [Real::exp(self.low), Real::exp(self.high)];
         Self::hull([low.next_down(), high.next_up()])
     }
+    fn pow(self, exponent: Self) -> Self {
+        // Of numbers >= 0 the power of an exponent >= 0 grows with both ends that a splat has.
+        let [low, high] = [self.low, self.high].map(|base| Real::pow(base.max(0.0), exponent.low));
+        Self::hull([low.next_down(), high.next_up()])
+    }
     fn is_finite(self) -> Three {
         Three::of(self.low.is_finite() && self.high.is_finite(), false)
     }

@@ -72,11 +72,12 @@ use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
+use crate::method::replay::Touch;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::number::ball::Profile;
 use crate::verify::client::Client;
-use crate::verify::verdict::Verdict;
+use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -111,8 +112,23 @@ impl Algorithm for Settings {
         picture::stage(job, self, stage, given)
     }
 
+    fn weights(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<Vec<(u32, f64)>> {
+        let replay = explain::explain::<f64>(job, self, pixel)?;
+        let given = |touch: &Touch<f64>| Some((touch.surfel, touch.gives?.1));
+        Ok(replay.visible.iter().filter_map(given).collect())
+    }
+
     fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
         Some(verify::verify::<P>(job, self, client, budget))
+    }
+
+    fn checks<P: Profile>(
+        &self,
+        job: &Job<'_>,
+        client: &Client,
+        pixel: (u32, u32),
+    ) -> Result<Vec<Check>> {
+        verify::checks::<P>(job, self, client, pixel)
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {

@@ -16,6 +16,7 @@
 //!   x y            |m| s + |n| r + r s
 //!   x / y          (|m| s + |n| r) / (|n| (|n| - s))        unbounded unless |n| > s
 //!   sqrt x         r / (sqrt m + sqrt(m - r))               NaN is possible unless m >= r
+//!                  of a sum of squares otherwise max(sqrt m, sqrt(m + r) - sqrt m)
 //!   e^x            (e^(m + r) - e^m) + 2^-50 e^(m + r)
 //!   x^y            max(x^y - (m - r)^y, (m + r)^y - x^y) + 2^-50 (m + r)^y    y >= 0 exact, x >= 0
 //!   floor x        max(floor m - floor(m - r), floor(m + r) - floor m)
@@ -253,6 +254,17 @@ impl<P: Profile> Real for Ball<P> {
             return Self::rounded(middle, spread, P::ROOT, 0.0);
         }
         Self::unbounded(middle, true)
+    }
+
+    #[inline(always)]
+    fn root_of_squares(self) -> Self {
+        // Comparisons that NaN fails.
+        if self.low() < 0.0 && self.high().is_finite() {
+            let middle = self.middle.sqrt();
+            let spread = larger(middle, self.high().sqrt() - middle);
+            return Self::rounded(middle, spread, P::ROOT, 0.0);
+        }
+        self.sqrt()
     }
 
     #[inline(always)]

@@ -9,7 +9,9 @@ use crate::method::judged::{Marks, PixelMarks};
 use crate::method::tiled::pixels;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
+use crate::scene::Surfels;
 use crate::splat::{Shared, fragment};
+use crate::verify::client::Ties;
 use crate::verify::verdict::{Doubt, Fault};
 
 /// The nearest fragment of a pixel, as the client has it.
@@ -30,6 +32,8 @@ struct Claim<P: Profile> {
     error: f64,
     /// The depth of that fragment.
     closest: Ball<P>,
+    /// Its q divided by the limit, if it certainly is outside.
+    outside: Option<f64>,
     /// If the client says nothing: the least depth that may be the nearest, and the greatest.
     range: [f64; 2],
 }
@@ -37,7 +41,7 @@ struct Claim<P: Profile> {
 /// Judges the nearest fragments of a tile, and says what later passes work with.
 pub(super) fn judge<P: Profile>(
     splats: &PossibleSplats<P>,
-    handed: &Handed<'_>,
+    (handed, surfels): (&Handed<'_>, &Surfels),
     (tile, rect): (usize, &Rect),
     marks: &mut Marks,
 ) -> Vec<Nearest<P>> {
@@ -50,6 +54,7 @@ pub(super) fn judge<P: Profile>(
                 fragment.bound(&mut claim.range);
             } else if claim.nearest.id != Some(possible.splat.surfel) {
                 fragment.judge(claim, &mut marks.at(pixel));
+                fragment.judge_tie(claim, (handed.ties, surfels), &mut marks.at(pixel));
             }
         });
     });
@@ -76,7 +81,13 @@ fn claims<P: Profile>(
             let nothing = depth.middle == f64::INFINITY && id.is_none_or(|id| id == NO_ID);
             let error = if nothing { 0.0 } else { f64::INFINITY };
             let range = [f64::INFINITY; 2];
-            Claim { nearest: Nearest { depth, id }, error, closest: Ball::INFINITY, range }
+            Claim {
+                nearest: Nearest { depth, id },
+                error,
+                closest: Ball::INFINITY,
+                outside: None,
+                range,
+            }
         })
         .collect();
     let shared = &splats.shared;
@@ -100,8 +111,10 @@ impl<P: Profile> Claim<P> {
         let t = shared.depth(w);
         let misfit = if has_depth { t.misfit(self.nearest.depth) } else { 0.0 };
         let error = if misfit > outside { misfit } else { outside };
-        if error < self.error {
+        if error <= self.error {
             (self.error, self.closest) = (error, t);
+            let rim = q.middle / shared.limit.middle;
+            self.outside = (outside > 0.0).then_some(rim);
             if !has_depth {
                 self.nearest.depth = t;
             }
@@ -111,6 +124,9 @@ impl<P: Profile> Claim<P> {
     /// Whether the claim itself can be.
     fn judge(&self, handed: &Handed<'_>, pixel: &mut PixelMarks<'_>) {
         let Nearest { depth, id } = self.nearest;
+        if handed.depth.is_none() && self.error <= 1.0 {
+            return;
+        }
         let channel = || handed.depth.map_or_else(String::new, |depth| depth.name.to_owned());
         pixel.found(self.error, || match id {
             Some(NO_ID) => Fault::Value {
@@ -120,6 +136,9 @@ impl<P: Profile> Claim<P> {
                 radius: 0.0,
             },
             Some(surfel) if self.closest.middle == f64::INFINITY => Fault::Absent { surfel },
+            Some(surfel) if self.outside.is_some() => {
+                Fault::Outside { surfel, rim: self.outside.unwrap_or_default() }
+            }
             Some(_) => Fault::Value {
                 channel: channel(),
                 found: depth.middle,
@@ -138,6 +157,8 @@ struct Against<P: Profile> {
     drawn: bool,
     inside: Three,
     /// How certain that is.
+    margin: f64,
+    /// q divided by the limit of q.
     rim: f64,
     t: Ball<P>,
 }
@@ -148,7 +169,8 @@ impl<P: Profile> Against<P> {
             surfel: possible.splat.surfel,
             drawn: possible.certain,
             inside: decide::inside(q, shared.limit),
-            rim: q.distance(shared.limit),
+            margin: q.distance(shared.limit),
+            rim: q.middle / shared.limit.middle,
             t: shared.depth(w),
         }
     }
@@ -163,8 +185,9 @@ impl<P: Profile> Against<P> {
         if self.drawn && (self.inside & nearer).certainly() {
             // As certain as the least certain of the two.
             let gap = self.t.distance(depth);
-            pixel.found(if gap < self.rim { gap } else { self.rim }, || Fault::LeftOut {
+            pixel.found(if gap < self.margin { gap } else { self.margin }, || Fault::LeftOut {
                 surfel: self.surfel,
+                rim: self.rim,
                 depth: self.t.middle,
                 found: depth.middle,
             });
@@ -172,6 +195,31 @@ impl<P: Profile> Against<P> {
             pixel.doubt(Doubt::Nearer, !nearer.certainly());
             pixel.doubt(Doubt::CutOff, !self.inside.certainly());
             pixel.doubt(Doubt::Fate, !self.drawn);
+        }
+    }
+
+    /// Whether the fragment is exactly as near as that of the client, and comes before it.
+    ///
+    /// Depths are equal in every implementation where nothing was rounded, and where surfels have the
+    /// same numbers.
+    fn judge_tie(
+        &self,
+        claim: &Claim<P>,
+        (ties, surfels): (Ties, &Surfels),
+        pixel: &mut PixelMarks<'_>,
+    ) {
+        let Some(id) = claim.nearest.id else { return };
+        let first = match ties {
+            Ties::Lowest => self.surfel < id,
+            Ties::Last => self.surfel > id && id != NO_ID,
+            Ties::Any => false,
+        };
+        let exact = self.t.distance(claim.closest) == f64::INFINITY
+            && self.inside.certainly()
+            && self.t.middle == claim.closest.middle;
+        if first && self.drawn && (exact || surfels.are_equal(self.surfel, id)) {
+            let surfel = self.surfel;
+            pixel.found(f64::INFINITY, || Fault::Tie { surfel, found: id });
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::method::ewa::planes;
 use crate::method::resolved;
-use crate::verify::client::{Client, Storage, Stored};
+use crate::verify::client::{Client, Storage, Stored, Ties};
 
 /// The planes of a client, each if it is there.
 #[derive(Clone, Copy, Debug)]
@@ -10,6 +10,7 @@ pub(super) struct Handed<'a> {
     /// Depth and surfel of the nearest fragment: those of the visibility pass, else the picture's.
     pub(super) depth: Option<Stored<'a, f64>>,
     pub(super) id: Option<Stored<'a, u32>>,
+    pub(super) ties: Ties,
     /// The sums of the attribute pass; its weight may be the picture's.
     pub(super) weight: Option<Stored<'a, f64>>,
     pub(super) normal_sum: Option<Stored<'a, [f64; 3]>>,
@@ -40,6 +41,7 @@ impl<'a> Handed<'a> {
         Self {
             depth,
             id: own.or(other),
+            ties: client.ties,
             weight,
             normal_sum: client.triple(&planes::NORMAL_SUM),
             color_sum: client.triple(&planes::COLOR_SUM),

@@ -12,7 +12,11 @@
 //!    certainly is less than Z; without Z, than the depth of the id's fragment. Of an empty pixel
 //!    Z is +inf, so that no fragment certainly is inside.
 //!
-//! The id of near ties is one of a set, and harmless: the sums take their limit from the client's Z.
+//! 4. No surfel comes before that of the id, as the client says of ties, whose depth is equal and
+//!    exact in balls, or all of whose numbers are those of the id's surfel.
+//!
+//! The id of other near ties is one of a set, and harmless: the sums take their limit from the
+//! client's Z.
 //!
 //! **Attributes.** A fragment is in the sums if it is drawn, inside, and of a depth of at most Z +
 //! epsilon; that of the id always passes. Where that is undecided, both continuations are kept, 2^n
@@ -35,14 +39,19 @@ mod sums;
 mod tests;
 
 use super::Settings;
-use super::possible::project;
+use super::possible::{PossibleSplats, project};
+use crate::error::Result;
+use crate::frame::Rect;
 use crate::method::algorithm::Job;
 use crate::method::judged::{Marks, counted, judged};
+use crate::method::replay::Place;
 use crate::number::ball::Profile;
+use crate::scene::Surfels;
 use crate::verify::client::Client;
-use crate::verify::verdict::{Doubt, Verdict};
+use crate::verify::verdict::{Check, Doubt, Verdict};
 use handed::Handed;
 use pixel::PixelJudge;
+use sums::Continuations;
 
 /// Judges the planes of a client.
 pub(super) fn verify<P: Profile>(
@@ -52,27 +61,62 @@ pub(super) fn verify<P: Profile>(
     budget: f64,
 ) -> Verdict {
     let handed = Handed::new(client);
-    let splats = project::<P>(job, settings);
-    let judge = PixelJudge::<P>::new(job, &handed);
+    let judge = Judge::<P>::new(job, settings, &handed);
     let tiles = job.grid().rects().into_iter().enumerate().collect();
     let found = job.exec.ordered(tiles, |(tile, rect)| {
-        let mut first = Marks::new(rect);
-        let mut rest = [(); 3].map(|()| Marks::new(rect));
-        let nearest = certificate::judge(&splats, &handed, (tile, &rect), &mut first);
-        let surfels = &job.scene.surfels;
-        let sums = sums::continuations(&splats, surfels, &nearest, (tile, &rect), &mut rest[0]);
-        let mut covered = 0;
-        for (pixel, at) in counted(rect) {
-            judge.judge((pixel, at), &nearest[pixel], &sums[pixel], &mut rest);
-            let doubtful = matches!(sums[pixel], sums::Continuations::One(_));
-            covered += u64::from(nearest[pixel].depth.middle.is_finite() || !doubtful);
-        }
-        let [a, b, c] = rest;
-        ([first, a, b, c], covered)
+        let mut marks = [(); 4].map(|()| Marks::new(rect));
+        let covered = judge.judge((tile, rect), &mut marks);
+        (marks, covered)
     });
     let covered = found.iter().map(|(_, covered)| covered).sum();
     let tiles = found.into_iter().map(|(marks, _)| marks).collect();
     let stages = judged(job, handed.stages(), tiles);
     let undecided = stages[1].doubtful(Doubt::OF_SUMS);
     Verdict { stages, covered, undecided, budget }
+}
+
+/// Everything that is judged at one pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    let Place { tile, rect } = Place::new(job, pixel)?;
+    let handed = Handed::new(client);
+    let mut marks = [(); 4].map(|()| Marks::logging(rect));
+    Judge::<P>::new(job, settings, &handed).judge((tile, rect), &mut marks);
+    let stages = handed.stages().into_iter().map(|(stage, _)| stage);
+    Ok(marks.into_iter().zip(stages).flat_map(|(marks, stage)| marks.checks(stage)).collect())
+}
+
+/// What all tiles share.
+struct Judge<'a, P: Profile> {
+    surfels: &'a Surfels,
+    handed: &'a Handed<'a>,
+    splats: PossibleSplats<P>,
+    pixels: PixelJudge<'a, P>,
+}
+
+impl<'a, P: Profile> Judge<'a, P> {
+    fn new(job: &Job<'a>, settings: &Settings, handed: &'a Handed<'a>) -> Self {
+        let splats = project(job, settings);
+        Self { surfels: &job.scene.surfels, handed, splats, pixels: PixelJudge::new(job, handed) }
+    }
+
+    /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage; how many may be
+    /// covered.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> u64 {
+        let Self { surfels, handed, splats, pixels } = self;
+        let [first, rest @ ..] = marks;
+        let nearest = certificate::judge(splats, (handed, surfels), (tile, &rect), first);
+        let sums = sums::continuations(splats, surfels, &nearest, (tile, &rect), &mut rest[0]);
+        let mut covered = 0;
+        for (pixel, at) in counted(rect) {
+            pixels.judge((pixel, at), &nearest[pixel], &sums[pixel], rest);
+            let certain = matches!(sums[pixel], Continuations::One(_));
+            covered += u64::from(nearest[pixel].depth.middle.is_finite() || !certain);
+        }
+        covered
+    }
 }

@@ -33,8 +33,7 @@ fn verdict(
     frame: &Frame<f32>,
     rounding: Rounding,
 ) -> Verdict {
-    let image = crate::frame::Image::from(frame);
-    let mut client = Client::of_image(&image, session.method().stages()).unwrap();
+    let mut client = Client::from(frame);
     client.rounding = rounding;
     session.verify(camera, &client, 1.0).unwrap()
 }

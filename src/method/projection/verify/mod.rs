@@ -325,9 +325,9 @@ impl<P: Profile> Claim<P> {
         if let (Some((surfel, t)), true) = (self.front, self.says != Says::Nothing) {
             let depth = self.depth();
             if self.says != Says::Id(surfel) && decide::before(t, depth).certainly() {
-                let (depth, found) = (t.middle, depth.middle);
-                let error = t.distance(self.depth());
-                pixel.found(error, || Fault::LeftOut { surfel, depth, found });
+                let (error, depth, found) = (t.distance(depth), t.middle, depth.middle);
+                // A sample has no rim.
+                pixel.found(error, || Fault::LeftOut { surfel, rim: 0.0, depth, found });
             }
         }
     }

@@ -1,0 +1,227 @@
+//! A verdict in about ten lines, and as JSON.
+
+use super::Args;
+use crate::cli::report::short;
+use serde::Serialize;
+use splatref::Result;
+use splatref::method::Session;
+use splatref::scene::Camera;
+use splatref::verify::client::{Client, Rounding};
+use splatref::verify::verdict::{Doubt, Fault, Finding, Judged, Outcome, Verdict};
+
+/// A verdict, and what was looked up for its report.
+pub(super) struct Seen<'a> {
+    verdict: &'a Verdict,
+    method: &'static str,
+    likely: Option<String>,
+    /// The surfels that weigh most at the worst pixel.
+    heaviest: Vec<(u32, f64)>,
+}
+
+/// How many surfels of a pixel are named.
+const NAMED: usize = 5;
+
+impl<'a> Seen<'a> {
+    pub(super) fn new(
+        session: &Session<'_>,
+        camera: &Camera,
+        (verdict, likely): (&'a Verdict, Option<String>),
+    ) -> Result<Self> {
+        let heaviest = match verdict.first_wrong().and_then(|stage| stage.worst.as_ref()) {
+            Some(worst) => session.weights(camera, worst.pixel)?,
+            None => Vec::new(),
+        };
+        Ok(Self { verdict, method: session.method().name(), likely, heaviest })
+    }
+
+    /// The report.
+    pub(super) fn lines(&self, args: &Args, client: &Client) -> Vec<String> {
+        let Self { verdict, method, likely, heaviest } = self;
+        let mut lines = vec![labelled("client", planes(client, method))];
+        let promise = match client.rounding {
+            Rounding::Gpu => "gpu, operations as inexact as shading languages allow",
+            Rounding::Ieee => "ieee, each operation rounds once, to nearest",
+        };
+        lines.push(labelled("promise", promise));
+        lines.extend(verdict.stages.iter().map(|stage| labelled(stage.stage, judged(stage))));
+        if let Some((stage, worst)) =
+            verdict.first_wrong().and_then(|stage| Some((stage, stage.worst.as_ref()?)))
+        {
+            let (x, y) = worst.pixel;
+            let Finding { fault, error, .. } = worst;
+            let by = if error.is_finite() {
+                format!(": {} bounds", short(*error))
+            } else {
+                String::new()
+            };
+            lines.push(labelled("worst", format!("{} at ({x}, {y}): {fault}{by}", stage.stage)));
+            let of = |(surfel, weight): &(u32, f64)| format!("{surfel} ({})", short(*weight));
+            let named: Vec<String> = heaviest.iter().take(NAMED).map(of).collect();
+            if !named.is_empty() {
+                lines.push(labelled("surfels", format!("heaviest there: {}", named.join(", "))));
+            }
+            if let Some(likely) = likely {
+                lines.push(labelled("looks like", likely));
+            }
+            lines.push(labelled("replay", args.replay((x, y))));
+        } else if let Some(next) = next(verdict) {
+            lines.push(labelled("sharper", next));
+        }
+        lines.push(self.ending());
+        lines
+    }
+
+    /// The verdict in a sentence.
+    fn ending(&self) -> String {
+        let Verdict { undecided, covered, budget, .. } = self.verdict;
+        let share = 100.0 * *undecided as f64 / (*covered).max(1) as f64;
+        match self.verdict.outcome() {
+            Outcome::Right => {
+                format!("right: of {covered} covered pixels {undecided} have undecided sums")
+            }
+            Outcome::Wrong => "wrong: no implementation that keeps the promise leaves this".into(),
+            Outcome::Undecidable => format!(
+                "undecidable: the sums of {} % of the covered pixels may be either way, {} % are allowed",
+                short(share),
+                short(100.0 * budget)
+            ),
+        }
+    }
+
+    /// The report for other programs.
+    pub(super) fn json(&self) -> Result<String> {
+        let Self { verdict, method, likely, heaviest } = self;
+        let json = Json {
+            outcome: match verdict.outcome() {
+                Outcome::Right => "right",
+                Outcome::Wrong => "wrong",
+                Outcome::Undecidable => "undecidable",
+            },
+            method,
+            covered: verdict.covered,
+            undecided: verdict.undecided,
+            budget: verdict.budget,
+            first_wrong: verdict.first_wrong().map(|stage| stage.stage),
+            looks_like: likely.as_deref(),
+            heaviest: heaviest.clone(),
+            stages: verdict.stages.iter().map(JsonStage::new).collect(),
+        };
+        let text = serde_json::to_string_pretty(&json);
+        text.map(|text| text + "\n").map_err(|error| splatref::Error::Invalid(error.to_string()))
+    }
+}
+
+fn labelled(label: &str, text: impl std::fmt::Display) -> String {
+    format!("{label:<14} {text}")
+}
+
+/// What the client has handed in.
+fn planes(client: &Client, method: &str) -> String {
+    let count = client.frame().planes.len();
+    let known = format!("{count} planes of {method}");
+    match client.unknown.as_slice() {
+        [] => known,
+        unknown => format!("{known}; not judged: {}", unknown.join(", ")),
+    }
+}
+
+/// A stage in words.
+fn judged(stage: &Judged) -> String {
+    if stage.planes.is_empty() {
+        return "not judged: none of its planes is there".into();
+    }
+    let names: Vec<&str> =
+        stage.planes.iter().map(|name| if name.is_empty() { "RGB" } else { name }).collect();
+    let what = match stage.wrong {
+        0 => {
+            let worst =
+                stage.errors.values().iter().fold(0.0_f32, |a, &b| if b > a { b } else { a });
+            format!("right, to {} bounds", short(f64::from(worst)))
+        }
+        1 => "WRONG in 1 pixel".into(),
+        wrong => format!("WRONG in {wrong} pixels"),
+    };
+    let doubts = Doubt::ALL.map(|doubt| (doubt.name(), stage.doubtful(doubt as u8)));
+    let doubts: Vec<String> = doubts
+        .into_iter()
+        .filter(|(_, pixels)| *pixels > 0)
+        .map(|(name, pixels)| format!("{name} {pixels}"))
+        .collect();
+    let doubts = match doubts.as_slice() {
+        [] => String::new(),
+        doubts => format!("; undecided: {}", doubts.join(", ")),
+    };
+    format!("{what} ({}){doubts}", names.join(", "))
+}
+
+/// What else could be handed in, so that more is judged.
+fn next(verdict: &Verdict) -> Option<String> {
+    let stage = verdict.stages.iter().find(|stage| stage.planes.is_empty())?;
+    Some(format!("hand in the planes of the stage {}: render --stages shows which", stage.stage))
+}
+
+/// A verdict as JSON. What is infinite is null.
+#[derive(Serialize)]
+struct Json<'a> {
+    outcome: &'static str,
+    method: &'static str,
+    covered: u64,
+    undecided: u64,
+    budget: f64,
+    first_wrong: Option<&'static str>,
+    looks_like: Option<&'a str>,
+    heaviest: Vec<(u32, f64)>,
+    stages: Vec<JsonStage<'a>>,
+}
+
+#[derive(Serialize)]
+struct JsonStage<'a> {
+    stage: &'static str,
+    planes: &'a [&'static str],
+    wrong: u64,
+    undecided: Vec<(&'static str, u64)>,
+    worst: Option<JsonFinding>,
+}
+
+#[derive(Serialize)]
+struct JsonFinding {
+    pixel: (u32, u32),
+    error: f64,
+    fault: String,
+    found: Option<f64>,
+    interval: Option<[f64; 2]>,
+    surfel: Option<u32>,
+}
+
+impl<'a> JsonStage<'a> {
+    fn new(stage: &'a Judged) -> Self {
+        let undecided = Doubt::ALL.map(|doubt| (doubt.name(), stage.doubtful(doubt as u8)));
+        Self {
+            stage: stage.stage,
+            planes: &stage.planes,
+            wrong: stage.wrong,
+            undecided: undecided.to_vec(),
+            worst: stage.worst.as_ref().map(JsonFinding::new),
+        }
+    }
+}
+
+impl JsonFinding {
+    fn new(finding: &Finding) -> Self {
+        let (found, interval, surfel) = match finding.fault {
+            Fault::Value { found, truth, radius, .. } => {
+                (Some(found), Some([truth - radius, truth + radius]), None)
+            }
+            Fault::Whole { found, truth, .. } => {
+                (Some(found.into()), Some([truth.into(), truth.into()]), None)
+            }
+            Fault::NoSuchDepth { found, .. } => (Some(found), None, None),
+            Fault::LeftOut { surfel, found, .. } => (Some(found), None, Some(surfel)),
+            Fault::Absent { surfel }
+            | Fault::Outside { surfel, .. }
+            | Fault::Tie { surfel, .. } => (None, None, Some(surfel)),
+        };
+        let fault = finding.fault.to_string();
+        Self { pixel: finding.pixel, error: finding.error, fault, found, interval, surfel }
+    }
+}

@@ -1,0 +1,325 @@
+//! From the numbers of a file to a plane of the crate, and how exactly it is stored.
+
+use super::Wanted;
+use super::files::{Kind, Numbers};
+use super::format::{F16_LOSS, F32_STEP, Format, Loss};
+use super::parse::{Encoding, Meaning, PlaneKeys};
+use crate::frame::{NO_ID, Plane, Samples};
+use crate::io::{Reason, srgb};
+use crate::method::Holds;
+use crate::number::Real;
+use crate::verify::client::Storage;
+
+/// What a product, a division by t and storing may lose in `f32`: shading languages promise a
+/// division to 2.5 units in the last place.
+const DIVISION: Loss = Loss { relative: 4.0 * F32_STEP, least: 0.0 };
+/// What the power of an encoding as sRGB may lose in `f32`, of codes up to 1: shading languages
+/// compute it as exp2(y log2(x)), each to a few units in the last place.
+const POWER: Loss = Loss { relative: 32.0 * F32_STEP, least: 32.0 * F32_STEP };
+
+/// A plane of the crate.
+pub(super) fn plane(
+    wanted: &Wanted,
+    kind: Kind,
+    numbers: Numbers,
+) -> Reason<(Samples<f64>, Storage)> {
+    check_keys(wanted, kind)?;
+    let (holds, keys, file) = (wanted.row.holds, &wanted.keys, numbers.file);
+    let format = keys.format.unwrap_or(file);
+    if !format.fits(file) {
+        let (format, file) = (format.word(), file.word());
+        return Err(format!(
+            "format is {format}, but what a file of {file} has cannot all be that"
+        ));
+    }
+    let [width, height] = numbers.size;
+    match holds {
+        Holds::Index => {
+            let plane = Plane::from_values(width, height, indices(keys, format, &numbers)?);
+            Ok((Samples::Index(plane), Storage::Single))
+        }
+        Holds::Count => {
+            let counts = wholes(format, &numbers, 255.0, &|value| value)?;
+            let counts = counts.into_iter().map(|count| count as u8).collect();
+            Ok((Samples::Count(Plane::from_values(width, height, counts)), Storage::Single))
+        }
+        _ => {
+            let numbers = Scaled::new(keys, format, numbers)?;
+            let (components, storage) = if wanted.is_depth() {
+                depths(keys, numbers)?
+            } else if holds == Holds::Color {
+                colors(keys, kind, numbers)?
+            } else {
+                let storage = numbers.storage;
+                (numbers.map(|v| ranged(v, keys.range)), storage)
+            };
+            Ok((samples(holds, [width, height], components), storage))
+        }
+    }
+}
+
+/// That no key is given that means nothing to the plane.
+fn check_keys(wanted: &Wanted, kind: Kind) -> Reason<()> {
+    let Wanted { keys, row, .. } = wanted;
+    let (is_depth, is_raw) = (wanted.is_depth(), kind == Kind::Raw);
+    let (is_color, is_index) = (row.holds == Holds::Color, row.holds == Holds::Index);
+    let has_channels = matches!(kind, Kind::Exr | Kind::Png);
+    let is_number = !is_index && row.holds != Holds::Count;
+    for (key, given, means) in [
+        ("channel", keys.channel.is_some(), has_channels),
+        ("offset", keys.offset.is_some(), is_raw),
+        ("row_stride", keys.row_stride.is_some(), is_raw),
+        ("pixel_stride", keys.pixel_stride.is_some(), is_raw),
+        ("empty", keys.empty.is_some(), is_depth || is_index),
+        ("id_base", keys.id_base.is_some(), is_index),
+        ("premultiplied", keys.premultiplied.is_some(), is_color),
+        ("encoding", keys.encoding.is_some(), is_color),
+        ("range", keys.range.is_some(), is_number),
+        ("meaning", wanted.own_depth.meaning.is_some(), is_depth),
+        ("near", wanted.own_depth.near.is_some(), is_depth),
+        ("far", wanted.own_depth.far.is_some(), is_depth),
+    ] {
+        if given && !means {
+            let of = match (key, kind) {
+                ("channel" | "offset" | "row_stride" | "pixel_stride", Kind::Exr) => "an EXR",
+                ("channel" | "offset" | "row_stride" | "pixel_stride", Kind::Npy) => "an NPY",
+                ("channel" | "offset" | "row_stride" | "pixel_stride", Kind::Png) => "a PNG",
+                ("channel" | "offset" | "row_stride" | "pixel_stride", Kind::Raw) => "a raw file",
+                _ if is_depth => "depths",
+                _ => row.holds.words(),
+            };
+            return Err(format!("`{key}` means nothing to {of}: remove it"));
+        }
+    }
+    Ok(())
+}
+
+/// The surfels of a plane.
+fn indices(keys: &PlaneKeys, format: Format, numbers: &Numbers) -> Reason<Vec<u32>> {
+    let base = f64::from(keys.id_base.unwrap_or(0));
+    // What nobody draws: all bits set, or what lies before the first.
+    let empty = keys.empty.unwrap_or(match (base > 0.0, numbers.file) {
+        (true, _) => base - 1.0,
+        (_, Format::I32) => -1.0,
+        _ => NO_ID.into(),
+    });
+    let empty = numbers.file.nearest(empty);
+    let id = |value: f64| if is(value, empty) { NO_ID.into() } else { value - base };
+    wholes(format, numbers, NO_ID.into(), &id)
+}
+
+/// Whole numbers up to `most`, each as `whole` says.
+fn wholes(
+    format: Format,
+    numbers: &Numbers,
+    most: f64,
+    whole: &dyn Fn(f64) -> f64,
+) -> Reason<Vec<u32>> {
+    if format.codes().is_some() {
+        let word = format.word();
+        return Err(format!(
+            "format is {word}, but indices and counts are whole: give u8, u16, u32, \
+                            i32, f32 or f16"
+        ));
+    }
+    let width = numbers.size[0] as usize;
+    let wholes = numbers.components[0].iter().enumerate().map(|(i, &value)| {
+        let (x, y) = (i % width, i / width);
+        let found = whole(value);
+        // Casts truncate and saturate, and take NaN to 0.
+        if f64::from(found as u32) != found || found > most {
+            return Err(format!(
+                "{value} at pixel ({x}, {y}) is no whole number from 0 to {most}; say what is `empty`, \
+                 and the `id_base`"
+            ));
+        }
+        // Beyond these, neighbours are one number.
+        let all = numbers.file.most_whole().at_most(format.most_whole());
+        if value >= all && found < f64::from(NO_ID) {
+            return Err(format!(
+                "{value} at pixel ({x}, {y}), but only below {all} are all numbers told apart; \
+                 store them as u32"
+            ));
+        }
+        Ok(found as u32)
+    });
+    wholes.collect()
+}
+
+/// Whether a stored number is the one of empty pixels.
+fn is(value: f64, empty: f64) -> bool {
+    value == empty || (value.is_nan() && empty.is_nan())
+}
+
+/// Numbers as they passed through a format.
+struct Scaled {
+    components: Vec<Vec<f64>>,
+    /// How they passed.
+    format: Format,
+    /// How exact they are as they are.
+    storage: Storage,
+    /// What rounds a number as those of the file were.
+    stored: Format,
+}
+
+impl Scaled {
+    fn new(keys: &PlaneKeys, format: Format, numbers: Numbers) -> Reason<Self> {
+        let Numbers { file, mut components, size: [width, _] } = numbers;
+        let codes = match format.codes() {
+            Some(codes) => codes,
+            None if format.is_whole() => {
+                return Err(format!(
+                    "whole numbers ({}), and the plane holds others; say the `format` that they \
+                     passed through: unorm8, unorm16, unorm24",
+                    format.word()
+                ));
+            }
+            None => 1.0,
+        };
+        let stored = if file.is_whole() { format } else { file };
+        if file.is_whole() {
+            for (i, value) in components.iter_mut().flat_map(|c| c.iter_mut().enumerate()) {
+                if *value > codes {
+                    let (x, y) = (i % width as usize, i / width as usize);
+                    let word = format.word();
+                    return Err(format!("{value} at pixel ({x}, {y}) is no code of {word}"));
+                }
+                *value /= codes;
+            }
+        }
+        if keys.range.is_some() && !format.is_unorm() {
+            let word = format.word();
+            return Err(format!("`range` means nothing to {word}, only to unorm: remove it"));
+        }
+        let [low, high] = keys.range.unwrap_or([0.0, 1.0]);
+        let storage = format.storage(high - low);
+        Ok(Self { components, format, storage, stored })
+    }
+
+    /// Each number as `value` says.
+    fn map(mut self, value: impl Fn(f64) -> f64) -> Vec<Vec<f64>> {
+        self.components.iter_mut().flatten().for_each(|number| *number = value(*number));
+        self.components
+    }
+}
+
+/// Depths t.
+fn depths(keys: &PlaneKeys, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)> {
+    let meaning = keys.depth.meaning.unwrap_or_default();
+    if keys.range.is_some() && meaning != Meaning::T {
+        return Err(format!("`range` means nothing to {}: remove it", meaning.word()));
+    }
+    let (near, far) = ends(keys, meaning)?;
+    let format = numbers.format;
+    let (empty, storage) = match meaning {
+        Meaning::T => (f64::INFINITY, numbers.storage),
+        Meaning::Inverse => (0.0, inverse(1.0, format)),
+        Meaning::NearOver => (0.0, inverse(near, format)),
+        Meaning::ZBuffer => {
+            // Of floats that of numbers near 1, where a depth buffer has nearly all.
+            let step = match (format, format.codes()) {
+                (_, Some(codes)) => 1.0 / codes,
+                (Format::F16, _) => F16_LOSS.relative,
+                _ => F32_STEP,
+            };
+            (1.0, Storage::DepthBuffer { step, near, far })
+        }
+        Meaning::ReversedZ => {
+            let storage = match format.codes() {
+                Some(codes) => Storage::DepthBuffer { step: 1.0 / codes, near, far },
+                None => inverse(1.0 / (1.0 / near - 1.0 / far), format),
+            };
+            (0.0, storage)
+        }
+        Meaning::Linear => (1.0, linear(near, far, format)),
+    };
+    let empty = numbers.stored.nearest(keys.empty.unwrap_or(empty));
+    let slope = 1.0 / near - 1.0 / far;
+    let components = numbers.map(|v| match meaning {
+        _ if is(v, empty) => f64::INFINITY,
+        Meaning::T => ranged(v, keys.range),
+        Meaning::Inverse => 1.0 / v,
+        Meaning::NearOver => near / v,
+        Meaning::ZBuffer => 1.0 / (1.0 / near - v * slope),
+        Meaning::ReversedZ => 1.0 / (1.0 / far + v * slope),
+        Meaning::Linear => near + v * (far - near),
+    });
+    Ok((components, storage))
+}
+
+/// A number in its range, if it has one.
+fn ranged(v: f64, range: Option<[f64; 2]>) -> f64 {
+    range.map_or(v, |[low, high]| low + v * (high - low))
+}
+
+/// The depths of 0 and 1, as far as a meaning has them.
+fn ends(keys: &PlaneKeys, meaning: Meaning) -> Reason<(f64, f64)> {
+    let far = || keys.depth.far.ok_or("far");
+    let found = match (meaning, keys.depth.near.ok_or("near")) {
+        (Meaning::T | Meaning::Inverse, _) => return Ok((1.0, f64::INFINITY)),
+        (Meaning::NearOver, near) => near.map(|near| (near, f64::INFINITY)),
+        (_, near) => near.and_then(|near| Ok((near, far()?))),
+    };
+    let word = meaning.word();
+    let (near, far) = found
+        .map_err(|key| format!("meaning is {word}, which needs `{key}`: give it in [depth]"))?;
+    let can_be = match meaning {
+        Meaning::Linear => near != far && near.is_finite() && far.is_finite(),
+        _ => near > 0.0 && near < far,
+    };
+    if can_be {
+        return Ok((near, far));
+    }
+    Err(format!("meaning is {word}, but near = {near} and far = {far} cannot be"))
+}
+
+/// Of `scale / t`.
+fn inverse(scale: f64, format: Format) -> Storage {
+    let Loss { relative, least } = format.loss(DIVISION);
+    Storage::Inverse { scale, relative, least }
+}
+
+/// Of `(t - near) / (far - near)`.
+fn linear(near: f64, far: f64, format: Format) -> Storage {
+    match format {
+        // Not relative: the difference keeps what t and near had lost.
+        Format::F32 => Storage::Steps(F32_STEP * near.at_least(far)),
+        Format::F16 => {
+            let Loss { relative, least } = F16_LOSS;
+            Storage::Linear { near, far, relative, least }
+        }
+        _ => format.storage(far - near),
+    }
+}
+
+/// Linear light.
+fn colors(keys: &PlaneKeys, kind: Kind, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)> {
+    let usual = if kind == Kind::Png { Encoding::Srgb } else { Encoding::Linear };
+    match (keys.encoding.unwrap_or(usual), keys.range) {
+        (Encoding::Linear, range) => {
+            let storage = numbers.storage;
+            Ok((numbers.map(|v| ranged(v, range)), storage))
+        }
+        (Encoding::Srgb, None) => {
+            let Loss { relative, least } = numbers.format.loss(POWER);
+            Ok((numbers.map(srgb::to_linear), Storage::Srgb { relative, least }))
+        }
+        (Encoding::Srgb, Some(_)) => {
+            Err("`range` means nothing to sRGB: remove it, or give encoding = \"linear\"".into())
+        }
+    }
+}
+
+fn samples(holds: Holds, [width, height]: [u32; 2], components: Vec<Vec<f64>>) -> Samples<f64> {
+    match (holds, components.as_slice()) {
+        (Holds::Color | Holds::Vector, [x, y, z]) => {
+            let triples = x.iter().zip(y).zip(z).map(|((&x, &y), &z)| [x, y, z]).collect();
+            let plane = Plane::from_values(width, height, triples);
+            if holds == Holds::Color { Samples::Color(plane) } else { Samples::Vector(plane) }
+        }
+        _ => {
+            let values = components.into_iter().next().unwrap_or_default();
+            Samples::Scalar(Plane::from_values(width, height, values))
+        }
+    }
+}

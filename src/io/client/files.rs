@@ -1,0 +1,231 @@
+//! The files of planes, each read once.
+
+use super::format::Format;
+use super::parse::PlaneKeys;
+use super::{Wanted, raw};
+use crate::error::{Error, Result};
+use crate::frame::image::Values;
+use crate::frame::{Exec, Image};
+use crate::io::exr::{self, ChannelType};
+use crate::io::{Reason, npy};
+use crate::method::Holds;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// The numbers of a plane as a file has them, row by row as they lie there.
+#[derive(Clone, Debug)]
+pub(super) struct Numbers {
+    pub(super) size: [u32; 2],
+    /// One, or three.
+    pub(super) components: Vec<Vec<f64>>,
+    /// How the file stores them.
+    pub(super) file: Format,
+}
+
+/// What a file is, by its extension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Exr,
+    Npy,
+    Png,
+    Raw,
+}
+
+impl Kind {
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_string_lossy().to_ascii_lowercase();
+        match extension.as_str() {
+            "exr" => Some(Self::Exr),
+            "npy" => Some(Self::Npy),
+            "png" => Some(Self::Png),
+            "raw" | "bin" => Some(Self::Raw),
+            _ => None,
+        }
+    }
+}
+
+/// A file of several channels.
+#[derive(Debug)]
+pub(super) struct Picture {
+    pub(super) image: Image,
+    /// How it stores the channels, by name.
+    formats: BTreeMap<String, Format>,
+}
+
+/// The files that were read.
+#[derive(Debug)]
+pub(super) struct Files<'e> {
+    exec: &'e Exec,
+    pictures: BTreeMap<PathBuf, Picture>,
+}
+
+impl<'e> Files<'e> {
+    pub(super) fn new(exec: &'e Exec) -> Self {
+        Self { exec, pictures: BTreeMap::new() }
+    }
+
+    /// The picture at `path`, an EXR or a PNG.
+    pub(super) fn picture(&mut self, path: &Path, kind: Kind) -> Result<&Picture> {
+        if !self.pictures.contains_key(path) {
+            let picture = if kind == Kind::Png { png(path)? } else { self.exr(path)? };
+            self.pictures.insert(path.to_owned(), picture);
+        }
+        Ok(&self.pictures[path])
+    }
+
+    fn exr(&self, path: &Path) -> Result<Picture> {
+        let header = exr::read_header(path)?;
+        let formats = header.channels.into_iter().map(|(name, stored)| {
+            let format = match stored {
+                ChannelType::Half => Format::F16,
+                ChannelType::Float => Format::F32,
+                ChannelType::Uint => Format::U32,
+            };
+            (name, format)
+        });
+        let formats = formats.collect();
+        Ok(Picture { image: exr::read_with(path, self.exec)?, formats })
+    }
+
+    /// The numbers of a plane; those of a raw file have this size.
+    pub(super) fn numbers(
+        &mut self,
+        wanted: &Wanted,
+        path: &Path,
+        kind: Kind,
+        size: [u32; 2],
+    ) -> Result<Numbers> {
+        let Wanted { keys, row, key, .. } = wanted;
+        let components = row.channels().len();
+        let refused = |what: String| Error::format(path, format!("planes.{key}: {what}"));
+        match kind {
+            Kind::Raw => {
+                let format = keys.format.unwrap_or(match row.holds {
+                    Holds::Index => Format::U32,
+                    Holds::Count => Format::U8,
+                    _ => Format::F32,
+                });
+                raw::read(path, key, keys, format, components, size)
+            }
+            Kind::Npy => {
+                let image = npy::read(path, "v")?;
+                let names: Vec<String> =
+                    image.channels.iter().map(|(name, _)| name.clone()).collect();
+                if names.len() != components {
+                    return Err(refused(format!(
+                        "{} numbers a pixel, and the plane holds {}",
+                        names.len(),
+                        row.holds.words()
+                    )));
+                }
+                let picture = Picture { image, formats: BTreeMap::new() };
+                picture.numbers(&names).map_err(refused)
+            }
+            Kind::Exr | Kind::Png => {
+                let picture = self.picture(path, kind)?;
+                let names = picture.names(wanted, keys, kind).map_err(refused)?;
+                let mut numbers = picture.numbers(&names).map_err(refused)?;
+                if matches!(row.holds, Holds::Index | Holds::Count) {
+                    numbers.as_codes();
+                }
+                Ok(numbers)
+            }
+        }
+    }
+}
+
+impl Picture {
+    /// The channels of a plane.
+    fn names(&self, wanted: &Wanted, keys: &PlaneKeys, kind: Kind) -> Reason<Vec<String>> {
+        let components = wanted.row.channels().len();
+        if let Some(names) = &keys.channel {
+            if names.len() == components {
+                return Ok(names.clone());
+            }
+            return Err(format!(
+                "`channel` has {} of them, and the plane holds {}; give {components}",
+                names.len(),
+                wanted.row.holds.words()
+            ));
+        }
+        let names = wanted.channels();
+        let has = |name: &String| self.image.channel(name).is_some();
+        if kind == Kind::Exr || names.iter().all(has) {
+            return Ok(names);
+        }
+        // A PNG has no names but those of its colours, which it may have for anything.
+        let colors = ["R", "G", "B"].map(str::to_owned);
+        let [red, green, blue] = colors.each_ref().map(|name| self.image.channel(name));
+        match components {
+            3 => Ok(colors.to_vec()),
+            _ if red == green && green == blue => Ok(colors[..1].to_vec()),
+            _ => {
+                Err("the PNG is not grey; say which `channel`: \"R\", \"G\", \"B\" or \"A\"".into())
+            }
+        }
+    }
+
+    /// The numbers of these channels.
+    fn numbers(&self, names: &[String]) -> Reason<Numbers> {
+        let Image { width, height, channels, .. } = &self.image;
+        super::ask([*width, *height], names.len())?;
+        let mut components = Vec::new();
+        let mut file = None;
+        for name in names {
+            let missing = || {
+                let there: Vec<&str> = channels.iter().map(|(name, _)| name.as_str()).collect();
+                format!("no channel `{}`; there are {}", name.escape_debug(), there.join(", "))
+            };
+            let values = self.image.channel(name).ok_or_else(missing)?;
+            let format = self.formats.get(name).copied().unwrap_or(match values {
+                Values::Float(_) => Format::F32,
+                Values::Index(_) => Format::U32,
+            });
+            if *file.get_or_insert(format) != format {
+                return Err(format!("the channel `{name}` is {}, another is not", format.word()));
+            }
+            components.push(match values {
+                // Of a PNG: its codes, which `f32` had rounded.
+                Values::Float(values) if format.is_unorm() => {
+                    values.iter().map(|&v| format.nearest(v.into())).collect()
+                }
+                Values::Float(values) => values.iter().map(|&v| v.into()).collect(),
+                Values::Index(values) => values.iter().map(|&v| v.into()).collect(),
+            });
+        }
+        let file = file.unwrap_or(Format::F32);
+        Ok(Numbers { size: [*width, *height], components, file })
+    }
+}
+
+impl Numbers {
+    /// What a PNG has as the codes of colours, as whole numbers.
+    fn as_codes(&mut self) {
+        if let (true, Some(codes)) = (self.file.is_unorm(), self.file.codes()) {
+            let values = self.components.iter_mut().flatten();
+            values.for_each(|value| *value = (*value * codes).round());
+            self.file = if self.file == Format::Unorm8 { Format::U8 } else { Format::U16 };
+        }
+    }
+
+    /// The other row first.
+    pub(super) fn flip(&mut self) {
+        let width = self.size[0] as usize;
+        for component in &mut self.components {
+            *component = component.chunks(width).rev().flatten().copied().collect();
+        }
+    }
+}
+
+#[cfg(feature = "cli")]
+fn png(path: &Path) -> Result<Picture> {
+    let stored = crate::io::png::read(path)?;
+    let format = if stored.most == u16::MAX { Format::Unorm16 } else { Format::Unorm8 };
+    let names = stored.image.channels.iter().map(|(name, _)| (name.clone(), format));
+    Ok(Picture { formats: names.collect(), image: stored.image })
+}
+
+#[cfg(not(feature = "cli"))]
+fn png(path: &Path) -> Result<Picture> {
+    Err(Error::format(path, "PNG is read with the feature `cli` of this crate only"))
+}

@@ -1,0 +1,155 @@
+//! The numbers of a file: how they are stored, and what that may have lost.
+
+use crate::number::Real;
+use crate::setting::Words;
+use crate::verify::client::Storage;
+use exr::prelude::f16;
+
+/// How a number is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    F32,
+    F16,
+    Unorm8,
+    Unorm16,
+    Unorm24,
+    Snorm8,
+    Snorm16,
+    U8,
+    U16,
+    U32,
+    I32,
+}
+
+impl Words for Format {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("f32", Self::F32),
+        ("f16", Self::F16),
+        ("unorm8", Self::Unorm8),
+        ("unorm16", Self::Unorm16),
+        ("unorm24", Self::Unorm24),
+        ("snorm8", Self::Snorm8),
+        ("snorm16", Self::Snorm16),
+        ("u8", Self::U8),
+        ("u16", Self::U16),
+        ("u32", Self::U32),
+        ("i32", Self::I32),
+    ];
+}
+
+/// A unit in the last place of 1 in `f32`.
+pub(super) const F32_STEP: f64 = 1.0 / 8_388_608.0;
+/// What `f16` may lose of a number, and at the least.
+pub(super) const F16_LOSS: Loss = Loss { relative: 1.0 / 1024.0, least: 1.0 / 16_777_216.0 };
+
+/// How far off a stored number is: `relative` of itself, at least `least`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Loss {
+    pub(super) relative: f64,
+    pub(super) least: f64,
+}
+
+impl Format {
+    /// How many bytes a number has in a raw file.
+    pub(super) fn bytes(self) -> u64 {
+        match self {
+            Self::Unorm8 | Self::Snorm8 | Self::U8 => 1,
+            Self::F16 | Self::Unorm16 | Self::Snorm16 | Self::U16 => 2,
+            Self::F32 | Self::Unorm24 | Self::U32 | Self::I32 => 4,
+        }
+    }
+
+    /// The number of these bits, of which the format takes the low ones.
+    pub(super) fn number(self, bits: u32) -> f64 {
+        match self {
+            Self::F32 => f32::from_bits(bits).into(),
+            Self::F16 => f16::from_bits(bits as u16).to_f64(),
+            Self::Unorm8 => f64::from(bits as u8) / 255.0,
+            Self::Unorm16 => f64::from(bits as u16) / 65_535.0,
+            Self::Unorm24 => f64::from(bits & 0xFF_FFFF) / 16_777_215.0,
+            // Two codes are -1.
+            Self::Snorm8 => (f64::from(bits as u8 as i8) / 127.0).at_least(-1.0),
+            Self::Snorm16 => (f64::from(bits as u16 as i16) / 32_767.0).at_least(-1.0),
+            Self::U8 => f64::from(bits as u8),
+            Self::U16 => f64::from(bits as u16),
+            Self::U32 => bits.into(),
+            Self::I32 => f64::from(bits as i32),
+        }
+    }
+
+    /// The stored number that is nearest to `value`.
+    pub(super) fn nearest(self, value: f64) -> f64 {
+        match (self, self.codes()) {
+            (Self::F32, _) => f64::from(value as f32),
+            (Self::F16, _) => f16::from_f64(value).to_f64(),
+            (Self::U32, _) if (-2_147_483_648.0..0.0).contains(&value) => value + 4_294_967_296.0,
+            (_, Some(codes)) => (value * codes).round() / codes,
+            (_, None) => value,
+        }
+    }
+
+    /// The code of 1, where the codes are equal steps of a number.
+    pub(super) fn codes(self) -> Option<f64> {
+        match self {
+            Self::Unorm8 => Some(255.0),
+            Self::Unorm16 => Some(65_535.0),
+            Self::Unorm24 => Some(16_777_215.0),
+            Self::Snorm8 => Some(127.0),
+            Self::Snorm16 => Some(32_767.0),
+            _ => None,
+        }
+    }
+
+    /// Whether its numbers are whole: indices and counts.
+    pub(super) fn is_whole(self) -> bool {
+        matches!(self, Self::U8 | Self::U16 | Self::U32 | Self::I32)
+    }
+
+    pub(super) fn is_unorm(self) -> bool {
+        matches!(self, Self::Unorm8 | Self::Unorm16 | Self::Unorm24)
+    }
+
+    /// The whole number below which no two are one.
+    pub(super) fn most_whole(self) -> f64 {
+        match self {
+            Self::F16 => 2048.0,
+            Self::F32 => 16_777_216.0,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Whether numbers that passed through this format can lie in a file of another.
+    pub(super) fn fits(self, file: Self) -> bool {
+        match file {
+            _ if self == file => true,
+            Self::F32 => true,
+            Self::F16 => matches!(self, Self::Unorm8 | Self::Snorm8) || self.is_whole(),
+            Self::U8 | Self::U16 | Self::U32 | Self::I32 => self.is_unorm() || self.is_whole(),
+            Self::Unorm16 => self == Self::Unorm8,
+            _ => false,
+        }
+    }
+
+    /// The storage of numbers that are stored as they are, times `scale`.
+    pub(super) fn storage(self, scale: f64) -> Storage {
+        match (self, self.codes()) {
+            (_, Some(codes)) => Storage::Steps(scale.abs() / codes),
+            (Self::F16, _) => Storage::Half,
+            _ => Storage::Single,
+        }
+    }
+
+    /// What storing may lose of a number that is computed from another; of `f32`, which loses
+    /// nothing that counts beside the computation, as given.
+    pub(super) fn loss(self, single: Loss) -> Loss {
+        match (self, self.codes()) {
+            (_, Some(codes)) => Loss { relative: 0.0, least: 1.0 / codes },
+            (Self::F16, _) => Loss { least: F16_LOSS.least.at_least(single.least), ..F16_LOSS },
+            _ => single,
+        }
+    }
+
+    pub(super) fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|(_, format)| *format == self).map_or("", |(word, _)| word)
+    }
+}

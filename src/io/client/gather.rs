@@ -1,0 +1,255 @@
+//! From what a TOML file says to the planes of a client.
+
+use super::convert;
+use super::files::{Files, Kind, Numbers};
+use super::parse::{DepthKeys, PlaneKeys, Sidecar};
+use super::straight::straight;
+use crate::error::{Error, Result};
+use crate::frame::named::{COLOR, VECTOR, component};
+use crate::frame::{Exec, Frame, Image, Samples};
+use crate::io::Reason;
+use crate::method::{Holds, PlaneRow, Stage};
+use crate::verify::client::{Client, Storage};
+use std::path::{Path, PathBuf};
+
+/// A plane that is looked for.
+#[derive(Clone, Debug)]
+pub(super) struct Wanted {
+    /// What the TOML file calls it, as it is written there.
+    pub(super) key: String,
+    /// The name of the plane.
+    pub(super) name: String,
+    pub(super) row: &'static PlaneRow,
+    /// What is said of it, and of all depths.
+    pub(super) keys: PlaneKeys,
+    /// What is said of it alone.
+    pub(super) own_depth: DepthKeys,
+}
+
+impl Wanted {
+    fn new(key: &str, name: &str, row: &'static PlaneRow, keys: PlaneKeys, all: DepthKeys) -> Self {
+        let own_depth = keys.depth;
+        let keys = PlaneKeys { depth: own_depth.or(all), ..keys };
+        let key = if key.contains('.') { format!("\"{key}\"") } else { key.to_owned() };
+        Self { key, name: name.into(), row, keys, own_depth }
+    }
+
+    /// Whether it holds depths t.
+    pub(super) fn is_depth(&self) -> bool {
+        self.row.holds == Holds::Scalar && (self.name == "Z" || self.name.ends_with(".Z"))
+    }
+
+    /// The names that the crate has for its channels.
+    pub(super) fn channels(&self) -> Vec<String> {
+        channels(&self.name, self.row)
+    }
+}
+
+fn channels(name: &str, row: &PlaneRow) -> Vec<String> {
+    match row.holds {
+        Holds::Color => COLOR.map(|letter| component(name, letter)).to_vec(),
+        Holds::Vector => VECTOR.map(|letter| component(name, letter)).to_vec(),
+        Holds::Scalar | Holds::Index | Holds::Count => vec![name.to_owned()],
+    }
+}
+
+/// A plane that was read.
+struct Read {
+    wanted: Wanted,
+    samples: Samples<f64>,
+    storage: Storage,
+}
+
+/// The client that the file at `path` describes, of these stages.
+pub(super) fn client(
+    path: &Path,
+    sidecar: Sidecar,
+    stages: &[Stage],
+    camera: [u32; 2],
+    exec: &Exec,
+) -> Result<Client> {
+    let refused = |what: String| Error::format(path, what);
+    let mut files = Files::new(exec);
+    let mut wanted = named(&sidecar, stages).map_err(refused)?;
+    let mut unknown = Vec::new();
+    if let Some(file) = &sidecar.file {
+        if Kind::of(file) != Some(Kind::Exr) {
+            let what = "file: only an EXR has several planes; give others in [planes]";
+            return Err(Error::format(path, what));
+        }
+        let image = &files.picture(file, Kind::Exr)?.image;
+        wanted.extend(in_picture(image, &wanted, stages, sidecar.depth));
+        unknown = left(image, &wanted, file);
+    }
+    if wanted.is_empty() {
+        return Err(refused(format!("no channel is one of the planes {}", names(stages))));
+    }
+    let planes = read(path, &sidecar, wanted, camera, &mut files)?;
+    drop(files);
+    let mut client = joined(planes).map_err(|error| match error {
+        Error::Invalid(what) => Error::format(path, what),
+        other => other,
+    })?;
+    client.rounding = sidecar.rounding;
+    client.accumulator = sidecar.accumulator;
+    client.ties = sidecar.ties;
+    client.unknown = unknown;
+    Ok(client)
+}
+
+/// The planes that the TOML file names.
+fn named(sidecar: &Sidecar, stages: &[Stage]) -> Reason<Vec<Wanted>> {
+    let mut all: Vec<Wanted> = Vec::new();
+    for (key, keys) in &sidecar.planes {
+        let row_of = |name: &str| stages.iter().find_map(|stage| stage.row(name));
+        // The colours of NPY and EXR files: `RGB` of the picture, `attributes.RGB` of a stage.
+        let color = if key == "RGB" { Some("") } else { key.strip_suffix(".RGB") };
+        let color = color.and_then(|name| Some((name, row_of(name)?)));
+        let color = color.filter(|(_, row)| row.holds == Holds::Color);
+        let found = row_of(key).map(|row| (key.as_str(), row)).or(color);
+        let (name, row) = found.ok_or_else(|| {
+            let known = names(stages);
+            format!("planes: no plane is called `{}`; there are {known}", key.escape_debug())
+        })?;
+        if let Some(twin) = all.iter().find(|other| other.name == name) {
+            return Err(format!("planes: `{}` and `{key}` are one plane; remove one", twin.key));
+        }
+        all.push(Wanted::new(key, name, row, keys.clone(), sidecar.depth));
+    }
+    Ok(all)
+}
+
+/// The names of the planes of these stages, as a TOML file has them.
+fn names(stages: &[Stage]) -> String {
+    let rows = stages.iter().flat_map(|stage| stage.leaves);
+    let names = rows.map(|row| if row.name.is_empty() { "RGB" } else { row.name });
+    names.collect::<Vec<_>>().join(", ")
+}
+
+/// The other planes that a picture has by the names of the crate.
+fn in_picture(image: &Image, wanted: &[Wanted], stages: &[Stage], all: DepthKeys) -> Vec<Wanted> {
+    let mut found: Vec<Wanted> = Vec::new();
+    for row in stages.iter().flat_map(|stage| stage.leaves) {
+        for (channel, _) in &image.channels {
+            let name = match row.holds {
+                Holds::Color if channel == COLOR[0] => Some(""),
+                Holds::Color => channel.strip_suffix(".R"),
+                Holds::Vector => channel.strip_suffix(".X"),
+                Holds::Scalar | Holds::Index | Holds::Count => Some(channel.as_str()),
+            };
+            let Some(name) = name.filter(|name| row.is_called(name)) else { continue };
+            let is_new = wanted.iter().chain(&found).all(|other| other.name != name);
+            if is_new && channels(name, row).iter().all(|name| image.channel(name).is_some()) {
+                let key = if name.is_empty() { "RGB" } else { name };
+                found.push(Wanted::new(key, name, row, PlaneKeys::default(), all));
+            }
+        }
+    }
+    found
+}
+
+/// The channels of a picture that no plane takes from it.
+fn left(image: &Image, wanted: &[Wanted], file: &Path) -> Vec<String> {
+    let of_it = |wanted: &&Wanted| wanted.keys.file.as_deref().is_none_or(|of| of == file);
+    let taken = wanted
+        .iter()
+        .filter(of_it)
+        .flat_map(|wanted| wanted.keys.channel.clone().unwrap_or_else(|| wanted.channels()));
+    let taken: Vec<String> = taken.collect();
+    let names = image.channels.iter().map(|(name, _)| name);
+    names.filter(|name| !taken.contains(name)).cloned().collect()
+}
+
+/// The planes, raw ones last: others have a size of their own.
+fn read(
+    path: &Path,
+    sidecar: &Sidecar,
+    wanted: Vec<Wanted>,
+    camera: [u32; 2],
+    files: &mut Files<'_>,
+) -> Result<Vec<Read>> {
+    let mut placed = Vec::new();
+    for wanted in wanted {
+        let (file, kind) = file_of(&wanted, sidecar).map_err(|what| Error::format(path, what))?;
+        placed.push((kind, file, wanted));
+    }
+    placed.sort_by_key(|(kind, ..)| *kind == Kind::Raw);
+    let mut size = sidecar.size.map(|size| (size, "`size`".to_owned()));
+    let mut planes = Vec::new();
+    for (kind, file, wanted) in placed {
+        let raw = size.as_ref().map_or(camera, |(size, _)| *size);
+        let numbers = files.numbers(&wanted, &file, kind, raw)?;
+        let (known, of) =
+            size.get_or_insert_with(|| (numbers.size, format!("planes.{}", wanted.key)));
+        let ([w, h], [width, height]) = (numbers.size, *known);
+        if [w, h] != [width, height] {
+            return Err(Error::format(
+                path,
+                format!("planes.{}: {w} x {h} pixels, but {of} is {width} x {height}", wanted.key),
+            ));
+        }
+        planes.push(
+            turned(sidecar, wanted, kind, numbers).map_err(|what| Error::format(path, what))?,
+        );
+    }
+    Ok(planes)
+}
+
+/// Where a plane is.
+fn file_of(wanted: &Wanted, sidecar: &Sidecar) -> Reason<(PathBuf, Kind)> {
+    let key = &wanted.key;
+    let file = wanted.keys.file.as_ref().or(sidecar.file.as_ref());
+    let file = file.ok_or_else(|| {
+        format!("planes.{key}: no `file`, neither here nor for all planes; give one")
+    })?;
+    let kind = Kind::of(file).ok_or_else(|| {
+        format!("planes.{key}.file is {file:?}; give an .exr, .npy, .png, .raw or .bin")
+    })?;
+    Ok((file.clone(), kind))
+}
+
+/// The plane of these numbers.
+fn turned(sidecar: &Sidecar, wanted: Wanted, kind: Kind, mut numbers: Numbers) -> Reason<Read> {
+    if sidecar.upwards {
+        numbers.flip();
+    }
+    let (samples, storage) = convert::plane(&wanted, kind, numbers)
+        .map_err(|what| format!("planes.{}: {what}", wanted.key))?;
+    Ok(Read { wanted, samples, storage })
+}
+
+/// The client of these planes, colours divided by alpha where they were multiplied by it.
+fn joined(mut planes: Vec<Read>) -> Result<Client> {
+    let mut radii = Vec::new();
+    for i in 0..planes.len() {
+        let Read { wanted, samples, storage } = &planes[i];
+        let (true, Samples::Color(color)) = (wanted.keys.premultiplied == Some(true), samples)
+        else {
+            continue;
+        };
+        let name = component(&wanted.name, "A");
+        let alpha = planes.iter().find_map(|plane| match &plane.samples {
+            Samples::Scalar(alpha) if plane.wanted.name == name => Some((alpha, plane.storage)),
+            _ => None,
+        });
+        let alpha = alpha.ok_or_else(|| {
+            let key = &wanted.key;
+            Error::Invalid(format!("planes.{key}: `premultiplied` needs the plane `{name}`"))
+        })?;
+        super::ask([color.width(), color.height()], 3).map_err(Error::Invalid)?;
+        let (values, off) = straight((color, *storage), alpha);
+        radii.push((wanted.name.clone(), off));
+        planes[i].samples = Samples::Color(values);
+    }
+    let (width, height) = planes.first().map_or((0, 0), |plane| plane.samples.size());
+    let mut frame = Frame::new(width, height);
+    let mut storages = Vec::new();
+    for Read { wanted, samples, storage } in planes {
+        frame.push(&wanted.name, samples)?;
+        storages.push((wanted.name, storage));
+    }
+    let client = Client::new(frame);
+    let client =
+        storages.into_iter().fold(client, |client, (name, storage)| client.stored(&name, storage));
+    radii.into_iter().try_fold(client, |client, (name, off)| client.within(&name, off))
+}

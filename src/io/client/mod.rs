@@ -1,0 +1,148 @@
+//! What the author of another renderer hands to `splatref verify`: planes in files, and a TOML file
+//! that says how to read them.
+//!
+//! One EXR with the crate's channel names and types needs no TOML file: [`read`] takes it as it is, the
+//! channels that are `HALF` as [`Storage::Half`]. Anything else is one TOML file beside the files of
+//! planes, in which every key has a default; but there must be a plane. An example of everything:
+//!
+//! ```toml
+#![doc = include_str!("example.toml")]
+//! ```
+//!
+//! # The file itself
+//!
+//! | key | values, the default first | what |
+//! |---|---|---|
+//! | `file` | a path | an EXR whose channels are planes by the crate's names; a plane without a `file` of its own is looked for in it |
+//! | `profile` | `"gpu"`, `"ieee"` | what is promised of operations, [`Client::rounding`] |
+//! | `accumulator` | `"f32"`, `"f16"` | how sums are stored between two additions, [`Client::accumulator`] |
+//! | `ties` | `"lowest"`, `"last"`, `"any"` | which of equally near fragments is the nearest one, [`Client::ties`] |
+//! | `origin` | `"top-left"`, `"bottom-left"` | whether rows run down or up, in all files; nothing else is turned over: not the rows that a plane holds as numbers, nor vectors |
+//! | `size` | \[width, height\] | of raw files; without it they have that of the other planes, or that of the camera |
+//! | `[depth]` | `meaning`, `near`, `far` | of every plane of depths that does not say otherwise |
+//! | `[planes.NAME]` | the table below; a path alone is its `file` | a plane by its name in [`crate::method::planes`]; the picture is `RGB`. A name that has a dot is quoted: `[planes."visibility.Z"]`. A colour may be called `resolved` or `"resolved.RGB"` |
+//!
+//! Paths are relative to the TOML file. Keys that are not here are refused, and so are keys that mean
+//! nothing to a plane. All planes must have one size.
+//!
+//! # A plane
+//!
+//! | key | values, the default first | what |
+//! |---|---|---|
+//! | `file` | that of all planes | `.exr`, `.npy`, `.png`, `.raw` or `.bin` |
+//! | `channel` | the crate's names | a channel of an EXR or a PNG, or three: `["r", "g", "b"]`. A PNG has `R`, `G`, `B` and `A`; one number a pixel is taken from a grey one without asking |
+//! | `format` | see below | how the numbers are stored in a raw file; in others, what they passed through |
+//! | `offset`, `row_stride`, `pixel_stride` | 0, tight, tight | bytes in a raw file before the first pixel, from row to row, from pixel to pixel |
+//! | `empty` | see below | of depths and indices: the number of an empty pixel, as it is stored (rounded to what the file can hold); `nan` is any NaN |
+//! | `id_base` | 0 | of indices: the number of the first surfel |
+//! | `premultiplied` | `false`, `true` | of colours: multiplied by the plane `A` of their layer (`A` of the picture, `blended.A` of `blended`), which must be there; linear light is divided by it, and left alone where it is 0 |
+//! | `encoding` | `"linear"` (of a PNG `"srgb"`), `"srgb"` | of colours, see [`crate::io::srgb`] |
+//! | `range` | \[0, 1\] | of unorm: which numbers 0 and 1 mean; `[-1, 1]` of the components of normals. Depths must be t |
+//! | `meaning`, `near`, `far` | those of `[depth]` | of depths |
+//!
+//! A raw file is little-endian and holds one number a pixel, or three next to each other, row by row.
+//! Without `offset` and strides it must be just as long as its pixels; with one of them, long enough.
+//! [`crate::io::npy`] says which arrays are read, [`crate::io::exr`] which EXR; `io::png` how PNG is, with
+//! the feature `cli`.
+//!
+//! # Formats
+//!
+//! | format | number | may lie off by |
+//! |---|---|---|
+//! | `f32` | itself | nothing: it is what was computed |
+//! | `f16` | itself | 2^-10 of itself, at least 2^-24 |
+//! | `unorm8`, `unorm16`, `unorm24` | code / (2^n - 1); `unorm24` is the low bits of 32 | a step |
+//! | `snorm8`, `snorm16` | code / (2^(n-1) - 1), at least -1 | a step |
+//! | `u8`, `u16`, `u32`, `i32` | itself; indices and counts only | nothing |
+//!
+//! The default is what the file has: `FLOAT`, `HALF` and `UINT` of an EXR are `f32`, `f16` and `u32`;
+//! floats of an NPY are `f32`, integers `u32`, -1 as all bits set; a PNG has `unorm8` or `unorm16`, and
+//! its codes where indices or counts are wanted. A raw file has `f32`, of indices `u32`, of counts `u8`.
+//! Numbers in an integer type must say what they passed through: `unorm8`, `unorm16`, `unorm24`. A format
+//! that the file cannot hold is refused. Indices and counts may be floats that are whole, below 2^24 in
+//! `f32` and 2^11 in `f16`. A number that its format could not hold, a colour beyond 1 in unorm, is judged
+//! as it is stored.
+//!
+//! # Depths
+//!
+//! `Z` and all that ends in `.Z`, of one number a pixel. With near n and far f:
+//!
+//! | `meaning` | stored is v | `empty` | may lie off by, in v |
+//! |---|---|---|---|
+//! | `"t"` | t | +inf | as the format |
+//! | `"1/t"` | 1 / t | 0 | a step; 2^-10 v in `f16`, at least 2^-24; 2^-21 v in `f32` |
+//! | `"near/t"` | n / t | 0 | the same |
+//! | `"z-buffer"` | f (t - n) / (t (f - n)) | 1 | a step; 2^-10 in `f16`, 2^-23 in `f32` |
+//! | `"reversed-z"` | 1 less that | 0 | a step; in floats as `1/t`, of v + n / (f - n) |
+//! | `"linear"` | (t - n) / (f - n) | 1 | a step; as `f16`; in `f32` 2^-23 of the greater of n and f, in t |
+//!
+//! t is that of the crate: along the view direction, in world units. `"1/t"` in `f32` allows for the
+//! division, as exact as shading languages promise it. `far` may be `inf`, but not of `"linear"`, which
+//! is also what a depth buffer holds under an orthographic camera, and where n may lie behind f. A
+//! surface at the far end that has the number of an empty pixel is taken for one.
+//!
+//! # Indices
+//!
+//! `empty` is `0xFFFF_FFFF` if absent (-1 as `i32`), and `id_base - 1` if there is an `id_base` above 0.
+//! Other numbers must be whole and not below the base.
+//!
+//! # Colours
+//!
+//! `"srgb"` is decoded to linear light, and so is what storing may have lost: a step; 2^-10 v in `f16`;
+//! 2^-18 v in `f32`, for the power of a shading language; in floats at least 2^-18.
+
+mod convert;
+mod files;
+mod format;
+mod gather;
+mod keys;
+mod parse;
+mod raw;
+mod straight;
+#[cfg(test)]
+mod tests;
+
+use crate::error::{Error, Result};
+use crate::frame::Exec;
+use crate::io::{Reason, input};
+use crate::memory;
+use crate::method::Stage;
+use crate::verify::client::Client;
+#[cfg(doc)]
+use crate::verify::client::Storage;
+use gather::Wanted;
+use parse::Sidecar;
+use std::path::Path;
+
+/// Reads the planes of these stages that the file at `path` has or describes: an `.exr`, or a `.toml`
+/// as above; `size` is that of the camera's picture.
+///
+/// # Errors
+/// [`Error::Usage`] if the file is of another kind. [`Error::Io`] if a file cannot be read.
+/// [`Error::Format`] if one is not what it should be, if the TOML file has an unknown key, a value of
+/// the wrong type or what cannot be, and if there is no plane of these stages.
+pub fn read(path: &Path, stages: &[Stage], size: [u32; 2], exec: &Exec) -> Result<Client> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    let sidecar = match extension.as_deref() {
+        Some("exr") => Sidecar::of_picture(path),
+        Some("toml") => {
+            let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
+            let text = String::from_utf8(bytes)
+                .map_err(|_| Error::format(path, "not text; TOML is UTF-8"))?;
+            Sidecar::parse(&text, path)?
+        }
+        _ => {
+            let what = "give an .exr, or a .toml that says how to read other files";
+            return Err(Error::Usage(format!("{}: {what}", path.display())));
+        }
+    };
+    gather::client(path, sidecar, stages, size, exec)
+}
+
+/// Whether there may be planes of so many numbers in `f64`, as a file has them and as they mean it.
+fn ask([width, height]: [u32; 2], components: usize) -> Reason<()> {
+    let pixels = u64::from(width) * u64::from(height);
+    memory::try_ask(pixels.saturating_mul(16 * components as u64), || {
+        format!("a plane of {width} x {height} pixels")
+    })
+}

@@ -1,0 +1,217 @@
+//! From text to a [`Sidecar`].
+
+use super::format::Format;
+use super::keys::Keys;
+use crate::error::{Error, Result};
+use crate::io::Reason;
+use crate::setting::Words;
+use crate::verify::client::{Rounding, Storage, Ties};
+use std::path::{Path, PathBuf};
+
+/// What a TOML file says; nothing else is read yet.
+#[derive(Clone, Debug)]
+pub(super) struct Sidecar {
+    pub(super) file: Option<PathBuf>,
+    pub(super) rounding: Rounding,
+    pub(super) accumulator: Storage,
+    pub(super) ties: Ties,
+    pub(super) upwards: bool,
+    pub(super) size: Option<[u32; 2]>,
+    pub(super) depth: DepthKeys,
+    /// By the names that the file has for them.
+    pub(super) planes: Vec<(String, PlaneKeys)>,
+}
+
+/// How depths are stored.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct DepthKeys {
+    pub(super) meaning: Option<Meaning>,
+    pub(super) near: Option<f64>,
+    pub(super) far: Option<f64>,
+}
+
+/// What is said of a plane.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PlaneKeys {
+    pub(super) file: Option<PathBuf>,
+    pub(super) channel: Option<Vec<String>>,
+    pub(super) format: Option<Format>,
+    pub(super) offset: Option<u64>,
+    pub(super) row_stride: Option<u64>,
+    pub(super) pixel_stride: Option<u64>,
+    pub(super) empty: Option<f64>,
+    pub(super) id_base: Option<u32>,
+    pub(super) premultiplied: Option<bool>,
+    pub(super) encoding: Option<Encoding>,
+    pub(super) range: Option<[f64; 2]>,
+    pub(super) depth: DepthKeys,
+}
+
+/// What a number says of the depth t.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Meaning {
+    #[default]
+    T,
+    Inverse,
+    NearOver,
+    ZBuffer,
+    ReversedZ,
+    Linear,
+}
+
+impl Words for Meaning {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("t", Self::T),
+        ("1/t", Self::Inverse),
+        ("near/t", Self::NearOver),
+        ("z-buffer", Self::ZBuffer),
+        ("reversed-z", Self::ReversedZ),
+        ("linear", Self::Linear),
+    ];
+}
+
+impl Meaning {
+    pub(super) fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|(_, meaning)| *meaning == self).map_or("", |(word, _)| word)
+    }
+}
+
+/// What a number says of a colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Linear,
+    Srgb,
+}
+
+impl Words for Encoding {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("linear", Self::Linear), ("srgb", Self::Srgb)];
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Origin {
+    TopLeft,
+    BottomLeft,
+}
+
+impl Words for Origin {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("top-left", Self::TopLeft), ("bottom-left", Self::BottomLeft)];
+}
+
+#[derive(Clone, Copy)]
+enum Accumulator {
+    F32,
+    F16,
+}
+
+impl Words for Accumulator {
+    const WORDS: &'static [(&'static str, Self)] = &[("f32", Self::F32), ("f16", Self::F16)];
+}
+
+impl Sidecar {
+    /// A picture by itself.
+    pub(super) fn of_picture(path: &Path) -> Self {
+        Self {
+            file: Some(path.to_owned()),
+            rounding: Rounding::default(),
+            accumulator: Storage::Single,
+            ties: Ties::default(),
+            upwards: false,
+            size: None,
+            depth: DepthKeys::default(),
+            planes: Vec::new(),
+        }
+    }
+
+    /// What the text of the file at `path` says; files are looked for beside it.
+    pub(super) fn parse(text: &str, path: &Path) -> Result<Self> {
+        let table = text.parse::<toml::Table>().map_err(|error| {
+            let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
+            let what = error.message().trim().replace('\n', " ");
+            match line {
+                Some(line) => Error::format(path, format!("line {line}: {what}")),
+                None => Error::format(path, what),
+            }
+        })?;
+        let mut read = Self::of_keys(Keys::new(table)).map_err(|what| Error::format(path, what))?;
+        // Joining keeps a path that is absolute.
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let files = read.planes.iter_mut().map(|(_, plane)| &mut plane.file);
+        for file in files.chain([&mut read.file]).flatten() {
+            *file = folder.join(&file);
+        }
+        Ok(read)
+    }
+
+    fn of_keys(mut keys: Keys) -> Reason<Self> {
+        let mut depth = keys.table("depth")?;
+        let planes = keys.table("planes")?.tables()?.into_iter();
+        let planes = planes.map(|(name, keys)| Ok((name, PlaneKeys::of_keys(keys)?)));
+        let read = Self {
+            planes: planes.collect::<Reason<_>>()?,
+            depth: DepthKeys::of_keys(&mut depth)?,
+            file: keys.path("file")?,
+            rounding: keys.word("profile")?.unwrap_or_default(),
+            accumulator: match keys.word("accumulator")?.unwrap_or(Accumulator::F32) {
+                Accumulator::F32 => Storage::Single,
+                Accumulator::F16 => Storage::Half,
+            },
+            ties: keys.word("ties")?.unwrap_or_default(),
+            upwards: keys.word("origin")? == Some(Origin::BottomLeft),
+            size: keys.size("size")?,
+        };
+        depth.done()?;
+        keys.done()?;
+        if read.planes.is_empty() && read.file.is_none() {
+            return Err("no plane: give a `file`, or a table [planes.Z] of one".into());
+        }
+        Ok(read)
+    }
+}
+
+impl DepthKeys {
+    fn of_keys(keys: &mut Keys) -> Reason<Self> {
+        let read = Self {
+            meaning: keys.word("meaning")?,
+            near: keys.number("near")?,
+            far: keys.number("far")?,
+        };
+        for (key, value) in [("near", read.near), ("far", read.far)] {
+            if value.is_some_and(|value| !(value >= 0.0)) {
+                return Err(format!("{}{key} must be a depth, from 0", keys.prefix()));
+            }
+        }
+        Ok(read)
+    }
+
+    /// These, and where they say nothing, those.
+    pub(super) fn or(self, other: Self) -> Self {
+        Self {
+            meaning: self.meaning.or(other.meaning),
+            near: self.near.or(other.near),
+            far: self.far.or(other.far),
+        }
+    }
+}
+
+impl PlaneKeys {
+    fn of_keys(mut keys: Keys) -> Reason<Self> {
+        let read = Self {
+            file: keys.path("file")?,
+            channel: keys.names("channel")?,
+            format: keys.word("format")?,
+            offset: keys.bytes("offset")?,
+            row_stride: keys.bytes("row_stride")?,
+            pixel_stride: keys.bytes("pixel_stride")?,
+            empty: keys.number("empty")?,
+            id_base: keys.whole("id_base")?,
+            premultiplied: keys.switch("premultiplied")?,
+            encoding: keys.word("encoding")?,
+            range: keys.range("range")?,
+            depth: DepthKeys::of_keys(&mut keys)?,
+        };
+        keys.done()?;
+        Ok(read)
+    }
+}

@@ -1,0 +1,39 @@
+//! Colours that were multiplied by their alpha, divided by it.
+
+use super::format::F32_STEP;
+use crate::frame::Plane;
+use crate::number::Real;
+use crate::verify::client::Storage;
+
+/// The colours, and how far off each is.
+///
+/// Where alpha is 0 a colour stays. Off by as much as the product and alpha may be; a product of
+/// `f32` was rounded once more than a colour.
+pub(super) fn straight(
+    (colors, storage): (&Plane<[f64; 3]>, Storage),
+    (alphas, alpha_storage): (&Plane<f64>, Storage),
+) -> (Plane<[f64; 3]>, Plane<[f64; 3]>) {
+    let (width, height) = (colors.width(), colors.height());
+    let pixels = colors.values().iter().zip(alphas.values());
+    let both = |(product, &alpha): (&[f64; 3], &f64)| {
+        let value = product.map(|p| if alpha == 0.0 { p } else { p / alpha });
+        let radius = [0, 1, 2].map(|i| {
+            let product_off = storage.radius(product[i]).at_least(F32_STEP * product[i].abs());
+            let (alpha_off, least) = off(alpha, alpha_storage);
+            match (alpha == 0.0, least > 0.0) {
+                (true, _) => storage.radius(product[i]),
+                (_, true) => (product_off + value[i].abs() * alpha_off) / least,
+                (_, false) => f64::INFINITY,
+            }
+        });
+        (value, radius)
+    };
+    let (values, radii) = pixels.map(both).unzip();
+    (Plane::from_values(width, height, values), Plane::from_values(width, height, radii))
+}
+
+/// How far off an alpha is, and the least that it may be.
+fn off(alpha: f64, storage: Storage) -> (f64, f64) {
+    let radius = storage.radius(alpha);
+    (radius, alpha - radius)
+}

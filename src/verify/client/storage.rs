@@ -1,0 +1,142 @@
+//! How exactly a plane is stored.
+
+use crate::io::srgb;
+use crate::number::Real;
+
+/// How far a stored value may lie from the value that was computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Storage {
+    /// `f32`: what was computed.
+    #[default]
+    Single,
+    /// `f16`, rounded to either neighbour: 2^-10 of the value, at least 2^-24.
+    Half,
+    /// Equal steps of this size, in the unit of the plane, rounded to either neighbour: UNORM of n
+    /// bits has steps of 1 / (2^n - 1).
+    Steps(f64),
+    /// Equal steps of a depth buffer z in \[0, 1\] of a perspective camera,
+    /// `z = far (t - near) / (t (far - near))`, or of 1 - z; the plane holds t.
+    DepthBuffer {
+        /// The step of z.
+        step: f64,
+        /// The depth of z = 0.
+        near: f64,
+        /// The depth of z = 1; may be +inf.
+        far: f64,
+    },
+    /// `v = scale / t` stored in place of the depth t, each v off by `relative` of itself, at least by
+    /// `least`.
+    Inverse {
+        /// The depth of v = 1: 1 of `1/t`.
+        scale: f64,
+        /// The part of v that storing may lose.
+        relative: f64,
+        /// What storing may lose at the least.
+        least: f64,
+    },
+    /// `v = (t - near) / (far - near)` stored in place of the depth t, each v off by
+    /// `relative` of itself, at least by `least`.
+    Linear {
+        /// The depth of v = 0.
+        near: f64,
+        /// The depth of v = 1.
+        far: f64,
+        /// The part of v that storing may lose.
+        relative: f64,
+        /// What storing may lose at the least.
+        least: f64,
+    },
+    /// A colour encoded as sRGB, see [`crate::io::srgb`], each code off by `relative` of itself, at least
+    /// by `least`; the plane holds linear light.
+    Srgb {
+        /// The part of a code that storing may lose.
+        relative: f64,
+        /// What storing may lose at the least.
+        least: f64,
+    },
+}
+
+/// How far off a stored v is: `|v|` times `relative`, at least `least`.
+fn v_radius(v: f64, relative: f64, least: f64) -> f64 {
+    (v.abs() * relative).at_least(least)
+}
+
+/// How far off `scale / v` is if v is off by `radius`, at the end where that is most.
+fn inverse_radius(value: f64, scale: f64, radius: f64) -> f64 {
+    let part = radius * value.abs() / scale;
+    if part < 1.0 { value.abs() * part / (1.0 - part) } else { f64::INFINITY }
+}
+
+impl Storage {
+    /// How far from this stored value the computed one may lie, in the unit of the plane.
+    #[must_use]
+    pub fn radius(self, value: f64) -> f64 {
+        match self {
+            Self::Single => 0.0,
+            _ if !value.is_finite() => 0.0,
+            Self::Half => v_radius(value, 1.0 / 1024.0, 1.0 / 16_777_216.0),
+            Self::Steps(step) => step,
+            // z is v = scale / t but for a constant and the sign.
+            Self::DepthBuffer { step, near, far } => {
+                inverse_radius(value, 1.0 / (1.0 / near - 1.0 / far), step)
+            }
+            Self::Inverse { scale, relative, least } => {
+                inverse_radius(value, scale, v_radius(scale / value, relative, least))
+            }
+            Self::Linear { near, far, relative, least } => {
+                let range = far - near;
+                range.abs() * v_radius((value - near) / range, relative, least)
+            }
+            // Convex: the way up is the longer one.
+            Self::Srgb { relative, least } => {
+                let code = srgb::from_linear(value);
+                srgb::to_linear(code + v_radius(code, relative, least)) - value
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_format_may_lose() {
+        assert_eq!(Storage::Single.radius(0.7), 0.0);
+        // Of f16 in [1, 2) neighbours are 2^-10 apart, denormals 2^-24.
+        assert_eq!(Storage::Half.radius(1.0), 1.0 / 1024.0);
+        assert_eq!(Storage::Half.radius(1e-9), 1.0 / 16_777_216.0);
+        assert_eq!(Storage::Steps(1.0 / 255.0).radius(0.3), 1.0 / 255.0);
+        assert_eq!(Storage::Half.radius(f64::INFINITY), 0.0, "an empty pixel");
+    }
+
+    #[test]
+    fn what_is_stored_in_place_of_a_value() {
+        // v = 2 / t: t = 4 is v = 0.5, and 0.5 less an eighth of it is v = 0.4375, t = 4.571...
+        let inverse = Storage::Inverse { scale: 2.0, relative: 0.125, least: 0.0 };
+        assert!((inverse.radius(4.0) - (2.0 / 0.4375 - 4.0)).abs() < 1e-15);
+        let inverse = Storage::Inverse { scale: 2.0, relative: 0.0, least: 0.6 };
+        assert_eq!(inverse.radius(4.0), f64::INFINITY, "v may be 0");
+        // v = (3 - 1) / 4 = 0.5, and a quarter of that are 0.5 units; at the least 0.25, 1 unit.
+        let linear = |least| Storage::Linear { near: 1.0, far: 5.0, relative: 0.25, least };
+        assert_eq!((linear(0.0).radius(3.0), linear(0.25).radius(3.0)), (0.5, 1.0));
+        // The codes 188 and 189 of 8 bits are 0.50289 and 0.50888 in the tables of sRGB.
+        let srgb = Storage::Srgb { relative: 0.0, least: 1.0 / 255.0 };
+        assert!((srgb.radius(0.502_886_5) - 0.005_994).abs() < 1e-5);
+        // The straight part: a step is 1 / 12.92 of a step.
+        assert!((srgb.radius(0.001) - 1.0 / 255.0 / 12.92).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_step_of_a_depth_buffer_holds_the_depths_beside_it() {
+        let (near, far, step) = (0.5, 20.0, 1.0 / 65_535.0);
+        let z = |t: f64| far * (t - near) / (t * (far - near));
+        let t = |z: f64| far * near / (far - z * (far - near));
+        for depth in [0.5, 1.0, 3.0, 19.0] {
+            let radius = Storage::DepthBuffer { step, near, far }.radius(depth);
+            let beside = t(z(depth) + step) - depth;
+            assert!(beside <= radius * (1.0 + 1e-9) && radius < 1.01 * beside, "{depth}");
+            assert!(depth - t(z(depth) - step) <= radius);
+        }
+    }
+}

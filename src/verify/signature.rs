@@ -1,0 +1,220 @@
+//! Known mistakes, by what is wrong of a picture: what a client most probably does.
+//!
+//! Some mistakes show in what the wrong pixels have in common. For the others the client is judged
+//! again, as if a mistake were the rule: with another setting, another camera, or with its planes
+//! turned back. A mistake is named if of the wrong pixels of all stages at most one in twenty stays
+//! wrong; of several the one that leaves the fewest.
+
+use super::client::{Client, Storage, Ties};
+use super::verdict::{Judged, Verdict};
+use crate::error::Result;
+use crate::frame::Samples;
+use crate::io::srgb;
+use crate::method::{Method, Session};
+use crate::scene::Camera;
+use crate::setting::{Fields, Value};
+use crate::splat::Epsilon;
+
+/// A mistake as if it were the rule.
+struct Supposed {
+    what: String,
+    method: Method,
+    camera: Camera,
+    client: Client,
+}
+
+/// The mistake that a client most probably makes, in words; none that is known.
+///
+/// # Errors
+/// As [`Session::verify`].
+pub fn signature(
+    session: &Session<'_>,
+    camera: &Camera,
+    client: &Client,
+    verdict: &Verdict,
+) -> Result<Option<String>> {
+    let Some(wrong) = verdict.first_wrong() else { return Ok(None) };
+    if let Some(plain) = plain(wrong) {
+        return Ok(Some(plain));
+    }
+    let all: u64 = verdict.stages.iter().map(|stage| stage.wrong).sum();
+    let mut best: Option<(u64, String)> = None;
+    for Supposed { what, method, camera, client } in supposed(session, camera, client, wrong.stage)
+    {
+        let verdict = session.verify_as(&method, &camera, &client, verdict.budget)?;
+        let left: u64 = verdict.stages.iter().map(|stage| stage.wrong).sum();
+        if 20 * left <= all && best.as_ref().is_none_or(|(least, _)| left < *least) {
+            best = Some((left, what));
+        }
+    }
+    Ok(best.map(|(_, what)| what).or_else(|| common(verdict, wrong)))
+}
+
+/// What the wrong pixels of a stage plainly say.
+fn plain(wrong: &Judged) -> Option<String> {
+    let causes = &wrong.causes;
+    let all = |count: u64| count == wrong.wrong;
+    if all(causes.nan) {
+        return Some(format!("NaN in {} pixels", causes.nan));
+    }
+    if all(causes.ties) {
+        return Some("ties: of equally near surfels another is kept than the client says".into());
+    }
+    let surfel = causes.left_out.keys().next()?;
+    let one = causes.left_out.len() == 1 && wrong.wrong > 1 && all(causes.lacking());
+    one.then(|| format!("surfel {surfel} is missing"))
+}
+
+/// What the wrong pixels of a stage have in common, if no rule explains them.
+fn common(verdict: &Verdict, wrong: &Judged) -> Option<String> {
+    let causes = &wrong.causes;
+    let most = |count: u64| 20 * count >= 19 * wrong.wrong;
+    if most(causes.outside) {
+        return Some("depth and id are those of fragments that should be discarded".into());
+    }
+    // Where a surfel is left out its weight is missing too; more is wrong where shapes are.
+    let others = verdict.stages.iter().any(|stage| stage.wrong > 3 * wrong.wrong);
+    if !most(causes.lacking()) || others {
+        None
+    } else if causes.least_rim > 0.999 {
+        Some("the cut-off is too small: what lies just inside is left out".into())
+    } else if causes.least_rim > 0.6 {
+        Some("quads too small: what is left out lies near the rims of its splats".into())
+    } else {
+        Some("surfels are left out".into())
+    }
+}
+
+/// The mistakes that show in a stage first.
+fn supposed(session: &Session<'_>, camera: &Camera, client: &Client, stage: &str) -> Vec<Supposed> {
+    let method = session.method();
+    let mut all = Vec::new();
+    let mut suppose = |what: &str, method: Method, camera: Camera, client: Client| {
+        all.push(Supposed { what: what.to_owned(), method, camera, client });
+    };
+    match stage {
+        "visibility" | "projection" => {
+            for (what, dx, dy) in [
+                ("half a pixel to the right and down", 0.5, 0.5),
+                ("half a pixel to the left and up", -0.5, -0.5),
+                ("half a pixel to the right", 0.5, 0.0),
+                ("half a pixel down", 0.0, 0.5),
+            ] {
+                let moved = Camera { cx: camera.cx + dx, cy: camera.cy + dy, ..*camera };
+                suppose(what, *method, moved, client.clone());
+            }
+            suppose("rows are flipped", *method, *camera, client.flipped());
+            for (what, method) in settings(session, &VISIBILITY) {
+                suppose(&what, method, *camera, client.clone());
+            }
+            for ties in [Ties::Last, Ties::Lowest] {
+                let client = Client { ties, ..client.clone() };
+                suppose("ties are reversed", *method, *camera, client);
+            }
+            if let Some((depth, largest)) = client.depth_of_visibility() {
+                let step = Storage::Steps(2.0 * largest / 65_535.0);
+                let coarse = client.clone().stored(depth, step);
+                suppose("depth of 16 bits", *method, *camera, coarse);
+            }
+        }
+        "attributes" => {
+            for (what, method) in settings(session, &ATTRIBUTES) {
+                suppose(&what, method, *camera, client.clone());
+            }
+            let half = Client { accumulator: Storage::Half, ..client.clone() };
+            suppose("sums in half floats", *method, *camera, half);
+        }
+        "normalization" | "shading" => {
+            let decoded = client.colors(|color, _| color.map(srgb::to_linear));
+            suppose("sRGB where linear colours are meant", *method, *camera, decoded);
+            let divided = client.colors(|color, weight| color.map(|part| part / weight));
+            suppose("colours multiplied by the weight", *method, *camera, divided);
+        }
+        _ => {}
+    }
+    all
+}
+
+/// A setting that is wrong: its name, what follows from its value, and in words.
+type WrongSetting = (&'static str, fn(&Method, f32) -> Option<Value>, &'static str);
+
+const VISIBILITY: [WrongSetting; 5] = [
+    ("low_pass", |_, _| Some(Value::Number(0.0)), "the low-pass filter is missing"),
+    ("low_pass", |_, h| Some(Value::Number(2.0 * h)), "the low-pass filter is added twice"),
+    ("low_pass", |_, h| Some(Value::Number(0.5 * h)), "half of the low-pass filter is missing"),
+    ("cutoff", |_, k| Some(Value::Number(k.sqrt())), "q is compared with k, not with k^2"),
+    ("cull", switched, "culling is on where it should be off, or off where it should be on"),
+];
+
+const ATTRIBUTES: [WrongSetting; 4] = [
+    ("epsilon", |method, _| scaled(method, 0.5), "epsilon is half as wide"),
+    ("epsilon", |method, _| scaled(method, 2.0), "epsilon is twice as wide"),
+    ("epsilon", |method, _| scaled(method, 0.0), "epsilon is 0"),
+    ("epsilon", |_, _| Some(Value::Text("inf".into())), "epsilon is ignored"),
+];
+
+/// The other value of a switch.
+fn switched(method: &Method, _: f32) -> Option<Value> {
+    method.splats().map(|splats| Value::Switch(!splats.cull))
+}
+
+/// Epsilon times a factor.
+fn scaled(method: &Method, factor: f32) -> Option<Value> {
+    let text = match method.splats()?.epsilon {
+        Epsilon::World(depth) => format!("{:?}", depth * factor),
+        Epsilon::MedianRadii(count) => format!("{:?}r", count * factor),
+    };
+    Some(Value::Text(text))
+}
+
+/// The method with each of some wrong settings, as far as the method has them.
+fn settings(session: &Session<'_>, wrong: &[WrongSetting]) -> Vec<(String, Method)> {
+    let method = session.method();
+    let with = |(name, value, what): &WrongSetting| {
+        let own = method.values().into_iter().find(|(own, _)| own == name)?.1;
+        let number = match own {
+            Value::Number(number) => number,
+            _ => 0.0,
+        };
+        let mut changed = *method;
+        changed.set(name, &value(method, number)?).ok()?;
+        (changed != *method && changed.check().is_ok()).then(|| ((*what).to_owned(), changed))
+    };
+    wrong.iter().filter_map(with).collect()
+}
+
+impl Client {
+    /// The planes with their rows in the other order.
+    fn flipped(&self) -> Self {
+        let radii = self.radii.iter().map(|(name, radii)| (name.clone(), radii.flipped()));
+        let radii = radii.collect();
+        Self { radii, ..self.mapped(|_, samples| samples.flipped()) }
+    }
+
+    /// The planes with other colours of the picture, or before it of the averages; each is told the
+    /// weight at its pixel, 1 if there is none.
+    fn colors(&self, of: impl Fn([f64; 3], f64) -> [f64; 3]) -> Self {
+        let weight = ["weight", "attributes.weight"];
+        let weight = weight.iter().find_map(|name| self.frame().scalar(name).ok());
+        self.mapped(|name, samples| match samples {
+            Samples::Color(plane) if name.is_empty() || name == "resolved" => {
+                let mut plane = plane.clone();
+                for (i, color) in plane.values_mut().iter_mut().enumerate() {
+                    let weight = weight.map_or(1.0, |weight| weight.values()[i]);
+                    *color = of(*color, if weight > 0.0 { weight } else { 1.0 });
+                }
+                Samples::Color(plane)
+            }
+            other => other.clone(),
+        })
+    }
+
+    /// The depth that the visibility pass is judged by: its plane, and the greatest finite value.
+    fn depth_of_visibility(&self) -> Option<(&'static str, f64)> {
+        let name =
+            ["visibility.Z", "Z"].into_iter().find(|name| self.frame().scalar(name).is_ok())?;
+        let values = self.frame().scalar(name).ok()?.values();
+        let finite = values.iter().filter(|depth| depth.is_finite());
+        Some((name, finite.fold(0.0, |most, &depth| if depth > most { depth } else { most })))
+    }
+}
