@@ -12,6 +12,8 @@
 //!    [`PixelSample::empty`].
 //! 3. Nothing else lies in the pixel whose depth certainly is less than Z; without Z, than the depth
 //!    of the id's sample. Of an empty pixel Z is +inf.
+//! 4. No surfel comes before that of the id, as the client says of ties, which lies there at a depth
+//!    that is equal and exact in balls, or all of whose numbers are those of the id's surfel.
 //!
 //! Without ids the sample is the one that errs least, of those that nothing certainly hides.
 //!
@@ -35,6 +37,7 @@ use crate::method::judged::{Marks, PixelMarks, counted};
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Pixel, Real, Truth, Vector3};
 use crate::scene::Surfels;
+use crate::verify::client::Ties;
 use crate::verify::verdict::{Doubt, Fault, Judged};
 use planes::Says;
 use primitives::{Pieces, PossiblePiece};
@@ -184,7 +187,11 @@ impl<'a, P: Profile> AllPossible<'a, P> {
             }
             claim.judge(planes, at, &mut marks.at(pixel));
         }
-        self.each((tile, &rect), |pixel, one| claims[pixel].doubt(&one, &mut marks.at(pixel)));
+        let surfels = &self.projector.scene.surfels;
+        self.each((tile, &rect), |pixel, one| {
+            claims[pixel].doubt(&one, &mut marks.at(pixel));
+            claims[pixel].judge_tie(&one, (planes.ties, surfels), &mut marks.at(pixel));
+        });
         marks
     }
 }
@@ -338,6 +345,31 @@ impl<P: Profile> Claim<P> {
         match self.says {
             Says::Empty => Ball::INFINITY,
             _ => self.depth.unwrap_or_else(of_sample),
+        }
+    }
+
+    /// Whether a surfel is exactly as near as that of the client, and comes before it.
+    fn judge_tie(
+        &self,
+        one: &Candidate<'_, P>,
+        (ties, surfels): (Ties, &Surfels),
+        pixel: &mut PixelMarks<'_>,
+    ) {
+        let (Says::Id(found), Some((_, sample)), Candidate::Surfel(surfel)) =
+            (self.says, &self.best, one)
+        else {
+            return;
+        };
+        let (surfel, t) = (surfel.surfel, one.depth());
+        let first = match ties {
+            Ties::Lowest => surfel < found,
+            Ties::Last => surfel > found,
+            Ties::Any => false,
+        };
+        let equal = t.middle == sample.depth.middle;
+        let exact = equal && t.radius + sample.depth.radius == 0.0 && one.lies();
+        if first && (exact || surfels.are_equal(surfel, found)) {
+            pixel.found(f64::INFINITY, || Fault::Tie { surfel, found });
         }
     }
 

@@ -8,12 +8,13 @@ use crate::method::projection::{Has, PixelSample, SampleKind};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector2};
 use crate::scene::Scene;
-use crate::verify::client::{Client, Stored};
+use crate::verify::client::{Client, Stored, Ties};
 
 /// The planes of the projection, each if it is there.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::method) struct SamplePlanes<'a> {
     scene: &'a Scene,
+    pub(super) ties: Ties,
     pub(super) depth: Option<Stored<'a, f64>>,
     id: Option<Stored<'a, u32>>,
     kind: Option<Stored<'a, u8>>,
@@ -45,6 +46,7 @@ impl<'a> SamplePlanes<'a> {
         let [id, kind, depth, normal, extent, radius, left, upper, color, tangent] = &PLANES;
         Self {
             scene,
+            ties: client.ties,
             depth: client.scalar(depth),
             id: client.index(id),
             kind: client.count(kind),

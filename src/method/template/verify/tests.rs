@@ -1,9 +1,12 @@
-use crate::method::Method;
+use crate::frame::{Exec, NO_ID, Samples};
+use crate::method::projection::tests::samples_mut;
 use crate::method::template::{Falloff, LevelRule, Settings};
 use crate::method::tests::surfels;
 use crate::method::tests::verdicts::{Slip, assert_found, assert_right, assert_right_in_halves};
-use crate::scene::{Camera, Lens, Scene};
+use crate::method::{Method, Session};
+use crate::scene::{Camera, Cloud, Lens, Scene, Surfels};
 use crate::source::Shape;
+use crate::verify::client::{Client, Ties};
 
 fn camera(shape: Shape, size: [u32; 2], lens: Option<Lens>) -> Camera {
     let lens = lens.unwrap_or(shape.default_lens());
@@ -79,4 +82,33 @@ fn a_client_that_keeps_its_planes_in_halves_is_right() {
         &camera(Shape::Sphere, [37, 29], None),
         Method::Template(Settings { size: 3, ..Settings::default() }),
     );
+}
+
+/// Of surfels that are there twice the first is kept.
+#[test]
+fn the_second_of_two_equal_surfels_is_found() {
+    let once = surfels(200, 0.4, true, 1);
+    let twice = |of: &[glam::Vec3]| of.repeat(2);
+    let cloud = Cloud {
+        position: twice(once.position()),
+        normal: Some(twice(once.normal())),
+        radius: Some(once.radius().repeat(2)),
+        color: once.color().map(twice),
+        ..Cloud::default()
+    };
+    let (twins, exec) = (Surfels::new(cloud).unwrap().0, Exec::sequential());
+    let (scene, camera) = (Scene::lit("", twins), camera(Shape::Sphere, [37, 29], None));
+    let method = Method::Template(Settings::default());
+    assert_right(&scene, &camera, method);
+    let session = Session::new(&scene, method, &exec).unwrap();
+    let mut frame = session.define::<f32>(&camera, true).unwrap().frame;
+    let Samples::Index(ids) = samples_mut(&mut frame, "projection.id") else { panic!("its type") };
+    ids.values_mut().iter_mut().filter(|id| **id != NO_ID).for_each(|id| *id += 200);
+    let mut client = Client::from(&frame);
+    for (ties, right) in [(Ties::Lowest, false), (Ties::Last, true), (Ties::Any, true)] {
+        client.ties = ties;
+        let found = session.verify(&camera, &client, 1.0).unwrap();
+        assert_eq!(found.stages[0].wrong == 0, right, "{ties:?}");
+        assert!(right || found.stages[0].causes.ties > 50, "{:?}", found.stages[0].causes);
+    }
 }
