@@ -31,6 +31,19 @@ impl Rect {
         }
     }
 
+    /// The least rectangle that holds both.
+    #[must_use]
+    pub(crate) fn hull(&self, other: &Self) -> Self {
+        if self.is_empty() {
+            return *other;
+        }
+        if other.is_empty() {
+            return *self;
+        }
+        let (x0, y0) = (self.x0.min(other.x0), self.y0.min(other.y0));
+        Self { x0, y0, x1: self.x1.max(other.x1), y1: self.y1.max(other.y1) }
+    }
+
     /// How many columns there are, of a rectangle that is not empty.
     #[inline(always)]
     #[must_use]

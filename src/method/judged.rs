@@ -36,6 +36,24 @@ impl Marks {
         Self { log: Some(Vec::new()), ..Self::new(rect) }
     }
 
+    /// The marks of a whole picture as what was found of a stage.
+    pub(super) fn whole(self, stage: &'static str, planes: Vec<&'static str>) -> Judged {
+        let Rect { x1, y1, .. } = self.rect;
+        let mut causes = Causes::default();
+        self.faults.values().for_each(|fault| causes.count(fault));
+        let plane = |values| Plane::from_values(x1, y1, values);
+        let wrong = self.found.iter().filter(|(error, _)| *error > 1.0).count() as u64;
+        Judged {
+            stage,
+            planes,
+            errors: plane(self.found.iter().map(|at| at.0).collect()),
+            doubts: Plane::from_values(x1, y1, self.found.iter().map(|at| at.1).collect()),
+            wrong,
+            causes,
+            worst: self.worst,
+        }
+    }
+
     /// Everything that was checked.
     pub(super) fn checks(self, stage: &'static str) -> impl Iterator<Item = Check> {
         let log = self.log.into_iter().flatten();
@@ -43,7 +61,7 @@ impl Marks {
     }
 
     /// Nothing found yet in a whole picture.
-    pub(super) fn whole(job: &Job<'_>) -> Self {
+    pub(super) fn picture(job: &Job<'_>) -> Self {
         let [x1, y1] = job.camera.size();
         Self::new(Rect { x1, y1, ..Rect::default() })
     }
@@ -71,25 +89,6 @@ impl Marks {
             if worse {
                 self.worst = Some(own);
             }
-        }
-    }
-
-    /// What was found in a whole picture, of a stage: its name, and the planes that were judged.
-    pub(super) fn judged(self, stage: &'static str, planes: Vec<&'static str>) -> Judged {
-        let (width, height) = (self.rect.x1, self.rect.y1);
-        let errors = self.found.iter().map(|at| at.0).collect();
-        let doubts = self.found.iter().map(|at| at.1).collect();
-        let wrong = self.found.iter().filter(|at| at.0 > 1.0).count() as u64;
-        let mut causes = Causes::default();
-        self.faults.values().for_each(|fault| causes.count(fault));
-        Judged {
-            stage,
-            planes,
-            errors: Plane::from_values(width, height, errors),
-            doubts: Plane::from_values(width, height, doubts),
-            wrong,
-            causes,
-            worst: self.worst,
         }
     }
 
@@ -150,14 +149,14 @@ pub(super) fn judged<const N: usize>(
     stages: [(&'static str, Vec<&'static str>); N],
     tiles: Vec<[Marks; N]>,
 ) -> Vec<Judged> {
-    let mut all = [(); N].map(|()| Marks::whole(job));
+    let mut all = [(); N].map(|()| Marks::picture(job));
     for tile in tiles {
         for (whole, marks) in all.iter_mut().zip(tile) {
             whole.put(marks);
         }
     }
     let all = stages.into_iter().zip(all);
-    all.map(|((stage, planes), marks)| marks.judged(stage, planes)).collect()
+    all.map(|((stage, planes), marks)| marks.whole(stage, planes)).collect()
 }
 
 /// The pixels of a tile with their count, row by row.

@@ -270,6 +270,12 @@ impl<'a> Session<'a> {
         Ok(weights)
     }
 
+    /// Runs a test of the job that a picture is.
+    #[cfg(test)]
+    pub(super) fn with_job<T>(&self, camera: &Camera, test: impl FnOnce(&Job<'_>) -> T) -> T {
+        test(&self.job(camera).expect("a camera that has been checked"))
+    }
+
     fn job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {
         camera.check()?;
         Ok(Job { scene: self.scene, index: &self.index, camera, exec: self.exec })

@@ -74,6 +74,16 @@ pub enum When {
 }
 
 impl Holds {
+    /// The names that the channels of a plane called `name` have in a file.
+    #[must_use]
+    pub fn channels(self, name: &str) -> Vec<String> {
+        match self {
+            Self::Color => COLOR.map(|letter| component(name, letter)).to_vec(),
+            Self::Vector => VECTOR.map(|letter| component(name, letter)).to_vec(),
+            Self::Scalar | Self::Index | Self::Count => vec![name.to_owned()],
+        }
+    }
+
     /// The type in words.
     #[must_use]
     pub fn words(self) -> &'static str {
@@ -122,16 +132,6 @@ impl PlaneRow {
     #[must_use]
     pub fn numbered(&self, number: usize) -> String {
         numbered(self.name, number)
-    }
-
-    /// The names that the channels of the plane have in a file.
-    #[must_use]
-    pub fn channels(&self) -> Vec<String> {
-        match self.holds {
-            Holds::Color => COLOR.map(|letter| component(self.name, letter)).to_vec(),
-            Holds::Vector => VECTOR.map(|letter| component(self.name, letter)).to_vec(),
-            Holds::Scalar | Holds::Index | Holds::Count => vec![self.name.to_owned()],
-        }
     }
 
     /// A plane of this row; `number` stands for `#`.

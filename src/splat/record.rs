@@ -3,7 +3,8 @@
 //! A backend that draws these records has the projection of the reference, bit for bit, so that a
 //! difference in its picture is one of its rasterization or its compositing.
 
-use super::{Kernel, Projector, Shared, Splat, Tally, View, batch};
+use super::{Footprint, Kernel, Projector, Shared, Splat, Tally, View, batch};
+use crate::number::Vector2;
 use crate::scene::{Camera, Surfels};
 use std::mem::{offset_of, size_of};
 
@@ -115,6 +116,37 @@ impl SplatRecord {
         bytes
     }
 
+    /// The record that these bytes hold, as [`SplatRecord::to_bytes`] writes them.
+    #[must_use]
+    pub fn from_bytes(bytes: &[u8; Self::SIZE]) -> Self {
+        let words = bytes.as_chunks().0;
+        let word = |at: usize| u32::from_le_bytes(words[at]);
+        let number = |at: usize| f32::from_bits(word(at));
+        let three = |at: usize| [number(at), number(at + 1), number(at + 2)];
+        Self {
+            center: [number(0), number(1)],
+            conic: three(2),
+            plane: three(5),
+            range: [number(8), number(9)],
+            amplitude: number(10),
+            surfel: word(11),
+            bounds: [word(12), word(13), word(14), word(15)],
+            normal: three(16),
+            opacity: number(19),
+            color: three(20),
+            back: word(23),
+        }
+    }
+
+    /// The kernel on the screen.
+    #[must_use]
+    pub fn footprint(&self) -> Footprint<f32> {
+        let ([x, y], [ux, uy, vy]) = (self.center, self.conic);
+        let ([w0, wx, wy], [w_far, w_near]) = (self.plane, self.range);
+        let center = Vector2::new(x, y);
+        Footprint { center, ux, uy, vy, w0, wx, wy, w_far, w_near, amplitude: self.amplitude }
+    }
+
     /// The bits of every number.
     fn words(&self) -> [u32; Self::SIZE / 4] {
         let ([cx, cy], [ux, uy, vy]) = (self.center, self.conic);
@@ -177,10 +209,9 @@ pub fn shared_numbers(camera: &Camera, kernel: &Kernel) -> Vec<(&'static str, f3
 mod tests {
     use super::*;
     use crate::frame::Rect;
-    use crate::number::Vector2;
     use crate::scene::{Lens, Pose};
     use crate::source::Shape;
-    use crate::splat::{Footprint, Outline};
+    use crate::splat::Outline;
     use glam::Vec3;
 
     #[test]
@@ -220,6 +251,8 @@ mod tests {
             let value = if at == 18 { -value } else { value };
             assert_eq!(word(at), if is_float { value.to_bits() } else { at as u32 + 1 }, "{at}");
         }
+        assert_eq!(SplatRecord::from_bytes(&bytes), record);
+        assert_eq!(record.footprint().wy, 8.0);
     }
 
     #[test]

@@ -10,6 +10,7 @@ use crate::method::PlaneRow;
 use crate::method::stage::numbered;
 use crate::number::ball::{Ball, Profile};
 use crate::setting::Words;
+use crate::splat::record::SplatRecord;
 use std::collections::BTreeMap;
 
 /// What a client promises of its operations.
@@ -59,6 +60,9 @@ pub struct Client {
     pub ties: Ties,
     /// How the sums of the attribute pass are stored between two additions.
     pub accumulator: Storage,
+    /// The splats that the client has projected, in ascending surfel index: the stages that follow are
+    /// judged from these.
+    pub records: Option<Vec<SplatRecord>>,
     /// The channels of the file that are no planes of the method.
     pub unknown: Vec<String>,
 }
@@ -133,6 +137,7 @@ impl Client {
             rounding: Rounding::default(),
             ties: Ties::default(),
             accumulator: Storage::Single,
+            records: None,
             unknown: Vec::new(),
         }
     }

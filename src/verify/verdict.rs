@@ -64,6 +64,21 @@ pub enum Fault {
         /// What must be there.
         truth: u32,
     },
+    /// A surfel that certainly is drawn has no record.
+    NotProjected {
+        /// The surfel.
+        surfel: u32,
+    },
+    /// A surfel that certainly is not drawn has a record.
+    Projected {
+        /// The surfel.
+        surfel: u32,
+    },
+    /// Normal, opacity or colour of a record are not those of its surfel.
+    Copied {
+        /// The surfel.
+        surfel: u32,
+    },
     /// The surfel of the client has no fragment at the pixel.
     Absent {
         /// The surfel.
@@ -116,6 +131,18 @@ impl fmt::Display for Fault {
             }
             Self::Whole { channel, found, truth } => {
                 write!(f, "{channel} is {}, right is {}", whole(*found), whole(*truth))
+            }
+            Self::NotProjected { surfel } => {
+                write!(f, "surfel {surfel} is drawn, and has no record")
+            }
+            Self::Projected { surfel } => {
+                write!(f, "surfel {surfel} is not drawn, and has a record")
+            }
+            Self::Copied { surfel } => {
+                write!(
+                    f,
+                    "normal, opacity or colour of the record are not those of surfel {surfel}"
+                )
             }
             Self::Absent { surfel } => {
                 write!(f, "the id is {}, which does not reach the pixel", whole(*surfel))

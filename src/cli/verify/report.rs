@@ -217,7 +217,10 @@ impl JsonFinding {
             }
             Fault::NoSuchDepth { found, .. } => (Some(found), None, None),
             Fault::LeftOut { surfel, found, .. } => (Some(found), None, Some(surfel)),
-            Fault::Absent { surfel }
+            Fault::NotProjected { surfel }
+            | Fault::Projected { surfel }
+            | Fault::Copied { surfel }
+            | Fault::Absent { surfel }
             | Fault::Outside { surfel, .. }
             | Fault::Tie { surfel, .. } => (None, None, Some(surfel)),
         };

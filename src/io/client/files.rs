@@ -96,7 +96,7 @@ impl<'e> Files<'e> {
         size: [u32; 2],
     ) -> Result<Numbers> {
         let Wanted { keys, row, key, .. } = wanted;
-        let components = row.channels().len();
+        let components = row.holds.channels("").len();
         let refused = |what: String| Error::format(path, format!("planes.{key}: {what}"));
         match kind {
             Kind::Raw => {
@@ -137,7 +137,7 @@ impl<'e> Files<'e> {
 impl Picture {
     /// The channels of a plane.
     fn names(&self, wanted: &Wanted, keys: &PlaneKeys, kind: Kind) -> Reason<Vec<String>> {
-        let components = wanted.row.channels().len();
+        let components = wanted.channels().len();
         if let Some(names) = &keys.channel {
             if names.len() == components {
                 return Ok(names.clone());

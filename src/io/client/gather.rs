@@ -3,9 +3,10 @@
 use super::convert;
 use super::files::{Files, Kind, Numbers};
 use super::parse::{DepthKeys, PlaneKeys, Sidecar};
+use super::records;
 use super::straight::straight;
 use crate::error::{Error, Result};
-use crate::frame::named::{COLOR, VECTOR, component};
+use crate::frame::named::{COLOR, component};
 use crate::frame::{Exec, Frame, Image, Samples};
 use crate::io::Reason;
 use crate::method::{Holds, PlaneRow, Stage};
@@ -41,15 +42,7 @@ impl Wanted {
 
     /// The names that the crate has for its channels.
     pub(super) fn channels(&self) -> Vec<String> {
-        channels(&self.name, self.row)
-    }
-}
-
-fn channels(name: &str, row: &PlaneRow) -> Vec<String> {
-    match row.holds {
-        Holds::Color => COLOR.map(|letter| component(name, letter)).to_vec(),
-        Holds::Vector => VECTOR.map(|letter| component(name, letter)).to_vec(),
-        Holds::Scalar | Holds::Index | Holds::Count => vec![name.to_owned()],
+        self.row.holds.channels(&self.name)
     }
 }
 
@@ -94,6 +87,7 @@ pub(super) fn client(
     client.accumulator = sidecar.accumulator;
     client.ties = sidecar.ties;
     client.unknown = unknown;
+    client.records = sidecar.records.as_deref().map(records::read).transpose()?;
     Ok(client)
 }
 
@@ -139,7 +133,7 @@ fn in_picture(image: &Image, wanted: &[Wanted], stages: &[Stage], all: DepthKeys
             };
             let Some(name) = name.filter(|name| row.is_called(name)) else { continue };
             let is_new = wanted.iter().chain(&found).all(|other| other.name != name);
-            if is_new && channels(name, row).iter().all(|name| image.channel(name).is_some()) {
+            if is_new && row.holds.channels(name).iter().all(|name| image.channel(name).is_some()) {
                 let key = if name.is_empty() { "RGB" } else { name };
                 found.push(Wanted::new(key, name, row, PlaneKeys::default(), all));
             }

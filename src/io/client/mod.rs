@@ -18,6 +18,7 @@
 //! | `accumulator` | `"f32"`, `"f16"` | how sums are stored between two additions, [`Client::accumulator`] |
 //! | `ties` | `"lowest"`, `"last"`, `"any"` | which of equally near fragments is the nearest one, [`Client::ties`] |
 //! | `origin` | `"top-left"`, `"bottom-left"` | whether rows run down or up, in all files; nothing else is turned over: not the rows that a plane holds as numbers, nor vectors |
+//! | `records` | a path | the projected splats, [`Client::records`]: records of 96 bytes as `splatref project` writes them ([`SplatRecord`](crate::splat::record::SplatRecord)), one a surfel that is drawn, in any order |
 //! | `size` | \[width, height\] | of raw files; without it they have that of the other planes, or that of the camera |
 //! | `[depth]` | `meaning`, `near`, `far` | of every plane of depths that does not say otherwise |
 //! | `[planes.NAME]` | the table below; a path alone is its `file` | a plane by its name in [`crate::method::planes`]; the picture is `RGB`. A name that has a dot is quoted: `[planes."visibility.Z"]`. A colour may be called `resolved` or `"resolved.RGB"` |
@@ -98,6 +99,7 @@ mod gather;
 mod keys;
 mod parse;
 mod raw;
+mod records;
 mod straight;
 #[cfg(test)]
 mod tests;

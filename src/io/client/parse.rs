@@ -17,6 +17,8 @@ pub(super) struct Sidecar {
     pub(super) ties: Ties,
     pub(super) upwards: bool,
     pub(super) size: Option<[u32; 2]>,
+    /// The projected splats.
+    pub(super) records: Option<PathBuf>,
     pub(super) depth: DepthKeys,
     /// By the names that the file has for them.
     pub(super) planes: Vec<(String, PlaneKeys)>,
@@ -119,6 +121,7 @@ impl Sidecar {
             ties: Ties::default(),
             upwards: false,
             size: None,
+            records: None,
             depth: DepthKeys::default(),
             planes: Vec::new(),
         }
@@ -138,7 +141,7 @@ impl Sidecar {
         // Joining keeps a path that is absolute.
         let folder = path.parent().unwrap_or(Path::new(""));
         let files = read.planes.iter_mut().map(|(_, plane)| &mut plane.file);
-        for file in files.chain([&mut read.file]).flatten() {
+        for file in files.chain([&mut read.file, &mut read.records]).flatten() {
             *file = folder.join(&file);
         }
         Ok(read)
@@ -160,6 +163,7 @@ impl Sidecar {
             ties: keys.word("ties")?.unwrap_or_default(),
             upwards: keys.word("origin")? == Some(Origin::BottomLeft),
             size: keys.size("size")?,
+            records: keys.path("records")?,
         };
         depth.done()?;
         keys.done()?;

@@ -22,6 +22,16 @@ pub(super) type PossibleSplats<P> = Prepared<Ball<P>, PossibleSplat<P>>;
 
 /// The surfels that may be drawn.
 pub(super) fn project<P: Profile>(job: &Job<'_>, settings: &Settings) -> PossibleSplats<P> {
+    project_into(job, settings, |possible| possible, |possible| possible.splat.bounds)
+}
+
+/// The same as other records, of which `bounds` gives the pixels.
+pub(super) fn project_into<P: Profile, S: Send>(
+    job: &Job<'_>,
+    settings: &Settings,
+    record: impl Fn(PossibleSplat<P>) -> S + Sync + Send,
+    bounds: impl Fn(&S) -> Rect + Sync + Send,
+) -> Prepared<Ball<P>, S> {
     let surfels = &job.scene.surfels;
     let [x1, y1] = job.camera.size();
     let picture = Rect { x1, y1, ..Rect::default() };
@@ -35,19 +45,19 @@ pub(super) fn project<P: Profile>(job: &Job<'_>, settings: &Settings) -> Possibl
                 each_possible(projector, &disc, i as u32, |mut splat, certain| {
                     splat.bounds = splat.bounds.intersection(&picture);
                     if !splat.bounds.is_empty() {
-                        splats.push(PossibleSplat { splat, certain });
+                        splats.push(record(PossibleSplat { splat, certain }));
                     }
                 });
             }
             Tally::default()
         },
-        |possible| possible.splat.bounds,
+        bounds,
     )
 }
 
 /// What a surfel may become: one splat, two if it is not certain whether it reaches the near plane,
 /// or none; and whether that is certain.
-fn each_possible<P: Profile>(
+pub(super) fn each_possible<P: Profile>(
     projector: &Projector<Ball<P>>,
     disc: &Disc<Ball<P>>,
     surfel: u32,

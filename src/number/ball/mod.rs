@@ -142,6 +142,12 @@ impl<P: Profile> Ball<P> {
         }
     }
 
+    /// The ball of the absolute value, as a sum of the same terms.
+    #[inline(always)]
+    pub(crate) fn magnitude(self) -> Self {
+        Self { middle: self.middle.abs(), ..self }
+    }
+
     /// The least value; -inf if there is none.
     #[inline(always)]
     fn low(&self) -> f64 {

@@ -1,10 +1,11 @@
 //! The visibility pass of a client: what may be the nearest fragment, and what certainly is not.
 
 use super::handed::Handed;
+use super::swift::{SwiftSplat, SwiftSplats, each_fragment, least_nearness};
 use crate::composite::decide;
 use crate::frame::{NO_ID, Rect};
-use crate::method::ewa::possible::{PossibleSplat, PossibleSplats};
-use crate::method::fragment::{each_in_bounds, each_pixel};
+use crate::method::ewa::possible::PossibleSplat;
+use crate::method::fragment::each_pixel;
 use crate::method::judged::{Marks, PixelMarks};
 use crate::method::tiled::pixels;
 use crate::number::ball::{Profile, Three};
@@ -40,14 +41,25 @@ struct Claim<P: Profile> {
 
 /// Judges the nearest fragments of a tile, and says what later passes work with.
 pub(super) fn judge<P: Profile>(
-    splats: &PossibleSplats<P>,
+    splats: &SwiftSplats<P>,
     (handed, surfels): (&Handed<'_>, &Surfels),
     (tile, rect): (usize, &Rect),
     marks: &mut Marks,
 ) -> Vec<Nearest<P>> {
     let mut claims = claims(splats, handed, (tile, rect));
-    splats.for_each(tile, |possible| {
-        each_in_bounds(&splats.shared, &possible.splat, rect, |pixel, q, w| {
+    // What certainly is farther than the client's fragment is no question.
+    let least: Vec<f64> = claims
+        .iter()
+        .map(|claim| match handed.nothing() {
+            true => f64::NAN,
+            false => least_nearness(&splats.shared, claim.nearest.depth),
+        })
+        .collect();
+    each_fragment(
+        splats,
+        (tile, rect),
+        |pixel| least[pixel],
+        |possible, pixel, q, w| {
             let claim = &mut claims[pixel];
             let fragment = Against::new(&splats.shared, possible, q, w);
             if handed.nothing() {
@@ -56,8 +68,8 @@ pub(super) fn judge<P: Profile>(
                 fragment.judge(claim, &mut marks.at(pixel));
                 fragment.judge_tie(claim, (handed.ties, surfels), &mut marks.at(pixel));
             }
-        });
-    });
+        },
+    );
     for (pixel, claim) in claims.iter_mut().enumerate() {
         if handed.nothing() {
             claim.nearest.depth = between(claim.range);
@@ -70,7 +82,7 @@ pub(super) fn judge<P: Profile>(
 
 /// What the client says of each pixel.
 fn claims<P: Profile>(
-    splats: &PossibleSplats<P>,
+    splats: &SwiftSplats<P>,
     handed: &Handed<'_>,
     (tile, rect): (usize, &Rect),
 ) -> Vec<Claim<P>> {
@@ -91,7 +103,7 @@ fn claims<P: Profile>(
         })
         .collect();
     let shared = &splats.shared;
-    splats.for_each(tile, |PossibleSplat { splat, .. }| {
+    splats.for_each(tile, |SwiftSplat { possible: PossibleSplat { splat, .. }, .. }| {
         each_pixel(splat, rect, |pixel, at| {
             let claim = &mut claims[pixel];
             if claim.nearest.id.map_or(handed.depth.is_some(), |id| id == splat.surfel) {

@@ -2,11 +2,14 @@
 
 use crate::method::ewa::planes;
 use crate::method::resolved;
+use crate::splat::record::SplatRecord;
 use crate::verify::client::{Client, Storage, Stored, Ties};
 
 /// The planes of a client, each if it is there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Handed<'a> {
+    /// The splats, if the client has projected them.
+    pub(super) records: Option<&'a [SplatRecord]>,
     /// Depth and surfel of the nearest fragment: those of the visibility pass, else the picture's.
     pub(super) depth: Option<Stored<'a, f64>>,
     pub(super) id: Option<Stored<'a, u32>>,
@@ -39,6 +42,7 @@ impl<'a> Handed<'a> {
         let own = client.index(&planes::NEAREST_ID);
         let other = client.index(&resolved::ID);
         Self {
+            records: client.records.as_deref(),
             depth,
             id: own.or(other),
             ties: client.ties,

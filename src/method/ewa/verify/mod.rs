@@ -4,6 +4,11 @@
 //! [margin](super#the-margin). Each stage is judged from what the client has of the stage before,
 //! as it is stored; what the client has not is taken from the balls.
 //!
+//! **Projection**, if the client hands in its records: each number of a record is in its ball, normal,
+//! opacity and colour are the surfel's, and there is a record of every surfel that certainly is drawn and
+//! of none that certainly is not. A record is marked at the pixel of its centre. What follows is
+//! judged from the records, as they are stored.
+//!
 //! **Visibility**, a certificate. Z and id are those of `visibility`, else of the picture.
 //!
 //! 1. The surfel of the id has a fragment at the pixel that possibly is inside.
@@ -34,12 +39,13 @@
 mod certificate;
 mod handed;
 mod pixel;
+mod records;
 mod sums;
+mod swift;
 #[cfg(test)]
 mod tests;
 
 use super::Settings;
-use super::possible::{PossibleSplats, project};
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::algorithm::Job;
@@ -52,6 +58,7 @@ use crate::verify::verdict::{Check, Doubt, Verdict};
 use handed::Handed;
 use pixel::PixelJudge;
 use sums::Continuations;
+use swift::SwiftSplats;
 
 /// Judges the planes of a client.
 pub(super) fn verify<P: Profile>(
@@ -70,8 +77,11 @@ pub(super) fn verify<P: Profile>(
     });
     let covered = found.iter().map(|(_, covered)| covered).sum();
     let tiles = found.into_iter().map(|(marks, _)| marks).collect();
-    let stages = judged(job, handed.stages(), tiles);
+    let mut stages = judged(job, handed.stages(), tiles);
     let undecided = stages[1].doubtful(Doubt::OF_SUMS);
+    if let Some(records) = &client.records {
+        stages.insert(0, records::judge::<P>(job, settings, records));
+    }
     Verdict { stages, covered, undecided, budget }
 }
 
@@ -94,13 +104,16 @@ pub(super) fn checks<P: Profile>(
 struct Judge<'a, P: Profile> {
     surfels: &'a Surfels,
     handed: &'a Handed<'a>,
-    splats: PossibleSplats<P>,
+    splats: SwiftSplats<P>,
     pixels: PixelJudge<'a, P>,
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
     fn new(job: &Job<'a>, settings: &Settings, handed: &'a Handed<'a>) -> Self {
-        let splats = project(job, settings);
+        let splats = match handed.records {
+            Some(records) => records::project(job, settings, records),
+            None => swift::project(job, settings),
+        };
         Self { surfels: &job.scene.surfels, handed, splats, pixels: PixelJudge::new(job, handed) }
     }
 

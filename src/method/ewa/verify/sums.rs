@@ -2,11 +2,11 @@
 //! continuations of every decision that may be either way.
 
 use super::certificate::Nearest;
+use super::swift::{SwiftSplats, each_fragment, least_nearness};
 use crate::composite::decide;
 use crate::frame::Rect;
 use crate::method::ewa::attributes::Sums;
-use crate::method::ewa::possible::{PossibleSplat, PossibleSplats};
-use crate::method::fragment::each_in_bounds;
+use crate::method::ewa::possible::PossibleSplat;
 use crate::method::judged::{Marks, PixelMarks};
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Truth};
@@ -42,7 +42,7 @@ struct Part<P: Profile> {
 
 /// The sums of each pixel of a tile, given the nearest fragments.
 pub(super) fn continuations<P: Profile>(
-    splats: &PossibleSplats<P>,
+    splats: &SwiftSplats<P>,
     surfels: &Surfels,
     nearest: &[Nearest<P>],
     (tile, rect): (usize, &Rect),
@@ -90,24 +90,30 @@ impl Asked {
 
 /// Runs `take` for every fragment that is or may be in the sums, in ascending surfel index.
 fn each_part<P: Profile>(
-    splats: &PossibleSplats<P>,
+    splats: &SwiftSplats<P>,
     nearest: &[Nearest<P>],
     (tile, rect): (usize, &Rect),
     mut take: impl FnMut(usize, Part<P>, &Asked),
 ) {
     let shared = &splats.shared;
-    splats.for_each(tile, |PossibleSplat { splat, certain }| {
-        each_in_bounds(shared, splat, rect, |pixel, q, w| {
+    let limit = |pixel: usize| decide::limit(nearest[pixel].depth, splats.epsilon);
+    let least: Vec<f64> =
+        (0..nearest.len()).map(|pixel| least_nearness(shared, limit(pixel))).collect();
+    each_fragment(
+        splats,
+        (tile, rect),
+        |pixel| least[pixel],
+        |possible, pixel, q, w| {
+            let PossibleSplat { splat, certain } = possible;
             let inside = decide::inside(q, shared.limit);
             if !inside.possibly() {
                 return;
             }
-            let Nearest { depth, id } = nearest[pixel];
             // The nearest fragment always passes: it is the law of the test.
-            let visible = if id == Some(splat.surfel) {
+            let visible = if nearest[pixel].id == Some(splat.surfel) {
                 true.into()
             } else {
-                decide::visible(shared.depth(w), decide::limit(depth, splats.epsilon))
+                decide::visible(shared.depth(w), limit(pixel))
             };
             if visible.possibly() {
                 let asked = Asked { drawn: *certain, inside, visible };
@@ -116,13 +122,13 @@ fn each_part<P: Profile>(
                 let part = Part { surfel: splat.surfel, back: splat.back, weight, certain };
                 take(pixel, part, &asked);
             }
-        });
-    });
+        },
+    );
 }
 
 /// All fragments of the pixels with an undecided one, as far as they are followed.
 fn undecided_parts<P: Profile>(
-    splats: &PossibleSplats<P>,
+    splats: &SwiftSplats<P>,
     nearest: &[Nearest<P>],
     tile: (usize, &Rect),
     sums: &[(Sums<Ball<P>>, u32)],

@@ -2,12 +2,13 @@ use crate::frame::{Exec, Frame};
 use crate::method::{Method, Session};
 use crate::scene::{Camera, Lens, Scene};
 use crate::source::Shape;
+use crate::splat::record::{SplatRecord, project_records};
 use crate::splat::{Epsilon, Kernel, SplatSettings};
 use crate::verify::client::{Client, Rounding};
-use crate::verify::verdict::{Outcome, Verdict};
+use crate::verify::verdict::{Fault, Outcome, Verdict};
 
 /// Runs a test of a scene, its camera and its settings.
-fn each_scene(mut test: impl FnMut(&Session<'_>, &Camera)) {
+pub(super) fn each_scene(mut test: impl FnMut(&Session<'_>, &Camera)) {
     let exec = Exec::new(1, 16).unwrap();
     for (shape, kernel, lens, epsilon) in [
         (Shape::Sphere, Kernel::DEFAULT, None, None),
@@ -69,4 +70,66 @@ fn of_each_plane_alone_what_the_crate_renders_is_right() {
             assert_eq!(wrong, None, "{}", plane.name);
         }
     });
+}
+
+#[test]
+fn records_are_judged_and_what_follows_is_judged_from_them() {
+    each_scene(|session, camera| {
+        let Method::Ewa(settings) = *session.method() else { return };
+        let surfels = &session.scene().surfels;
+        let (records, _) = project_records(surfels, camera, &settings.kernel, settings.cull);
+        let frame = session.define::<f32>(camera, true).unwrap().frame;
+        let mut widths = [0.0; 2];
+        for rounding in [Rounding::Ieee, Rounding::Gpu] {
+            for (records, width) in [None, Some(&records)].into_iter().zip(&mut widths) {
+                let mut client = Client::from(&frame);
+                (client.rounding, client.records) = (rounding, records.cloned());
+                let verdict = session.verify(camera, &client, 1.0).unwrap();
+                assert_eq!(verdict.first_wrong().map(|stage| &stage.worst), None);
+                *width = sharpness(session, camera, &client);
+            }
+            assert!(widths[1] < 0.2 * widths[0], "{widths:?}: records make weights sharper");
+        }
+        for (bug, stage) in broken(&records) {
+            let mut client = Client::from(&frame);
+            (client.rounding, client.records) = (Rounding::Gpu, Some(bug));
+            let verdict = session.verify(camera, &client, 1.0).unwrap();
+            assert_eq!(verdict.first_wrong().map(|stage| stage.stage), Some(stage));
+        }
+    });
+}
+
+/// The mean of the relative radii of the weights of a row of pixels.
+fn sharpness(session: &Session<'_>, camera: &Camera, client: &Client) -> f64 {
+    let mut all = Vec::new();
+    for x in 0..camera.width {
+        for check in session.checks(camera, client, (x, camera.height / 2)).unwrap() {
+            if let Fault::Value { channel, truth, radius, .. } = check.fault
+                && channel == "attributes.weight"
+                && truth > 0.0
+            {
+                all.push(radius / truth);
+            }
+        }
+    }
+    assert!(all.len() > 5);
+    all.iter().sum::<f64>() / all.len() as f64
+}
+
+/// Records with one mistake each.
+fn broken(records: &[SplatRecord]) -> Vec<(Vec<SplatRecord>, &'static str)> {
+    let middle = records.len() / 2;
+    let with = |change: &dyn Fn(&mut Vec<SplatRecord>)| {
+        let mut records = records.to_vec();
+        change(&mut records);
+        (records, "projection")
+    };
+    vec![
+        with(&|records| drop(records.remove(middle))),
+        with(&|records| records[middle].center[0] += 0.01),
+        with(&|records| records[middle].amplitude = f32::NAN),
+        with(&|records| records[middle].normal[1] += 0.25),
+        with(&|records| records[middle].plane[2] *= 1.01 + 0.5),
+        with(&|records| records.push(SplatRecord { surfel: 1 << 30, ..records[middle] })),
+    ]
 }

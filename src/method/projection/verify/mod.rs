@@ -87,15 +87,15 @@ pub(in crate::method) fn judge<P: Profile>(
     snap: Snap,
     planes: &SamplePlanes<'_>,
 ) -> Judged {
-    let mut whole = Marks::whole(job);
+    let mut marks = Marks::picture(job);
     let names = planes.names();
     if !names.is_empty() {
         let possible = AllPossible::<P>::new(job, cull, snap);
         let tiles = job.grid().rects().into_iter().enumerate().collect();
         let found = job.exec.ordered(tiles, |(tile, rect)| possible.judge(planes, (tile, rect)));
-        found.into_iter().for_each(|marks| whole.put(marks));
+        found.into_iter().for_each(|part| marks.put(part));
     }
-    whole.judged("projection", names)
+    marks.whole("projection", names)
 }
 
 impl<'a, P: Profile> AllPossible<'a, P> {

@@ -69,7 +69,7 @@ impl<'a, P: Profile> Levels<'a, P> {
                 outcomes.iter().map(of).collect()
             });
         }
-        found.whole.judged("pull", found.names)
+        found.marks.whole("pull", found.names)
     }
 
     /// Judges each level of the push whose coarser one is there, and what the pull left of it.
@@ -83,19 +83,19 @@ impl<'a, P: Profile> Levels<'a, P> {
                 pushed((fine, coarse), at, level, settings, pixel)
             });
         }
-        found.whole.judged("push", found.names)
+        found.marks.whole("push", found.names)
     }
 }
 
 /// What was found of a phase.
 struct Found {
-    whole: Marks,
+    marks: Marks,
     names: Vec<&'static str>,
 }
 
 impl Found {
     fn new(job: &Job<'_>) -> Self {
-        Self { whole: Marks::whole(job), names: Vec::new() }
+        Self { marks: Marks::picture(job), names: Vec::new() }
     }
 
     /// Judges the planes of a level by all that each cell may be.
@@ -132,7 +132,7 @@ impl Found {
             }
             marks
         });
-        found.into_iter().for_each(|marks| self.whole.put(marks));
+        found.into_iter().for_each(|part| self.marks.put(part));
     }
 }
 

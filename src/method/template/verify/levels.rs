@@ -47,7 +47,7 @@ impl<'a, P: Profile> Levels<'a, P> {
 
     /// Judges each level whose finer one is there.
     pub(super) fn judge(&self) -> Judged {
-        let (mut whole, mut names) = (Marks::whole(self.job), Vec::new());
+        let (mut marks, mut names) = (Marks::picture(self.job), Vec::new());
         for (level, planes) in (1..).zip(self.planes) {
             let (Some(fine), own) = (&self.levels[level - 1], planes.names()) else { continue };
             if own.is_empty() {
@@ -65,9 +65,9 @@ impl<'a, P: Profile> Levels<'a, P> {
                 }
                 marks
             });
-            found.into_iter().for_each(|marks| whole.put(marks));
+            found.into_iter().for_each(|part| marks.put(part));
         }
-        whole.judged("propagation", names)
+        marks.whole("propagation", names)
     }
 }
 

@@ -1,0 +1,186 @@
+//! The projection of a client: its records, each number in its ball, and no surfel too many or too
+//! few. The stages that follow are judged from these records, exact as they are stored.
+
+use super::swift::{SwiftSplat, SwiftSplats};
+use crate::frame::Rect;
+use crate::method::algorithm::Job;
+use crate::method::ewa::Settings;
+use crate::method::ewa::possible::{self, PossibleSplat};
+use crate::method::judged::Marks;
+use crate::method::prepare::Prepared;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real, Truth, Vector2};
+use crate::scene::Surfels;
+use crate::splat::record::SplatRecord;
+use crate::splat::{Footprint, Projector, Splat, Tally, View, batch};
+use crate::verify::verdict::{Fault, Judged};
+
+/// The stage, and the name of what it judges.
+const STAGE: &str = "projection";
+
+/// The splats of a client's records, each in the bounds that the surfel may have.
+pub(super) fn project<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    records: &[SplatRecord],
+) -> SwiftSplats<P> {
+    let surfels = &job.scene.surfels;
+    let picture = picture(job);
+    Prepared::new(
+        job,
+        settings,
+        records.len(),
+        |projector, range, splats| {
+            for record in &records[range] {
+                let Some(disc) = disc(surfels, record) else { continue };
+                let mut bounds = Rect::default();
+                possible::each_possible(projector, &disc, record.surfel, |splat, _| {
+                    bounds = bounds.hull(&splat.bounds.intersection(&picture));
+                });
+                if !bounds.is_empty() {
+                    let footprint = record.footprint().map(Ball::from_f32);
+                    let back = (record.back != 0).into();
+                    let splat = Splat { footprint, bounds, surfel: record.surfel, back };
+                    splats.push(SwiftSplat::new(PossibleSplat { splat, certain: true }));
+                }
+            }
+            Tally::default()
+        },
+        SwiftSplat::bounds,
+    )
+}
+
+fn picture(job: &Job<'_>) -> Rect {
+    let [x1, y1] = job.camera.size();
+    Rect { x1, y1, ..Rect::default() }
+}
+
+/// The surfel of a record, if there is such a surfel.
+fn disc<P: Profile>(
+    surfels: &Surfels,
+    record: &SplatRecord,
+) -> Option<crate::splat::Disc<Ball<P>>> {
+    let i = record.surfel as usize;
+    (i < surfels.len()).then(|| batch::disc(surfels, i))
+}
+
+/// What is wrong of the records, each marked at the pixel of its centre.
+pub(super) fn judge<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    records: &[SplatRecord],
+) -> Judged {
+    let surfels = &job.scene.surfels;
+    let projector =
+        Projector::<Ball<P>>::new(View::new(job.camera), &settings.kernel, settings.cull);
+    let ranges = (0..surfels.len()).step_by(4096);
+    let ranges = ranges.map(|first| first..surfels.len().min(first + 4096)).collect();
+    let found = job.exec.ordered(ranges, |range: std::ops::Range<usize>| {
+        let of_surfel = |i: usize| {
+            let at = records.binary_search_by_key(&(i as u32), |record| record.surfel);
+            judge_surfel(&projector, surfels, i as u32, at.ok().map(|at| &records[at]))
+        };
+        range.filter_map(of_surfel).collect::<Vec<_>>()
+    });
+    let mut marks = Marks::new(picture(job));
+    for (error, at, fault) in found.into_iter().flatten() {
+        marks.at(pixel(job, at)).found(error, || fault.clone());
+    }
+    for record in records.iter().filter(|record| record.surfel as usize >= surfels.len()) {
+        let fault = Fault::Projected { surfel: record.surfel };
+        marks.at(pixel(job, record.center)).found(f64::INFINITY, || fault.clone());
+    }
+    marks.whole(STAGE, vec!["records"])
+}
+
+/// The pixel of a place, or that of the border next to it.
+fn pixel(job: &Job<'_>, place: [f32; 2]) -> usize {
+    let size = job.camera.size();
+    let [x, y] = [0, 1].map(|i| f64::from(place[i]).clamped(0.0, f64::from(size[i] - 1)) as usize);
+    y * size[0] as usize + x
+}
+
+/// By how many bounds the record of a surfel errs, where it is, and what errs most; none of a surfel
+/// that is not drawn and need not be.
+fn judge_surfel<P: Profile>(
+    projector: &Projector<Ball<P>>,
+    surfels: &Surfels,
+    surfel: u32,
+    record: Option<&SplatRecord>,
+) -> Option<(f64, [f32; 2], Fault)> {
+    let disc = batch::disc(surfels, surfel as usize);
+    let mut best: Option<(f64, Fault)> = None;
+    let mut missing = None;
+    possible::each_possible(projector, &disc, surfel, |splat, certain| {
+        let center = splat.footprint.center.map(Real::to_f32);
+        missing = certain.then_some([center.x, center.y]);
+        if let Some(record) = record {
+            let (error, fault) = worst(&splat, record, surfels);
+            if best.as_ref().is_none_or(|(least, _)| error < *least) {
+                best = Some((error, fault));
+            }
+        }
+    });
+    match (record, best) {
+        (Some(record), Some((error, fault))) => Some((error, record.center, fault)),
+        (Some(record), None) => Some((f64::INFINITY, record.center, Fault::Projected { surfel })),
+        (None, _) => missing.map(|at| (f64::INFINITY, at, Fault::NotProjected { surfel })),
+    }
+}
+
+/// The number of a record that errs most.
+fn worst<P: Profile>(
+    splat: &Splat<Ball<P>>,
+    record: &SplatRecord,
+    surfels: &Surfels,
+) -> (f64, Fault) {
+    let truth = numbers(&splat.footprint);
+    let found = numbers(&record.footprint().map(Ball::<P>::from_f32));
+    let mut worst = (-1.0, Fault::Projected { surfel: splat.surfel });
+    for ((name, truth), (_, found)) in truth.into_iter().zip(found) {
+        let error = truth.misfit(found);
+        if error > worst.0 {
+            let channel = format!("{name} of surfel {}", splat.surfel);
+            let radius = truth.radius;
+            let (found, truth) = (found.middle, truth.middle);
+            worst = (error, Fault::Value { channel, found, truth, radius });
+        }
+    }
+    let back = record.back != 0;
+    let turned = if back { splat.back.possibly() } else { !splat.back.certainly() };
+    if !turned || !same_attributes(record, surfels) {
+        let (channel, truth) = (format!("back of surfel {}", splat.surfel), u32::from(!back));
+        let copied = Fault::Copied { surfel: splat.surfel };
+        let turned = Fault::Whole { channel, found: back.into(), truth };
+        worst = (f64::INFINITY, if same_attributes(record, surfels) { turned } else { copied });
+    }
+    worst
+}
+
+/// Every number of a footprint, by its name in the record.
+fn numbers<R: Copy>(f: &Footprint<R>) -> [(&'static str, R); 11] {
+    let Vector2 { x, y } = f.center;
+    [
+        ("center.x", x),
+        ("center.y", y),
+        ("ux", f.ux),
+        ("uy", f.uy),
+        ("vy", f.vy),
+        ("w0", f.w0),
+        ("wx", f.wx),
+        ("wy", f.wy),
+        ("w_far", f.w_far),
+        ("w_near", f.w_near),
+        ("amplitude", f.amplitude),
+    ]
+}
+
+/// Whether what is copied from the surfel is the surfel's.
+fn same_attributes(record: &SplatRecord, surfels: &Surfels) -> bool {
+    let i = record.surfel as usize;
+    let normal = surfels.normal()[i].to_array();
+    let turned = if record.back != 0 { normal.map(|part| -part) } else { normal };
+    turned == record.normal
+        && surfels.opacity().is_none_or(|opacity| opacity[i] == record.opacity)
+        && surfels.color().is_none_or(|color| color[i].to_array() == record.color)
+}

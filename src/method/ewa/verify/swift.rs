@@ -1,0 +1,219 @@
+//! Most fragments are far from every limit: bounds of the radii of all fragments of a splat, by which
+//! these are told in `f64`.
+//!
+//! The radius of a sum or a product grows with the magnitudes and with the radii of its operands. So
+//! the formulas of a fragment at the greatest offset in the splat's bounds, all terms positive, have
+//! radii that no fragment of the splat exceeds.
+
+use crate::frame::Rect;
+use crate::method::algorithm::Job;
+use crate::method::ewa::Settings;
+use crate::method::ewa::possible::{self, PossibleSplat};
+use crate::method::fragment::each_pixel;
+use crate::method::prepare::Prepared;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real};
+use crate::splat::{Footprint, Shared, Splat, fragment};
+
+/// More than what the few operations round that are not in the bounds.
+const ROUNDINGS: f64 = 16.0 / 16_777_216.0;
+
+/// The splats of a picture, each with the bounds of its fragments, if it has any.
+pub(super) type SwiftSplats<P> = Prepared<Ball<P>, SwiftSplat<P>>;
+
+/// A surfel that may be drawn, and bounds of its fragments.
+#[derive(Debug)]
+pub(super) struct SwiftSplat<P: Profile> {
+    pub(super) possible: PossibleSplat<P>,
+    swift: Option<Swift>,
+}
+
+/// Midpoints of a footprint, and the greatest radii of what its fragments are made of.
+#[derive(Clone, Copy, Debug)]
+struct Swift {
+    footprint: Footprint<f64>,
+    u: f64,
+    v: f64,
+    w: f64,
+    offset: f64,
+    /// The greatest that the least nearness of the disc may be, and its greatest.
+    range: [f64; 2],
+}
+
+impl<P: Profile> SwiftSplat<P> {
+    /// A splat with the bounds of its fragments.
+    pub(super) fn new(possible: PossibleSplat<P>) -> Self {
+        let swift = Swift::new(&possible.splat);
+        Self { possible, swift }
+    }
+
+    /// The pixels that can be inside.
+    pub(super) fn bounds(&self) -> Rect {
+        self.possible.splat.bounds
+    }
+}
+
+/// Projects the surfels that may be drawn.
+pub(super) fn project<P: Profile>(job: &Job<'_>, settings: &Settings) -> SwiftSplats<P> {
+    possible::project_into(job, settings, SwiftSplat::new, SwiftSplat::bounds)
+}
+
+/// Runs `visit` for the fragments of the pixels of a rectangle in a tile that are not certainly
+/// outside, nor certainly of a nearness below `least` of their pixel.
+#[inline(always)]
+pub(super) fn each_fragment<P: Profile>(
+    splats: &SwiftSplats<P>,
+    (tile, rect): (usize, &Rect),
+    least: impl Fn(usize) -> f64,
+    mut visit: impl FnMut(&PossibleSplat<P>, usize, Ball<P>, Ball<P>),
+) {
+    let shared = &splats.shared;
+    let limit = shared.limit.middle + shared.limit.radius;
+    splats.for_each(tile, |SwiftSplat { possible, swift }| {
+        each_pixel(&possible.splat, rect, |pixel, at| {
+            let asked = swift.as_ref().is_none_or(|swift| {
+                let (q, w) = swift.fragment(shared, at);
+                !(q > limit || w < least(pixel))
+            });
+            if asked {
+                let (q, w) = fragment(shared, &possible.splat.footprint, at);
+                visit(possible, pixel, q, w);
+            }
+        });
+    });
+}
+
+/// The least nearness of which a depth may be at most this one.
+pub(super) fn least_nearness<P: Profile>(shared: &Shared<Ball<P>>, depth: Ball<P>) -> f64 {
+    let farthest = depth.middle + depth.radius;
+    // Any number that is not certain leaves nothing out: comparisons with NaN are false.
+    if !shared.perspective {
+        -farthest - farthest.abs() * ROUNDINGS
+    } else if farthest > 0.0 {
+        (1.0 - ROUNDINGS) / farthest
+    } else {
+        f64::NAN
+    }
+}
+
+impl Swift {
+    /// The bounds of a splat; none if a radius is not bounded.
+    fn new<P: Profile>(splat: &Splat<Ball<P>>) -> Option<Self> {
+        let Splat { footprint: f, bounds, .. } = splat;
+        let x = widest([bounds.x0, bounds.x1 - 1], f.center.x);
+        let y = widest([bounds.y0, bounds.y1 - 1], f.center.y);
+        let [ux, uy, vy] = [f.ux, f.uy, f.vy].map(Ball::magnitude);
+        let [w0, wx, wy] = [f.w0, f.wx, f.wy].map(Ball::magnitude);
+        let swift = Self {
+            footprint: f.map(|number| number.middle),
+            u: (ux * x + uy * y).radius,
+            v: (vy * y).radius,
+            w: ((w0 + wx * x) + wy * y).radius,
+            offset: x.radius.at_least(y.radius),
+            range: [f.w_far, f.w_near].map(|w| w.middle + w.radius),
+        };
+        let sum = swift.u + swift.v + swift.w + swift.offset + swift.range[0] + swift.range[1];
+        sum.is_finite().then_some(swift)
+    }
+
+    /// The least q of a fragment, and its greatest nearness.
+    #[inline(always)]
+    fn fragment<P: Profile>(&self, shared: &Shared<Ball<P>>, (x, y): (u32, u32)) -> (f64, f64) {
+        let f = &self.footprint;
+        let dx = f64::from(x as f32 + 0.5) - f.center.x;
+        let dy = f64::from(y as f32 + 0.5) - f.center.y;
+        let u = square((f.ux * dx + f.uy * dy).abs() - self.u);
+        let v = square((f.vy * dy).abs() - self.v);
+        let form = u + v;
+        let w = f.plane(dx, dy);
+        let q = if shared.ray_cast { self.ray_cast(shared, form, w, [dx, dy]) } else { form };
+        let [farthest, nearest] = self.range;
+        (q * (1.0 - ROUNDINGS), (w + self.w).at_least(farthest).at_most(nearest))
+    }
+
+    /// The least q of the disc by ray casting, or of the low-pass filter.
+    fn ray_cast<P: Profile>(
+        &self,
+        shared: &Shared<Ball<P>>,
+        form: f64,
+        w: f64,
+        offset: [f64; 2],
+    ) -> f64 {
+        let reach = w.abs() + self.w;
+        let disc = if shared.perspective { form / (reach * reach) } else { form };
+        if shared.low_pass.middle > 0.0 {
+            let [x, y] = offset.map(|offset| square(offset.abs() - self.offset));
+            disc.at_most((x + y) / shared.low_pass.middle)
+        } else {
+            disc
+        }
+    }
+}
+
+/// The square of a number, of one below 0 nothing.
+#[inline(always)]
+fn square(value: f64) -> f64 {
+    let value = value.at_least(0.0);
+    value * value
+}
+
+/// The greatest offset of two columns, or rows, from a centre, with the greatest radius.
+fn widest<P: Profile>(ends: [u32; 2], center: Ball<P>) -> Ball<P> {
+    let [a, b] = ends.map(|end| Ball::from_f32(end as f32 + 0.5) - center);
+    Ball::new(a.middle.abs().at_least(b.middle.abs()), a.radius.at_least(b.radius))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::composite::decide;
+    use crate::method::Method;
+    use crate::method::ewa::verify::tests::each_scene;
+    use crate::number::Truth;
+    use crate::number::ball::{Gpu, Ieee};
+
+    /// Every fragment of a scene's splats against its bounds; how many fragments, and how many the
+    /// bounds leave out.
+    fn compare<P: Profile>(job: &Job<'_>, settings: &Settings) -> [usize; 2] {
+        let splats = project::<P>(job, settings);
+        let shared = &splats.shared;
+        let mut found = [0; 2];
+        for (tile, rect) in job.grid().rects().into_iter().enumerate() {
+            splats.for_each(tile, |SwiftSplat { possible, swift }| {
+                let swift = swift.expect("the bounds of these scenes are finite");
+                let f = &possible.splat.footprint;
+                each_pixel(&possible.splat, &rect, |_, at| {
+                    let dx = Ball::from_f32(at.0 as f32 + 0.5) - f.center.x;
+                    let dy = Ball::from_f32(at.1 as f32 + 0.5) - f.center.y;
+                    assert!((f.ux * dx + f.uy * dy).radius <= swift.u);
+                    assert!((f.vy * dy).radius <= swift.v);
+                    assert!(f.plane(dx, dy).radius <= swift.w);
+                    let (q, w) = fragment(shared, f, at);
+                    let (least, most) = swift.fragment(shared, at);
+                    assert!(least <= q.middle && most >= w.middle);
+                    let limit = shared.limit.middle;
+                    if least > limit {
+                        assert!(!decide::inside(q, shared.limit).certainly());
+                    }
+                    found[0] += 1;
+                    found[1] += usize::from(least > limit);
+                });
+            });
+        }
+        found
+    }
+
+    #[test]
+    fn no_radius_exceeds_its_bound() {
+        each_scene(|session, camera| {
+            let Method::Ewa(settings) = *session.method() else { return };
+            session.with_job(camera, |job| {
+                for [all, outside] in
+                    [compare::<Ieee>(job, &settings), compare::<Gpu>(job, &settings)]
+                {
+                    assert!(all > 1000 && outside > all / 20, "{outside} of {all}");
+                }
+            });
+        });
+    }
+}

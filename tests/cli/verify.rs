@@ -1,0 +1,133 @@
+//! `splatref verify`: what a client drew, judged from the command line.
+
+use super::*;
+use splatref::frame::{Frame, Plane, Samples};
+use tempfile::TempDir;
+
+const SCENE: [&str; 5] = ["sphere", "--count", "600", "--size", "61x47"];
+
+/// A directory with `mine.exr`, every plane of [`SCENE`], and `plain.exr`, those of every picture.
+fn pictures() -> TempDir {
+    let at = TempDir::new().unwrap();
+    let render = |rest: &[&str]| succeeds(at.path(), &[&["render"], &SCENE[..], rest].concat());
+    render(&["--stages", "-o", "mine.exr"]);
+    render(&["-o", "plain.exr"]);
+    at
+}
+
+/// Exit code and what was printed, of the scene with options, without complaint.
+fn verified(at: &TempDir, client: &str, rest: &[&str]) -> (i32, String) {
+    let arguments = [&["verify"], &SCENE[..1], &[client], &SCENE[1..], rest].concat();
+    let output = splatref(at.path(), &arguments);
+    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    (output.status.code().unwrap(), String::from_utf8(output.stdout).unwrap())
+}
+
+#[test]
+fn what_render_writes_is_right() {
+    let at = pictures();
+    for promise in ["gpu", "ieee"] {
+        for client in ["mine.exr", "plain.exr"] {
+            let (code, said) = verified(&at, client, &["--promise", promise]);
+            assert_eq!(code, 0, "{said}");
+            assert!(said.lines().last().unwrap().starts_with("right: of "), "{said}");
+            assert!(said.lines().count() <= 10, "{said}");
+        }
+    }
+}
+
+#[test]
+fn a_wrong_setting_is_found_and_named() {
+    let at = pictures();
+    for (option, value, stage, likely) in [
+        ("--low-pass", "0.5", "visibility", "half of the low-pass filter is missing"),
+        ("--epsilon", "1r", "attributes", "epsilon is twice as wide"),
+        ("--cutoff", "2.5", "visibility", ""),
+    ] {
+        let (code, said) = verified(&at, "plain.exr", &[option, value]);
+        assert_eq!(code, 1, "{said}");
+        let line = |label: &str| said.lines().find(|line| line.starts_with(label));
+        assert!(line("worst").unwrap().contains(stage), "{said}");
+        assert_eq!(line("looks like").unwrap_or("").contains(likely), true, "{said}");
+        // The replay is a command that works and shows the wrong value.
+        let replay = line("replay").unwrap().split_whitespace().skip(2);
+        let replay: Vec<&str> = replay.collect();
+        let shown = succeeds(at.path(), &replay);
+        assert!(shown.contains(&format!("{stage:<14} WRONG")), "{shown}");
+    }
+}
+
+#[test]
+fn the_errors_are_written_as_json_and_exr() {
+    let at = pictures();
+    let files = ["--epsilon", "1r", "-o", "errors.exr", "--json", "verdict.json"];
+    assert_eq!(verified(&at, "plain.exr", &files).0, 1);
+    let json = fs::read_to_string(at.path().join("verdict.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((&json["outcome"], &json["first_wrong"]), (&"wrong".into(), &"attributes".into()));
+    let wrong = json["stages"][1]["wrong"].as_u64().unwrap();
+    let errors = exr::read(&at.path().join("errors.exr")).unwrap();
+    let beyond = floats(&errors, "attributes.error").into_iter().filter(|error| *error > 1.0);
+    assert!(wrong > 0 && beyond.count() as u64 == wrong);
+    assert!(floats(&errors, "visibility.error").into_iter().all(|error| error <= 1.0));
+}
+
+#[test]
+fn what_is_undecided_beyond_the_budget_is_undecidable() {
+    let at = TempDir::new().unwrap();
+    let scene = ["sheets", "--count", "400", "--size", "61x47", "--epsilon", "0"];
+    succeeds(at.path(), &[&["render"], &scene[..], &["-o", "sheets.exr"]].concat());
+    let budget = |share: &str| {
+        let verify = [&["verify"], &scene[..1], &["sheets.exr"], &scene[1..], &["--budget", share]];
+        splatref(at.path(), &verify.concat())
+    };
+    let said = String::from_utf8(budget("0").stdout).unwrap();
+    assert_eq!(budget("0").status.code(), Some(3), "{said}");
+    assert!(said.contains("undecidable: the sums of "), "{said}");
+    assert_eq!(budget("1").status.code(), Some(0));
+}
+
+#[test]
+fn a_client_is_described_in_a_file_beside_its_planes() {
+    let at = pictures();
+    // The depths as a depth buffer holds them, upside down.
+    let image = exr::read(&at.path().join("plain.exr")).unwrap();
+    let (width, height) = (image.width as usize, image.height as usize);
+    let depth = floats(&image, "Z");
+    let (near, far) = (0.5_f64, 20.0_f64);
+    let z = |t: f32| match f64::from(t) {
+        t if t.is_finite() => far * (t - near) / (t * (far - near)),
+        _ => 1.0,
+    };
+    let rows = (0..height).rev().flat_map(|y| depth[y * width..][..width].to_vec());
+    let bytes: Vec<u8> = rows.flat_map(|t| (z(t) as f32).to_le_bytes()).collect();
+    fs::write(at.path().join("depth.raw"), bytes).unwrap();
+    let toml = "origin = \"bottom-left\"\n[planes.Z]\nfile = \"depth.raw\"\nmeaning = \"z-buffer\"\n\
+                near = 0.5\nfar = 20\n";
+    fs::write(at.path().join("mine.toml"), toml).unwrap();
+    let (code, said) = verified(&at, "mine.toml", &[]);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("hand in the planes of the stage attributes"), "{said}");
+    fs::write(at.path().join("mine.toml"), toml.replace("bottom-left", "top-left")).unwrap();
+    let (code, said) = verified(&at, "mine.toml", &[]);
+    assert!(code == 1 && said.contains("rows are flipped"), "{said}");
+}
+
+#[test]
+fn what_cannot_be_judged_is_no_verdict() {
+    let at = pictures();
+    let refused = |rest: &[&str]| fails(at.path(), &[&["verify"], rest].concat(), 2);
+    assert!(refused(&["sphere", "nothere.exr"]).contains("nothere.exr"));
+    fs::write(at.path().join("broken.exr"), b"no picture").unwrap();
+    assert!(refused(&["sphere", "broken.exr"]).contains("broken.exr"));
+    assert!(refused(&["sphere", "plain.exr"]).contains("61 x 47"), "another size");
+    assert!(refused(&["nothere.ply", "plain.exr"]).contains("nothere.ply"));
+    let own = [&SCENE[..1], &["plain.exr"], &SCENE[1..], &["-o", "plain.exr"]].concat();
+    assert!(refused(&own).contains("is what is read"));
+    let strange =
+        Frame::new(61, 47).with("stranger", Samples::Scalar(Plane::filled(61, 47, 1.0))).unwrap();
+    exr::write(&at.path().join("strange.exr"), &strange, "").unwrap();
+    let strange = [&SCENE[..1], &["strange.exr"], &SCENE[1..]].concat();
+    assert!(refused(&strange).contains("strange"));
+    assert!(refused(&["sphere", "plain.exr", "--budget", "2"]).contains("a share from 0 to 1"));
+}
