@@ -7,6 +7,7 @@ pub use storage::Storage;
 use crate::error::{Error, Result};
 use crate::frame::{Frame, NamedPlane, Plane, Samples};
 use crate::method::PlaneRow;
+use crate::method::stage::numbered;
 use crate::number::ball::{Ball, Profile};
 use crate::setting::Words;
 use crate::splat::record::SplatRecord;
@@ -69,11 +70,21 @@ pub struct Client {
 /// A plane of a client.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stored<'a, T> {
+    /// The name of the row.
     pub(crate) name: &'static str,
+    /// What stands for `#` in it.
+    pub(crate) number: usize,
     pub(crate) plane: &'a Plane<T>,
     pub(crate) storage: Storage,
     /// How far each number may be off, in place of what the storage says.
-    radii: Option<&'a Plane<[f64; 3]>>,
+    pub(crate) radii: Option<&'a Plane<[f64; 3]>>,
+}
+
+impl<T> Stored<'_, T> {
+    /// The name of the plane.
+    pub(crate) fn channel(&self) -> String {
+        numbered(self.name, self.number)
+    }
 }
 
 impl Stored<'_, f64> {
@@ -187,46 +198,63 @@ impl Client {
 
     /// One number a pixel, if the plane was handed in.
     pub(crate) fn scalar(&self, row: &PlaneRow) -> Option<Stored<'_, f64>> {
-        match self.samples(row)? {
-            Samples::Scalar(plane) => Some(self.of(row, plane)),
+        self.scalar_of(row, 0)
+    }
+
+    /// The same of a row that has numbers.
+    pub(crate) fn scalar_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, f64>> {
+        match self.samples(row, number)? {
+            Samples::Scalar(plane) => Some(self.of(row, number, plane)),
             _ => None,
         }
     }
 
     /// Colours or vectors, if the plane was handed in.
     pub(crate) fn triple(&self, row: &PlaneRow) -> Option<Stored<'_, [f64; 3]>> {
-        match self.samples(row)? {
-            Samples::Color(plane) | Samples::Vector(plane) => Some(self.of(row, plane)),
+        self.triple_of(row, 0)
+    }
+
+    /// The same of a row that has numbers.
+    pub(crate) fn triple_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, [f64; 3]>> {
+        match self.samples(row, number)? {
+            Samples::Color(plane) | Samples::Vector(plane) => Some(self.of(row, number, plane)),
             _ => None,
         }
     }
 
     /// Indices, if the plane was handed in.
     pub(crate) fn index(&self, row: &PlaneRow) -> Option<Stored<'_, u32>> {
-        match self.samples(row)? {
-            Samples::Index(plane) => Some(self.of(row, plane)),
+        self.index_of(row, 0)
+    }
+
+    /// The same of a row that has numbers.
+    pub(crate) fn index_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, u32>> {
+        match self.samples(row, number)? {
+            Samples::Index(plane) => Some(self.of(row, number, plane)),
             _ => None,
         }
     }
 
     /// Small counts, if the plane was handed in.
     pub(crate) fn count(&self, row: &PlaneRow) -> Option<Stored<'_, u8>> {
-        match self.samples(row)? {
-            Samples::Count(plane) => Some(self.of(row, plane)),
+        self.count_of(row, 0)
+    }
+
+    /// The same of a row that has numbers.
+    pub(crate) fn count_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, u8>> {
+        match self.samples(row, number)? {
+            Samples::Count(plane) => Some(self.of(row, number, plane)),
             _ => None,
         }
     }
 
-    fn samples(&self, row: &PlaneRow) -> Option<&Samples<f64>> {
-        self.frame.plane(row.name)
+    fn samples(&self, row: &PlaneRow, number: usize) -> Option<&Samples<f64>> {
+        self.frame.plane(&row.numbered(number))
     }
 
-    fn of<'a, T>(&'a self, row: &PlaneRow, plane: &'a Plane<T>) -> Stored<'a, T> {
-        Stored {
-            name: row.name,
-            plane,
-            storage: self.storage(row.name),
-            radii: self.radii(row.name),
-        }
+    fn of<'a, T>(&'a self, row: &PlaneRow, number: usize, plane: &'a Plane<T>) -> Stored<'a, T> {
+        let (name, channel) = (row.name, row.numbered(number));
+        let (storage, radii) = (self.storage(&channel), self.radii(&channel));
+        Stored { name, number, plane, storage, radii }
     }
 }

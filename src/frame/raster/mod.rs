@@ -62,6 +62,11 @@ impl Snap {
         Ok(Self { bits })
     }
 
+    /// The positions of a pixel, in each direction: 2^bits.
+    pub(crate) fn scale(&self) -> u32 {
+        1 << self.bits
+    }
+
     /// A pixel coordinate in fixed point: the nearest, of two the greater.
     ///
     /// ```text
@@ -73,7 +78,7 @@ impl Snap {
     #[inline]
     pub fn fixed<R: Exact>(&self, x: R) -> i64 {
         let guard = R::from_f32(GUARD_BAND as f32);
-        let scaled = x.at_least(-guard).at_most(guard) * R::from_f32((1_u32 << self.bits) as f32);
+        let scaled = x.at_least(-guard).at_most(guard) * R::from_f32(self.scale() as f32);
         let below = scaled.floor();
         below.to_i64() + i64::from(scaled - below >= R::from_f32(0.5))
     }

@@ -35,7 +35,7 @@ use super::surfels::{PlacedPoint, PointProjector};
 use super::{PixelSample, SampleKind, SceneProjector};
 use crate::frame::Rect;
 use crate::frame::raster::{Line, Triangle};
-use crate::number::{Exact, Vector2, Vector3};
+use crate::number::{Exact, Real, Vector2, Vector3};
 use crate::scene::Vertices;
 use crate::scene::indexed::Indexed;
 use crate::splat::clip::Clipped;
@@ -45,8 +45,8 @@ use crate::splat::ellipse;
 #[derive(Debug)]
 pub(super) struct Piece<R> {
     pub(super) bounds: Rect,
-    kind: SampleKind,
-    id: u32,
+    pub(super) kind: SampleKind,
+    pub(super) id: u32,
     /// The primitive in its list.
     index: usize,
     back: bool,
@@ -93,7 +93,7 @@ pub(super) fn pieces<R: Exact>(
 }
 
 /// The corners of a primitive in view space.
-fn corners<R: Exact, const N: usize>(
+pub(super) fn corners<R: Real, const N: usize>(
     of: &Indexed<N>,
     points: &PointProjector<R>,
     index: usize,
@@ -117,22 +117,30 @@ fn triangle<R: Exact>(
 ) {
     let p = corners(of, &projector.points, index);
     let polygon: Vec<Clipped<R, 3>> = projector.clip.triangle(p);
-    let [width, height] = projector.size;
     for i in 2..polygon.len() {
         let fan = [&polygon[0], &polygon[i - 1], &polygon[i]];
         let ends = fan.map(|corner| placed(projector, corner.position));
-        let Some(raster) = Triangle::new(&projector.snap, ends.map(|(place, _)| place)) else {
-            continue;
-        };
-        let bounds = raster.bounds(width, height);
-        let back = !raster.front();
-        if bounds.is_empty() || (projector.points.cull && back) {
-            continue;
-        }
-        let (m, weights) = (ends.map(|(_, m)| m), fan.map(|corner| corner.weights));
-        let raster = Raster::Triangle(raster);
-        draw(Piece { bounds, kind: SampleKind::Polygon, id, index, back, raster, m, weights, p });
+        let weights = fan.map(|corner| corner.weights);
+        triangle_piece(projector, (id, index), ends, weights, p).into_iter().for_each(&mut draw);
     }
+}
+
+/// The piece of a triangle whose corners are snapped, each with its m, if it may be seen.
+pub(super) fn triangle_piece<R: Real>(
+    projector: &SceneProjector<'_, R>,
+    (id, index): (u32, usize),
+    ends: [([i64; 2], R); 3],
+    weights: [[R; 3]; 3],
+    p: [Vector3<R>; 3],
+) -> Option<Piece<R>> {
+    let raster = Triangle::new(&projector.snap, ends.map(|(place, _)| place))?;
+    let [width, height] = projector.size;
+    let (bounds, back) = (raster.bounds(width, height), !raster.front());
+    if bounds.is_empty() || (projector.points.cull && back) {
+        return None;
+    }
+    let (m, raster) = (ends.map(|(_, m)| m), Raster::Triangle(raster));
+    Some(Piece { bounds, kind: SampleKind::Polygon, id, index, back, raster, m, weights, p })
 }
 
 fn line<R: Exact>(
@@ -141,20 +149,29 @@ fn line<R: Exact>(
     projector: &SceneProjector<'_, R>,
     id: u32,
     index: usize,
-    mut draw: impl FnMut(Piece<R>),
+    draw: impl FnMut(Piece<R>),
 ) {
     let p = corners(of, &projector.points, index);
     let Some([a, b]) = projector.clip.segment(p) else { return };
-    let ((from, from_m), (to, to_m)) =
-        (placed(projector, a.position), placed(projector, b.position));
+    let ends = [a, b].map(|end| placed(projector, end.position));
+    let weights = [a.weights, b.weights];
+    line_piece(projector, kind, (id, index), ends, weights, p).into_iter().for_each(draw);
+}
+
+/// The piece of a ribbon or a tube whose ends are snapped, each with its m, if it may be seen.
+pub(super) fn line_piece<R: Real>(
+    projector: &SceneProjector<'_, R>,
+    kind: SampleKind,
+    (id, index): (u32, usize),
+    [(from, from_m), (to, to_m)]: [([i64; 2], R); 2],
+    weights: [[R; 2]; 2],
+    p: [Vector3<R>; 2],
+) -> Option<Piece<R>> {
     let raster = Line::new(&projector.snap, from, to);
     let [width, height] = projector.size;
     let bounds = raster.bounds(width, height);
-    if bounds.is_empty() {
-        return;
-    }
-    let weights = [a.weights, b.weights].map(|[a, b]| [a, b, R::ZERO]);
-    draw(Piece {
+    let weights = weights.map(|[a, b]| [a, b, R::ZERO]);
+    (!bounds.is_empty()).then_some(Piece {
         bounds,
         kind,
         id,
@@ -164,10 +181,10 @@ fn line<R: Exact>(
         m: [from_m, to_m, R::ZERO],
         weights: [weights[0], weights[1], [R::ZERO; 3]],
         p: [p[0], p[1], Vector3::ZERO],
-    });
+    })
 }
 
-impl<R: Exact> Piece<R> {
+impl<R: Real> Piece<R> {
     /// Calls `visit` for every pixel of a rectangle that the piece covers.
     pub(super) fn for_each(&self, rect: &Rect, mut visit: impl FnMut(PiecePixel<R>)) {
         let rect = rect.intersection(&self.bounds);
@@ -215,8 +232,9 @@ impl<R: Exact> Piece<R> {
         let (normal, tangent) = match self.kind {
             SampleKind::Tube if points.view.perspective => ((-p).normalized(), direction),
             SampleKind::Tube => (Vector3::new(R::ZERO, R::ZERO, R::ONE), direction),
-            SampleKind::Ribbon if points.facing(&placed, direction) > R::ZERO => {
-                (-direction, Vector3::ZERO)
+            SampleKind::Ribbon => {
+                let away = points.facing(&placed, direction).gt(R::ZERO);
+                (direction.map(|part| R::select(away, -part, part)), Vector3::ZERO)
             }
             _ if self.back => (-direction, Vector3::ZERO),
             _ => (direction, Vector3::ZERO),
@@ -238,7 +256,7 @@ impl<R: Exact> Piece<R> {
 }
 
 /// Direction, radius and colour of a primitive where its corners have the weights c.
-fn attributes<R: Exact, const N: usize>(
+fn attributes<R: Real, const N: usize>(
     of: &Indexed<N>,
     index: usize,
     c: [R; 3],
@@ -251,9 +269,10 @@ fn attributes<R: Exact, const N: usize>(
     let sum =
         |a: &dyn Fn(usize) -> R| (c[0] * a(corner(0)) + c[1] * a(corner(1))) + c[2] * a(corner(2));
     let vector = |of: &[glam::Vec3]| [0, 1, 2].map(|axis| sum(&|i| R::from_f32(of[i][axis])));
-    let mut a = [0, 1, 2].map(|k| Vector3::from_glam(direction[corner(k)]));
-    if kind == SampleKind::Tube && a[0].dot(a[1]) < R::ZERO {
-        a[1] = -a[1];
+    let mut a: [Vector3<R>; 3] = [0, 1, 2].map(|k| Vector3::from_glam(direction[corner(k)]));
+    if kind == SampleKind::Tube {
+        let opposite = a[0].dot(a[1]).lt(R::ZERO);
+        a[1] = a[1].map(|part| R::select(opposite, -part, part));
     }
     let direction = (a[0] * c[0] + a[1] * c[1]) + a[2] * c[2];
     let radius = sum(&|i| R::from_f32(radius[i])).at_least(R::ZERO);

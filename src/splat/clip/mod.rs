@@ -51,7 +51,7 @@ mod tests;
 
 use super::View;
 use crate::frame::raster::GUARD_BAND;
-use crate::number::{Exact, Vector3};
+use crate::number::{Exact, Real, Vector3};
 
 /// What a view keeps of a triangle or a segment.
 #[derive(Clone, Debug)]
@@ -86,7 +86,7 @@ pub struct Clipped<R, const N: usize> {
     pub weights: [R; N],
 }
 
-impl<R: Exact> ClipPlane<R> {
+impl<R: Real> ClipPlane<R> {
     fn distance(&self, p: &Vector3<R>) -> R {
         let coordinate = match self.axis {
             Axis::X => p.x,
@@ -107,7 +107,7 @@ impl<R: Exact> ClipPlane<R> {
     }
 }
 
-impl<R: Exact> Clip<R> {
+impl<R: Real> Clip<R> {
     /// The planes of a camera.
     #[must_use]
     pub fn new(view: &View<R>) -> Self {
@@ -126,6 +126,28 @@ impl<R: Exact> Clip<R> {
         Self { planes, near: view.near }
     }
 
+    /// Whether all corners are inside, so that nothing is cut.
+    #[must_use]
+    pub fn keeps(&self, corners: &[Vector3<R>]) -> R::Truth {
+        let yes = R::Truth::from(true);
+        let inside = |p: &Vector3<R>| {
+            self.planes.iter().fold(yes, |all, plane| all & plane.distance(p).ge(R::ZERO))
+        };
+        corners.iter().fold(yes, |all, p| all & inside(p))
+    }
+
+    /// Whether all corners are beyond one of the planes, so that nothing is left.
+    #[must_use]
+    pub fn drops(&self, corners: &[Vector3<R>]) -> R::Truth {
+        let beyond = |plane: &ClipPlane<R>| {
+            let outside = |p| plane.distance(p).lt(R::ZERO);
+            corners.iter().fold(R::Truth::from(true), |all, p| all & outside(p))
+        };
+        self.planes.iter().fold(R::Truth::from(false), |any, plane| any | beyond(plane))
+    }
+}
+
+impl<R: Exact> Clip<R> {
     /// What is left of a triangle: the corners of a convex polygon in the order of the triangle, to
     /// be drawn as a fan around the first; none, or 3 to 8. At each plane the crossing of the edge
     /// that ends at a corner comes before that corner, beginning with the edge that ends at the
@@ -183,11 +205,6 @@ impl<R: Exact> Clip<R> {
         Some(polygon)
     }
 
-    /// Whether all corners are inside.
-    fn keeps(&self, corners: &[Vector3<R>]) -> bool {
-        corners.iter().all(|p| self.planes.iter().all(|plane| plane.distance(p) >= R::ZERO))
-    }
-
     /// Where a plane cuts between a vertex inside and one outside, each with its distance; `None`
     /// if that is not finite.
     fn cut<const N: usize>(
@@ -205,8 +222,8 @@ impl<R: Exact> Clip<R> {
     }
 }
 
-/// The corners as they are.
-fn whole<R: Exact, const N: usize>(corners: [Vector3<R>; N]) -> [Clipped<R, N>; N] {
+/// The corners as they are, each with its own weight.
+pub(crate) fn whole<R: Real, const N: usize>(corners: [Vector3<R>; N]) -> [Clipped<R, N>; N] {
     std::array::from_fn(|i| {
         let weights = std::array::from_fn(|k| if k == i { R::ONE } else { R::ZERO });
         Clipped { position: corners[i], weights }

@@ -1,0 +1,391 @@
+//! What a right implementation may leave of the projection: a certificate for each pixel.
+//!
+//! Surfels are placed in [`Ball`]s. A surfel *may lie* in a pixel if it is not certainly dropped and
+//! the pixel is one that its centre may fall into; it *lies* there if it certainly is drawn and
+//! there is no other such pixel. The corners of triangles, ribbons and tubes are snapped to each
+//! place that their balls allow, at most 16 ways a primitive; from there on coverage is exact. A
+//! primitive may lie in a pixel that one of them covers; it lies there if there is one way alone.
+//!
+//! 1. The surfel or primitive of the id may lie in the pixel. An empty pixel has none.
+//! 2. Every plane is in the ball of its sample there, of one of those that it may have: seen from
+//!    either side, snapped in either way, visited twice. Of an empty pixel every plane is that of
+//!    [`PixelSample::empty`].
+//! 3. Nothing else lies in the pixel whose depth certainly is less than Z; without Z, than the depth
+//!    of the id's sample. Of an empty pixel Z is +inf.
+//! 4. No surfel comes before that of the id, as the client says of ties, which lies there at a depth
+//!    that is equal and exact in balls, or all of whose numbers are those of the id's surfel.
+//!
+//! Without ids the sample is the one that errs least, of those that nothing certainly hides.
+//!
+//! **Not judged**: a primitive that is cut by the near plane or the guard band, or may be, and one with
+//! more ways to snap. Pixels of its id are judged by rule 3 and by their kind alone; without ids all
+//! pixels but empty ones and surfels are.
+
+mod planes;
+mod primitives;
+
+pub(in crate::method) use planes::SamplePlanes;
+
+use super::primitives::PiecePixel;
+use super::surfels::{PlacedPoint, PointProjector};
+use super::{PixelSample, SampleKind, SceneProjector};
+use crate::composite::decide;
+use crate::frame::raster::Snap;
+use crate::frame::{Bins, Grid, Rect};
+use crate::method::algorithm::Job;
+use crate::method::judged::{Marks, PixelMarks, counted};
+use crate::number::ball::{Profile, Three};
+use crate::number::{Ball, Pixel, Real, Truth, Vector3};
+use crate::scene::Surfels;
+use crate::verify::client::Ties;
+use crate::verify::verdict::{Doubt, Fault, Judged};
+use planes::Says;
+use primitives::{Pieces, PossiblePiece};
+
+/// A surfel that may be drawn.
+struct Possible<P: Profile> {
+    surfel: u32,
+    /// The pixels that it may be drawn into.
+    bounds: Rect,
+    /// Whether it certainly is drawn.
+    drawn: bool,
+    placed: PlacedPoint<Ball<P>>,
+    normal: Vector3<Ball<P>>,
+    back: Three,
+}
+
+/// All that may be drawn, and where.
+struct AllPossible<'a, P: Profile> {
+    projector: SceneProjector<'a, Ball<P>>,
+    /// The surfels, batch by batch.
+    surfels: Vec<(Vec<Possible<P>>, Bins)>,
+    pieces: Pieces<P>,
+    bins: Bins,
+}
+
+/// What may lie in a pixel.
+enum Candidate<'a, P: Profile> {
+    Surfel(&'a Possible<P>),
+    Piece(&'a PossiblePiece<P>, PiecePixel<Ball<P>>),
+}
+
+/// What is known of a pixel.
+struct Claim<P: Profile> {
+    says: Says,
+    /// The client's depth, if it was handed in.
+    depth: Option<Ball<P>>,
+    /// Of what lies in the pixel that whose greatest depth is least.
+    front: Option<(u32, Ball<P>)>,
+    /// Of the samples that may be meant the one that errs least, and by how much.
+    best: Option<(f64, PixelSample<Ball<P>>)>,
+}
+
+/// Judges the planes of the projection; `snap` is for triangles and lines.
+pub(in crate::method) fn judge<P: Profile>(
+    job: &Job<'_>,
+    cull: bool,
+    snap: Snap,
+    planes: &SamplePlanes<'_>,
+) -> Judged {
+    let mut marks = Marks::picture(job);
+    let names = planes.names();
+    if !names.is_empty() {
+        let possible = AllPossible::<P>::new(job, cull, snap);
+        let tiles = job.grid().rects().into_iter().enumerate().collect();
+        let found = job.exec.ordered(tiles, |(tile, rect)| possible.judge(planes, (tile, rect)));
+        found.into_iter().for_each(|part| marks.put(part));
+    }
+    marks.whole("projection", names)
+}
+
+impl<'a, P: Profile> AllPossible<'a, P> {
+    fn new(job: &Job<'a>, cull: bool, snap: Snap) -> Self {
+        let (scene, grid) = (job.scene, job.grid());
+        let of = &scene.surfels;
+        let projector = SceneProjector::new(scene, job.camera, cull, snap);
+        let ranges = (0..of.len()).step_by(8192);
+        let ranges = ranges.map(|first| first..of.len().min(first + 8192)).collect();
+        let surfels = job.exec.ordered(ranges, |range: std::ops::Range<usize>| {
+            let place = |i| Possible::new(&projector.points, of, i, &grid);
+            let possible: Vec<_> = range.filter_map(place).collect();
+            let bins = Bins::new(&grid, possible.len(), |i| possible[i].bounds);
+            (possible, bins)
+        });
+        let pieces = Pieces::new(&projector);
+        let bins = Bins::new(&grid, pieces.all.len(), |i| pieces.all[i].piece.bounds);
+        Self { projector, surfels, pieces, bins }
+    }
+
+    /// Calls `visit` for all that may lie in a pixel of a tile, with the count of the pixel in the
+    /// tile.
+    fn each(&self, (tile, rect): (usize, &Rect), mut visit: impl FnMut(usize, Candidate<'_, P>)) {
+        let count =
+            |x: u32, y: u32| (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
+        for (possible, bins) in &self.surfels {
+            bins.for_each(tile, |i| {
+                let one = &possible[i as usize];
+                let Rect { x0, y0, x1, y1 } = one.bounds.intersection(rect);
+                for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
+                    visit(count(x, y), Candidate::Surfel(one));
+                }
+            });
+        }
+        self.bins.for_each(tile, |i| {
+            let one = &self.pieces.all[i as usize];
+            one.piece.for_each(rect, |at| visit(count(at.x, at.y), Candidate::Piece(one, at)));
+        });
+    }
+
+    /// The sample of a surfel, seen from its back or not.
+    fn surfel(&self, one: &Possible<P>, back: bool) -> PixelSample<Ball<P>> {
+        let SceneProjector { scene, points, has, .. } = &self.projector;
+        let (i, of) = (one.surfel as usize, &scene.surfels);
+        let color = of.color().map_or(scene.material.color, |color| color[i]);
+        let color = if has.color { color.to_array() } else { [0.0; 3] };
+        let g = if back { Ball::ONE } else { -Ball::ONE };
+        let (radius, color) = (Ball::from_f32(of.radius()[i]), color.map(Ball::from_f32));
+        points.sample(one.surfel, &one.placed, one.normal, g, radius, color)
+    }
+
+    /// Calls `visit` for each sample that a candidate may have.
+    fn each_sample(&self, of: &Candidate<'_, P>, mut visit: impl FnMut(PixelSample<Ball<P>>)) {
+        match of {
+            Candidate::Surfel(one) => {
+                if !one.back.certainly() {
+                    visit(self.surfel(one, false));
+                }
+                if one.back.possibly() {
+                    visit(self.surfel(one, true));
+                }
+            }
+            Candidate::Piece(one, at) => visit(one.piece.sample(&self.projector, at)),
+        }
+    }
+
+    fn judge(&self, planes: &SamplePlanes<'_>, (tile, rect): (usize, Rect)) -> Marks {
+        let mut marks = Marks::new(rect);
+        let claim = |(_, at)| Claim::new(planes, at, &self.pieces.unclear);
+        let mut claims: Vec<Claim<P>> = counted(rect).map(claim).collect();
+        self.each((tile, &rect), |pixel, one| {
+            if one.lies() {
+                claims[pixel].meet(one.id(), one.depth());
+            }
+        });
+        let columns = rect.columns();
+        self.each((tile, &rect), |pixel, one| {
+            let at = (rect.x0 + (pixel % columns) as u32, rect.y0 + (pixel / columns) as u32);
+            if claims[pixel].may_mean(&one) {
+                self.each_sample(&one, |sample| claims[pixel].consider(planes, at, sample));
+                let side = matches!(one, Candidate::Surfel(of) if of.back.decided().is_none());
+                marks.at(pixel).doubt(Doubt::Side, side);
+            }
+        });
+        for (pixel, at) in counted(rect) {
+            let claim = &mut claims[pixel];
+            if matches!(claim.says, Says::Empty | Says::Nothing) && claim.front.is_none() {
+                claim.consider(planes, at, PixelSample::empty());
+            }
+            claim.judge(planes, at, &mut marks.at(pixel));
+        }
+        let surfels = &self.projector.scene.surfels;
+        self.each((tile, &rect), |pixel, one| {
+            claims[pixel].doubt(&one, &mut marks.at(pixel));
+            claims[pixel].judge_tie(&one, (planes.ties, surfels), &mut marks.at(pixel));
+        });
+        marks
+    }
+}
+
+impl<P: Profile> Candidate<'_, P> {
+    fn id(&self) -> u32 {
+        match self {
+            Self::Surfel(one) => one.surfel,
+            Self::Piece(one, _) => one.piece.id,
+        }
+    }
+
+    fn kind(&self) -> SampleKind {
+        match self {
+            Self::Surfel(_) => SampleKind::Surface,
+            Self::Piece(one, _) => one.piece.kind,
+        }
+    }
+
+    fn depth(&self) -> Ball<P> {
+        match self {
+            Self::Surfel(one) => one.placed.t,
+            Self::Piece(_, at) => -at.p.z,
+        }
+    }
+
+    /// Whether it certainly is drawn, somewhere.
+    fn drawn(&self) -> bool {
+        match self {
+            Self::Surfel(one) => one.drawn,
+            Self::Piece(one, _) => one.drawn,
+        }
+    }
+
+    /// Whether it certainly lies in the pixel.
+    fn lies(&self) -> bool {
+        match self {
+            Self::Surfel(one) => one.drawn && one.bounds.pixels() == 1,
+            Self::Piece(one, _) => one.drawn,
+        }
+    }
+}
+
+impl<P: Profile> Possible<P> {
+    /// A surfel, if it may be drawn into a pixel of the picture.
+    fn new(
+        projector: &PointProjector<Ball<P>>,
+        surfels: &Surfels,
+        i: usize,
+        grid: &Grid,
+    ) -> Option<Self> {
+        let normal = projector.view.direction(Vector3::from_glam(surfels.normal()[i]));
+        let position = Vector3::from_glam(surfels.position()[i]);
+        let (placed, g, reasons) = projector.reasons(position, normal);
+        let dropped = reasons.any();
+        if dropped.certainly() {
+            return None;
+        }
+        let [width, height] = grid.size();
+        let [x, y] = placed.pixel();
+        let end = |greatest: u32, size: u32| if greatest < size { greatest + 1 } else { size };
+        let bounds = Rect {
+            x0: x.least(),
+            y0: y.least(),
+            x1: end(x.greatest(), width),
+            y1: end(y.greatest(), height),
+        };
+        // With culling what is drawn is seen from the front.
+        let back = if projector.cull { false.into() } else { g.gt(Ball::ZERO) };
+        let surfel = i as u32;
+        let drawn = !dropped.possibly();
+        (!bounds.is_empty()).then_some(Self { surfel, bounds, drawn, placed, normal, back })
+    }
+}
+
+impl<P: Profile> Claim<P> {
+    fn new(planes: &SamplePlanes<'_>, at: (u32, u32), unclear: &[u32]) -> Self {
+        let depth = planes.depth.map(|plane| plane.ball(at));
+        Self { says: planes.says(at, unclear), depth, front: None, best: None }
+    }
+
+    /// What lies in the pixel.
+    fn meet(&mut self, id: u32, t: Ball<P>) {
+        let most = |t: Ball<P>| t.middle + t.radius;
+        if self.front.is_none_or(|(_, front)| most(t) < most(front)) {
+            self.front = Some((id, t));
+        }
+    }
+
+    /// Whether the client may mean this.
+    fn may_mean(&self, one: &Candidate<'_, P>) -> bool {
+        let hidden = || self.front.is_some_and(|(_, t)| decide::before(t, one.depth()).certainly());
+        match self.says {
+            Says::Id(id) => id == one.id(),
+            Says::Some(kind) => {
+                let fits = kind.is_none_or(|kind| kind == one.kind());
+                fits && (self.depth.is_some() || !hidden())
+            }
+            Says::Nothing => !hidden(),
+            Says::Empty | Says::Unjudged(_) => false,
+        }
+    }
+
+    /// A sample that may be meant.
+    fn consider(
+        &mut self,
+        planes: &SamplePlanes<'_>,
+        at: (u32, u32),
+        sample: PixelSample<Ball<P>>,
+    ) {
+        let mut worst = 0.0_f64;
+        planes.check(at, &sample, &mut |_, error, _| worst = worst.at_least(error));
+        if self.best.is_none_or(|(least, _)| worst < least) {
+            self.best = Some((worst, sample));
+        }
+    }
+
+    /// Whether the claim itself can be, and what certainly is in front of it.
+    fn judge(&self, planes: &SamplePlanes<'_>, at: (u32, u32), pixel: &mut PixelMarks<'_>) {
+        let mut report = |_: usize, error: f64, fault: &dyn Fn() -> Fault| {
+            pixel.found(error, fault);
+        };
+        match (&self.best, self.says) {
+            (_, Says::Unjudged(kind)) => planes.check_kind(at, kind, &mut report),
+            (Some((_, sample)), _) => planes.check(at, sample, &mut report),
+            (None, Says::Id(surfel)) => {
+                report(0, f64::INFINITY, &|| Fault::Absent { surfel });
+            }
+            // Something lies here: rule 3. But other planes may say what they do not of nothing.
+            (None, _) if self.depth().middle == f64::INFINITY => {
+                planes.check(at, &PixelSample::<Ball<P>>::empty(), &mut report);
+            }
+            (None, _) => {
+                let (found, closest) = (self.depth().middle, f64::INFINITY);
+                report(0, f64::INFINITY, &|| Fault::NoSuchDepth { found, closest });
+            }
+        }
+        if let (Some((surfel, t)), true) = (self.front, self.says != Says::Nothing) {
+            let depth = self.depth();
+            if self.says != Says::Id(surfel) && decide::before(t, depth).certainly() {
+                let (error, depth, found) = (t.distance(depth), t.middle, depth.middle);
+                // A sample has no rim.
+                pixel.found(error, || Fault::LeftOut { surfel, rim: 0.0, depth, found });
+            }
+        }
+    }
+
+    /// The depth that others are compared with.
+    fn depth(&self) -> Ball<P> {
+        let of_sample = || self.best.map_or(anywhere(), |(_, sample)| sample.depth);
+        match self.says {
+            Says::Empty => Ball::INFINITY,
+            _ => self.depth.unwrap_or_else(of_sample),
+        }
+    }
+
+    /// Whether a surfel is exactly as near as that of the client, and comes before it.
+    fn judge_tie(
+        &self,
+        one: &Candidate<'_, P>,
+        (ties, surfels): (Ties, &Surfels),
+        pixel: &mut PixelMarks<'_>,
+    ) {
+        let (Says::Id(found), Some((_, sample)), Candidate::Surfel(surfel)) =
+            (self.says, &self.best, one)
+        else {
+            return;
+        };
+        let (surfel, t) = (surfel.surfel, one.depth());
+        let first = match ties {
+            Ties::Lowest => surfel < found,
+            Ties::Last => surfel > found,
+            Ties::Any => false,
+        };
+        let equal = t.middle == sample.depth.middle;
+        let exact = equal && t.radius + sample.depth.radius == 0.0 && one.lies();
+        if first && (exact || surfels.are_equal(surfel, found)) {
+            pixel.found(f64::INFINITY, || Fault::Tie { surfel, found });
+        }
+    }
+
+    /// Marks what may be in front.
+    fn doubt(&self, one: &Candidate<'_, P>, pixel: &mut PixelMarks<'_>) {
+        let nearer = decide::before(one.depth(), self.depth());
+        let own = self.best.is_some_and(|(_, sample)| sample.id == one.id());
+        if !own && nearer.possibly() {
+            pixel.doubt(Doubt::Nearer, !nearer.certainly());
+            pixel.doubt(Doubt::CutOff, !one.lies() && one.drawn());
+            pixel.doubt(Doubt::Fate, !one.drawn());
+        }
+    }
+}
+
+/// Any depth.
+fn anywhere<P: Profile>() -> Ball<P> {
+    Ball::new(0.0, f64::INFINITY)
+}
