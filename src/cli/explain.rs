@@ -57,7 +57,9 @@ pub(super) fn run(args: &Args) -> Ended {
     report::groups(session.groups(), made.as_ref());
     say("");
     say(text.trim_end());
-    if !checks.is_empty() {
+    if args.client.is_some() && checks.is_empty() {
+        say("\nthe client: this method judges no values of single pixels; see splatref verify");
+    } else if !checks.is_empty() {
         say("\nthe client, stage by stage, each from what it has of the stage before:");
         checks.iter().for_each(|check| say(format!("  {check}")));
     }

@@ -2,8 +2,8 @@
 //!
 //! Some mistakes show in what the wrong pixels have in common. For the others the client is judged
 //! again, as if a mistake were the rule: with another setting, another camera, or with its planes
-//! turned back. A mistake is named if of the wrong pixels of all stages at most one in twenty stays
-//! wrong; of several the one that leaves the fewest.
+//! turned back. A mistake is named if of the wrong pixels of the first wrong stage and the next at
+//! most one in twenty stays wrong; of several the one that leaves the fewest in all stages.
 
 use super::client::{Client, Storage, Ties};
 use super::verdict::{Judged, Verdict};
@@ -37,17 +37,24 @@ pub fn signature(
     if let Some(plain) = plain(wrong) {
         return Ok(Some(plain));
     }
-    let all: u64 = verdict.stages.iter().map(|stage| stage.wrong).sum();
+    let all = wrong_of(verdict, wrong.stage);
     let mut best: Option<(u64, String)> = None;
     for Supposed { what, method, camera, client } in supposed(session, camera, client, wrong.stage)
     {
         let verdict = session.verify_as(&method, &camera, &client, verdict.budget)?;
-        let left: u64 = verdict.stages.iter().map(|stage| stage.wrong).sum();
-        if 20 * left <= all && best.as_ref().is_none_or(|(least, _)| left < *least) {
+        let [cured, left] = wrong_of(&verdict, wrong.stage);
+        if 20 * cured <= all[0] && best.as_ref().is_none_or(|(least, _)| left < *least) {
             best = Some((left, what));
         }
     }
     Ok(best.map(|(_, what)| what).or_else(|| common(verdict, wrong)))
+}
+
+/// How many pixels are wrong in a stage and the one after it, and in all stages.
+fn wrong_of(verdict: &Verdict, stage: &str) -> [u64; 2] {
+    let from = verdict.stages.iter().skip_while(|own| own.stage != stage);
+    let all = verdict.stages.iter().map(|stage| stage.wrong).sum();
+    [from.take(2).map(|stage| stage.wrong).sum(), all]
 }
 
 /// What the wrong pixels of a stage plainly say.

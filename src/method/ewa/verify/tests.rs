@@ -125,7 +125,7 @@ fn broken(records: &[SplatRecord]) -> Vec<(Vec<SplatRecord>, &'static str)> {
         (records, "projection")
     };
     vec![
-        with(&|records| drop(records.remove(middle))),
+        with(&|records| records.truncate(middle)),
         with(&|records| records[middle].center[0] += 0.01),
         with(&|records| records[middle].amplitude = f32::NAN),
         with(&|records| records[middle].normal[1] += 0.25),
