@@ -49,7 +49,8 @@
 //! 4. [`method::ewa`], the method that the others refer to, then the method you came for: each is a
 //!    chapter below.
 //! 5. [`composite`], the algebra of fragments, and its laws.
-//! 6. [`verify`], what is equal and what is not. [`backends`], if the other picture is a GPU's.
+//! 6. [`verify`], what is equal, what a right implementation may leave, and what is neither.
+//!    [`backends`], if the other picture is a GPU's.
 //!
 //! The rest is read when it is needed: [`frame`] (planes and tiles), [`number`] (what a number must
 //! be able to do), [`shade`] (lighting of finished planes), [`io`] (files). In the pages of the
@@ -134,6 +135,9 @@
 //! | plane | one quantity for every pixel |
 //! | tile, bin | a square of pixels that one thread owns; the list of its splats |
 //! | ball | all values that a right implementation may have: a midpoint and a radius |
+//! | client | another renderer, whose planes are judged |
+//! | certificate | what shows that a fragment may be the nearest: it may be there, and nothing certainly is nearer |
+//! | doubt | a decision that right implementations may take either way |
 //! | margin | how far a decision is from being undecided, in radii of its operands' balls |
 //!
 //! # Sources

@@ -63,7 +63,7 @@ pub(super) mod normalization;
 mod picture;
 mod planes;
 mod possible;
-mod verify;
+pub mod verify;
 pub(super) mod visibility;
 
 pub use crate::splat::SplatSettings as Settings;

@@ -39,7 +39,7 @@ mod project;
 pub mod surfels;
 #[cfg(test)]
 pub(in crate::method) mod tests;
-pub(in crate::method) mod verify;
+pub mod verify;
 
 pub(in crate::method) use project::project;
 

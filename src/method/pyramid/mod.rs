@@ -40,7 +40,7 @@ pub mod push;
 mod settings;
 #[cfg(test)]
 mod tests;
-mod verify;
+pub mod verify;
 
 pub use cell::Cell;
 pub use settings::{Occlusion, Settings, Weights};

@@ -29,7 +29,7 @@ pub mod reconstruction;
 mod settings;
 #[cfg(test)]
 mod tests;
-mod verify;
+pub mod verify;
 
 pub use center::Center;
 pub use settings::{Falloff, LevelRule, Settings};

@@ -3,7 +3,8 @@
 //! Each stage is judged from what the client has of the stage before: floats are inputs as they are
 //! stored, and so exact. The formulas are those of the crate in balls of a [`Profile`].
 //!
-//! **Projection**: see `projection/verify`, which says what is not judged of triangles, ribbons and
+//! **Projection**: see [`projection::verify`](crate::method::projection::verify),
+//! which says what is not judged of triangles, ribbons and
 //! tubes. The later stages are judged whatever their inputs are.
 //!
 //! **Pull and push**, level by level from the client's own: the pull from its finer level, the push from

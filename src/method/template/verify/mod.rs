@@ -3,7 +3,7 @@
 //! Each stage is judged from what the client has of the stage before: floats are inputs as they are
 //! stored, and so exact. The formulas are those of the crate in balls of a [`Profile`].
 //!
-//! **Projection**: see `projection/verify`.
+//! **Projection**: see [`projection::verify`](crate::method::projection::verify).
 //!
 //! **Propagation**, level by level from the client's finer level. Of each cell every outcome that the
 //! decisions allow: who moves, which is foremost, who is near enough; a cell is right if one outcome

@@ -3,14 +3,16 @@
 use super::{Ball, Profile};
 use crate::number::random::{bits, unit};
 use crate::number::{Real, Truth, Vector3};
-use crate::scene::{Camera, Lens, Pose};
+use crate::scene::{Camera, Lens, Light, Phong, Pose};
+use crate::shade::phong::Shader;
 use crate::splat::project::project_as;
 use crate::splat::{Disc, Footprint, Kernel, Outline, Projector, Shared, View, fragment};
 use glam::Vec3;
 
 /// What is evaluated: the projection and a fragment from the scene, and the fragment from the
 /// client's own record.
-pub(super) const QUANTITIES: [&str; 19] = [
+pub(super) const QUANTITIES: [&str; 20] = [
+    "shaded colour",
     "center.x",
     "center.y",
     "ux",
@@ -70,6 +72,8 @@ pub(super) struct Problem {
     camera: Camera,
     kernel: Kernel,
     disc: Disc<f32>,
+    /// How far away the surfel is.
+    depth: f32,
     /// Where the pixels are, in extents of the splat about its centre.
     offsets: [[f32; 2]; PIXELS],
 }
@@ -77,7 +81,7 @@ pub(super) struct Problem {
 /// Pixels of a problem.
 const PIXELS: usize = 8;
 /// How many of the quantities are those of the splat; the others are of each pixel.
-const OF_SPLAT: usize = 11;
+const OF_SPLAT: usize = 12;
 
 /// The place among [`QUANTITIES`] of the value of this number.
 pub(super) fn quantity(value: usize) -> usize {
@@ -180,7 +184,7 @@ impl Problem {
             tangents,
         };
         let offsets = [(); PIXELS].map(|()| [random(), random()].map(|random| 2.0 * random - 1.0));
-        Self { index, camera, kernel: kernel(kind), disc, offsets }
+        Self { index, camera, kernel: kernel(kind), disc, depth, offsets }
     }
 
     /// Everything in a number that decides by itself, and the record it stores.
@@ -227,6 +231,7 @@ impl Problem {
     fn values<R: Real>(&self, f: &Footprint<R>, own: &Footprint<R>) -> Vec<R> {
         let shared = Shared::new(&View::new(&self.camera), &self.kernel);
         let mut values = Vec::with_capacity(VALUES);
+        values.push(self.shaded());
         values.extend([f.center.x, f.center.y, f.ux, f.uy, f.vy, f.w0, f.wx, f.wy, f.w_far]);
         values.extend([f.w_near, f.amplitude]);
         for pixel in self.pixels() {
@@ -236,6 +241,22 @@ impl Problem {
             }
         }
         values
+    }
+
+    /// A colour under all kinds of lights, of a client's depth and normal.
+    fn shaded<R: Real>(&self) -> R {
+        let color = Vec3::new(0.75, 0.5, 0.25);
+        let towards = Vec3::new(0.25, -0.5, 1.0);
+        let lights = [
+            Light::Headlight { towards, color },
+            Light::Directional { towards, color },
+            Light::Point { position: 3.0 * towards, color },
+        ];
+        let material = Phong { specular: 0.5, shininess: 20.5, ..Phong::default() };
+        let shader = Shader::new(View::new(&self.camera), &lights, material);
+        let [x, y] = self.offsets[0].map(|offset| (200.0 + 100.0 * offset) as usize);
+        let depth = R::from_f32(self.depth);
+        shader.surface((x, y), depth, self.disc().normal, [R::ONE; 3])[0]
     }
 
     /// Pixels in the ellipse, or near it, by `f64`: the same for every number.
