@@ -16,6 +16,7 @@ use splatref::method::{Method, Session};
 use splatref::scene::{Camera, Groups, Lens, Pose, Scene};
 use splatref::source::Shape;
 use splatref::splat::SplatSettings;
+use splatref::verify::client::Client;
 
 /// A line of /proc/self/status, in bytes.
 fn status(key: &str) -> Option<u64> {
@@ -80,18 +81,31 @@ fn said_and_taken(
     let exec = Exec::new(2, 32).expect("threads");
     let mut session = Session::new(&scene, method, &exec).expect("a session");
     let said = session.needs(&camera, making);
+    if making == Making::Verdict {
+        return (said, taken_by_a_verdict(&mut session, &camera));
+    }
     let before = status("VmHWM").expect("a peak");
     let pixels = match making {
         Making::Render => session.render(&camera).expect("renders").frame.width,
         Making::Define { number: 4, stages } => {
             session.define::<f32>(&camera, stages).expect("renders").frame.width
         }
+        Making::Verdict => unreachable!("measured above"),
         Making::Define { stages, .. } => {
             session.define::<f64>(&camera, stages).expect("renders").frame.to_f32().width
         }
     };
     assert_eq!(pixels, width);
     (said, status("VmHWM").expect("a peak") - before)
+}
+
+/// What a verdict on the crate's own picture takes; drawing that takes less of each surfel.
+fn taken_by_a_verdict(session: &mut Session<'_>, camera: &Camera) -> u64 {
+    let client = Client::from(&session.render(camera).expect("renders").frame);
+    let before = status("VmRSS").expect("a resident size");
+    let verdict = session.verify(camera, &client, 1.0).expect("a verdict");
+    assert!(verdict.first_wrong().is_none() && verdict.covered > 0);
+    status("VmHWM").expect("a peak") - before
 }
 
 /// What a picture is said to take is about what it takes: not less, and not six times as much.
@@ -103,7 +117,9 @@ fn a_picture_takes_what_it_is_said_to() {
     // Where surfels count, and not pixels: what the margin needs of each.
     let ewa = SplatSettings { cull: false, ..SplatSettings::default() }.into();
     let many = (ewa, Making::Define { number: 4, stages: true }, 1_000_000, [300, 200]);
-    let cases = all.iter().flat_map(large).chain([many]);
+    // What a verdict needs of each.
+    let judged = (ewa, Making::Verdict, 1_000_000, [300, 200]);
+    let cases = all.iter().flat_map(large).chain([many, judged]);
     if let Some(case) = std::env::var(CASE).ok().and_then(|case| case.parse::<usize>().ok()) {
         let (said, taken) = said_and_taken(cases.clone().nth(case).expect("a case"));
         println!("\nmemory {said} {taken}");

@@ -212,6 +212,7 @@ impl<'a> Session<'a> {
     ) -> Result<Verdict> {
         let job = self.job(camera)?;
         self.check_client(camera, client)?;
+        self.ask(camera, Making::Verdict)?;
         let verdict = match client.rounding {
             Rounding::Gpu => method.verify::<Gpu>(&job, client, budget),
             Rounding::Ieee => method.verify::<Ieee>(&job, client, budget),

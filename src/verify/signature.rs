@@ -3,7 +3,7 @@
 //! Some mistakes show in what the wrong pixels have in common. For the others the client is judged
 //! again, as if a mistake were the rule: with another setting, another camera, or with its planes
 //! turned back. A mistake is named if of the wrong pixels of the first wrong stage and the next at
-//! most one in twenty stays wrong; of several the one that leaves the fewest in all stages.
+//! most one in five stays wrong; of several the one that leaves the fewest in all stages.
 
 use super::client::{Client, Storage, Ties};
 use super::verdict::{Judged, Verdict};
@@ -15,12 +15,40 @@ use crate::scene::Camera;
 use crate::setting::{Fields, Value};
 use crate::splat::Epsilon;
 
-/// A mistake as if it were the rule.
-struct Supposed {
-    what: String,
-    method: Method,
-    camera: Camera,
-    client: Client,
+/// What would be otherwise if a mistake were the rule.
+enum Change {
+    Method(Method),
+    Camera(Camera),
+    Ties(Ties),
+    Stored(&'static str, Storage),
+    Accumulator(Storage),
+    Flipped,
+    Colors(fn([f64; 3], f64) -> [f64; 3]),
+}
+
+impl Change {
+    /// The wrong pixels if this were the rule. The planes of one changed client are there at a time.
+    fn judge(
+        &self,
+        session: &Session<'_>,
+        camera: &Camera,
+        client: &Client,
+        budget: f64,
+    ) -> Result<Verdict> {
+        let method = session.method();
+        let as_if = |client: Client| session.verify_as(method, camera, &client, budget);
+        match self {
+            Self::Method(method) => session.verify_as(method, camera, client, budget),
+            Self::Camera(camera) => session.verify_as(method, camera, client, budget),
+            Self::Ties(ties) => as_if(Client { ties: *ties, ..client.clone() }),
+            Self::Stored(plane, storage) => as_if(client.clone().stored(plane, *storage)),
+            Self::Accumulator(accumulator) => {
+                as_if(Client { accumulator: *accumulator, ..client.clone() })
+            }
+            Self::Flipped => as_if(client.flipped()),
+            Self::Colors(of) => as_if(client.colors(of)),
+        }
+    }
 }
 
 /// The mistake that a client most probably makes, in words; none that is known.
@@ -39,15 +67,14 @@ pub fn signature(
     }
     let all = wrong_of(verdict, wrong.stage);
     let mut best: Option<(u64, String)> = None;
-    for Supposed { what, method, camera, client } in supposed(session, camera, client, wrong.stage)
-    {
-        let verdict = session.verify_as(&method, &camera, &client, verdict.budget)?;
+    for (what, change) in supposed(session, camera, client, wrong.stage) {
+        let verdict = change.judge(session, camera, client, verdict.budget)?;
         let [cured, left] = wrong_of(&verdict, wrong.stage);
-        if 20 * cured <= all[0] && best.as_ref().is_none_or(|(least, _)| left < *least) {
+        if 5 * cured <= all[0] && best.as_ref().is_none_or(|(least, _)| left < *least) {
             best = Some((left, what));
         }
     }
-    Ok(best.map(|(_, what)| what).or_else(|| common(verdict, wrong)))
+    Ok(best.map(|(_, what)| what).or_else(|| common(session.method(), verdict, wrong)))
 }
 
 /// How many pixels are wrong in a stage and the one after it, and in all stages.
@@ -73,16 +100,19 @@ fn plain(wrong: &Judged) -> Option<String> {
 }
 
 /// What the wrong pixels of a stage have in common, if no rule explains them.
-fn common(verdict: &Verdict, wrong: &Judged) -> Option<String> {
+fn common(method: &Method, verdict: &Verdict, wrong: &Judged) -> Option<String> {
     let causes = &wrong.causes;
     let most = |count: u64| 20 * count >= 19 * wrong.wrong;
     if most(causes.outside) {
         return Some("depth and id are those of fragments that should be discarded".into());
     }
+    let cutoff = method.splats().map(|splats| f64::from(splats.kernel.cutoff));
     // Where a surfel is left out its weight is missing too; more is wrong where shapes are.
     let others = verdict.stages.iter().any(|stage| stage.wrong > 3 * wrong.wrong);
     if !most(causes.lacking()) || others {
         None
+    } else if cutoff.is_some_and(|k| (0.98..1.1).contains(&(k * causes.least_rim))) {
+        Some("q is compared with k, not with k^2".into())
     } else if causes.least_rim > 0.999 {
         Some("the cut-off is too small: what lies just inside is left out".into())
     } else if causes.least_rim > 0.6 {
@@ -92,13 +122,14 @@ fn common(verdict: &Verdict, wrong: &Judged) -> Option<String> {
     }
 }
 
-/// The mistakes that show in a stage first.
-fn supposed(session: &Session<'_>, camera: &Camera, client: &Client, stage: &str) -> Vec<Supposed> {
-    let method = session.method();
-    let mut all = Vec::new();
-    let mut suppose = |what: &str, method: Method, camera: Camera, client: Client| {
-        all.push(Supposed { what: what.to_owned(), method, camera, client });
-    };
+/// The mistakes that show in a stage first, in words and as changes.
+fn supposed(
+    session: &Session<'_>,
+    camera: &Camera,
+    client: &Client,
+    stage: &str,
+) -> Vec<(String, Change)> {
+    let mut all: Vec<(String, Change)> = Vec::new();
     match stage {
         "visibility" | "projection" => {
             for (what, dx, dy) in [
@@ -108,34 +139,29 @@ fn supposed(session: &Session<'_>, camera: &Camera, client: &Client, stage: &str
                 ("half a pixel down", 0.0, 0.5),
             ] {
                 let moved = Camera { cx: camera.cx + dx, cy: camera.cy + dy, ..*camera };
-                suppose(what, *method, moved, client.clone());
+                all.push((what.into(), Change::Camera(moved)));
             }
-            suppose("rows are flipped", *method, *camera, client.flipped());
-            for (what, method) in settings(session, &VISIBILITY) {
-                suppose(&what, method, *camera, client.clone());
-            }
-            for ties in [Ties::Last, Ties::Lowest] {
-                let client = Client { ties, ..client.clone() };
-                suppose("ties are reversed", *method, *camera, client);
-            }
+            all.push(("rows are flipped".into(), Change::Flipped));
+            all.extend(settings(session, &VISIBILITY));
+            let ties = if client.ties == Ties::Last { Ties::Lowest } else { Ties::Last };
+            all.push(("ties are reversed".into(), Change::Ties(ties)));
             if let Some((depth, largest)) = client.depth_of_visibility() {
                 let step = Storage::Steps(2.0 * largest / 65_535.0);
-                let coarse = client.clone().stored(depth, step);
-                suppose("depth of 16 bits", *method, *camera, coarse);
+                all.push(("depth of 16 bits".into(), Change::Stored(depth, step)));
             }
         }
         "attributes" => {
-            for (what, method) in settings(session, &ATTRIBUTES) {
-                suppose(&what, method, *camera, client.clone());
-            }
-            let half = Client { accumulator: Storage::Half, ..client.clone() };
-            suppose("sums in half floats", *method, *camera, half);
+            all.extend(settings(session, &ATTRIBUTES));
+            all.push(("sums in half floats".into(), Change::Accumulator(Storage::Half)));
         }
         "normalization" | "shading" => {
-            let decoded = client.colors(|color, _| color.map(srgb::to_linear));
-            suppose("sRGB where linear colours are meant", *method, *camera, decoded);
-            let divided = client.colors(|color, weight| color.map(|part| part / weight));
-            suppose("colours multiplied by the weight", *method, *camera, divided);
+            let what = "sRGB where linear colours are meant";
+            all.push((what.into(), Change::Colors(|color, _| color.map(srgb::to_linear))));
+            let what = "colours multiplied by the weight";
+            all.push((
+                what.into(),
+                Change::Colors(|color, weight| color.map(|part| part / weight)),
+            ));
         }
         _ => {}
     }
@@ -145,11 +171,10 @@ fn supposed(session: &Session<'_>, camera: &Camera, client: &Client, stage: &str
 /// A setting that is wrong: its name, what follows from its value, and in words.
 type WrongSetting = (&'static str, fn(&Method, f32) -> Option<Value>, &'static str);
 
-const VISIBILITY: [WrongSetting; 5] = [
+const VISIBILITY: [WrongSetting; 4] = [
     ("low_pass", |_, _| Some(Value::Number(0.0)), "the low-pass filter is missing"),
     ("low_pass", |_, h| Some(Value::Number(2.0 * h)), "the low-pass filter is added twice"),
     ("low_pass", |_, h| Some(Value::Number(0.5 * h)), "half of the low-pass filter is missing"),
-    ("cutoff", |_, k| Some(Value::Number(k.sqrt())), "q is compared with k, not with k^2"),
     ("cull", switched, "culling is on where it should be off, or off where it should be on"),
 ];
 
@@ -175,7 +200,7 @@ fn scaled(method: &Method, factor: f32) -> Option<Value> {
 }
 
 /// The method with each of some wrong settings, as far as the method has them.
-fn settings(session: &Session<'_>, wrong: &[WrongSetting]) -> Vec<(String, Method)> {
+fn settings(session: &Session<'_>, wrong: &[WrongSetting]) -> Vec<(String, Change)> {
     let method = session.method();
     let with = |(name, value, what): &WrongSetting| {
         let own = method.values().into_iter().find(|(own, _)| own == name)?.1;
@@ -185,7 +210,8 @@ fn settings(session: &Session<'_>, wrong: &[WrongSetting]) -> Vec<(String, Metho
         };
         let mut changed = *method;
         changed.set(name, &value(method, number)?).ok()?;
-        (changed != *method && changed.check().is_ok()).then(|| ((*what).to_owned(), changed))
+        let other = changed != *method && changed.check().is_ok();
+        other.then(|| ((*what).to_owned(), Change::Method(changed)))
     };
     wrong.iter().filter_map(with).collect()
 }

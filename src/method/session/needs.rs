@@ -19,6 +19,8 @@ pub enum Making {
         /// Whether the planes of the stages are kept.
         stages: bool,
     },
+    /// Judged by [`Session::verify`], the planes of one client more included.
+    Verdict,
 }
 
 impl Session<'_> {
@@ -26,10 +28,10 @@ impl Session<'_> {
     #[must_use]
     pub fn needs(&self, camera: &Camera, making: Making) -> u64 {
         let pixels = u64::from(camera.width) * u64::from(camera.height);
-        let items = self.index.order.as_ref().map_or(self.scene.surfels.len(), |_| {
-            // A surfel is drawn once in each of its groups.
-            self.index.groups.as_ref().map_or(0, |groups| groups.own().len() + groups.added().len())
-        });
+        if making == Making::Verdict {
+            let a_pixel = OF_A_JUDGED_PIXEL + self.planes(camera, 8);
+            return pixels * a_pixel + self.items() * OF_A_JUDGED_SPLAT;
+        }
         let fast = self.method.fast_bytes_a_pixel().filter(|_| making == Making::Render);
         let number = if let Making::Define { number, .. } = making { number } else { 4 };
         let kept = match making {
@@ -40,7 +42,16 @@ impl Session<'_> {
         let a_pixel = fast.unwrap_or(number * OF_A_PIXEL + 2 * kept);
         let mut rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
         let balls = if kept > 0 && rows.any(|row| row.name == "margin") { OF_A_BALL } else { 0 };
-        pixels * a_pixel + items as u64 * (number * OF_A_SPLAT + balls)
+        pixels * a_pixel + self.items() * (number * OF_A_SPLAT + balls)
+    }
+
+    /// How many items are drawn at the most.
+    fn items(&self) -> u64 {
+        let items = self.index.order.as_ref().map_or(self.scene.surfels.len(), |_| {
+            // A surfel is drawn once in each of its groups.
+            self.index.groups.as_ref().map_or(0, |groups| groups.own().len() + groups.added().len())
+        });
+        items as u64
     }
 
     /// The planes of all stages, a pixel.
@@ -77,5 +88,8 @@ impl Session<'_> {
 const OF_A_PIXEL: u64 = 80;
 /// Numbers of a splat, with the bins that list it.
 const OF_A_SPLAT: u64 = 64;
+/// Bytes of a splat that is judged, and of a pixel beside the planes of a client.
+const OF_A_JUDGED_SPLAT: u64 = 704;
+const OF_A_JUDGED_PIXEL: u64 = 128;
 /// Bytes of a splat in balls, with the bins that list it: what a margin is computed from.
 const OF_A_BALL: u64 = 288;
