@@ -1,8 +1,8 @@
 //! What is found of a client, tile by tile, until it is planes.
 
 use super::algorithm::Job;
-use super::tiled::{Tiled, pixels};
-use crate::frame::Rect;
+use super::tiled::pixels;
+use crate::frame::{Plane, Rect};
 use crate::verify::verdict::{Causes, Check, Doubt, Fault, Finding, Judged};
 use std::collections::BTreeMap;
 
@@ -40,6 +40,61 @@ impl Marks {
     pub(super) fn checks(self, stage: &'static str) -> impl Iterator<Item = Check> {
         let log = self.log.into_iter().flatten();
         log.map(move |(error, fault)| Check { stage, fault, error })
+    }
+
+    /// Nothing found yet in a whole picture.
+    pub(super) fn whole(job: &Job<'_>) -> Self {
+        let [x1, y1] = job.camera.size();
+        Self::new(Rect { x1, y1, ..Rect::default() })
+    }
+
+    /// Adds what was found in a part of the picture: at each pixel the greater error, all doubts.
+    pub(super) fn put(&mut self, mut part: Self) {
+        let of = self.rect.columns();
+        for (pixel, (x, y)) in counted(part.rect) {
+            let (column, row) = ((x - self.rect.x0) as usize, (y - self.rect.y0) as usize);
+            let place = row * of + column;
+            let (error, doubts) = &mut self.found[place];
+            let (own, more) = part.found[pixel];
+            if own > *error {
+                *error = own;
+                if let Some(fault) = part.faults.remove(&pixel) {
+                    self.faults.insert(place, fault);
+                }
+            }
+            *doubts |= more;
+        }
+        if let (Some(log), Some(more)) = (&mut self.log, part.log) {
+            log.extend(more);
+        }
+        if let Some(own) = part.worst {
+            let place = |finding: &Finding| (finding.pixel.1, finding.pixel.0);
+            let worse = self.worst.as_ref().is_none_or(|worst| {
+                own.error > worst.error || (own.error == worst.error && place(&own) < place(worst))
+            });
+            if worse {
+                self.worst = Some(own);
+            }
+        }
+    }
+
+    /// What was found in a whole picture, of a stage: its name, and the planes that were judged.
+    pub(super) fn judged(self, stage: &'static str, planes: Vec<&'static str>) -> Judged {
+        let (width, height) = (self.rect.x1, self.rect.y1);
+        let errors = self.found.iter().map(|at| at.0).collect();
+        let doubts = self.found.iter().map(|at| at.1).collect();
+        let wrong = self.found.iter().filter(|at| at.0 > 1.0).count() as u64;
+        let mut causes = Causes::default();
+        self.faults.values().for_each(|fault| causes.count(fault));
+        Judged {
+            stage,
+            planes,
+            errors: Plane::from_values(width, height, errors),
+            doubts: Plane::from_values(width, height, doubts),
+            wrong,
+            causes,
+            worst: self.worst,
+        }
     }
 
     /// The marks of a pixel, counted row by row.
@@ -82,8 +137,13 @@ impl PixelMarks<'_> {
     /// A decision that may be either way.
     pub(super) fn doubt(&mut self, doubt: Doubt, there: bool) {
         if there {
-            self.marks.found[self.pixel].1 |= doubt as u8;
+            self.doubts(doubt as u8);
         }
+    }
+
+    /// Decisions that may be either way, as bits.
+    pub(super) fn doubts(&mut self, doubts: u8) {
+        self.marks.found[self.pixel].1 |= doubts;
     }
 }
 
@@ -94,37 +154,14 @@ pub(super) fn judged<const N: usize>(
     stages: [(&'static str, Vec<&'static str>); N],
     tiles: Vec<[Marks; N]>,
 ) -> Vec<Judged> {
-    let mut columns: [Vec<Marks>; N] = std::array::from_fn(|_| Vec::with_capacity(tiles.len()));
+    let mut all = [(); N].map(|()| Marks::whole(job));
     for tile in tiles {
-        for (column, marks) in columns.iter_mut().zip(tile) {
-            column.push(marks);
+        for (whole, marks) in all.iter_mut().zip(tile) {
+            whole.put(marks);
         }
     }
-    let all = stages.into_iter().zip(columns);
-    all.map(|((stage, planes), tiles)| one(job, stage, planes, tiles)).collect()
-}
-
-fn one(job: &Job<'_>, stage: &'static str, planes: Vec<&'static str>, tiles: Vec<Marks>) -> Judged {
-    let mut worst: Option<Finding> = None;
-    let mut found = Vec::with_capacity(tiles.len());
-    let mut causes = Causes::default();
-    for tile in tiles {
-        if let Some(own) = tile.worst {
-            let place = |finding: &Finding| (finding.pixel.1, finding.pixel.0);
-            let worse = worst.as_ref().is_none_or(|worst| {
-                own.error > worst.error || (own.error == worst.error && place(&own) < place(worst))
-            });
-            if worse {
-                worst = Some(own);
-            }
-        }
-        tile.faults.values().for_each(|fault| causes.count(fault));
-        found.push(tile.found);
-    }
-    let tiled = Tiled::from_tiles(job.grid(), found);
-    let (errors, doubts) = (tiled.plane(|at| at.0), tiled.plane(|at| at.1));
-    let wrong = errors.values().iter().filter(|error| **error > 1.0).count() as u64;
-    Judged { stage, planes, errors, doubts, wrong, causes, worst }
+    let all = stages.into_iter().zip(all);
+    all.map(|((stage, planes), marks)| marks.judged(stage, planes)).collect()
 }
 
 /// The pixels of a tile with their count, row by row.

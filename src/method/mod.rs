@@ -50,6 +50,8 @@
 //!   added to a sum at all.
 
 mod algorithm;
+mod allowed;
+mod checks;
 pub mod ewa;
 mod fast;
 mod fragment;

@@ -121,14 +121,7 @@ impl PlaneRow {
     /// The name, with a number in place of `#`.
     #[must_use]
     pub fn numbered(&self, number: usize) -> String {
-        let digits = self.name.bytes().filter(|&c| c == b'#').count();
-        let number = format!("{number:0digits$}");
-        match self.name.split_once('#') {
-            None => self.name.to_owned(),
-            Some((before, after)) => {
-                format!("{before}{number}{}", after.trim_start_matches('#'))
-            }
-        }
+        numbered(self.name, number)
     }
 
     /// The names that the channels of the plane have in a file.
@@ -188,6 +181,18 @@ impl PlaneRow {
             Samples::Count(_) => Holds::Count,
         };
         self.holds == holds
+    }
+}
+
+/// A name with a number in place of its run of `#`.
+pub(crate) fn numbered(name: &str, number: usize) -> String {
+    let digits = name.bytes().filter(|&c| c == b'#').count();
+    let number = format!("{number:0digits$}");
+    match name.split_once('#') {
+        None => name.to_owned(),
+        Some((before, after)) => {
+            format!("{before}{number}{}", after.trim_start_matches('#'))
+        }
     }
 }
 

@@ -5,6 +5,7 @@ mod extremes;
 mod planes;
 mod stages;
 mod ties;
+pub(super) mod verdicts;
 
 use crate::frame::{Frame, Plane, Samples};
 use crate::number::Exact;

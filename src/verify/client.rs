@@ -7,6 +7,7 @@ pub use storage::Storage;
 use crate::error::{Error, Result};
 use crate::frame::{Frame, NamedPlane, Plane, Samples};
 use crate::method::PlaneRow;
+use crate::method::stage::numbered;
 use crate::number::ball::{Ball, Profile};
 use crate::setting::Words;
 use std::collections::BTreeMap;
@@ -65,11 +66,21 @@ pub struct Client {
 /// A plane of a client.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stored<'a, T> {
+    /// The name of the row.
     pub(crate) name: &'static str,
+    /// What stands for `#` in it.
+    pub(crate) number: usize,
     pub(crate) plane: &'a Plane<T>,
     pub(crate) storage: Storage,
     /// How far each number may be off, in place of what the storage says.
     radii: Option<&'a Plane<[f64; 3]>>,
+}
+
+impl<T> Stored<'_, T> {
+    /// The name of the plane.
+    pub(crate) fn channel(&self) -> String {
+        numbered(self.name, self.number)
+    }
 }
 
 impl Stored<'_, f64> {
@@ -81,6 +92,11 @@ impl Stored<'_, f64> {
 }
 
 impl Stored<'_, [f64; 3]> {
+    /// Whether it was said of each number how far it may be off.
+    pub(crate) fn has_radii(&self) -> bool {
+        self.radii.is_some()
+    }
+
     /// The numbers at a pixel, as far as they are known.
     pub(crate) fn balls<P: Profile>(&self, (x, y): (u32, u32)) -> [Ball<P>; 3] {
         let values = *self.plane.at(x, y);
@@ -126,7 +142,7 @@ impl Client {
         }
     }
 
-    /// Says how a plane is stored.
+    /// Says how a plane is stored; of planes that are numbered the name of their row says it of all.
     #[must_use]
     pub fn stored(mut self, plane: &str, storage: Storage) -> Self {
         self.storage.insert(plane.to_owned(), storage);
@@ -182,46 +198,64 @@ impl Client {
 
     /// One number a pixel, if the plane was handed in.
     pub(crate) fn scalar(&self, row: &PlaneRow) -> Option<Stored<'_, f64>> {
-        match self.samples(row)? {
-            Samples::Scalar(plane) => Some(self.of(row, plane)),
+        self.scalar_of(row, 0)
+    }
+
+    /// The same of a row that has numbers.
+    pub(crate) fn scalar_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, f64>> {
+        match self.samples(row, number)? {
+            Samples::Scalar(plane) => Some(self.of(row, number, plane)),
             _ => None,
         }
     }
 
     /// Colours or vectors, if the plane was handed in.
     pub(crate) fn triple(&self, row: &PlaneRow) -> Option<Stored<'_, [f64; 3]>> {
-        match self.samples(row)? {
-            Samples::Color(plane) | Samples::Vector(plane) => Some(self.of(row, plane)),
+        self.triple_of(row, 0)
+    }
+
+    /// The same of a row that has numbers.
+    pub(crate) fn triple_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, [f64; 3]>> {
+        match self.samples(row, number)? {
+            Samples::Color(plane) | Samples::Vector(plane) => Some(self.of(row, number, plane)),
             _ => None,
         }
     }
 
     /// Indices, if the plane was handed in.
     pub(crate) fn index(&self, row: &PlaneRow) -> Option<Stored<'_, u32>> {
-        match self.samples(row)? {
-            Samples::Index(plane) => Some(self.of(row, plane)),
+        self.index_of(row, 0)
+    }
+
+    /// The same of a row that has numbers.
+    pub(crate) fn index_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, u32>> {
+        match self.samples(row, number)? {
+            Samples::Index(plane) => Some(self.of(row, number, plane)),
             _ => None,
         }
     }
 
     /// Small counts, if the plane was handed in.
     pub(crate) fn count(&self, row: &PlaneRow) -> Option<Stored<'_, u8>> {
-        match self.samples(row)? {
-            Samples::Count(plane) => Some(self.of(row, plane)),
+        self.count_of(row, 0)
+    }
+
+    /// The same of a row that has numbers.
+    pub(crate) fn count_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, u8>> {
+        match self.samples(row, number)? {
+            Samples::Count(plane) => Some(self.of(row, number, plane)),
             _ => None,
         }
     }
 
-    fn samples(&self, row: &PlaneRow) -> Option<&Samples<f64>> {
-        self.frame.plane(row.name)
+    fn samples(&self, row: &PlaneRow, number: usize) -> Option<&Samples<f64>> {
+        self.frame.plane(&row.numbered(number))
     }
 
-    fn of<'a, T>(&'a self, row: &PlaneRow, plane: &'a Plane<T>) -> Stored<'a, T> {
-        Stored {
-            name: row.name,
-            plane,
-            storage: self.storage(row.name),
-            radii: self.radii(row.name),
-        }
+    fn of<'a, T>(&'a self, row: &PlaneRow, number: usize, plane: &'a Plane<T>) -> Stored<'a, T> {
+        let channel = row.numbered(number);
+        let own = self.storage.get(&channel).or_else(|| self.storage.get(row.name));
+        let storage = own.copied().unwrap_or_default();
+        Stored { name: row.name, number, plane, storage, radii: self.radii(&channel) }
     }
 }

@@ -39,6 +39,7 @@ mod project;
 pub mod surfels;
 #[cfg(test)]
 pub(in crate::method) mod tests;
+pub(in crate::method) mod verify;
 
 pub(in crate::method) use project::project;
 
@@ -176,7 +177,7 @@ impl<'a, R: Exact> SceneProjector<'a, R> {
 /// A vector of view space in world space, divided by its length, plus 0: each component
 /// `(m0 x + m1 y) + m2 z` down a column of the view matrix; the null vector stays.
 #[inline(always)]
-pub(in crate::method) fn world<R: Exact>(view: &View<R>, v: Vector3<R>) -> [R; 3] {
+pub(in crate::method) fn world<R: Real>(view: &View<R>, v: Vector3<R>) -> [R; 3] {
     let m = &view.rows;
     let column = |i: usize| (m[0][i] * v.x + m[1][i] * v.y) + m[2][i] * v.z;
     let n = Vector3::new(column(0), column(1), column(2)).normalized();

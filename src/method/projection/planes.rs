@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::frame::{NamedPlane, Plane};
 use crate::method::given::Given;
 use crate::method::{Holds, PlaneRow, Stage, When};
-use crate::number::{Exact, Vector2, Vector3};
+use crate::number::{Exact, Real, Vector2, Vector3};
 
 /// The stage, with which several methods begin.
 pub const STAGE: Stage = Stage { name: "projection", reads: &[], leaves: &PLANES };
@@ -122,11 +122,11 @@ pub(in crate::method) fn triple_at<R: Exact>(
 }
 
 /// The components of a vector, as planes hold it.
-pub(in crate::method) fn components<R: Exact>(v: Vector3<R>) -> [R; 3] {
+pub(in crate::method) fn components<R: Real>(v: Vector3<R>) -> [R; 3] {
     [v.x, v.y, v.z]
 }
 
 /// The vector of these components.
-pub(in crate::method) fn vector<R: Exact>([x, y, z]: [R; 3]) -> Vector3<R> {
+pub(in crate::method) fn vector<R: Real>([x, y, z]: [R; 3]) -> Vector3<R> {
     Vector3::new(x, y, z)
 }

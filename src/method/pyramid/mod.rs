@@ -40,6 +40,7 @@ pub mod push;
 mod settings;
 #[cfg(test)]
 mod tests;
+mod verify;
 
 pub use cell::Cell;
 pub use settings::{Occlusion, Settings, Weights};
@@ -50,6 +51,9 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage, projection};
 use crate::number::Exact;
+use crate::number::ball::Profile;
+use crate::verify::client::Client;
+use crate::verify::verdict::Verdict;
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -95,5 +99,9 @@ impl Algorithm for Settings {
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {
         explain::explain::<R>(job, self, pixel)
+    }
+
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
+        Some(verify::verify::<P>(job, self, client, budget))
     }
 }

@@ -4,7 +4,7 @@ use super::reconstruction::Gathered;
 use crate::composite::sum;
 use crate::frame::{Framebuffer, Plane};
 use crate::method::projection::{Has, world};
-use crate::number::{Exact, Vector3};
+use crate::number::{Exact, Real, Vector3};
 use crate::scene::Camera;
 use crate::splat::View;
 
@@ -30,12 +30,12 @@ pub(super) fn normalize<R: Exact>(
 }
 
 /// The average depth; +inf where nothing was gathered.
-fn depth<R: Exact>(pixel: &Gathered<R>) -> R {
-    if pixel.weight > R::ZERO { pixel.depths / pixel.weight } else { R::INFINITY }
+pub(super) fn depth<R: Real>(pixel: &Gathered<R>) -> R {
+    R::select(pixel.weight.gt(R::ZERO), pixel.depths / pixel.weight, R::INFINITY)
 }
 
 /// The direction of the average normal, world space.
-fn normal<R: Exact>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
+pub(super) fn normal<R: Real>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
     let [x, y, z] = sum::average(pixel.normals, pixel.weight);
     world(view, Vector3::new(x, y, z))
 }

@@ -39,9 +39,10 @@
 //! closer to it, so nothing else changes.
 
 use super::{Center, Falloff, Settings, propagation};
+use crate::composite::decide::Ternary;
 use crate::composite::{decide, sum};
 use crate::frame::{Exec, NO_ID, Plane};
-use crate::number::{Exact, Real};
+use crate::number::{Exact, Real, Truth};
 use crate::splat::Ellipse;
 
 /// What a pixel has gathered.
@@ -65,7 +66,7 @@ pub struct Gathered<R> {
     pub count: u8,
 }
 
-impl<R: Exact> Gathered<R> {
+impl<R: Real> Gathered<R> {
     /// Nothing.
     #[must_use]
     pub fn empty() -> Self {
@@ -81,10 +82,45 @@ impl<R: Exact> Gathered<R> {
         }
     }
 
-    /// The ternary test of the module page.
-    pub(super) fn test(&self, center: &Center<R>) -> Placement {
+    /// The ternary test of the module page; the first centre is before nothing.
+    pub(super) fn ternary(&self, center: &Center<R>) -> Ternary<R::Truth> {
         let test = decide::ternary([center.depth, center.radius], [self.depth, self.radius]);
-        if self.id == NO_ID || test.before {
+        let first = R::Truth::from(self.id == NO_ID);
+        Ternary { before: test.before | first, behind: test.behind & !first }
+    }
+
+    /// Whether a centre that is added becomes the front.
+    pub(super) fn nearer(&self, center: &Center<R>) -> R::Truth {
+        decide::before(center.depth, self.depth)
+    }
+
+    /// The sums with a centre added, which becomes the front if it is `nearer`.
+    #[must_use]
+    pub(super) fn with(self, center: &Center<R>, weight: R, nearer: bool) -> Self {
+        let front = if nearer {
+            (center.id, center.depth, center.radius)
+        } else {
+            (self.id, self.depth, self.radius)
+        };
+        let n = center.normal;
+        Self {
+            id: front.0,
+            depth: front.1,
+            radius: front.2,
+            weight: self.weight + weight,
+            depths: self.depths + weight * center.depth,
+            normals: sum::add(self.normals, weight, [n.x, n.y, n.z]),
+            colors: sum::add(self.colors, weight, center.color),
+            count: self.count.saturating_add(1),
+        }
+    }
+}
+
+impl<R: Exact> Gathered<R> {
+    /// Where a centre lies against the front.
+    pub(super) fn test(&self, center: &Center<R>) -> Placement {
+        let test = self.ternary(center);
+        if test.before {
             Placement::Before
         } else if test.behind {
             Placement::Behind
@@ -100,15 +136,7 @@ impl<R: Exact> Gathered<R> {
             Placement::Behind => return,
             Placement::Blended => {}
         }
-        if decide::before(center.depth, self.depth) {
-            (self.id, self.depth, self.radius) = (center.id, center.depth, center.radius);
-        }
-        self.weight = self.weight + weight;
-        self.depths = self.depths + weight * center.depth;
-        let n = center.normal;
-        self.normals = sum::add(self.normals, weight, [n.x, n.y, n.z]);
-        self.colors = sum::add(self.colors, weight, center.color);
-        self.count = self.count.saturating_add(1);
+        *self = self.with(center, weight, self.nearer(center));
     }
 }
 
@@ -164,21 +192,23 @@ pub fn gather<R: Exact>(
 
 /// A centre that a pixel asks.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Asked<'a, R> {
+pub(super) struct Asked<'a, R: Real> {
     pub(super) center: &'a Center<R>,
     pub(super) level: usize,
     pub(super) cell: (u32, u32),
     /// The form at the pixel's centre, and what it is compared with.
     pub(super) form: R,
     pub(super) square: R,
+    /// Whether the centre stays at the level.
+    pub(super) stays: R::Truth,
     /// Whether the ellipse holds the pixel's centre.
-    pub(super) holds: bool,
-    /// Whether the centre was projected to the pixel and stays at level 0.
+    pub(super) holds: R::Truth,
+    /// Whether the centre was projected to the pixel, which it is held by if it stays at level 0.
     pub(super) own: bool,
 }
 
-/// Calls `visit` for every centre that stays in the templates around a pixel, in their order.
-pub(super) fn each_asked<'a, R: Exact>(
+/// Calls `visit` for every centre that stays in the templates around a pixel, or may, in their order.
+pub(super) fn each_asked<'a, R: Real>(
     levels: &'a [Plane<Center<R>>],
     settings: &Settings,
     pixel: (u32, u32),
@@ -190,7 +220,7 @@ pub(super) fn each_asked<'a, R: Exact>(
 }
 
 /// The template of one level around a pixel.
-fn search<'a, R: Exact>(
+fn search<'a, R: Real>(
     levels: &'a [Plane<Center<R>>],
     level: usize,
     settings: &Settings,
@@ -204,7 +234,8 @@ fn search<'a, R: Exact>(
     for cy in row.saturating_sub(h)..cells.height().min(row + h + 1) {
         for cx in column.saturating_sub(h)..cells.width().min(column + h + 1) {
             let center = cells.at(cx, cy);
-            if !center.is_valid() || (!is_top && propagation::moves(center, reach)) {
+            let stays = R::Truth::from(is_top) | !propagation::moves(center, reach);
+            if !center.is_valid() || !stays.possibly() {
                 continue;
             }
             let ellipse = Ellipse::new(center.normal, center.extent);
@@ -214,7 +245,7 @@ fn search<'a, R: Exact>(
             );
             let own = level == 0 && (cx, cy) == (x, y);
             let (cell, square, holds) = ((cx, cy), ellipse.square, ellipse.holds(form));
-            visit(&Asked { center, level, cell, form, square, holds, own });
+            visit(&Asked { center, level, cell, form, square, stays, holds, own });
         }
     }
 }

@@ -151,6 +151,18 @@ impl<R: Real> Shader<R> {
         self.lit(self.position(x, y, t), |l| (normal, normal.dot(l)), surface)
     }
 
+    /// The same of a tube; its tangent, in world space, is not the null vector.
+    pub(crate) fn tube(
+        &self,
+        (x, y): (usize, usize),
+        t: R,
+        tangent: Vector3<R>,
+        surface: [R; 3],
+    ) -> [R; 3] {
+        let tangent = self.view.direction(tangent).normalized();
+        self.lit(self.position(x, y, t), |l| around(tangent, l), surface)
+    }
+
     /// The colour of surfaces in a scene without colours.
     pub(crate) fn plain(&self) -> [R; 3] {
         self.material.color.to_array().map(R::from_f32)
@@ -265,13 +277,15 @@ impl<R: Exact> Form<R> {
     #[inline(always)]
     fn towards(&self, l: Vector3<R>) -> (Vector3<R>, R) {
         let Self { normal, tangent } = *self;
-        if tangent == Vector3::ZERO {
-            (normal, normal.dot(l))
-        } else {
-            let across = l - tangent * l.dot(tangent);
-            (across.normalized(), across.length())
-        }
+        if tangent == Vector3::ZERO { (normal, normal.dot(l)) } else { around(tangent, l) }
     }
+}
+
+/// n and n . l of a tube along T for the direction l towards a light.
+#[inline(always)]
+fn around<R: Real>(tangent: Vector3<R>, l: Vector3<R>) -> (Vector3<R>, R) {
+    let across = l - tangent * l.dot(tangent);
+    (across.normalized(), across.length())
 }
 
 /// r . v: how far the mirrored light goes towards the eye.

@@ -1,0 +1,185 @@
+//! What is asked of every client, whatever its method: numbers against balls, copies, and shading.
+
+use super::algorithm::Job;
+use crate::frame::named::{COLOR, VECTOR, component};
+use crate::method::Holds;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real, Vector3};
+use crate::shade::phong::Shader;
+use crate::splat::View;
+use crate::verify::client::{Storage, Stored};
+use crate::verify::verdict::Fault;
+
+/// Told of a check: the place of its stage among those that are judged together, by how many bounds
+/// the client errs, and what is wrong if that is above 1.
+pub(super) type Report<'a> = dyn FnMut(usize, f64, &dyn Fn() -> Fault) + 'a;
+
+/// Any number, or none.
+pub(super) fn anything<P: Profile>() -> Ball<P> {
+    Ball::new(0.0, f64::NAN)
+}
+
+/// A ball that is larger by this much.
+pub(super) fn widened<P: Profile>(ball: Ball<P>, by: f64) -> Ball<P> {
+    if by > 0.0 { Ball::new(ball.middle, ball.radius + by) } else { ball }
+}
+
+/// What the next stage reads of a stored value: floats as they are, in whatever format; of steps
+/// what they may stand for, as each reader turns them into a number.
+fn read<P: Profile>(value: f64, storage: Storage) -> Ball<P> {
+    let flushed = P::FLUSHES && value.abs() < f64::from(f32::MIN_POSITIVE);
+    let radius = match storage {
+        _ if value.is_nan() => f64::NAN,
+        Storage::Single | Storage::Half if flushed => value.abs(),
+        Storage::Single | Storage::Half => 0.0,
+        _ => storage.radius(value),
+    };
+    Ball::new(value, radius)
+}
+
+/// The number that the next stage reads at a pixel.
+pub(super) fn input<P: Profile>(plane: &Stored<'_, f64>, (x, y): (u32, u32)) -> Ball<P> {
+    read(*plane.plane.at(x, y), plane.storage)
+}
+
+/// The three numbers that the next stage reads at a pixel.
+pub(super) fn inputs<P: Profile>(plane: &Stored<'_, [f64; 3]>, (x, y): (u32, u32)) -> [Ball<P>; 3] {
+    if plane.has_radii() {
+        return plane.balls((x, y));
+    }
+    plane.plane.at(x, y).map(|value| read(value, plane.storage))
+}
+
+/// One number against what it may be.
+pub(super) fn number<P: Profile>(
+    part: usize,
+    plane: &Stored<'_, f64>,
+    at: (u32, u32),
+    truth: Ball<P>,
+    report: &mut Report<'_>,
+) {
+    component_of(part, || plane.channel(), plane.ball(at), truth, report);
+}
+
+/// Three numbers against what they may be; their letters are those of what the row holds.
+pub(super) fn triple<P: Profile>(
+    part: usize,
+    (plane, holds): (&Stored<'_, [f64; 3]>, Holds),
+    at: (u32, u32),
+    truth: [Ball<P>; 3],
+    report: &mut Report<'_>,
+) {
+    let letters = if holds == Holds::Color { COLOR } else { VECTOR };
+    for ((found, truth), letter) in plane.balls(at).into_iter().zip(truth).zip(letters) {
+        component_of(part, || component(&plane.channel(), letter), found, truth, report);
+    }
+}
+
+fn component_of<P: Profile>(
+    part: usize,
+    channel: impl Fn() -> String,
+    found: Ball<P>,
+    truth: Ball<P>,
+    report: &mut Report<'_>,
+) {
+    report(part, truth.misfit(found), &|| Fault::Value {
+        channel: channel(),
+        found: found.middle,
+        truth: truth.middle,
+        radius: truth.radius + found.radius,
+    });
+}
+
+/// An index or a count against what it must be.
+pub(super) fn whole<T: Copy + Into<u32>>(
+    part: usize,
+    plane: &Stored<'_, T>,
+    at: (u32, u32),
+    truth: T,
+    report: &mut Report<'_>,
+) {
+    let (found, truth) = ((*plane.plane.at(at.0, at.1)).into(), truth.into());
+    let error = if found == truth { 0.0 } else { f64::INFINITY };
+    report(part, error, &|| Fault::Whole { channel: plane.channel(), found, truth });
+}
+
+/// Of several truths the one that the client errs least against, by the worst of each of N stages: a
+/// stage counts before those that follow it, and what is right is equally right.
+pub(super) fn least_wrong<'t, T, const N: usize>(
+    all: &'t [T],
+    check: impl Fn(&T, &mut Report<'_>),
+) -> Option<&'t T> {
+    if let [one] = all {
+        return Some(one);
+    }
+    let mut best: Option<([f64; N], &T)> = None;
+    for truth in all {
+        let mut worst = [1.0; N];
+        check(truth, &mut |part, error, _| worst[part] = worst[part].at_least(error));
+        if best.is_none_or(|(least, _)| worst < least) {
+            best = Some((worst, truth));
+        }
+    }
+    best.map(|(_, truth)| truth)
+}
+
+/// Deferred shading of a client's surfaces.
+pub(super) struct Shading<P: Profile> {
+    shader: Shader<Ball<P>>,
+    /// Whether surfaces have colours; else the material has one.
+    colored: bool,
+    /// Whether an environment is seen where nothing else is.
+    environment: bool,
+}
+
+/// What lies at a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surface<P: Profile> {
+    /// Depth; exactly +inf where nothing is.
+    pub(super) depth: Ball<P>,
+    /// Normal and tangent in world space; without a tangent a surface, else a tube.
+    pub(super) normal: [Ball<P>; 3],
+    pub(super) tangent: Option<[Ball<P>; 3]>,
+    /// Its colour, if surfaces have colours.
+    pub(super) color: [Ball<P>; 3],
+}
+
+impl<P: Profile> Shading<P> {
+    pub(super) fn new(job: &Job<'_>, colored: bool) -> Self {
+        let scene = job.scene;
+        Self {
+            shader: Shader::new(View::new(job.camera), &scene.lights, scene.material),
+            colored,
+            environment: scene.environment.is_some(),
+        }
+    }
+
+    /// The colour of a pixel; any where an environment is seen, or where the depth is not known.
+    pub(super) fn color(&self, (x, y): (u32, u32), surface: &Surface<P>) -> [Ball<P>; 3] {
+        let Surface { depth, normal, tangent, color } = *surface;
+        // What is not known may have any midpoint.
+        let empty = depth.middle == f64::INFINITY && depth.radius == 0.0;
+        if empty && !self.environment {
+            return [Ball::ZERO; 3];
+        }
+        if empty || !depth.radius.is_finite() {
+            return [anything(); 3];
+        }
+        let vector = |[x, y, z]: [Ball<P>; 3]| Vector3::new(x, y, z);
+        let color = if self.colored { color } else { self.shader.plain() };
+        let place = (x as usize, y as usize);
+        match tangent {
+            Some(tangent) => self.shader.tube(place, depth, vector(tangent), color),
+            None => self.shader.surface(place, depth, vector(normal), color),
+        }
+    }
+
+    /// The opacity of a pixel in which something is seen if `seen` is greater than 0.
+    pub(super) fn alpha(&self, seen: Ball<P>) -> Ball<P> {
+        if self.environment {
+            Ball::ONE
+        } else {
+            Ball::select(seen.gt(Ball::ZERO), Ball::ONE, Ball::ZERO)
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Each stage is judged from what the client has of the stage before: floats are inputs as they are
+//! stored, and so exact. The formulas are those of the crate in balls of a [`Profile`].
+//!
+//! **Projection**: see `projection/verify`, which says what is not judged of ribbons, tubes and
+//! triangles. The later stages are judged wherever their inputs come from.
+//!
+//! **Pull and push**, level by level from the client's own: the pull from its finer level, the push from
+//! its coarser one and from what its pull left. Level 0 before the push is the projection's, the
+//! end of its intervals a computed number. Of each cell every outcome that the decisions allow: which
+//! ellipses hold its centre, which is foremost, whose intervals overlap, whether it is occluded; a
+//! cell is right if one outcome fits every plane. A level is judged if every plane of what it comes
+//! from is there. What is copied must be equal.
+//!
+//! **Shading** from the client's finest level after the push (of a picture of one pixel: the
+//! projection); Z and kind are copies of it. Without it the colour is judged from the normal and the
+//! tangent of the picture, where the scene has no colours.
+//!
+//! A cell with more than 16 outcomes is not judged, and counts as undecided like one with several. A
+//! cell is marked where its planes have it, whatever its level.
+
+mod levels;
+mod pixel;
+mod planes;
+#[cfg(test)]
+mod tests;
+
+use super::Settings;
+use crate::frame::pyramid;
+use crate::method::algorithm::Job;
+use crate::method::judged::{Marks, counted, judged};
+use crate::method::projection::verify::{self as samples, SamplePlanes};
+use crate::number::ball::Profile;
+use crate::verify::client::Client;
+use crate::verify::verdict::{Doubt, Verdict};
+use levels::Levels;
+use pixel::PixelJudge;
+use planes::{CellPlanes, PicturePlanes};
+
+/// Judges the planes of a client.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Verdict {
+    let sizes = pyramid::sizes(job.camera.width, job.camera.height);
+    let last = sizes.len() - 1;
+    let finest = SamplePlanes::new(client, job.scene);
+    let pulled: Vec<_> = (1..=last).map(|level| CellPlanes::pulled(client, level)).collect();
+    let pushed: Vec<_> = (0..last).map(|level| CellPlanes::pushed(client, level)).collect();
+    let projection = samples::judge::<P>(job, settings.cull, &finest);
+    let levels = Levels::<P>::new(job, &sizes, &finest, [&pulled, &pushed]);
+    let mut stages = vec![projection, levels.pull(), levels.push(settings)];
+    let handed = PicturePlanes::new(client);
+    let judge = PixelJudge::new(job, levels.finest(), &handed);
+    let found = job.exec.ordered(job.grid().rects(), |rect| {
+        let mut marks = Marks::new(rect);
+        let at = counted(rect);
+        let covered = at.filter(|(pixel, at)| judge.judge(*at, &mut marks.at(*pixel))).count();
+        ([marks], covered as u64)
+    });
+    let covered = found.iter().map(|(_, covered)| covered).sum();
+    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
+    stages.extend(judged(job, [("shading", judge.names())], tiles));
+    let undecided = [1, 2].map(|i: usize| stages[i].doubtful(Doubt::OF_SUMS)).iter().sum();
+    Verdict { stages, covered, undecided, budget }
+}

@@ -1,0 +1,69 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Each stage is judged from what the client has of the stage before: floats are inputs as they are
+//! stored, and so exact. The formulas are those of the crate in balls of a [`Profile`].
+//!
+//! **Projection**: see `projection/verify`.
+//!
+//! **Propagation**, level by level from the client's finer level. Of each cell every outcome that the
+//! decisions allow: who moves, which is foremost, who is near enough; a cell is right if one outcome
+//! fits every plane. A level is judged if every plane of the finer one is there, those of the
+//! projection for level 0.
+//!
+//! **Reconstruction**, if every plane of every level is there: the gathering is replayed in its order.
+//! Where a decision is undecided (who stays, whether the ellipse holds the pixel, the ternary test,
+//! which is the front) all continuations are followed.
+//!
+//! **Normalization and shading** as in `ewa`, from the client's sums and averages.
+//!
+//! A cell or a pixel with more than 16 outcomes is not judged, and counts as undecided like one with
+//! several. A cell is marked where its planes have it, whatever its level. What is copied from stage
+//! to stage (ids, depth and radius of the front, a centre that moves alone) must be equal.
+
+mod gathered;
+mod levels;
+mod pixel;
+mod planes;
+#[cfg(test)]
+mod tests;
+
+use super::{Settings, propagation};
+use crate::frame::pyramid;
+use crate::method::algorithm::Job;
+use crate::method::judged::{Marks, counted, judged};
+use crate::method::projection::verify::{self as samples, SamplePlanes};
+use crate::number::ball::Profile;
+use crate::verify::client::Client;
+use crate::verify::verdict::{Doubt, Verdict};
+use levels::Levels;
+use pixel::PixelJudge;
+use planes::{CenterPlanes, PicturePlanes};
+
+/// Judges the planes of a client.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Verdict {
+    let mut sizes = pyramid::sizes(job.camera.width, job.camera.height);
+    sizes.truncate(propagation::top(settings, &sizes) + 1);
+    let finest = SamplePlanes::new(client, job.scene);
+    let coarser: Vec<_> = (1..sizes.len()).map(|level| CenterPlanes::new(client, level)).collect();
+    let projection = samples::judge::<P>(job, settings.cull, &finest);
+    let levels = Levels::<P>::new(job, settings, &sizes, &finest, &coarser);
+    let propagation = levels.judge();
+    let handed = PicturePlanes::new(client);
+    let judge = PixelJudge::new(job, settings, levels.all(), &handed);
+    let found = job.exec.ordered(job.grid().rects(), |rect| {
+        let mut marks = [(); 3].map(|()| Marks::new(rect));
+        let covered = counted(rect).filter(|at| judge.judge(*at, &mut marks)).count();
+        (marks, covered as u64)
+    });
+    let covered = found.iter().map(|(_, covered)| covered).sum();
+    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
+    let mut stages = vec![projection, propagation];
+    stages.extend(judged(job, handed.stages(judge.gathers()), tiles));
+    let undecided = stages[2].doubtful(Doubt::OF_SUMS);
+    Verdict { stages, covered, undecided, budget }
+}

@@ -1,0 +1,152 @@
+//! What the tests of verdicts on image-space methods share.
+
+use crate::frame::{Exec, Frame, NO_ID, Samples};
+use crate::method::{Method, Session};
+use crate::scene::{Camera, Scene};
+use crate::verify::client::{Client, Rounding};
+use crate::verify::verdict::{Finding, Outcome, Verdict};
+
+/// What is said of a frame as a client's.
+pub(in crate::method) fn verdict(
+    session: &Session<'_>,
+    camera: &Camera,
+    frame: &Frame<f32>,
+    rounding: Rounding,
+) -> Verdict {
+    let mut client = Client::from(frame);
+    client.rounding = rounding;
+    session.verify(camera, &client, Verdict::BUDGET).unwrap()
+}
+
+/// The worst of all that is wrong in the first stage that is.
+fn wrong(verdict: &Verdict) -> Option<(&'static str, Finding)> {
+    verdict.first_wrong().and_then(|stage| Some((stage.stage, stage.worst.clone()?)))
+}
+
+/// What the crate renders is right: with all stages, without, and each plane alone.
+pub(in crate::method) fn assert_right(scene: &Scene, camera: &Camera, method: Method) {
+    let exec = Exec::new(1, 16).unwrap();
+    let session = Session::new(scene, method, &exec).unwrap();
+    let whole = session.define::<f32>(camera, true).unwrap().frame;
+    let plain = session.define::<f32>(camera, false).unwrap().frame;
+    for rounding in [Rounding::Ieee, Rounding::Gpu] {
+        let found = verdict(&session, camera, &whole, rounding);
+        assert_eq!(wrong(&found), None, "{rounding:?}");
+        assert_eq!(found.outcome(), Outcome::Right, "{rounding:?} {}", found.undecided);
+        for stage in &found.stages {
+            let leaves = method.stages().iter().find(|s| s.name == stage.stage).unwrap().leaves;
+            let there =
+                |name: &&str| whole.planes.iter().any(|p| leaves_called(leaves, name, &p.name));
+            let all = leaves.iter().map(|row| row.name).filter(there).count();
+            assert_eq!(stage.planes.len(), all, "{} {:?}", stage.stage, stage.planes);
+        }
+        let found = verdict(&session, camera, &plain, rounding);
+        assert_eq!(wrong(&found), None, "{rounding:?}");
+    }
+    for plane in &whole.planes {
+        let frame = Frame { planes: vec![plane.clone()], ..whole };
+        let found = verdict(&session, camera, &frame, Rounding::Ieee);
+        assert_eq!(wrong(&found), None, "{}", plane.name);
+    }
+}
+
+/// Whether a plane is of the row of this name.
+fn leaves_called(leaves: &[crate::method::PlaneRow], row: &str, plane: &str) -> bool {
+    leaves.iter().any(|leaf| leaf.name == row && leaf.is_called(plane))
+}
+
+/// One value of a client that is not what was computed.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::method) enum Slip {
+    /// Too large by this part of itself.
+    Off(f32),
+    /// The next float.
+    Next,
+    /// Not a number.
+    NotANumber,
+    /// One more, of an id or a count.
+    More,
+    /// What an empty cell has, in all planes of this layer.
+    Dropped,
+}
+
+/// Each slip is found in its stage; what is without one is right.
+pub(in crate::method) fn assert_found(
+    scene: &Scene,
+    camera: &Camera,
+    method: Method,
+    slips: &[(&str, Slip, &str)],
+) {
+    let exec = Exec::new(1, 16).unwrap();
+    let session = Session::new(scene, method, &exec).unwrap();
+    let right = session.define::<f32>(camera, true).unwrap().frame;
+    for (plane, slip, stage) in slips {
+        let mut frame = right.clone();
+        let of = frame.planes.iter().find(|p| p.name == *plane).unwrap();
+        let place = place(&of.samples).unwrap_or_else(|| panic!("nothing in {plane}"));
+        for plane in frame.planes.iter_mut().filter(|p| touches(&p.name, plane, *slip)) {
+            let empty = match plane.name.rsplit('.').next() {
+                Some("Z" | "front") => f32::INFINITY,
+                Some("back") => f32::NEG_INFINITY,
+                _ => 0.0,
+            };
+            change(&mut plane.samples, place, *slip, empty);
+        }
+        for rounding in [Rounding::Ieee, Rounding::Gpu] {
+            let found = verdict(&session, camera, &frame, rounding);
+            let found = found.first_wrong().map(|stage| stage.stage);
+            assert_eq!(found, Some(*stage), "{plane}, {slip:?}, {rounding:?}");
+        }
+    }
+}
+
+/// Whether a slip of one plane changes another: all of its layer if a cell is dropped.
+fn touches(other: &str, plane: &str, slip: Slip) -> bool {
+    let layer = |name: &str| name.split('.').next().unwrap_or_default().to_owned();
+    other == plane || (matches!(slip, Slip::Dropped) && layer(other) == layer(plane))
+}
+
+/// A value that says something, in the middle of those that do.
+fn place(samples: &Samples<f32>) -> Option<usize> {
+    let says = |v: f32| v != 0.0 && v.is_finite();
+    let all: Vec<usize> = match samples {
+        Samples::Scalar(p) => places(p.values(), |v| says(*v)),
+        Samples::Color(p) | Samples::Vector(p) => places(p.values(), |v| says(v[0])),
+        Samples::Index(p) => places(p.values(), |v| *v != NO_ID),
+        Samples::Count(p) => places(p.values(), |v| *v != 0),
+    };
+    all.get(all.len() / 2).copied()
+}
+
+fn places<T>(values: &[T], says: impl Fn(&T) -> bool) -> Vec<usize> {
+    (0..values.len()).filter(|&i| says(&values[i])).collect()
+}
+
+/// Changes one value; `empty` is what an empty cell has.
+fn change(samples: &mut Samples<f32>, place: usize, slip: Slip, empty: f32) {
+    let number = |v: &mut f32| {
+        *v = match slip {
+            Slip::Off(part) => *v * (1.0 + part),
+            Slip::Next => v.next_up(),
+            Slip::NotANumber => f32::NAN,
+            Slip::More => *v + 1.0,
+            Slip::Dropped => empty,
+        }
+    };
+    let dropped = matches!(slip, Slip::Dropped);
+    match samples {
+        Samples::Scalar(p) => number(&mut p.values_mut()[place]),
+        Samples::Color(p) | Samples::Vector(p) => {
+            let value = &mut p.values_mut()[place];
+            if dropped { *value = [0.0; 3] } else { number(&mut value[0]) }
+        }
+        Samples::Index(p) => {
+            let id = &mut p.values_mut()[place];
+            *id = if dropped { NO_ID } else { *id + 1 };
+        }
+        Samples::Count(p) => {
+            let count = &mut p.values_mut()[place];
+            *count = if dropped { 0 } else { *count + 1 };
+        }
+    }
+}
