@@ -36,6 +36,11 @@ impl Marks {
         Self { log: Some(Vec::new()), ..Self::new(rect) }
     }
 
+    /// Nothing found yet in a part of the picture, and told as much of.
+    pub(super) fn beside(&self, rect: Rect) -> Self {
+        Self { log: self.log.as_ref().map(|_| Vec::new()), ..Self::new(rect) }
+    }
+
     /// Everything that was checked.
     pub(super) fn checks(self, stage: &'static str) -> impl Iterator<Item = Check> {
         let log = self.log.into_iter().flatten();

@@ -62,8 +62,8 @@ mod margin;
 pub(super) mod normalization;
 mod picture;
 mod planes;
-mod possible;
-mod verify;
+pub(super) mod possible;
+pub(super) mod verify;
 pub(super) mod visibility;
 
 pub use crate::splat::SplatSettings as Settings;

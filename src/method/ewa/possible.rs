@@ -11,17 +11,20 @@ use crate::splat::{Disc, Projector, Splat, Tally, batch};
 
 /// A surfel that may be drawn.
 #[derive(Debug)]
-pub(super) struct PossibleSplat<P: Profile> {
-    pub(super) splat: Splat<Ball<P>>,
+pub(in crate::method) struct PossibleSplat<P: Profile> {
+    pub(in crate::method) splat: Splat<Ball<P>>,
     /// Whether it certainly is, and with this outline.
-    pub(super) certain: bool,
+    pub(in crate::method) certain: bool,
 }
 
 /// The splats of a picture, each with the pixels that may be inside.
-pub(super) type PossibleSplats<P> = Prepared<Ball<P>, PossibleSplat<P>>;
+pub(in crate::method) type PossibleSplats<P> = Prepared<Ball<P>, PossibleSplat<P>>;
 
 /// The surfels that may be drawn.
-pub(super) fn project<P: Profile>(job: &Job<'_>, settings: &Settings) -> PossibleSplats<P> {
+pub(in crate::method) fn project<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+) -> PossibleSplats<P> {
     let surfels = &job.scene.surfels;
     let [x1, y1] = job.camera.size();
     let picture = Rect { x1, y1, ..Rect::default() };
