@@ -105,10 +105,10 @@ pub(super) fn whole<T: Copy + Into<u32>>(
 
 /// Of several truths the one that the client errs least against, by the worst of each of N stages: a
 /// stage counts before those that follow it, and what is right is equally right.
-pub(super) fn least_wrong<'t, T, const N: usize>(
-    all: &'t [T],
+pub(super) fn least_wrong<T, const N: usize>(
+    all: &[T],
     check: impl Fn(&T, &mut Report<'_>),
-) -> Option<&'t T> {
+) -> Option<&T> {
     if let [one] = all {
         return Some(one);
     }

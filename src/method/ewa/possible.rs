@@ -50,7 +50,7 @@ pub(in crate::method) fn project<P: Profile>(
 
 /// What a surfel may become: one splat, two if it is not certain whether it reaches the near plane,
 /// or none; and whether that is certain.
-fn each_possible<P: Profile>(
+pub(in crate::method) fn each_possible<P: Profile>(
     projector: &Projector<Ball<P>>,
     disc: &Disc<Ball<P>>,
     surfel: u32,

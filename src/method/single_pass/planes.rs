@@ -15,7 +15,7 @@ use crate::number::Exact;
 use crate::splat::View;
 
 /// The planes of a depth-image.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(in crate::method) struct ImageRows {
     pub(in crate::method) depth: PlaneRow,
     pub(in crate::method) id: PlaneRow,

@@ -45,9 +45,9 @@ fn what_the_crate_renders_is_right() {
 #[test]
 fn of_scenes_without_colours_and_of_thin_pictures_too() {
     // Few, as a pixel with more layers than leave planes is undecided.
-    let scene = Scene::unlit("", surfels(40, 0.3, false, 3));
+    let scene = Scene::unlit("", surfels(60, 0.3, false, 3));
     for size in [[1, 1], [1, 9], [29, 13]] {
-        let settings = settings(Kernel::DEFAULT, 0.2, 20);
+        let settings = settings(Kernel::DEFAULT, 0.6, 20);
         assert_right(&scene, &camera(Shape::Sphere, size, None), Method::Peeling(settings));
     }
 }

@@ -19,7 +19,7 @@ use crate::verify::verdict::{Doubt, Fault};
 const MOST_CHOICES: usize = 16;
 
 /// What all pixels share.
-pub(super) struct Compositing<'a, P: Profile> {
+pub(in crate::method) struct Compositing<'a, P: Profile> {
     handed: &'a Handed<'a>,
     surfels: &'a Surfels,
     epsilon: Ball<P>,
@@ -29,7 +29,7 @@ pub(super) struct Compositing<'a, P: Profile> {
 type Choice<'s, P> = Vec<&'s Sample<P>>;
 
 impl<'a, P: Profile> Compositing<'a, P> {
-    pub(super) fn new(job: &Job<'a>, handed: &'a Handed<'a>, epsilon: Ball<P>) -> Self {
+    pub(in crate::method) fn new(job: &Job<'a>, handed: &'a Handed<'a>, epsilon: Ball<P>) -> Self {
         Self { handed, surfels: &job.scene.surfels, epsilon }
     }
 
@@ -41,14 +41,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
         groups: &[Samples<P>],
         pixel: &mut PixelMarks<'_>,
     ) -> (Ball<P>, Continuations<P>) {
-        let said = self.handed.id.map(|plane| *plane.plane.at(at.0, at.1));
-        let own = self.handed.depth.map(|plane| plane.ball::<P>(at));
-        if let Some(depth) = own {
-            self.check_depth(depth, said, groups, pixel);
-        }
-        if let Some(id) = said {
-            self.check_id(id, groups, pixel);
-        }
+        let (own, said) = self.check_nearest(at, groups, pixel);
         let choices = choices(groups);
         let stored = groups.iter().all(|group| group.depth_stored);
         let nearest = |choice: &Choice<'_, P>| match own {
@@ -71,6 +64,25 @@ impl<'a, P: Profile> Compositing<'a, P> {
             _ => Continuations::Several(all),
         };
         (depth, sums)
+    }
+
+    /// Marks what is wrong with the nearest fragment of a pixel; gives depth and surfel that the client
+    /// has, if it does.
+    pub(in crate::method) fn check_nearest(
+        &self,
+        at: (u32, u32),
+        groups: &[Samples<P>],
+        pixel: &mut PixelMarks<'_>,
+    ) -> (Option<Ball<P>>, Option<u32>) {
+        let said = self.handed.id.map(|plane| *plane.plane.at(at.0, at.1));
+        let own = self.handed.depth.map(|plane| plane.ball::<P>(at));
+        if let Some(depth) = own {
+            self.check_depth(depth, said, groups, pixel);
+        }
+        if let Some(id) = said {
+            self.check_id(id, groups, pixel);
+        }
+        (own, said)
     }
 
     /// Whether the depth of the picture is that of the nearest sample.

@@ -224,12 +224,17 @@ impl<'a, P: Profile> GroupFragments<'a, P> {
 
     fn keys(&self, q: Ball<P>, t: Ball<P>) -> Keys<P> {
         let Some(bins) = &self.bins else { return Keys { bins: None, part: t } };
-        let position = bins.position(t);
-        // A little more than the radius, as the comparisons of balls have it.
-        let reach = position.radius * (1.0 + f64::from(f32::EPSILON));
-        let reach = if reach.is_nan() { f64::INFINITY } else { reach };
-        let ends = [position.middle - reach, position.middle + reach];
-        let ends = ends.map(|end| bins.bin_of(Ball::exact(end)).middle);
+        let ends = bin_ends(bins, t);
         Keys { bins: Some(ends), part: ratio(q, self.shared().limit) }
     }
+}
+
+/// The least and the greatest bin of a depth.
+pub(in crate::method) fn bin_ends<P: Profile>(bins: &DepthBins<Ball<P>>, t: Ball<P>) -> [f64; 2] {
+    let position = bins.position(t);
+    // A little more than the radius, as the comparisons of balls have it.
+    let reach = position.radius * (1.0 + f64::from(f32::EPSILON));
+    let reach = if reach.is_nan() { f64::INFINITY } else { reach };
+    let ends = [position.middle - reach, position.middle + reach];
+    ends.map(|end| bins.bin_of(Ball::exact(end)).middle)
 }

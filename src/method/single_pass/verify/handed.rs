@@ -4,13 +4,13 @@ use crate::composite::groups::WeightedFragment;
 use crate::method::Holds;
 use crate::method::checks::{Report, input, inputs, number, triple};
 use crate::method::ewa::verify::handed::SumRows;
-use crate::method::single_pass::planes::{COLOR_SUM, COUNT, IMAGES, NORMAL_SUM, WEIGHT_SUM};
+use crate::method::single_pass::planes::{COLOR_SUM, COUNT, ImageRows, NORMAL_SUM, WEIGHT_SUM};
 use crate::number::Ball;
 use crate::number::ball::Profile;
 use crate::verify::client::{Client, Stored};
 
 /// The rows of the compositing pass.
-pub(super) fn sum_rows() -> SumRows {
+pub(in crate::method) fn sum_rows() -> SumRows {
     SumRows {
         nearest: None,
         weight: WEIGHT_SUM,
@@ -32,14 +32,14 @@ pub(super) struct ImagePlanes<'a> {
 }
 
 impl<'a> ImagePlanes<'a> {
-    pub(super) fn new(client: &'a Client, group: usize) -> Self {
+    pub(super) fn new(client: &'a Client, rows: &ImageRows, group: usize) -> Self {
         Self {
-            depth: client.scalar_of(&IMAGES.depth, group),
-            id: client.index_of(&IMAGES.id, group),
-            weight: client.scalar_of(&IMAGES.weight, group),
-            normal: client.triple_of(&IMAGES.normal, group),
-            color: client.triple_of(&IMAGES.color, group),
-            voronoi: client.scalar_of(&IMAGES.voronoi, group),
+            depth: client.scalar_of(&rows.depth, group),
+            id: client.index_of(&rows.id, group),
+            weight: client.scalar_of(&rows.weight, group),
+            normal: client.triple_of(&rows.normal, group),
+            color: client.triple_of(&rows.color, group),
+            voronoi: client.scalar_of(&rows.voronoi, group),
         }
     }
 

@@ -17,23 +17,23 @@ use crate::verify::verdict::{Doubt, Fault};
 
 /// What a group may keep at a pixel.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sample<P: Profile> {
+pub(in crate::method) struct Sample<P: Profile> {
     /// Its surfel; [`NO_ID`] if nothing is kept.
-    pub(super) surfel: u32,
+    pub(in crate::method) surfel: u32,
     /// Its nearness; that of an empty pixel if nothing is kept.
-    pub(super) nearness: Ball<P>,
+    pub(in crate::method) nearness: Ball<P>,
     /// As the compositing pass reads it.
-    pub(super) read: WeightedFragment<Ball<P>>,
+    pub(in crate::method) read: WeightedFragment<Ball<P>>,
 }
 
 /// The samples of a group at a pixel, at least one.
 #[derive(Clone, Debug)]
-pub(super) struct Samples<P: Profile> {
-    pub(super) all: Vec<Sample<P>>,
+pub(in crate::method) struct Samples<P: Profile> {
+    pub(in crate::method) all: Vec<Sample<P>>,
     /// Whether all of them are summed alike: the client stores what is summed.
-    pub(super) stored: bool,
+    pub(in crate::method) stored: bool,
     /// Whether their depths are the one that the client stores.
-    pub(super) depth_stored: bool,
+    pub(in crate::method) depth_stored: bool,
 }
 
 /// What may be kept: a fragment, or none.

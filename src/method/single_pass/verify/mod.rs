@@ -40,11 +40,12 @@
 pub(in crate::method) mod compositing;
 pub(in crate::method) mod fragments;
 mod handed;
-mod images;
+pub(in crate::method) mod images;
 #[cfg(test)]
 mod tests;
 
 use super::Settings;
+use super::planes::{IMAGES, ImageRows};
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::algorithm::Job;
@@ -56,28 +57,42 @@ use crate::method::judged::{Marks, counted, judged};
 use crate::method::replay::Place;
 use crate::number::ball::Profile;
 use crate::scene::Surfels;
-use crate::verify::client::{Client, Ties};
+use crate::verify::client::Client;
 use crate::verify::verdict::{Check, Verdict};
 use compositing::Compositing;
 use fragments::GroupFragments;
-use handed::{ImagePlanes, sum_rows};
+use handed::ImagePlanes;
+pub(in crate::method) use handed::sum_rows;
 use images::Images;
 
-/// The stages by their names.
-const STAGES: [&str; 3] = ["geometry", "compositing", "shading"];
+/// How a method that works by groups calls their images and its stages, and what a client has of it.
+#[derive(Debug)]
+pub(in crate::method) struct GroupsOf<'a> {
+    pub(in crate::method) client: &'a Client,
+    pub(in crate::method) handed: Handed<'a>,
+    pub(in crate::method) images: &'static ImageRows,
+    /// The passes of geometry and of compositing, and shading.
+    pub(in crate::method) stages: [&'static str; 3],
+}
+
+impl<'a> GroupsOf<'a> {
+    pub(super) fn new(client: &'a Client) -> Self {
+        let handed = Handed::of(client, &sum_rows());
+        Self { client, handed, images: &IMAGES, stages: ["geometry", "compositing", "shading"] }
+    }
+}
 
 /// Judges the planes of a client.
 ///
 /// # Errors
 /// As the projection of the method.
-pub(super) fn verify<P: Profile>(
+pub(in crate::method) fn verify<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
-    client: &Client,
+    of: &GroupsOf<'_>,
     budget: f64,
 ) -> Result<Verdict> {
-    let handed = Handed::of(client, &sum_rows());
-    let judge = Judge::<P>::new(job, settings, client, &handed)?;
+    let judge = Judge::<P>::new(job, settings, of)?;
     let tiles = job.grid().rects().into_iter().enumerate().collect();
     let found = job.exec.ordered(tiles, |(tile, rect)| {
         let mut marks = [(); 3].map(|()| Marks::new(rect));
@@ -92,17 +107,16 @@ pub(super) fn verify<P: Profile>(
 }
 
 /// Everything that is judged at one pixel.
-pub(super) fn checks<P: Profile>(
+pub(in crate::method) fn checks<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
-    client: &Client,
+    of: &GroupsOf<'_>,
     pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
     let Place { tile, rect } = Place::new(job, pixel)?;
-    let handed = Handed::of(client, &sum_rows());
     let mut marks = [(); 3].map(|()| Marks::logging(rect));
-    Judge::<P>::new(job, settings, client, &handed)?.judge((tile, rect), &mut marks);
-    Ok(marks.into_iter().zip(STAGES).flat_map(|(marks, stage)| marks.checks(stage)).collect())
+    Judge::<P>::new(job, settings, of)?.judge((tile, rect), &mut marks);
+    Ok(marks.into_iter().zip(of.stages).flat_map(|(marks, stage)| marks.checks(stage)).collect())
 }
 
 /// How many pixels of a tile may be covered, and in how many the sums are undecided.
@@ -115,8 +129,7 @@ struct Counts {
 /// What all tiles share.
 struct Judge<'a, P: Profile> {
     surfels: &'a Surfels,
-    handed: &'a Handed<'a>,
-    ties: Ties,
+    of: &'a GroupsOf<'a>,
     images: Vec<ImagePlanes<'a>>,
     fragments: GroupFragments<'a, P>,
     compositing: Compositing<'a, P>,
@@ -124,26 +137,22 @@ struct Judge<'a, P: Profile> {
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
-    fn new(
-        job: &Job<'a>,
-        settings: &Settings,
-        client: &'a Client,
-        handed: &'a Handed<'a>,
-    ) -> Result<Self> {
+    fn new(job: &Job<'a>, settings: &Settings, of: &'a GroupsOf<'a>) -> Result<Self> {
+        let GroupsOf { client, handed, images: rows, .. } = of;
         let fragments = GroupFragments::project(job, settings)?;
-        let images = (0..fragments.groups()).map(|k| ImagePlanes::new(client, k)).collect();
+        let images = (0..fragments.groups()).map(|k| ImagePlanes::new(client, rows, k)).collect();
         let surfels = &job.scene.surfels;
         let epsilon = fragments.epsilon();
         let compositing = Compositing::new(job, handed, epsilon);
         let pixels = PixelJudge::new(job, handed);
-        Ok(Self { surfels, handed, ties: client.ties, images, fragments, compositing, pixels })
+        Ok(Self { surfels, of, images, fragments, compositing, pixels })
     }
 
     /// The stages, each with the planes that it judges.
     fn stages(&self) -> [(&'static str, Vec<&'static str>); 3] {
-        let [(_, nearest), (_, sums), (_, averages), (_, shading)] = self.handed.stages();
+        let [(_, nearest), (_, sums), (_, averages), (_, shading)] = self.of.handed.stages();
         let compositing = [sums, averages, nearest].concat();
-        let [first, second, third] = STAGES;
+        let [first, second, third] = self.of.stages;
         [(first, handed::names(&self.images)), (second, compositing), (third, shading)]
     }
 
@@ -166,7 +175,8 @@ impl<'a, P: Profile> Judge<'a, P> {
     ) {
         let said = |group: usize, at| self.images[group].surfel(at);
         let fragments = self.fragments.of_row(tile, &row, said);
-        let images = Images::new(&self.fragments, self.surfels, (&self.images, self.ties));
+        let images =
+            Images::new(&self.fragments, self.surfels, (&self.images, self.of.client.ties));
         let [geometry, compositing, shading] = marks;
         let mut parts = [(); 3].map(|()| compositing.beside(row));
         for (column, at) in counted(row) {
