@@ -89,13 +89,30 @@ impl<R: Real> DepthBins<R> {
     /// The bin of a depth, an integer in [0, n]: the low-precision depth \[ZP06, eq. 6\], times n.
     #[inline(always)]
     pub fn bin(&self, t: R) -> R {
-        let position = ((t - self.nearest) / self.extent) * self.count;
+        self.bin_of(self.position(t))
+    }
+
+    /// The depth in bins from the nearest, before it is rounded down.
+    #[inline(always)]
+    pub fn position(&self, t: R) -> R {
+        ((t - self.nearest) / self.extent) * self.count
+    }
+
+    /// The bin of a position.
+    #[inline(always)]
+    pub fn bin_of(&self, position: R) -> R {
         position.floor().clamped(R::ZERO, self.count)
     }
 
     /// The Voronoi-enhanced depth \[ZP06, eq. 10\], times n; `ratio` >= 0.
     #[inline(always)]
     pub fn voronoi(&self, t: R, ratio: R) -> R {
-        self.bin(t) + ratio.at_most(R::from_f32(255.0 / 256.0))
+        Self::within(self.bin(t), ratio)
+    }
+
+    /// The Voronoi-enhanced depth in a bin.
+    #[inline(always)]
+    pub fn within(bin: R, ratio: R) -> R {
+        bin + ratio.at_most(R::from_f32(255.0 / 256.0))
     }
 }

@@ -74,6 +74,15 @@ impl<R: Real> WeightedFragment<R> {
         let (normal, color) = (weighted(normal), weighted(color));
         Self { depth, weight, normal, color, opacity: weight * opacity }
     }
+
+    /// Adds the weighted attributes of a sample; the depth stays.
+    #[inline(always)]
+    pub fn add(&mut self, sample: &Self) {
+        self.weight = self.weight + sample.weight;
+        self.normal = sum::plus(self.normal, sample.normal);
+        self.color = sum::plus(self.color, sample.color);
+        self.opacity = self.opacity + sample.opacity;
+    }
 }
 
 /// The operator of Fig. 5 over the samples of all images at one pixel, in the order of the groups.
@@ -93,10 +102,7 @@ pub fn compose<R: Exact>(
     for sample in samples {
         // An empty sample passes where epsilon or the nearest depth is infinite, and adds nothing.
         if sample.depth < R::INFINITY && decide::visible(sample.depth, limit) {
-            sums.weight = sums.weight + sample.weight;
-            sums.normal = sum::plus(sums.normal, sample.normal);
-            sums.color = sum::plus(sums.color, sample.color);
-            sums.opacity = sums.opacity + sample.opacity;
+            sums.add(sample);
             count += 1;
         }
     }

@@ -54,6 +54,11 @@ impl Marks {
         }
     }
 
+    /// Nothing found yet in a part of the picture, and told as much of.
+    pub(super) fn beside(&self, rect: Rect) -> Self {
+        Self { log: self.log.as_ref().map(|_| Vec::new()), ..Self::new(rect) }
+    }
+
     /// Everything that was checked.
     pub(super) fn checks(self, stage: &'static str) -> impl Iterator<Item = Check> {
         let log = self.log.into_iter().flatten();
@@ -71,15 +76,19 @@ impl Marks {
         let of = self.rect.columns();
         for (pixel, (x, y)) in counted(part.rect) {
             let (column, row) = ((x - self.rect.x0) as usize, (y - self.rect.y0) as usize);
-            let (error, doubts) = &mut self.found[row * of + column];
+            let place = row * of + column;
+            let (error, doubts) = &mut self.found[place];
             let (own, more) = part.found[pixel];
             if own > *error {
                 *error = own;
                 if let Some(fault) = part.faults.remove(&pixel) {
-                    self.faults.insert(row * of + column, fault);
+                    self.faults.insert(place, fault);
                 }
             }
             *doubts |= more;
+        }
+        if let (Some(log), Some(more)) = (&mut self.log, part.log) {
+            log.extend(more);
         }
         if let Some(own) = part.worst {
             let place = |finding: &Finding| (finding.pixel.1, finding.pixel.0);

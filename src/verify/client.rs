@@ -142,7 +142,7 @@ impl Client {
         }
     }
 
-    /// Says how a plane is stored.
+    /// Says how a plane is stored; of planes that are numbered the name of their row says it of all.
     #[must_use]
     pub fn stored(mut self, plane: &str, storage: Storage) -> Self {
         self.storage.insert(plane.to_owned(), storage);
@@ -253,8 +253,9 @@ impl Client {
     }
 
     fn of<'a, T>(&'a self, row: &PlaneRow, number: usize, plane: &'a Plane<T>) -> Stored<'a, T> {
-        let (name, channel) = (row.name, row.numbered(number));
-        let (storage, radii) = (self.storage(&channel), self.radii(&channel));
-        Stored { name, number, plane, storage, radii }
+        let channel = row.numbered(number);
+        let own = self.storage.get(&channel).or_else(|| self.storage.get(row.name));
+        let storage = own.copied().unwrap_or_default();
+        Stored { name: row.name, number, plane, storage, radii: self.radii(&channel) }
     }
 }

@@ -208,6 +208,8 @@ pub struct Causes {
     pub least_rim: f64,
     /// How many have the id of a fragment that is outside.
     pub outside: u64,
+    /// How many have the id of a surfel that has no fragment there.
+    pub absent: u64,
     /// How many have the id of one of two equally near that should not be there.
     pub ties: u64,
     /// How many are NaN.
@@ -226,6 +228,7 @@ impl Causes {
                 *self.left_out.entry(*surfel).or_default() += 1;
             }
             Fault::Outside { .. } => self.outside += 1,
+            Fault::Absent { .. } => self.absent += 1,
             Fault::Tie { .. } => self.ties += 1,
             Fault::Value { found, .. } if found.is_nan() => self.nan += 1,
             _ => self.others += 1,

@@ -69,7 +69,12 @@ impl<R: Real> Sums<R> {
     };
 
     /// Adds the attributes of a fragment of a surfel, of which the back is seen or not.
-    pub(super) fn add(&mut self, surfels: &Surfels, (surfel, back): (u32, R::Truth), weight: R) {
+    pub(in crate::method) fn add(
+        &mut self,
+        surfels: &Surfels,
+        (surfel, back): (u32, R::Truth),
+        weight: R,
+    ) {
         let i = surfel as usize;
         let normal = facing(surfels.normal()[i].to_array().map(R::from_f32), back);
         let opacity = surfels.opacity().map_or(R::ONE, |all| R::from_f32(all[i]));

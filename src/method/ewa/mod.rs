@@ -62,7 +62,7 @@ mod margin;
 pub(super) mod normalization;
 mod picture;
 mod planes;
-mod possible;
+pub(super) mod possible;
 pub mod verify;
 pub(super) mod visibility;
 

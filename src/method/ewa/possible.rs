@@ -11,22 +11,25 @@ use crate::splat::{Disc, Projector, Splat, Tally, batch};
 
 /// A surfel that may be drawn.
 #[derive(Debug)]
-pub(super) struct PossibleSplat<P: Profile> {
-    pub(super) splat: Splat<Ball<P>>,
+pub(in crate::method) struct PossibleSplat<P: Profile> {
+    pub(in crate::method) splat: Splat<Ball<P>>,
     /// Whether it certainly is, and with this outline.
-    pub(super) certain: bool,
+    pub(in crate::method) certain: bool,
 }
 
 /// The splats of a picture, each with the pixels that may be inside.
-pub(super) type PossibleSplats<P> = Prepared<Ball<P>, PossibleSplat<P>>;
+pub(in crate::method) type PossibleSplats<P> = Prepared<Ball<P>, PossibleSplat<P>>;
 
 /// The surfels that may be drawn.
-pub(super) fn project<P: Profile>(job: &Job<'_>, settings: &Settings) -> PossibleSplats<P> {
+pub(in crate::method) fn project<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+) -> PossibleSplats<P> {
     project_into(job, settings, |possible| possible, |possible| possible.splat.bounds)
 }
 
 /// The same as other records, of which `bounds` gives the pixels.
-pub(super) fn project_into<P: Profile, S: Send>(
+pub(in crate::method) fn project_into<P: Profile, S: Send>(
     job: &Job<'_>,
     settings: &Settings,
     record: impl Fn(PossibleSplat<P>) -> S + Sync + Send,
@@ -57,7 +60,7 @@ pub(super) fn project_into<P: Profile, S: Send>(
 
 /// What a surfel may become: one splat, two if it is not certain whether it reaches the near plane,
 /// or none; and whether that is certain.
-pub(super) fn each_possible<P: Profile>(
+pub(in crate::method) fn each_possible<P: Profile>(
     projector: &Projector<Ball<P>>,
     disc: &Disc<Ball<P>>,
     surfel: u32,

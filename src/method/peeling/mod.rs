@@ -67,6 +67,7 @@ mod planes;
 mod settings;
 #[cfg(test)]
 mod tests;
+mod verify;
 
 pub use planes::STAGES;
 pub use settings::{MAX_LAYERS, Settings};
@@ -77,7 +78,10 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
+use crate::number::ball::Profile;
 use crate::splat::SplatSettings;
+use crate::verify::client::Client;
+use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -111,6 +115,19 @@ impl Algorithm for Settings {
         given: &Given<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
+    }
+
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
+        Some(verify::verify::<P>(job, self, client, budget))
+    }
+
+    fn checks<P: Profile>(
+        &self,
+        job: &Job<'_>,
+        client: &Client,
+        pixel: (u32, u32),
+    ) -> Result<Vec<Check>> {
+        verify::checks::<P>(job, self, client, pixel)
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {

@@ -9,7 +9,7 @@ use crate::frame::{NO_ID, Rect};
 use crate::method::algorithm::Job;
 use crate::method::fragment::{TileSplats, facing};
 use crate::method::prepare::Prepared;
-use crate::number::Exact;
+use crate::number::{Exact, Real};
 use crate::scene::{Groups, Surfels};
 use crate::splat::{Shared, Splat};
 
@@ -114,7 +114,7 @@ impl<'a, R: Exact> Geometry<'a, R> {
         let (z, passes) = match &self.bins {
             None => (R::ZERO, decide::nearer(nearness, kept.nearness)),
             Some(bins) => {
-                let z = bins.voronoi(shared.depth(nearness), (q / shared.limit).sqrt());
+                let z = bins.voronoi(shared.depth(nearness), ratio(q, shared.limit));
                 (z, decide::nearer_bin(z, kept.z))
             }
         };
@@ -142,7 +142,12 @@ impl<'a, R: Exact> Geometry<'a, R> {
     }
 }
 
+/// The distance of a fragment from the centre of its splat, as a part of the splat's radius.
+pub(super) fn ratio<R: Real>(q: R, limit: R) -> R {
+    (q / limit).root_of_squares()
+}
+
 /// The opacity of a surfel, 1 if the scene has none.
-pub(super) fn opacity<R: Exact>(surfels: &Surfels, surfel: u32) -> R {
+pub(super) fn opacity<R: Real>(surfels: &Surfels, surfel: u32) -> R {
     surfels.opacity().map_or(R::ONE, |all| R::from_f32(all[surfel as usize]))
 }

@@ -57,6 +57,7 @@ pub(super) mod geometry;
 pub(super) mod picture;
 pub(super) mod planes;
 mod settings;
+pub(super) mod verify;
 
 pub use settings::{BinCount, DepthTest, Settings, depth_range};
 
@@ -67,8 +68,11 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
+use crate::number::ball::Profile;
 use crate::scene::{Camera, Scene};
 use crate::splat::SplatSettings;
+use crate::verify::client::Client;
+use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -111,6 +115,19 @@ impl Algorithm for Settings {
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {
         explain::explain::<R>(job, self, pixel)
+    }
+
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
+        verify::verify::<P>(job, self, &verify::GroupsOf::new(client), budget).ok()
+    }
+
+    fn checks<P: Profile>(
+        &self,
+        job: &Job<'_>,
+        client: &Client,
+        pixel: (u32, u32),
+    ) -> Result<Vec<Check>> {
+        verify::checks::<P>(job, self, &verify::GroupsOf::new(client), pixel)
     }
 
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {

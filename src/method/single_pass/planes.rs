@@ -15,14 +15,14 @@ use crate::number::Exact;
 use crate::splat::View;
 
 /// The planes of a depth-image.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(in crate::method) struct ImageRows {
-    depth: PlaneRow,
-    id: PlaneRow,
-    weight: PlaneRow,
-    normal: PlaneRow,
-    color: PlaneRow,
-    voronoi: PlaneRow,
+    pub(in crate::method) depth: PlaneRow,
+    pub(in crate::method) id: PlaneRow,
+    pub(in crate::method) weight: PlaneRow,
+    pub(in crate::method) normal: PlaneRow,
+    pub(in crate::method) color: PlaneRow,
+    pub(in crate::method) voronoi: PlaneRow,
 }
 
 impl ImageRows {
@@ -84,7 +84,7 @@ impl ImageRows {
     }
 }
 
-const IMAGES: ImageRows = ImageRows::new([
+pub(super) const IMAGES: ImageRows = ImageRows::new([
     "group##.Z",
     "group##.id",
     "group##.weight",
@@ -93,28 +93,28 @@ const IMAGES: ImageRows = ImageRows::new([
     "group##.voronoi",
 ]);
 
-const COLOR_SUM: PlaneRow = PlaneRow::new(
+pub(super) const COLOR_SUM: PlaneRow = PlaneRow::new(
     "sums",
     Holds::Color,
     "linear RGB",
     "sum of weight times colour over the visible groups; 0 where there is none",
     When::Colored,
 );
-const NORMAL_SUM: PlaneRow = PlaneRow::new(
+pub(super) const NORMAL_SUM: PlaneRow = PlaneRow::new(
     "sums.normal",
     Holds::Vector,
     "",
     "sum of weight times normal over the visible groups, in world space; 0 where there is none",
     When::Stages,
 );
-const WEIGHT_SUM: PlaneRow = PlaneRow::new(
+pub(super) const WEIGHT_SUM: PlaneRow = PlaneRow::new(
     "sums.weight",
     Holds::Scalar,
     "",
     "sum of the weights of the visible groups; 0 where there is none",
     When::Stages,
 );
-const COUNT: PlaneRow = PlaneRow::new(
+pub(super) const COUNT: PlaneRow = PlaneRow::new(
     "sums.count",
     Holds::Count,
     "fragments",

@@ -2,7 +2,7 @@
 
 use crate::composite::bins::{DepthBins, MAX_BINS, Range};
 use crate::error::{Error, Result};
-use crate::number::Exact;
+use crate::number::Real;
 use crate::scene::{Camera, Scene, Surfels};
 use crate::setting::{Field, Fields, Slot, Visit, Words};
 use crate::splat::SplatSettings;
@@ -134,7 +134,7 @@ impl Settings {
     }
 
     /// The bins of the Voronoi depth test; none for the plain one.
-    pub(in crate::method) fn bins<R: Exact>(
+    pub(in crate::method) fn bins<R: Real>(
         &self,
         surfels: &Surfels,
         camera: &Camera,

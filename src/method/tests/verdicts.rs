@@ -143,7 +143,7 @@ pub(in crate::method) fn assert_found_where(
         let place = *all.get(all.len() / 2).unwrap_or_else(|| panic!("nothing in {plane}"));
         for plane in frame.planes.iter_mut().filter(|p| touches(&p.name, plane, *slip)) {
             let empty = match plane.name.rsplit('.').next() {
-                Some("Z" | "front") => f32::INFINITY,
+                Some("Z" | "front" | "voronoi") => f32::INFINITY,
                 Some("back") => f32::NEG_INFINITY,
                 _ => 0.0,
             };

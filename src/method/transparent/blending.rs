@@ -11,7 +11,7 @@ use crate::index::Item;
 use crate::method::algorithm::Job;
 use crate::method::fragment::{each_in_bounds, each_inside, facing};
 use crate::method::prepare::Prepared;
-use crate::number::{Exact, Vector3};
+use crate::number::{Exact, Real, Vector3};
 use crate::scene::Scene;
 use crate::shade::phong::Shader;
 use crate::splat::{Fate, Shared, Splat, Tally, View, batch, project};
@@ -200,7 +200,11 @@ impl<R: Exact> Blending<R> {
 }
 
 /// The shaded colour and the opacity of a surfel.
-fn appearance<R: Exact>(scene: &Scene, shader: &Shader<R>, splat: &Splat<R>) -> ([R; 3], R) {
+pub(super) fn appearance<R: Real>(
+    scene: &Scene,
+    shader: &Shader<R>,
+    splat: &Splat<R>,
+) -> ([R; 3], R) {
     let (surfels, i) = (&scene.surfels, splat.surfel as usize);
     let color = surfels.color().map_or(scene.material.color, |colors| colors[i]);
     let normal = surfels.normal()[i].to_array().map(R::from_f32);

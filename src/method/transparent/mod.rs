@@ -61,6 +61,7 @@ pub(super) mod fast;
 pub(super) mod picture;
 pub(super) mod planes;
 mod settings;
+mod verify;
 
 pub use settings::{Holes, Settings};
 
@@ -71,8 +72,11 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
+use crate::number::ball::Profile;
 use crate::scene::{Camera, Scene};
 use crate::splat::SplatSettings;
+use crate::verify::client::Client;
+use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 /// K = 4, which \[ZP06, section 6.2\] finds sufficient; groups are extended by adding surfels.
@@ -115,6 +119,19 @@ impl Algorithm for Settings {
         given: &Given<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
+    }
+
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
+        verify::verify::<P>(job, self, client, budget).ok()
+    }
+
+    fn checks<P: Profile>(
+        &self,
+        job: &Job<'_>,
+        client: &Client,
+        pixel: (u32, u32),
+    ) -> Result<Vec<Check>> {
+        verify::checks::<P>(job, self, client, pixel)
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {

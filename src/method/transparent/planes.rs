@@ -13,56 +13,56 @@ use crate::method::stage::{Holds, PlaneRow, Stage, When};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
-const GROUP_COLOR: PlaneRow = PlaneRow::new(
+pub(super) const GROUP_COLOR: PlaneRow = PlaneRow::new(
     "blended.group##",
     Holds::Color,
     "linear RGB",
     "the layers of the group, blended over black; black where there is none",
     When::Stages,
 );
-const GROUP_ALPHA: PlaneRow = PlaneRow::new(
+pub(super) const GROUP_ALPHA: PlaneRow = PlaneRow::new(
     "blended.group##.A",
     Holds::Scalar,
     "",
     "opacity of the layers of the group together, in [0, 1]; 0 where there is none",
     When::Stages,
 );
-const GROUP_OPACITY: PlaneRow = PlaneRow::new(
+pub(super) const GROUP_OPACITY: PlaneRow = PlaneRow::new(
     "blended.group##.opacities",
     Holds::Scalar,
     "",
     "sum of the opacities of the layers in front of the nearest opaque one; 0 where there is none",
     When::Stages,
 );
-const GROUP_BIN: PlaneRow = PlaneRow::new(
+pub(super) const GROUP_BIN: PlaneRow = PlaneRow::new(
     "blended.group##.bin",
     Holds::Scalar,
     "bins",
     "low-precision depth of the nearest layer; +inf where there is none",
     When::Stages,
 );
-const GROUP_COUNT: PlaneRow = PlaneRow::new(
+pub(super) const GROUP_COUNT: PlaneRow = PlaneRow::new(
     "blended.group##.count",
     Holds::Count,
     "layers",
     "how many layers were blended, each of one fragment, up to 255",
     When::Stages,
 );
-const GROUP_ID: PlaneRow = PlaneRow::new(
+pub(super) const GROUP_ID: PlaneRow = PlaneRow::new(
     "blended.group##.id",
     Holds::Index,
     "surfel",
     "surfel of the layer that was blended last, the nearest; 0xFFFF_FFFF where there is none",
     When::Stages,
 );
-const GROUP_HIDDEN: PlaneRow = PlaneRow::new(
+pub(super) const GROUP_HIDDEN: PlaneRow = PlaneRow::new(
     "blended.group##.hidden",
     Holds::Scalar,
     "",
     "1 if an opaque layer hides what is behind, else 0",
     When::Alone,
 );
-const GROUP_DEPTH: PlaneRow = PlaneRow::new(
+pub(super) const GROUP_DEPTH: PlaneRow = PlaneRow::new(
     "blended.group##.Z",
     Holds::Scalar,
     "world units",
@@ -113,7 +113,7 @@ const ID: PlaneRow = PlaneRow {
     meaning: "surfel of that layer, of equal depths the lower; 0xFFFF_FFFF where there is none",
     ..resolved::ID
 };
-const LAYERS: PlaneRow = PlaneRow::new(
+pub(super) const LAYERS: PlaneRow = PlaneRow::new(
     "layers",
     Holds::Scalar,
     "layers",

@@ -57,6 +57,7 @@ mod nearest;
 mod picture;
 mod planes;
 mod settings;
+mod verify;
 
 pub use settings::Settings;
 
@@ -67,8 +68,11 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage, transparent};
 use crate::number::Exact;
+use crate::number::ball::Profile;
 use crate::scene::{Camera, Scene};
 use crate::splat::SplatSettings;
+use crate::verify::client::Client;
+use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -104,6 +108,19 @@ impl Algorithm for Settings {
         given: &Given<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
+    }
+
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
+        verify::verify::<P>(job, self, client, budget).ok()
+    }
+
+    fn checks<P: Profile>(
+        &self,
+        job: &Job<'_>,
+        client: &Client,
+        pixel: (u32, u32),
+    ) -> Result<Vec<Check>> {
+        verify::checks::<P>(job, self, client, pixel)
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {

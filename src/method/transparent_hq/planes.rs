@@ -17,7 +17,7 @@ use crate::method::transparent::averaging::GroupAverage;
 use crate::method::transparent::planes::{AVERAGES, blending, shown};
 use crate::number::Exact;
 
-const IMAGES: ImageRows = ImageRows::new([
+pub(super) const IMAGES: ImageRows = ImageRows::new([
     "nearest.group##.Z",
     "nearest.group##.id",
     "nearest.group##.weight",

@@ -163,6 +163,14 @@ impl<R: Real> Shader<R> {
         self.lit(self.position(x, y, t), |l| around(tangent, l), surface)
     }
 
+    /// The colour of a surfel, shaded once at its centre: p is its position, n its normal, turned
+    /// towards the side that is seen, both in world space.
+    #[must_use]
+    pub fn surfel(&self, p: Vector3<R>, n: Vector3<R>, surface: [R; 3]) -> [R; 3] {
+        let normal = self.view.direction(n);
+        self.lit(self.view.point(p), |l| (normal, normal.dot(l)), surface)
+    }
+
     /// The colour of surfaces in a scene without colours.
     pub(crate) fn plain(&self) -> [R; 3] {
         self.material.color.to_array().map(R::from_f32)
@@ -245,14 +253,6 @@ impl<R: Exact> Shader<R> {
         }
         let form = self.form(normal, tangent);
         self.lit(self.position(x, y, t), |l| form.towards(l), surface)
-    }
-
-    /// The colour of a surfel, shaded once at its centre: p is its position, n its normal, turned
-    /// towards the side that is seen, both in world space.
-    #[must_use]
-    pub fn surfel(&self, p: Vector3<R>, n: Vector3<R>, surface: [R; 3]) -> [R; 3] {
-        let form = self.form(n, Vector3::ZERO);
-        self.lit(self.view.point(p), |l| form.towards(l), surface)
     }
 
     /// What has this normal and tangent in world space.

@@ -17,11 +17,11 @@ use crate::verify::verdict::{Doubt, Fault};
 
 /// The nearest fragment of a pixel, as the client has it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Nearest<P: Profile> {
+pub(in crate::method) struct Nearest<P: Profile> {
     /// The depth that later passes work with.
-    pub(super) depth: Ball<P>,
+    pub(in crate::method) depth: Ball<P>,
     /// The surfel, if the client says which.
-    pub(super) id: Option<u32>,
+    pub(in crate::method) id: Option<u32>,
 }
 
 /// What is known of a pixel before other fragments are held against it.

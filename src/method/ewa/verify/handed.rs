@@ -2,44 +2,71 @@
 
 use crate::method::ewa::planes;
 use crate::method::resolved;
+use crate::method::stage::PlaneRow;
 use crate::splat::record::SplatRecord;
 use crate::verify::client::{Client, Storage, Stored, Ties};
 
 /// The planes of a client, each if it is there.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Handed<'a> {
+pub(in crate::method) struct Handed<'a> {
     /// The splats, if the client has projected them.
-    pub(super) records: Option<&'a [SplatRecord]>,
+    pub(in crate::method) records: Option<&'a [SplatRecord]>,
     /// Depth and surfel of the nearest fragment: those of the visibility pass, else the picture's.
-    pub(super) depth: Option<Stored<'a, f64>>,
-    pub(super) id: Option<Stored<'a, u32>>,
-    pub(super) ties: Ties,
+    pub(in crate::method) depth: Option<Stored<'a, f64>>,
+    pub(in crate::method) id: Option<Stored<'a, u32>>,
+    pub(in crate::method) ties: Ties,
     /// The sums of the attribute pass; its weight may be the picture's.
-    pub(super) weight: Option<Stored<'a, f64>>,
-    pub(super) normal_sum: Option<Stored<'a, [f64; 3]>>,
-    pub(super) color_sum: Option<Stored<'a, [f64; 3]>>,
-    pub(super) count: Option<Stored<'a, u8>>,
-    pub(super) accumulator: Storage,
+    pub(in crate::method) weight: Option<Stored<'a, f64>>,
+    pub(in crate::method) normal_sum: Option<Stored<'a, [f64; 3]>>,
+    pub(in crate::method) color_sum: Option<Stored<'a, [f64; 3]>>,
+    pub(in crate::method) count: Option<Stored<'a, u8>>,
+    pub(in crate::method) accumulator: Storage,
     /// The averages.
-    pub(super) color: Option<Stored<'a, [f64; 3]>>,
-    pub(super) normal: Option<Stored<'a, [f64; 3]>>,
+    pub(in crate::method) color: Option<Stored<'a, [f64; 3]>>,
+    pub(in crate::method) normal: Option<Stored<'a, [f64; 3]>>,
     /// Copies in the picture of what an earlier pass has left, if both are there.
-    pub(super) depth_copy: Option<Stored<'a, f64>>,
-    pub(super) id_copy: Option<Stored<'a, u32>>,
-    pub(super) weight_copy: Option<Stored<'a, f64>>,
+    pub(in crate::method) depth_copy: Option<Stored<'a, f64>>,
+    pub(in crate::method) id_copy: Option<Stored<'a, u32>>,
+    pub(in crate::method) weight_copy: Option<Stored<'a, f64>>,
     /// The picture.
-    pub(super) shaded: Option<Stored<'a, [f64; 3]>>,
-    pub(super) alpha: Option<Stored<'a, f64>>,
+    pub(in crate::method) shaded: Option<Stored<'a, [f64; 3]>>,
+    pub(in crate::method) alpha: Option<Stored<'a, f64>>,
+}
+
+/// The rows of what comes before the averages.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::method) struct SumRows {
+    /// Depth and surfel of the nearest fragment, if a stage of its own leaves them.
+    pub(in crate::method) nearest: Option<[PlaneRow; 2]>,
+    pub(in crate::method) weight: PlaneRow,
+    pub(in crate::method) normal: PlaneRow,
+    pub(in crate::method) color: PlaneRow,
+    pub(in crate::method) count: PlaneRow,
 }
 
 impl<'a> Handed<'a> {
-    pub(super) fn new(client: &'a Client) -> Self {
+    pub(in crate::method) fn new(client: &'a Client) -> Self {
+        Self::of(
+            client,
+            &SumRows {
+                nearest: Some([planes::NEAREST, planes::NEAREST_ID]),
+                weight: planes::WEIGHT_SUM,
+                normal: planes::NORMAL_SUM,
+                color: planes::COLOR_SUM,
+                count: planes::COUNT,
+            },
+        )
+    }
+
+    /// The same of another method that ends in averages and their shading.
+    pub(in crate::method) fn of(client: &'a Client, rows: &SumRows) -> Self {
         let first = |own: Option<_>, other: Option<_>| (own.or(other), own.and(other));
-        let (depth, depth_copy) =
-            first(client.scalar(&planes::NEAREST), client.scalar(&resolved::DEPTH));
+        let nearest = rows.nearest.as_ref();
+        let own = nearest.and_then(|[depth, _]| client.scalar(depth));
+        let (depth, depth_copy) = first(own, client.scalar(&resolved::DEPTH));
         let (weight, weight_copy) =
-            first(client.scalar(&planes::WEIGHT_SUM), client.scalar(&resolved::WEIGHT));
-        let own = client.index(&planes::NEAREST_ID);
+            first(client.scalar(&rows.weight), client.scalar(&resolved::WEIGHT));
+        let own = nearest.and_then(|[_, id]| client.index(id));
         let other = client.index(&resolved::ID);
         Self {
             records: client.records.as_deref(),
@@ -47,9 +74,9 @@ impl<'a> Handed<'a> {
             id: own.or(other),
             ties: client.ties,
             weight,
-            normal_sum: client.triple(&planes::NORMAL_SUM),
-            color_sum: client.triple(&planes::COLOR_SUM),
-            count: client.count(&planes::COUNT),
+            normal_sum: client.triple(&rows.normal),
+            color_sum: client.triple(&rows.color),
+            count: client.count(&rows.count),
             accumulator: client.accumulator,
             color: client.triple(&resolved::COLOR),
             normal: client.triple(&resolved::NORMAL),
@@ -62,12 +89,12 @@ impl<'a> Handed<'a> {
     }
 
     /// Whether nothing is said of the nearest fragments.
-    pub(super) fn nothing(&self) -> bool {
+    pub(in crate::method) fn nothing(&self) -> bool {
         self.depth.is_none() && self.id.is_none()
     }
 
     /// The stages, each with the planes that it judges.
-    pub(super) fn stages(&self) -> [(&'static str, Vec<&'static str>); 4] {
+    pub(in crate::method) fn stages(&self) -> [(&'static str, Vec<&'static str>); 4] {
         let listed = |planes: &[Option<&'static str>]| planes.iter().flatten().copied().collect();
         let scalar = |plane: &Option<Stored<'_, f64>>| plane.map(|plane| plane.name);
         let triple = |plane: &Option<Stored<'_, [f64; 3]>>| plane.map(|plane| plane.name);

@@ -36,12 +36,12 @@
 //! ball's radius and of what its format may lose: up to 1 is right. The error of a certificate that
 //! fails is the distance of the decision that had to be otherwise; of an id or a count it is +inf.
 
-mod certificate;
-mod handed;
-mod pixel;
+pub(in crate::method) mod certificate;
+pub(in crate::method) mod handed;
+pub(in crate::method) mod pixel;
 mod records;
-mod sums;
-mod swift;
+pub(in crate::method) mod sums;
+pub(in crate::method) mod swift;
 #[cfg(test)]
 mod tests;
 

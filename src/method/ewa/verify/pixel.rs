@@ -21,7 +21,7 @@ const NORMALIZATION: usize = 1;
 const SHADING: usize = 2;
 
 /// What all pixels share.
-pub(super) struct PixelJudge<'a, P: Profile> {
+pub(in crate::method) struct PixelJudge<'a, P: Profile> {
     handed: &'a Handed<'a>,
     shading: Shading<P>,
     /// Whether surfels have colours; else the material has one.
@@ -31,7 +31,7 @@ pub(super) struct PixelJudge<'a, P: Profile> {
 }
 
 impl<'a, P: Profile> PixelJudge<'a, P> {
-    pub(super) fn new(job: &Job<'_>, handed: &'a Handed<'a>) -> Self {
+    pub(in crate::method) fn new(job: &Job<'_>, handed: &'a Handed<'a>) -> Self {
         let scene = job.scene;
         let colors = scene.surfels.color().unwrap_or_default();
         let brightest = colors.iter().fold(1.0_f64, |brightest, color| {
@@ -47,7 +47,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     }
 
     /// Marks what is wrong at a pixel: by the continuation that errs least.
-    pub(super) fn judge(
+    pub(in crate::method) fn judge(
         &self,
         (pixel, at): (usize, (u32, u32)),
         nearest: &Nearest<P>,

@@ -11,8 +11,9 @@ use crate::method::prepare::Prepared;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth, Vector2};
 use crate::scene::Surfels;
+use crate::splat::project::project_as;
 use crate::splat::record::SplatRecord;
-use crate::splat::{Footprint, Projector, Splat, Tally, View, batch};
+use crate::splat::{Footprint, Projector, Reasons, Splat, Tally, View, batch};
 use crate::verify::verdict::{Fault, Judged};
 
 /// The stage, and the name of what it judges.
@@ -123,7 +124,13 @@ fn judge_surfel<P: Profile>(
     });
     match (record, best) {
         (Some(record), Some((error, fault))) => Some((error, record.center, fault)),
-        (Some(record), None) => Some((f64::INFINITY, record.center, Fault::Projected { surfel })),
+        // One that is out of sight is harmless: what it draws is judged.
+        (Some(record), None) => {
+            let (_, reasons) = project_as(projector, &disc, surfel, false);
+            let Reasons { behind, degenerate, back_facing, .. } = reasons;
+            let dropped = (behind | degenerate | back_facing).certainly();
+            dropped.then_some((f64::INFINITY, record.center, Fault::Projected { surfel }))
+        }
         (None, _) => missing.map(|at| (f64::INFINITY, at, Fault::NotProjected { surfel })),
     }
 }

@@ -14,11 +14,11 @@ use crate::scene::Surfels;
 use crate::verify::verdict::Doubt;
 
 /// The most undecided fragments of a pixel of which all continuations are followed, 2^n of them.
-const MOST: u32 = 4;
+pub(in crate::method) const MOST: u32 = 4;
 
 /// What the sums of a pixel may be.
 #[derive(Clone, Debug)]
-pub(super) enum Continuations<P: Profile> {
+pub(in crate::method) enum Continuations<P: Profile> {
     /// No decision is undecided.
     One(Sums<Ball<P>>),
     /// One of these.

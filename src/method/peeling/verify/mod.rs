@@ -1,0 +1,124 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Surfels are projected in [`Ball`](crate::number::Ball)s of a [`Profile`]. Each layer is judged from
+//! the client's depth of the layer before, as it is stored: `limit_j = t_j + epsilon` of that. `Z` and
+//! `id` are depth and surfel of layer 1.
+//!
+//! **Layers.** At a pixel and in a layer j whose depth the client stores, with that of layer j - 1:
+//!
+//! 1. `t_j` is in the ball of the depth of a fragment that possibly is inside and beyond `limit_(j-1)`;
+//!    in layer 1, of a fragment of the surfel of the id.
+//! 2. No fragment that certainly is drawn, inside and beyond `limit_(j-1)` certainly is nearer than
+//!    `t_j`; where there is no layer, none certainly is inside and beyond.
+//! 3. In layer 1 no surfel comes before that of the id, as the client says of ties, whose depth is equal
+//!    and exact in balls, or all of whose numbers are those of the id's surfel.
+//! 4. Count, opacity and colour are those of the fragments inside, beyond `limit_(j-1)` and within
+//!    `limit_j`, summed, averaged and shaded in balls. The fragment of the depth always passes, if there
+//!    is but one that it can be. Where a decision is undecided both continuations are kept, 2^n for
+//!    n <= 4 fragments; beyond that these planes are not judged.
+//! 5. `layers` is the number of layers with a depth; with the last that leaves planes it is at least one
+//!    more if a fragment certainly is beyond that, at most the setting, and not more if none possibly is.
+//!
+//! **Blending** of the client's opacities and colours, if all layers that leave planes are there. A pixel
+//! with more layers than leave planes is not judged, nor is the colour where an environment is seen.
+//! Of the picture alone nothing is judged: its layers, which are all of it, are not known.
+//!
+//! A pixel is undecided if the sums of one of its layers have several continuations, or if its blending
+//! is not judged for its number of layers.
+
+mod blended;
+mod layer;
+mod planes;
+#[cfg(test)]
+mod tests;
+
+use super::Settings;
+use crate::error::Result;
+use crate::frame::Rect;
+use crate::method::algorithm::Job;
+use crate::method::judged::{Marks, counted, judged};
+use crate::method::replay::Place;
+use crate::method::single_pass::verify::fragments::GroupFragments;
+use crate::number::ball::Profile;
+use crate::verify::client::Client;
+use crate::verify::verdict::{Check, Verdict};
+use layer::LayerJudge;
+use planes::PeelingPlanes;
+
+/// Judges the planes of a client.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Verdict {
+    let handed = PeelingPlanes::new(client, settings);
+    let judge = Judge::<P>::new(job, settings, &handed);
+    let tiles = job.grid().rects().into_iter().enumerate().collect();
+    let found = job.exec.ordered(tiles, |(tile, rect)| {
+        let mut marks = [(); 2].map(|()| Marks::new(rect));
+        let counts = judge.judge((tile, rect), &mut marks);
+        (marks, counts)
+    });
+    let covered = found.iter().map(|(_, [covered, _])| covered).sum();
+    let undecided = found.iter().map(|(_, [_, undecided])| undecided).sum();
+    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
+    let stages = judged(job, handed.stages(), tiles);
+    Verdict { stages, covered, undecided, budget }
+}
+
+/// Everything that is judged at one pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    let Place { tile, rect } = Place::new(job, pixel)?;
+    let handed = PeelingPlanes::new(client, settings);
+    let mut marks = [(); 2].map(|()| Marks::logging(rect));
+    Judge::<P>::new(job, settings, &handed).judge((tile, rect), &mut marks);
+    let stages = handed.stages().into_iter().map(|(stage, _)| stage);
+    Ok(marks.into_iter().zip(stages).flat_map(|(marks, stage)| marks.checks(stage)).collect())
+}
+
+/// What all tiles share.
+struct Judge<'a, P: Profile> {
+    handed: &'a PeelingPlanes<'a>,
+    fragments: GroupFragments<'a, P>,
+    layers: LayerJudge<'a, P>,
+    /// Whether an environment is seen behind the layers.
+    environment: bool,
+}
+
+impl<'a, P: Profile> Judge<'a, P> {
+    fn new(job: &Job<'a>, settings: &'a Settings, handed: &'a PeelingPlanes<'a>) -> Self {
+        let fragments = GroupFragments::whole(job, &settings.splats);
+        let layers = LayerJudge::new(job, settings, handed, fragments.epsilon());
+        Self { handed, fragments, layers, environment: job.scene.environment.is_some() }
+    }
+
+    /// Marks what is wrong at the pixels of a rectangle in a tile; how many may be covered, and how
+    /// many are undecided.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> [u64; 2] {
+        let [layers, blending] = marks;
+        let (mut covered, mut undecided) = (0, 0);
+        for y in rect.y0..rect.y1 {
+            let row = Rect { y0: y, y1: y + 1, ..rect };
+            let fragments = self.fragments.of_row(tile, &row, |_, at| self.handed.surfel(at));
+            for (column, at) in counted(row) {
+                let pixel = (y - rect.y0) as usize * row.columns() + column;
+                let own: Vec<_> = fragments.at(column).of(0).copied().collect();
+                let found = self.layers.judge(at, &own, &mut layers.at(pixel));
+                let blends = blended::judge::<P>(
+                    (self.handed, self.environment),
+                    at,
+                    &mut blending.at(pixel),
+                );
+                covered += u64::from(found.covered);
+                undecided += u64::from(found.undecided || !blends);
+            }
+        }
+        [covered, undecided]
+    }
+}

@@ -1,0 +1,197 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Surfels are projected in [`Ball`](crate::number::Ball)s of a [`Profile`], each as it is drawn in its
+//! own group. Each stage is judged from what the client has of the stage before, as it is stored;
+//! what the client has not is taken from the balls.
+//!
+//! **Geometry**, a certificate for each group and pixel, over the planes of the group that are there.
+//! The *key* of a fragment is what the depth test compares: its depth, or its Voronoi-enhanced depth. A
+//! depth within a radius of a bin's border has two bins, hence two keys.
+//!
+//! 1. A fragment of the group that possibly is inside fits every plane: its surfel is the id; depth,
+//!    weight, weight times normal and colour are in its balls; the Voronoi-enhanced depth in the ball
+//!    of one of its keys. Or every plane says that there is none.
+//! 2. No fragment of another surfel of the group that certainly is drawn and inside has keys that are
+//!    all certainly less than the key that the client stores; without one, than the least key of the
+//!    fragment. Where there is none, no fragment certainly is inside.
+//! 3. No surfel comes before, as the client says of ties, whose key is equal and exact in balls, or all
+//!    of whose numbers are those of the id's surfel.
+//!
+//! The *samples* of a group are all fragments (or that there is none) that satisfy 1 to 3, each number
+//! in the place of its ball that the client stores. A group that stores depth, weight, normal, and the
+//! colours of a scene that has some, has one sample. Without any plane of the group they are all that
+//! satisfy 2 and 3.
+//!
+//! **Compositing.** Z is one of the samples' depths, and no group all of whose samples have less depth.
+//! The id is that of a sample, and there is no group all of whose samples certainly are nearer; of equal
+//! nearness the surfel that the client's rule of ties says. (Two depths that are equal or neighbours
+//! may come of either order of nearness, as 1/t rounds.) The sums are those of the samples of depth at
+//! most nearest + epsilon, nearest of the stored depths of all groups, else Z, else of the samples'
+//! balls; the nearest always passes. Where a group has several samples or a test is undecided, all
+//! continuations are followed, up to 16 choices of samples, and for each up to 2^4 of the tests; a pixel
+//! is right if one fits every plane. Beyond that its sums are not judged. Averages follow from the
+//! client's sums.
+//!
+//! **Shading** as in `ewa`.
+//!
+//! A pixel is undecided if its sums have more than one continuation. The error of a number, and of a
+//! certificate that fails, is that of `ewa`.
+
+pub(in crate::method) mod compositing;
+pub(in crate::method) mod fragments;
+mod handed;
+pub(in crate::method) mod images;
+#[cfg(test)]
+mod tests;
+
+use super::Settings;
+use super::planes::{IMAGES, ImageRows};
+use crate::error::Result;
+use crate::frame::Rect;
+use crate::method::algorithm::Job;
+use crate::method::ewa::verify::certificate::Nearest;
+use crate::method::ewa::verify::handed::Handed;
+use crate::method::ewa::verify::pixel::PixelJudge;
+use crate::method::ewa::verify::sums::Continuations;
+use crate::method::judged::{Marks, counted, judged};
+use crate::method::replay::Place;
+use crate::number::ball::Profile;
+use crate::scene::Surfels;
+use crate::verify::client::Client;
+use crate::verify::verdict::{Check, Verdict};
+use compositing::Compositing;
+use fragments::GroupFragments;
+use handed::ImagePlanes;
+pub(in crate::method) use handed::sum_rows;
+use images::Images;
+
+/// How a method that works by groups calls their images and its stages, and what a client has of it.
+#[derive(Debug)]
+pub(in crate::method) struct GroupsOf<'a> {
+    pub(in crate::method) client: &'a Client,
+    pub(in crate::method) handed: Handed<'a>,
+    pub(in crate::method) images: &'static ImageRows,
+    /// The passes of geometry and of compositing, and shading.
+    pub(in crate::method) stages: [&'static str; 3],
+}
+
+impl<'a> GroupsOf<'a> {
+    pub(super) fn new(client: &'a Client) -> Self {
+        let handed = Handed::of(client, &sum_rows());
+        Self { client, handed, images: &IMAGES, stages: ["geometry", "compositing", "shading"] }
+    }
+}
+
+/// Judges the planes of a client.
+///
+/// # Errors
+/// As the projection of the method.
+pub(in crate::method) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    of: &GroupsOf<'_>,
+    budget: f64,
+) -> Result<Verdict> {
+    let judge = Judge::<P>::new(job, settings, of)?;
+    let tiles = job.grid().rects().into_iter().enumerate().collect();
+    let found = job.exec.ordered(tiles, |(tile, rect)| {
+        let mut marks = [(); 3].map(|()| Marks::new(rect));
+        let counts = judge.judge((tile, rect), &mut marks);
+        (marks, counts)
+    });
+    let sum = |of: fn(&Counts) -> u64| found.iter().map(|(_, counts)| of(counts)).sum();
+    let (covered, undecided) = (sum(|counts| counts.covered), sum(|counts| counts.undecided));
+    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
+    let stages = judged(job, judge.stages(), tiles);
+    Ok(Verdict { stages, covered, undecided, budget })
+}
+
+/// Everything that is judged at one pixel.
+pub(in crate::method) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    of: &GroupsOf<'_>,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    let Place { tile, rect } = Place::new(job, pixel)?;
+    let mut marks = [(); 3].map(|()| Marks::logging(rect));
+    Judge::<P>::new(job, settings, of)?.judge((tile, rect), &mut marks);
+    Ok(marks.into_iter().zip(of.stages).flat_map(|(marks, stage)| marks.checks(stage)).collect())
+}
+
+/// How many pixels of a tile may be covered, and in how many the sums are undecided.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    covered: u64,
+    undecided: u64,
+}
+
+/// What all tiles share.
+struct Judge<'a, P: Profile> {
+    surfels: &'a Surfels,
+    of: &'a GroupsOf<'a>,
+    images: Vec<ImagePlanes<'a>>,
+    fragments: GroupFragments<'a, P>,
+    compositing: Compositing<'a, P>,
+    pixels: PixelJudge<'a, P>,
+}
+
+impl<'a, P: Profile> Judge<'a, P> {
+    fn new(job: &Job<'a>, settings: &Settings, of: &'a GroupsOf<'a>) -> Result<Self> {
+        let GroupsOf { client, handed, images: rows, .. } = of;
+        let fragments = GroupFragments::project(job, settings)?;
+        let images = (0..fragments.groups()).map(|k| ImagePlanes::new(client, rows, k)).collect();
+        let surfels = &job.scene.surfels;
+        let epsilon = fragments.epsilon();
+        let compositing = Compositing::new(job, handed, epsilon);
+        let pixels = PixelJudge::new(job, handed);
+        Ok(Self { surfels, of, images, fragments, compositing, pixels })
+    }
+
+    /// The stages, each with the planes that it judges.
+    fn stages(&self) -> [(&'static str, Vec<&'static str>); 3] {
+        let [(_, nearest), (_, sums), (_, averages), (_, shading)] = self.of.handed.stages();
+        let compositing = [sums, averages, nearest].concat();
+        let [first, second, third] = self.of.stages;
+        [(first, handed::names(&self.images)), (second, compositing), (third, shading)]
+    }
+
+    /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 3]) -> Counts {
+        let mut counts = Counts::default();
+        for y in rect.y0..rect.y1 {
+            let row = Rect { y0: y, y1: y + 1, ..rect };
+            self.judge_row((tile, (y - rect.y0) as usize, row), marks, &mut counts);
+        }
+        counts
+    }
+
+    /// One row of pixels, so that the fragments of all groups need not be kept of more.
+    fn judge_row(
+        &self,
+        (tile, above, row): (usize, usize, Rect),
+        marks: &mut [Marks; 3],
+        counts: &mut Counts,
+    ) {
+        let said = |group: usize, at| self.images[group].surfel(at);
+        let fragments = self.fragments.of_row(tile, &row, said);
+        let images =
+            Images::new(&self.fragments, self.surfels, (&self.images, self.of.client.ties));
+        let [geometry, compositing, shading] = marks;
+        let mut parts = [(); 3].map(|()| compositing.beside(row));
+        for (column, at) in counted(row) {
+            let pixel = above * row.columns() + column;
+            let samples = images.judge(at, &fragments.at(column), &mut geometry.at(pixel));
+            let (depth, sums) = self.compositing.judge(at, &samples, &mut parts[0].at(column));
+            let certain = matches!(sums, Continuations::One(_));
+            counts.undecided += u64::from(!certain);
+            counts.covered += u64::from(depth.middle.is_finite() || !certain);
+            let nearest = Nearest { depth, id: None };
+            self.pixels.judge((column, at), &nearest, &sums, &mut parts);
+        }
+        let [sums, averages, shaded] = parts;
+        compositing.put(sums);
+        compositing.put(averages);
+        shading.put(shaded);
+    }
+}

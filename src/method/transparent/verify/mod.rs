@@ -1,0 +1,140 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! The order of the surfels is exact, and so is the bin of a fragment but beside the border of one.
+//! Surfels are projected and shaded in [`Ball`](crate::number::Ball)s of a [`Profile`], each in all of
+//! its groups.
+//!
+//! **Blending**, group by group: the fragments are replayed in their order. Where it is undecided
+//! whether a surfel is drawn, whether its fragment is inside, or in which of two bins it lies, both
+//! continuations are followed; those that come to the same are one. A pixel of a group is right if one
+//! fits every plane of the group that is there. One with more than 16, or with a fragment that may be in
+//! more than two bins, is not judged.
+//!
+//! **Averaging** of what the client stores of each group; what it does not store is that of the
+//! continuations that fit, where they agree. What is not known of one group is not judged of the
+//! average. `Z` is the depth of one of the groups, and no group certainly is nearer; `id` is the surfel
+//! of a group that may be the nearest (of equal depths any of them). The picture follows from the
+//! client's average; where an environment is seen, its colour is not judged.
+//!
+//! A pixel is undecided if a group has several continuations, or is not judged.
+
+mod averaged;
+mod drawn;
+mod planes;
+mod replayed;
+#[cfg(test)]
+mod tests;
+
+use super::Settings;
+use crate::error::Result;
+use crate::frame::Rect;
+use crate::method::algorithm::Job;
+use crate::method::ewa::verify::handed::Handed;
+use crate::method::judged::{Marks, counted, judged};
+use crate::method::replay::Place;
+use crate::method::single_pass::verify::sum_rows;
+use crate::number::ball::Profile;
+use crate::verify::client::{Client, Ties};
+use crate::verify::verdict::{Check, Verdict};
+use averaged::Averaging;
+use drawn::GroupDrawings;
+use planes::{AveragePlanes, GroupPlanes};
+
+/// The stages by their names.
+const STAGES: [&str; 2] = ["blending", "averaging"];
+
+/// Judges the planes of a client.
+///
+/// # Errors
+/// As the projection of the method.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Result<Verdict> {
+    let handed = handed(client);
+    let judge = Judge::<P>::new(job, settings, client, &handed)?;
+    let tiles = job.grid().rects().into_iter().enumerate().collect();
+    let found = job.exec.ordered(tiles, |(tile, rect)| {
+        let mut marks = [(); 2].map(|()| Marks::new(rect));
+        let counts = judge.judge((tile, rect), &mut marks);
+        (marks, counts)
+    });
+    let covered = found.iter().map(|(_, [covered, _])| covered).sum();
+    let undecided = found.iter().map(|(_, [_, undecided])| undecided).sum();
+    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
+    let [first, second] = STAGES;
+    let planes = [(first, planes::names(&judge.groups)), (second, judge.averages.names())];
+    Ok(Verdict { stages: judged(job, planes, tiles), covered, undecided, budget })
+}
+
+/// Everything that is judged at one pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    let Place { tile, rect } = Place::new(job, pixel)?;
+    let handed = handed(client);
+    let mut marks = [(); 2].map(|()| Marks::logging(rect));
+    Judge::<P>::new(job, settings, client, &handed)?.judge((tile, rect), &mut marks);
+    Ok(marks.into_iter().zip(STAGES).flat_map(|(marks, stage)| marks.checks(stage)).collect())
+}
+
+/// Depth and surfel of the picture. Depths of one surfel in two groups, or of two equal ones, may tie or
+/// not, as each group scales it.
+fn handed(client: &Client) -> Handed<'_> {
+    Handed { ties: Ties::Any, ..Handed::of(client, &sum_rows()) }
+}
+
+/// What all tiles share.
+struct Judge<'a, P: Profile> {
+    groups: Vec<GroupPlanes<'a>>,
+    averages: AveragePlanes<'a>,
+    drawings: GroupDrawings<P>,
+    averaging: Averaging<'a, P>,
+}
+
+impl<'a, P: Profile> Judge<'a, P> {
+    fn new(
+        job: &Job<'a>,
+        settings: &Settings,
+        client: &'a Client,
+        handed: &'a Handed<'a>,
+    ) -> Result<Self> {
+        let drawings = GroupDrawings::project(job, settings)?;
+        let groups = (0..drawings.groups()).map(|k| GroupPlanes::new(client, k)).collect();
+        let averages = AveragePlanes::new(client);
+        let averaging = Averaging::new(job, settings.holes, handed);
+        Ok(Self { groups, averages, drawings, averaging })
+    }
+
+    /// Marks what is wrong at the pixels of a rectangle in a tile; how many may be covered, and how
+    /// many are undecided.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> [u64; 2] {
+        let (mut covered, mut undecided) = (0, 0);
+        let [blending, averaging] = marks;
+        for y in rect.y0..rect.y1 {
+            let row = Rect { y0: y, y1: y + 1, ..rect };
+            let drawings = self.drawings.of_row(tile, &row);
+            for (column, at) in counted(row) {
+                let pixel = (y - rect.y0) as usize * row.columns() + column;
+                let mut open = false;
+                let groups: Vec<_> = (0..self.groups.len())
+                    .map(|k| {
+                        let found = replayed::replay(drawings.at(column, k));
+                        open |= found.all.as_ref().is_none_or(|all| all.len() > 1);
+                        blending.at(pixel).doubts(found.doubts);
+                        self.groups[k].judge(at, found.all, &mut blending.at(pixel))
+                    })
+                    .collect();
+                self.averaging.judge(at, &groups, &self.averages, &mut averaging.at(pixel));
+                covered += u64::from(groups.iter().any(planes::GroupFound::covered));
+                undecided += u64::from(open);
+            }
+        }
+        [covered, undecided]
+    }
+}
