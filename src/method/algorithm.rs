@@ -126,14 +126,13 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     }
 
     /// Judges the planes of a client: what a right implementation may leave of each stage. A picture
-    /// whose share of undecided sums exceeds `budget` cannot be judged. None: the method has no
-    /// rules yet.
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
-        let _ = (job, client, budget);
-        None
-    }
+    /// whose share of undecided sums exceeds `budget` cannot be judged.
+    ///
+    /// # Errors
+    /// As [`Algorithm::define`].
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict>;
 
-    /// Everything of a client that is judged at one pixel; nothing if the method has no rules.
+    /// Everything of a client that is judged at one pixel; nothing if the method judges cells of levels.
     ///
     /// # Errors
     /// As [`Algorithm::explain`].

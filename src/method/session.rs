@@ -196,8 +196,8 @@ impl<'a> Session<'a> {
     /// be judged, see [`Verdict::BUDGET`].
     ///
     /// # Errors
-    /// [`Error::Invalid`] if no plane is one of the method's, if the picture has another size than
-    /// the camera's, or if the method has no rules; else as [`Session::render`].
+    /// [`Error::Invalid`] if no plane is one of the method's, or if the picture has another size than
+    /// the camera's; else as [`Session::render`].
     pub fn verify(&self, camera: &Camera, client: &Client, budget: f64) -> Result<Verdict> {
         self.verify_as(&self.method, camera, client, budget)
     }
@@ -213,13 +213,10 @@ impl<'a> Session<'a> {
         let job = self.job(camera)?;
         self.check_client(camera, client)?;
         self.ask(camera, Making::Verdict)?;
-        let verdict = match client.rounding {
+        match client.rounding {
             Rounding::Gpu => method.verify::<Gpu>(&job, client, budget),
             Rounding::Ieee => method.verify::<Ieee>(&job, client, budget),
-        };
-        verdict.ok_or_else(|| {
-            Error::Invalid(format!("the method {} has no rules for verdicts", self.method.name()))
-        })
+        }
     }
 
     /// Every value of a client at one pixel that is judged, against what it may be.

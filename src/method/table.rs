@@ -145,7 +145,7 @@ macro_rules! methods {
                 job: &Job<'_>,
                 client: &Client,
                 budget: f64,
-            ) -> Option<Verdict> {
+            ) -> Result<Verdict> {
                 match self {
                     $(Self::$method(settings) => settings.verify::<P>(job, client, budget),)*
                 }

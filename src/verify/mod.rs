@@ -3,9 +3,12 @@
 //! A verdict takes no tolerance. [`Session::verify`](crate::method::Session::verify) recomputes each
 //! stage in [balls](crate::number::ball) from the planes that a [`client::Client`] has of the stage before,
 //! and says whether an implementation that keeps its promise of rounding may have left the client's
-//! planes: [`verdict::Outcome`]. What is asked of each stage is said in the pages
-//! [`method::ewa::verify`](crate::method::ewa::verify), [`method::template::verify`](crate::method::template::verify)
-//! and [`method::pyramid::verify`](crate::method::pyramid::verify). Files: [`io::client`](crate::io::client).
+//! planes: [`verdict::Outcome`]. What is asked of each stage is said in the page `verify` of each
+//! method: [`ewa`](crate::method::ewa::verify), [`single-pass`](crate::method::single_pass::verify),
+//! [`transparent`](crate::method::transparent::verify),
+//! [`transparent-hq`](crate::method::transparent_hq::verify), [`peeling`](crate::method::peeling::verify),
+//! [`pyramid`](crate::method::pyramid::verify), [`template`](crate::method::template::verify). Files:
+//! [`io::client`](crate::io::client).
 //!
 //! - [`client`]: the planes of a client, and how exactly each is stored.
 //! - [`compare`]: equal bit for bit, or where and by how much not.

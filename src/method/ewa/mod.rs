@@ -118,8 +118,8 @@ impl Algorithm for Settings {
         Ok(replay.visible.iter().filter_map(given).collect())
     }
 
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
-        Some(verify::verify::<P>(job, self, client, budget))
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
+        Ok(verify::verify::<P>(job, self, client, budget))
     }
 
     fn checks<P: Profile>(

@@ -67,7 +67,7 @@ mod planes;
 mod settings;
 #[cfg(test)]
 mod tests;
-mod verify;
+pub mod verify;
 
 pub use planes::STAGES;
 pub use settings::{MAX_LAYERS, Settings};
@@ -117,8 +117,8 @@ impl Algorithm for Settings {
         picture::stage(job, self, stage, given)
     }
 
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
-        Some(verify::verify::<P>(job, self, client, budget))
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
+        Ok(verify::verify::<P>(job, self, client, budget))
     }
 
     fn checks<P: Profile>(

@@ -101,7 +101,7 @@ impl Algorithm for Settings {
         explain::explain::<R>(job, self, pixel)
     }
 
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
-        Some(verify::verify::<P>(job, self, client, budget))
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
+        Ok(verify::verify::<P>(job, self, client, budget))
     }
 }

@@ -57,7 +57,7 @@ pub(super) mod geometry;
 pub(super) mod picture;
 pub(super) mod planes;
 mod settings;
-pub(super) mod verify;
+pub mod verify;
 
 pub use settings::{BinCount, DepthTest, Settings, depth_range};
 
@@ -117,8 +117,8 @@ impl Algorithm for Settings {
         explain::explain::<R>(job, self, pixel)
     }
 
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
-        verify::verify::<P>(job, self, &verify::GroupsOf::new(client), budget).ok()
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
+        verify::verify::<P>(job, self, &verify::GroupsOf::new(client), budget)
     }
 
     fn checks<P: Profile>(

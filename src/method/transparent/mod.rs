@@ -61,7 +61,7 @@ pub(super) mod fast;
 pub(super) mod picture;
 pub(super) mod planes;
 mod settings;
-mod verify;
+pub mod verify;
 
 pub use settings::{Holes, Settings};
 
@@ -121,8 +121,8 @@ impl Algorithm for Settings {
         picture::stage(job, self, stage, given)
     }
 
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
-        verify::verify::<P>(job, self, client, budget).ok()
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
+        verify::verify::<P>(job, self, client, budget)
     }
 
     fn checks<P: Profile>(

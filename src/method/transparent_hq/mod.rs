@@ -57,7 +57,7 @@ mod nearest;
 mod picture;
 mod planes;
 mod settings;
-mod verify;
+pub mod verify;
 
 pub use settings::Settings;
 
@@ -110,8 +110,8 @@ impl Algorithm for Settings {
         picture::stage(job, self, stage, given)
     }
 
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Option<Verdict> {
-        verify::verify::<P>(job, self, client, budget).ok()
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
+        verify::verify::<P>(job, self, client, budget)
     }
 
     fn checks<P: Profile>(
