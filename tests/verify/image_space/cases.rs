@@ -46,6 +46,30 @@ fn odd_staircase() -> (Scene, Camera) {
     (scene, camera([33, 30], shape))
 }
 
+/// From within, through a wide lens: discs behind the camera, edge-on, and larger than the picture.
+fn inside_the_cluster() -> (Scene, Camera) {
+    let shape = Shape::by_name("cluster").unwrap();
+    let scene = Scene::lit("cluster", shape.surfels(900, 6).unwrap());
+    let eye = DVec3::new(0.1, 0.2, 0.3);
+    let pose = Pose { eye, target: DVec3::new(1.0, -0.25, -0.5), up: DVec3::Z };
+    (scene, Camera::new(40, 31, pose, Lens::FieldOfView(75.0)).unwrap())
+}
+
+/// Discs in one plane, many of them with equal depths but for rounding.
+fn checkerboard() -> (Scene, Camera) {
+    let shape = Shape::by_name("checkerboard").unwrap();
+    let scene = Scene::lit("checkerboard", shape.surfels(1500, 4).unwrap());
+    (scene, camera([48, 35], shape))
+}
+
+/// A sphere of discs four times as wide as it needs.
+fn wide_discs() -> (Scene, Camera) {
+    let mut cloud = Shape::Sphere.surfels(600, 7).unwrap().into_cloud();
+    cloud.radius = cloud.radius.map(|radii| radii.iter().map(|radius| 4.0 * radius).collect());
+    let scene = Scene::lit("wide discs", Surfels::new(cloud).unwrap().0);
+    (scene, camera([45, 45], Shape::Sphere))
+}
+
 /// Discs whose numbers are exact, so that decisions lie at their limits: a unit of the world is a
 /// pixel, and the column and the row of a centre are given.
 fn limits() -> (Scene, Camera) {
@@ -111,6 +135,24 @@ pub(super) fn of_template() -> Vec<(&'static str, Case)> {
             case(odd_staircase(), template::Settings { falloff: gaussian, ..default }),
         ),
         ("limits", case(limits(), default)),
+        (
+            "inside the cluster",
+            case(inside_the_cluster(), template::Settings { cull: false, ..default }),
+        ),
+        (
+            "checkerboard",
+            case(
+                checkerboard(),
+                template::Settings { levels: template::LevelRule::Covering, ..of(7) },
+            ),
+        ),
+        (
+            "wide discs",
+            case(
+                wide_discs(),
+                template::Settings { levels: template::LevelRule::Radius, ..default },
+            ),
+        ),
     ]
 }
 
@@ -128,5 +170,11 @@ pub(super) fn of_pyramid() -> Vec<(&'static str, Case)> {
         ("cluster", case(cluster(), pyramid::Settings { cull: false, ..default })),
         ("odd staircase", case(odd_staircase(), pyramid::Settings { occlusion, ..default })),
         ("limits", case(limits(), default)),
+        (
+            "inside the cluster",
+            case(inside_the_cluster(), pyramid::Settings { cull: false, ..default }),
+        ),
+        ("checkerboard", case(checkerboard(), default)),
+        ("wide discs", case(wide_discs(), pyramid::Settings { occlusion, ..default })),
     ]
 }
