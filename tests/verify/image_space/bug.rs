@@ -120,6 +120,8 @@ named! {
         /// The depth of the picture is that of the nearest centre.
         DepthOfTheNearest,
 
+        /// Averages are not kept within what is averaged; with weights 1 the bounds hold.
+        AverageUnbounded,
         /// The interval of depth is [t - r, t + r].
         IntervalAround,
         /// The interval of depth is [t, t].
@@ -181,10 +183,10 @@ named! {
 
 impl Bug {
     pub(super) fn of_template(self) -> bool {
-        self < Self::IntervalAround
+        self < Self::AverageUnbounded
     }
 
     pub(super) fn of_pyramid(self) -> bool {
-        self < Self::LevelsByRadius || self >= Self::IntervalAround
+        self < Self::LevelsByRadius || self >= Self::AverageUnbounded
     }
 }

@@ -27,7 +27,7 @@ impl<'a> Mean<'a> {
         let average = self.client.in_pairs([part(0), part(1), part(2), part(3)]) * self.inverse;
         let (least, greatest) = (self.least(numbers), self.greatest(numbers));
         let bounded = match self.client.how.bug {
-            Some(Bug::AverageOfFour) => average,
+            Some(Bug::AverageOfFour | Bug::AverageUnbounded) => average,
             _ => average.clamped(least, greatest),
         };
         bounded + self.client.zero()

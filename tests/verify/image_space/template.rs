@@ -145,7 +145,7 @@ impl Template<'_> {
         let vector = |of: fn(&Sample) -> Vector| {
             mean.vector(finer.map(|center| center.map_or([client.zero(); 3], |center| of(&center))))
         };
-        let last = moving().last().and_then(|last| finer[last]);
+        let last = moving().next_back().and_then(|last| finer[last]);
         Some(Sample {
             id: if client.has(Bug::IdOfTheLast) { last?.id } else { front.id },
             depth: number(|center| center.depth),
