@@ -1,8 +1,7 @@
 //! A client of the methods `template` and `pyramid`: a second implementation of both.
 //!
-//! As [`crate::client`] it was written from the pages of the crate, without its code, and shares
-//! no formula with it; and its numbers, its habits, its view and its light are those of that client.
-//! Surfels only.
+//! As [`crate::client`] it was written from the pages of the crate, without its code, and shares no
+//! formula with it. Numbers, habits, view and light are those of that client. Surfels only.
 //!
 //! - [`projection`]: surfels to single pixels.
 //! - [`ellipse`] and [`mean`]: discs by orthogonal projection; averages of up to four cells.
@@ -64,7 +63,7 @@ impl<'a> Client<'a> {
         self.number(0.0)
     }
 
-    /// A vector of view space in world space, divided by its length; plus 0, so that there is no -0.
+    /// A vector of view space in world space, divided by its length; plus 0: there is no -0.
     fn to_world(&self, v: Vector) -> [f32; 3] {
         let rows = &self.shared.rows;
         let turned = [0, 1, 2].map(|i| dot([rows[0][i], rows[1][i], rows[2][i]], v));
