@@ -29,7 +29,7 @@ fn differing(a: &Samples<f32>, b: &Samples<f32>) -> usize {
 }
 
 /// Every plane of `a` that differs from that of `b`, and in how many pixels.
-fn differences(a: &Frame<f32>, b: &Frame<f32>) -> Vec<(String, usize)> {
+pub(crate) fn differences(a: &Frame<f32>, b: &Frame<f32>) -> Vec<(String, usize)> {
     let planes = a.planes.iter().map(|plane| {
         let other = b.plane(&plane.name).expect("a plane that both have");
         (plane.name.clone(), differing(&plane.samples, other))

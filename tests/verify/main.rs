@@ -4,10 +4,12 @@
 //! - [`client_is_right`]: its plain picture is the crate's, and its bugs are to be seen.
 //! - [`cases`]: the scenes.
 //! - [`verdicts`]: no lawful habit is called wrong, and every bug is found.
+//! - [`image_space`]: the same of the methods `template` and `pyramid`.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 mod cases;
 mod client;
 mod client_is_right;
+mod image_space;
 mod verdicts;

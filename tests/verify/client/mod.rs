@@ -14,13 +14,13 @@
 
 pub(crate) mod bug;
 pub(crate) mod habit;
-mod named;
-mod number;
+pub(crate) mod named;
+pub(crate) mod number;
 mod passes;
 mod project;
-mod shade;
+pub(crate) mod shade;
 mod targets;
-mod view;
+pub(crate) mod view;
 
 pub(crate) use bug::Bug;
 pub(crate) use habit::Habit;
