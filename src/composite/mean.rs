@@ -9,7 +9,8 @@
 //! ```
 //!
 //! `Decided:` the bounds. They change nothing but rounding (three equal numbers, added and divided
-//! by 3, can differ from them), and give the laws: a constant is reproduced exactly, an average
+//! by 3, can differ from them). They are a part of the definition all the same: an average without them
+//! can lie a rounding outside, and is wrong there. They give the laws: a constant is reproduced exactly, an average
 //! never leaves the hull of its terms, and since the sums pair neighbours 0 with 1 and 2 with 3,
 //! exchanging left with right or top with bottom changes no bit. Of 1, 2 or 4 terms of weight 1 it
 //! is the plain mean.

@@ -20,7 +20,7 @@
 //! picture without stages. A stage that runs alone ([`Session::stage`]) leaves the rows of its
 //! stage as with the planes of the stages, but for *stages, whole*, and *alone* too.
 //!
-//! A `#` stands for a digit of a number:
+//! A `#` stands for a digit of a number, which has leading zeros:
 //!
 //! | name | number |
 //! |---|---|

@@ -15,7 +15,13 @@ pub const PLANES: [PlaneRow; 10] = {
     use Holds::{Color, Count, Index, Scalar, Vector};
     use When::{Colored, Stages, StagesOfTubes};
     [
-        PlaneRow::new("projection.id", Index, "", "which, see the ids of the projection", Stages),
+        PlaneRow::new(
+            "projection.id",
+            Index,
+            "",
+            "which, see the ids of the projection; 0xFFFF_FFFF where there is none",
+            Stages,
+        ),
         PlaneRow::new(
             "projection.kind",
             Count,

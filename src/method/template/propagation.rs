@@ -2,7 +2,7 @@
 //!
 //! A centre **stays** at level l if rho <= [`Settings::reach`] of l, or if l is the top level; else
 //! it moves on. Cell (X, Y) of the next level gets the moving ones of the finer cells j = 0 .. 3 at
-//! (2X + j mod 2, 2Y + j div 2). One alone is copied. Of several the foremost is the one of the
+//! (2X + j mod 2, 2Y + j div 2). One that moves alone is copied, bit for bit. Of several the foremost is the one of the
 //! least depth, ties to the lower j, and with it all for which
 //!
 //! ```text

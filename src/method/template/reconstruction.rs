@@ -22,7 +22,7 @@
 //! far. The ternary test with sum = r + `r_f`:
 //!
 //! ```text
-//!   first, or t_f - t > sum     before: the sums start anew with this centre, which is the front
+//!   first, or t_f - t > sum     before: the sums are 0 again, then this centre is added; it is the front
 //!   t - t_f > sum               behind: nothing
 //!   else                        blended: added to the sums; the front if t < t_f
 //! ```
