@@ -9,7 +9,6 @@ mod common;
 
 use common::models::path;
 use common::report::{Arguments, Table};
-use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::scene_file::{Ready, SceneFile};
 use splatref::method::{Method, Session};
@@ -18,6 +17,7 @@ use splatref::source::Shape;
 use splatref::splat::record::project_records;
 use splatref::verify::client::{Client, Rounding};
 use splatref::verify::verdict::{Outcome, Verdict};
+use splatref::{Error, Result};
 use std::time::{Duration, Instant};
 
 const ROUNDS: usize = 3;
@@ -61,7 +61,8 @@ fn rows(arguments: &Arguments, exec: &Exec) -> Result<Vec<Row>> {
         ("staircase", 20_000, [320, 240]),
         ("sphere", 1_000_000, [1920, 1080]),
     ] {
-        let shape = Shape::by_name(name)?;
+        let unknown = || Error::Invalid(format!("there is no shape {name}"));
+        let shape = Shape::by_name(name).ok_or_else(unknown)?;
         let [width, height] = size;
         rows.push(Row {
             name: format!("{name}, {count}"),

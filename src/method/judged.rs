@@ -1,9 +1,11 @@
 //! What is found of a client, tile by tile, until it is planes.
 
 use super::algorithm::Job;
+use super::replay::Place;
 use super::tiled::pixels;
+use crate::error::Result;
 use crate::frame::{Plane, Rect};
-use crate::verify::verdict::{Causes, Check, Doubt, Fault, Finding, Judged};
+use crate::verify::verdict::{Causes, Check, Doubt, Fault, Finding, Judged, Verdict};
 use std::collections::BTreeMap;
 
 /// What was found of one stage at the pixels of a tile.
@@ -101,6 +103,11 @@ impl Marks {
         }
     }
 
+    /// At how many pixels there is one of these doubts.
+    pub(super) fn doubtful(&self, doubts: u8) -> u64 {
+        self.found.iter().filter(|(_, at)| at & doubts != 0).count() as u64
+    }
+
     /// The marks of a pixel, counted row by row.
     pub(super) fn at(&mut self, pixel: usize) -> PixelMarks<'_> {
         PixelMarks { marks: self, pixel }
@@ -166,6 +173,49 @@ pub(super) fn judged<const N: usize>(
     }
     let all = stages.into_iter().zip(all);
     all.map(|((stage, planes), marks)| marks.whole(stage, planes)).collect()
+}
+
+/// How many pixels may be covered, and in how many the sums are undecided.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Counts {
+    pub(super) covered: u64,
+    pub(super) undecided: u64,
+}
+
+/// The verdict of a method whose stages are judged tile by tile: `judge` marks what is wrong at the
+/// pixels of a rectangle in a tile.
+pub(super) fn verdict<const N: usize>(
+    job: &Job<'_>,
+    stages: [(&'static str, Vec<&'static str>); N],
+    budget: f64,
+    judge: impl Fn((usize, Rect), &mut [Marks; N]) -> Counts + Sync + Send,
+) -> Verdict {
+    let tiles = job.grid().rects().into_iter().enumerate().collect();
+    let found = job.exec.ordered(tiles, |(tile, rect)| {
+        let mut marks = [(); N].map(|()| Marks::new(rect));
+        let counts = judge((tile, rect), &mut marks);
+        (marks, counts)
+    });
+    let sum = |of: fn(&Counts) -> u64| found.iter().map(|(_, counts)| of(counts)).sum();
+    let (covered, undecided) = (sum(|counts| counts.covered), sum(|counts| counts.undecided));
+    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
+    Verdict { stages: judged(job, stages, tiles), covered, undecided, budget }
+}
+
+/// Everything that `judge` asks at one pixel.
+///
+/// # Errors
+/// [`crate::Error::Usage`] if the pixel is outside the picture.
+pub(super) fn checks<const N: usize>(
+    job: &Job<'_>,
+    stages: [&'static str; N],
+    pixel: (u32, u32),
+    judge: impl FnOnce((usize, Rect), &mut [Marks; N]) -> Counts,
+) -> Result<Vec<Check>> {
+    let Place { tile, rect } = Place::new(job, pixel)?;
+    let mut marks = [(); N].map(|()| Marks::logging(rect));
+    judge((tile, rect), &mut marks);
+    Ok(marks.into_iter().zip(stages).flat_map(|(marks, stage)| marks.checks(stage)).collect())
 }
 
 /// The pixels of a tile with their count, row by row.

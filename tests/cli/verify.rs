@@ -124,6 +124,8 @@ fn what_cannot_be_judged_is_no_verdict() {
     assert!(refused(&["nothere.ply", "plain.exr"]).contains("nothere.ply"));
     let own = [&SCENE[..1], &["plain.exr"], &SCENE[1..], &["-o", "plain.exr"]].concat();
     assert!(refused(&own).contains("is what is read"));
+    let twice = [&own[..own.len() - 1], &["x.exr", "--json", "x.exr"]].concat();
+    assert!(refused(&twice).contains("one file for the errors and the verdict"));
     let strange =
         Frame::new(61, 47).with("stranger", Samples::Scalar(Plane::filled(61, 47, 1.0))).unwrap();
     exr::write(&at.path().join("strange.exr"), &strange, "").unwrap();

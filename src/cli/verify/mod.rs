@@ -102,6 +102,10 @@ fn check(args: &Args, file: &SceneFile) -> Result<()> {
         output::check(path, &args.scene, file)?;
         output::check_other(path, &args.client)?;
     }
+    if args.output.is_some() && args.output == args.json {
+        let what = "one file for the errors and the verdict; give two names";
+        return Err(Error::Usage(what.into()));
+    }
     if let Some(path) = &args.output
         && !matches!(FileKind::of(path), Ok(FileKind::Exr))
     {

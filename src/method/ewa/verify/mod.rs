@@ -49,8 +49,7 @@ use super::Settings;
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::algorithm::Job;
-use crate::method::judged::{Marks, counted, judged};
-use crate::method::replay::Place;
+use crate::method::judged::{self, Counts, Marks, counted};
 use crate::number::ball::Profile;
 use crate::scene::Surfels;
 use crate::verify::client::Client;
@@ -69,20 +68,12 @@ pub(super) fn verify<P: Profile>(
 ) -> Verdict {
     let handed = Handed::new(client);
     let judge = Judge::<P>::new(job, settings, &handed);
-    let tiles = job.grid().rects().into_iter().enumerate().collect();
-    let found = job.exec.ordered(tiles, |(tile, rect)| {
-        let mut marks = [(); 4].map(|()| Marks::new(rect));
-        let covered = judge.judge((tile, rect), &mut marks);
-        (marks, covered)
-    });
-    let covered = found.iter().map(|(_, covered)| covered).sum();
-    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
-    let mut stages = judged(job, handed.stages(), tiles);
-    let undecided = stages[1].doubtful(Doubt::OF_SUMS);
+    let mut verdict =
+        judged::verdict(job, handed.stages(), budget, |tile, marks| judge.judge(tile, marks));
     if let Some(records) = &client.records {
-        stages.insert(0, records::judge::<P>(job, settings, records));
+        verdict.stages.insert(0, records::judge::<P>(job, settings, records));
     }
-    Verdict { stages, covered, undecided, budget }
+    verdict
 }
 
 /// Everything that is judged at one pixel.
@@ -92,12 +83,10 @@ pub(super) fn checks<P: Profile>(
     client: &Client,
     pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
-    let Place { tile, rect } = Place::new(job, pixel)?;
     let handed = Handed::new(client);
-    let mut marks = [(); 4].map(|()| Marks::logging(rect));
-    Judge::<P>::new(job, settings, &handed).judge((tile, rect), &mut marks);
-    let stages = handed.stages().into_iter().map(|(stage, _)| stage);
-    Ok(marks.into_iter().zip(stages).flat_map(|(marks, stage)| marks.checks(stage)).collect())
+    let judge = Judge::<P>::new(job, settings, &handed);
+    let stages = handed.stages().map(|(stage, _)| stage);
+    judged::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
 /// What all tiles share.
@@ -117,9 +106,8 @@ impl<'a, P: Profile> Judge<'a, P> {
         Self { surfels: &job.scene.surfels, handed, splats, pixels: PixelJudge::new(job, handed) }
     }
 
-    /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage; how many may be
-    /// covered.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> u64 {
+    /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
         let Self { surfels, handed, splats, pixels } = self;
         let [first, rest @ ..] = marks;
         let nearest = certificate::judge(splats, (handed, surfels), (tile, &rect), first);
@@ -130,6 +118,6 @@ impl<'a, P: Profile> Judge<'a, P> {
             let certain = matches!(sums[pixel], Continuations::One(_));
             covered += u64::from(nearest[pixel].depth.middle.is_finite() || !certain);
         }
-        covered
+        Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS) }
     }
 }

@@ -36,8 +36,7 @@ use super::Settings;
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::algorithm::Job;
-use crate::method::judged::{Marks, counted, judged};
-use crate::method::replay::Place;
+use crate::method::judged::{self, Counts, Marks, counted};
 use crate::method::single_pass::verify::fragments::GroupFragments;
 use crate::number::ball::Profile;
 use crate::verify::client::Client;
@@ -54,17 +53,7 @@ pub(super) fn verify<P: Profile>(
 ) -> Verdict {
     let handed = PeelingPlanes::new(client, settings);
     let judge = Judge::<P>::new(job, settings, &handed);
-    let tiles = job.grid().rects().into_iter().enumerate().collect();
-    let found = job.exec.ordered(tiles, |(tile, rect)| {
-        let mut marks = [(); 2].map(|()| Marks::new(rect));
-        let counts = judge.judge((tile, rect), &mut marks);
-        (marks, counts)
-    });
-    let covered = found.iter().map(|(_, [covered, _])| covered).sum();
-    let undecided = found.iter().map(|(_, [_, undecided])| undecided).sum();
-    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
-    let stages = judged(job, handed.stages(), tiles);
-    Verdict { stages, covered, undecided, budget }
+    judged::verdict(job, handed.stages(), budget, |tile, marks| judge.judge(tile, marks))
 }
 
 /// Everything that is judged at one pixel.
@@ -74,12 +63,10 @@ pub(super) fn checks<P: Profile>(
     client: &Client,
     pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
-    let Place { tile, rect } = Place::new(job, pixel)?;
     let handed = PeelingPlanes::new(client, settings);
-    let mut marks = [(); 2].map(|()| Marks::logging(rect));
-    Judge::<P>::new(job, settings, &handed).judge((tile, rect), &mut marks);
-    let stages = handed.stages().into_iter().map(|(stage, _)| stage);
-    Ok(marks.into_iter().zip(stages).flat_map(|(marks, stage)| marks.checks(stage)).collect())
+    let judge = Judge::<P>::new(job, settings, &handed);
+    let stages = handed.stages().map(|(stage, _)| stage);
+    judged::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
 /// What all tiles share.
@@ -98,11 +85,10 @@ impl<'a, P: Profile> Judge<'a, P> {
         Self { handed, fragments, layers, environment: job.scene.environment.is_some() }
     }
 
-    /// Marks what is wrong at the pixels of a rectangle in a tile; how many may be covered, and how
-    /// many are undecided.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> [u64; 2] {
+    /// Marks what is wrong at the pixels of a rectangle in a tile.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
         let [layers, blending] = marks;
-        let (mut covered, mut undecided) = (0, 0);
+        let mut counts = Counts::default();
         for y in rect.y0..rect.y1 {
             let row = Rect { y0: y, y1: y + 1, ..rect };
             let fragments = self.fragments.of_row(tile, &row, |_, at| self.handed.surfel(at));
@@ -115,10 +101,10 @@ impl<'a, P: Profile> Judge<'a, P> {
                     at,
                     &mut blending.at(pixel),
                 );
-                covered += u64::from(found.covered);
-                undecided += u64::from(found.undecided || !blends);
+                counts.covered += u64::from(found.covered);
+                counts.undecided += u64::from(found.undecided || !blends);
             }
         }
-        [covered, undecided]
+        counts
     }
 }

@@ -53,8 +53,7 @@ use crate::method::ewa::verify::certificate::Nearest;
 use crate::method::ewa::verify::handed::Handed;
 use crate::method::ewa::verify::pixel::PixelJudge;
 use crate::method::ewa::verify::sums::Continuations;
-use crate::method::judged::{Marks, counted, judged};
-use crate::method::replay::Place;
+use crate::method::judged::{self, Counts, Marks, counted};
 use crate::number::ball::Profile;
 use crate::scene::Surfels;
 use crate::verify::client::Client;
@@ -93,17 +92,7 @@ pub(in crate::method) fn verify<P: Profile>(
     budget: f64,
 ) -> Result<Verdict> {
     let judge = Judge::<P>::new(job, settings, of)?;
-    let tiles = job.grid().rects().into_iter().enumerate().collect();
-    let found = job.exec.ordered(tiles, |(tile, rect)| {
-        let mut marks = [(); 3].map(|()| Marks::new(rect));
-        let counts = judge.judge((tile, rect), &mut marks);
-        (marks, counts)
-    });
-    let sum = |of: fn(&Counts) -> u64| found.iter().map(|(_, counts)| of(counts)).sum();
-    let (covered, undecided) = (sum(|counts| counts.covered), sum(|counts| counts.undecided));
-    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
-    let stages = judged(job, judge.stages(), tiles);
-    Ok(Verdict { stages, covered, undecided, budget })
+    Ok(judged::verdict(job, judge.stages(), budget, |tile, marks| judge.judge(tile, marks)))
 }
 
 /// Everything that is judged at one pixel.
@@ -113,17 +102,8 @@ pub(in crate::method) fn checks<P: Profile>(
     of: &GroupsOf<'_>,
     pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
-    let Place { tile, rect } = Place::new(job, pixel)?;
-    let mut marks = [(); 3].map(|()| Marks::logging(rect));
-    Judge::<P>::new(job, settings, of)?.judge((tile, rect), &mut marks);
-    Ok(marks.into_iter().zip(of.stages).flat_map(|(marks, stage)| marks.checks(stage)).collect())
-}
-
-/// How many pixels of a tile may be covered, and in how many the sums are undecided.
-#[derive(Clone, Copy, Debug, Default)]
-struct Counts {
-    covered: u64,
-    undecided: u64,
+    let judge = Judge::<P>::new(job, settings, of)?;
+    judged::checks(job, of.stages, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
 /// What all tiles share.

@@ -30,8 +30,7 @@ use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::algorithm::Job;
 use crate::method::ewa::verify::handed::Handed;
-use crate::method::judged::{Marks, counted, judged};
-use crate::method::replay::Place;
+use crate::method::judged::{self, Counts, Marks, counted};
 use crate::method::single_pass::verify::sum_rows;
 use crate::number::ball::Profile;
 use crate::verify::client::{Client, Ties};
@@ -55,18 +54,9 @@ pub(super) fn verify<P: Profile>(
 ) -> Result<Verdict> {
     let handed = handed(client);
     let judge = Judge::<P>::new(job, settings, client, &handed)?;
-    let tiles = job.grid().rects().into_iter().enumerate().collect();
-    let found = job.exec.ordered(tiles, |(tile, rect)| {
-        let mut marks = [(); 2].map(|()| Marks::new(rect));
-        let counts = judge.judge((tile, rect), &mut marks);
-        (marks, counts)
-    });
-    let covered = found.iter().map(|(_, [covered, _])| covered).sum();
-    let undecided = found.iter().map(|(_, [_, undecided])| undecided).sum();
-    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
     let [first, second] = STAGES;
-    let planes = [(first, planes::names(&judge.groups)), (second, judge.averages.names())];
-    Ok(Verdict { stages: judged(job, planes, tiles), covered, undecided, budget })
+    let stages = [(first, planes::names(&judge.groups)), (second, judge.averages.names())];
+    Ok(judged::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks)))
 }
 
 /// Everything that is judged at one pixel.
@@ -76,11 +66,9 @@ pub(super) fn checks<P: Profile>(
     client: &Client,
     pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
-    let Place { tile, rect } = Place::new(job, pixel)?;
     let handed = handed(client);
-    let mut marks = [(); 2].map(|()| Marks::logging(rect));
-    Judge::<P>::new(job, settings, client, &handed)?.judge((tile, rect), &mut marks);
-    Ok(marks.into_iter().zip(STAGES).flat_map(|(marks, stage)| marks.checks(stage)).collect())
+    let judge = Judge::<P>::new(job, settings, client, &handed)?;
+    judged::checks(job, STAGES, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
 /// Depth and surfel of the picture. Depths of one surfel in two groups, or of two equal ones, may tie or
@@ -111,10 +99,9 @@ impl<'a, P: Profile> Judge<'a, P> {
         Ok(Self { groups, averages, drawings, averaging })
     }
 
-    /// Marks what is wrong at the pixels of a rectangle in a tile; how many may be covered, and how
-    /// many are undecided.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> [u64; 2] {
-        let (mut covered, mut undecided) = (0, 0);
+    /// Marks what is wrong at the pixels of a rectangle in a tile.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
+        let mut counts = Counts::default();
         let [blending, averaging] = marks;
         for y in rect.y0..rect.y1 {
             let row = Rect { y0: y, y1: y + 1, ..rect };
@@ -131,10 +118,10 @@ impl<'a, P: Profile> Judge<'a, P> {
                     })
                     .collect();
                 self.averaging.judge(at, &groups, &self.averages, &mut averaging.at(pixel));
-                covered += u64::from(groups.iter().any(planes::GroupFound::covered));
-                undecided += u64::from(open);
+                counts.covered += u64::from(groups.iter().any(planes::GroupFound::covered));
+                counts.undecided += u64::from(open);
             }
         }
-        [covered, undecided]
+        counts
     }
 }
