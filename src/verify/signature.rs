@@ -67,7 +67,11 @@ pub fn signature(
     }
     let all = wrong_of(verdict, wrong.stage);
     let mut best: Option<(u64, String)> = None;
-    for (what, change) in supposed(session, camera, client, wrong.stage) {
+    // A stage that is not judged shows its mistakes in the first that is.
+    let before = verdict.stages.iter().take_while(|stage| stage.stage != wrong.stage);
+    let unseen = before.filter(|stage| stage.planes.is_empty()).chain([wrong]);
+    let stages: Vec<_> = unseen.map(|stage| stage.stage).collect();
+    for (what, change) in stages.iter().flat_map(|stage| supposed(session, camera, client, stage)) {
         let verdict = change.judge(session, camera, client, verdict.budget)?;
         let [cured, left] = wrong_of(&verdict, wrong.stage);
         if 5 * cured <= all[0] && best.as_ref().is_none_or(|(least, _)| left < *least) {

@@ -8,13 +8,15 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Doubt {
-    /// Whether a fragment is inside the cut-off.
+    /// Whether a fragment is inside the cut-off; in image space whether an ellipse holds a point, which
+    /// pixel or level a centre is in.
     CutOff = 1,
-    /// Whether a fragment is nearer than the nearest.
+    /// Whether a fragment or a sample is nearer than the nearest.
     Nearer = 2,
-    /// Whether a fragment belongs to the visible band.
+    /// Whether a fragment belongs to the visible band; in image space whether two centres or intervals
+    /// meet.
     Epsilon = 4,
-    /// Whether a surfel is drawn, or by which outline.
+    /// Whether a surfel is drawn, or by which outline; in image space whether a cell is occluded.
     Fate = 8,
     /// Which side of a surfel is seen.
     Side = 16,
@@ -79,9 +81,9 @@ pub enum Fault {
         /// The surfel.
         surfel: u32,
     },
-    /// The surfel of the client has no fragment at the pixel.
+    /// The surfel of the client has no fragment at the pixel, or is not of the group.
     Absent {
-        /// The surfel.
+        /// The surfel, or the primitive by its id.
         surfel: u32,
     },
     /// The surfel of the client has a fragment at the pixel, which is outside the cut-off.
@@ -107,9 +109,9 @@ pub enum Fault {
     },
     /// A surfel that certainly is in front was left out.
     LeftOut {
-        /// The surfel.
+        /// The surfel, or the primitive by its id.
         surfel: u32,
-        /// q of its fragment divided by the limit of q.
+        /// q of its fragment divided by the limit of q; 0 of what has no rim.
         rim: f64,
         /// Its depth.
         depth: f64,

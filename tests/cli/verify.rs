@@ -114,6 +114,19 @@ fn a_client_is_described_in_a_file_beside_its_planes() {
 }
 
 #[test]
+fn a_picture_alone_is_judged_end_to_end() {
+    let at = pictures();
+    fs::write(at.path().join("png.toml"), "[planes.RGB]\nfile = \"plain.png\"\n").unwrap();
+    let (code, said) = verified(&at, "png.toml", &[]);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("1 plane of ewa"), "{said}");
+    assert!(said.contains("hand in the planes of the stage visibility"), "{said}");
+    let (code, said) = verified(&at, "png.toml", &["--low-pass", "0.5"]);
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("half of the low-pass filter is missing"), "{said}");
+}
+
+#[test]
 fn what_cannot_be_judged_is_no_verdict() {
     let at = pictures();
     let refused = |rest: &[&str]| fails(at.path(), &[&["verify"], rest].concat(), 2);

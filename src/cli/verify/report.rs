@@ -118,7 +118,8 @@ fn labelled(label: &str, text: impl std::fmt::Display) -> String {
 /// What the client has handed in.
 fn planes(client: &Client, method: &str) -> String {
     let count = client.frame().planes.len();
-    let known = format!("{count} planes of {method}");
+    let plural = if count == 1 { "plane" } else { "planes" };
+    let known = format!("{count} {plural} of {method}");
     match client.unknown.as_slice() {
         [] => known,
         unknown => format!("{known}; not judged: {}", unknown.join(", ")),
