@@ -107,7 +107,9 @@ fn plain(wrong: &Judged) -> Option<String> {
 fn common(method: &Method, verdict: &Verdict, wrong: &Judged) -> Option<String> {
     let causes = &wrong.causes;
     let most = |count: u64| 20 * count >= 19 * wrong.wrong;
-    if most(causes.outside + causes.absent) && 2 * causes.outside > wrong.wrong {
+    let discarded = most(causes.outside + causes.absent) && 2 * causes.outside > wrong.wrong;
+    // Depths that are too near, also where there is no surfel.
+    if discarded || (most(causes.below) && causes.strays > 0) {
         return Some("depth and id are those of fragments that should be discarded".into());
     }
     let cutoff = method.splats().map(|splats| f64::from(splats.kernel.cutoff));

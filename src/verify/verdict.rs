@@ -214,6 +214,10 @@ pub struct Causes {
     pub absent: u64,
     /// How many have the id of one of two equally near that should not be there.
     pub ties: u64,
+    /// How many have a number where there should be +inf: a depth without a surfel.
+    pub strays: u64,
+    /// How many have a number that is too small, these included.
+    pub below: u64,
     /// How many are NaN.
     pub nan: u64,
     /// How many are wrong otherwise.
@@ -233,6 +237,10 @@ impl Causes {
             Fault::Absent { .. } => self.absent += 1,
             Fault::Tie { .. } => self.ties += 1,
             Fault::Value { found, .. } if found.is_nan() => self.nan += 1,
+            Fault::Value { found, truth, .. } if found < truth => {
+                self.below += 1;
+                self.strays += u64::from(*truth == f64::INFINITY);
+            }
             _ => self.others += 1,
         }
     }
