@@ -23,7 +23,10 @@ enum Change {
     Stored(&'static str, Storage),
     Accumulator(Storage),
     Flipped,
-    Colors(fn([f64; 3], f64) -> [f64; 3]),
+    /// The picture is encoded.
+    Decoded,
+    /// Colours are not divided by the weight.
+    Divided,
 }
 
 impl Change {
@@ -46,7 +49,16 @@ impl Change {
                 as_if(Client { accumulator: *accumulator, ..client.clone() })
             }
             Self::Flipped => as_if(client.flipped()),
-            Self::Colors(of) => as_if(client.colors(of)),
+            Self::Decoded => {
+                // An encoding in f32 is no better, for the power of a shading language.
+                let lost = 1.0 / 262_144.0;
+                let storage = Storage::Srgb { relative: lost, least: lost };
+                let decoded = client.colors(&[""], |color, _| color.map(srgb::to_linear));
+                as_if(decoded.stored("", storage))
+            }
+            Self::Divided => as_if(
+                client.colors(&["", "resolved"], |color, weight| color.map(|part| part / weight)),
+            ),
         }
     }
 }
@@ -93,7 +105,7 @@ fn plain(wrong: &Judged) -> Option<String> {
     let causes = &wrong.causes;
     let all = |count: u64| count == wrong.wrong;
     if all(causes.nan) {
-        return Some(format!("NaN in {} pixels", causes.nan));
+        return Some(format!("NaN in {} of its pixels", causes.nan));
     }
     if all(causes.ties) {
         return Some("ties: of equally near surfels another is kept than the client says".into());
@@ -162,12 +174,9 @@ fn supposed(
         }
         "normalization" | "shading" => {
             let what = "sRGB where linear colours are meant";
-            all.push((what.into(), Change::Colors(|color, _| color.map(srgb::to_linear))));
+            all.push((what.into(), Change::Decoded));
             let what = "colours multiplied by the weight";
-            all.push((
-                what.into(),
-                Change::Colors(|color, weight| color.map(|part| part / weight)),
-            ));
+            all.push((what.into(), Change::Divided));
         }
         _ => {}
     }
@@ -230,13 +239,13 @@ impl Client {
         Self { radii, ..self.mapped(|_, samples| samples.flipped()) }
     }
 
-    /// The planes with other colours of the picture, or before it of the averages; each is told the
-    /// weight at its pixel, 1 if there is none.
-    fn colors(&self, of: impl Fn([f64; 3], f64) -> [f64; 3]) -> Self {
+    /// The planes with other colours in those of these names; each is told the weight at its pixel, 1 if
+    /// there is none.
+    fn colors(&self, names: &[&str], of: impl Fn([f64; 3], f64) -> [f64; 3]) -> Self {
         let weight = ["weight", "attributes.weight"];
         let weight = weight.iter().find_map(|name| self.frame().scalar(name).ok());
         self.mapped(|name, samples| match samples {
-            Samples::Color(plane) if name.is_empty() || name == "resolved" => {
+            Samples::Color(plane) if names.contains(&name) => {
                 let mut plane = plane.clone();
                 for (i, color) in plane.values_mut().iter_mut().enumerate() {
                     let weight = weight.map_or(1.0, |weight| weight.values()[i]);

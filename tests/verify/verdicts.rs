@@ -160,7 +160,7 @@ fn known_mistakes_are_named() {
         (Bug::SplatMissing, "is missing"),
         (Bug::ColorNotDivided, "multiplied by the weight"),
         (Bug::Srgb, "sRGB"),
-        (Bug::PixelNan, "NaN in 1 pixels"),
+        (Bug::PixelNan, "NaN in 1 of"),
         (Bug::RowsFlipped, "rows are flipped"),
     ] {
         let how = How { habit: Habit::Plain, bug: Some(bug) };
