@@ -2,6 +2,7 @@
 
 use super::options::{ExecOptions, SceneOptions};
 use super::{Ended, Ending, draw, report, say, verify};
+use splatref::io::client::Description;
 use splatref::io::scene_file::{Number, Ready};
 use splatref::verify::client::Rounding;
 use std::path::PathBuf;
@@ -46,7 +47,8 @@ pub(super) fn run(args: &Args) -> Ended {
     let checks = match &args.client {
         None => Vec::new(),
         Some(path) => {
-            let client = verify::read((path, args.promise), &session, &ready.camera, &exec)?;
+            let described = Description::open(path)?;
+            let client = verify::read((&described, args.promise), &session, &ready.camera, &exec)?;
             session.checks(&ready.camera, &client, pixel)?
         }
     };

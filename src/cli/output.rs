@@ -34,6 +34,22 @@ pub(super) fn check_other(path: &Path, read: &Path) -> Result<()> {
     Ok(())
 }
 
+/// Whether two files that are to be written are two.
+pub(super) fn check_two(one: &Path, other: &Path) -> Result<()> {
+    // A folder is there, as was checked; what is written need not be.
+    let place = |path: &Path| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = fs::canonicalize(folder.unwrap_or(Path::new("."))).ok()?;
+        fs::canonicalize(path).ok().or_else(|| Some(folder.join(path.file_name()?)))
+    };
+    if place(one).is_some_and(|place_of_one| place(other) == Some(place_of_one)) {
+        let (one, other) = (one.display(), other.display());
+        let what = format!("{one} and {other} are one file; give two names");
+        return Err(Error::Usage(what));
+    }
+    Ok(())
+}
+
 /// Whether a file that is to be written is none that is read.
 pub(super) fn check_unread(path: &Path, scene: &Path, file: &SceneFile) -> Result<()> {
     // What is not there yet is nothing that is read.

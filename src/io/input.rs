@@ -1,5 +1,6 @@
 //! Files that are read: regular ones, whose length is known before anything is read.
 
+use crate::error::Error;
 use crate::memory;
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -26,6 +27,16 @@ pub(super) fn open(path: &Path) -> io::Result<(File, u64)> {
 pub(super) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     let (file, length) = open(path)?;
     rest(file, length)
+}
+
+/// What is wrong of a text that should be TOML, and in which line.
+pub(super) fn no_toml(path: &Path, text: &str, error: &toml::de::Error) -> Error {
+    let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
+    let what = error.message().trim().replace('\n', " ");
+    match line {
+        Some(line) => Error::format(path, format!("line {line}: {what}")),
+        None => Error::format(path, what),
+    }
 }
 
 /// All bytes of a file from where it stands, at most `length`, even if it grows meanwhile.

@@ -3,7 +3,7 @@
 use super::given::Given;
 use super::{Picture, Stage};
 use crate::error::Result;
-use crate::frame::{Exec, Frame, Grid, NamedPlane, Pool};
+use crate::frame::{Exec, Frame, Grid, NamedPlane, Pool, Rect};
 use crate::index::Index;
 use crate::index::grouping::Grouping;
 use crate::number::Exact;
@@ -32,6 +32,11 @@ impl Job<'_> {
     /// The tiles of the picture.
     pub(super) fn grid(&self) -> Grid {
         self.exec.grid(self.camera.width, self.camera.height)
+    }
+
+    /// All pixels of the picture.
+    pub(super) fn picture(&self) -> Rect {
+        Rect { x0: 0, y0: 0, x1: self.camera.width, y1: self.camera.height }
     }
 
     /// Planes of the picture as a frame.

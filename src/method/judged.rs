@@ -5,16 +5,22 @@ use super::replay::Place;
 use super::tiled::pixels;
 use crate::error::Result;
 use crate::frame::{Plane, Rect};
-use crate::verify::verdict::{Causes, Check, Doubt, Fault, Finding, Judged, Verdict};
-use std::collections::BTreeMap;
+use crate::verify::verdict::{Cause, Causes, Check, Doubt, Fault, Finding, Judged, Verdict};
+
+/// What was found at a pixel: of wrong ones no more than is counted, as every pixel may be wrong.
+#[derive(Clone, Copy, Debug, Default)]
+struct Found {
+    error: f32,
+    doubts: u8,
+    /// That of the worst fault, if the error is above 1.
+    cause: Cause,
+}
 
 /// What was found of one stage at the pixels of a tile.
 #[derive(Debug)]
 pub(super) struct Marks {
     rect: Rect,
-    found: Vec<(f32, u8)>,
-    /// The worst fault of each wrong pixel.
-    faults: BTreeMap<usize, Fault>,
+    found: Vec<Found>,
     worst: Option<Finding>,
     /// Everything that was checked, if somebody wants to know.
     log: Option<Vec<(f64, Fault)>>,
@@ -29,31 +35,12 @@ pub(super) struct PixelMarks<'a> {
 impl Marks {
     /// Nothing found yet.
     pub(super) fn new(rect: Rect) -> Self {
-        let found = vec![(0.0, 0); rect.pixels()];
-        Self { rect, found, faults: BTreeMap::new(), worst: None, log: None }
+        Self { rect, found: vec![Found::default(); rect.pixels()], worst: None, log: None }
     }
 
     /// The same, and everything that is checked will be told.
     pub(super) fn logging(rect: Rect) -> Self {
         Self { log: Some(Vec::new()), ..Self::new(rect) }
-    }
-
-    /// The marks of a whole picture as what was found of a stage.
-    pub(super) fn whole(self, stage: &'static str, planes: Vec<&'static str>) -> Judged {
-        let Rect { x1, y1, .. } = self.rect;
-        let mut causes = Causes::default();
-        self.faults.values().for_each(|fault| causes.count(fault));
-        let plane = |values| Plane::from_values(x1, y1, values);
-        let wrong = self.found.iter().filter(|(error, _)| *error > 1.0).count() as u64;
-        Judged {
-            stage,
-            planes,
-            errors: plane(self.found.iter().map(|at| at.0).collect()),
-            doubts: Plane::from_values(x1, y1, self.found.iter().map(|at| at.1).collect()),
-            wrong,
-            causes,
-            worst: self.worst,
-        }
     }
 
     /// Nothing found yet in a part of the picture, and told as much of.
@@ -69,43 +56,38 @@ impl Marks {
 
     /// Nothing found yet in a whole picture.
     pub(super) fn picture(job: &Job<'_>) -> Self {
-        let [x1, y1] = job.camera.size();
-        Self::new(Rect { x1, y1, ..Rect::default() })
+        Self::new(job.picture())
+    }
+
+    /// The marks of a whole picture as what was found of a stage.
+    pub(super) fn whole(self, stage: &'static str, planes: Vec<&'static str>) -> Judged {
+        whole(self.rect, (stage, planes), [self])
     }
 
     /// Adds what was found in a part of the picture: at each pixel the greater error, all doubts.
-    pub(super) fn put(&mut self, mut part: Self) {
-        let of = self.rect.columns();
-        for (pixel, (x, y)) in counted(part.rect) {
-            let (column, row) = ((x - self.rect.x0) as usize, (y - self.rect.y0) as usize);
-            let place = row * of + column;
-            let (error, doubts) = &mut self.found[place];
-            let (own, more) = part.found[pixel];
-            if own > *error {
-                *error = own;
-                if let Some(fault) = part.faults.remove(&pixel) {
-                    self.faults.insert(place, fault);
-                }
+    pub(super) fn put(&mut self, part: Self) {
+        for ((x, y), own) in part.pixels() {
+            let found = &mut self.found[place(self.rect, (x, y))];
+            let doubts = found.doubts | own.doubts;
+            if own.error > found.error {
+                *found = own;
             }
-            *doubts |= more;
+            found.doubts = doubts;
         }
         if let (Some(log), Some(more)) = (&mut self.log, part.log) {
             log.extend(more);
         }
-        if let Some(own) = part.worst {
-            let place = |finding: &Finding| (finding.pixel.1, finding.pixel.0);
-            let worse = self.worst.as_ref().is_none_or(|worst| {
-                own.error > worst.error || (own.error == worst.error && place(&own) < place(worst))
-            });
-            if worse {
-                self.worst = Some(own);
-            }
-        }
+        keep_worse(&mut self.worst, part.worst);
+    }
+
+    /// What was found at each pixel.
+    fn pixels(&self) -> impl Iterator<Item = ((u32, u32), Found)> {
+        pixels(self.rect).zip(self.found.iter().copied())
     }
 
     /// At how many pixels there is one of these doubts.
     pub(super) fn doubtful(&self, doubts: u8) -> u64 {
-        self.found.iter().filter(|(_, at)| at & doubts != 0).count() as u64
+        self.found.iter().filter(|at| at.doubts & doubts != 0).count() as u64
     }
 
     /// The marks of a pixel, counted row by row.
@@ -117,7 +99,7 @@ impl Marks {
 impl PixelMarks<'_> {
     /// What was found, and by how many bounds it errs; `fault` says what is wrong if that is above 1.
     pub(super) fn found(&mut self, error: f64, fault: impl Fn() -> Fault) {
-        let Marks { rect, found, faults, worst, log } = &mut *self.marks;
+        let Marks { rect, found, worst, log } = &mut *self.marks;
         if let Some(log) = log {
             let fault = fault();
             let anything = matches!(&fault, Fault::Value { radius, .. } if radius.is_nan());
@@ -125,23 +107,23 @@ impl PixelMarks<'_> {
                 log.push((error, fault));
             }
         }
-        let at = &mut found[self.pixel].0;
+        let at = &mut found[self.pixel];
         // A comparison that NaN fails: an error that cannot be told is none.
-        if !(error > f64::from(*at)) {
+        if !(error > f64::from(at.error)) {
             return;
         }
         // Not rounded to 1 from above.
         let single = error as f32;
-        *at = if error > 1.0 && single <= 1.0 { 1.0_f32.next_up() } else { single };
+        at.error = if error > 1.0 && single <= 1.0 { 1.0_f32.next_up() } else { single };
         if error > 1.0 {
             let fault = fault();
+            at.cause = Cause::of(&fault);
             if worst.as_ref().is_none_or(|worst| error > worst.error) {
                 let columns = rect.columns();
                 let (x, y) = (self.pixel % columns, self.pixel / columns);
                 let pixel = (rect.x0 + x as u32, rect.y0 + y as u32);
-                *worst = Some(Finding { pixel, fault: fault.clone(), error });
+                *worst = Some(Finding { pixel, fault, error });
             }
-            faults.insert(self.pixel, fault);
         }
     }
 
@@ -154,7 +136,7 @@ impl PixelMarks<'_> {
 
     /// Decisions that may be either way, as bits.
     pub(super) fn doubts(&mut self, doubts: u8) {
-        self.marks.found[self.pixel].1 |= doubts;
+        self.marks.found[self.pixel].doubts |= doubts;
     }
 }
 
@@ -165,14 +147,60 @@ pub(super) fn judged<const N: usize>(
     stages: [(&'static str, Vec<&'static str>); N],
     tiles: Vec<[Marks; N]>,
 ) -> Vec<Judged> {
-    let mut all = [(); N].map(|()| Marks::picture(job));
+    let mut of_stages = [(); N].map(|()| Vec::new());
     for tile in tiles {
-        for (whole, marks) in all.iter_mut().zip(tile) {
-            whole.put(marks);
-        }
+        of_stages.iter_mut().zip(tile).for_each(|(parts, marks)| parts.push(marks));
     }
-    let all = stages.into_iter().zip(all);
-    all.map(|((stage, planes), marks)| marks.whole(stage, planes)).collect()
+    let all = stages.into_iter().zip(of_stages);
+    all.map(|(stage, parts)| whole(job.picture(), stage, parts)).collect()
+}
+
+/// What was found in the parts of a picture, which share no pixel, as what was found of a stage.
+fn whole(
+    picture: Rect,
+    (stage, planes): (&'static str, Vec<&'static str>),
+    parts: impl IntoIterator<Item = Marks>,
+) -> Judged {
+    let Rect { x1: width, y1: height, .. } = picture;
+    let mut judged = Judged {
+        stage,
+        planes,
+        errors: Plane::filled(width, height, 0.0),
+        doubts: Plane::filled(width, height, 0),
+        wrong: 0,
+        causes: Causes::default(),
+        worst: None,
+    };
+    for part in parts {
+        for (at, found) in part.pixels() {
+            let place = place(picture, at);
+            judged.errors.values_mut()[place] = found.error;
+            judged.doubts.values_mut()[place] = found.doubts;
+            if found.error > 1.0 {
+                judged.wrong += 1;
+                judged.causes.count(found.cause);
+            }
+        }
+        keep_worse(&mut judged.worst, part.worst);
+    }
+    judged
+}
+
+/// Where a pixel is in a rectangle, row by row.
+fn place(rect: Rect, (x, y): (u32, u32)) -> usize {
+    (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize
+}
+
+/// The worse of two findings; of equals the one that comes first, row by row.
+fn keep_worse(worst: &mut Option<Finding>, own: Option<Finding>) {
+    let Some(own) = own else { return };
+    let place = |finding: &Finding| (finding.pixel.1, finding.pixel.0);
+    let worse = worst.as_ref().is_none_or(|worst| {
+        own.error > worst.error || (own.error == worst.error && place(&own) < place(worst))
+    });
+    if worse {
+        *worst = Some(own);
+    }
 }
 
 /// How many pixels may be covered, and in how many the sums are undecided.

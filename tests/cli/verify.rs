@@ -44,7 +44,7 @@ fn a_wrong_setting_is_found_and_named() {
         ("--epsilon", "1r", "attributes", "epsilon is twice as wide"),
         ("--cutoff", "2.5", "visibility", ""),
     ] {
-        let (code, said) = verified(&at, "plain.exr", &[option, value]);
+        let (code, said) = verified(&at, "plain.exr", &[option, value, "-oerrors.exr"]);
         assert_eq!(code, 1, "{said}");
         let line = |label: &str| said.lines().find(|line| line.starts_with(label));
         assert!(line("worst").unwrap().contains(stage), "{said}");
@@ -85,6 +85,15 @@ fn what_is_undecided_beyond_the_budget_is_undecidable() {
     assert_eq!(budget("0").status.code(), Some(3), "{said}");
     assert!(said.contains("undecidable: the sums of "), "{said}");
     assert_eq!(budget("1").status.code(), Some(0));
+}
+
+#[test]
+fn what_is_not_judged_is_not_right() {
+    let at = pictures();
+    fs::write(at.path().join("margin.toml"), "[planes.margin]\nfile = \"mine.exr\"\n").unwrap();
+    let (code, said) = verified(&at, "margin.toml", &[]);
+    assert_eq!(code, 3, "{said}");
+    assert!(said.contains("undecidable: no plane was judged"), "{said}");
 }
 
 #[test]
@@ -137,8 +146,17 @@ fn what_cannot_be_judged_is_no_verdict() {
     assert!(refused(&["nothere.ply", "plain.exr"]).contains("nothere.ply"));
     let own = [&SCENE[..1], &["plain.exr"], &SCENE[1..], &["-o", "plain.exr"]].concat();
     assert!(refused(&own).contains("is what is read"));
-    let twice = [&own[..own.len() - 1], &["x.exr", "--json", "x.exr"]].concat();
-    assert!(refused(&twice).contains("one file for the errors and the verdict"));
+    let twice = [&own[..own.len() - 1], &["x.exr", "--json", "./x.exr"]].concat();
+    assert!(refused(&twice).contains("are one file"));
+    // A file that the description names.
+    fs::write(at.path().join("mine.toml"), "file = \"plain.exr\"\n").unwrap();
+    let named = [&SCENE[..1], &["mine.toml"], &SCENE[1..], &["-o", "plain.exr"]].concat();
+    assert!(refused(&named).contains("is what is read"));
+    // Of two files both are written, or none.
+    fs::create_dir(at.path().join("taken.json")).unwrap();
+    let both = [&own[..own.len() - 1], &["x.exr", "--json", "taken.json"]].concat();
+    assert!(refused(&both).contains("taken.json"));
+    assert!(!at.path().join("x.exr").exists());
     let strange =
         Frame::new(61, 47).with("stranger", Samples::Scalar(Plane::filled(61, 47, 1.0))).unwrap();
     exr::write(&at.path().join("strange.exr"), &strange, "").unwrap();

@@ -5,9 +5,10 @@ mod report;
 use super::options::{ExecOptions, SceneOptions};
 use super::{Ended, Ending, draw, output, progress, say};
 use splatref::frame::{Exec, Frame, Samples};
-use splatref::io::replace::write_atomically;
+use splatref::io::client::Description;
+use splatref::io::exr;
+use splatref::io::replace::Pending;
 use splatref::io::scene_file::{FileKind, OutputSettings, SceneFile};
-use splatref::io::{client, exr};
 use splatref::method::Session;
 use splatref::scene::Camera;
 use splatref::setting::Word;
@@ -16,7 +17,7 @@ use splatref::verify::signature::signature;
 use splatref::verify::verdict::{Outcome, Verdict};
 use splatref::{Error, Result};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 #[derive(clap::Args)]
 #[command(after_help = "\
@@ -31,7 +32,8 @@ Examples:
 
 The TOML file is described in the documentation of splatref::io::client.
 
-Exit codes: 0 right, 1 wrong, 2 could not be judged, 3 undecidable: too many sums may be either way.")]
+Exit codes: 0 right, 1 wrong, 2 could not be judged, 3 undecidable: no plane is judged, or too many
+sums may be either way.")]
 pub(super) struct Args {
     /// The scene, as for render
     scene: PathBuf,
@@ -64,30 +66,20 @@ pub(super) fn run(args: &Args) -> Ended {
 fn judge(args: &Args) -> Ended {
     let file = args.options.scene_file(&args.scene)?;
     let exec = args.exec.exec()?;
-    check(args, &file)?;
+    let described = Description::open(&args.client)?;
+    check(args, &file, &described)?;
     let ready = draw::ready(&file, &exec)?;
     let (session, _) = draw::session(&ready, &exec)?;
     let camera = &ready.camera;
-    let client = progress::during("reading", || {
-        read((&args.client, args.promise), &session, camera, &exec)
-    })?;
+    let client =
+        progress::during("reading", || read((&described, args.promise), &session, camera, &exec))?;
     let (verdict, likely) = progress::during("judging", || -> Result<_> {
         let verdict = session.verify(camera, &client, args.budget)?;
         let likely = signature(&session, camera, &client, &verdict)?;
         Ok((verdict, likely))
     })?;
     let seen = report::Seen::new(&session, camera, (&verdict, likely))?;
-    if let Some(path) = &args.output {
-        let frame = errors(camera, &verdict)?;
-        progress::during("writing", || {
-            let compression = OutputSettings::default().compression;
-            exr::pending(path, &frame, "", compression, &exec)?.put()
-        })?;
-    }
-    if let Some(path) = &args.json {
-        let text = seen.json()?;
-        write_atomically(path, |file| file.write_all(text.as_bytes()))?;
-    }
+    progress::during("writing", || write(args, &seen, || errors(camera, &verdict), &exec))?;
     seen.lines(args, &client).iter().for_each(say);
     Ok(match verdict.outcome() {
         Outcome::Right => Ending::Good,
@@ -96,15 +88,37 @@ fn judge(args: &Args) -> Ended {
     })
 }
 
+/// Writes the files that are asked for, both before one is put in its place.
+fn write(
+    args: &Args,
+    seen: &report::Seen<'_>,
+    errors: impl FnOnce() -> Result<Frame<f32>>,
+    exec: &Exec,
+) -> Result<()> {
+    let compression = OutputSettings::default().compression;
+    let picture = match &args.output {
+        Some(path) => Some(exr::pending(path, &errors()?, "", compression, exec)?),
+        None => None,
+    };
+    let json = match &args.json {
+        Some(path) => {
+            let text = seen.json()?;
+            Some(Pending::write(path, |file| file.write_all(text.as_bytes()))?)
+        }
+        None => None,
+    };
+    picture.into_iter().chain(json).try_for_each(Pending::put)
+}
+
 /// What is refused before anything is loaded.
-fn check(args: &Args, file: &SceneFile) -> Result<()> {
+fn check(args: &Args, file: &SceneFile, described: &Description) -> Result<()> {
     for path in args.output.iter().chain(&args.json) {
         output::check(path, &args.scene, file)?;
         output::check_other(path, &args.client)?;
+        described.files().try_for_each(|read| output::check_other(path, read))?;
     }
-    if args.output.is_some() && args.output == args.json {
-        let what = "one file for the errors and the verdict; give two names";
-        return Err(Error::Usage(what.into()));
+    if let (Some(errors), Some(json)) = (&args.output, &args.json) {
+        output::check_two(errors, json)?;
     }
     if let Some(path) = &args.output
         && !matches!(FileKind::of(path), Ok(FileKind::Exr))
@@ -117,12 +131,12 @@ fn check(args: &Args, file: &SceneFile) -> Result<()> {
 
 /// The planes of a client, and what it promises if somebody says so.
 pub(super) fn read(
-    (path, promise): (&Path, Option<Rounding>),
+    (described, promise): (&Description, Option<Rounding>),
     session: &Session<'_>,
     camera: &Camera,
     exec: &Exec,
 ) -> Result<Client> {
-    let mut client = client::read(path, session.method().stages(), camera.size(), exec)?;
+    let mut client = described.client(session.method().stages(), camera.size(), exec)?;
     client.rounding = promise.unwrap_or(client.rounding);
     Ok(client)
 }
@@ -161,8 +175,10 @@ impl Args {
         while let Some(word) = given.next() {
             let text = word.to_string_lossy();
             let name = text.split_once('=').map_or(&*text, |(name, _)| name);
-            if own.contains(&name) {
-                if name == text {
+            // A short option may have its value attached.
+            let attached = text.starts_with("-o") && text.len() > "-o".len();
+            if attached || own.contains(&name) {
+                if name == text && !attached {
                     given.next();
                 }
             } else if let Some(place) = paths.iter().position(|path| *path == word) {

@@ -80,6 +80,9 @@ impl<'a> Seen<'a> {
                 format!("right: of {covered} covered pixels {undecided} have undecided sums")
             }
             Outcome::Wrong => "wrong: no implementation that keeps the promise leaves this".into(),
+            Outcome::Undecidable if !self.verdict.judges() => {
+                "undecidable: no plane was judged; `render --stages` shows which there are".into()
+            }
             Outcome::Undecidable => format!(
                 "undecidable: the sums of {} % of the covered pixels may be either way, {} % are allowed",
                 short(share),

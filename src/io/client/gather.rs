@@ -56,14 +56,14 @@ struct Read {
 /// The client that the file at `path` describes, of these stages.
 pub(super) fn client(
     path: &Path,
-    sidecar: Sidecar,
+    sidecar: &Sidecar,
     stages: &[Stage],
     camera: [u32; 2],
     exec: &Exec,
 ) -> Result<Client> {
     let refused = |what: String| Error::format(path, what);
     let mut files = Files::new(exec);
-    let mut wanted = named(&sidecar, stages).map_err(refused)?;
+    let mut wanted = named(sidecar, stages).map_err(refused)?;
     let mut unknown = Vec::new();
     if let Some(file) = &sidecar.file {
         if Kind::of(file) != Some(Kind::Exr) {
@@ -77,7 +77,7 @@ pub(super) fn client(
     if wanted.is_empty() {
         return Err(refused(format!("no channel is one of the planes {}", names(stages))));
     }
-    let planes = read(path, &sidecar, wanted, camera, &mut files)?;
+    let planes = read(path, sidecar, wanted, camera, &mut files)?;
     drop(files);
     let mut client = joined(planes).map_err(|error| match error {
         Error::Invalid(what) => Error::format(path, what),

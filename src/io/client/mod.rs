@@ -114,31 +114,61 @@ use crate::verify::client::Client;
 use crate::verify::client::Storage;
 use gather::Wanted;
 use parse::Sidecar;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Reads the planes of these stages that the file at `path` has or describes: an `.exr`, or a `.toml`
-/// as above; `size` is that of the camera's picture.
+/// What a file says of a client's planes; nothing but this file is read yet.
+#[derive(Clone, Debug)]
+pub struct Description {
+    path: PathBuf,
+    sidecar: Sidecar,
+}
+
+impl Description {
+    /// The file at `path`: an `.exr`, which is the planes, or a `.toml` as above.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if the file is of another kind. [`Error::Io`] if a TOML file cannot be read,
+    /// [`Error::Format`] if it has an unknown key, a value of the wrong type or what cannot be.
+    pub fn open(path: &Path) -> Result<Self> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+        let sidecar = match extension.as_deref() {
+            Some("exr") => Sidecar::of_picture(path),
+            Some("toml") => {
+                let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
+                let text = String::from_utf8(bytes)
+                    .map_err(|_| Error::format(path, "not text; TOML is UTF-8"))?;
+                Sidecar::parse(&text, path)?
+            }
+            _ => {
+                let what = "give an .exr, or a .toml that says how to read other files";
+                return Err(Error::Usage(format!("{}: {what}", path.display())));
+            }
+        };
+        Ok(Self { path: path.to_owned(), sidecar })
+    }
+
+    /// The files that hold planes or records.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.sidecar.files()
+    }
+
+    /// Reads the planes of these stages; `size` is that of the camera's picture.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if a file cannot be read. [`Error::Format`] if one is not what it should be, if
+    /// what is said does not fit the files, and if there is no plane of these stages.
+    pub fn client(&self, stages: &[Stage], size: [u32; 2], exec: &Exec) -> Result<Client> {
+        gather::client(&self.path, &self.sidecar, stages, size, exec)
+    }
+}
+
+/// Reads the planes of these stages that the file at `path` has or describes: [`Description::open`],
+/// then [`Description::client`].
 ///
 /// # Errors
-/// [`Error::Usage`] if the file is of another kind. [`Error::Io`] if a file cannot be read.
-/// [`Error::Format`] if one is not what it should be, if the TOML file has an unknown key, a value of
-/// the wrong type or what cannot be, and if there is no plane of these stages.
+/// As these.
 pub fn read(path: &Path, stages: &[Stage], size: [u32; 2], exec: &Exec) -> Result<Client> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    let sidecar = match extension.as_deref() {
-        Some("exr") => Sidecar::of_picture(path),
-        Some("toml") => {
-            let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
-            let text = String::from_utf8(bytes)
-                .map_err(|_| Error::format(path, "not text; TOML is UTF-8"))?;
-            Sidecar::parse(&text, path)?
-        }
-        _ => {
-            let what = "give an .exr, or a .toml that says how to read other files";
-            return Err(Error::Usage(format!("{}: {what}", path.display())));
-        }
-    };
-    gather::client(path, sidecar, stages, size, exec)
+    Description::open(path)?.client(stages, size, exec)
 }
 
 /// Whether there may be planes of so many numbers in `f64`, as a file has them and as they mean it.

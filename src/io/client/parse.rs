@@ -3,7 +3,7 @@
 use super::format::Format;
 use super::keys::Keys;
 use crate::error::{Error, Result};
-use crate::io::Reason;
+use crate::io::{Reason, input};
 use crate::setting::Words;
 use crate::verify::client::{Rounding, Storage, Ties};
 use std::path::{Path, PathBuf};
@@ -129,14 +129,8 @@ impl Sidecar {
 
     /// What the text of the file at `path` says; files are looked for beside it.
     pub(super) fn parse(text: &str, path: &Path) -> Result<Self> {
-        let table = text.parse::<toml::Table>().map_err(|error| {
-            let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
-            let what = error.message().trim().replace('\n', " ");
-            match line {
-                Some(line) => Error::format(path, format!("line {line}: {what}")),
-                None => Error::format(path, what),
-            }
-        })?;
+        let table = text.parse::<toml::Table>();
+        let table = table.map_err(|error| input::no_toml(path, text, &error))?;
         let mut read = Self::of_keys(Keys::new(table)).map_err(|what| Error::format(path, what))?;
         // Joining keeps a path that is absolute.
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -145,6 +139,12 @@ impl Sidecar {
             *file = folder.join(&file);
         }
         Ok(read)
+    }
+
+    /// The files that are named.
+    pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
+        let planes = self.planes.iter().filter_map(|(_, plane)| plane.file.as_deref());
+        planes.chain(self.file.as_deref()).chain(self.records.as_deref())
     }
 
     fn of_keys(mut keys: Keys) -> Reason<Self> {

@@ -168,10 +168,8 @@ mod tests {
     #[test]
     fn the_bounds_in_balls_hold_whatever_is_inside() {
         each_shape(|job, settings, _, _| {
-            let [x1, y1] = job.camera.size();
             let mut asked = std::collections::BTreeSet::new();
-            let (splats, picture) =
-                (project::<Ieee>(job, settings), Rect { x1, y1, ..Rect::default() });
+            let splats = project::<Ieee>(job, settings);
             for (tile, rect) in job.grid().rects().into_iter().enumerate() {
                 splats.for_each(tile, |PossibleSplat { splat, .. }| {
                     let Rect { x0, y0, x1, y1 } = splat.bounds.intersection(&rect);
@@ -180,7 +178,7 @@ mod tests {
                 });
             }
             let single = inside::<f32>(job, settings);
-            assert!(!single.is_empty() && asked.len() < 900 * picture.pixels());
+            assert!(!single.is_empty() && asked.len() < 900 * job.picture().pixels());
             for fragment in single.iter().chain(&inside::<f64>(job, settings)) {
                 assert!(asked.contains(fragment), "{fragment:?}");
             }

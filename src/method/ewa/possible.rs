@@ -36,8 +36,7 @@ pub(in crate::method) fn project_into<P: Profile, S: Send>(
     bounds: impl Fn(&S) -> Rect + Sync + Send,
 ) -> Prepared<Ball<P>, S> {
     let surfels = &job.scene.surfels;
-    let [x1, y1] = job.camera.size();
-    let picture = Rect { x1, y1, ..Rect::default() };
+    let picture = job.picture();
     Prepared::new(
         job,
         settings,

@@ -11,6 +11,7 @@ use super::{
     OutputSettings, SceneFile, Source, TREE, check_opacity, shapes, stem,
 };
 use crate::error::{Error, Result};
+use crate::io::input;
 use crate::scene::light::{MAX_RADIANCE, is_color};
 use crate::scene::transform::{self, Similarity};
 use crate::scene::{Lens, Light, Phong};
@@ -21,14 +22,7 @@ use serde::de::{self, Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
 
 pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
-    let file: File = toml::from_str(text).map_err(|error| {
-        let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
-        let what = error.message().trim().replace('\n', " ");
-        match line {
-            Some(line) => Error::format(path, format!("line {line}: {what}")),
-            None => Error::format(path, what),
-        }
-    })?;
+    let file: File = toml::from_str(text).map_err(|error| input::no_toml(path, text, &error))?;
     if file.model.is_empty() {
         let what = "there is no [[model]]: name a file or a shape";
         return Err(Error::format(path, what));

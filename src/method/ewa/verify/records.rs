@@ -26,7 +26,7 @@ pub(super) fn project<P: Profile>(
     records: &[SplatRecord],
 ) -> SwiftSplats<P> {
     let surfels = &job.scene.surfels;
-    let picture = picture(job);
+    let picture = job.picture();
     Prepared::new(
         job,
         settings,
@@ -49,11 +49,6 @@ pub(super) fn project<P: Profile>(
         },
         SwiftSplat::bounds,
     )
-}
-
-fn picture(job: &Job<'_>) -> Rect {
-    let [x1, y1] = job.camera.size();
-    Rect { x1, y1, ..Rect::default() }
 }
 
 /// The surfel of a record, if there is such a surfel.
@@ -83,13 +78,13 @@ pub(super) fn judge<P: Profile>(
         };
         range.filter_map(of_surfel).collect::<Vec<_>>()
     });
-    let mut marks = Marks::new(picture(job));
-    for (error, at, fault) in found.into_iter().flatten() {
-        marks.at(pixel(job, at)).found(error, || fault.clone());
+    let mut marks = Marks::picture(job);
+    for Worst { error, at, surfel, what } in found.into_iter().flatten() {
+        marks.at(pixel(job, at)).found(error, || what.fault(surfel));
     }
     for record in records.iter().filter(|record| record.surfel as usize >= surfels.len()) {
-        let fault = Fault::Projected { surfel: record.surfel };
-        marks.at(pixel(job, record.center)).found(f64::INFINITY, || fault.clone());
+        let fault = || Fault::Projected { surfel: record.surfel };
+        marks.at(pixel(job, record.center)).found(f64::INFINITY, fault);
     }
     marks.whole(STAGE, vec!["records"])
 }
@@ -101,65 +96,112 @@ fn pixel(job: &Job<'_>, place: [f32; 2]) -> usize {
     y * size[0] as usize + x
 }
 
-/// By how many bounds the record of a surfel errs, where it is, and what errs most; none of a surfel
-/// that is not drawn and need not be.
+/// What errs most of the record of a surfel: without words, as most records are right.
+#[derive(Clone, Copy)]
+struct Worst {
+    /// By how many bounds.
+    error: f64,
+    /// Where it is.
+    at: [f32; 2],
+    surfel: u32,
+    what: What,
+}
+
+#[derive(Clone, Copy)]
+enum What {
+    /// A number: which, the client's, the truth, and how far from that it may be.
+    Number {
+        name: &'static str,
+        found: f64,
+        truth: f64,
+        radius: f64,
+    },
+    /// The side that is seen; the client's.
+    Side {
+        back: bool,
+    },
+    Copied,
+    Projected,
+    NotProjected,
+}
+
+impl What {
+    /// In words.
+    fn fault(self, surfel: u32) -> Fault {
+        match self {
+            Self::Number { name, found, truth, radius } => {
+                let channel = format!("{name} of surfel {surfel}");
+                Fault::Value { channel, found, truth, radius }
+            }
+            Self::Side { back } => {
+                let channel = format!("back of surfel {surfel}");
+                Fault::Whole { channel, found: back.into(), truth: (!back).into() }
+            }
+            Self::Copied => Fault::Copied { surfel },
+            Self::Projected => Fault::Projected { surfel },
+            Self::NotProjected => Fault::NotProjected { surfel },
+        }
+    }
+}
+
+/// What errs most of the record of a surfel; none of a surfel that is not drawn and need not be.
 fn judge_surfel<P: Profile>(
     projector: &Projector<Ball<P>>,
     surfels: &Surfels,
     surfel: u32,
     record: Option<&SplatRecord>,
-) -> Option<(f64, [f32; 2], Fault)> {
+) -> Option<Worst> {
     let disc = batch::disc(surfels, surfel as usize);
-    let mut best: Option<(f64, Fault)> = None;
+    let mut best: Option<(f64, What)> = None;
     let mut missing = None;
     possible::each_possible(projector, &disc, surfel, |splat, certain| {
         let center = splat.footprint.center.map(Real::to_f32);
         missing = certain.then_some([center.x, center.y]);
         if let Some(record) = record {
-            let (error, fault) = worst(&splat, record, surfels);
-            if best.as_ref().is_none_or(|(least, _)| error < *least) {
-                best = Some((error, fault));
+            let (error, what) = worst(&splat, record, surfels);
+            if best.is_none_or(|(least, _)| error < least) {
+                best = Some((error, what));
             }
         }
     });
+    let certainly = |at, what| Worst { error: f64::INFINITY, at, surfel, what };
     match (record, best) {
-        (Some(record), Some((error, fault))) => Some((error, record.center, fault)),
+        (Some(record), Some((error, what))) => {
+            Some(Worst { error, at: record.center, surfel, what })
+        }
         // One that is out of sight is harmless: what it draws is judged.
         (Some(record), None) => {
             let (_, reasons) = project_as(projector, &disc, surfel, false);
             let Reasons { behind, degenerate, back_facing, .. } = reasons;
             let dropped = (behind | degenerate | back_facing).certainly();
-            dropped.then_some((f64::INFINITY, record.center, Fault::Projected { surfel }))
+            dropped.then(|| certainly(record.center, What::Projected))
         }
-        (None, _) => missing.map(|at| (f64::INFINITY, at, Fault::NotProjected { surfel })),
+        (None, _) => missing.map(|at| certainly(at, What::NotProjected)),
     }
 }
 
-/// The number of a record that errs most.
+/// What errs most of a record that has a splat.
 fn worst<P: Profile>(
     splat: &Splat<Ball<P>>,
     record: &SplatRecord,
     surfels: &Surfels,
-) -> (f64, Fault) {
+) -> (f64, What) {
+    let back = record.back != 0;
+    let turned = if back { splat.back.possibly() } else { !splat.back.certainly() };
+    if !same_attributes(record, surfels) {
+        return (f64::INFINITY, What::Copied);
+    } else if !turned {
+        return (f64::INFINITY, What::Side { back });
+    }
     let truth = numbers(&splat.footprint);
     let found = numbers(&record.footprint().map(Ball::<P>::from_f32));
-    let mut worst = (-1.0, Fault::Projected { surfel: splat.surfel });
+    let mut worst = (-1.0, What::Copied);
     for ((name, truth), (_, found)) in truth.into_iter().zip(found) {
         let error = truth.misfit(found);
         if error > worst.0 {
-            let channel = format!("{name} of surfel {}", splat.surfel);
-            let radius = truth.radius;
-            let (found, truth) = (found.middle, truth.middle);
-            worst = (error, Fault::Value { channel, found, truth, radius });
+            let (found, truth, radius) = (found.middle, truth.middle, truth.radius);
+            worst = (error, What::Number { name, found, truth, radius });
         }
-    }
-    let back = record.back != 0;
-    let turned = if back { splat.back.possibly() } else { !splat.back.certainly() };
-    if !turned || !same_attributes(record, surfels) {
-        let (channel, truth) = (format!("back of surfel {}", splat.surfel), u32::from(!back));
-        let copied = Fault::Copied { surfel: splat.surfel };
-        let turned = Fault::Whole { channel, found: back.into(), truth };
-        worst = (f64::INFINITY, if same_attributes(record, surfels) { turned } else { copied });
     }
     worst
 }
