@@ -1,9 +1,13 @@
 //! The scenes that the client is tried on.
 
 use glam::{DVec3, Vec3};
+use splatref::frame::Exec;
+use splatref::io::scene_file::SceneFile;
+use splatref::method::Method;
 use splatref::scene::{Camera, Cloud, Lens, Light, Pose, Scene, Surfels};
 use splatref::source::Shape;
 use splatref::splat::{Epsilon, Kernel, Outline, SplatSettings};
+use std::path::Path;
 
 /// A scene, a camera, settings.
 pub(crate) type Case = (Scene, Camera, SplatSettings);
@@ -106,6 +110,15 @@ fn rims() -> Case {
     (scene, camera, SplatSettings { kernel, epsilon: Epsilon::World(0.0), cull: true })
 }
 
+/// The golden `ewa_ladder_raycast`: decisions beside their limits, by steps of 1e-6 and more.
+fn ladder() -> Case {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden/ewa_ladder_raycast.toml");
+    let file = SceneFile::open(path).unwrap();
+    let ready = file.ready(&Exec::sequential(), &|_, _, _| ()).unwrap();
+    let Method::Ewa(settings) = ready.method else { panic!("the golden is of EWA") };
+    (ready.loaded.scene, ready.camera, settings)
+}
+
 /// All of them, by name.
 pub(crate) fn cases() -> Vec<(&'static str, Case)> {
     vec![
@@ -118,5 +131,6 @@ pub(crate) fn cases() -> Vec<(&'static str, Case)> {
         ("wide staircase", wide_staircase()),
         ("inside the cluster", inside_the_cluster()),
         ("rims", rims()),
+        ("ladder", ladder()),
     ]
 }

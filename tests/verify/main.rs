@@ -4,6 +4,7 @@
 //! - [`client_is_right`]: its plain picture is the crate's, and its bugs are to be seen.
 //! - [`cases`]: the scenes.
 //! - [`verdicts`]: no lawful habit is called wrong, and every bug is found.
+//! - [`ladder`]: scenes whose decisions lie beside their limits.
 //! - [`image_space`]: the same of the methods `template` and `pyramid`.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
@@ -12,4 +13,5 @@ mod cases;
 mod client;
 mod client_is_right;
 mod image_space;
+mod ladder;
 mod verdicts;

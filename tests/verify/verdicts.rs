@@ -49,9 +49,9 @@ fn no_lawful_habit_is_called_wrong() {
                 let verdict = judge(&case, How { habit, bug: None }, promise);
                 let wrong = verdict.first_wrong().map(|stage| (stage.stage, &stage.worst));
                 assert_eq!(wrong, None, "{name}, {}, {promise:?}", habit.name());
-                // But for the case whose decisions are all at their limits.
+                // But for the cases whose decisions are at their limits.
                 let share = verdict.undecided as f64 / verdict.covered as f64;
-                assert!(share <= 0.005 || name == "rims", "{name}: {share}");
+                assert!(share <= 0.005 || ["rims", "ladder"].contains(&name), "{name}: {share}");
             }
         }
     }

@@ -43,6 +43,8 @@ taken! {
         "ewa_ellipses",
         "ewa_epsilon_zero",
         "ewa_f64",
+        "ewa_ladder_affine",
+        "ewa_ladder_raycast",
         "ewa_near_plane",
         "ewa_odd_size",
         "ewa_ortho_torus",
@@ -51,6 +53,7 @@ taken! {
     ];
     single_pass::Settings, SinglePass: [
         "zp06_identity_sphere",
+        "zp06_ladder",
         "zp06_voronoi_cluster",
     ];
     crate::transparent::Settings, Transparent | TransparentHq: [
