@@ -19,6 +19,7 @@ mod project;
 mod render;
 mod report;
 mod rows;
+mod suite;
 mod verify;
 mod words;
 
@@ -61,6 +62,8 @@ enum Command {
     Compare(compare::Args),
     /// Judge what another renderer drew, stage by stage
     Verify(verify::Args),
+    /// Say what verdicts on several scenes say together
+    Suite(suite::Args),
     /// Print every decision at one pixel
     Explain(explain::Args),
     /// Divide a scene into groups that do not overlap, into a PLY
@@ -84,6 +87,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Golden(args) => golden::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Verify(args) => verify::run(&args),
+        Command::Suite(args) => suite::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Group(args) => group::run(&args),
         Command::Project(args) => project::run(&args),

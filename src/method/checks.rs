@@ -124,6 +124,18 @@ pub(super) fn least_wrong<T, const N: usize>(
     best.map(|(_, truth)| truth)
 }
 
+/// The number of the only truth of several against which nothing is wrong.
+pub(super) fn only_fitting<T>(all: &[T], check: impl Fn(&T, &mut Report<'_>)) -> Option<usize> {
+    let fits = |truth: &T| {
+        let mut fits = true;
+        check(truth, &mut |_, error, _| fits &= error <= 1.0);
+        fits
+    };
+    let several = if all.len() > 1 { all } else { &[] };
+    let mut fitting = (0..several.len()).filter(|i| fits(&several[*i]));
+    fitting.next().filter(|_| fitting.next().is_none())
+}
+
 /// Deferred shading of a client's surfaces.
 pub(super) struct Shading<P: Profile> {
     shader: Shader<Ball<P>>,

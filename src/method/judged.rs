@@ -5,6 +5,7 @@ use super::replay::Place;
 use super::tiled::pixels;
 use crate::error::Result;
 use crate::frame::{Plane, Rect};
+use crate::verify::shift::Told;
 use crate::verify::verdict::{Cause, Causes, Check, Doubt, Fault, Finding, Judged, Verdict};
 
 /// What was found at a pixel: of wrong ones no more than is counted, as every pixel may be wrong.
@@ -203,11 +204,15 @@ fn keep_worse(worst: &mut Option<Finding>, own: Option<Finding>) {
     }
 }
 
-/// How many pixels may be covered, and in how many the sums are undecided.
-#[derive(Clone, Copy, Debug, Default)]
+/// What is known of a tile beside its marks.
+#[derive(Debug, Default)]
 pub(super) struct Counts {
+    /// How many pixels may be covered.
     pub(super) covered: u64,
+    /// In how many of them the sums are undecided.
     pub(super) undecided: u64,
+    /// The undecided decisions whose outcome is known.
+    pub(super) told: Told,
 }
 
 /// The verdict of a method whose stages are judged tile by tile: `judge` marks what is wrong at the
@@ -224,10 +229,17 @@ pub(super) fn verdict<const N: usize>(
         let counts = judge((tile, rect), &mut marks);
         (marks, counts)
     });
-    let sum = |of: fn(&Counts) -> u64| found.iter().map(|(_, counts)| of(counts)).sum();
-    let (covered, undecided) = (sum(|counts| counts.covered), sum(|counts| counts.undecided));
-    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
-    Verdict { stages: judged(job, stages, tiles), covered, undecided, budget }
+    let mut all = Counts::default();
+    let mut tiles = Vec::new();
+    for (marks, counts) in found {
+        all.covered += counts.covered;
+        all.undecided += counts.undecided;
+        all.told.add(counts.told);
+        tiles.push(marks);
+    }
+    let Counts { covered, undecided, told } = all;
+    let stages = judged(job, stages, tiles);
+    Verdict { stages, covered, undecided, budget, shifts: told.shifts() }
 }
 
 /// Everything that `judge` asks at one pixel.

@@ -196,8 +196,8 @@ impl<'a> Session<'a> {
     /// be judged, see [`Verdict::BUDGET`].
     ///
     /// # Errors
-    /// [`Error::Invalid`] if no plane is one of the method's, or if the picture has another size than
-    /// the camera's; else as [`Session::render`].
+    /// [`Error::Invalid`] if no plane is one of the method's, if the picture has another size than
+    /// the camera's, or if there are records of another method than `ewa`; else as [`Session::render`].
     pub fn verify(&self, camera: &Camera, client: &Client, budget: f64) -> Result<Verdict> {
         self.verify_as(&self.method, camera, client, budget)
     }
@@ -237,7 +237,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Whether there is something to judge.
+    /// Whether there is something to judge, and nothing that is not.
     fn check_client(&self, camera: &Camera, client: &Client) -> Result<()> {
         let frame = client.frame();
         let (found, picture) = ([frame.width, frame.height], camera.size());
@@ -250,6 +250,11 @@ impl<'a> Session<'a> {
         }
         if frame.planes.is_empty() {
             let what = format!("no plane is called as one of the method {}", self.method.name());
+            return Err(Error::Invalid(what));
+        }
+        if client.records.is_some() && !matches!(self.method, Method::Ewa(_)) {
+            let name = self.method.name();
+            let what = format!("records are judged of the method ewa alone, and this is {name}");
             return Err(Error::Invalid(what));
         }
         Ok(())

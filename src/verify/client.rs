@@ -61,7 +61,7 @@ pub struct Client {
     /// How the sums of the attribute pass are stored between two additions.
     pub accumulator: Storage,
     /// The splats that the client has projected, in ascending surfel index: the stages that follow are
-    /// judged from these.
+    /// judged from these. Of the method `ewa`.
     pub records: Option<Vec<SplatRecord>>,
     /// The channels of the file that are no planes of the method.
     pub unknown: Vec<String>,

@@ -16,6 +16,7 @@
 //! - [`mod@laws`]: what must hold of compositing operators, anybody's.
 //! - [`metrics`]: RMSE, PSNR and SSIM of planes, holes and spill.
 //! - [`mod@signature`]: known mistakes, and which of them a client makes.
+//! - [`shift`]: whether the decisions that may be either way lean to one side, over a suite of scenes.
 //! - [`verdict`]: what a right implementation may leave, and whether a client's planes are that.
 
 pub mod client;
@@ -23,5 +24,6 @@ pub mod compare;
 pub mod digest;
 pub mod laws;
 pub mod metrics;
+pub mod shift;
 pub mod signature;
 pub mod verdict;

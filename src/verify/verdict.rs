@@ -1,5 +1,6 @@
 //! What was found of a client's planes: stage by stage, pixel by pixel, and in one word.
 
+use super::shift::Shifts;
 use crate::frame::{NO_ID, Plane};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -341,6 +342,8 @@ pub struct Verdict {
     pub undecided: u64,
     /// The greatest share of undecided pixels of which a picture can be judged.
     pub budget: f64,
+    /// To which side the undecided decisions lean, by limit, where the method asks.
+    pub shifts: Shifts,
 }
 
 impl Verdict {

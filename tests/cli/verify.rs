@@ -73,6 +73,33 @@ fn the_errors_are_written_as_json_and_exr() {
 }
 
 #[test]
+fn verdicts_of_a_suite_are_added() {
+    let at = pictures();
+    for json in ["a.json", "b.json"] {
+        assert_eq!(verified(&at, "mine.exr", &["--promise", "ieee", "--json", json]).0, 0);
+    }
+    let said = succeeds(at.path(), &["suite", "a.json", "b.json"]);
+    assert_eq!(said.matches("right        ieee").count(), 2, "{said}");
+    // As if each had a hundred decisions that lean to one side.
+    let json = fs::read_to_string(at.path().join("a.json")).unwrap();
+    let mut json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["shifts"][0]["limit"], "cut-off");
+    json["shifts"][0]["decisions"] = 100.into();
+    for (key, value) in [("score", -4e7), ("information", 4e12), ("variance", 1e14)] {
+        json["shifts"][0][key] = value.into();
+    }
+    fs::write(at.path().join("a.json"), json.to_string()).unwrap();
+    let one = succeeds(at.path(), &["suite", "a.json"]);
+    assert!(one.contains("1.0e-5 of itself too small; z = -4.0"), "{one}");
+    let output = splatref(at.path(), &["suite", "a.json", "a.json"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("WRONG        ieee  cut-off: 200 undecided decisions"), "{said}");
+    fs::write(at.path().join("no.json"), "{}").unwrap();
+    assert!(fails(at.path(), &["suite", "no.json"], 1).contains("no verdict"));
+}
+
+#[test]
 fn what_is_undecided_beyond_the_budget_is_undecidable() {
     let at = TempDir::new().unwrap();
     let scene = ["sheets", "--count", "400", "--size", "61x47", "--epsilon", "0"];
@@ -162,5 +189,13 @@ fn what_cannot_be_judged_is_no_verdict() {
     exr::write(&at.path().join("strange.exr"), &strange, "").unwrap();
     let strange = [&SCENE[..1], &["strange.exr"], &SCENE[1..]].concat();
     assert!(refused(&strange).contains("strange"));
+    // Records are of one method.
+    let project = ["project", "sphere", "--count", "600", "--size", "61x47", "-o", "mine.bin"];
+    succeeds(at.path(), &project);
+    let toml = "file = \"plain.exr\"\nrecords = \"mine.bin\"\n";
+    fs::write(at.path().join("records.toml"), toml).unwrap();
+    assert_eq!(verified(&at, "records.toml", &[]).0, 0);
+    let other = [&SCENE[..1], &["records.toml"], &SCENE[1..], &["--method", "peeling"]].concat();
+    assert!(refused(&other).contains("of the method ewa alone"));
     assert!(refused(&["sphere", "plain.exr", "--budget", "2"]).contains("a share from 0 to 1"));
 }

@@ -5,6 +5,7 @@
 //! - [`cases`]: the scenes.
 //! - [`verdicts`]: no lawful habit is called wrong, and every bug is found.
 //! - [`ladder`]: scenes whose decisions lie beside their limits.
+//! - [`suite`]: limits that lean, over several scenes.
 //! - [`image_space`]: the same of the methods `template` and `pyramid`.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
@@ -14,4 +15,5 @@ mod client;
 mod client_is_right;
 mod image_space;
 mod ladder;
+mod suite;
 mod verdicts;

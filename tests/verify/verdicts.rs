@@ -91,7 +91,8 @@ fn with_its_records_a_client_is_judged_more_sharply() {
 }
 
 /// The bugs that one with another rounding could take for rounding in every case.
-const BELOW_WHAT_A_GPU_MAY_ROUND: [Bug; 2] = [Bug::CutoffLarger, Bug::RimOutside];
+const BELOW_WHAT_A_GPU_MAY_ROUND: [Bug; 4] =
+    [Bug::CutoffLarger, Bug::CutoffBarelySmaller, Bug::CutoffBarelyLarger, Bug::RimOutside];
 
 #[test]
 fn every_bug_is_found_at_its_stage() {
@@ -105,7 +106,9 @@ fn every_bug_is_found_at_its_stage() {
             let missed = promise == Rounding::Gpu && BELOW_WHAT_A_GPU_MAY_ROUND.contains(&bug);
             assert_eq!(found.is_some(), !missed, "{} {promise:?}", bug.name());
             let stage = stage_of(bug);
-            assert!(found.is_none_or(|found| found == stage), "{} {found:?}", bug.name());
+            // A fragment that is turned is the nearest of its pixel, or is in the sums.
+            let either = bug.name().starts_with("Cutoff") && found == Some("attributes");
+            assert!(found.is_none_or(|found| found == stage) || either, "{} {found:?}", bug.name());
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `splatref verify`: whether a right implementation may have left somebody's planes.
 
-mod report;
+pub(super) mod report;
 
 use super::options::{ExecOptions, SceneOptions};
 use super::{Ended, Ending, draw, output, progress, say};
@@ -79,7 +79,9 @@ fn judge(args: &Args) -> Ended {
         Ok((verdict, likely))
     })?;
     let seen = report::Seen::new(&session, camera, (&verdict, likely))?;
-    progress::during("writing", || write(args, &seen, || errors(camera, &verdict), &exec))?;
+    progress::during("writing", || {
+        write(args, (&seen, &client), || errors(camera, &verdict), &exec)
+    })?;
     seen.lines(args, &client).iter().for_each(say);
     Ok(match verdict.outcome() {
         Outcome::Right => Ending::Good,
@@ -91,7 +93,7 @@ fn judge(args: &Args) -> Ended {
 /// Writes the files that are asked for, both before one is put in its place.
 fn write(
     args: &Args,
-    seen: &report::Seen<'_>,
+    (seen, client): (&report::Seen<'_>, &Client),
     errors: impl FnOnce() -> Result<Frame<f32>>,
     exec: &Exec,
 ) -> Result<()> {
@@ -102,7 +104,7 @@ fn write(
     };
     let json = match &args.json {
         Some(path) => {
-            let text = seen.json()?;
+            let text = seen.json(client)?;
             Some(Pending::write(path, |file| file.write_all(text.as_bytes()))?)
         }
         None => None,

@@ -2,11 +2,12 @@
 
 use super::Args;
 use crate::cli::report::short;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use splatref::Result;
 use splatref::method::Session;
 use splatref::scene::Camera;
 use splatref::verify::client::{Client, Rounding};
+use splatref::verify::shift::{LIMITS, Shift};
 use splatref::verify::verdict::{Doubt, Fault, Finding, Judged, Outcome, Verdict};
 
 /// A verdict, and what was looked up for its report.
@@ -67,6 +68,9 @@ impl<'a> Seen<'a> {
         } else if let Some(next) = next(verdict) {
             lines.push(labelled("sharper", next));
         }
+        let shifts = LIMITS.into_iter().zip(&verdict.shifts);
+        let visible = shifts.filter(|(_, shift)| shift.z().abs() >= Shift::REMARK);
+        lines.extend(visible.map(|(limit, shift)| labelled("shift", leaning(limit, shift))));
         lines.push(self.ending());
         lines
     }
@@ -92,7 +96,7 @@ impl<'a> Seen<'a> {
     }
 
     /// The report for other programs.
-    pub(super) fn json(&self) -> Result<String> {
+    pub(super) fn json(&self, client: &Client) -> Result<String> {
         let Self { verdict, method, likely, heaviest } = self;
         let json = Json {
             outcome: match verdict.outcome() {
@@ -101,6 +105,10 @@ impl<'a> Seen<'a> {
                 Outcome::Undecidable => "undecidable",
             },
             method,
+            promise: match client.rounding {
+                Rounding::Gpu => "gpu",
+                Rounding::Ieee => "ieee",
+            },
             covered: verdict.covered,
             undecided: verdict.undecided,
             budget: verdict.budget,
@@ -108,6 +116,7 @@ impl<'a> Seen<'a> {
             looks_like: likely.as_deref(),
             heaviest: heaviest.clone(),
             stages: verdict.stages.iter().map(JsonStage::new).collect(),
+            shifts: LIMITS.iter().zip(&verdict.shifts).map(JsonShift::new).collect(),
         };
         let text = serde_json::to_string_pretty(&json);
         text.map(|text| text + "\n").map_err(|error| splatref::Error::Invalid(error.to_string()))
@@ -158,6 +167,19 @@ fn judged(stage: &Judged) -> String {
     format!("{what} ({}){doubts}", names.join(", "))
 }
 
+/// To which side the undecided decisions at a limit lean.
+pub(in crate::cli) fn leaning(limit: Doubt, shift: &Shift) -> String {
+    let estimate = shift.estimate();
+    format!(
+        "{}: {} undecided decisions, as if the limit were {:.1e} of itself too {}; z = {:.1}",
+        limit.name(),
+        shift.decisions,
+        estimate.abs(),
+        if estimate < 0.0 { "small" } else { "large" },
+        shift.z()
+    )
+}
+
 /// What else could be handed in, so that more is judged.
 fn next(verdict: &Verdict) -> Option<String> {
     let stage = verdict.stages.iter().find(|stage| stage.planes.is_empty())?;
@@ -169,6 +191,7 @@ fn next(verdict: &Verdict) -> Option<String> {
 struct Json<'a> {
     outcome: &'static str,
     method: &'static str,
+    promise: &'static str,
     covered: u64,
     undecided: u64,
     budget: f64,
@@ -176,6 +199,33 @@ struct Json<'a> {
     looks_like: Option<&'a str>,
     heaviest: Vec<(u32, f64)>,
     stages: Vec<JsonStage<'a>>,
+    shifts: Vec<JsonShift>,
+}
+
+/// To which side the undecided decisions at a limit lean; z and the estimate are for readers.
+#[derive(Serialize, Deserialize)]
+pub(in crate::cli) struct JsonShift {
+    pub(in crate::cli) limit: String,
+    decisions: u64,
+    score: f64,
+    information: f64,
+    variance: f64,
+    z: f64,
+    estimate: f64,
+}
+
+impl JsonShift {
+    fn new((limit, shift): (&Doubt, &Shift)) -> Self {
+        let Shift { decisions, score, information, variance } = *shift;
+        let (z, estimate) = (shift.z(), shift.estimate());
+        Self { limit: limit.name().into(), decisions, score, information, variance, z, estimate }
+    }
+
+    /// The sums that pictures add.
+    pub(in crate::cli) fn shift(&self) -> Shift {
+        let Self { decisions, score, information, variance, .. } = *self;
+        Shift { decisions, score, information, variance }
+    }
 }
 
 #[derive(Serialize)]

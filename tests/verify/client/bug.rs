@@ -44,6 +44,14 @@ named! {
         CutoffSmaller,
         /// The limit of q is too large by 1e-5 of it.
         CutoffLarger,
+        /// The limit of q is too small by 2e-6 of it.
+        CutoffBarelySmaller,
+        /// The limit of q is too large by 2e-6 of it.
+        CutoffBarelyLarger,
+        /// The limit of q is too small by 4e-5 of it.
+        CutoffVisiblySmaller,
+        /// The limit of q is too large by 4e-5 of it.
+        CutoffVisiblyLarger,
         /// The rim, q = k k, is outside.
         RimOutside,
         /// The attribute pass divides the form by w0 w0 in place of w w.

@@ -61,6 +61,10 @@ impl<'a> Shared<'a> {
                 Some(Bug::CutoffNotSquared) => cutoff,
                 Some(Bug::CutoffSmaller) => cutoff * cutoff * (1.0 - 1e-5),
                 Some(Bug::CutoffLarger) => cutoff * cutoff * (1.0 + 1e-5),
+                Some(Bug::CutoffBarelySmaller) => cutoff * cutoff * (1.0 - 2e-6),
+                Some(Bug::CutoffBarelyLarger) => cutoff * cutoff * (1.0 + 2e-6),
+                Some(Bug::CutoffVisiblySmaller) => cutoff * cutoff * (1.0 - 4e-5),
+                Some(Bug::CutoffVisiblyLarger) => cutoff * cutoff * (1.0 + 4e-5),
                 _ => cutoff * cutoff,
             },
             low_pass: match how.bug {

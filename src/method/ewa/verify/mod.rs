@@ -53,6 +53,7 @@ use crate::method::judged::{self, Counts, Marks, counted};
 use crate::number::ball::Profile;
 use crate::scene::Surfels;
 use crate::verify::client::Client;
+use crate::verify::shift::Told;
 use crate::verify::verdict::{Check, Doubt, Verdict};
 use handed::Handed;
 use pixel::PixelJudge;
@@ -112,12 +113,15 @@ impl<'a, P: Profile> Judge<'a, P> {
         let [first, rest @ ..] = marks;
         let nearest = certificate::judge(splats, (handed, surfels), (tile, &rect), first);
         let sums = sums::continuations(splats, surfels, &nearest, (tile, &rect), &mut rest[0]);
-        let mut covered = 0;
+        let (mut covered, mut told) = (0, Told::default());
         for (pixel, at) in counted(rect) {
-            pixels.judge((pixel, at), &nearest[pixel], &sums[pixel], rest);
+            let taken = pixels.judge((pixel, at), &nearest[pixel], &sums[pixel], rest);
+            if let (Continuations::Several(_, open), Some(taken)) = (&sums[pixel], taken) {
+                told.take_all(open, taken);
+            }
             let certain = matches!(sums[pixel], Continuations::One(_));
             covered += u64::from(nearest[pixel].depth.middle.is_finite() || !certain);
         }
-        Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS) }
+        Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS), told }
     }
 }

@@ -8,7 +8,7 @@ use crate::composite::sum;
 use crate::method::Holds;
 use crate::method::algorithm::Job;
 use crate::method::checks::{
-    Report, Shading, Surface, anything, least_wrong, number, triple, whole, widened,
+    Report, Shading, Surface, anything, least_wrong, number, only_fitting, triple, whole, widened,
 };
 use crate::method::ewa::attributes::Sums;
 use crate::method::judged::Marks;
@@ -46,25 +46,25 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
-    /// Marks what is wrong at a pixel: by the continuation that errs least.
+    /// Marks what is wrong at a pixel: by the continuation that errs least. Gives the number of the only
+    /// one that fits, if one does and others do not.
     pub(in crate::method) fn judge(
         &self,
         (pixel, at): (usize, (u32, u32)),
         nearest: &Nearest<P>,
         sums: &Continuations<P>,
         marks: &mut [Marks; 3],
-    ) {
+    ) -> Option<usize> {
         let all: &[Sums<Ball<P>>] = match sums {
             Continuations::One(sums) => std::slice::from_ref(sums),
-            Continuations::Several(sums) => sums,
+            Continuations::Several(sums, _) => sums,
             Continuations::Many => &[],
         };
-        let sums = least_wrong::<_, 3>(all, |sums, report| {
-            self.check(at, nearest, Some(sums), report);
-        });
-        self.check(at, nearest, sums, &mut |part, error, fault| {
+        let check = |sums: &_, report: &mut Report<'_>| self.check(at, nearest, Some(sums), report);
+        self.check(at, nearest, least_wrong::<_, 3>(all, check), &mut |part, error, fault| {
             marks[part].at(pixel).found(error, fault);
         });
+        only_fitting(all, check)
     }
 
     /// Every plane at a pixel, with these sums; without any, as far as the client's own are there.

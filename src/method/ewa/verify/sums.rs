@@ -11,6 +11,7 @@ use crate::method::judged::{Marks, PixelMarks};
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Truth};
 use crate::scene::Surfels;
+use crate::verify::shift::Open;
 use crate::verify::verdict::Doubt;
 
 /// The most undecided fragments of a pixel of which all continuations are followed, 2^n of them.
@@ -21,8 +22,9 @@ pub(in crate::method) const MOST: u32 = 4;
 pub(in crate::method) enum Continuations<P: Profile> {
     /// No decision is undecided.
     One(Sums<Ball<P>>),
-    /// One of these.
-    Several(Vec<Sums<Ball<P>>>),
+    /// One of these: number n takes undecided decision i if bit i of n is set. Which these are is empty
+    /// where a method does not say.
+    Several(Vec<Sums<Ball<P>>>, Vec<Open>),
     /// More than are followed: anything.
     Many,
 }
@@ -36,8 +38,8 @@ struct Part<P: Profile> {
     surfel: u32,
     back: Three,
     weight: Ball<P>,
-    /// Whether it certainly is.
-    certain: bool,
+    /// The decision on it, if it is undecided.
+    open: Option<Open>,
 }
 
 /// The sums of each pixel of a tile, given the nearest fragments.
@@ -51,7 +53,7 @@ pub(super) fn continuations<P: Profile>(
     let mut sums = vec![(Sums::NONE, 0_u32); rect.pixels()];
     each_part(splats, nearest, (tile, rect), |pixel, part, asked| {
         let (sums, undecided) = &mut sums[pixel];
-        if part.certain {
+        if part.open.is_none() {
             sums.add(surfels, (part.surfel, part.back), part.weight);
         } else {
             *undecided += 1;
@@ -62,7 +64,7 @@ pub(super) fn continuations<P: Profile>(
     let parts = undecided_parts(splats, nearest, (tile, rect), &sums);
     let of_pixel = |pixel, undecided| match undecided {
         0 => None,
-        1..=MOST => Some(Continuations::Several(several(surfels, &parts, pixel, undecided))),
+        1..=MOST => Some(several(surfels, &parts, pixel, undecided)),
         _ => Some(Continuations::Many),
     };
     sums.into_iter()
@@ -85,6 +87,26 @@ impl Asked {
         pixel.doubt(Doubt::CutOff, self.inside.decided().is_none());
         pixel.doubt(Doubt::Epsilon, self.visible.decided().is_none());
         pixel.doubt(Doubt::Fate, !self.drawn);
+    }
+
+    /// The decision: of the cut-off or of epsilon, if only the one is undecided, each a number, its
+    /// limit, and what the limit is a share of.
+    fn open<P: Profile>(
+        &self,
+        surfel: u32,
+        limits: impl FnOnce() -> [([Ball<P>; 2], Ball<P>); 2],
+    ) -> Open {
+        let limit = match (self.drawn, self.inside.decided(), self.visible.decided()) {
+            (true, None, Some(_)) => Some(0),
+            (true, Some(_), None) => Some(1),
+            _ => None,
+        };
+        let share = limit.map(|which| {
+            let ([value, limit], whole) = limits()[which];
+            [limit.middle - value.middle, limit.radius + value.radius].map(|x| x / whole.middle)
+        });
+        let [distance, radius] = share.unwrap_or_default();
+        Open { surfel, limit, distance, radius }
     }
 }
 
@@ -118,8 +140,14 @@ fn each_part<P: Profile>(
             if visible.possibly() {
                 let asked = Asked { drawn: *certain, inside, visible };
                 let certain = *certain && (inside & visible).certainly();
+                let open = (!certain).then(|| {
+                    asked.open(splat.surfel, || {
+                        let depth = [shared.depth(w), limit(pixel)];
+                        [([q, shared.limit], shared.limit), (depth, splats.epsilon)]
+                    })
+                });
                 let weight = splat.footprint.weight(q);
-                let part = Part { surfel: splat.surfel, back: splat.back, weight, certain };
+                let part = Part { surfel: splat.surfel, back: splat.back, weight, open };
                 take(pixel, part, &asked);
             }
         },
@@ -152,20 +180,20 @@ fn several<P: Profile>(
     parts: &Fragments<P>,
     pixel: usize,
     undecided: u32,
-) -> Vec<Sums<Ball<P>>> {
+) -> Continuations<P> {
     let first = parts.partition_point(|(at, _)| *at < pixel);
     let parts = parts[first..].iter().take_while(|(at, _)| *at == pixel);
-    (0..1_u32 << undecided)
-        .map(|choice| {
-            let (mut sums, mut bit) = (Sums::NONE, 0);
-            for (_, part) in parts.clone() {
-                let taken = part.certain || choice >> bit & 1 == 1;
-                bit += u32::from(!part.certain);
-                if taken {
-                    sums.add(surfels, (part.surfel, part.back), part.weight);
-                }
+    let all = (0..1_u32 << undecided).map(|choice| {
+        let (mut sums, mut bit) = (Sums::NONE, 0);
+        for (_, part) in parts.clone() {
+            let taken = part.open.is_none() || choice >> bit & 1 == 1;
+            bit += u32::from(part.open.is_some());
+            if taken {
+                sums.add(surfels, (part.surfel, part.back), part.weight);
             }
-            sums
-        })
-        .collect()
+        }
+        sums
+    });
+    let open = parts.clone().filter_map(|(_, part)| part.open);
+    Continuations::Several(all.collect(), open.collect())
 }

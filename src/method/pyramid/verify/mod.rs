@@ -36,6 +36,7 @@ use crate::method::judged::{Marks, counted, judged};
 use crate::method::projection::verify::{self as samples, SamplePlanes};
 use crate::number::ball::Profile;
 use crate::verify::client::Client;
+use crate::verify::shift::Shifts;
 use crate::verify::verdict::Verdict;
 use levels::Levels;
 use pixel::PixelJudge;
@@ -73,5 +74,5 @@ pub(super) fn verify<P: Profile>(
     let tiles = found.into_iter().map(|(marks, _)| marks).collect();
     stages.extend(judged(job, [("shading", judge.names())], tiles));
     let undecided = [1, 2].map(|i: usize| stages[i].doubtful(ANY)).iter().sum();
-    Verdict { stages, covered, undecided, budget }
+    Verdict { stages, covered, undecided, budget, shifts: Shifts::default() }
 }

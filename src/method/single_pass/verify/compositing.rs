@@ -61,7 +61,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
         let sums = match (choices.len(), all.as_slice()) {
             (0, _) => Continuations::Many,
             (1, [one]) => Continuations::One(*one),
-            _ => Continuations::Several(all),
+            _ => Continuations::Several(all, Vec::new()),
         };
         (depth, sums)
     }

@@ -35,6 +35,7 @@ use crate::method::judged::{Marks, counted, judged};
 use crate::method::projection::verify::{self as samples, SamplePlanes};
 use crate::number::ball::Profile;
 use crate::verify::client::Client;
+use crate::verify::shift::Shifts;
 use crate::verify::verdict::Verdict;
 use levels::Levels;
 use pixel::PixelJudge;
@@ -69,5 +70,5 @@ pub(super) fn verify<P: Profile>(
     let mut stages = vec![projection, propagation];
     stages.extend(judged(job, handed.stages(judge.gathers()), tiles));
     let undecided = stages[2].doubtful(ANY);
-    Verdict { stages, covered, undecided, budget }
+    Verdict { stages, covered, undecided, budget, shifts: Shifts::default() }
 }

@@ -1,0 +1,81 @@
+//! `splatref suite`: what the verdicts on several scenes say together.
+
+use super::verify::report::{JsonShift, leaning};
+use super::{Ended, Ending, say};
+use serde::Deserialize;
+use splatref::verify::shift::{LIMITS, Shift, Shifts};
+use splatref::{Error, Result};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+#[command(after_help = "\
+Decisions beside a limit are undecided in each picture. Over several scenes they show a limit that is a
+little off: rounding turns about as many to either side.
+
+Examples:
+  splatref verify a.toml a.exr --promise ieee --json a.json
+  splatref verify b.toml b.exr --promise ieee --json b.json
+  splatref suite a.json b.json
+
+Exit codes: 0 all right, 1 any wrong, or all of them leaning to one side; 2 wrong usage; 3 any
+undecidable.")]
+pub(super) struct Args {
+    /// Verdicts that `verify --json` wrote
+    #[arg(required = true, value_name = "VERDICT.json")]
+    verdicts: Vec<PathBuf>,
+}
+
+/// What is read of a verdict.
+#[derive(Deserialize)]
+struct Verdict {
+    outcome: String,
+    promise: String,
+    shifts: Vec<JsonShift>,
+}
+
+pub(super) fn run(args: &Args) -> Ended {
+    let verdicts = args.verdicts.iter().map(|path| Ok((path, verdict(path)?)));
+    let verdicts = verdicts.collect::<Result<Vec<_>>>()?;
+    for (path, Verdict { outcome, promise, .. }) in &verdicts {
+        say(format!("{outcome:<12} {promise:<5} {}", path.display()));
+    }
+    let any = |word: &str| verdicts.iter().any(|(_, verdict)| verdict.outcome == word);
+    let mut leans = false;
+    // What one promise calls undecided is certain by the other.
+    for promise in ["ieee", "gpu"] {
+        let own = verdicts.iter().filter(|(_, verdict)| verdict.promise == promise);
+        let all = together(own.flat_map(|(_, verdict)| &verdict.shifts));
+        for (limit, shift) in LIMITS.iter().zip(&all).filter(|(_, shift)| shift.decisions > 0) {
+            // An inexact operation may lean, if it does so lawfully.
+            let alarms = promise == "ieee" && shift.alarms();
+            leans |= alarms;
+            let word = if alarms { "WRONG" } else { "" };
+            say(format!("{word:<12} {promise:<5} {}", leaning(*limit, shift)));
+        }
+    }
+    Ok(if leans || any("wrong") {
+        Ending::Different
+    } else if any("undecidable") {
+        Ending::Undecidable
+    } else {
+        Ending::Good
+    })
+}
+
+fn verdict(path: &Path) -> Result<Verdict> {
+    let text = fs::read_to_string(path).map_err(|source| Error::io(path, source))?;
+    serde_json::from_str(&text)
+        .map_err(|error| Error::format(path, format!("no verdict of `verify --json`: {error}")))
+}
+
+/// What pictures say together.
+fn together<'a>(leans: impl Iterator<Item = &'a JsonShift>) -> Shifts {
+    let mut all = [Shift::default(); LIMITS.len()];
+    for lean in leans {
+        if let Some(at) = LIMITS.iter().position(|limit| limit.name() == lean.limit) {
+            all[at].add(&lean.shift());
+        }
+    }
+    all
+}

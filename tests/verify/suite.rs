@@ -1,0 +1,62 @@
+//! A limit that is a little off leans the undecided decisions of a suite of scenes to one side; those of
+//! lawful clients go to both.
+
+use splatref::frame::Exec;
+use splatref::method::{Method, Session};
+use splatref::scene::{Camera, Scene, Surfels};
+use splatref::source::Shape;
+use splatref::splat::{Epsilon, Kernel, SplatSettings};
+use splatref::verify::client::{Client, Rounding};
+use splatref::verify::shift::{Shift, Shifts};
+
+/// The scenes: a shape, how many surfels, the outline.
+const SUITE: [(&str, usize, Kernel); 7] = [
+    ("sphere", 40_000, Kernel::DEFAULT),
+    ("torus", 30_000, Kernel::DEFAULT),
+    ("cluster", 60_000, Kernel::ZPVBG01),
+    ("staircase", 20_000, Kernel::ZP06),
+    ("checkerboard", 20_000, Kernel::DEFAULT),
+    ("cluster", 120_000, Kernel::DEFAULT),
+    ("cluster", 90_000, Kernel::ZPVBG01),
+];
+
+/// What all scenes say together of the crate in `f32`, as a client whose limit of q is off by twice this
+/// share: surfels are larger, and so is the cut-off, by which their radii are divided.
+fn leaning(off: f32) -> Shifts {
+    let exec = Exec::new(2, 32).unwrap();
+    let mut all = Shifts::default();
+    for (seed, (name, count, kernel)) in SUITE.into_iter().enumerate() {
+        let shape = Shape::by_name(name).unwrap();
+        let scene = Scene::lit(name, shape.surfels(count, seed as u64).unwrap());
+        let camera = Camera::new(720, 540, shape.default_pose(), shape.default_lens()).unwrap();
+        let epsilon = Epsilon::World(Epsilon::MedianRadii(2.0).resolve(&scene.surfels));
+        let settings = SplatSettings { kernel, epsilon, ..SplatSettings::default() };
+        let mut cloud = scene.surfels.clone().into_cloud();
+        cloud.radius.iter_mut().flatten().for_each(|radius| *radius *= 1.0 + off);
+        let larger = Scene { surfels: Surfels::new(cloud).unwrap().0, ..scene.clone() };
+        let mut changed = settings;
+        changed.kernel.cutoff *= 1.0 + off;
+        let client = Session::new(&larger, Method::Ewa(changed), &exec).unwrap();
+        let frame = client.define::<f32>(&camera, false).unwrap().frame;
+        let mut client = Client::from(&frame);
+        client.rounding = Rounding::Ieee;
+        let session = Session::new(&scene, Method::Ewa(settings), &exec).unwrap();
+        let verdict = session.verify(&camera, &client, 1.0).unwrap();
+        println!("{name}: {:?}", verdict.shifts.map(|shift| (shift.decisions, shift.z())));
+        all.iter_mut().zip(&verdict.shifts).for_each(|(all, shift)| all.add(shift));
+    }
+    println!("z {:?}, off {:?}", all.map(|s| s.z()), all.map(|s| s.estimate()));
+    all
+}
+
+#[test]
+fn a_limit_that_is_a_little_off_leans() {
+    let lawful = leaning(0.0);
+    // Few are undecided at epsilon, which is the same of all surfels.
+    assert!(lawful[0].decisions > 50, "{lawful:?}");
+    assert!(lawful.iter().all(|shift| shift.z().abs() < Shift::REMARK), "{lawful:?}");
+    for off in [5e-6, -5e-6] {
+        let [cutoff, _] = leaning(off);
+        assert!(cutoff.alarms() && (cutoff.z() > 0.0) == (off > 0.0), "{cutoff:?}");
+    }
+}
