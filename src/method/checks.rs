@@ -11,7 +11,7 @@ use crate::verify::client::{Storage, Stored};
 use crate::verify::verdict::Fault;
 
 /// Told of a check: the place of its stage among those that are judged together, by how many bounds
-/// the client errs, and what is wrong if that is above 1.
+/// the client errs, NaN if there are none, and what is wrong if that is above 1.
 pub(super) type Report<'a> = dyn FnMut(usize, f64, &dyn Fn() -> Fault) + 'a;
 
 /// Any number, or none.
@@ -83,7 +83,9 @@ fn component_of<P: Profile>(
     truth: Ball<P>,
     report: &mut Report<'_>,
 ) {
-    report(part, truth.misfit(found), &|| Fault::Value {
+    let judged = truth.radius.is_finite() || truth.middle == found.middle;
+    let error = if judged { truth.misfit(found) } else { f64::NAN };
+    report(part, error, &|| Fault::Value {
         channel: channel(),
         found: found.middle,
         truth: truth.middle,
@@ -128,7 +130,7 @@ pub(super) fn least_wrong<T, const N: usize>(
 pub(super) fn only_fitting<T>(all: &[T], check: impl Fn(&T, &mut Report<'_>)) -> Option<usize> {
     let fits = |truth: &T| {
         let mut fits = true;
-        check(truth, &mut |_, error, _| fits &= error <= 1.0);
+        check(truth, &mut |_, error, _| fits &= !(error > 1.0));
         fits
     };
     let several = if all.len() > 1 { all } else { &[] };

@@ -98,7 +98,8 @@ impl Marks {
 }
 
 impl PixelMarks<'_> {
-    /// What was found, and by how many bounds it errs; `fault` says what is wrong if that is above 1.
+    /// What was found, and by how many bounds it errs, NaN if there are none; `fault` says what is wrong
+    /// if that is above 1.
     pub(super) fn found(&mut self, error: f64, fault: impl Fn() -> Fault) {
         let Marks { rect, found, worst, log } = &mut *self.marks;
         if let Some(log) = log {
@@ -109,7 +110,10 @@ impl PixelMarks<'_> {
             }
         }
         let at = &mut found[self.pixel];
-        // A comparison that NaN fails: an error that cannot be told is none.
+        if error.is_nan() {
+            at.doubts |= Doubt::Unbounded as u8;
+        }
+        // A comparison that NaN fails.
         if !(error > f64::from(at.error)) {
             return;
         }

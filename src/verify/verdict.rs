@@ -21,11 +21,15 @@ pub enum Doubt {
     Fate = 8,
     /// Which side of a surfel is seen.
     Side = 16,
+    /// No decision: a number that no bound can be given for, as where a sum may exceed the largest
+    /// `f32` or a divisor may be 0. It is not judged.
+    Unbounded = 32,
 }
 
 impl Doubt {
     /// All, in the order of their bits.
-    pub const ALL: [Self; 5] = [Self::CutOff, Self::Nearer, Self::Epsilon, Self::Fate, Self::Side];
+    pub const ALL: [Self; 6] =
+        [Self::CutOff, Self::Nearer, Self::Epsilon, Self::Fate, Self::Side, Self::Unbounded];
 
     /// The name in reports.
     #[must_use]
@@ -36,12 +40,12 @@ impl Doubt {
             Self::Epsilon => "epsilon",
             Self::Fate => "fate",
             Self::Side => "side",
+            Self::Unbounded => "without bounds",
         }
     }
 
     /// The doubts that move sums: all but which of near ties is the nearest.
-    pub const OF_SUMS: u8 =
-        Self::CutOff as u8 | Self::Epsilon as u8 | Self::Fate as u8 | Self::Side as u8;
+    pub const OF_SUMS: u8 = !(Self::Nearer as u8);
 }
 
 /// What is wrong at a pixel.
@@ -189,14 +193,18 @@ pub struct Check {
     pub stage: &'static str,
     /// The value, and what may be there; wrong only if the error is above 1.
     pub fault: Fault,
-    /// By how many bounds it errs.
+    /// By how many bounds it errs; NaN if it has none.
     pub error: f64,
 }
 
 impl fmt::Display for Check {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { stage, fault, error } = self;
-        let word = if *error > 1.0 { "WRONG" } else { "right" };
+        let word = match *error {
+            error if error.is_nan() => "open ",
+            error if error > 1.0 => "WRONG",
+            _ => "right",
+        };
         write!(f, "{stage:<14} {word}  {fault}")?;
         if *error > 0.0 && error.is_finite() { write!(f, "  ({error:.3} bounds)") } else { Ok(()) }
     }
