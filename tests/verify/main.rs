@@ -4,6 +4,7 @@
 //! - [`client_is_right`]: its plain picture is the crate's, and its bugs are to be seen.
 //! - [`cases`]: the scenes.
 //! - [`verdicts`]: no lawful habit is called wrong, and every bug is found.
+//! - [`groups`]: the same of the method `single-pass`.
 //! - [`image_space`]: the same of the methods `template` and `pyramid`.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
@@ -11,5 +12,6 @@
 mod cases;
 mod client;
 mod client_is_right;
+mod groups;
 mod image_space;
 mod verdicts;
