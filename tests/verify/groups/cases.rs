@@ -10,7 +10,7 @@ use splatref::splat::{Epsilon, Kernel, Outline, SplatSettings};
 pub(super) type Case = (Scene, Camera, Settings);
 
 fn camera(shape: Shape) -> Camera {
-    Camera::new(61, 47, shape.default_pose(), shape.default_lens()).unwrap()
+    Camera::new(47, 35, shape.default_pose(), shape.default_lens()).unwrap()
 }
 
 fn surfels(shape: &str, count: usize, seed: u64) -> (Shape, Surfels) {
@@ -32,24 +32,24 @@ fn splats(kernel: Kernel, epsilon: Epsilon) -> SplatSettings {
 
 /// Groups as the method makes them.
 fn sphere() -> Case {
-    let (shape, surfels) = surfels("sphere", 400, 0);
+    let (shape, surfels) = surfels("sphere", 300, 0);
     (Scene::lit("sphere", surfels), camera(shape), Settings::default())
 }
 
 /// Without colours.
 fn orthographic_torus() -> Case {
-    let (shape, surfels) = surfels("torus", 500, 1);
+    let (shape, surfels) = surfels("torus", 400, 1);
     let mut cloud = grouped(surfels, 4, |i| i % 4).into_cloud();
     cloud.color = None;
     let scene = Scene::lit("torus", Surfels::new(cloud).unwrap().0);
-    let camera = Camera::new(61, 47, shape.default_pose(), Lens::Orthographic(2.5)).unwrap();
+    let camera = Camera::new(47, 35, shape.default_pose(), Lens::Orthographic(2.5)).unwrap();
     let splats = splats(Kernel::DEFAULT, Epsilon::World(0.125));
     (scene, camera, Settings { splats, depth: DepthTest::Plain })
 }
 
 /// Seen from both sides, without light; two of the groups are empty.
 fn cluster() -> Case {
-    let (shape, surfels) = surfels("cluster", 700, 2);
+    let (shape, surfels) = surfels("cluster", 500, 2);
     let scene = Scene::unlit("cluster", grouped(surfels, 8, |i| [0, 1, 2, 4, 5, 7][i / 7 % 6]));
     let splats = SplatSettings { kernel: Kernel::ZPVBG01, cull: false, ..SplatSettings::default() };
     (scene, camera(shape), Settings { splats, depth: DepthTest::Voronoi(BinCount::Count(32)) })
@@ -57,7 +57,7 @@ fn cluster() -> Case {
 
 /// What an extension has added and enlarged is nothing to this method.
 fn extended_sphere() -> Case {
-    let (shape, surfels) = surfels("sphere", 300, 3);
+    let (shape, surfels) = surfels("sphere", 240, 3);
     let mut cloud = surfels.into_cloud();
     let count = cloud.position.len();
     let own = (0..count).map(|i| u8::from(i % 3 == 0)).collect();
@@ -74,7 +74,7 @@ fn extended_sphere() -> Case {
 
 /// Some of the discs reach the near plane.
 fn checkerboard(outline: Outline, depth: DepthTest, epsilon: Epsilon, groups: u8) -> Case {
-    let (shape, surfels) = surfels("checkerboard", 1500, 4);
+    let (shape, surfels) = surfels("checkerboard", 700, 4);
     let surfels = grouped(surfels, groups, |i| i / 3 % usize::from(groups));
     let scene = Scene::lit("checkerboard", surfels);
     let splats = splats(Kernel { outline, cutoff: 2.375, low_pass: 0.5 }, epsilon);
@@ -83,23 +83,23 @@ fn checkerboard(outline: Outline, depth: DepthTest, epsilon: Epsilon, groups: u8
 
 /// The widest kernel, seen from both sides.
 fn wide_staircase() -> Case {
-    let (shape, surfels) = surfels("staircase", 300, 5);
+    let (shape, surfels) = surfels("staircase", 120, 5);
     let scene = Scene::lit("staircase", grouped(surfels, 8, |i| i * i % 8));
-    let kernel = Kernel { outline: Outline::Perspective, cutoff: 4.0, low_pass: 16.0 };
+    let kernel = Kernel { outline: Outline::Perspective, cutoff: 4.0, low_pass: 4.0 };
     let splats = SplatSettings { cull: false, ..splats(kernel, Epsilon::MedianRadii(1.5)) };
     (scene, camera(shape), Settings { splats, depth: DepthTest::Voronoi(BinCount::Count(3)) })
 }
 
 /// From within: surfels are behind the camera, and beside the view.
 fn inside_the_cluster() -> Case {
-    let (_, surfels) = surfels("cluster", 500, 6);
+    let (_, surfels) = surfels("cluster", 250, 6);
     let scene = Scene::lit("cluster", grouped(surfels, 2, |i| i % 2));
     let eye = DVec3::new(0.1, 0.2, 0.3);
     let pose = Pose { eye, target: DVec3::new(1.0, -0.25, -0.5), up: DVec3::Z };
-    let camera = Camera::new(61, 47, pose, Lens::FieldOfView(75.0)).unwrap();
+    let camera = Camera::new(47, 35, pose, Lens::FieldOfView(75.0)).unwrap();
     let kernel = Kernel { outline: Outline::RayCast, ..Kernel::DEFAULT };
     let splats = SplatSettings { cull: false, ..splats(kernel, Epsilon::World(0.05)) };
-    (scene, camera, Settings { splats, depth: DepthTest::Voronoi(BinCount::Count(40_000)) })
+    (scene, camera, Settings { splats, depth: DepthTest::Voronoi(BinCount::Count(60_000)) })
 }
 
 /// The radius of a disc whose rim nearly goes through centres of pixels.

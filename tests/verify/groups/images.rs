@@ -54,7 +54,7 @@ pub(super) fn draw(client: &Client<'_>, splats: &[Splat]) -> Vec<Image> {
         }
     }
     let kept = |image: Vec<Cell>| image.into_iter().map(|cell| cell.kept).collect();
-    let mut images = images.into_iter().map(kept).collect();
+    let mut images: Vec<Image> = images.into_iter().map(kept).collect();
     spoil(client, &mut images);
     images
 }
@@ -159,7 +159,7 @@ fn attributes(client: &Client<'_>, splat: &Splat, q: Number, key: Key) -> Kept {
 }
 
 /// Mistakes in one pixel, the middle one of those where an image keeps something.
-fn spoil(client: &Client<'_>, images: &mut Vec<Image>) {
+fn spoil(client: &Client<'_>, images: &mut [Image]) {
     if client.has(Bug::ImagesSwapped) && images.len() > 1 {
         images.swap(0, 1);
     }

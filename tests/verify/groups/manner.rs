@@ -19,7 +19,7 @@ named! {
         /// The depth test compares depths, as a depth buffer that stores t does: 1/t rounds, so that
         /// two of different nearness may tie.
         DepthBufferOfDepth,
-        /// n / (d_max - d_min) is one factor, which the host computes.
+        /// The number of bins over the range of depth is one factor, which the host computes.
         BinsByFactor,
         /// sqrt(q) / k in place of sqrt(q / (k k)).
         RatioOfRoots,

@@ -4,6 +4,7 @@ use super::Client;
 use super::bug::Bug;
 use super::compositing::Surface;
 use super::images::{Image, Kept};
+use crate::client::number::Vector;
 use crate::client::shade::Shader;
 use crate::client::targets::srgb;
 use splatref::Frame;
@@ -91,8 +92,8 @@ pub(super) fn frame(
     sheet.frame
 }
 
-fn leave_image(client: &Client<'_>, sheet: &mut Sheet, name: &str, image: &Image) {
-    let three = |vector: [crate::client::number::Number; 3]| vector.map(|number| number.value);
+fn leave_image(client: &Client<'_>, sheet: &mut Sheet, name: &str, image: &[Option<Kept>]) {
+    let three = |vector: Vector| vector.map(|number| number.value);
     sheet.scalar(&format!("{name}.Z"), image, f32::INFINITY, |kept: &Kept| kept.depth);
     sheet.index(&format!("{name}.id"), image, |kept| kept.surfel);
     sheet.scalar(&format!("{name}.weight"), image, 0.0, |kept| kept.weight.value);
