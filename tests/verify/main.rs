@@ -6,6 +6,7 @@
 //! - [`verdicts`]: no lawful habit is called wrong, and every bug is found.
 //! - [`ladder`]: scenes whose decisions lie beside their limits.
 //! - [`suite`]: limits that lean, over several scenes.
+//! - [`groups`]: the same of the method `single-pass`.
 //! - [`image_space`]: the same of the methods `template` and `pyramid`.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
@@ -13,6 +14,7 @@
 mod cases;
 mod client;
 mod client_is_right;
+mod groups;
 mod image_space;
 mod ladder;
 mod suite;

@@ -16,10 +16,10 @@ pub(crate) mod bug;
 pub(crate) mod habit;
 pub(crate) mod named;
 pub(crate) mod number;
-mod passes;
-mod project;
+pub(crate) mod passes;
+pub(crate) mod project;
 pub(crate) mod shade;
-mod targets;
+pub(crate) mod targets;
 pub(crate) mod view;
 
 pub(crate) use bug::Bug;

@@ -9,13 +9,18 @@ use super::view::Shared;
 use splatref::splat::Outline;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Pass {
+pub(crate) enum Pass {
     Visibility,
     Attributes,
 }
 
 /// q and nearness of a splat at the centre of a pixel.
-fn fragment(shared: &Shared<'_>, splat: &Splat, [x, y]: [u32; 2], pass: Pass) -> (Number, Number) {
+pub(crate) fn fragment(
+    shared: &Shared<'_>,
+    splat: &Splat,
+    [x, y]: [u32; 2],
+    pass: Pass,
+) -> (Number, Number) {
     let half = shared.number(if shared.how.has(Bug::NoHalfPixel) { 0.0 } else { 0.5 });
     let offset = |pixel: u32, center: Number| sum(shared.number(pixel as f32), half, -center);
     let (dx, dy) = (offset(x, splat.center[0]), offset(y, splat.center[1]));
@@ -49,11 +54,11 @@ fn fragment(shared: &Shared<'_>, splat: &Splat, [x, y]: [u32; 2], pass: Pass) ->
     }
 }
 
-fn inside(shared: &Shared<'_>, q: Number) -> bool {
+pub(crate) fn inside(shared: &Shared<'_>, q: Number) -> bool {
     if shared.how.has(Bug::RimOutside) { q < shared.limit } else { q <= shared.limit }
 }
 
-fn weight(shared: &Shared<'_>, splat: &Splat, q: Number) -> Number {
+pub(crate) fn weight(shared: &Shared<'_>, splat: &Splat, q: Number) -> Number {
     let exp = match shared.how.bug {
         Some(Bug::ExpWithoutHalf) => (-q).exp(),
         Some(Bug::FastExp) => (q * -0.5).exp() * (1.0 + 1e-4),
@@ -63,7 +68,7 @@ fn weight(shared: &Shared<'_>, splat: &Splat, q: Number) -> Number {
 }
 
 /// The depth of a nearness.
-fn depth(shared: &Shared<'_>, w: Number) -> Number {
+pub(crate) fn depth(shared: &Shared<'_>, w: Number) -> Number {
     if !shared.perspective {
         return -w;
     }
@@ -77,7 +82,7 @@ fn depth(shared: &Shared<'_>, w: Number) -> Number {
 }
 
 /// What the depth buffer holds of a nearness.
-fn stored(shared: &Shared<'_>, w: Number) -> f32 {
+pub(crate) fn stored(shared: &Shared<'_>, w: Number) -> f32 {
     if !shared.how.has(Bug::Depth16) {
         return w.value;
     }
@@ -87,7 +92,7 @@ fn stored(shared: &Shared<'_>, w: Number) -> f32 {
 }
 
 /// The pixels of a splat's quad.
-fn pixels(shared: &Shared<'_>, splat: &Splat) -> impl Iterator<Item = [u32; 2]> + use<> {
+pub(crate) fn pixels(shared: &Shared<'_>, splat: &Splat) -> impl Iterator<Item = [u32; 2]> + use<> {
     let ([x0, x1], [y0, y1]) = (splat.quad.x, splat.quad.y);
     let dropped = shared.how.has(Bug::TileDropped);
     let all = (y0..y1).flat_map(move |y| (x0..x1).map(move |x| [x, y]));
@@ -190,7 +195,7 @@ fn blend(shared: &Shared<'_>, splat: &Splat, weight: Number, sums: &mut Sums) {
 }
 
 /// The nearest number of 16 bits.
-fn half(value: f32) -> f32 {
+pub(crate) fn half(value: f32) -> f32 {
     let exponent = (value.to_bits() >> 23) & 0xFF;
     let exponent = exponent.max(127 - 14); // the subnormals share a step
     let step = f32::from_bits((exponent - 10) << 23);

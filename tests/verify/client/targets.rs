@@ -153,7 +153,7 @@ fn plane<T: Clone>([width, height]: [u32; 2], flipped: bool, values: Vec<T>) -> 
     Plane::from_values(width, height, rows.flatten().cloned().collect())
 }
 
-fn srgb(linear: f32) -> f32 {
+pub(crate) fn srgb(linear: f32) -> f32 {
     if linear <= 0.003_130_8 {
         linear * 12.92
     } else {

@@ -12,6 +12,7 @@ use crate::method::judged::PixelMarks;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
+use crate::splat::View;
 use crate::verify::client::Ties;
 use crate::verify::verdict::{Doubt, Fault};
 
@@ -22,6 +23,7 @@ const MOST_CHOICES: usize = 16;
 pub(in crate::method) struct Compositing<'a, P: Profile> {
     handed: &'a Handed<'a>,
     surfels: &'a Surfels,
+    view: View<Ball<P>>,
     epsilon: Ball<P>,
 }
 
@@ -30,7 +32,8 @@ type Choice<'s, P> = Vec<&'s Sample<P>>;
 
 impl<'a, P: Profile> Compositing<'a, P> {
     pub(in crate::method) fn new(job: &Job<'a>, handed: &'a Handed<'a>, epsilon: Ball<P>) -> Self {
-        Self { handed, surfels: &job.scene.surfels, epsilon }
+        let view = View::new(job.camera);
+        Self { handed, surfels: &job.scene.surfels, view, epsilon }
     }
 
     /// Marks what is wrong with the nearest fragment of a pixel; gives its depth, and what the sums
@@ -94,9 +97,14 @@ impl<'a, P: Profile> Compositing<'a, P> {
         pixel: &mut PixelMarks<'_>,
     ) {
         let empty = Ball::INFINITY;
-        let of = |sample: &Sample<P>| said.is_none_or(|id| id == sample.surfel);
-        let all = || groups.iter().flat_map(|group| &group.all).filter(|sample| of(sample));
-        let meant = all().map(|sample| sample.read.depth);
+        let samples = || groups.iter().flat_map(|group| &group.all);
+        // The greatest nearness may be another sample's than the least depth, as 1/t rounds.
+        let of = |sample: &Sample<P>, id: u32| {
+            let mut own = samples().filter(|own| own.surfel == id);
+            id == sample.surfel || own.any(|own| may_tie(own.nearness, sample.nearness))
+        };
+        let all = samples().filter(|sample| said.is_none_or(|id| of(sample, id)));
+        let meant = all.map(|sample| sample.read.depth);
         // Where nothing is, no group says so alone.
         let meant = meant.chain(said.is_none_or(|id| id == NO_ID).then_some(empty));
         let misfit = |truth: Ball<P>| truth.misfit(depth);
@@ -203,8 +211,17 @@ impl<'a, P: Profile> Compositing<'a, P> {
         first && (exact || self.surfels.are_equal(one.surfel, other.surfel))
     }
 
+    /// Whether the fragment of the greatest nearness certainly is in the band that begins at the least
+    /// depth, which may be another's: by as much as two reciprocals round.
+    fn has_the_nearest(&self, least: Ball<P>) -> bool {
+        // The greater the depth, the more it rounds.
+        let least = Ball::new(least.middle + least.radius, 0.0);
+        let greatest = self.view.nearness(self.view.nearness(least));
+        decide::visible(greatest, limit(least, self.epsilon)).certainly()
+    }
+
     /// The sums of a choice of samples, with each outcome of its undecided tests; none if these are
-    /// more than are followed. The surfel of the picture always passes, if `id` says it.
+    /// more than are followed. The surfel of the picture passes, if `id` says it, unless that may round.
     fn sums(
         &self,
         choice: &Choice<'_, P>,
@@ -213,6 +230,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
         pixel: &mut PixelMarks<'_>,
     ) -> Option<Vec<Sums<Ball<P>>>> {
         let limit = limit(nearest, self.epsilon);
+        let id = id.filter(|_| self.has_the_nearest(nearest));
         let seen: Vec<_> = choice
             .iter()
             .map(|sample| (*sample, self.visible(sample, nearest, limit, id)))
@@ -250,7 +268,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
         let depth = sample.read.depth;
         let exact = depth.radius == 0.0 && nearest.radius == 0.0;
         let some = decide::before(depth, Ball::INFINITY);
-        // The nearest always passes: it is the law of the test.
+        // The nearest always passes: it is the law of the test, but of the least depth.
         if (id == Some(sample.surfel) && sample.surfel != NO_ID)
             || (exact && depth.middle == nearest.middle)
         {
@@ -258,6 +276,11 @@ impl<'a, P: Profile> Compositing<'a, P> {
         }
         some & decide::visible(depth, limit)
     }
+}
+
+/// Whether neither of two nearnesses certainly is the greater.
+fn may_tie<P: Profile>(a: Ball<P>, b: Ball<P>) -> bool {
+    !decide::nearer(a, b).certainly() && !decide::nearer(b, a).certainly()
 }
 
 /// `nearest + epsilon`, which for 0 no implementation rounds.

@@ -25,9 +25,11 @@
 //! **Compositing.** Z is one of the samples' depths, and no group all of whose samples have less depth.
 //! The id is that of a sample, and there is no group all of whose samples certainly are nearer; of equal
 //! nearness the surfel that the client's rule of ties says. (Two depths that are equal or neighbours
-//! may come of either order of nearness, as 1/t rounds.) The sums are those of the samples of depth at
-//! most nearest + epsilon, nearest of the stored depths of all groups, else Z, else of the samples'
-//! balls; the nearest always passes. Where a group has several samples or a test is undecided, all
+//! may come of either order of nearness, as 1/t rounds: Z and the id may be of two samples, neither of
+//! which certainly is nearer than the other.) The sums are those of the samples of depth at most
+//! nearest + epsilon, nearest of the stored depths of all groups, else Z, else of the samples' balls; the
+//! nearest always passes, and so does the id's, unless nearest + epsilon lies within what two reciprocals
+//! round. Where a group has several samples or a test is undecided, all
 //! continuations are followed, up to 16 choices of samples, and for each up to 2^4 of the tests; a pixel
 //! is right if one fits every plane. Beyond that its sums are not judged. Averages follow from the
 //! client's sums.
