@@ -230,8 +230,9 @@ impl Surfels {
         self.position.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)))
     }
 
-    /// A sphere around all discs: the middle of [`Surfels::bounds`], and the largest distance from
-    /// there to a surfel plus its reach, the radius or sqrt(U . U + V . V) of an ellipse; in f64.
+    /// A sphere around all discs: the middle of [`Surfels::bounds`], (low + high) / 2, and the largest
+    /// distance from there to a surfel, sqrt((x x + y y) + z z), plus its reach, the radius or
+    /// sqrt(U . U + V . V) of an ellipse; in f64.
     #[must_use]
     pub fn bounding_sphere(&self) -> (DVec3, f64) {
         self.bounding_sphere

@@ -7,8 +7,8 @@
 //! 2. **Geometry pass.** Each group k has a depth-image `I_k`. Each fragment of its surfels that is
 //!    inside (q <= k^2), in ascending surfel index, replaces what the pixel of `I_k` holds if it
 //!    passes the depth test ([`DepthTest`]); the fragment kept leaves its depth, its weight, and
-//!    its weight times normal and times colour (eq. 4). A surfel seen from behind gives its normal
-//!    reversed.
+//!    its weight times normal and times colour (eq. 4), each added to 0, so that -0 becomes 0. A
+//!    surfel seen from behind gives its normal reversed.
 //! 3. **Compositing pass.** The operator of Fig. 5 over all `I_k`, see
 //!    [`crate::composite::groups`], with the sums in the order of the groups; then depth, average
 //!    colour and direction of the normal as in [`super::ewa`]. The id of a pixel is that of the
