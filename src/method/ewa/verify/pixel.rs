@@ -89,7 +89,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         let weight = handed.weight.map_or(own.weight, |plane| plane.ball(at));
         let normal = handed.normal_sum.map_or(own.normal, |plane| plane.balls(at));
         let color = handed.color_sum.map_or(own.color, |plane| plane.balls(at));
-        let averages = (sum::direction(normal, weight), sum::average(color, weight));
+        let color = if self.colored { sum::average(color, weight) } else { [Ball::ZERO; 3] };
+        let averages = (sum::direction(normal, weight), color);
         self.check_averages(at, averages, report);
         let nothing = handed.nothing() && sums.is_some_and(|sums| sums.count == 0);
         let depth = if nothing { Ball::INFINITY } else { nearest.depth };
