@@ -134,3 +134,58 @@ impl<P: Profile> Neg for Ball<P> {
         Self { middle: -self.middle, ..self }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Gpu, Ieee};
+    use super::*;
+
+    /// Balls of common and of odd numbers.
+    fn balls<P: Profile>() -> Vec<Ball<P>> {
+        let largest = f64::from(f32::MAX);
+        let middles = [0.0, -0.0, 1.0, -3.0, 0.1, 1e-45, -1e-38, 1e30, largest, f64::INFINITY];
+        let radii = [0.0, 1e-46, 1e-9, 0.1, 0.5, 3.0, 1e31, largest, f64::INFINITY, f64::NAN];
+        let mut all = vec![Ball::new(f64::NAN, f64::NAN), Ball::new(f64::NEG_INFINITY, 0.0)];
+        for middle in middles {
+            all.extend(radii.map(|radius| Ball::new(middle, radius)));
+        }
+        all
+    }
+
+    fn bits<P: Profile>(ball: Ball<P>) -> [u64; 2] {
+        [ball.middle, ball.radius].map(|x| if x.is_nan() { u64::MAX } else { x.to_bits() })
+    }
+
+    fn compare<P: Profile>() {
+        for a in balls::<P>() {
+            for b in balls::<P>() {
+                let spread = a.radius + b.radius;
+                let or_exact = |middle: f64, rare: Ball<P>| {
+                    bits(if is_exact::<P>(middle, spread) { Ball::exact(middle) } else { rare })
+                };
+                let (product, quotient) = (rare_product(a, b), rare_quotient(a, b));
+                assert_eq!(bits(a * b), or_exact(product.middle, product), "{a:?} times {b:?}");
+                assert_eq!(bits(a / b), or_exact(quotient.middle, quotient), "{a:?} by {b:?}");
+                let bounded = a.is_bounded() & b.is_bounded();
+                if !bounded {
+                    let sum = rare_sum(a, b);
+                    assert_eq!(bits(a + b), or_exact(sum.middle, sum), "{a:?} plus {b:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_common_case_and_the_rare_ones_agree() {
+        compare::<Ieee>();
+        compare::<Gpu>();
+    }
+
+    #[test]
+    fn a_sum_of_an_unbounded_sum_is_unbounded() {
+        let large = Ball::<Gpu>::exact(f32::MAX.into());
+        let unbounded = large + large;
+        assert_eq!(unbounded.radius, f64::INFINITY);
+        assert_eq!((unbounded + -large).radius, f64::INFINITY);
+    }
+}
