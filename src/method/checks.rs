@@ -71,8 +71,9 @@ pub(super) fn triple<P: Profile>(
     report: &mut Report<'_>,
 ) {
     let letters = if holds == Holds::Color { COLOR } else { VECTOR };
-    for ((found, truth), letter) in plane.balls(at).into_iter().zip(truth).zip(letters) {
-        component_of(part, || component(&plane.channel(), letter), found, truth, report);
+    let found = plane.balls(at);
+    for (i, letter) in letters.into_iter().enumerate() {
+        component_of(part, || component(&plane.channel(), letter), found[i], truth[i], report);
     }
 }
 

@@ -101,5 +101,6 @@ pub(super) fn each_inside<R: Exact>(
 /// The normal, reversed if the back is seen.
 #[inline(always)]
 pub(super) fn facing<R: Real>(normal: [R; 3], back: R::Truth) -> [R; 3] {
-    normal.map(|component| R::select(back, -component, component))
+    let part = |component: R| R::select(back, -component, component);
+    [part(normal[0]), part(normal[1]), part(normal[2])]
 }

@@ -1,5 +1,8 @@
 //! Whether a surfel is drawn, and why not.
 
+use super::shape::PlacedDisc;
+use super::{Footprint, Projector};
+use crate::frame::Rect;
 use crate::number::{Exact, Real};
 
 /// What became of a surfel.
@@ -52,3 +55,63 @@ impl<R: Exact> Reasons<R> {
         if self.behind { Fate::Behind } else { fate }
     }
 }
+
+impl<R: Real> Projector<R> {
+    /// Whether a surfel is behind the near plane, or turned away.
+    #[inline(always)]
+    pub(super) fn turned_away(&self, placed: &PlacedDisc<R>) -> R::Truth {
+        self.behind(placed) | self.back_facing(placed)
+    }
+
+    #[inline(always)]
+    fn behind(&self, placed: &PlacedDisc<R>) -> R::Truth {
+        !placed.t.gt(self.view.near)
+    }
+
+    #[inline(always)]
+    fn back_facing(&self, placed: &PlacedDisc<R>) -> R::Truth {
+        R::Truth::from(self.cull) & placed.g.ge(R::ZERO)
+    }
+
+    /// The reasons not to draw a surfel that its place gives; see the module page.
+    #[inline(always)]
+    pub(super) fn unseen(&self, placed: &PlacedDisc<R>, radius: R) -> Reasons<R> {
+        Reasons {
+            behind: self.behind(placed),
+            degenerate: R::Truth::from(false),
+            back_facing: self.back_facing(placed),
+            outside: !self.frustum.touches(placed.p, placed.t, radius),
+        }
+    }
+}
+
+/// The reasons not to draw a surfel: those that its place gives, and those of its footprint.
+#[inline(always)]
+pub(super) fn reasons<R: Real>(
+    unseen: Reasons<R>,
+    footprint: &Footprint<R>,
+    bounds: &Rect,
+) -> Reasons<R> {
+    let f = footprint;
+    // Comparisons with NaN are false, so every test is one that a good surfel passes.
+    let largest = R::from_f32(LARGEST);
+    let sound = f.amplitude.ge(R::from_f32(1.0 / LARGEST))
+        & f.wx.abs().le(largest)
+        & f.wy.abs().le(largest)
+        & f.ux.le(largest)
+        & f.uy.abs().le(largest)
+        & f.vy.le(largest)
+        & f.center.x.abs().le(largest)
+        & f.center.y.abs().le(largest)
+        & f.w_far.is_finite()
+        & f.w_near.is_finite();
+    Reasons {
+        degenerate: !sound,
+        outside: R::Truth::from(bounds.is_empty()) | unseen.outside,
+        ..unseen
+    }
+}
+
+/// 2^96: what the numbers of a footprint may reach, and its inverse what its amplitude may fall to.
+/// A product with any pixel offset (2^17) or any squared term then stays within `f32`.
+const LARGEST: f32 = 79_228_162_514_264_337_593_543_950_336.0;

@@ -109,11 +109,12 @@
 //! Source: \[ZPvBG01, sections 3 and 4\]; `Departs:` the determinant is a sum of terms >= 0, where
 //! the textbook xx yy - xy xy cancels.
 
+use super::fate::reasons;
 use super::frustum::Frustum;
 use super::shape::{Covariance, PlacedDisc};
 use super::{Disc, Footprint, Kernel, Outline, Reasons, Splat, View, bounds, crossing};
 use crate::frame::Rect;
-use crate::number::{Exact, Real, Vector2, Vector3};
+use crate::number::{Exact, Real, Truth, Vector2, Vector3};
 
 /// All that the projection of a picture's surfels shares.
 #[derive(Clone, Copy, Debug)]
@@ -129,7 +130,7 @@ pub struct Projector<R> {
     /// Whether surfels seen from behind are dropped.
     pub cull: bool,
     /// The sides of the view.
-    frustum: Frustum<R>,
+    pub(super) frustum: Frustum<R>,
 }
 
 /// Projects one surfel; see the module page. The splat is meaningless unless there is no reason not
@@ -156,6 +157,38 @@ pub fn project_as<R: Real>(
 ) -> (Splat<R>, Reasons<R>) {
     let (placed, shape) = projector.shape(disc);
     projector.splat(disc, (&placed, &shape), crosses, surfel)
+}
+
+/// Runs `each` for the outlines that a surfel may have: splat, the reasons not to draw it, and
+/// whether it reaches the near plane. That is [`project_as`] once, or twice where the latter is
+/// undecided; not at all of a surfel that certainly is not drawn, as its place alone says: only
+/// what is left has its shape computed.
+#[inline(always)]
+pub(crate) fn project_each<R: Real>(
+    projector: &Projector<R>,
+    disc: &Disc<R>,
+    surfel: u32,
+    mut each: impl FnMut(Splat<R>, Reasons<R>, R::Truth),
+) {
+    let placed = projector.place(disc.position, disc.normal);
+    if projector.turned_away(&placed).certainly() {
+        return;
+    }
+    let unseen = projector.unseen(&placed, disc.reach());
+    if unseen.any().certainly() {
+        return;
+    }
+    let shape = projector.covariance(&placed, disc);
+    let crosses = projector.reaches_near_plane(&placed, &shape);
+    for alternative in [false, true] {
+        let possible = if alternative { crosses.possibly() } else { !crosses.certainly() };
+        if possible {
+            let (footprint, bounds) = projector.footprint(disc, (&placed, &shape), alternative);
+            let back = placed.g.gt(R::ZERO);
+            let reasons = reasons(unseen, &footprint, &bounds);
+            each(Splat { footprint, bounds, surfel, back }, reasons, crosses);
+        }
+    }
 }
 
 impl<R: Real> Projector<R> {
@@ -194,26 +227,41 @@ impl<R: Real> Projector<R> {
         crosses: bool,
         surfel: u32,
     ) -> (Splat<R>, Reasons<R>) {
-        let (footprint, bounds) = match self.outline {
+        let (footprint, bounds) = self.footprint(disc, (placed, shape), crosses);
+        let reasons = reasons(self.unseen(placed, disc.reach()), &footprint, &bounds);
+        (Splat { footprint, bounds, surfel, back: placed.g.gt(R::ZERO) }, reasons)
+    }
+
+    /// The footprint by the outline of the picture, and the pixels that can be inside.
+    #[inline(always)]
+    fn footprint(
+        &self,
+        disc: &Disc<R>,
+        (placed, shape): (&PlacedDisc<R>, &Covariance<R>),
+        crosses: bool,
+    ) -> (Footprint<R>, Rect) {
+        match self.outline {
             Outline::Perspective if self.view.perspective && !crosses => {
                 self.perspective(placed, shape)
             }
             Outline::Affine | Outline::Perspective => self.affine(placed, shape),
             Outline::RayCast => self.ray_cast(placed, shape, disc, crosses),
-        };
-        let reasons = self.reasons(placed, disc.reach(), &footprint, &bounds);
-        (Splat { footprint, bounds, surfel, back: placed.g.gt(R::ZERO) }, reasons)
+        }
     }
 
     /// A surfel in view space, and its covariance.
     #[inline(always)]
     fn shape(&self, disc: &Disc<R>) -> (PlacedDisc<R>, Covariance<R>) {
         let placed = self.place(disc.position, disc.normal);
-        let shape = match disc.tangents {
-            None => self.disc(&placed, disc.radius),
-            Some(tangents) => self.ellipse(&placed, tangents),
-        };
-        (placed, shape)
+        (placed, self.covariance(&placed, disc))
+    }
+
+    #[inline(always)]
+    fn covariance(&self, placed: &PlacedDisc<R>, disc: &Disc<R>) -> Covariance<R> {
+        match disc.tangents {
+            None => self.disc(placed, disc.radius),
+            Some(tangents) => self.ellipse(placed, tangents),
+        }
     }
 
     /// An affine disc without a branch, so that a loop over it vectorizes: footprint, bounds,
@@ -228,7 +276,7 @@ impl<R: Real> Projector<R> {
         let placed = self.place(position, normal);
         let shape = self.disc(&placed, radius);
         let (footprint, bounds) = self.affine(&placed, &shape);
-        let reasons = self.reasons(&placed, radius, &footprint, &bounds);
+        let reasons = reasons(self.unseen(&placed, radius), &footprint, &bounds);
         (footprint, bounds, placed.g.gt(R::ZERO), reasons)
     }
 
@@ -357,39 +405,4 @@ impl<R: Real> Projector<R> {
             amplitude: R::ZERO,
         }
     }
-
-    /// The reasons not to draw a surfel; see the module page.
-    #[inline(always)]
-    fn reasons(
-        &self,
-        placed: &PlacedDisc<R>,
-        radius: R,
-        footprint: &Footprint<R>,
-        bounds: &Rect,
-    ) -> Reasons<R> {
-        let f = footprint;
-        // Comparisons with NaN are false, so every test is one that a good surfel passes.
-        let largest = R::from_f32(LARGEST);
-        let sound = f.amplitude.ge(R::from_f32(1.0 / LARGEST))
-            & f.wx.abs().le(largest)
-            & f.wy.abs().le(largest)
-            & f.ux.le(largest)
-            & f.uy.abs().le(largest)
-            & f.vy.le(largest)
-            & f.center.x.abs().le(largest)
-            & f.center.y.abs().le(largest)
-            & f.w_far.is_finite()
-            & f.w_near.is_finite();
-        let touches = self.frustum.touches(placed.p, placed.t, radius);
-        Reasons {
-            behind: !placed.t.gt(self.view.near),
-            degenerate: !sound,
-            back_facing: R::Truth::from(self.cull) & placed.g.ge(R::ZERO),
-            outside: R::Truth::from(bounds.is_empty()) | !touches,
-        }
-    }
 }
-
-/// 2^96: what the numbers of a footprint may reach, and its inverse what its amplitude may fall to.
-/// A product with any pixel offset (2^17) or any squared term then stays within `f32`.
-const LARGEST: f32 = 79_228_162_514_264_337_593_543_950_336.0;

@@ -11,6 +11,7 @@ use crate::method::tiled::Tiled;
 use crate::number::{Exact, Real};
 use crate::scene::Surfels;
 use crate::splat::Splat;
+use glam::Vec3;
 
 /// What has been added up at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,10 +77,12 @@ impl<R: Real> Sums<R> {
         weight: R,
     ) {
         let i = surfel as usize;
-        let normal = facing(surfels.normal()[i].to_array().map(R::from_f32), back);
+        // Not by `map`, which is not inlined.
+        let numbers = |v: Vec3| [R::from_f32(v.x), R::from_f32(v.y), R::from_f32(v.z)];
+        let normal = facing(numbers(surfels.normal()[i]), back);
         let opacity = surfels.opacity().map_or(R::ONE, |all| R::from_f32(all[i]));
         if let Some(colors) = surfels.color() {
-            self.color = sum::add(self.color, weight, colors[i].to_array().map(R::from_f32));
+            self.color = sum::add(self.color, weight, numbers(colors[i]));
         }
         self.normal = sum::add(self.normal, weight, normal);
         self.opacity = self.opacity + weight * opacity;

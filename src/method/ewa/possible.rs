@@ -6,7 +6,7 @@ use crate::method::algorithm::Job;
 use crate::method::prepare::Prepared;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Truth};
-use crate::splat::project::project_as;
+use crate::splat::project::project_each;
 use crate::splat::{Disc, Projector, Splat, Tally, batch};
 
 /// A surfel that may be drawn.
@@ -65,15 +65,10 @@ pub(in crate::method) fn each_possible<P: Profile>(
     surfel: u32,
     mut each: impl FnMut(Splat<Ball<P>>, bool),
 ) {
-    let crosses = projector.crosses(disc);
-    for alternative in [false, true] {
-        let possible = if alternative { crosses.possibly() } else { !crosses.certainly() };
-        if possible {
-            let (splat, reasons) = project_as(projector, disc, surfel, alternative);
-            let dropped = reasons.any();
-            if !dropped.certainly() {
-                each(splat, !dropped.possibly() && crosses.decided().is_some());
-            }
+    project_each(projector, disc, surfel, |splat, reasons, crosses| {
+        let dropped = reasons.any();
+        if !dropped.certainly() {
+            each(splat, !dropped.possibly() && crosses.decided().is_some());
         }
-    }
+    });
 }

@@ -1,4 +1,8 @@
 //! The operators, and which of their results need no rounding.
+//!
+//! An operator first takes its operands for bounded. If they are not, or divide by what may be 0,
+//! the bound of the result is infinite, NaN, or beyond the largest `f32`, and with that one test
+//! the operator is left to its rare cases, out of line.
 
 use super::{Ball, Profile};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -20,14 +24,27 @@ impl<P: Profile> Add for Ball<P> {
         if is_exact::<P>(middle, spread) {
             return Self::exact(middle);
         }
-        match (self.is_bounded(), other.is_bounded()) {
-            (true, true) => P::sum(middle, [&self, &other]),
-            // Infinite exactly, or unbounded.
-            (true, false) => Self::new(middle, other.radius),
-            (false, true) => Self::new(middle, self.radius),
-            // Infinities of both signs.
-            (false, false) => Self::unbounded(middle, true),
+        let sum = P::sum(middle, [&self, &other]);
+        // A sum may forget that a term, itself a sum, is unbounded; the spread does not.
+        if sum.is_in_range() & spread.is_finite() { sum } else { rare_sum(self, other) }
+    }
+}
+
+/// A sum that is not bounded, or of terms that are not.
+#[cold]
+#[inline(never)]
+fn rare_sum<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
+    let middle = a.middle + b.middle;
+    match (a.is_bounded(), b.is_bounded()) {
+        (true, true) => {
+            let sum = P::sum(middle, [&a, &b]);
+            Ball { radius: Ball::<P>::unbounded(middle, sum.radius.is_nan()).radius, ..sum }
         }
+        // Infinite exactly, or unbounded.
+        (true, false) => Ball::new(middle, b.radius),
+        (false, true) => Ball::new(middle, a.radius),
+        // Infinities of both signs.
+        (false, false) => Ball::unbounded(middle, true),
     }
 }
 
@@ -48,16 +65,28 @@ impl<P: Profile> Mul for Ball<P> {
         if is_exact::<P>(middle, r + s) {
             return Self::exact(middle);
         }
-        if self.is_bounded() & other.is_bounded() {
-            if self.is_zero() | other.is_zero() {
-                return Self::exact(middle);
-            }
-            let spread = m.abs() * s + n.abs() * r + r * s;
-            return Self::rounded(middle, spread, P::PRODUCT, P::TINY);
-        }
-        let zero = self.may_be_zero() | other.may_be_zero();
-        Self::unbounded(middle, zero || r.is_nan() || s.is_nan())
+        let spread = m.abs() * s + n.abs() * r + r * s;
+        let product = Self::new(middle, Self::reach(middle, spread, P::PRODUCT, P::TINY));
+        // A factor may be 0.
+        if product.is_in_range() & (middle != 0.0) { product } else { rare_product(self, other) }
     }
+}
+
+/// A product that is 0, or not bounded.
+#[cold]
+#[inline(never)]
+fn rare_product<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
+    let (m, n, r, s) = (a.middle, b.middle, a.radius, b.radius);
+    let middle = m * n;
+    if a.is_bounded() & b.is_bounded() {
+        if a.is_zero() | b.is_zero() {
+            return Ball::exact(middle);
+        }
+        let spread = m.abs() * s + n.abs() * r + r * s;
+        return Ball::rounded(middle, spread, P::PRODUCT, P::TINY);
+    }
+    let zero = a.may_be_zero() | b.may_be_zero();
+    Ball::unbounded(middle, zero || r.is_nan() || s.is_nan())
 }
 
 impl<P: Profile> Div for Ball<P> {
@@ -69,18 +98,32 @@ impl<P: Profile> Div for Ball<P> {
         if is_exact::<P>(middle, r + s) {
             return Self::exact(middle);
         }
-        let divides = !other.may_be_zero() & s.is_finite();
-        if self.is_bounded() & divides & !(n.is_finite() & (n.abs() + s > P::LARGEST_DIVISOR)) {
-            if self.is_zero() | n.is_infinite() {
-                return Self::exact(middle);
-            }
-            let spread = (m.abs() * s + n.abs() * r) / (n.abs() * (n.abs() - s));
-            return Self::rounded(middle, spread, P::QUOTIENT, P::TINY);
-        }
-        let zeros = self.may_be_zero() & other.may_be_zero();
-        let infinities = !self.is_bounded() & !other.is_bounded();
-        Self::unbounded(middle, zeros || infinities || r.is_nan() || s.is_nan())
+        let spread = (m.abs() * s + n.abs() * r) / (n.abs() * (n.abs() - s));
+        let quotient = Self::new(middle, Self::reach(middle, spread, P::QUOTIENT, P::TINY));
+        let divides = !other.may_be_zero() & (n.abs() + s <= P::LARGEST_DIVISOR);
+        // The dividend may be 0, the divisor infinite.
+        let common = quotient.is_in_range() & divides & (middle != 0.0);
+        if common { quotient } else { rare_quotient(self, other) }
     }
+}
+
+/// A quotient that is 0, or not bounded.
+#[cold]
+#[inline(never)]
+fn rare_quotient<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
+    let (m, n, r, s) = (a.middle, b.middle, a.radius, b.radius);
+    let middle = m / n;
+    let divides = !b.may_be_zero() & s.is_finite();
+    if a.is_bounded() & divides & !(n.is_finite() & (n.abs() + s > P::LARGEST_DIVISOR)) {
+        if a.is_zero() | n.is_infinite() {
+            return Ball::exact(middle);
+        }
+        let spread = (m.abs() * s + n.abs() * r) / (n.abs() * (n.abs() - s));
+        return Ball::rounded(middle, spread, P::QUOTIENT, P::TINY);
+    }
+    let zeros = a.may_be_zero() & b.may_be_zero();
+    let infinities = !a.is_bounded() & !b.is_bounded();
+    Ball::unbounded(middle, zeros || infinities || r.is_nan() || s.is_nan())
 }
 
 impl<P: Profile> Neg for Ball<P> {
@@ -89,5 +132,60 @@ impl<P: Profile> Neg for Ball<P> {
     fn neg(self) -> Self {
         // The terms are those of the opposite sum.
         Self { middle: -self.middle, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Gpu, Ieee};
+    use super::*;
+
+    /// Balls of common and of odd numbers.
+    fn balls<P: Profile>() -> Vec<Ball<P>> {
+        let largest = f64::from(f32::MAX);
+        let middles = [0.0, -0.0, 1.0, -3.0, 0.1, 1e-45, -1e-38, 1e30, largest, f64::INFINITY];
+        let radii = [0.0, 1e-46, 1e-9, 0.1, 0.5, 3.0, 1e31, largest, f64::INFINITY, f64::NAN];
+        let mut all = vec![Ball::new(f64::NAN, f64::NAN), Ball::new(f64::NEG_INFINITY, 0.0)];
+        for middle in middles {
+            all.extend(radii.map(|radius| Ball::new(middle, radius)));
+        }
+        all
+    }
+
+    fn bits<P: Profile>(ball: Ball<P>) -> [u64; 2] {
+        [ball.middle, ball.radius].map(|x| if x.is_nan() { u64::MAX } else { x.to_bits() })
+    }
+
+    fn compare<P: Profile>() {
+        for a in balls::<P>() {
+            for b in balls::<P>() {
+                let spread = a.radius + b.radius;
+                let or_exact = |middle: f64, rare: Ball<P>| {
+                    bits(if is_exact::<P>(middle, spread) { Ball::exact(middle) } else { rare })
+                };
+                let (product, quotient) = (rare_product(a, b), rare_quotient(a, b));
+                assert_eq!(bits(a * b), or_exact(product.middle, product), "{a:?} times {b:?}");
+                assert_eq!(bits(a / b), or_exact(quotient.middle, quotient), "{a:?} by {b:?}");
+                let bounded = a.is_bounded() & b.is_bounded();
+                if !bounded {
+                    let sum = rare_sum(a, b);
+                    assert_eq!(bits(a + b), or_exact(sum.middle, sum), "{a:?} plus {b:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_common_case_and_the_rare_ones_agree() {
+        compare::<Ieee>();
+        compare::<Gpu>();
+    }
+
+    #[test]
+    fn a_sum_of_an_unbounded_sum_is_unbounded() {
+        let large = Ball::<Gpu>::exact(f32::MAX.into());
+        let unbounded = large + large;
+        assert_eq!(unbounded.radius, f64::INFINITY);
+        assert_eq!((unbounded + -large).radius, f64::INFINITY);
     }
 }

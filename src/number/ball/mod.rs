@@ -69,7 +69,6 @@ pub use three::{PixelRange, Three};
 use super::Real;
 use arithmetic::is_exact;
 use std::fmt::Debug;
-use std::num::FpCategory;
 
 /// All values that lie within `radius` of `middle`; see the [module](self).
 pub struct Ball<P: Profile = Ieee> {
@@ -179,17 +178,31 @@ impl<P: Profile> Ball<P> {
     /// The result of an operation: its midpoint, its spread, and its rounding in units of u.
     #[inline(always)]
     fn rounded(middle: f64, spread: f64, units: f64, tiny: f64) -> Self {
-        let rounding = units * U * (middle.abs() + spread) + tiny;
-        let radius = (spread + rounding) * SLACK;
-        // A comparison that NaN fails.
-        if middle.abs() + radius <= f64::from(f32::MAX) {
-            Self::new(middle, radius)
+        let ball = Self::new(middle, Self::reach(middle, spread, units, tiny));
+        if ball.is_in_range() {
+            ball
         } else {
-            Self::unbounded(middle, radius.is_nan() || middle.is_nan())
+            Self::unbounded(middle, ball.radius.is_nan() || middle.is_nan())
         }
     }
 
+    /// The radius of such a result, if that is bounded.
+    #[inline(always)]
+    fn reach(middle: f64, spread: f64, units: f64, tiny: f64) -> f64 {
+        let rounding = units * U * (middle.abs() + spread) + tiny;
+        (spread + rounding) * SLACK
+    }
+
+    /// Whether all values are finite `f32`.
+    #[inline(always)]
+    fn is_in_range(&self) -> bool {
+        // A comparison that NaN fails.
+        self.middle.abs() + self.radius <= f64::from(f32::MAX)
+    }
+
     /// A ball that no number bounds.
+    #[cold]
+    #[inline(never)]
     fn unbounded(middle: f64, may_be_nan: bool) -> Self {
         Self::new(middle, if may_be_nan { f64::NAN } else { f64::INFINITY })
     }
@@ -205,12 +218,10 @@ impl<P: Profile> Real for Ball<P> {
 
     #[inline(always)]
     fn from_f32(value: f32) -> Self {
-        let radius = match value.classify() {
-            FpCategory::Nan => f64::NAN,
-            FpCategory::Subnormal if P::FLUSHES => f64::from(value).abs(),
-            _ => 0.0,
-        };
-        Self::new(value.into(), radius)
+        let value = f64::from(value);
+        let flushed = P::FLUSHES && value.abs() < f64::from(f32::MIN_POSITIVE);
+        let radius = if flushed { value.abs() } else { 0.0 };
+        Self::new(value, if value.is_nan() { f64::NAN } else { radius })
     }
 
     #[inline(always)]

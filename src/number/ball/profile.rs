@@ -30,7 +30,7 @@ pub trait Profile: Copy + Send + Sync + 'static {
     fn exponential(argument: f64) -> f64;
     /// Rounding of a power of a base between two.
     fn power(bases: [f64; 2], exponent: f64) -> f64;
-    /// A bounded sum, of midpoint `middle`.
+    /// The sum of bounded terms, of midpoint `middle`; its radius counts if the sum is bounded too.
     fn sum(middle: f64, terms: [&Ball<Self>; 2]) -> Ball<Self>;
 }
 
@@ -62,7 +62,7 @@ impl Profile for Ieee {
     #[inline(always)]
     fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {
         // A sum below the normal numbers is exact.
-        Ball::rounded(middle, a.radius + b.radius, 1.0, 0.0)
+        Ball::new(middle, Ball::<Self>::reach(middle, a.radius + b.radius, 1.0, 0.0))
     }
 }
 
@@ -133,18 +133,18 @@ impl Profile for Gpu {
     }
     #[inline(always)]
     fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {
-        let [a, b] = [a, b].map(SumTerms::of);
+        let (a, b) = (SumTerms::of(a), SumTerms::of(b));
         let terms = SumTerms {
             magnitude: a.magnitude + b.magnitude,
             additions: a.additions + b.additions + 1.0,
             radius: a.radius + b.radius,
         };
-        let sum = if terms.additions == 1.0 {
-            Ball::rounded(middle, terms.radius, 2.0, Self::TINY)
+        let radius = if terms.additions == 1.0 {
+            Ball::<Self>::reach(middle, terms.radius, 2.0, Self::TINY)
         } else {
             let lost = 2.0 * terms.additions * super::U * terms.magnitude;
-            Ball::rounded(middle, terms.radius + lost, 0.0, terms.additions * Self::TINY)
+            Ball::<Self>::reach(middle, terms.radius + lost, 0.0, terms.additions * Self::TINY)
         };
-        Ball { terms, ..sum }
+        Ball { middle, radius, terms }
     }
 }

@@ -13,7 +13,7 @@ use crate::method::checks::{
 use crate::method::ewa::attributes::Sums;
 use crate::method::judged::Marks;
 use crate::number::ball::Profile;
-use crate::number::{Ball, Real};
+use crate::number::{Ball, Real, Truth};
 
 /// The stages after visibility, by their place among the marks.
 const ATTRIBUTES: usize = 0;
@@ -28,6 +28,8 @@ pub(in crate::method) struct PixelJudge<'a, P: Profile> {
     colored: bool,
     /// The greatest component of a colour, at least 1.
     brightest: f64,
+    /// The direction where no weight has arrived, whatever the sums are.
+    nowhere: [Ball<P>; 3],
 }
 
 impl<'a, P: Profile> PixelJudge<'a, P> {
@@ -43,6 +45,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             shading: Shading::new(job, scene.surfels.color().is_some()),
             colored: scene.surfels.color().is_some(),
             brightest,
+            nowhere: sum::direction([Ball::ZERO; 3], Ball::ZERO),
         }
     }
 
@@ -89,7 +92,10 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         let weight = handed.weight.map_or(own.weight, |plane| plane.ball(at));
         let normal = handed.normal_sum.map_or(own.normal, |plane| plane.balls(at));
         let color = handed.color_sum.map_or(own.color, |plane| plane.balls(at));
-        let averages = (sum::direction(normal, weight), sum::average(color, weight));
+        let color = if self.colored { sum::average(color, weight) } else { [Ball::ZERO; 3] };
+        let some = weight.gt(Ball::ZERO).possibly();
+        let direction = if some { sum::direction(normal, weight) } else { self.nowhere };
+        let averages = (direction, color);
         self.check_averages(at, averages, report);
         let nothing = handed.nothing() && sums.is_some_and(|sums| sums.count == 0);
         let depth = if nothing { Ball::INFINITY } else { nearest.depth };
@@ -106,11 +112,13 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             number(ATTRIBUTES, plane, at, widened(sums.weight, lost(1.0)), report);
         }
         if let Some(plane) = normal_sum {
-            let truth = sums.normal.map(|part| widened(part, lost(1.0)));
+            let lost = lost(1.0);
+            let truth = sums.normal.map(|part| widened(part, lost));
             triple(ATTRIBUTES, (plane, Holds::Vector), at, truth, report);
         }
         if let Some(plane) = color_sum {
-            let truth = sums.color.map(|part| widened(part, lost(self.brightest)));
+            let lost = lost(self.brightest);
+            let truth = sums.color.map(|part| widened(part, lost));
             triple(ATTRIBUTES, (plane, Holds::Color), at, truth, report);
         }
         if let Some(plane) = count {

@@ -51,7 +51,8 @@ pub(super) fn continuations<P: Profile>(
     marks: &mut Marks,
 ) -> Vec<Continuations<P>> {
     let mut sums = vec![(Sums::NONE, 0_u32); rect.pixels()];
-    each_part(splats, nearest, (tile, rect), |pixel, part, asked| {
+    let limits = limits(splats, nearest);
+    each_part(splats, (nearest, &limits), (tile, rect), |pixel, part, asked| {
         let (sums, undecided) = &mut sums[pixel];
         if part.open.is_none() {
             sums.add(surfels, (part.surfel, part.back), part.weight);
@@ -61,7 +62,7 @@ pub(super) fn continuations<P: Profile>(
         }
         marks.at(pixel).doubt(Doubt::Side, part.back.decided().is_none());
     });
-    let parts = undecided_parts(splats, nearest, (tile, rect), &sums);
+    let parts = undecided_parts(splats, (nearest, limits), (tile, rect), &sums);
     let of_pixel = |pixel, undecided| match undecided {
         0 => None,
         1..=MOST => Some(several(surfels, &parts, pixel, undecided)),
@@ -110,21 +111,34 @@ impl Asked {
     }
 }
 
+/// The greatest depth of a pixel that is visible, and the least nearness that may be of this depth.
+#[derive(Clone, Copy, Debug)]
+struct Limit<P: Profile> {
+    depth: Ball<P>,
+    least: f64,
+}
+
+/// The limits of the pixels of a tile.
+fn limits<P: Profile>(splats: &SwiftSplats<P>, nearest: &[Nearest<P>]) -> Vec<Limit<P>> {
+    let of_pixel = |nearest: &Nearest<P>| {
+        let depth = decide::limit(nearest.depth, splats.epsilon);
+        Limit { depth, least: least_nearness(&splats.shared, depth) }
+    };
+    nearest.iter().map(of_pixel).collect()
+}
+
 /// Runs `take` for every fragment that is or may be in the sums, in ascending surfel index.
 fn each_part<P: Profile>(
     splats: &SwiftSplats<P>,
-    nearest: &[Nearest<P>],
+    (nearest, limits): (&[Nearest<P>], &[Limit<P>]),
     (tile, rect): (usize, &Rect),
     mut take: impl FnMut(usize, Part<P>, &Asked),
 ) {
     let shared = &splats.shared;
-    let limit = |pixel: usize| decide::limit(nearest[pixel].depth, splats.epsilon);
-    let least: Vec<f64> =
-        (0..nearest.len()).map(|pixel| least_nearness(shared, limit(pixel))).collect();
     each_fragment(
         splats,
         (tile, rect),
-        |pixel| least[pixel],
+        |pixel| limits[pixel].least,
         |possible, pixel, q, w| {
             let PossibleSplat { splat, certain } = possible;
             let inside = decide::inside(q, shared.limit);
@@ -135,14 +149,14 @@ fn each_part<P: Profile>(
             let visible = if nearest[pixel].id == Some(splat.surfel) {
                 true.into()
             } else {
-                decide::visible(shared.depth(w), limit(pixel))
+                decide::visible(shared.depth(w), limits[pixel].depth)
             };
             if visible.possibly() {
                 let asked = Asked { drawn: *certain, inside, visible };
                 let certain = *certain && (inside & visible).certainly();
                 let open = (!certain).then(|| {
                     asked.open(splat.surfel, || {
-                        let depth = [shared.depth(w), limit(pixel)];
+                        let depth = [shared.depth(w), limits[pixel].depth];
                         [([q, shared.limit], shared.limit), (depth, splats.epsilon)]
                     })
                 });
@@ -157,14 +171,20 @@ fn each_part<P: Profile>(
 /// All fragments of the pixels with an undecided one, as far as they are followed.
 fn undecided_parts<P: Profile>(
     splats: &SwiftSplats<P>,
-    nearest: &[Nearest<P>],
+    (nearest, mut limits): (&[Nearest<P>], Vec<Limit<P>>),
     tile: (usize, &Rect),
     sums: &[(Sums<Ball<P>>, u32)],
 ) -> Fragments<P> {
     let mut parts = Vec::new();
-    if sums.iter().any(|(_, undecided)| (1..=MOST).contains(undecided)) {
-        each_part(splats, nearest, tile, |pixel, part, _| {
-            if (1..=MOST).contains(&sums[pixel].1) {
+    let followed = |pixel: usize| (1..=MOST).contains(&sums[pixel].1);
+    if (0..sums.len()).any(followed) {
+        for (pixel, limit) in limits.iter_mut().enumerate() {
+            if !followed(pixel) {
+                limit.least = f64::INFINITY;
+            }
+        }
+        each_part(splats, (nearest, &limits), tile, |pixel, part, _| {
+            if followed(pixel) {
                 parts.push((pixel, part));
             }
         });

@@ -1,19 +1,26 @@
 use crate::frame::{Exec, Frame};
+use crate::method::ewa::possible;
 use crate::method::{Method, Session};
+use crate::number::ball::{Gpu, Ieee, Profile};
+use crate::number::{Ball, Truth};
 use crate::scene::{Camera, Lens, Scene};
 use crate::source::Shape;
+use crate::splat::project::project_as;
 use crate::splat::record::{SplatRecord, project_records};
-use crate::splat::{Epsilon, Kernel, SplatSettings};
+use crate::splat::{Disc, Epsilon, Kernel, Outline, Projector, SplatSettings, View, batch};
 use crate::verify::client::{Client, Rounding};
 use crate::verify::verdict::{Fault, Outcome, Verdict};
 
 /// Runs a test of a scene, its camera and its settings.
 pub(super) fn each_scene(mut test: impl FnMut(&Session<'_>, &Camera)) {
     let exec = Exec::new(1, 16).unwrap();
+    let of = |outline| Kernel { outline, ..Kernel::DEFAULT };
     for (shape, kernel, lens, epsilon) in [
         (Shape::Sphere, Kernel::DEFAULT, None, None),
         (Shape::Cluster, Kernel::ZPVBG01, None, None),
         (Shape::Torus, Kernel::ZP06, None, None),
+        (Shape::Sphere, of(Outline::Perspective), None, None),
+        (Shape::Torus, of(Outline::RayCast), None, None),
         (Shape::Sheets { gap: 0.02 }, Kernel::DEFAULT, Some(Lens::Orthographic(3.0)), Some(0.0)),
     ] {
         let scene = Scene::lit("shape", shape.surfels(900, 5).unwrap());
@@ -26,6 +33,59 @@ pub(super) fn each_scene(mut test: impl FnMut(&Session<'_>, &Camera)) {
         let session = Session::new(&scene, Method::Ewa(settings), &exec).unwrap();
         test(&session, &camera);
     }
+}
+
+/// What [`possible::each_possible`] gives, without its shortcut.
+fn plain<P: Profile>(
+    projector: &Projector<Ball<P>>,
+    disc: &Disc<Ball<P>>,
+    surfel: u32,
+) -> Vec<String> {
+    let crosses = projector.crosses(disc);
+    let ways = [!crosses.certainly(), crosses.possibly()];
+    let ways = [false, true].into_iter().zip(ways).filter(|(_, possible)| *possible);
+    ways.map(|(way, _)| project_as(projector, disc, surfel, way))
+        .filter(|(_, reasons)| !reasons.any().certainly())
+        .map(|(splat, reasons)| {
+            let certain = !reasons.any().possibly() && crosses.decided().is_some();
+            format!("{splat:?} {certain}")
+        })
+        .collect()
+}
+
+/// Counts the surfels that may be drawn, and the others.
+fn compare_projections<P: Profile>(session: &Session<'_>, camera: &Camera, all: &mut [usize; 2]) {
+    let Method::Ewa(settings) = *session.method() else { return };
+    let surfels = &session.scene().surfels;
+    for cull in [false, true] {
+        let projector = Projector::<Ball<P>>::new(View::new(camera), &settings.kernel, cull);
+        let mut counts = [0; 2];
+        for i in 0..surfels.len() {
+            let (disc, mut found) = (batch::disc(surfels, i), Vec::new());
+            possible::each_possible(&projector, &disc, i as u32, |splat, certain| {
+                found.push(format!("{splat:?} {certain}"));
+            });
+            assert_eq!(found, plain(&projector, &disc, i as u32));
+            counts[usize::from(found.is_empty())] += 1;
+        }
+        for (all, some) in all.iter_mut().zip(counts) {
+            *all += some;
+        }
+    }
+}
+
+#[test]
+fn a_surfel_that_is_turned_away_before_its_shape_would_be_after() {
+    let mut all = [0; 2];
+    each_scene(|session, camera| {
+        // One that is near enough to have surfels behind it, beside it and at the near plane.
+        let near = Camera { near: 2.0, fx: 4.0 * camera.fx, ..*camera };
+        for camera in [camera, &near] {
+            compare_projections::<Ieee>(session, camera, &mut all);
+            compare_projections::<Gpu>(session, camera, &mut all);
+        }
+    });
+    assert!(all.iter().all(|count| *count > 5000), "{all:?}");
 }
 
 fn verdict(
