@@ -156,8 +156,8 @@ pub(super) fn judged<const N: usize>(
     for tile in tiles {
         of_stages.iter_mut().zip(tile).for_each(|(parts, marks)| parts.push(marks));
     }
-    let all = stages.into_iter().zip(of_stages);
-    all.map(|(stage, parts)| whole(job.picture(), stage, parts)).collect()
+    let all = stages.into_iter().zip(of_stages).collect();
+    job.exec.ordered(all, |(stage, parts)| whole(job.picture(), stage, parts))
 }
 
 /// What was found in the parts of a picture, which share no pixel, as what was found of a stage.
@@ -177,13 +177,17 @@ fn whole(
         worst: None,
     };
     for part in parts {
-        for (at, found) in part.pixels() {
-            let place = place(picture, at);
-            judged.errors.values_mut()[place] = found.error;
-            judged.doubts.values_mut()[place] = found.doubts;
-            if found.error > 1.0 {
-                judged.wrong += 1;
-                judged.causes.count(found.cause);
+        let columns = part.rect.columns();
+        for (y, row) in (part.rect.y0..).zip(part.found.chunks_exact(columns)) {
+            let first = place(picture, (part.rect.x0, y));
+            let errors = &mut judged.errors.values_mut()[first..first + columns];
+            let doubts = &mut judged.doubts.values_mut()[first..first + columns];
+            for ((found, error), doubts) in row.iter().zip(errors).zip(doubts) {
+                (*error, *doubts) = (found.error, found.doubts);
+                if found.error > 1.0 {
+                    judged.wrong += 1;
+                    judged.causes.count(found.cause);
+                }
             }
         }
         keep_worse(&mut judged.worst, part.worst);

@@ -89,23 +89,31 @@ impl<T> Stored<'_, T> {
 
 impl Stored<'_, f64> {
     /// The number at a pixel, as far as it is known.
+    #[inline]
     pub(crate) fn ball<P: Profile>(&self, (x, y): (u32, u32)) -> Ball<P> {
         let value = *self.plane.at(x, y);
-        Ball::new(value, if value.is_nan() { f64::NAN } else { self.storage.radius(value) })
+        known(value, self.storage.radius(value))
     }
 }
 
 impl Stored<'_, [f64; 3]> {
     /// The numbers at a pixel, as far as they are known.
+    #[inline]
     pub(crate) fn balls<P: Profile>(&self, (x, y): (u32, u32)) -> [Ball<P>; 3] {
-        let values = *self.plane.at(x, y);
-        let radii = self.radii.map_or_else(
-            || values.map(|value| self.storage.radius(value)),
-            |radii| *radii.at(x, y),
-        );
-        [0, 1, 2]
-            .map(|i| Ball::new(values[i], if values[i].is_nan() { f64::NAN } else { radii[i] }))
+        let [a, b, c] = *self.plane.at(x, y);
+        // Written out, as the map of an array goes through memory.
+        let [r, s, t] = match self.radii {
+            Some(radii) => *radii.at(x, y),
+            None => [self.storage.radius(a), self.storage.radius(b), self.storage.radius(c)],
+        };
+        [known(a, r), known(b, s), known(c, t)]
     }
+}
+
+/// A stored number with the radius that its storage gives; of NaN nothing is known.
+#[inline]
+fn known<P: Profile>(value: f64, radius: f64) -> Ball<P> {
+    Ball::new(value, if value.is_nan() { f64::NAN } else { radius })
 }
 
 impl From<&Frame<f32>> for Client {
