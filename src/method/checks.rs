@@ -24,6 +24,20 @@ pub(super) fn widened<P: Profile>(ball: Ball<P>, by: f64) -> Ball<P> {
     if by > 0.0 { Ball::new(ball.middle, ball.radius + by) } else { ball }
 }
 
+/// A ball that holds two.
+pub(super) fn either<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
+    if a.radius.is_nan() || b.radius.is_nan() {
+        return Ball::new(a.middle, f64::NAN);
+    }
+    let away = if a.middle == b.middle { 0.0 } else { (a.middle - b.middle).abs() };
+    Ball::new(a.middle, a.radius.at_least(away + b.radius))
+}
+
+/// The same of three numbers.
+pub(super) fn either_of<P: Profile>(a: [Ball<P>; 3], b: [Ball<P>; 3]) -> [Ball<P>; 3] {
+    [0, 1, 2].map(|c| either(a[c], b[c]))
+}
+
 /// What the next stage reads of a stored value of this format: floats as they are; none of anything
 /// that each reader turns into a number.
 fn read<P: Profile>(value: f64, storage: Storage) -> Option<Ball<P>> {
@@ -153,6 +167,11 @@ impl<P: Profile> Shading<P> {
             colored,
             environment: scene.environment.is_some(),
         }
+    }
+
+    /// The same of a layer: where there is nothing, it is black.
+    pub(super) fn of_layer(job: &Job<'_>, colored: bool) -> Self {
+        Self { environment: false, ..Self::new(job, colored) }
     }
 
     /// The colour of a pixel; any where an environment is seen, or where the depth is not known.

@@ -6,7 +6,7 @@ use crate::composite::over::Blend;
 use crate::method::algorithm::Job;
 use crate::method::tiled::{Tiled, pixels};
 use crate::method::transparent::averaging::GroupAverage;
-use crate::number::{Exact, Vector3};
+use crate::number::{Exact, Real, Vector3};
 use crate::scene::Scene;
 use crate::shade::optics::{self, Behind, NearestLayer};
 use crate::splat::View;
@@ -76,12 +76,12 @@ impl<'a, R: Exact> Through<'a, R> {
 
 /// l of \[ZP06, section 5.2.3\]: 1 + the sum of the other opacities over that of the nearest
 /// layer; 0 where that is 0.
-pub(super) fn count_by_opacity<R: Exact>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
+pub(super) fn count_by_opacity<R: Real>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
     let alpha = near.opacity;
-    if alpha > R::ZERO { R::ONE + optics::layers(others.opacity, alpha) } else { R::ZERO }
+    R::select(alpha.gt(R::ZERO), R::ONE + optics::layers(others.opacity, alpha), R::ZERO)
 }
 
 /// The count of layers: that of the others, and one where there is a nearest one.
-pub(super) fn count<R: Exact>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
-    if near.depth.is_finite() { others.layers + R::ONE } else { others.layers }
+pub(super) fn count<R: Real>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
+    R::select(near.depth.is_finite(), others.layers + R::ONE, others.layers)
 }

@@ -37,7 +37,7 @@
 mod tests;
 
 use crate::error::{Error, Result};
-use crate::number::{Exact, Vector3};
+use crate::number::{Exact, Real, Vector3};
 use crate::scene::Environment;
 use crate::setting::Words;
 
@@ -201,8 +201,8 @@ pub fn fresnel<R: Exact>(cosine: R, ratio: R) -> R {
 /// where `alpha` is 0. \[ZP06 5.2.3\]
 #[inline]
 #[must_use]
-pub fn layers<R: Exact>(total: R, alpha: R) -> R {
-    if alpha > R::ZERO { total / alpha } else { R::ZERO }
+pub fn layers<R: Real>(total: R, alpha: R) -> R {
+    R::select(alpha.gt(R::ZERO), total / alpha, R::ZERO)
 }
 
 /// The colour of one pixel, see the module page.

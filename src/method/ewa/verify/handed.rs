@@ -24,6 +24,9 @@ pub(in crate::method) struct Handed<'a> {
     /// The averages.
     pub(in crate::method) color: Option<Stored<'a, [f64; 3]>>,
     pub(in crate::method) normal: Option<Stored<'a, [f64; 3]>>,
+    pub(in crate::method) opacity: Option<Stored<'a, f64>>,
+    /// 1 where there is something, else 0.
+    pub(in crate::method) mask: Option<Stored<'a, u8>>,
     /// Copies in the picture of what an earlier pass has left, if both are there.
     pub(in crate::method) depth_copy: Option<Stored<'a, f64>>,
     pub(in crate::method) id_copy: Option<Stored<'a, u32>>,
@@ -80,6 +83,8 @@ impl<'a> Handed<'a> {
             accumulator: client.accumulator,
             color: client.triple(&resolved::COLOR),
             normal: client.triple(&resolved::NORMAL),
+            opacity: None,
+            mask: None,
             depth_copy,
             id_copy: own.and(other),
             weight_copy,
@@ -115,6 +120,8 @@ impl<'a> Handed<'a> {
                 listed(&[
                     triple(&self.color),
                     triple(&self.normal),
+                    scalar(&self.opacity),
+                    self.mask.map(|plane| plane.name),
                     scalar(&self.depth_copy),
                     index(&self.id_copy),
                     scalar(&self.weight_copy),

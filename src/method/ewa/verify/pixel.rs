@@ -8,7 +8,8 @@ use crate::composite::sum;
 use crate::method::Holds;
 use crate::method::algorithm::Job;
 use crate::method::checks::{
-    Report, Shading, Surface, anything, least_wrong, number, triple, whole, widened,
+    Report, Shading, Surface, anything, either, either_of, input, inputs, least_wrong, number,
+    triple, whole, widened,
 };
 use crate::method::ewa::attributes::Sums;
 use crate::method::judged::Marks;
@@ -30,6 +31,13 @@ pub(in crate::method) struct PixelJudge<'a, P: Profile> {
     brightest: f64,
 }
 
+/// The averages of a pixel.
+struct Averages<P: Profile> {
+    normal: [Ball<P>; 3],
+    color: [Ball<P>; 3],
+    opacity: Ball<P>,
+}
+
 impl<'a, P: Profile> PixelJudge<'a, P> {
     pub(in crate::method) fn new(job: &Job<'_>, handed: &'a Handed<'a>) -> Self {
         let scene = job.scene;
@@ -38,12 +46,14 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             let [r, g, b] = color.to_array().map(f64::from);
             brightest.at_least(r).at_least(g).at_least(b)
         });
-        Self {
-            handed,
-            shading: Shading::new(job, scene.surfels.color().is_some()),
-            colored: scene.surfels.color().is_some(),
-            brightest,
-        }
+        let colored = scene.surfels.color().is_some();
+        Self { handed, shading: Shading::new(job, colored), colored, brightest }
+    }
+
+    /// The same of a layer, behind which others may be seen.
+    pub(in crate::method) fn of_layer(job: &Job<'_>, handed: &'a Handed<'a>) -> Self {
+        let colored = job.scene.surfels.color().is_some();
+        Self { shading: Shading::of_layer(job, colored), ..Self::new(job, handed) }
     }
 
     /// Marks what is wrong at a pixel: by the continuation that errs least.
@@ -54,17 +64,36 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         sums: &Continuations<P>,
         marks: &mut [Marks; 3],
     ) {
-        let all: &[Sums<Ball<P>>] = match sums {
-            Continuations::One(sums) => std::slice::from_ref(sums),
-            Continuations::Several(sums) => sums,
-            Continuations::Many => &[],
-        };
-        let sums = least_wrong::<_, 3>(all, |sums, report| {
+        let sums = least_wrong::<_, 3>(all(sums), |sums, report| {
             self.check(at, nearest, Some(sums), report);
         });
         self.check(at, nearest, sums, &mut |part, error, fault| {
             marks[part].at(pixel).found(error, fault);
         });
+    }
+
+    /// Opacity and shaded colour as the next pass reads them: the client's, else all that they may be.
+    pub(in crate::method) fn read(
+        &self,
+        at: (u32, u32),
+        nearest: &Nearest<P>,
+        sums: &Continuations<P>,
+    ) -> (Ball<P>, [Ball<P>; 3]) {
+        let handed = self.handed;
+        if let (Some(opacity), Some(color)) = (&handed.opacity, &handed.shaded) {
+            return (input(opacity, at), inputs(color, at));
+        }
+        let of = |sums: Option<&Sums<Ball<P>>>| {
+            let averages = self.averages(at, sums);
+            (averages.opacity, self.color(at, self.depth(at, nearest, sums), &averages))
+        };
+        let each = all(sums).iter().map(|sums| of(Some(sums)));
+        let (opacity, color) =
+            each.reduce(|a, b| (either(a.0, b.0), either_of(a.1, b.1))).unwrap_or_else(|| of(None));
+        (
+            handed.opacity.map_or(opacity, |plane| input(&plane, at)),
+            handed.shaded.map_or(color, |plane| inputs(&plane, at)),
+        )
     }
 
     /// Every plane at a pixel, with these sums; without any, as far as the client's own are there.
@@ -78,59 +107,95 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         if let Some(sums) = sums {
             self.check_sums(at, sums, report);
         }
-        let unknown = Sums {
-            weight: anything(),
-            normal: [anything(); 3],
-            color: [anything(); 3],
-            ..Sums::NONE
-        };
-        let own = sums.copied().unwrap_or(unknown);
+        let averages = self.averages(at, sums);
+        self.check_averages(at, &averages, report);
         let handed = self.handed;
-        let weight = handed.weight.map_or(own.weight, |plane| plane.ball(at));
-        let normal = handed.normal_sum.map_or(own.normal, |plane| plane.balls(at));
-        let color = handed.color_sum.map_or(own.color, |plane| plane.balls(at));
-        let averages = (sum::direction(normal, weight), sum::average(color, weight));
-        self.check_averages(at, averages, report);
-        let nothing = handed.nothing() && sums.is_some_and(|sums| sums.count == 0);
-        let depth = if nothing { Ball::INFINITY } else { nearest.depth };
-        self.check_shading(at, (depth, weight), averages, report);
+        if let Some(plane) = &handed.shaded {
+            let color = self.color(at, self.depth(at, nearest, sums), &averages);
+            triple(SHADING, (plane, Holds::Color), at, color, report);
+        }
+        if let Some(plane) = &handed.alpha {
+            let weight =
+                handed.weight_copy.map_or_else(|| self.weight(at, sums), |plane| plane.ball(at));
+            number(SHADING, plane, at, self.shading.alpha(weight), report);
+        }
+    }
+
+    /// Sums as the client may have stored them between two additions, each of which rounds a sum that
+    /// is at most this large.
+    fn stored(&self, sums: &Sums<Ball<P>>) -> Sums<Ball<P>> {
+        let heaviest = sums.weight.middle + sums.weight.radius;
+        let lost = |largest: f64| {
+            f64::from(sums.count) * self.handed.accumulator.radius(heaviest * largest)
+        };
+        Sums {
+            weight: widened(sums.weight, lost(1.0)),
+            normal: sums.normal.map(|part| widened(part, lost(1.0))),
+            color: sums.color.map(|part| widened(part, lost(self.brightest))),
+            opacity: widened(sums.opacity, lost(1.0)),
+            count: sums.count,
+        }
     }
 
     /// The sums of the attribute pass.
     fn check_sums(&self, at: (u32, u32), sums: &Sums<Ball<P>>, report: &mut Report<'_>) {
-        let Handed { weight, normal_sum, color_sum, count, accumulator, .. } = self.handed;
-        let heaviest = sums.weight.middle + sums.weight.radius;
-        // Each addition rounds a sum that is at most this large.
-        let lost = |largest: f64| f64::from(sums.count) * accumulator.radius(heaviest * largest);
+        let Handed { weight, normal_sum, color_sum, count, mask, .. } = self.handed;
+        let truth = self.stored(sums);
         if let Some(plane) = weight {
-            number(ATTRIBUTES, plane, at, widened(sums.weight, lost(1.0)), report);
+            number(ATTRIBUTES, plane, at, truth.weight, report);
         }
         if let Some(plane) = normal_sum {
-            let truth = sums.normal.map(|part| widened(part, lost(1.0)));
-            triple(ATTRIBUTES, (plane, Holds::Vector), at, truth, report);
+            triple(ATTRIBUTES, (plane, Holds::Vector), at, truth.normal, report);
         }
         if let Some(plane) = color_sum {
-            let truth = sums.color.map(|part| widened(part, lost(self.brightest)));
-            triple(ATTRIBUTES, (plane, Holds::Color), at, truth, report);
+            triple(ATTRIBUTES, (plane, Holds::Color), at, truth.color, report);
         }
         if let Some(plane) = count {
             whole(ATTRIBUTES, plane, at, sums.count, report);
         }
+        if let Some(plane) = mask {
+            whole(ATTRIBUTES, plane, at, u8::from(sums.count > 0), report);
+        }
+    }
+
+    /// The sum of the weights as the average reads it.
+    fn weight(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
+        let own = || sums.map_or_else(anything, |sums| self.stored(sums).weight);
+        self.handed.weight.map_or_else(own, |plane| plane.ball(at))
+    }
+
+    /// The averages of the client's sums, else of these; of none, they are any.
+    fn averages(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Averages<P> {
+        let unknown = Sums {
+            weight: anything(),
+            normal: [anything(); 3],
+            color: [anything(); 3],
+            opacity: anything(),
+            count: 0,
+        };
+        let own = sums.map_or(unknown, |sums| self.stored(sums));
+        let weight = self.weight(at, sums);
+        let normal = self.handed.normal_sum.map_or(own.normal, |plane| plane.balls(at));
+        let color = self.handed.color_sum.map_or(own.color, |plane| plane.balls(at));
+        let [opacity, ..] = sum::average([own.opacity; 3], weight);
+        Averages {
+            normal: sum::direction(normal, weight),
+            color: sum::average(color, weight),
+            opacity: opacity.at_most(Ball::ONE),
+        }
     }
 
     /// Averages, and copies of what earlier passes left.
-    fn check_averages(
-        &self,
-        at: (u32, u32),
-        (normal, color): ([Ball<P>; 3], [Ball<P>; 3]),
-        report: &mut Report<'_>,
-    ) {
+    fn check_averages(&self, at: (u32, u32), averages: &Averages<P>, report: &mut Report<'_>) {
         let handed = self.handed;
         if let (Some(plane), true) = (&handed.color, self.colored) {
-            triple(NORMALIZATION, (plane, Holds::Color), at, color, report);
+            triple(NORMALIZATION, (plane, Holds::Color), at, averages.color, report);
         }
         if let Some(plane) = &handed.normal {
-            triple(NORMALIZATION, (plane, Holds::Vector), at, normal, report);
+            triple(NORMALIZATION, (plane, Holds::Vector), at, averages.normal, report);
+        }
+        if let Some(plane) = &handed.opacity {
+            number(NORMALIZATION, plane, at, averages.opacity, report);
         }
         let copies = [(handed.depth, handed.depth_copy), (handed.weight, handed.weight_copy)];
         for (first, copy) in copies {
@@ -143,25 +208,26 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
-    /// The picture.
-    fn check_shading(
-        &self,
-        at: (u32, u32),
-        (depth, weight): (Ball<P>, Ball<P>),
-        (normal, color): ([Ball<P>; 3], [Ball<P>; 3]),
-        report: &mut Report<'_>,
-    ) {
-        let handed = self.handed;
-        let depth = handed.depth_copy.map_or(depth, |plane| plane.ball(at));
-        let weight = handed.weight_copy.map_or(weight, |plane| plane.ball(at));
-        if let Some(plane) = &handed.shaded {
-            let normal = handed.normal.map_or(normal, |plane| plane.balls(at));
-            let color = handed.color.map_or(color, |plane| plane.balls(at));
-            let surface = Surface { depth, normal, tangent: None, color };
-            triple(SHADING, (plane, Holds::Color), at, self.shading.color(at, &surface), report);
-        }
-        if let Some(plane) = &handed.alpha {
-            number(SHADING, plane, at, self.shading.alpha(weight), report);
-        }
+    /// The depth that is shaded.
+    fn depth(&self, at: (u32, u32), nearest: &Nearest<P>, sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
+        let nothing = self.handed.nothing() && sums.is_some_and(|sums| sums.count == 0);
+        let own = if nothing { Ball::INFINITY } else { nearest.depth };
+        self.handed.depth_copy.map_or(own, |plane| plane.ball(at))
+    }
+
+    /// The shaded colour of the client's averages, else of these.
+    fn color(&self, at: (u32, u32), depth: Ball<P>, averages: &Averages<P>) -> [Ball<P>; 3] {
+        let normal = self.handed.normal.map_or(averages.normal, |plane| plane.balls(at));
+        let color = self.handed.color.map_or(averages.color, |plane| plane.balls(at));
+        self.shading.color(at, &Surface { depth, normal, tangent: None, color })
+    }
+}
+
+/// What the sums of a pixel may be, as far as that is known.
+fn all<P: Profile>(sums: &Continuations<P>) -> &[Sums<Ball<P>>] {
+    match sums {
+        Continuations::One(sums) => std::slice::from_ref(sums),
+        Continuations::Several(sums) => sums,
+        Continuations::Many => &[],
     }
 }

@@ -1,10 +1,10 @@
 use crate::frame::{Exec, Frame, NO_ID, Samples};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::single_pass::{BinCount, DepthTest, Settings};
-use crate::method::tests::verdicts::{Slip, assert_found, assert_right, verdict};
+use crate::method::tests::verdicts::{Slip, assert_found, assert_right, camera, verdict};
 use crate::method::tests::{count, id, scalar, surfels};
 use crate::method::{Method, Session};
-use crate::scene::{Camera, Cloud, Lens, Scene, Surfels};
+use crate::scene::{Cloud, Lens, Scene, Surfels};
 use crate::source::Shape;
 use crate::splat::{Epsilon, Kernel, Outline, SplatSettings};
 use crate::verify::client::Rounding;
@@ -24,11 +24,6 @@ fn grouped(surfels: Surfels, overlap: f32) -> Surfels {
 
 fn settings(kernel: Kernel, epsilon: Epsilon, depth: DepthTest) -> Settings {
     Settings { splats: SplatSettings { kernel, epsilon, ..SplatSettings::default() }, depth }
-}
-
-fn camera(shape: Shape, size: [u32; 2], lens: Option<Lens>) -> Camera {
-    let lens = lens.unwrap_or(shape.default_lens());
-    Camera::new(size[0], size[1], shape.default_pose(), lens).unwrap()
 }
 
 #[test]

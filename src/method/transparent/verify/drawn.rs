@@ -49,7 +49,7 @@ pub(super) struct Drawn<P: Profile> {
 }
 
 /// The fragments of a row of pixels, by pixel and group.
-pub(super) struct RowDrawings<P: Profile> {
+pub(in crate::method) struct RowDrawings<P: Profile> {
     groups: usize,
     /// In the order of their places, those of a place from back to front.
     all: Vec<(usize, Drawn<P>)>,
