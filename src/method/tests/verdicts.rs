@@ -1,10 +1,11 @@
 //! What the tests of verdicts share.
 
-use crate::frame::{Exec, Frame, NO_ID, Samples};
+use crate::frame::{Exec, Frame, NO_ID, Plane, Samples};
 use crate::method::{Method, Session};
 use crate::number::Exact;
 use crate::number::random::unit;
-use crate::scene::{Camera, Cloud, Lens, Scene, Surfels};
+use crate::scene::environment::Map;
+use crate::scene::{Camera, Cloud, Environment, Lens, Scene, Surfels};
 use crate::source::Shape;
 use crate::verify::client::{Client, Rounding, Storage};
 use crate::verify::verdict::{Finding, Outcome, Verdict};
@@ -14,6 +15,40 @@ pub(in crate::method) fn transparent(surfels: Surfels) -> Surfels {
     let opacity = |i| if i % 7 == 0 { 1.0 } else { 0.25 + 0.5 * unit(7, i) };
     let opacity = (0..surfels.len() as u64).map(opacity).collect();
     Surfels::new(Cloud { opacity: Some(opacity), ..surfels.into_cloud() }).unwrap().0
+}
+
+/// A map of 32 x 16 pixels of any colour, turned by so many columns, upside down or not.
+pub(in crate::method) fn surroundings(turned: u32, flipped: bool) -> Environment {
+    let pixel = |i: u32| {
+        let (x, y) = ((i + turned) % 32, if flipped { 15 - i / 32 } else { i / 32 });
+        [0, 1, 2].map(|c| 0.25 + unit(11, u64::from(3 * (32 * y + x) + c)))
+    };
+    let pixels = (0..512).map(pixel).collect();
+    Environment::Map(Map::new(Plane::from_values(32, 16, pixels)).unwrap())
+}
+
+/// What the crate renders before one environment is right, and wrong in a stage before another.
+pub(in crate::method) fn assert_environment_found(
+    scene: &Scene,
+    camera: &Camera,
+    method: Method,
+    stage: &str,
+) {
+    let exec = Exec::new(1, 16).unwrap();
+    let before = |environment| Scene { environment: Some(environment), ..scene.clone() };
+    let all = [surroundings(0, false), surroundings(1, false), surroundings(0, true)];
+    let others = all[1..].iter().chain([&Environment::Sky]);
+    for (own, other) in others.flat_map(|other| [(&all[0], other), (other, &all[0])]) {
+        let (own, other) = (before(own.clone()), before(other.clone()));
+        let [own, other] = [&own, &other].map(|scene| Session::new(scene, method, &exec).unwrap());
+        let frame = own.define::<f32>(camera, true).unwrap().frame;
+        for rounding in [Rounding::Ieee, Rounding::Gpu] {
+            let found = verdict(&own, camera, &frame, rounding);
+            assert_eq!((wrong(&found), found.outcome()), (None, Outcome::Right), "{rounding:?}");
+            let found = verdict(&other, camera, &frame, rounding);
+            assert_eq!(found.first_wrong().map(|wrong| wrong.stage), Some(stage), "{rounding:?}");
+        }
+    }
 }
 
 /// A camera before a shape; without a lens by that of the shape.

@@ -8,8 +8,8 @@ use crate::composite::sum;
 use crate::method::Holds;
 use crate::method::algorithm::Job;
 use crate::method::checks::{
-    Report, Shading, Surface, anything, either, either_of, input, inputs, least_wrong, number,
-    triple, whole, widened,
+    Report, Shading, Surface, anything, either_of, input, inputs, least_wrong, number, triple,
+    whole, widened,
 };
 use crate::method::ewa::attributes::Sums;
 use crate::method::judged::Marks;
@@ -24,7 +24,7 @@ const SHADING: usize = 2;
 /// What all pixels share.
 pub(in crate::method) struct PixelJudge<'a, P: Profile> {
     handed: &'a Handed<'a>,
-    shading: Shading<P>,
+    shading: Shading<'a, P>,
     /// Whether surfels have colours; else the material has one.
     colored: bool,
     /// The greatest component of a colour, at least 1.
@@ -39,7 +39,7 @@ struct Averages<P: Profile> {
 }
 
 impl<'a, P: Profile> PixelJudge<'a, P> {
-    pub(in crate::method) fn new(job: &Job<'_>, handed: &'a Handed<'a>) -> Self {
+    pub(in crate::method) fn new(job: &Job<'a>, handed: &'a Handed<'a>) -> Self {
         let scene = job.scene;
         let colors = scene.surfels.color().unwrap_or_default();
         let brightest = colors.iter().fold(1.0_f64, |brightest, color| {
@@ -51,7 +51,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     }
 
     /// The same of a layer, behind which others may be seen.
-    pub(in crate::method) fn of_layer(job: &Job<'_>, handed: &'a Handed<'a>) -> Self {
+    pub(in crate::method) fn of_layer(job: &Job<'a>, handed: &'a Handed<'a>) -> Self {
         let colored = job.scene.surfels.color().is_some();
         Self { shading: Shading::of_layer(job, colored), ..Self::new(job, handed) }
     }
@@ -89,7 +89,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         };
         let each = all(sums).iter().map(|sums| of(Some(sums)));
         let (opacity, color) =
-            each.reduce(|a, b| (either(a.0, b.0), either_of(a.1, b.1))).unwrap_or_else(|| of(None));
+            each.reduce(|a, b| (a.0.either(b.0), either_of(a.1, b.1))).unwrap_or_else(|| of(None));
         (
             handed.opacity.map_or(opacity, |plane| input(&plane, at)),
             handed.shaded.map_or(color, |plane| inputs(&plane, at)),

@@ -3,7 +3,7 @@ use crate::method::peeling::Settings;
 use crate::method::tests::scalar;
 use crate::method::tests::surfels;
 use crate::method::tests::verdicts::{
-    Slip, assert_found, assert_right, camera, transparent, verdict,
+    Slip, assert_environment_found, assert_found, assert_right, camera, transparent, verdict,
 };
 use crate::method::{Method, Session};
 use crate::scene::{Camera, Lens, Scene};
@@ -93,4 +93,10 @@ fn layers_in_another_order_are_found() {
         let found = verdict(&session, &camera, &frame, rounding);
         assert_eq!(found.first_wrong().map(|stage| stage.stage), Some("layers"));
     }
+}
+
+#[test]
+fn another_environment_is_found() {
+    let (scene, camera, method) = layered();
+    assert_environment_found(&scene, &camera, method, "blending");
 }

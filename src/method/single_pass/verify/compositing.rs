@@ -5,7 +5,7 @@ use crate::composite::decide;
 use crate::composite::groups::WeightedFragment;
 use crate::frame::NO_ID;
 use crate::method::algorithm::Job;
-use crate::method::checks::{anything, either};
+use crate::method::checks::anything;
 use crate::method::ewa::attributes::Sums;
 use crate::method::ewa::verify::handed::Handed;
 use crate::method::ewa::verify::sums::{Continuations, MOST};
@@ -49,7 +49,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
             Some(depth) if !stored => depth,
             _ => nearest(choice),
         };
-        let depth = choices.iter().map(nearest).reduce(either).unwrap_or(anything());
+        let depth = choices.iter().map(nearest).reduce(Ball::either).unwrap_or(anything());
         let several = choices.len() > 1;
         pixel.doubt(Doubt::Nearer, several);
         let mut all = Vec::new();

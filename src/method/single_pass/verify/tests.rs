@@ -1,7 +1,9 @@
 use crate::frame::{Exec, Frame, NO_ID, Samples};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::single_pass::{BinCount, DepthTest, Settings};
-use crate::method::tests::verdicts::{Slip, assert_found, assert_right, camera, verdict};
+use crate::method::tests::verdicts::{
+    Slip, assert_environment_found, assert_found, assert_right, camera, verdict,
+};
 use crate::method::tests::{count, id, scalar, surfels};
 use crate::method::{Method, Session};
 use crate::scene::{Cloud, Lens, Scene, Surfels};
@@ -194,4 +196,16 @@ fn the_other_depth_test_is_found() {
             assert_eq!(found, Some("geometry"), "{other:?}");
         }
     }
+}
+
+#[test]
+fn another_environment_is_found() {
+    let scene = Scene::lit("", grouped(surfels(150, 0.3, true, 1), 0.4));
+    let camera = camera(Shape::Sphere, [27, 21], None);
+    assert_environment_found(
+        &scene,
+        &camera,
+        Method::SinglePass(settings(Kernel::DEFAULT, Epsilon::World(0.1), VORONOI)),
+        "shading",
+    );
 }

@@ -14,9 +14,15 @@
 //! continuations that fit, where they agree. What is not known of one group is not judged of the
 //! average. `Z` is the depth of one of the groups, and no group certainly is nearer; `id` is the surfel
 //! of a group that may be the nearest (of equal depths any of them). The picture follows from the
-//! client's average; where an environment is seen, its colour is not judged.
+//! client's average, before the environment if there is one.
 //!
-//! A pixel is undecided if a group has several continuations, or is not judged.
+//! **Environment.** Where the opacity is less than 1, the light of the ray is taken in balls: the sky by
+//! its formula; a map from all squares of four pixel centres that the ray may lie between, which meet
+//! without a jump, at the seam too. Where these are more than 8 in a row or a column, as beside a pole,
+//! the colour is not judged. Weights are those of `f32`: a texture unit that rounds them to 8 bits is not
+//! within a map's balls.
+//!
+//! A pixel is undecided if a group has several continuations, or is not judged, or if its colour is not.
 
 pub(in crate::method) mod averaged;
 pub(in crate::method) mod drawn;
@@ -118,9 +124,9 @@ impl<'a, P: Profile> Judge<'a, P> {
                     self.layers.judge((column, at), &drawings, all, &mut blending.at(pixel));
                 let pixel = &mut averaging.at(pixel);
                 let average = self.averages.judge(at, (&found.groups, self.holes), pixel);
-                self.shown.judge(at, &found.groups, &average, pixel);
+                let judged = self.shown.judge(at, &found.groups, &average, pixel);
                 counts.covered += u64::from(found.groups.iter().any(GroupFound::covered));
-                counts.undecided += u64::from(found.open);
+                counts.undecided += u64::from(found.open || !judged);
             }
         }
         counts

@@ -3,7 +3,7 @@
 use super::replayed::Layers;
 use crate::method::Holds;
 use crate::method::checks::{
-    Report, anything, either, input, inputs, least_wrong, number, triple, whole, widened,
+    Report, anything, input, inputs, least_wrong, number, triple, whole, widened,
 };
 use crate::method::judged::PixelMarks;
 use crate::method::transparent::planes::{
@@ -147,7 +147,7 @@ impl<'a> GroupPlanes<'a> {
     /// What the average reads: the client's, else all that the continuations may be.
     fn read<P: Profile>(&self, at: (u32, u32), all: Option<Vec<Layers<P>>>) -> GroupFound<P> {
         let any = |of: &dyn Fn(&Layers<P>) -> Ball<P>| {
-            all.iter().flatten().map(of).reduce(either).unwrap_or(anything())
+            all.iter().flatten().map(of).reduce(Ball::either).unwrap_or(anything())
         };
         let scalar = |plane: Option<Stored<'_, f64>>, of: &dyn Fn(&Layers<P>) -> Ball<P>| {
             plane.map_or_else(|| any(of), |plane| input(&plane, at))

@@ -5,7 +5,7 @@ use super::replayed::Layers;
 use crate::composite::groups::WeightedFragment;
 use crate::method::Holds;
 use crate::method::algorithm::Job;
-use crate::method::checks::{anything, number, triple};
+use crate::method::checks::{Backdrop, is_bounded, number, triple};
 use crate::method::ewa::verify::handed::Handed;
 use crate::method::judged::PixelMarks;
 use crate::method::single_pass::verify::compositing::Compositing;
@@ -21,15 +21,13 @@ pub(super) struct Shown<'a, P: Profile> {
     handed: &'a Handed<'a>,
     layers: Option<Stored<'a, f64>>,
     nearest: Compositing<'a, P>,
-    /// Whether an environment is seen behind the layers.
-    environment: bool,
+    backdrop: Backdrop<'a, P>,
 }
 
 impl<'a, P: Profile> Shown<'a, P> {
     pub(super) fn new(job: &Job<'a>, client: &'a Client, handed: &'a Handed<'a>) -> Self {
         let nearest = Compositing::new(job, handed, Ball::ZERO);
-        let environment = job.scene.environment.is_some();
-        Self { handed, layers: client.scalar(&LAYERS), nearest, environment }
+        Self { handed, layers: client.scalar(&LAYERS), nearest, backdrop: Backdrop::new(job) }
     }
 
     /// The names of the planes that are judged.
@@ -46,32 +44,29 @@ impl<'a, P: Profile> Shown<'a, P> {
         all.into_iter().flatten().collect()
     }
 
-    /// Marks what is wrong with the picture at a pixel.
+    /// Marks what is wrong with the picture at a pixel; whether its colour is judged, or is not there.
     pub(super) fn judge(
         &self,
         at: (u32, u32),
         groups: &[GroupFound<P>],
         average: &GroupAverage<Ball<P>>,
         pixel: &mut PixelMarks<'_>,
-    ) {
+    ) -> bool {
         if let Some(samples) = groups.iter().map(samples).collect::<Option<Vec<_>>>() {
             self.nearest.check_nearest(at, &samples, pixel);
         }
-        let GroupAverage { blend, layers, .. } = *average;
+        let shown = self.backdrop.behind(average.blend, at);
         let report = &mut |_: usize, error: f64, fault: &dyn Fn() -> _| pixel.found(error, fault);
         if let Some(plane) = &self.handed.shaded {
-            let color = if self.environment { [anything(); 3] } else { blend.color };
-            triple(0, (plane, Holds::Color), at, color, report);
+            triple(0, (plane, Holds::Color), at, shown.color, report);
         }
         if let Some(plane) = &self.handed.alpha {
-            // Averages of opacities may round to a little more than 1, and then no environment is seen.
-            let alpha = blend.alpha;
-            let alpha = if self.environment { Ball::ONE.at_least(alpha) } else { alpha };
-            number(0, plane, at, alpha, report);
+            number(0, plane, at, shown.alpha, report);
         }
         if let Some(plane) = &self.layers {
-            number(0, plane, at, layers, report);
+            number(0, plane, at, average.layers, report);
         }
+        self.handed.shaded.is_none() || is_bounded(&shown.color)
     }
 }
 

@@ -2,7 +2,8 @@ use crate::method::Method;
 use crate::method::single_pass::BinCount;
 use crate::method::tests::surfels;
 use crate::method::tests::verdicts::{
-    Slip, assert_found, assert_right, assert_right_in_doubles, camera, transparent,
+    Slip, assert_environment_found, assert_found, assert_right, assert_right_in_doubles, camera,
+    transparent,
 };
 use crate::method::transparent::{Holes, Settings};
 use crate::scene::{Lens, Scene};
@@ -68,4 +69,16 @@ fn each_slip_is_found_in_its_stage() {
     let camera = camera(Shape::Sphere, [37, 33], None);
     let settings = settings(Kernel::DEFAULT, 30, Holes::Skipped);
     assert_found(&scene, &camera, Method::Transparent(settings), &slips);
+}
+
+#[test]
+fn another_environment_is_found() {
+    let scene = Scene::lit("", transparent(surfels(150, 0.3, true, 1)));
+    let camera = camera(Shape::Sphere, [27, 21], None);
+    assert_environment_found(
+        &scene,
+        &camera,
+        Method::Transparent(settings(Kernel::DEFAULT, 30, Holes::Skipped)),
+        "averaging",
+    );
 }

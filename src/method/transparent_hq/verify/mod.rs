@@ -13,11 +13,15 @@
 //! fragment stays where the client's mask is 1 and its depth is greater than Z + epsilon, Z the client's;
 //! without a mask, where Z is finite. Where that is undecided both continuations are followed.
 //!
-//! **Compositing** of the client's nearest layer and averages: `l`, `layers`, and the picture. Where an
-//! environment is seen, its colour is not judged.
+//! **Compositing** of the client's nearest layer and averages: `l`, `layers`, and the picture. It is
+//! before the environment as in `transparent`. With refraction it is [`mod@crate::shade::optics`] in balls,
+//! of the client's normal. A decision that is undecided there gives what holds both of its outcomes: on
+//! which side a surface is seen, whether light is reflected totally, which form of a cosine is taken. A
+//! direction that either side of a surface may give holds too much of a map to be judged.
+//! Without the client's normals a picture with refraction is not judged.
 //!
-//! A pixel is undecided if the sums of its nearest layer have more than one continuation, or if a group of
-//! the others has, or is not judged.
+//! A pixel is undecided if the sums of its nearest layer have more than one continuation; if a group of
+//! the others has, or is not judged; or if its colour is not.
 
 mod shown;
 #[cfg(test)]
@@ -106,7 +110,7 @@ struct Judge<'a, P: Profile> {
     nearest: groups::Judge<'a, P>,
     others: LayersJudge<'a, P>,
     averages: AveragePlanes<'a>,
-    shown: Shown<'a>,
+    shown: Shown<'a, P>,
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
@@ -117,7 +121,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             nearest: groups::Judge::new(job, &single_pass(settings), of)?,
             others: LayersJudge::project(job, &settings.layers, of.client)?,
             averages: AveragePlanes::new(of.client),
-            shown: Shown::new(job, of.client),
+            shown: Shown::new(job, settings, of.client),
         })
     }
 
@@ -149,9 +153,9 @@ impl<'a, P: Profile> Judge<'a, P> {
             let others = self.others.judge((column, at), &drawings, behind, marks);
             let of = (others.groups.as_slice(), self.settings.layers.holes);
             let average = self.averages.judge(at, of, &mut averaging.at(pixel));
-            self.shown.judge(at, &near, &average, &mut compositing.at(pixel));
+            let judged = self.shown.judge(at, &near, &average, &mut compositing.at(pixel));
             counts.covered += u64::from(front.covered());
-            counts.undecided += u64::from(!front.certain() || others.open);
+            counts.undecided += u64::from(!front.certain() || others.open || !judged);
         }
     }
 

@@ -1,35 +1,39 @@
 //! The picture of a client at a pixel: its nearest layer before the average of the others.
 
+use crate::composite::over::Blend;
 use crate::method::Holds;
 use crate::method::algorithm::Job;
-use crate::method::checks::{anything, number, triple};
+use crate::method::checks::{Backdrop, is_bounded, number, triple};
 use crate::method::judged::PixelMarks;
 use crate::method::resolved::{ALPHA, SHADED};
 use crate::method::transparent::averaging::GroupAverage;
-use crate::method::transparent_hq::compositing::{count, count_by_opacity};
+use crate::method::transparent_hq::Settings;
+use crate::method::transparent_hq::compositing::{Through, count, count_by_opacity};
 use crate::method::transparent_hq::nearest::FrontLayer;
 use crate::method::transparent_hq::planes::{LAYERS, LAYERS_BY_OPACITY};
+use crate::number::Ball;
 use crate::number::ball::Profile;
-use crate::number::{Ball, Real};
+use crate::scene::Environment;
 use crate::verify::client::{Client, Stored};
 
 /// The planes of the picture, each if it is there.
-pub(super) struct Shown<'a> {
+pub(super) struct Shown<'a, P: Profile> {
     color: Option<Stored<'a, [f64; 3]>>,
     alpha: Option<Stored<'a, f64>>,
     /// Counts of layers: by opacity, and as they are.
     counts: [Option<Stored<'a, f64>>; 2],
-    /// Whether an environment is seen behind the layers.
-    environment: bool,
+    through: Through<'a, Ball<P>>,
+    backdrop: Backdrop<'a, P>,
 }
 
-impl<'a> Shown<'a> {
-    pub(super) fn new(job: &Job<'a>, client: &'a Client) -> Self {
+impl<'a, P: Profile> Shown<'a, P> {
+    pub(super) fn new(job: &Job<'a>, settings: &'a Settings, client: &'a Client) -> Self {
         Self {
             color: client.triple(&SHADED),
             alpha: client.scalar(&ALPHA),
             counts: [&LAYERS_BY_OPACITY, &LAYERS].map(|row| client.scalar(row)),
-            environment: job.scene.environment.is_some(),
+            through: Through::new(job, settings, Environment::enclosure),
+            backdrop: Backdrop::new(job),
         }
     }
 
@@ -40,20 +44,16 @@ impl<'a> Shown<'a> {
         color.chain(scalars.map(|plane| plane.name)).collect()
     }
 
-    /// Marks what is wrong with the picture at a pixel.
-    pub(super) fn judge<P: Profile>(
+    /// Marks what is wrong with the picture at a pixel; whether its colour is judged, or is not there.
+    pub(super) fn judge(
         &self,
         at: (u32, u32),
         near: &FrontLayer<Ball<P>>,
         others: &GroupAverage<Ball<P>>,
         pixel: &mut PixelMarks<'_>,
-    ) {
-        let there = near.depth.is_finite();
-        let over = others.blend.over(near.opacity, near.color);
-        let part = |c: usize| Ball::select(there, over.color[c], others.blend.color[c]);
-        let color = if self.environment { [anything(); 3] } else { [0, 1, 2].map(part) };
-        let alpha = Ball::select(there, over.alpha, others.blend.alpha);
-        let alpha = if self.environment { Ball::ONE.at_least(alpha) } else { alpha };
+    ) -> bool {
+        let layers = self.through.pixel(at, near, others);
+        let Blend { color, alpha } = self.backdrop.behind(layers, at);
         let scalars = [
             (&self.alpha, alpha),
             (&self.counts[0], count_by_opacity(near, others)),
@@ -68,5 +68,6 @@ impl<'a> Shown<'a> {
         if let Some(plane) = &self.color {
             triple(0, (plane, Holds::Color), at, color, report);
         }
+        self.color.is_none() || is_bounded(&color)
     }
 }

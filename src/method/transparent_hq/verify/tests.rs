@@ -1,17 +1,19 @@
 use crate::frame::{Exec, Frame, Samples};
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::tests::verdicts::{
-    Slip, assert_found, assert_none_wrong_in_halves, assert_right, assert_right_in_doubles, camera,
-    transparent, verdict,
+    Slip, assert_environment_found, assert_found, assert_none_wrong_in_halves, assert_right,
+    assert_right_in_doubles, camera, surroundings, transparent, verdict,
 };
 use crate::method::tests::{color, scalar, surfels};
 use crate::method::transparent;
 use crate::method::transparent_hq::Settings;
 use crate::method::{Method, Session};
-use crate::scene::{Camera, Lens, Scene};
+use crate::scene::{Camera, Environment, Lens, Scene};
+use crate::shade::optics::{BendingLayers, Refraction};
 use crate::source::Shape;
 use crate::splat::{Epsilon, Kernel, Outline, SplatSettings};
 use crate::verify::client::Rounding;
+use crate::verify::verdict::Outcome;
 
 fn settings(kernel: Kernel, epsilon: f32, nearest: DepthTest) -> Settings {
     let epsilon = Epsilon::World(epsilon);
@@ -167,4 +169,76 @@ fn the_picture_is_judged_without_the_stages() {
     let wrong = found.first_wrong().unwrap();
     assert_eq!(wrong.stage, "compositing");
     assert!(2 * wrong.wrong as usize > seen, "{} of {seen}", wrong.wrong);
+}
+
+fn refracting(settings: Settings, ratio: [f32; 3], layers: BendingLayers) -> Settings {
+    Settings { refraction: Some(Refraction { ratio, layers }), ..settings }
+}
+
+const GLASS: [f32; 3] = [0.6875, 0.671_875, 0.656_25];
+
+#[test]
+fn what_is_seen_through_layers_that_bend_light_is_right() {
+    let plain = settings(Kernel::DEFAULT, 0.1, VORONOI);
+    // Out of glass, light is reflected totally.
+    let out = GLASS.map(|ratio| 1.0 / ratio);
+    for (shape, environment, settings) in [
+        (Shape::Sphere, Environment::Sky, plain),
+        (Shape::Torus, surroundings(0, false), plain),
+        (Shape::Sphere, Environment::Sky, refracting(plain, GLASS, BendingLayers::Multiple)),
+        (Shape::Torus, surroundings(0, false), refracting(plain, GLASS, BendingLayers::Single)),
+        (Shape::Cluster, surroundings(0, false), refracting(plain, out, BendingLayers::Multiple)),
+    ] {
+        let mut scene = Scene::lit("", transparent(shape.surfels(250, 5).unwrap()));
+        scene.environment = Some(environment);
+        let (camera, method) = (camera(shape, [27, 21], None), Method::TransparentHq(settings));
+        assert_right(&scene, &camera, method);
+        assert_right_in_doubles(&scene, &camera, method);
+    }
+}
+
+#[test]
+fn tiles_and_sizes_do_not_matter() {
+    let plain = settings(Kernel::DEFAULT, 0.1, VORONOI);
+    let settings = refracting(plain, GLASS, BendingLayers::Multiple);
+    let mut scene = Scene::lit("", transparent(Shape::Torus.surfels(250, 5).unwrap()));
+    scene.environment = Some(surroundings(0, false));
+    for (tile, size) in [(8, [27, 21]), (64, [27, 21]), (8, [70, 65]), (64, [70, 65])] {
+        let exec = Exec::new(1, tile).unwrap();
+        let session = Session::new(&scene, Method::TransparentHq(settings), &exec).unwrap();
+        let camera = camera(Shape::Torus, size, None);
+        let frame = session.define::<f32>(&camera, true).unwrap().frame;
+        for rounding in [Rounding::Ieee, Rounding::Gpu] {
+            let found = verdict(&session, &camera, &frame, rounding);
+            assert_eq!(found.outcome(), Outcome::Right, "{tile} {size:?} {}", found.undecided);
+        }
+    }
+}
+
+#[test]
+fn another_refraction_or_environment_is_found() {
+    let (mut scene, camera, plain) = layered();
+    let right = refracting(plain, GLASS, BendingLayers::Multiple);
+    assert_environment_found(&scene, &camera, Method::TransparentHq(right), "compositing");
+    assert_environment_found(&scene, &camera, Method::TransparentHq(plain), "compositing");
+    scene.environment = Some(surroundings(0, false));
+    let frame = |settings| rendered(&scene, &camera, Method::TransparentHq(settings));
+    let inverse = GLASS.map(|ratio| 1.0 / ratio);
+    let swapped = [GLASS[2], GLASS[1], GLASS[0]];
+    let others = [
+        refracting(plain, inverse, BendingLayers::Multiple),
+        refracting(plain, swapped, BendingLayers::Multiple),
+        refracting(plain, GLASS, BendingLayers::Single),
+        plain,
+    ];
+    for other in others {
+        assert_wrong(&scene, &camera, right, &frame(other), "compositing");
+        assert_wrong(&scene, &camera, other, &frame(right), "compositing");
+    }
+    let slips = [
+        ("", Slip::Off(0.1), "compositing"),
+        ("", Slip::NotANumber, "compositing"),
+        ("A", Slip::Off(1e-4), "compositing"),
+    ];
+    assert_found(&scene, &camera, Method::TransparentHq(right), &slips);
 }
