@@ -1,10 +1,13 @@
 //! What is asked of every client, whatever its method: numbers against balls, copies, and shading.
 
 use super::algorithm::Job;
+use super::picture::before_light;
+use crate::composite::over::Blend;
 use crate::frame::named::{COLOR, VECTOR, component};
 use crate::method::Holds;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector3};
+use crate::scene::Environment;
 use crate::shade::phong::Shader;
 use crate::splat::View;
 use crate::verify::client::{Storage, Stored};
@@ -22,6 +25,11 @@ pub(super) fn anything<P: Profile>() -> Ball<P> {
 /// A ball that is larger by this much.
 pub(super) fn widened<P: Profile>(ball: Ball<P>, by: f64) -> Ball<P> {
     if by > 0.0 { Ball::new(ball.middle, ball.radius + by) } else { ball }
+}
+
+/// Both of three numbers.
+pub(super) fn either_of<P: Profile>(a: [Ball<P>; 3], b: [Ball<P>; 3]) -> [Ball<P>; 3] {
+    [0, 1, 2].map(|c| a[c].either(b[c]))
 }
 
 /// What the next stage reads of a stored value of this format: floats as they are; none of anything
@@ -139,13 +147,36 @@ pub(super) fn only_fitting<T>(all: &[T], check: impl Fn(&T, &mut Report<'_>)) ->
     fitting.next().filter(|_| fitting.next().is_none())
 }
 
+/// What is seen behind all layers of a client.
+pub(super) struct Backdrop<'a, P: Profile> {
+    environment: Option<&'a Environment>,
+    view: View<Ball<P>>,
+}
+
+impl<'a, P: Profile> Backdrop<'a, P> {
+    pub(super) fn new(job: &Job<'a>) -> Self {
+        Self { environment: job.scene.environment.as_ref(), view: View::new(job.camera) }
+    }
+
+    /// Layers before the environment, if there is one.
+    pub(super) fn behind(&self, layers: Blend<Ball<P>>, (x, y): (u32, u32)) -> Blend<Ball<P>> {
+        let Some(environment) = self.environment else { return layers };
+        before_light(layers, || environment.enclosure(self.view.ray(x, y)))
+    }
+}
+
+/// Whether a colour is bounded, so that it is judged.
+pub(super) fn is_bounded<P: Profile>(color: &[Ball<P>; 3]) -> bool {
+    color.iter().all(|part| part.radius.is_finite())
+}
+
 /// Deferred shading of a client's surfaces.
-pub(super) struct Shading<P: Profile> {
+pub(super) struct Shading<'a, P: Profile> {
     shader: Shader<Ball<P>>,
     /// Whether surfaces have colours; else the material has one.
     colored: bool,
-    /// Whether an environment is seen where nothing else is.
-    environment: bool,
+    /// What is seen where nothing else is; none if that is black.
+    backdrop: Option<Backdrop<'a, P>>,
 }
 
 /// What lies at a pixel.
@@ -160,25 +191,36 @@ pub(super) struct Surface<P: Profile> {
     pub(super) color: [Ball<P>; 3],
 }
 
-impl<P: Profile> Shading<P> {
-    pub(super) fn new(job: &Job<'_>, colored: bool) -> Self {
+impl<'a, P: Profile> Shading<'a, P> {
+    pub(super) fn new(job: &Job<'a>, colored: bool) -> Self {
         let scene = job.scene;
         Self {
             shader: Shader::new(View::new(job.camera), &scene.lights, scene.material),
             colored,
-            environment: scene.environment.is_some(),
+            backdrop: scene.environment.is_some().then(|| Backdrop::new(job)),
         }
     }
 
-    /// The colour of a pixel; any where an environment is seen, or where the depth is not known.
+    /// The same of a layer: where there is nothing, it is black.
+    pub(super) fn of_layer(job: &Job<'a>, colored: bool) -> Self {
+        Self { backdrop: None, ..Self::new(job, colored) }
+    }
+
+    /// Whether a pixel is black where nothing is.
+    pub(super) fn is_black(&self) -> bool {
+        self.backdrop.is_none()
+    }
+
+    /// The colour of a pixel; any where the depth is not known.
     pub(super) fn color(&self, (x, y): (u32, u32), surface: &Surface<P>) -> [Ball<P>; 3] {
         let Surface { depth, normal, tangent, color } = *surface;
         // What is not known may have any midpoint.
         let empty = depth.middle == f64::INFINITY && depth.radius == 0.0;
-        if empty && !self.environment {
-            return [Ball::ZERO; 3];
+        if empty {
+            let shown = self.backdrop.as_ref().map(|all| all.behind(Blend::CLEAR, (x, y)));
+            return shown.map_or([Ball::ZERO; 3], |shown| shown.color);
         }
-        if empty || !depth.radius.is_finite() {
+        if !depth.radius.is_finite() {
             return [anything(); 3];
         }
         let vector = |[x, y, z]: [Ball<P>; 3]| Vector3::new(x, y, z);
@@ -192,7 +234,7 @@ impl<P: Profile> Shading<P> {
 
     /// The opacity of a pixel in which something is seen if `seen` is greater than 0.
     pub(super) fn alpha(&self, seen: Ball<P>) -> Ball<P> {
-        if self.environment {
+        if self.backdrop.is_some() {
             Ball::ONE
         } else {
             Ball::select(seen.gt(Ball::ZERO), Ball::ONE, Ball::ZERO)

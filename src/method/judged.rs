@@ -44,6 +44,11 @@ impl Marks {
         Self { log: Some(Vec::new()), ..Self::new(rect) }
     }
 
+    /// Whether everything that is checked will be told.
+    pub(super) fn logs(&self) -> bool {
+        self.log.is_some()
+    }
+
     /// Nothing found yet in a part of the picture, and told as much of.
     pub(super) fn beside(&self, rect: Rect) -> Self {
         Self { log: self.log.as_ref().map(|_| Vec::new()), ..Self::new(rect) }

@@ -3,7 +3,7 @@
 use super::algorithm::Job;
 use crate::composite::over::Blend;
 use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Pool, Samples, Wanted};
-use crate::number::Exact;
+use crate::number::{Exact, Real, Truth};
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
@@ -73,14 +73,23 @@ pub(super) fn before_environment<R: Exact>(
         let colors: &mut [[R; 3]] = colors;
         let alphas: &mut [R] = alphas;
         for (x, (color, alpha)) in (0..).zip(colors.iter_mut().zip(alphas)) {
-            if *alpha < R::ONE {
-                let layers = Blend { color: *color, alpha: *alpha };
-                let whole = layers.before(environment.radiance(view.ray(x, y)));
-                (*color, *alpha) = (whole.color, whole.alpha);
-            }
+            let layers = Blend { color: *color, alpha: *alpha };
+            let whole = before_light(layers, || environment.radiance(view.ray(x, y)));
+            (*color, *alpha) = (whole.color, whole.alpha);
         }
     });
     (color, alpha)
+}
+
+/// A pixel before the light behind it, which is asked for where the pixel is not opaque.
+pub(super) fn before_light<R: Real>(layers: Blend<R>, light: impl FnOnce() -> [R; 3]) -> Blend<R> {
+    let open = layers.alpha.lt(R::ONE);
+    if !open.possibly() {
+        return layers;
+    }
+    let whole = layers.before(light());
+    let color = [0, 1, 2].map(|c| R::select(open, whole.color[c], layers.color[c]));
+    Blend { color, alpha: R::select(open, whole.alpha, layers.alpha) }
 }
 
 /// A framebuffer for a camera's picture, in memory that is used again: the values are any.

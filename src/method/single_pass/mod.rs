@@ -118,7 +118,7 @@ impl Algorithm for Settings {
     }
 
     fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
-        verify::verify::<P>(job, self, &verify::GroupsOf::new(client), budget)
+        verify::verify::<P>(job, self, client, budget)
     }
 
     fn checks<P: Profile>(
@@ -127,7 +127,7 @@ impl Algorithm for Settings {
         client: &Client,
         pixel: (u32, u32),
     ) -> Result<Vec<Check>> {
-        verify::checks::<P>(job, self, &verify::GroupsOf::new(client), pixel)
+        verify::checks::<P>(job, self, client, pixel)
     }
 
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {

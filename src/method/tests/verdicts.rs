@@ -1,10 +1,61 @@
-//! What the tests of verdicts on image-space methods share.
+//! What the tests of verdicts share.
 
-use crate::frame::{Exec, Frame, NO_ID, Samples};
+use crate::frame::{Exec, Frame, NO_ID, Plane, Samples};
 use crate::method::{Method, Session};
-use crate::scene::{Camera, Scene};
+use crate::number::Exact;
+use crate::number::random::unit;
+use crate::scene::environment::Map;
+use crate::scene::{Camera, Cloud, Environment, Lens, Scene, Surfels};
+use crate::source::Shape;
 use crate::verify::client::{Client, Rounding, Storage};
 use crate::verify::verdict::{Finding, Outcome, Verdict};
+
+/// Surfels of opacities from 0.25 to 1, some of them opaque.
+pub(in crate::method) fn transparent(surfels: Surfels) -> Surfels {
+    let opacity = |i| if i % 7 == 0 { 1.0 } else { 0.25 + 0.5 * unit(7, i) };
+    let opacity = (0..surfels.len() as u64).map(opacity).collect();
+    Surfels::new(Cloud { opacity: Some(opacity), ..surfels.into_cloud() }).unwrap().0
+}
+
+/// A map of 32 x 16 pixels of any colour, turned by so many columns, upside down or not.
+pub(in crate::method) fn surroundings(turned: u32, flipped: bool) -> Environment {
+    let pixel = |i: u32| {
+        let (x, y) = ((i + turned) % 32, if flipped { 15 - i / 32 } else { i / 32 });
+        [0, 1, 2].map(|c| 0.25 + unit(11, u64::from(3 * (32 * y + x) + c)))
+    };
+    let pixels = (0..512).map(pixel).collect();
+    Environment::Map(Map::new(Plane::from_values(32, 16, pixels)).unwrap())
+}
+
+/// What the crate renders before one environment is right, and wrong in a stage before another.
+pub(in crate::method) fn assert_environment_found(
+    scene: &Scene,
+    camera: &Camera,
+    method: Method,
+    stage: &str,
+) {
+    let exec = Exec::new(1, 16).unwrap();
+    let before = |environment| Scene { environment: Some(environment), ..scene.clone() };
+    let all = [surroundings(0, false), surroundings(1, false), surroundings(0, true)];
+    let others = all[1..].iter().chain([&Environment::Sky]);
+    for (own, other) in others.flat_map(|other| [(&all[0], other), (other, &all[0])]) {
+        let (own, other) = (before(own.clone()), before(other.clone()));
+        let [own, other] = [&own, &other].map(|scene| Session::new(scene, method, &exec).unwrap());
+        let frame = own.define::<f32>(camera, true).unwrap().frame;
+        for rounding in [Rounding::Ieee, Rounding::Gpu] {
+            let found = verdict(&own, camera, &frame, rounding);
+            assert_eq!((wrong(&found), found.outcome()), (None, Outcome::Right), "{rounding:?}");
+            let found = verdict(&other, camera, &frame, rounding);
+            assert_eq!(found.first_wrong().map(|wrong| wrong.stage), Some(stage), "{rounding:?}");
+        }
+    }
+}
+
+/// A camera before a shape; without a lens by that of the shape.
+pub(in crate::method) fn camera(shape: Shape, size: [u32; 2], lens: Option<Lens>) -> Camera {
+    let lens = lens.unwrap_or(shape.default_lens());
+    Camera::new(size[0], size[1], shape.default_pose(), lens).unwrap()
+}
 
 /// What is said of a frame as a client's.
 pub(in crate::method) fn verdict(
@@ -52,46 +103,70 @@ pub(in crate::method) fn assert_right(scene: &Scene, camera: &Camera, method: Me
 
 /// What a client leaves that keeps every plane in `f16` and works on with that is right.
 pub(in crate::method) fn assert_right_in_halves(scene: &Scene, camera: &Camera, method: Method) {
+    assert_eq!(assert_none_wrong_in_halves(scene, camera, method), [Outcome::Right; 2]);
+}
+
+/// The same, of which much may be undecided.
+pub(in crate::method) fn assert_none_wrong_in_halves(
+    scene: &Scene,
+    camera: &Camera,
+    method: Method,
+) -> [Outcome; 2] {
+    let half = |v: &mut f32| *v = f32::from_bits((v.to_bits() + 0x1000) & !0x1FFF);
+    outcomes_in(scene, camera, method, Storage::Half, half)
+}
+
+/// What a client leaves that computes each stage in `f64` and keeps every plane in `f32` is right.
+pub(in crate::method) fn assert_right_in_doubles(scene: &Scene, camera: &Camera, method: Method) {
+    let single = |v: &mut f64| *v = f64::from(*v as f32);
+    let outcomes = outcomes_in(scene, camera, method, Storage::Single, single);
+    assert_eq!(outcomes, [Outcome::Right; 2]);
+}
+
+/// What a client leaves that rounds every number of a plane so has nothing wrong; both outcomes.
+fn outcomes_in<R: Exact>(
+    scene: &Scene,
+    camera: &Camera,
+    method: Method,
+    storage: Storage,
+    round: impl Fn(&mut R),
+) -> [Outcome; 2] {
     let exec = Exec::new(1, 16).unwrap();
     let session = Session::new(scene, method, &exec).unwrap();
-    let mut frame = session.define::<f32>(camera, true).unwrap().frame;
-    for stage in method.stages() {
+    let mut frame = session.define::<R>(camera, true).unwrap().frame;
+    for stage in method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
         // A level is computed from the last, so that each is right after as many runs as there are.
         loop {
             let before = format!("{frame:?}");
             let left = session.stage(camera, stage.name, &frame).unwrap();
             for mut plane in left.planes {
-                round(&mut plane.samples);
-                let own = frame.planes.iter_mut().find(|own| own.name == plane.name).unwrap();
-                *own = plane;
+                match &mut plane.samples {
+                    Samples::Scalar(p) => p.values_mut().iter_mut().for_each(&round),
+                    Samples::Color(p) | Samples::Vector(p) => {
+                        p.values_mut().iter_mut().flatten().for_each(&round);
+                    }
+                    Samples::Index(_) | Samples::Count(_) => {}
+                }
+                match frame.planes.iter_mut().find(|own| own.name == plane.name) {
+                    Some(own) => *own = plane,
+                    None => frame.planes.push(plane),
+                }
             }
             if format!("{frame:?}") == before {
                 break;
             }
         }
     }
-    let mut client = Client::from(&frame);
+    let mut client = Client::from(&frame.to_f32());
     for plane in &frame.planes {
-        client = client.stored(&plane.name, Storage::Half);
+        client = client.stored(&plane.name, storage);
     }
-    for rounding in [Rounding::Ieee, Rounding::Gpu] {
+    [Rounding::Ieee, Rounding::Gpu].map(|rounding| {
         client.rounding = rounding;
         let found = session.verify(camera, &client, Verdict::BUDGET).unwrap();
         assert_eq!(wrong(&found), None, "{rounding:?}");
-        assert_eq!(found.outcome(), Outcome::Right);
-    }
-}
-
-/// Rounds numbers to 11 binary digits.
-fn round(samples: &mut Samples<f32>) {
-    let half = |v: &mut f32| *v = f32::from_bits((v.to_bits() + 0x1000) & !0x1FFF);
-    match samples {
-        Samples::Scalar(p) => p.values_mut().iter_mut().for_each(half),
-        Samples::Color(p) | Samples::Vector(p) => {
-            p.values_mut().iter_mut().flatten().for_each(half);
-        }
-        Samples::Index(_) | Samples::Count(_) => {}
-    }
+        found.outcome()
+    })
 }
 
 /// Whether a plane is of the row of this name.

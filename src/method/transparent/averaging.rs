@@ -5,7 +5,7 @@ use super::blending::GroupLayers;
 use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::frame::NO_ID;
-use crate::number::Exact;
+use crate::number::{Exact, Real};
 
 /// The groups of a pixel together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub(in crate::method) fn averages<R: Exact>(
     (0..pixels).map(average).collect()
 }
 
-impl<R: Exact> GroupAverage<R> {
+impl<R: Real> GroupAverage<R> {
     pub(in crate::method) const EMPTY: Self = Self {
         blend: Blend::CLEAR,
         opacity: R::ZERO,
@@ -54,17 +54,7 @@ impl<R: Exact> GroupAverage<R> {
         surfel: NO_ID,
     };
 
-    fn add(&mut self, layers: &GroupLayers<R>) {
-        self.blend = self.blend.plus(&layers.blend);
-        self.opacity = self.opacity + layers.opacity;
-        self.hidden = self.hidden + layers.hidden;
-        self.layers = self.layers + R::from_f32(f32::from(layers.count));
-        if decide::before_or_lower((layers.depth, layers.surfel), (self.depth, self.surfel)) {
-            (self.depth, self.surfel) = (layers.depth, layers.surfel);
-        }
-    }
-
-    fn divided(self, count: R) -> Self {
+    pub(super) fn divided(self, count: R) -> Self {
         Self {
             blend: Blend {
                 color: self.blend.color.map(|c| c / count),
@@ -74,6 +64,18 @@ impl<R: Exact> GroupAverage<R> {
             hidden: self.hidden / count,
             layers: self.layers / count,
             ..self
+        }
+    }
+}
+
+impl<R: Exact> GroupAverage<R> {
+    fn add(&mut self, layers: &GroupLayers<R>) {
+        self.blend = self.blend.plus(&layers.blend);
+        self.opacity = self.opacity + layers.opacity;
+        self.hidden = self.hidden + layers.hidden;
+        self.layers = self.layers + R::from_f32(f32::from(layers.count));
+        if decide::before_or_lower((layers.depth, layers.surfel), (self.depth, self.surfel)) {
+            (self.depth, self.surfel) = (layers.depth, layers.surfel);
         }
     }
 }

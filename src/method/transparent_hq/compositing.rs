@@ -6,8 +6,8 @@ use crate::composite::over::Blend;
 use crate::method::algorithm::Job;
 use crate::method::tiled::{Tiled, pixels};
 use crate::method::transparent::averaging::GroupAverage;
-use crate::number::{Exact, Vector3};
-use crate::scene::Scene;
+use crate::number::{Exact, Real, Truth, Vector3};
+use crate::scene::{Environment, Scene};
 use crate::shade::optics::{self, Behind, NearestLayer};
 use crate::splat::View;
 
@@ -18,7 +18,7 @@ pub(super) fn compositing<R: Exact>(
     nearest: &Tiled<FrontLayer<R>>,
     others: &Tiled<GroupAverage<R>>,
 ) -> Tiled<Blend<R>> {
-    let through = Through::new(job, settings);
+    let through = Through::new(job, settings, Environment::radiance);
     Tiled::new(job, |tile, rect| {
         let layers = nearest.tile(tile).iter().zip(others.tile(tile));
         pixels(rect)
@@ -29,15 +29,19 @@ pub(super) fn compositing<R: Exact>(
 }
 
 /// What is seen through the nearest layer.
-pub(super) struct Through<'a, R: Exact> {
+pub(super) struct Through<'a, R: Real> {
     scene: &'a Scene,
     settings: &'a Settings,
     view: View<R>,
+    light: Light<R>,
 }
 
-impl<'a, R: Exact> Through<'a, R> {
-    pub(super) fn new(job: &Job<'a>, settings: &'a Settings) -> Self {
-        Self { scene: job.scene, settings, view: View::new(job.camera) }
+/// The light that arrives from a direction.
+type Light<R> = fn(&Environment, Vector3<R>) -> [R; 3];
+
+impl<'a, R: Real> Through<'a, R> {
+    pub(super) fn new(job: &Job<'a>, settings: &'a Settings, light: Light<R>) -> Self {
+        Self { scene: job.scene, settings, view: View::new(job.camera), light }
     }
 
     /// Whether light is bent at the nearest layer.
@@ -52,9 +56,23 @@ impl<'a, R: Exact> Through<'a, R> {
         near: &FrontLayer<R>,
         others: &GroupAverage<R>,
     ) -> Blend<R> {
-        if !near.depth.is_finite() {
+        let there = near.depth.is_finite();
+        if !there.possibly() {
             return others.blend;
         }
+        let shown = self.before((x, y), near, others);
+        let part = |c: usize| R::select(there, shown.color[c], others.blend.color[c]);
+        let alpha = R::select(there, shown.alpha, others.blend.alpha);
+        Blend { color: [0, 1, 2].map(part), alpha }
+    }
+
+    /// The nearest layer before the others.
+    fn before(
+        &self,
+        (x, y): (u32, u32),
+        near: &FrontLayer<R>,
+        others: &GroupAverage<R>,
+    ) -> Blend<R> {
         let (Some(refraction), Some(environment)) =
             (&self.settings.refraction, &self.scene.environment)
         else {
@@ -69,19 +87,20 @@ impl<'a, R: Exact> Through<'a, R> {
         let GroupAverage { blend, opacity, hidden, .. } = *others;
         let behind = Behind { color: blend.color, opacity, hidden };
         let view = -self.view.ray(x, y).normalized();
-        let color = optics::shade(environment, refraction, view, &nearest, &behind);
+        let light = |direction| (self.light)(environment, direction);
+        let color = optics::shade_before(light, refraction, view, &nearest, &behind);
         Blend { color, alpha: R::ONE }
     }
 }
 
 /// l of \[ZP06, section 5.2.3\]: 1 + the sum of the other opacities over that of the nearest
 /// layer; 0 where that is 0.
-pub(super) fn count_by_opacity<R: Exact>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
+pub(super) fn count_by_opacity<R: Real>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
     let alpha = near.opacity;
-    if alpha > R::ZERO { R::ONE + optics::layers(others.opacity, alpha) } else { R::ZERO }
+    R::select(alpha.gt(R::ZERO), R::ONE + optics::layers(others.opacity, alpha), R::ZERO)
 }
 
 /// The count of layers: that of the others, and one where there is a nearest one.
-pub(super) fn count<R: Exact>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
-    if near.depth.is_finite() { others.layers + R::ONE } else { others.layers }
+pub(super) fn count<R: Real>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
+    R::select(near.depth.is_finite(), others.layers + R::ONE, others.layers)
 }

@@ -14,6 +14,7 @@ use crate::method::single_pass::explain::{GroupsReplay, explain as explain_neare
 use crate::method::single_pass::geometry::Geometry;
 use crate::method::transparent::explain::{TransparentReplay, replay};
 use crate::number::Exact;
+use crate::scene::Environment;
 use std::fmt;
 
 /// What happened at one pixel.
@@ -53,7 +54,7 @@ pub fn explain<R: Exact>(
 
     let band = decide::limit(layer.depth, nearest.epsilon);
     let (others, average) = replay(job, &settings.layers, pixel, Some(band))?;
-    let shown = Through::new(job, settings).pixel(pixel, &layer, &average);
+    let shown = Through::new(job, settings, Environment::radiance).pixel(pixel, &layer, &average);
     let (alpha, color) = (layer.opacity, layer.color);
     Ok(HighQualityReplay { nearest, alpha, color, band, others, shown })
 }

@@ -17,7 +17,8 @@ pub(super) const MASK: Stencil =
     Stencil { reference: 1, pass: Operation::Replace, ..Stencil::DISABLED };
 
 /// Fragments of the other layers pass where the nearest layer is.
-const BEHIND: Stencil = Stencil { function: Function::Equal, pass: Operation::Keep, ..MASK };
+pub(super) const BEHIND: Stencil =
+    Stencil { function: Function::Equal, pass: Operation::Keep, ..MASK };
 
 /// The nearest layer at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -26,7 +26,7 @@ pub(super) const IMAGES: ImageRows = ImageRows::new([
     "nearest.group##.voronoi",
 ]);
 
-const NEAREST_COLOR: PlaneRow = PlaneRow::new(
+pub(super) const NEAREST_COLOR: PlaneRow = PlaneRow::new(
     "nearest",
     Holds::Color,
     "linear RGB",
@@ -34,14 +34,14 @@ const NEAREST_COLOR: PlaneRow = PlaneRow::new(
      none",
     When::Stages,
 );
-const NEAREST_ALPHA: PlaneRow = PlaneRow::new(
+pub(super) const NEAREST_ALPHA: PlaneRow = PlaneRow::new(
     "nearest.A",
     Holds::Scalar,
     "",
     "average opacity alpha of the nearest layer in [0, 1]; 0 where there is none",
     When::Stages,
 );
-const NEAREST_MASK: PlaneRow = PlaneRow::new(
+pub(super) const NEAREST_MASK: PlaneRow = PlaneRow::new(
     "nearest.mask",
     Holds::Count,
     "",
@@ -49,7 +49,7 @@ const NEAREST_MASK: PlaneRow = PlaneRow::new(
     When::Stages,
 );
 const NORMAL: PlaneRow = PlaneRow { when: When::Always, ..resolved::NORMAL };
-const LAYERS_BY_OPACITY: PlaneRow = PlaneRow::new(
+pub(super) const LAYERS_BY_OPACITY: PlaneRow = PlaneRow::new(
     "l",
     Holds::Scalar,
     "layers",
@@ -57,7 +57,7 @@ const LAYERS_BY_OPACITY: PlaneRow = PlaneRow::new(
      where the nearest layer is not, or has an opacity of 0",
     When::Stages,
 );
-const LAYERS: PlaneRow = PlaneRow::new(
+pub(super) const LAYERS: PlaneRow = PlaneRow::new(
     "layers",
     Holds::Scalar,
     "layers",

@@ -47,3 +47,11 @@ pub(super) fn hull<P: Profile>(middle: bool, yes: Ball<P>, no: Ball<P>) -> Ball<
     let away = (chosen.middle - other.middle).abs() + other.radius;
     Ball::new(chosen.middle, larger(chosen.radius, away * SLACK))
 }
+
+impl<P: Profile> Ball<P> {
+    /// Both of two values, about this one.
+    #[must_use]
+    pub(crate) fn either(self, other: Self) -> Self {
+        hull(true, self, other)
+    }
+}

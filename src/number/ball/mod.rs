@@ -19,6 +19,7 @@
 //!                  of a sum of squares otherwise max(sqrt m, sqrt(m + r) - sqrt m)
 //!   e^x            (e^(m + r) - e^m) + 2^-50 e^(m + r)
 //!   x^y            max(x^y - (m - r)^y, (m + r)^y - x^y) + 2^-50 (m + r)^y    y >= 0 exact, x >= 0
+//!                  of another y >= 0 what holds the powers of both of its ends
 //!   floor x        max(floor m - floor(m - r), floor(m + r) - floor m)
 //!   -x, |x|        r
 //! ```
@@ -56,8 +57,10 @@
 //! far from the origin escaped. The test of this module runs the crate's formulas in numbers that
 //! round by a coin, and twins of this ball that round too little, which the test must catch.
 
+mod angle;
 mod arithmetic;
 mod bounds;
+mod powers;
 mod profile;
 #[cfg(test)]
 mod tests;
@@ -307,6 +310,9 @@ impl<P: Profile> Real for Ball<P> {
         let middle = self.middle.pow(exponent.middle);
         if is_exact::<P>(middle, self.radius + exponent.radius) {
             return Self::exact(middle);
+        }
+        if exponent.radius > 0.0 {
+            return powers::between(self, exponent);
         }
         let ends = [self.low(), self.high()];
         // Comparisons that NaN fails.

@@ -17,7 +17,7 @@
 
 use crate::error::{Error, Result};
 use crate::frame::Plane;
-use crate::number::{Exact, Vector3};
+use crate::number::{Exact, Real, Vector3};
 use crate::scene::camera::MAX_EXTENT;
 use crate::scene::light::MAX_RADIANCE;
 
@@ -87,23 +87,34 @@ impl Map {
     /// signs of its zeros. With columns of one colour that colour is given exactly.
     #[must_use]
     pub fn radiance<R: Exact>(&self, direction: Vector3<R>) -> [R; 3] {
-        let Vector3 { x, y, z } = direction;
-        let half = R::from_f32(0.5);
         let width = R::from_f32(self.0.width() as f32);
-        let last_row = self.0.height() - 1;
-        let pi = R::ZERO.atan2(-R::ONE);
-        // 0 - z is +0 for either zero, so that atan2 does not see the sign.
-        let u = x.atan2(R::ZERO - z) / (pi + pi);
-        let v = (x * x + z * z).sqrt().atan2(y) / pi;
-        let s = u * width - half;
-        let t = (v * R::from_f32(self.0.height() as f32) - half).at_least(R::ZERO);
+        let [s, t] = self.place(direction, R::ZERO.atan2(-R::ONE), R::atan2);
         let (i, j) = (s.floor(), t.floor());
-        let (f, g) = (s - i, t - j);
         // u is at most 1/2: i and i + 1 are columns as they are, or once the width is added.
         let column = |i: R| (if i < R::ZERO { i + width } else { i }).to_pixel();
-        let columns = [column(i), column(i + R::ONE)];
-        let upper = j.to_pixel();
-        let lower = if upper < last_row { upper + 1 } else { upper };
+        self.between([column(i), column(i + R::ONE)], j.to_pixel(), [s - i, t - j])
+    }
+
+    /// s and t, with pi and the angle of the point (x, y), called with y and x, from the x axis.
+    pub(crate) fn place<R: Real>(
+        &self,
+        direction: Vector3<R>,
+        pi: R,
+        angle: impl Fn(R, R) -> R,
+    ) -> [R; 2] {
+        let Vector3 { x, y, z } = direction;
+        let half = R::from_f32(0.5);
+        let [width, height] =
+            [self.0.width(), self.0.height()].map(|size| R::from_f32(size as f32));
+        // 0 - z is +0 for either zero, so that the angle does not see the sign.
+        let u = angle(x, R::ZERO - z) / (pi + pi);
+        let v = angle((x * x + z * z).root_of_squares(), y) / pi;
+        [u * width - half, (v * height - half).at_least(R::ZERO)]
+    }
+
+    /// Between the pixels of two columns in a row and the next, f and g away from the first ones.
+    pub(crate) fn between<R: Real>(&self, columns: [u32; 2], upper: u32, [f, g]: [R; 2]) -> [R; 3] {
+        let lower = if upper < self.0.height() - 1 { upper + 1 } else { upper };
         let mix = |a: R, b: R, by: R| a + (b - a) * by;
         let row = |row: u32| {
             let [a, b] = columns.map(|column| self.0.at(column, row).map(R::from_f32));

@@ -3,12 +3,13 @@
 //! - [`map`]: a latitude-longitude picture.
 //! - [`mod@sky`]: a procedural sky, for those who have no picture.
 
+mod balls;
 pub mod map;
 pub mod sky;
 
 pub use map::Map;
 
-use crate::number::{Exact, Vector3};
+use crate::number::{Exact, Real, Vector3};
 
 /// Light from all directions.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,10 +37,15 @@ impl Environment {
     }
 }
 
+/// A direction of length 1; of the null vector or of one that is not finite, nothing of the kind.
+pub(crate) fn scaled<R: Real>(d: Vector3<R>) -> Vector3<R> {
+    let largest = d.x.abs().at_least(d.y.abs()).at_least(d.z.abs());
+    Vector3::new(d.x / largest, d.y / largest, d.z / largest).normalized()
+}
+
 /// The unit direction, see [`Environment::radiance`].
 fn unit<R: Exact>(d: Vector3<R>) -> Vector3<R> {
-    let largest = d.x.abs().at_least(d.y.abs()).at_least(d.z.abs());
-    let scaled = Vector3::new(d.x / largest, d.y / largest, d.z / largest).normalized();
+    let scaled = scaled(d);
     // 0/0 and inf/inf are NaN, whose vector has no length.
     if scaled == Vector3::ZERO { Vector3::new(R::ZERO, R::ONE, R::ZERO) } else { scaled }
 }

@@ -4,7 +4,7 @@
 //! Decided, all of it: no paper prescribes a sky. It is smooth, uses + - * / alone, and all of its
 //! constants are exact in `f32`.
 
-use crate::number::{Exact, Vector3};
+use crate::number::{Real, Vector3};
 
 /// Linear RGB straight above.
 pub const ZENITH: [f32; 3] = [0.125, 0.25, 0.625];
@@ -38,7 +38,7 @@ pub const TOWARDS_SUN: [f32; 3] = [-2.0, 3.0, 6.0];
 /// the signs of the components or their order. The disc of the sun fades between 1.8 and 2.5
 /// degrees from its middle.
 #[must_use]
-pub fn radiance<R: Exact>(direction: Vector3<R>) -> [R; 3] {
+pub fn radiance<R: Real>(direction: Vector3<R>) -> [R; 3] {
     let Vector3 { x, y, z } = direction;
     let c = R::from_f32;
     let h = (R::ONE - y).at_most(R::ONE);
@@ -59,13 +59,13 @@ pub fn radiance<R: Exact>(direction: Vector3<R>) -> [R; 3] {
 }
 
 /// 0 to 1 between 0 and 1, with level ends.
-fn smooth<R: Exact>(a: R) -> R {
+fn smooth<R: Real>(a: R) -> R {
     let a = a.at_least(R::ZERO).at_most(R::ONE);
     (a * a) * (R::from_f32(3.0) - R::from_f32(2.0) * a)
 }
 
 /// cos(32 angle) of cos(angle), by cos(2 angle) = 2 cos(angle)^2 - 1.
-fn chebyshev<R: Exact>(a: R) -> R {
+fn chebyshev<R: Real>(a: R) -> R {
     (0..5).fold(a, |a, _| R::from_f32(2.0) * (a * a) - R::ONE)
 }
 

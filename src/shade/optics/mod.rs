@@ -37,7 +37,7 @@
 mod tests;
 
 use crate::error::{Error, Result};
-use crate::number::{Exact, Vector3};
+use crate::number::{Exact, Real, Truth, Vector3};
 use crate::scene::Environment;
 use crate::setting::Words;
 
@@ -113,7 +113,7 @@ pub struct Behind<R> {
 /// `view` points from the surface to the eye; both are unit vectors.
 #[inline]
 #[must_use]
-pub fn reflect<R: Exact>(view: Vector3<R>, normal: Vector3<R>) -> Vector3<R> {
+pub fn reflect<R: Real>(view: Vector3<R>, normal: Vector3<R>) -> Vector3<R> {
     let cosine = normal.dot(view);
     normal * (cosine + cosine) - view
 }
@@ -142,20 +142,34 @@ pub fn refract<R: Exact>(
     ratio: R,
     layers: R,
 ) -> Option<Vector3<R>> {
+    let (there, direction) = bent(view, normal, ratio, layers);
+    there.then_some(direction)
+}
+
+/// Whether there is a direction of [`refract`], and which.
+fn bent<R: Real>(
+    view: Vector3<R>,
+    normal: Vector3<R>,
+    ratio: R,
+    layers: R,
+) -> (R::Truth, Vector3<R>) {
     let c = normal.dot(view);
     let tangent = normal * c - view;
-    let s = tangent.length();
-    if !(s > R::ZERO) {
-        return Some(-normal);
-    }
+    let s = tangent.dot(tangent).root_of_squares();
     let m = ratio.pow(layers);
-    let k = if m <= R::ONE {
-        (R::ONE - m) * (R::ONE + m) + (m * c) * (m * c)
-    } else {
-        R::ONE - (m * s) * (m * s)
-    };
+    let small = (R::ONE - m) * (R::ONE + m) + (m * c) * (m * c);
+    let large = R::ONE - (m * s) * (m * s);
     // m may have overflowed: then k is -inf.
-    (k >= R::ZERO).then(|| tangent * m - normal * k.sqrt())
+    let k = R::select(m.le(R::ONE), small, large);
+    let slanted = s.gt(R::ZERO);
+    let through = tangent * m - normal * k.at_least(R::ZERO).root_of_squares();
+    let part = |through: R, straight: R| R::select(slanted, through, straight);
+    let direction = Vector3::new(
+        part(through.x, -normal.x),
+        part(through.y, -normal.y),
+        part(through.z, -normal.z),
+    );
+    (k.ge(R::ZERO) | !slanted, direction)
 }
 
 /// The part of the light that `layers` layers of opacity `alpha` let through, eq. 11:
@@ -164,8 +178,8 @@ pub fn refract<R: Exact>(
 /// `alpha` is brought into [0, 1]; `layers` >= 0. No layers let everything through, opaque or not.
 #[inline]
 #[must_use]
-pub fn absorption<R: Exact>(alpha: R, layers: R) -> R {
-    (R::ONE - alpha).at_least(R::ZERO).at_most(R::ONE).pow(layers)
+pub fn absorption<R: Real>(alpha: R, layers: R) -> R {
+    (R::ONE - alpha).clamped(R::ZERO, R::ONE).pow(layers)
 }
 
 /// The part of unpolarized light that the surface of a dielectric reflects, in [0, 1]: Fresnel's
@@ -182,27 +196,22 @@ pub fn absorption<R: Exact>(alpha: R, layers: R) -> R {
 ///
 /// At grazing incidence everything is reflected, but by a ratio of 1, which is no surface: nothing.
 #[must_use]
-pub fn fresnel<R: Exact>(cosine: R, ratio: R) -> R {
+pub fn fresnel<R: Real>(cosine: R, ratio: R) -> R {
     let scaled = ratio * cosine;
     let k = (R::ONE - ratio) * (R::ONE + ratio) + scaled * scaled;
-    if k < R::ZERO {
-        return R::ONE;
-    }
-    let t = k.sqrt();
-    if !(scaled + t > R::ZERO) {
-        return R::ZERO;
-    }
+    let t = k.at_least(R::ZERO).root_of_squares();
     let s = (scaled - t) / (scaled + t);
     let p = (cosine - ratio * t) / (cosine + ratio * t);
-    (s * s + p * p) / R::from_f32(2.0)
+    let part = R::select((scaled + t).gt(R::ZERO), (s * s + p * p) / R::from_f32(2.0), R::ZERO);
+    R::select(k.lt(R::ZERO), R::ONE, part)
 }
 
 /// The number of layers of opacity `alpha` whose opacities sum to `total`: total / alpha, and 0
 /// where `alpha` is 0. \[ZP06 5.2.3\]
 #[inline]
 #[must_use]
-pub fn layers<R: Exact>(total: R, alpha: R) -> R {
-    if alpha > R::ZERO { total / alpha } else { R::ZERO }
+pub fn layers<R: Real>(total: R, alpha: R) -> R {
+    R::select(alpha.gt(R::ZERO), total / alpha, R::ZERO)
 }
 
 /// The colour of one pixel, see the module page.
@@ -220,9 +229,22 @@ pub fn shade<R: Exact>(
     nearest: &NearestLayer<R>,
     behind: &Behind<R>,
 ) -> [R; 3] {
-    let alpha = nearest.opacity.at_least(R::ZERO).at_most(R::ONE);
-    let normal = nearest.normal.normalized();
-    let normal = if normal.dot(view) < R::ZERO { -normal } else { normal };
+    shade_before(|direction| environment.radiance(direction), refraction, view, nearest, behind)
+}
+
+/// The same before the light that arrives from a direction.
+pub(crate) fn shade_before<R: Real>(
+    light: impl Fn(Vector3<R>) -> [R; 3],
+    refraction: &Refraction,
+    view: Vector3<R>,
+    nearest: &NearestLayer<R>,
+    behind: &Behind<R>,
+) -> [R; 3] {
+    let alpha = nearest.opacity.clamped(R::ZERO, R::ONE);
+    let Vector3 { x, y, z } = nearest.normal.normalized();
+    let away = Vector3::new(x, y, z).dot(view).lt(R::ZERO);
+    let part = |n: R| R::select(away, -n, n);
+    let normal = Vector3::new(part(x), part(y), part(z));
     let cosine = normal.dot(view).at_most(R::ONE);
     let (count, behind_color, seen) = match refraction.layers {
         BendingLayers::Single => (R::ONE, [R::ZERO; 3], R::ONE),
@@ -232,14 +254,13 @@ pub fn shade<R: Exact>(
     };
     let clear = R::ONE - alpha;
     let through = seen * absorption(alpha, count);
-    let reflected = environment.radiance(reflect(view, normal));
+    let reflected = light(reflect(view, normal));
     [0, 1, 2].map(|c| {
         let ratio = R::from_f32(refraction.ratio[c]);
-        let transmitted = refract(view, normal, ratio, count);
-        let (f, beyond) = match transmitted {
-            Some(direction) => (fresnel(cosine, ratio), environment.radiance(direction)[c]),
-            None => (R::ONE, R::ZERO),
-        };
+        let (there, direction) = bent(view, normal, ratio, count);
+        let beyond = if there.possibly() { light(direction)[c] } else { R::ZERO };
+        let f = R::select(there, fresnel(cosine, ratio), R::ONE);
+        let beyond = R::select(there, beyond, R::ZERO);
         alpha * nearest.color[c]
             + ((clear * f) * reflected[c]
                 + (R::ONE - f) * (clear * behind_color[c] + through * beyond))

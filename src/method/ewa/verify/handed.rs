@@ -1,5 +1,6 @@
 //! The planes that a client has handed in, by the stage that judges them.
 
+use crate::frame::NO_ID;
 use crate::method::ewa::planes;
 use crate::method::resolved;
 use crate::method::stage::PlaneRow;
@@ -24,6 +25,9 @@ pub(in crate::method) struct Handed<'a> {
     /// The averages.
     pub(in crate::method) color: Option<Stored<'a, [f64; 3]>>,
     pub(in crate::method) normal: Option<Stored<'a, [f64; 3]>>,
+    pub(in crate::method) opacity: Option<Stored<'a, f64>>,
+    /// 1 where there is something, else 0.
+    pub(in crate::method) mask: Option<Stored<'a, u8>>,
     /// Copies in the picture of what an earlier pass has left, if both are there.
     pub(in crate::method) depth_copy: Option<Stored<'a, f64>>,
     pub(in crate::method) id_copy: Option<Stored<'a, u32>>,
@@ -80,6 +84,8 @@ impl<'a> Handed<'a> {
             accumulator: client.accumulator,
             color: client.triple(&resolved::COLOR),
             normal: client.triple(&resolved::NORMAL),
+            opacity: None,
+            mask: None,
             depth_copy,
             id_copy: own.and(other),
             weight_copy,
@@ -91,6 +97,31 @@ impl<'a> Handed<'a> {
     /// Whether nothing is said of the nearest fragments.
     pub(in crate::method) fn nothing(&self) -> bool {
         self.depth.is_none() && self.id.is_none()
+    }
+
+    /// Whether every plane that is there says that nothing is at a pixel, and is black.
+    pub(in crate::method) fn is_empty(&self, (x, y): (u32, u32)) -> bool {
+        let far = |plane: Option<Stored<'_, f64>>| {
+            plane.is_none_or(|plane| *plane.plane.at(x, y) == f64::INFINITY)
+        };
+        let none = |plane: Option<Stored<'_, u32>>| {
+            plane.is_none_or(|plane| *plane.plane.at(x, y) == NO_ID)
+        };
+        let zero =
+            |plane: Option<Stored<'_, f64>>| plane.is_none_or(|plane| *plane.plane.at(x, y) == 0.0);
+        let zeros = |plane: Option<Stored<'_, [f64; 3]>>| {
+            plane.is_none_or(|plane| *plane.plane.at(x, y) == [0.0; 3])
+        };
+        let clear =
+            |plane: Option<Stored<'_, u8>>| plane.is_none_or(|plane| *plane.plane.at(x, y) == 0);
+        far(self.depth)
+            && far(self.depth_copy)
+            && [self.id, self.id_copy].into_iter().all(none)
+            && [self.weight, self.weight_copy, self.opacity, self.alpha].into_iter().all(zero)
+            && [self.normal_sum, self.color_sum, self.color, self.normal, self.shaded]
+                .into_iter()
+                .all(zeros)
+            && [self.count, self.mask].into_iter().all(clear)
     }
 
     /// The stages, each with the planes that it judges.
@@ -115,6 +146,8 @@ impl<'a> Handed<'a> {
                 listed(&[
                     triple(&self.color),
                     triple(&self.normal),
+                    scalar(&self.opacity),
+                    self.mask.map(|plane| plane.name),
                     scalar(&self.depth_copy),
                     index(&self.id_copy),
                     scalar(&self.weight_copy),

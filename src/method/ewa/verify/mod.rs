@@ -29,8 +29,8 @@
 //! the sums are not judged. Without Z and id, Z is any depth from the least that may be the nearest
 //! to the least that certainly is inside.
 //!
-//! **Normalization and shading**: the formulas of the crate in balls. Where an environment is seen,
-//! the colour is not judged.
+//! **Normalization and shading**: the formulas of the crate in balls. An environment is seen where
+//! nothing else is, as in [`transparent`](crate::method::transparent::verify).
 //!
 //! The error of a number is the distance from the midpoint of its ball, divided by the sum of the
 //! ball's radius and of what its format may lose: up to 1 is right. The error of a certificate that

@@ -8,12 +8,14 @@ use crate::composite::sum;
 use crate::method::Holds;
 use crate::method::algorithm::Job;
 use crate::method::checks::{
-    Report, Shading, Surface, anything, least_wrong, number, only_fitting, triple, whole, widened,
+    Report, Shading, Surface, anything, either_of, input, inputs, least_wrong, number,
+    only_fitting, triple, whole, widened,
 };
 use crate::method::ewa::attributes::Sums;
 use crate::method::judged::Marks;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
+use crate::verify::client::Storage;
 
 /// The stages after visibility, by their place among the marks.
 const ATTRIBUTES: usize = 0;
@@ -23,7 +25,7 @@ const SHADING: usize = 2;
 /// What all pixels share.
 pub(in crate::method) struct PixelJudge<'a, P: Profile> {
     handed: &'a Handed<'a>,
-    shading: Shading<P>,
+    shading: Shading<'a, P>,
     /// Whether surfels have colours; else the material has one.
     colored: bool,
     /// The greatest component of a colour, at least 1.
@@ -32,21 +34,30 @@ pub(in crate::method) struct PixelJudge<'a, P: Profile> {
     nowhere: [Ball<P>; 3],
 }
 
+/// The averages of a pixel.
+struct Averages<P: Profile> {
+    normal: [Ball<P>; 3],
+    color: [Ball<P>; 3],
+}
+
 impl<'a, P: Profile> PixelJudge<'a, P> {
-    pub(in crate::method) fn new(job: &Job<'_>, handed: &'a Handed<'a>) -> Self {
+    pub(in crate::method) fn new(job: &Job<'a>, handed: &'a Handed<'a>) -> Self {
         let scene = job.scene;
         let colors = scene.surfels.color().unwrap_or_default();
         let brightest = colors.iter().fold(1.0_f64, |brightest, color| {
             let [r, g, b] = color.to_array().map(f64::from);
             brightest.at_least(r).at_least(g).at_least(b)
         });
-        Self {
-            handed,
-            shading: Shading::new(job, scene.surfels.color().is_some()),
-            colored: scene.surfels.color().is_some(),
-            brightest,
-            nowhere: sum::direction([Ball::ZERO; 3], Ball::ZERO),
-        }
+        let colored = scene.surfels.color().is_some();
+        let shading = Shading::new(job, colored);
+        let nowhere = sum::direction([Ball::ZERO; 3], Ball::ZERO);
+        Self { handed, shading, colored, brightest, nowhere }
+    }
+
+    /// The same of a layer, behind which others may be seen.
+    pub(in crate::method) fn of_layer(job: &Job<'a>, handed: &'a Handed<'a>) -> Self {
+        let colored = job.scene.surfels.color().is_some();
+        Self { shading: Shading::of_layer(job, colored), ..Self::new(job, handed) }
     }
 
     /// Marks what is wrong at a pixel: by the continuation that errs least. Gives the number of the only
@@ -58,16 +69,41 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         sums: &Continuations<P>,
         marks: &mut [Marks; 3],
     ) -> Option<usize> {
-        let all: &[Sums<Ball<P>>] = match sums {
-            Continuations::One(sums) => std::slice::from_ref(sums),
-            Continuations::Several(sums, _) => sums,
-            Continuations::Many => &[],
-        };
+        let all = all(sums);
+        // Where nothing is and the client has nothing, every check finds an error of 0.
+        let nothing = matches!(all, [Sums { count: 0, .. }]) && self.shading.is_black();
+        if nothing && self.handed.is_empty(at) && !marks[ATTRIBUTES].logs() {
+            return None;
+        }
         let check = |sums: &_, report: &mut Report<'_>| self.check(at, nearest, Some(sums), report);
         self.check(at, nearest, least_wrong::<_, 3>(all, check), &mut |part, error, fault| {
             marks[part].at(pixel).found(error, fault);
         });
         only_fitting(all, check)
+    }
+
+    /// Opacity and shaded colour as the next pass reads them: the client's, else all that they may be.
+    pub(in crate::method) fn read(
+        &self,
+        at: (u32, u32),
+        nearest: &Nearest<P>,
+        sums: &Continuations<P>,
+    ) -> (Ball<P>, [Ball<P>; 3]) {
+        let handed = self.handed;
+        if let (Some(opacity), Some(color)) = (&handed.opacity, &handed.shaded) {
+            return (input(opacity, at), inputs(color, at));
+        }
+        let of = |sums: Option<&Sums<Ball<P>>>| {
+            let averages = self.averages(at, sums);
+            (self.opacity(at, sums), self.color(at, self.depth(at, nearest, sums), &averages))
+        };
+        let each = all(sums).iter().map(|sums| of(Some(sums)));
+        let (opacity, color) =
+            each.reduce(|a, b| (a.0.either(b.0), either_of(a.1, b.1))).unwrap_or_else(|| of(None));
+        (
+            handed.opacity.map_or(opacity, |plane| input(&plane, at)),
+            handed.shaded.map_or(color, |plane| inputs(&plane, at)),
+        )
     }
 
     /// Every plane at a pixel, with these sums; without any, as far as the client's own are there.
@@ -81,64 +117,109 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         if let Some(sums) = sums {
             self.check_sums(at, sums, report);
         }
-        let unknown = Sums {
-            weight: anything(),
-            normal: [anything(); 3],
-            color: [anything(); 3],
-            ..Sums::NONE
-        };
-        let own = sums.copied().unwrap_or(unknown);
+        let averages = self.averages(at, sums);
+        self.check_averages(at, (&averages, sums), report);
         let handed = self.handed;
-        let weight = handed.weight.map_or(own.weight, |plane| plane.ball(at));
-        let normal = handed.normal_sum.map_or(own.normal, |plane| plane.balls(at));
-        let color = handed.color_sum.map_or(own.color, |plane| plane.balls(at));
-        let color = if self.colored { sum::average(color, weight) } else { [Ball::ZERO; 3] };
-        let some = weight.gt(Ball::ZERO).possibly();
-        let direction = if some { sum::direction(normal, weight) } else { self.nowhere };
-        let averages = (direction, color);
-        self.check_averages(at, averages, report);
-        let nothing = handed.nothing() && sums.is_some_and(|sums| sums.count == 0);
-        let depth = if nothing { Ball::INFINITY } else { nearest.depth };
-        self.check_shading(at, (depth, weight), averages, report);
+        if let Some(plane) = &handed.shaded {
+            let color = self.color(at, self.depth(at, nearest, sums), &averages);
+            triple(SHADING, (plane, Holds::Color), at, color, report);
+        }
+        if let Some(plane) = &handed.alpha {
+            let weight =
+                handed.weight_copy.map_or_else(|| self.weight(at, sums), |plane| plane.ball(at));
+            number(SHADING, plane, at, self.shading.alpha(weight), report);
+        }
+    }
+
+    /// Sums as the client may have stored them between two additions, each of which rounds a sum that
+    /// is at most this large.
+    fn stored(&self, sums: &Sums<Ball<P>>) -> Sums<Ball<P>> {
+        if self.handed.accumulator == Storage::Single {
+            return *sums;
+        }
+        let heaviest = sums.weight.middle + sums.weight.radius;
+        let lost = |largest: f64| {
+            f64::from(sums.count) * self.handed.accumulator.radius(heaviest * largest)
+        };
+        Sums {
+            weight: widened(sums.weight, lost(1.0)),
+            normal: sums.normal.map(|part| widened(part, lost(1.0))),
+            color: sums.color.map(|part| widened(part, lost(self.brightest))),
+            opacity: widened(sums.opacity, lost(1.0)),
+            count: sums.count,
+        }
     }
 
     /// The sums of the attribute pass.
     fn check_sums(&self, at: (u32, u32), sums: &Sums<Ball<P>>, report: &mut Report<'_>) {
-        let Handed { weight, normal_sum, color_sum, count, accumulator, .. } = self.handed;
-        let heaviest = sums.weight.middle + sums.weight.radius;
-        // Each addition rounds a sum that is at most this large.
-        let lost = |largest: f64| f64::from(sums.count) * accumulator.radius(heaviest * largest);
+        let Handed { weight, normal_sum, color_sum, count, mask, .. } = self.handed;
+        let truth = self.stored(sums);
         if let Some(plane) = weight {
-            number(ATTRIBUTES, plane, at, widened(sums.weight, lost(1.0)), report);
+            number(ATTRIBUTES, plane, at, truth.weight, report);
         }
         if let Some(plane) = normal_sum {
-            let lost = lost(1.0);
-            let truth = sums.normal.map(|part| widened(part, lost));
-            triple(ATTRIBUTES, (plane, Holds::Vector), at, truth, report);
+            triple(ATTRIBUTES, (plane, Holds::Vector), at, truth.normal, report);
         }
         if let Some(plane) = color_sum {
-            let lost = lost(self.brightest);
-            let truth = sums.color.map(|part| widened(part, lost));
-            triple(ATTRIBUTES, (plane, Holds::Color), at, truth, report);
+            triple(ATTRIBUTES, (plane, Holds::Color), at, truth.color, report);
         }
         if let Some(plane) = count {
             whole(ATTRIBUTES, plane, at, sums.count, report);
         }
+        if let Some(plane) = mask {
+            whole(ATTRIBUTES, plane, at, u8::from(sums.count > 0), report);
+        }
+    }
+
+    /// The sum of the weights as the average reads it.
+    fn weight(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
+        let own = || sums.map_or_else(anything, |sums| self.stored(sums).weight);
+        self.handed.weight.map_or_else(own, |plane| plane.ball(at))
+    }
+
+    /// The averages of the client's sums, else of these; of none, they are any.
+    fn averages(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Averages<P> {
+        let unknown = Sums {
+            weight: anything(),
+            normal: [anything(); 3],
+            color: [anything(); 3],
+            opacity: anything(),
+            count: 0,
+        };
+        let own = sums.map_or(unknown, |sums| self.stored(sums));
+        let weight = self.weight(at, sums);
+        let normal = self.handed.normal_sum.map_or(own.normal, |plane| plane.balls(at));
+        let color = self.handed.color_sum.map_or(own.color, |plane| plane.balls(at));
+        let some = weight.gt(Ball::ZERO).possibly();
+        Averages {
+            normal: if some { sum::direction(normal, weight) } else { self.nowhere },
+            color: if self.colored { sum::average(color, weight) } else { [Ball::ZERO; 3] },
+        }
+    }
+
+    /// The opacity of a layer.
+    fn opacity(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
+        let own = sums.map_or_else(anything, |sums| self.stored(sums).opacity);
+        let [opacity, ..] = sum::average([own; 3], self.weight(at, sums));
+        opacity.at_most(Ball::ONE)
     }
 
     /// Averages, and copies of what earlier passes left.
     fn check_averages(
         &self,
         at: (u32, u32),
-        (normal, color): ([Ball<P>; 3], [Ball<P>; 3]),
+        (averages, sums): (&Averages<P>, Option<&Sums<Ball<P>>>),
         report: &mut Report<'_>,
     ) {
         let handed = self.handed;
         if let (Some(plane), true) = (&handed.color, self.colored) {
-            triple(NORMALIZATION, (plane, Holds::Color), at, color, report);
+            triple(NORMALIZATION, (plane, Holds::Color), at, averages.color, report);
         }
         if let Some(plane) = &handed.normal {
-            triple(NORMALIZATION, (plane, Holds::Vector), at, normal, report);
+            triple(NORMALIZATION, (plane, Holds::Vector), at, averages.normal, report);
+        }
+        if let Some(plane) = &handed.opacity {
+            number(NORMALIZATION, plane, at, self.opacity(at, sums), report);
         }
         let copies = [(handed.depth, handed.depth_copy), (handed.weight, handed.weight_copy)];
         for (first, copy) in copies {
@@ -151,25 +232,26 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
-    /// The picture.
-    fn check_shading(
-        &self,
-        at: (u32, u32),
-        (depth, weight): (Ball<P>, Ball<P>),
-        (normal, color): ([Ball<P>; 3], [Ball<P>; 3]),
-        report: &mut Report<'_>,
-    ) {
-        let handed = self.handed;
-        let depth = handed.depth_copy.map_or(depth, |plane| plane.ball(at));
-        let weight = handed.weight_copy.map_or(weight, |plane| plane.ball(at));
-        if let Some(plane) = &handed.shaded {
-            let normal = handed.normal.map_or(normal, |plane| plane.balls(at));
-            let color = handed.color.map_or(color, |plane| plane.balls(at));
-            let surface = Surface { depth, normal, tangent: None, color };
-            triple(SHADING, (plane, Holds::Color), at, self.shading.color(at, &surface), report);
-        }
-        if let Some(plane) = &handed.alpha {
-            number(SHADING, plane, at, self.shading.alpha(weight), report);
-        }
+    /// The depth that is shaded.
+    fn depth(&self, at: (u32, u32), nearest: &Nearest<P>, sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
+        let nothing = self.handed.nothing() && sums.is_some_and(|sums| sums.count == 0);
+        let own = if nothing { Ball::INFINITY } else { nearest.depth };
+        self.handed.depth_copy.map_or(own, |plane| plane.ball(at))
+    }
+
+    /// The shaded colour of the client's averages, else of these.
+    fn color(&self, at: (u32, u32), depth: Ball<P>, averages: &Averages<P>) -> [Ball<P>; 3] {
+        let normal = self.handed.normal.map_or(averages.normal, |plane| plane.balls(at));
+        let color = self.handed.color.map_or(averages.color, |plane| plane.balls(at));
+        self.shading.color(at, &Surface { depth, normal, tangent: None, color })
+    }
+}
+
+/// What the sums of a pixel may be, as far as that is known.
+fn all<P: Profile>(sums: &Continuations<P>) -> &[Sums<Ball<P>>] {
+    match sums {
+        Continuations::One(sums) => std::slice::from_ref(sums),
+        Continuations::Several(sums, _) => sums,
+        Continuations::Many => &[],
     }
 }

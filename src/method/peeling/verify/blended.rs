@@ -1,16 +1,17 @@
 //! The blending of a client's layers.
 
 use super::planes::PeelingPlanes;
+use crate::composite::over::Blend;
 use crate::composite::under::Under;
 use crate::method::Holds;
-use crate::method::checks::{anything, input, inputs, number, triple};
+use crate::method::checks::{Backdrop, input, inputs, is_bounded, number, triple};
 use crate::method::judged::PixelMarks;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 
 /// Marks what is wrong with the picture at a pixel; whether it is judged, or there is nothing to judge.
 pub(super) fn judge<P: Profile>(
-    (handed, environment): (&PeelingPlanes<'_>, bool),
+    (handed, backdrop): (&PeelingPlanes<'_>, &Backdrop<'_, P>),
     at: (u32, u32),
     pixel: &mut PixelMarks<'_>,
 ) -> bool {
@@ -26,11 +27,8 @@ pub(super) fn judge<P: Profile>(
             blend = blend.under(input(alpha, at), inputs(color, at));
         }
     }
-    let (color, alpha) = if environment {
-        ([anything(); 3], Ball::ONE)
-    } else {
-        (blend.color, blend.alpha.at_most(Ball::ONE))
-    };
+    let layers = Blend { color: blend.color, alpha: blend.alpha.at_most(Ball::ONE) };
+    let Blend { color, alpha } = backdrop.behind(layers, at);
     let report = &mut |_: usize, error: f64, fault: &dyn Fn() -> _| pixel.found(error, fault);
     if let Some(plane) = &handed.shaded {
         triple(0, (plane, Holds::Color), at, color, report);
@@ -38,7 +36,7 @@ pub(super) fn judge<P: Profile>(
     if let Some(plane) = &handed.alpha {
         number(0, plane, at, alpha, report);
     }
-    true
+    handed.shaded.is_none() || is_bounded(&color)
 }
 
 /// Whether a pixel may have more layers than leave planes.

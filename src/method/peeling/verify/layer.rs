@@ -24,7 +24,7 @@ use crate::verify::verdict::{Doubt, Fault};
 pub(super) struct LayerJudge<'a, P: Profile> {
     surfels: &'a Surfels,
     handed: &'a PeelingPlanes<'a>,
-    shading: Shading<P>,
+    shading: Shading<'a, P>,
     epsilon: Ball<P>,
     /// The most layers of a pixel.
     most: u32,

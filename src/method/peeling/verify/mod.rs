@@ -20,11 +20,12 @@
 //!    more if a fragment certainly is beyond that, at most the setting, and not more if none possibly is.
 //!
 //! **Blending** of the client's opacities and colours, if all layers that leave planes are there. A pixel
-//! with more layers than leave planes is not judged, nor is the colour where an environment is seen.
+//! with more layers than leave planes is not judged. An environment is seen behind them as in
+//! [`transparent`](crate::method::transparent::verify).
 //! Of the picture alone nothing is judged: its layers, which are all of it, are not known.
 //!
 //! A pixel is undecided if the sums of one of its layers have several continuations, or if its blending
-//! is not judged for its number of layers.
+//! is not judged, for its number of layers or for its environment.
 
 mod blended;
 mod layer;
@@ -36,6 +37,7 @@ use super::Settings;
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::algorithm::Job;
+use crate::method::checks::Backdrop;
 use crate::method::judged::{self, Counts, Marks, counted};
 use crate::method::single_pass::verify::fragments::GroupFragments;
 use crate::number::ball::Profile;
@@ -74,15 +76,14 @@ struct Judge<'a, P: Profile> {
     handed: &'a PeelingPlanes<'a>,
     fragments: GroupFragments<'a, P>,
     layers: LayerJudge<'a, P>,
-    /// Whether an environment is seen behind the layers.
-    environment: bool,
+    backdrop: Backdrop<'a, P>,
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
     fn new(job: &Job<'a>, settings: &'a Settings, handed: &'a PeelingPlanes<'a>) -> Self {
         let fragments = GroupFragments::whole(job, &settings.splats);
         let layers = LayerJudge::new(job, settings, handed, fragments.epsilon());
-        Self { handed, fragments, layers, environment: job.scene.environment.is_some() }
+        Self { handed, fragments, layers, backdrop: Backdrop::new(job) }
     }
 
     /// Marks what is wrong at the pixels of a rectangle in a tile.
@@ -96,11 +97,8 @@ impl<'a, P: Profile> Judge<'a, P> {
                 let pixel = (y - rect.y0) as usize * row.columns() + column;
                 let own: Vec<_> = fragments.at(column).of(0).copied().collect();
                 let found = self.layers.judge(at, &own, &mut layers.at(pixel));
-                let blends = blended::judge::<P>(
-                    (self.handed, self.environment),
-                    at,
-                    &mut blending.at(pixel),
-                );
+                let blends =
+                    blended::judge::<P>((self.handed, &self.backdrop), at, &mut blending.at(pixel));
                 counts.covered += u64::from(found.covered);
                 counts.undecided += u64::from(found.undecided || !blends);
             }

@@ -2,28 +2,18 @@ use crate::frame::{Exec, Samples};
 use crate::method::peeling::Settings;
 use crate::method::tests::scalar;
 use crate::method::tests::surfels;
-use crate::method::tests::verdicts::{Slip, assert_found, assert_right, verdict};
+use crate::method::tests::verdicts::{
+    Slip, assert_environment_found, assert_found, assert_right, camera, transparent, verdict,
+};
 use crate::method::{Method, Session};
-use crate::number::random::unit;
-use crate::scene::{Camera, Cloud, Lens, Scene, Surfels};
+use crate::scene::{Camera, Lens, Scene};
 use crate::source::Shape;
 use crate::splat::{Epsilon, Kernel, Outline, SplatSettings};
 use crate::verify::client::Rounding;
 
-/// Surfels of opacities from 0.2 to 1.
-fn transparent(surfels: Surfels) -> Surfels {
-    let opacity = (0..surfels.len() as u64).map(|i| 0.2 + 0.8 * unit(7, i)).collect();
-    Surfels::new(Cloud { opacity: Some(opacity), ..surfels.into_cloud() }).unwrap().0
-}
-
 fn settings(kernel: Kernel, epsilon: f32, layers: u32) -> Settings {
     let epsilon = Epsilon::World(epsilon);
     Settings { splats: SplatSettings { kernel, epsilon, ..SplatSettings::BOTH_SIDES }, layers }
-}
-
-fn camera(shape: Shape, size: [u32; 2], lens: Option<Lens>) -> Camera {
-    let lens = lens.unwrap_or(shape.default_lens());
-    Camera::new(size[0], size[1], shape.default_pose(), lens).unwrap()
 }
 
 #[test]
@@ -103,4 +93,10 @@ fn layers_in_another_order_are_found() {
         let found = verdict(&session, &camera, &frame, rounding);
         assert_eq!(found.first_wrong().map(|stage| stage.stage), Some("layers"));
     }
+}
+
+#[test]
+fn another_environment_is_found() {
+    let (scene, camera, method) = layered();
+    assert_environment_found(&scene, &camera, method, "blending");
 }

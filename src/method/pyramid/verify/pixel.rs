@@ -17,13 +17,13 @@ pub(super) struct PixelJudge<'a, P: Profile> {
     cells: Option<&'a Level<P>>,
     handed: &'a PicturePlanes<'a>,
     view: View<Ball<P>>,
-    shading: Shading<P>,
+    shading: Shading<'a, P>,
     has: Has,
 }
 
 impl<'a, P: Profile> PixelJudge<'a, P> {
     pub(super) fn new(
-        job: &Job<'_>,
+        job: &Job<'a>,
         cells: Option<&'a Level<P>>,
         handed: &'a PicturePlanes<'a>,
     ) -> Self {

@@ -5,6 +5,7 @@ use crate::composite::decide;
 use crate::composite::groups::WeightedFragment;
 use crate::frame::NO_ID;
 use crate::method::algorithm::Job;
+use crate::method::checks::anything;
 use crate::method::ewa::attributes::Sums;
 use crate::method::ewa::verify::handed::Handed;
 use crate::method::ewa::verify::sums::{Continuations, MOST};
@@ -51,7 +52,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
             Some(depth) if !stored => depth,
             _ => nearest(choice),
         };
-        let depth = choices.first().map_or(Ball::new(0.0, f64::NAN), nearest);
+        let depth = choices.iter().map(nearest).reduce(Ball::either).unwrap_or(anything());
         let several = choices.len() > 1;
         pixel.doubt(Doubt::Nearer, several);
         let mut all = Vec::new();

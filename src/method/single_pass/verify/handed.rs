@@ -2,7 +2,7 @@
 
 use crate::composite::groups::WeightedFragment;
 use crate::method::Holds;
-use crate::method::checks::{Report, input, inputs, number, triple};
+use crate::method::checks::{Report, input, inputs, number, triple, widened};
 use crate::method::ewa::verify::handed::SumRows;
 use crate::method::single_pass::planes::{COLOR_SUM, COUNT, ImageRows, NORMAL_SUM, WEIGHT_SUM};
 use crate::number::Ball;
@@ -98,12 +98,14 @@ impl<'a> ImagePlanes<'a> {
         at: (u32, u32),
         own: &WeightedFragment<Ball<P>>,
     ) -> WeightedFragment<Ball<P>> {
+        // The weight that was multiplied by an opacity of at most 1 is the stored one, or its own.
+        let lost = self.weight.map_or(0.0, |plane| plane.ball::<P>(at).radius);
         WeightedFragment {
             depth: self.depth.map_or(own.depth, |plane| input(&plane, at)),
             weight: self.weight.map_or(own.weight, |plane| input(&plane, at)),
             normal: self.normal.map_or(own.normal, |plane| inputs(&plane, at)),
             color: self.color.map_or(own.color, |plane| inputs(&plane, at)),
-            opacity: own.opacity,
+            opacity: widened(own.opacity, lost),
         }
     }
 }

@@ -108,7 +108,9 @@ impl<'a, P: Profile> Images<'a, P> {
                 pixel.found(f64::INFINITY, || Fault::Absent { surfel });
             }
         }
-        let stored = planes.complete(self.surfels.color().is_some());
+        // Opacities are of the surfel, and leave no plane.
+        let stored = planes.complete(self.surfels.color().is_some())
+            && (planes.id.is_some() || self.surfels.opacity().is_none());
         let right = tried.iter().filter(|(worst, _)| *worst <= least);
         let mut all: Vec<_> = right.map(|(_, candidate)| group.sample(*candidate)).collect();
         if all.is_empty() {

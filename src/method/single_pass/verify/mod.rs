@@ -56,6 +56,7 @@ use crate::method::ewa::verify::handed::Handed;
 use crate::method::ewa::verify::pixel::PixelJudge;
 use crate::method::ewa::verify::sums::Continuations;
 use crate::method::judged::{self, Counts, Marks, counted};
+use crate::number::Ball;
 use crate::number::ball::Profile;
 use crate::scene::Surfels;
 use crate::verify::client::Client;
@@ -72,14 +73,17 @@ pub(in crate::method) struct GroupsOf<'a> {
     pub(in crate::method) client: &'a Client,
     pub(in crate::method) handed: Handed<'a>,
     pub(in crate::method) images: &'static ImageRows,
-    /// The passes of geometry and of compositing, and shading.
-    pub(in crate::method) stages: [&'static str; 3],
+    /// Whether the colour is that of a layer, behind which others may be seen.
+    pub(in crate::method) layer: bool,
 }
 
+/// The passes of geometry and of compositing, and shading.
+const STAGES: [&str; 3] = ["geometry", "compositing", "shading"];
+
 impl<'a> GroupsOf<'a> {
-    pub(super) fn new(client: &'a Client) -> Self {
+    fn new(client: &'a Client) -> Self {
         let handed = Handed::of(client, &sum_rows());
-        Self { client, handed, images: &IMAGES, stages: ["geometry", "compositing", "shading"] }
+        Self { client, handed, images: &IMAGES, layer: false }
     }
 }
 
@@ -87,29 +91,54 @@ impl<'a> GroupsOf<'a> {
 ///
 /// # Errors
 /// As the projection of the method.
-pub(in crate::method) fn verify<P: Profile>(
+pub(super) fn verify<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
-    of: &GroupsOf<'_>,
+    client: &Client,
     budget: f64,
 ) -> Result<Verdict> {
-    let judge = Judge::<P>::new(job, settings, of)?;
-    Ok(judged::verdict(job, judge.stages(), budget, |tile, marks| judge.judge(tile, marks)))
+    let of = GroupsOf::new(client);
+    let judge = Judge::<P>::new(job, settings, &of)?;
+    let [first, second, third] = STAGES;
+    let [geometry, compositing, shading] = judge.names();
+    let stages = [(first, geometry), (second, compositing), (third, shading)];
+    Ok(judged::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks)))
 }
 
 /// Everything that is judged at one pixel.
-pub(in crate::method) fn checks<P: Profile>(
+pub(super) fn checks<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
-    of: &GroupsOf<'_>,
+    client: &Client,
     pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
-    let judge = Judge::<P>::new(job, settings, of)?;
-    judged::checks(job, of.stages, pixel, |tile, marks| judge.judge(tile, marks))
+    let of = GroupsOf::new(client);
+    let judge = Judge::<P>::new(job, settings, &of)?;
+    judged::checks(job, STAGES, pixel, |tile, marks| judge.judge(tile, marks))
+}
+
+/// What is found at a pixel.
+#[derive(Clone, Debug)]
+pub(in crate::method) struct Found<P: Profile> {
+    pub(in crate::method) nearest: Nearest<P>,
+    /// What its sums may be.
+    sums: Continuations<P>,
+}
+
+impl<P: Profile> Found<P> {
+    /// Whether there is but one continuation.
+    pub(in crate::method) fn certain(&self) -> bool {
+        matches!(self.sums, Continuations::One(_))
+    }
+
+    /// Whether something may be there.
+    pub(in crate::method) fn covered(&self) -> bool {
+        self.nearest.depth.middle.is_finite() || !self.certain()
+    }
 }
 
 /// What all tiles share.
-struct Judge<'a, P: Profile> {
+pub(in crate::method) struct Judge<'a, P: Profile> {
     surfels: &'a Surfels,
     of: &'a GroupsOf<'a>,
     images: Vec<ImagePlanes<'a>>,
@@ -119,61 +148,83 @@ struct Judge<'a, P: Profile> {
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
-    fn new(job: &Job<'a>, settings: &Settings, of: &'a GroupsOf<'a>) -> Result<Self> {
-        let GroupsOf { client, handed, images: rows, .. } = of;
+    /// Projection.
+    pub(in crate::method) fn new(
+        job: &Job<'a>,
+        settings: &Settings,
+        of: &'a GroupsOf<'a>,
+    ) -> Result<Self> {
+        let GroupsOf { client, handed, images: rows, layer } = of;
         let fragments = GroupFragments::project(job, settings)?;
         let images = (0..fragments.groups()).map(|k| ImagePlanes::new(client, rows, k)).collect();
         let surfels = &job.scene.surfels;
         let epsilon = fragments.epsilon();
         let compositing = Compositing::new(job, handed, epsilon);
-        let pixels = PixelJudge::new(job, handed);
+        let pixels = if *layer { PixelJudge::of_layer } else { PixelJudge::new }(job, handed);
         Ok(Self { surfels, of, images, fragments, compositing, pixels })
     }
 
-    /// The stages, each with the planes that it judges.
-    fn stages(&self) -> [(&'static str, Vec<&'static str>); 3] {
+    /// The planes that geometry, compositing and shading judge.
+    pub(in crate::method) fn names(&self) -> [Vec<&'static str>; 3] {
         let [(_, nearest), (_, sums), (_, averages), (_, shading)] = self.of.handed.stages();
         let compositing = [sums, averages, nearest].concat();
-        let [first, second, third] = self.of.stages;
-        [(first, handed::names(&self.images)), (second, compositing), (third, shading)]
+        [handed::names(&self.images), compositing, shading]
+    }
+
+    /// Opacity and colour of a pixel as the next pass reads them.
+    pub(in crate::method) fn read(
+        &self,
+        at: (u32, u32),
+        found: &Found<P>,
+    ) -> (Ball<P>, [Ball<P>; 3]) {
+        self.pixels.read(at, &found.nearest, &found.sums)
     }
 
     /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 3]) -> Counts {
         let mut counts = Counts::default();
+        let [geometry, compositing, shading] = marks;
         for y in rect.y0..rect.y1 {
             let row = Rect { y0: y, y1: y + 1, ..rect };
-            self.judge_row((tile, (y - rect.y0) as usize, row), marks, &mut counts);
+            let mut parts = [(); 3].map(|()| compositing.beside(row));
+            let place = (tile, (y - rect.y0) as usize, row);
+            for found in self.judge_row(place, geometry, &mut parts) {
+                counts.undecided += u64::from(!found.certain());
+                counts.covered += u64::from(found.covered());
+            }
+            let [sums, averages, shaded] = parts;
+            compositing.put(sums);
+            compositing.put(averages);
+            shading.put(shaded);
         }
         counts
     }
 
-    /// One row of pixels, so that the fragments of all groups need not be kept of more.
-    fn judge_row(
+    /// One row of pixels, so that the fragments of all groups need not be kept of more; so many lie
+    /// above it in the tile.
+    pub(in crate::method) fn judge_row(
         &self,
         (tile, above, row): (usize, usize, Rect),
-        marks: &mut [Marks; 3],
-        counts: &mut Counts,
-    ) {
+        geometry: &mut Marks,
+        parts: &mut [Marks; 3],
+    ) -> Vec<Found<P>> {
         let said = |group: usize, at| self.images[group].surfel(at);
         let fragments = self.fragments.of_row(tile, &row, said);
         let images =
             Images::new(&self.fragments, self.surfels, (&self.images, self.of.client.ties));
-        let [geometry, compositing, shading] = marks;
-        let mut parts = [(); 3].map(|()| compositing.beside(row));
-        for (column, at) in counted(row) {
+        let of_pixel = |(column, at)| {
             let pixel = above * row.columns() + column;
             let samples = images.judge(at, &fragments.at(column), &mut geometry.at(pixel));
             let (depth, sums) = self.compositing.judge(at, &samples, &mut parts[0].at(column));
-            let certain = matches!(sums, Continuations::One(_));
-            counts.undecided += u64::from(!certain);
-            counts.covered += u64::from(depth.middle.is_finite() || !certain);
             let nearest = Nearest { depth, id: None };
-            self.pixels.judge((column, at), &nearest, &sums, &mut parts);
-        }
-        let [sums, averages, shaded] = parts;
-        compositing.put(sums);
-        compositing.put(averages);
-        shading.put(shaded);
+            self.pixels.judge((column, at), &nearest, &sums, parts);
+            Found { nearest, sums }
+        };
+        counted(row).map(of_pixel).collect()
+    }
+
+    /// The depth of the visible band in world units.
+    pub(in crate::method) fn epsilon(&self) -> Ball<P> {
+        self.fragments.epsilon()
     }
 }

@@ -1,10 +1,12 @@
 use crate::frame::{Exec, Frame, NO_ID, Samples};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::single_pass::{BinCount, DepthTest, Settings};
-use crate::method::tests::verdicts::{Slip, assert_found, assert_right, verdict};
+use crate::method::tests::verdicts::{
+    Slip, assert_environment_found, assert_found, assert_right, camera, verdict,
+};
 use crate::method::tests::{count, id, scalar, surfels};
 use crate::method::{Method, Session};
-use crate::scene::{Camera, Cloud, Lens, Scene, Surfels};
+use crate::scene::{Cloud, Lens, Scene, Surfels};
 use crate::source::Shape;
 use crate::splat::{Epsilon, Kernel, Outline, SplatSettings};
 use crate::verify::client::Rounding;
@@ -24,11 +26,6 @@ fn grouped(surfels: Surfels, overlap: f32) -> Surfels {
 
 fn settings(kernel: Kernel, epsilon: Epsilon, depth: DepthTest) -> Settings {
     Settings { splats: SplatSettings { kernel, epsilon, ..SplatSettings::default() }, depth }
-}
-
-fn camera(shape: Shape, size: [u32; 2], lens: Option<Lens>) -> Camera {
-    let lens = lens.unwrap_or(shape.default_lens());
-    Camera::new(size[0], size[1], shape.default_pose(), lens).unwrap()
 }
 
 #[test]
@@ -199,4 +196,16 @@ fn the_other_depth_test_is_found() {
             assert_eq!(found, Some("geometry"), "{other:?}");
         }
     }
+}
+
+#[test]
+fn another_environment_is_found() {
+    let scene = Scene::lit("", grouped(surfels(150, 0.3, true, 1), 0.4));
+    let camera = camera(Shape::Sphere, [27, 21], None);
+    assert_environment_found(
+        &scene,
+        &camera,
+        Method::SinglePass(settings(Kernel::DEFAULT, Epsilon::World(0.1), VORONOI)),
+        "shading",
+    );
 }

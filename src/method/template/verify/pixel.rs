@@ -29,7 +29,7 @@ pub(super) struct PixelJudge<'a, P: Profile> {
     levels: Option<Vec<Level<P>>>,
     handed: &'a PicturePlanes<'a>,
     view: View<Ball<P>>,
-    shading: Shading<P>,
+    shading: Shading<'a, P>,
     has: Has,
     /// The greatest component of a colour, at least 1.
     brightest: f64,
@@ -37,7 +37,7 @@ pub(super) struct PixelJudge<'a, P: Profile> {
 
 impl<'a, P: Profile> PixelJudge<'a, P> {
     pub(super) fn new(
-        job: &Job<'_>,
+        job: &Job<'a>,
         settings: &'a Settings,
         levels: Option<Vec<Level<P>>>,
         handed: &'a PicturePlanes<'a>,

@@ -49,7 +49,7 @@ pub(super) struct Drawn<P: Profile> {
 }
 
 /// The fragments of a row of pixels, by pixel and group.
-pub(super) struct RowDrawings<P: Profile> {
+pub(in crate::method) struct RowDrawings<P: Profile> {
     groups: usize,
     /// In the order of their places, those of a place from back to front.
     all: Vec<(usize, Drawn<P>)>,
@@ -73,8 +73,7 @@ impl<P: Profile> GroupDrawings<P> {
         let bins = DepthBins::new(&settings.bins.resolve(surfels, job.camera, epsilon)?);
         let items = job.index.back_to_front(job.camera)?;
         let shader = Shader::new(View::new(job.camera), &scene.lights, scene.material);
-        let [x1, y1] = job.camera.size();
-        let picture = Rect { x1, y1, ..Rect::default() };
+        let picture = job.picture();
         let prepared = Prepared::new(
             job,
             &settings.splats,

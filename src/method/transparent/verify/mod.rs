@@ -14,18 +14,26 @@
 //! continuations that fit, where they agree. What is not known of one group is not judged of the
 //! average. `Z` is the depth of one of the groups, and no group certainly is nearer; `id` is the surfel
 //! of a group that may be the nearest (of equal depths any of them). The picture follows from the
-//! client's average; where an environment is seen, its colour is not judged.
+//! client's average, before the environment if there is one.
 //!
-//! A pixel is undecided if a group has several continuations, or is not judged.
+//! **Environment.** Where the opacity is less than 1, the light of the ray is taken in balls: the sky by
+//! its formula; a map from all squares of four pixel centres that the ray may lie between, which meet
+//! without a jump, at the seam too. Where these are more than 8 in a row or a column, as beside a pole,
+//! the colour is not judged. Weights are those of `f32`: a texture unit that rounds them to 8 bits is not
+//! within a map's balls.
+//!
+//! A pixel is undecided if a group has several continuations, or is not judged, or if its colour is not.
 
-mod averaged;
-mod drawn;
-mod planes;
+pub(in crate::method) mod averaged;
+pub(in crate::method) mod drawn;
+pub(in crate::method) mod layered;
+pub(in crate::method) mod planes;
 mod replayed;
+mod shown;
 #[cfg(test)]
 mod tests;
 
-use super::Settings;
+use super::{Holes, Settings};
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::algorithm::Job;
@@ -35,9 +43,10 @@ use crate::method::single_pass::verify::sum_rows;
 use crate::number::ball::Profile;
 use crate::verify::client::{Client, Ties};
 use crate::verify::verdict::{Check, Verdict};
-use averaged::Averaging;
-use drawn::GroupDrawings;
-use planes::{AveragePlanes, GroupPlanes};
+use averaged::AveragePlanes;
+use layered::LayersJudge;
+use planes::GroupFound;
+use shown::Shown;
 
 /// The stages by their names.
 const STAGES: [&str; 2] = ["blending", "averaging"];
@@ -55,7 +64,8 @@ pub(super) fn verify<P: Profile>(
     let handed = handed(client);
     let judge = Judge::<P>::new(job, settings, client, &handed)?;
     let [first, second] = STAGES;
-    let stages = [(first, planes::names(&judge.groups)), (second, judge.averages.names())];
+    let averaging = [judge.averages.names(), judge.shown.names()].concat();
+    let stages = [(first, judge.layers.names()), (second, averaging)];
     Ok(judged::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks)))
 }
 
@@ -79,10 +89,10 @@ fn handed(client: &Client) -> Handed<'_> {
 
 /// What all tiles share.
 struct Judge<'a, P: Profile> {
-    groups: Vec<GroupPlanes<'a>>,
+    layers: LayersJudge<'a, P>,
     averages: AveragePlanes<'a>,
-    drawings: GroupDrawings<P>,
-    averaging: Averaging<'a, P>,
+    holes: Holes,
+    shown: Shown<'a, P>,
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
@@ -92,11 +102,12 @@ impl<'a, P: Profile> Judge<'a, P> {
         client: &'a Client,
         handed: &'a Handed<'a>,
     ) -> Result<Self> {
-        let drawings = GroupDrawings::project(job, settings)?;
-        let groups = (0..drawings.groups()).map(|k| GroupPlanes::new(client, k)).collect();
-        let averages = AveragePlanes::new(client);
-        let averaging = Averaging::new(job, settings.holes, handed);
-        Ok(Self { groups, averages, drawings, averaging })
+        Ok(Self {
+            layers: LayersJudge::project(job, settings, client)?,
+            averages: AveragePlanes::new(client),
+            holes: settings.holes,
+            shown: Shown::new(job, client, handed),
+        })
     }
 
     /// Marks what is wrong at the pixels of a rectangle in a tile.
@@ -105,21 +116,17 @@ impl<'a, P: Profile> Judge<'a, P> {
         let [blending, averaging] = marks;
         for y in rect.y0..rect.y1 {
             let row = Rect { y0: y, y1: y + 1, ..rect };
-            let drawings = self.drawings.of_row(tile, &row);
+            let drawings = self.layers.of_row(tile, &row);
             for (column, at) in counted(row) {
                 let pixel = (y - rect.y0) as usize * row.columns() + column;
-                let mut open = false;
-                let groups: Vec<_> = (0..self.groups.len())
-                    .map(|k| {
-                        let found = replayed::replay(drawings.at(column, k));
-                        open |= found.all.as_ref().is_none_or(|all| all.len() > 1);
-                        blending.at(pixel).doubts(found.doubts);
-                        self.groups[k].judge(at, found.all, &mut blending.at(pixel))
-                    })
-                    .collect();
-                self.averaging.judge(at, &groups, &self.averages, &mut averaging.at(pixel));
-                counts.covered += u64::from(groups.iter().any(planes::GroupFound::covered));
-                counts.undecided += u64::from(open);
+                let all = |_| true.into();
+                let found =
+                    self.layers.judge((column, at), &drawings, all, &mut blending.at(pixel));
+                let pixel = &mut averaging.at(pixel);
+                let average = self.averages.judge(at, (&found.groups, self.holes), pixel);
+                let judged = self.shown.judge(at, &found.groups, &average, pixel);
+                counts.covered += u64::from(found.groups.iter().any(GroupFound::covered));
+                counts.undecided += u64::from(found.open || !judged);
             }
         }
         counts

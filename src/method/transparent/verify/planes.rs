@@ -6,10 +6,9 @@ use crate::method::checks::{
     Report, anything, input, inputs, least_wrong, number, triple, whole, widened,
 };
 use crate::method::judged::PixelMarks;
-use crate::method::resolved::{ALPHA, DEPTH, ID, SHADED};
 use crate::method::transparent::planes::{
-    AVERAGES, GROUP_ALPHA, GROUP_BIN, GROUP_COLOR, GROUP_COUNT, GROUP_DEPTH, GROUP_HIDDEN,
-    GROUP_ID, GROUP_OPACITY, LAYERS,
+    GROUP_ALPHA, GROUP_BIN, GROUP_COLOR, GROUP_COUNT, GROUP_DEPTH, GROUP_HIDDEN, GROUP_ID,
+    GROUP_OPACITY,
 };
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
@@ -31,7 +30,7 @@ pub(super) struct GroupPlanes<'a> {
 
 /// A group at a pixel, as the average reads it; NaN radii stand for what is not known.
 #[derive(Clone, Debug)]
-pub(super) struct GroupFound<P: Profile> {
+pub(in crate::method) struct GroupFound<P: Profile> {
     /// What may have been blended, of what fits the planes; none if that is not known.
     pub(super) all: Option<Vec<Layers<P>>>,
     pub(super) color: [Ball<P>; 3],
@@ -45,7 +44,7 @@ pub(super) struct GroupFound<P: Profile> {
 
 impl<P: Profile> GroupFound<P> {
     /// Whether something may be there.
-    pub(super) fn covered(&self) -> bool {
+    pub(in crate::method) fn covered(&self) -> bool {
         self.count != Some(0)
     }
 }
@@ -145,19 +144,17 @@ impl<'a> GroupPlanes<'a> {
         }
     }
 
-    /// What the average reads: the client's, else what all continuations agree on.
+    /// What the average reads: the client's, else all that the continuations may be.
     fn read<P: Profile>(&self, at: (u32, u32), all: Option<Vec<Layers<P>>>) -> GroupFound<P> {
-        let agree = |of: &dyn Fn(&Layers<P>) -> Ball<P>| {
-            let mut values = all.iter().flatten().map(of);
-            let first = values.next().unwrap_or(anything());
-            if values.all(|value| value.middle == first.middle) { first } else { anything() }
+        let any = |of: &dyn Fn(&Layers<P>) -> Ball<P>| {
+            all.iter().flatten().map(of).reduce(Ball::either).unwrap_or(anything())
         };
         let scalar = |plane: Option<Stored<'_, f64>>, of: &dyn Fn(&Layers<P>) -> Ball<P>| {
-            plane.map_or_else(|| agree(of), |plane| input(&plane, at))
+            plane.map_or_else(|| any(of), |plane| input(&plane, at))
         };
-        let own = [0, 1, 2].map(|c| agree(&|layers| layers.blend.color[c]));
+        let own = [0, 1, 2].map(|c| any(&|layers| layers.blend.color[c]));
         let hidden = |layers: &Layers<P>| Ball::exact(f64::from(u8::from(layers.hidden)));
-        let count = agree(&|layers| Ball::exact(layers.count.into()));
+        let count = any(&|layers| Ball::exact(layers.count.into()));
         let known = (count.radius == 0.0).then_some(count.middle as u8);
         GroupFound {
             color: self.color.map_or(own, |plane| inputs(&plane, at)),
@@ -180,56 +177,4 @@ pub(super) fn names(groups: &[GroupPlanes<'_>]) -> Vec<&'static str> {
         }
     }
     all.into_iter().flatten().collect()
-}
-
-/// The planes of the averages and of the picture, each if it is there.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct AveragePlanes<'a> {
-    pub(super) color: Option<Stored<'a, [f64; 3]>>,
-    pub(super) alpha: Option<Stored<'a, f64>>,
-    pub(super) opacity: Option<Stored<'a, f64>>,
-    pub(super) hidden: Option<Stored<'a, f64>>,
-    pub(super) layers: Option<Stored<'a, f64>>,
-    pub(super) shown: Option<Stored<'a, [f64; 3]>>,
-    pub(super) shown_alpha: Option<Stored<'a, f64>>,
-    pub(super) shown_layers: Option<Stored<'a, f64>>,
-    depth: Option<Stored<'a, f64>>,
-    id: Option<Stored<'a, u32>>,
-}
-
-impl<'a> AveragePlanes<'a> {
-    pub(super) fn new(client: &'a Client) -> Self {
-        let [color, alpha, opacity, hidden, layers] = &AVERAGES;
-        Self {
-            color: client.triple(color),
-            alpha: client.scalar(alpha),
-            opacity: client.scalar(opacity),
-            hidden: client.scalar(hidden),
-            layers: client.scalar(layers),
-            shown: client.triple(&SHADED),
-            shown_alpha: client.scalar(&ALPHA),
-            shown_layers: client.scalar(&LAYERS),
-            depth: client.scalar(&DEPTH),
-            id: client.index(&ID),
-        }
-    }
-
-    /// The names of those that are there.
-    pub(super) fn names(&self) -> Vec<&'static str> {
-        let scalar = |plane: Option<Stored<'_, f64>>| plane.map(|plane| plane.name);
-        let triple = |plane: Option<Stored<'_, [f64; 3]>>| plane.map(|plane| plane.name);
-        let all = [
-            triple(self.color),
-            scalar(self.alpha),
-            scalar(self.opacity),
-            scalar(self.hidden),
-            scalar(self.layers),
-            triple(self.shown),
-            scalar(self.shown_alpha),
-            scalar(self.depth),
-            self.id.map(|plane| plane.name),
-            scalar(self.shown_layers),
-        ];
-        all.into_iter().flatten().collect()
-    }
 }

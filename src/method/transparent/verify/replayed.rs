@@ -5,7 +5,7 @@ use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::frame::NO_ID;
 use crate::frame::stencil::{Outcome, Stencil};
-use crate::number::ball::Profile;
+use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
 use crate::verify::verdict::Doubt;
 
@@ -77,15 +77,23 @@ impl<P: Profile> Layers<P> {
     }
 }
 
-/// Blends the fragments of a group at a pixel, from back to front.
-pub(super) fn replay<'d, P: Profile>(fragments: impl Iterator<Item = &'d Drawn<P>>) -> Replayed<P> {
+/// Blends the fragments of a group at a pixel, from back to front, without those of a depth that does
+/// not stay.
+pub(super) fn replay<'d, P: Profile>(
+    fragments: impl Iterator<Item = &'d Drawn<P>>,
+    stays: &impl Fn(Ball<P>) -> Three,
+) -> Replayed<P> {
     let (mut all, mut doubts) = (vec![Layers::EMPTY], 0);
     for drawn in fragments {
+        let stays = stays(drawn.t);
+        if !stays.possibly() {
+            continue;
+        }
         let [first, last] = drawn.bins;
         if !(last - first <= 1.0) {
             return Replayed { all: None, doubts };
         }
-        let certain = drawn.certain && drawn.inside.certainly();
+        let certain = drawn.certain && (drawn.inside & stays).certainly();
         let mut next: Vec<Layers<P>> = Vec::with_capacity(all.len());
         let mut open = false;
         for layers in &all {
@@ -93,9 +101,9 @@ pub(super) fn replay<'d, P: Profile>(fragments: impl Iterator<Item = &'d Drawn<P
             let bins = [first, last].into_iter().filter(|bin| passes(*bin));
             // Of one bin twice the second is the same.
             let outcomes = bins.map(|bin| layers.with(drawn, bin));
-            let stays = !certain || !passes(first) || !passes(last);
+            let same = !certain || !passes(first) || !passes(last);
             open |= passes(first) && !certain;
-            for outcome in outcomes.chain(stays.then_some(*layers)) {
+            for outcome in outcomes.chain(same.then_some(*layers)) {
                 if !next.iter().any(|other| other.same(&outcome)) {
                     next.push(outcome);
                 }
@@ -104,6 +112,7 @@ pub(super) fn replay<'d, P: Profile>(fragments: impl Iterator<Item = &'d Drawn<P
         if open {
             doubts |= if drawn.inside.certainly() { 0 } else { Doubt::CutOff as u8 };
             doubts |= if drawn.certain { 0 } else { Doubt::Fate as u8 };
+            doubts |= if stays.certainly() { 0 } else { Doubt::Epsilon as u8 };
         }
         if next.len() > MOST {
             return Replayed { all: None, doubts };

@@ -1,29 +1,19 @@
 use crate::method::Method;
 use crate::method::single_pass::BinCount;
 use crate::method::tests::surfels;
-use crate::method::tests::verdicts::{Slip, assert_found, assert_right};
+use crate::method::tests::verdicts::{
+    Slip, assert_environment_found, assert_found, assert_right, assert_right_in_doubles, camera,
+    transparent,
+};
 use crate::method::transparent::{Holes, Settings};
-use crate::number::random::unit;
-use crate::scene::{Camera, Cloud, Lens, Scene, Surfels};
+use crate::scene::{Lens, Scene};
 use crate::source::Shape;
 use crate::splat::{Epsilon, Kernel, Outline, SplatSettings};
-
-/// Surfels of opacities from 0.25 to 1, some of them opaque.
-fn transparent(surfels: Surfels) -> Surfels {
-    let opacity = |i| if i % 7 == 0 { 1.0 } else { 0.25 + 0.5 * unit(7, i) };
-    let opacity = (0..surfels.len() as u64).map(opacity).collect();
-    Surfels::new(Cloud { opacity: Some(opacity), ..surfels.into_cloud() }).unwrap().0
-}
 
 fn settings(kernel: Kernel, bins: u32, holes: Holes) -> Settings {
     let splats =
         SplatSettings { kernel, epsilon: Epsilon::World(0.1), ..SplatSettings::BOTH_SIDES };
     Settings { splats, bins: BinCount::Count(bins), holes }
-}
-
-fn camera(shape: Shape, size: [u32; 2], lens: Option<Lens>) -> Camera {
-    let lens = lens.unwrap_or(shape.default_lens());
-    Camera::new(size[0], size[1], shape.default_pose(), lens).unwrap()
 }
 
 #[test]
@@ -38,7 +28,9 @@ fn what_the_crate_renders_is_right() {
         (Shape::Sheets { gap: 0.2 }, flat, settings(Kernel::DEFAULT, 21, Holes::Skipped)),
     ] {
         let scene = Scene::lit("", transparent(shape.surfels(250, 5).unwrap()));
-        assert_right(&scene, &camera(shape, [27, 21], lens), Method::Transparent(settings));
+        let (camera, method) = (camera(shape, [27, 21], lens), Method::Transparent(settings));
+        assert_right(&scene, &camera, method);
+        assert_right_in_doubles(&scene, &camera, method);
     }
 }
 
@@ -77,4 +69,16 @@ fn each_slip_is_found_in_its_stage() {
     let camera = camera(Shape::Sphere, [37, 33], None);
     let settings = settings(Kernel::DEFAULT, 30, Holes::Skipped);
     assert_found(&scene, &camera, Method::Transparent(settings), &slips);
+}
+
+#[test]
+fn another_environment_is_found() {
+    let scene = Scene::lit("", transparent(surfels(150, 0.3, true, 1)));
+    let camera = camera(Shape::Sphere, [27, 21], None);
+    assert_environment_found(
+        &scene,
+        &camera,
+        Method::Transparent(settings(Kernel::DEFAULT, 30, Holes::Skipped)),
+        "averaging",
+    );
 }

@@ -14,6 +14,7 @@ use crate::method::fast::store::{clear_plane, interleaved, row, store_plane};
 use crate::method::picture::{Clock, Picture};
 use crate::method::transparent::fast::{FastBlending, Nearest};
 use crate::method::transparent::planes as layers;
+use crate::scene::Environment;
 use compositing::compositing;
 use nearest::FastNearest;
 use std::time::{Duration, Instant};
@@ -25,7 +26,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     let nearest = FastNearest::project(job, settings)?;
     let blending = FastBlending::project(job, &settings.layers)?;
     clock.lap("projection");
-    let through = Through::new(job, settings);
+    let through = Through::new(job, settings, Environment::radiance);
     let (size, grid) = (job.camera.size(), job.grid());
     let mut target = LayeredPlanes::new(size, pool.scalar(size), pool);
     let (mut normal, mut weight) = (pool.triple(size), pool.scalar(size));

@@ -224,3 +224,9 @@ impl Real for Lawful {
         self.at_least(low).at_most(high)
     }
 }
+
+/// The angle of the point (x, y) from the x axis.
+pub(super) fn angle(y: Lawful, x: Lawful) -> Lawful {
+    let exact = libm::atan2(y.value.into(), x.value.into());
+    rounded(exact, if roll(8) == 0 { 4095 } else { 2 }).into()
+}

@@ -2,6 +2,7 @@
 //! not; then each rule of the page.
 
 mod lawful;
+mod light;
 mod scenes;
 
 use super::*;
