@@ -335,7 +335,7 @@ pub enum Outcome {
     Right,
     /// No right implementation leaves them.
     Wrong,
-    /// So many sums may be either way that nothing is proved, or no plane is judged.
+    /// So many sums may be either way, or have no bounds, that nothing is proved, or no plane is judged.
     Undecidable,
 }
 
@@ -365,11 +365,27 @@ impl Verdict {
     pub fn outcome(&self) -> Outcome {
         if self.first_wrong().is_some() {
             Outcome::Wrong
-        } else if self.judges() && self.undecided as f64 <= self.budget * self.covered as f64 {
+        } else if self.judges() && self.within(self.undecided) && self.within(self.unbounded()) {
             Outcome::Right
         } else {
             Outcome::Undecidable
         }
+    }
+
+    /// Whether so many pixels may be undecided.
+    fn within(&self, pixels: u64) -> bool {
+        pixels as f64 <= self.budget * self.covered as f64
+    }
+
+    /// How many pixels have a number in some stage of which no bound can be given.
+    #[must_use]
+    pub fn unbounded(&self) -> u64 {
+        let pixels = self.stages.iter().map(|stage| stage.doubts.values().len()).max();
+        let at = |pixel: &usize| {
+            let doubts = self.stages.iter().filter_map(|stage| stage.doubts.values().get(*pixel));
+            doubts.fold(0, |all, doubts| all | doubts) & Doubt::Unbounded as u8 != 0
+        };
+        (0..pixels.unwrap_or(0)).filter(at).count() as u64
     }
 
     /// Whether any plane of the client is judged.

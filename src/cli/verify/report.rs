@@ -78,7 +78,8 @@ impl<'a> Seen<'a> {
     /// The verdict in a sentence.
     fn ending(&self) -> String {
         let Verdict { undecided, covered, budget, .. } = self.verdict;
-        let share = 100.0 * *undecided as f64 / (*covered).max(1) as f64;
+        let share = |pixels: u64| 100.0 * pixels as f64 / (*covered).max(1) as f64;
+        let unbounded = self.verdict.unbounded();
         match self.verdict.outcome() {
             Outcome::Right => {
                 format!("right: of {covered} covered pixels {undecided} have undecided sums")
@@ -88,8 +89,10 @@ impl<'a> Seen<'a> {
                 "undecidable: no plane was judged; `render --stages` shows which there are".into()
             }
             Outcome::Undecidable => format!(
-                "undecidable: the sums of {} % of the covered pixels may be either way, {} % are allowed",
-                short(share),
+                "undecidable: the sums of {} % of the covered pixels may be either way, {} % have numbers \
+                 without bounds, {} % are allowed",
+                short(share(*undecided)),
+                short(share(unbounded)),
                 short(100.0 * budget)
             ),
         }

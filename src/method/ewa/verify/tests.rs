@@ -8,7 +8,7 @@ use crate::source::Shape;
 use crate::splat::project::project_as;
 use crate::splat::record::{SplatRecord, project_records};
 use crate::splat::{Disc, Epsilon, Kernel, Outline, Projector, SplatSettings, View, batch};
-use crate::verify::client::{Client, Rounding};
+use crate::verify::client::{Client, Rounding, Storage};
 use crate::verify::verdict::{Fault, Outcome, Verdict};
 
 /// Runs a test of a scene, its camera and its settings.
@@ -112,6 +112,19 @@ fn what_the_crate_renders_is_right() {
                 assert_eq!(verdict.outcome(), Outcome::Right);
             }
         }
+    });
+}
+
+#[test]
+fn what_has_no_bounds_is_not_right() {
+    each_scene(|session, camera| {
+        let frame = session.define::<f32>(camera, false).unwrap().frame;
+        // Averages by a weight that may be 0.
+        let client = Client::from(&frame).stored("weight", Storage::Steps(16.0));
+        let verdict = session.verify(camera, &client, 0.5).unwrap();
+        assert_eq!(verdict.first_wrong().map(|stage| stage.stage), None);
+        assert!(verdict.unbounded() > verdict.covered / 2);
+        assert_eq!(verdict.outcome(), Outcome::Undecidable);
     });
 }
 
