@@ -6,6 +6,8 @@
 use super::{Plane, Rect};
 use crate::error::{Error, Result};
 use rayon::prelude::*;
+use std::mem;
+use std::sync::{Mutex, PoisonError};
 
 /// Threads and tile size: how, never what.
 #[derive(Debug)]
@@ -63,10 +65,24 @@ impl Exec {
         jobs: Vec<J>,
         run: impl Fn(J) -> T + Sync + Send,
     ) -> Vec<T> {
-        match &self.pool {
-            None => jobs.into_iter().map(run).collect(),
-            Some(pool) => pool.install(|| jobs.into_par_iter().map(run).collect()),
-        }
+        let Some(pool) = &self.pool else { return jobs.into_iter().map(run).collect() };
+        let slots: Vec<_> = jobs.into_iter().map(|job| Mutex::new(Slot::Job(job))).collect();
+        each(pool, slots.len(), &|i| {
+            let slot = || slots[i].lock().unwrap_or_else(PoisonError::into_inner);
+            // A statement, so that the lock is not held while the job runs.
+            let job = mem::replace(&mut *slot(), Slot::Empty);
+            if let Slot::Job(job) = job {
+                let result = run(job);
+                *slot() = Slot::Result(result);
+            }
+        });
+        let done = slots.into_iter().map(|slot| slot.into_inner());
+        // All are done: a job that panics has made `each` panic.
+        done.filter_map(|slot| match slot.unwrap_or_else(PoisonError::into_inner) {
+            Slot::Result(result) => Some(result),
+            Slot::Job(_) | Slot::Empty => None,
+        })
+        .collect()
     }
 
     /// Runs two jobs, in parallel, and returns the results of both.
@@ -118,6 +134,19 @@ impl Exec {
     }
 }
 
+/// A job that waits, one that runs, or what it has left.
+enum Slot<J, T> {
+    Job(J),
+    Empty,
+    Result(T),
+}
+
+/// Runs `run` for each index below `count`, in parallel. What `run` is called with is not a type
+/// parameter: a parallel loop compiled for each of the crate's loops was a fifth of the program.
+fn each(pool: &rayon::ThreadPool, count: usize, run: &(dyn Fn(usize) + Sync)) {
+    pool.install(|| (0..count).into_par_iter().for_each(run));
+}
+
 /// The division of a picture into square tiles; those at the right and lower edge may be cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
@@ -132,6 +161,12 @@ pub struct Grid {
 }
 
 impl Grid {
+    /// Whether a pixel is in the picture.
+    #[must_use]
+    pub fn holds(&self, x: u32, y: u32) -> bool {
+        x < self.width && y < self.height
+    }
+
     /// How many tiles there are.
     #[must_use]
     pub fn len(&self) -> usize {
