@@ -43,7 +43,8 @@ fn read<P: Profile>(value: f64, storage: Storage) -> Option<Ball<P>> {
     } else {
         0.0
     };
-    matches!(storage, Storage::Single | Storage::Half).then_some(Ball::new(value, radius))
+    let is_float = matches!(storage, Storage::Single | Storage::Half | Storage::Float { .. });
+    is_float.then_some(Ball::new(value, radius))
 }
 
 /// The number that the next stage reads at a pixel.

@@ -19,6 +19,10 @@ pub(super) enum Format {
     U16,
     U32,
     I32,
+    /// Three numbers in 32 bits, the first in the low ones, and two bits for an opacity.
+    Rgb10a2,
+    /// Three floats in 32 bits, without a sign, the first in the low ones.
+    Rg11b10,
 }
 
 impl Words for Format {
@@ -34,6 +38,8 @@ impl Words for Format {
         ("u16", Self::U16),
         ("u32", Self::U32),
         ("i32", Self::I32),
+        ("rgb10a2", Self::Rgb10a2),
+        ("rg11b10", Self::Rg11b10),
     ];
 }
 
@@ -41,6 +47,9 @@ impl Words for Format {
 pub(super) const F32_STEP: f64 = 1.0 / 8_388_608.0;
 /// What `f16` may lose of a number, and at the least.
 pub(super) const F16_LOSS: Loss = Loss { relative: 1.0 / 1024.0, least: 1.0 / 16_777_216.0 };
+
+/// What the float of 10 bits may lose, the coarsest of three.
+const F10_LOSS: Loss = Loss { relative: 1.0 / 32.0, least: 1.0 / 524_288.0 };
 
 /// How far off a stored number is: `relative` of itself, at least `least`.
 #[derive(Clone, Copy, Debug)]
@@ -50,18 +59,33 @@ pub(super) struct Loss {
 }
 
 impl Format {
-    /// How many bytes a number has in a raw file.
+    /// How many bytes a number has in a raw file, or three packed ones.
     pub(super) fn bytes(self) -> u64 {
         match self {
             Self::Unorm8 | Self::Snorm8 | Self::U8 => 1,
             Self::F16 | Self::Unorm16 | Self::Snorm16 | Self::U16 => 2,
-            Self::F32 | Self::Unorm24 | Self::U32 | Self::I32 => 4,
+            Self::F32 | Self::Unorm24 | Self::U32 | Self::I32 | Self::Rgb10a2 | Self::Rg11b10 => 4,
         }
     }
 
-    /// The number of these bits, of which the format takes the low ones.
-    pub(super) fn number(self, bits: u32) -> f64 {
+    /// Whether the three numbers of a pixel share their bytes.
+    pub(super) fn is_packed(self) -> bool {
+        matches!(self, Self::Rgb10a2 | Self::Rg11b10)
+    }
+
+    /// The number of these bits, of which the format takes the low ones; of packed ones that of a
+    /// component.
+    pub(super) fn number(self, bits: u32, component: usize) -> f64 {
         match self {
+            Self::Rgb10a2 => f64::from(bits >> (10 * component) & 0x3FF) / 1023.0,
+            // The exponent is that of `f16`; the mantissa lacks 4 bits, in the last number 5.
+            Self::Rg11b10 => {
+                let [bits, missing] = match component {
+                    0 | 1 => [bits >> (11 * component) & 0x7FF, 4],
+                    _ => [bits >> 22, 5],
+                };
+                f16::from_bits((bits << missing) as u16).to_f64()
+            }
             Self::F32 => f32::from_bits(bits).into(),
             Self::F16 => f16::from_bits(bits as u16).to_f64(),
             Self::Unorm8 => f64::from(bits as u8) / 255.0,
@@ -96,6 +120,7 @@ impl Format {
             Self::Unorm24 => Some(16_777_215.0),
             Self::Snorm8 => Some(127.0),
             Self::Snorm16 => Some(32_767.0),
+            Self::Rgb10a2 => Some(1023.0),
             _ => None,
         }
     }
@@ -106,7 +131,7 @@ impl Format {
     }
 
     pub(super) fn is_unorm(self) -> bool {
-        matches!(self, Self::Unorm8 | Self::Unorm16 | Self::Unorm24)
+        matches!(self, Self::Unorm8 | Self::Unorm16 | Self::Unorm24 | Self::Rgb10a2)
     }
 
     /// The whole number below which no two are one.
@@ -135,6 +160,10 @@ impl Format {
         match (self, self.codes()) {
             (_, Some(codes)) => Storage::Steps(scale.abs() / codes),
             (Self::F16, _) => Storage::Half,
+            (Self::Rg11b10, _) => {
+                let Loss { relative, least } = F10_LOSS;
+                Storage::Float { relative, least }
+            }
             _ => Storage::Single,
         }
     }
@@ -145,6 +174,7 @@ impl Format {
         match (self, self.codes()) {
             (_, Some(codes)) => Loss { relative: 0.0, least: 1.0 / codes },
             (Self::F16, _) => Loss { least: F16_LOSS.least.at_least(single.least), ..F16_LOSS },
+            (Self::Rg11b10, _) => F10_LOSS,
             _ => single,
         }
     }

@@ -38,7 +38,7 @@
 //! | `id_base` | 0 | of indices: the number of the first surfel |
 //! | `premultiplied` | `false`, `true` | of colours: multiplied by the plane `A` of their layer (`A` of the picture, `blended.A` of `blended`), which must be there; linear light is divided by it, and left alone where it is 0 |
 //! | `encoding` | `"linear"` (of a PNG `"srgb"`), `"srgb"` | of colours, see [`crate::io::srgb`] |
-//! | `range` | \[0, 1\] | of unorm: which numbers 0 and 1 mean; `[-1, 1]` of the components of normals. Depths must be t |
+//! | `range` | \[0, 1\] | of unorm and `rgb10a2`: which numbers 0 and 1 mean; `[-1, 1]` of the components of normals. Depths must be t |
 //! | `meaning`, `near`, `far` | those of `[depth]` | of depths |
 //!
 //! A raw file is little-endian and holds one number a pixel, or three next to each other, row by row.
@@ -54,6 +54,8 @@
 //! | `f16` | itself | 2^-10 of itself, at least 2^-24 |
 //! | `unorm8`, `unorm16`, `unorm24` | code / (2^n - 1); `unorm24` is the low bits of 32 | a step |
 //! | `snorm8`, `snorm16` | code / (2^(n-1) - 1), at least -1 | a step |
+//! | `rgb10a2` | three of code / 1023 in 32 bits, the first in the low ones; the upper two bits are not read | a step |
+//! | `rg11b10` | three floats without a sign in 32 bits, of 11, 11 and 10, the first in the low ones; 5 are the exponent | 2^-5 of itself, at least 2^-19 |
 //! | `u8`, `u16`, `u32`, `i32` | itself; indices and counts only | nothing |
 //!
 //! The default is what the file has: `FLOAT`, `HALF` and `UINT` of an EXR are `f32`, `f16` and `u32`;

@@ -44,9 +44,18 @@ pub(super) fn read(
     Ok(Numbers { size, components: components.collect(), file: format })
 }
 
+/// How many bytes the numbers of a pixel have.
+fn pixel_bytes(format: Format, components: usize) -> u64 {
+    if format.is_packed() { format.bytes() } else { format.bytes() * components as u64 }
+}
+
 impl Layout {
     fn new(keys: &PlaneKeys, format: Format, components: usize, size: [u32; 2]) -> Reason<Self> {
-        let least = format.bytes() * components as u64;
+        if format.is_packed() && components != 3 {
+            let word = format.word();
+            return Err(format!("{word} has three numbers a pixel, and the plane holds one"));
+        }
+        let least = pixel_bytes(format, components);
         let pixel = keys.pixel_stride.unwrap_or(least);
         if pixel < least {
             return Err(format!("pixel_stride is {pixel}, but a pixel has {least} bytes"));
@@ -65,7 +74,7 @@ impl Layout {
     /// How many bytes of a file of this length there are from the first number to the last.
     fn span(&self, length: u64) -> Reason<u64> {
         let Self { size: [width, height], components, format, offset, .. } = *self;
-        let pixel = format.bytes() * components as u64;
+        let pixel = pixel_bytes(format, components);
         let down = self.row.saturating_mul(u64::from(height) - 1);
         let across = self.pixel.saturating_mul(u64::from(width) - 1);
         let span = down.saturating_add(across).saturating_add(pixel);
@@ -86,12 +95,13 @@ impl Layout {
     fn component(&self, bytes: &[u8], component: usize) -> Vec<f64> {
         let step = self.format.bytes() as usize;
         let [width, height] = self.size.map(u64::from);
-        let at = |x: u64, y: u64| (y * self.row + x * self.pixel) as usize + component * step;
+        let first = if self.format.is_packed() { 0 } else { component * step };
+        let at = |x: u64, y: u64| (y * self.row + x * self.pixel) as usize + first;
         let number = |start: usize| {
             let mut word = [0; 4];
             let number = bytes.get(start..start + step).unwrap_or_default();
             word.iter_mut().zip(number).for_each(|(to, byte)| *to = *byte);
-            self.format.number(u32::from_le_bytes(word))
+            self.format.number(u32::from_le_bytes(word), component)
         };
         (0..height).flat_map(|y| (0..width).map(move |x| number(at(x, y)))).collect()
     }

@@ -11,6 +11,13 @@ pub enum Storage {
     Single,
     /// `f16`, rounded to either neighbour: 2^-10 of the value, at least 2^-24.
     Half,
+    /// A float of fewer digits, off by `relative` of itself, at least by `least`.
+    Float {
+        /// The part of the value that storing may lose.
+        relative: f64,
+        /// What storing may lose at the least.
+        least: f64,
+    },
     /// Equal steps of this size, in the unit of the plane, rounded to either neighbour: UNORM of n
     /// bits has steps of 1 / (2^n - 1).
     Steps(f64),
@@ -75,6 +82,7 @@ impl Storage {
             Self::Single => 0.0,
             _ if !value.is_finite() => 0.0,
             Self::Half => v_radius(value, 1.0 / 1024.0, 1.0 / 16_777_216.0),
+            Self::Float { relative, least } => v_radius(value, relative, least),
             Self::Steps(step) => step,
             // z is v = scale / t but for a constant and the sign.
             Self::DepthBuffer { step, near, far } => {

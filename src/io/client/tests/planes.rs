@@ -50,6 +50,30 @@ fn normals_in_a_range() {
 }
 
 #[test]
+fn three_numbers_in_one_word() {
+    // 1023, 0 and 341 of 1023, whatever the upper two bits are; then 0, 1023 and 682.
+    let words = [1023 | 341 << 20 | 3 << 30, 1023 << 10 | 682 << 20].map(u32::to_le_bytes);
+    let toml = "size = [2, 1]\n[planes.normal]\nfile = \"n.bin\"\nformat = \"rgb10a2\"\n\
+                range = [-1, 1]";
+    let normals = client(&[("n.bin", words.as_flattened())], toml);
+    let third = 1.0 / 3.0;
+    near(triples(&normals, "normal").as_flattened(), &[1.0, -1.0, -third, -1.0, 1.0, third]);
+    assert_eq!(normals.storage("normal"), Storage::Steps(2.0 / 1023.0));
+    // Floats: exponent 15 is 1, with half of a mantissa 1.5; the least above 0; exponent 17, 4.
+    let words =
+        [15 << 6 | (15 << 6 | 32) << 11 | (17 << 5) << 22, 1 | 1 << 22].map(u32::to_le_bytes);
+    let toml = "size = [2, 1]\n[planes.RGB]\nfile = \"c.bin\"\nformat = \"rg11b10\"";
+    let colors = client(&[("c.bin", words.as_flattened())], toml);
+    let least = 1.0 / 1_048_576.0;
+    assert_eq!(triples(&colors, ""), [[1.0, 1.5, 4.0], [least, 0.0, 2.0 * least]]);
+    let lost = Storage::Float { relative: 1.0 / 32.0, least: 2.0 * least };
+    assert_eq!(colors.storage(""), lost);
+    let folder = Folder::new().with("w.raw", words.as_flattened());
+    let line = folder.refusal("[planes.weight]\nfile = \"w.raw\"\nformat = \"rgb10a2\"");
+    assert!(line.contains("three numbers a pixel, and the plane holds one"), "{line}");
+}
+
+#[test]
 fn numbers_at_distances() {
     // After 3 bytes, rows of 7: two pixels of 3 bytes, of which one counts, and the last one short.
     let bytes = [9, 9, 9, 0, 8, 8, 51, 8, 8, 8, 102, 8, 8, 255];
