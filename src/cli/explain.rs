@@ -60,7 +60,7 @@ pub(super) fn run(args: &Args) -> Ended {
     say("");
     say(text.trim_end());
     if args.client.is_some() && checks.is_empty() {
-        say("\nthe client: this method judges no values of single pixels; see splatref verify");
+        say("\nthe client: nothing of this pixel is judged; see splatref verify");
     } else if !checks.is_empty() {
         say("\nthe client, stage by stage, each from what it has of the stage before:");
         checks.iter().for_each(|check| say(format!("  {check}")));

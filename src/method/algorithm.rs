@@ -137,7 +137,7 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     /// As [`Algorithm::define`].
     fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict>;
 
-    /// Everything of a client that is judged at one pixel; nothing if the method judges cells of levels.
+    /// Everything of a client that is judged at one pixel.
     ///
     /// # Errors
     /// As [`Algorithm::explain`].
@@ -146,10 +146,7 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
         job: &Job<'_>,
         client: &Client,
         pixel: (u32, u32),
-    ) -> Result<Vec<Check>> {
-        let _ = (job, client, pixel);
-        Ok(Vec::new())
-    }
+    ) -> Result<Vec<Check>>;
 
     /// What the settings come to in a scene: names and values as TOML, for the text of a picture.
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {

@@ -4,13 +4,13 @@ use super::algorithm::Job;
 use super::replay::Place;
 use super::tiled::pixels;
 use crate::error::Result;
-use crate::frame::{Plane, Rect};
+use crate::frame::{Grid, Plane, Rect};
 use crate::verify::shift::Told;
 use crate::verify::verdict::{Cause, Causes, Check, Doubt, Fault, Finding, Judged, Verdict};
 
 /// What was found at a pixel: of wrong ones no more than is counted, as every pixel may be wrong.
 #[derive(Clone, Copy, Debug, Default)]
-struct Found {
+struct AtPixel {
     error: f32,
     doubts: u8,
     /// That of the worst fault, if the error is above 1.
@@ -21,7 +21,7 @@ struct Found {
 #[derive(Debug)]
 pub(super) struct Marks {
     rect: Rect,
-    found: Vec<Found>,
+    found: Vec<AtPixel>,
     worst: Option<Finding>,
     /// Everything that was checked, if somebody wants to know.
     log: Option<Vec<(f64, Fault)>>,
@@ -36,7 +36,7 @@ pub(super) struct PixelMarks<'a> {
 impl Marks {
     /// Nothing found yet.
     pub(super) fn new(rect: Rect) -> Self {
-        Self { rect, found: vec![Found::default(); rect.pixels()], worst: None, log: None }
+        Self { rect, found: vec![AtPixel::default(); rect.pixels()], worst: None, log: None }
     }
 
     /// The same, and everything that is checked will be told.
@@ -87,7 +87,7 @@ impl Marks {
     }
 
     /// What was found at each pixel.
-    fn pixels(&self) -> impl Iterator<Item = ((u32, u32), Found)> {
+    fn pixels(&self) -> impl Iterator<Item = ((u32, u32), AtPixel)> {
         pixels(self.rect).zip(self.found.iter().copied())
     }
 
@@ -214,6 +214,70 @@ fn keep_worse(worst: &mut Option<Finding>, own: Option<Finding>) {
     });
     if worse {
         *worst = Some(own);
+    }
+}
+
+/// The pixels of planes that are judged.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Watch {
+    All,
+    /// This one, and everything that is checked there is told.
+    One((u32, u32)),
+}
+
+impl Watch {
+    /// The parts of planes that are judged, each in its tile.
+    pub(super) fn parts(self, grid: &Grid) -> Vec<(usize, Rect)> {
+        match self {
+            Self::All => grid.rects().into_iter().enumerate().collect(),
+            Self::One((x, y)) if grid.holds(x, y) => vec![(grid.place(x, y).0, pixel((x, y)))],
+            Self::One(_) => Vec::new(),
+        }
+    }
+
+    /// The marks of a part.
+    pub(super) fn marks(self, rect: Rect) -> Marks {
+        match self {
+            Self::All => Marks::new(rect),
+            Self::One(_) => Marks::logging(rect),
+        }
+    }
+
+    /// The marks of all parts.
+    pub(super) fn picture(self, job: &Job<'_>) -> Marks {
+        self.marks(if let Self::One(at) = self { pixel(at) } else { job.picture() })
+    }
+}
+
+fn pixel((x, y): (u32, u32)) -> Rect {
+    Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 }
+}
+
+/// What was found of a stage: its name, the planes that were judged, and the marks.
+pub(super) type StageMarks = (&'static str, Vec<&'static str>, Marks);
+
+/// What was found of a method that has levels before its picture, whose last N stages are judged tile by
+/// tile.
+pub(super) struct Found<const N: usize> {
+    pub(super) levels: Vec<StageMarks>,
+    pub(super) stages: [(&'static str, Vec<&'static str>); N],
+    pub(super) tiles: Vec<[Marks; N]>,
+}
+
+impl<const N: usize> Found<N> {
+    /// All stages as planes.
+    pub(super) fn judged(self, job: &Job<'_>) -> Vec<Judged> {
+        let levels = self.levels.into_iter();
+        let levels = levels.map(|(stage, planes, marks)| marks.whole(stage, planes));
+        levels.chain(judged(job, self.stages, self.tiles)).collect()
+    }
+
+    /// Everything that was checked.
+    pub(super) fn checks(self) -> Vec<Check> {
+        let names = self.stages.map(|(stage, _)| stage);
+        let tiles = self.tiles.into_iter().flat_map(|tile| names.into_iter().zip(tile));
+        let levels = self.levels.into_iter().map(|(stage, _, marks)| (stage, marks));
+        levels.chain(tiles).flat_map(|(stage, marks)| marks.checks(stage)).collect()
     }
 }
 

@@ -53,7 +53,7 @@ use crate::method::{Picture, Stage, projection};
 use crate::number::Exact;
 use crate::number::ball::Profile;
 use crate::verify::client::Client;
-use crate::verify::verdict::Verdict;
+use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -103,5 +103,14 @@ impl Algorithm for Settings {
 
     fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
         Ok(verify::verify::<P>(job, self, client, budget))
+    }
+
+    fn checks<P: Profile>(
+        &self,
+        job: &Job<'_>,
+        client: &Client,
+        pixel: (u32, u32),
+    ) -> Result<Vec<Check>> {
+        verify::checks::<P>(job, self, client, pixel)
     }
 }

@@ -29,7 +29,8 @@ impl Session<'_> {
     pub fn needs(&self, camera: &Camera, making: Making) -> u64 {
         let pixels = u64::from(camera.width) * u64::from(camera.height);
         if making == Making::Verdict {
-            let a_pixel = OF_A_JUDGED_PIXEL + self.planes(camera, 8);
+            let cells = if self.has_levels() { OF_JUDGED_CELLS } else { 0 };
+            let a_pixel = OF_A_JUDGED_PIXEL + cells + self.planes(camera, 8);
             return pixels * a_pixel + self.items() * OF_A_JUDGED_SPLAT;
         }
         let fast = self.method.fast_bytes_a_pixel().filter(|_| making == Making::Render);
@@ -54,15 +55,21 @@ impl Session<'_> {
         items as u64
     }
 
+    /// Whether there are planes of levels.
+    fn has_levels(&self) -> bool {
+        let mut rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
+        rows.any(|row| of(row) == Copies::Levels)
+    }
+
     /// The planes of all stages, a pixel.
     fn planes(&self, camera: &Camera, number: u64) -> u64 {
         let levels = pyramid::sizes(camera.width, camera.height).len() as u64;
         let groups = self.index.groups.as_ref().map_or(1, |groups| groups.len() as u64);
-        let copies = |row: &PlaneRow| match row.name {
-            name if !name.contains('#') => 1,
-            name if name.contains("group##") => groups,
-            name if name.starts_with("layer") => u64::from(peeling::STAGES),
-            _ => levels,
+        let copies = |row: &PlaneRow| match of(row) {
+            Copies::One => 1,
+            Copies::Groups => groups,
+            Copies::Layers => u64::from(peeling::STAGES),
+            Copies::Levels => levels,
         };
         let bytes = |row: &PlaneRow| match row.holds {
             Holds::Scalar => number,
@@ -84,6 +91,24 @@ impl Session<'_> {
     }
 }
 
+/// Of what there is a plane of a row.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Copies {
+    One,
+    Groups,
+    Layers,
+    Levels,
+}
+
+fn of(row: &PlaneRow) -> Copies {
+    match row.name {
+        name if !name.contains('#') => Copies::One,
+        name if name.contains("group##") => Copies::Groups,
+        name if name.starts_with("layer") => Copies::Layers,
+        _ => Copies::Levels,
+    }
+}
+
 /// Numbers of a pixel that passes hold at once, the planes of the picture included, at most.
 const OF_A_PIXEL: u64 = 80;
 /// Numbers of a splat, with the bins that list it.
@@ -91,5 +116,7 @@ const OF_A_SPLAT: u64 = 64;
 /// Bytes of a splat that is judged, and of a pixel beside the planes of a client.
 const OF_A_JUDGED_SPLAT: u64 = 704;
 const OF_A_JUDGED_PIXEL: u64 = 128;
+/// Bytes of the cells of all levels in balls, a pixel.
+const OF_JUDGED_CELLS: u64 = 1536;
 /// Bytes of a splat in balls, with the bins that list it: what a margin is computed from.
 const OF_A_BALL: u64 = 288;

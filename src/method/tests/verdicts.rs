@@ -225,9 +225,17 @@ pub(in crate::method) fn assert_found_where(
             change(&mut plane.samples, place, *slip, empty);
         }
         for rounding in [Rounding::Ieee, Rounding::Gpu] {
-            let found = verdict(&session, camera, &frame, rounding);
-            let found = found.first_wrong().map(|stage| stage.stage);
-            assert_eq!(found, Some(*stage), "{plane}, {slip:?}, {rounding:?}");
+            let found = wrong(&verdict(&session, camera, &frame, rounding));
+            let (first, worst) = found.unwrap_or_else(|| panic!("{plane}, {slip:?} is right"));
+            assert_eq!(first, *stage, "{plane}, {slip:?}, {rounding:?}");
+            // Replayed at its pixel, the fault is there.
+            let mut client = Client::from(&frame);
+            client.rounding = rounding;
+            let checks = session.checks(camera, &client, worst.pixel).unwrap();
+            let there = checks.iter().any(|check| {
+                check.stage == first && check.error > 1.0 && check.fault == worst.fault
+            });
+            assert!(there, "{plane}, {slip:?}, {rounding:?}: {worst:?}");
         }
     }
 }

@@ -33,12 +33,12 @@ use crate::composite::decide;
 use crate::frame::raster::Snap;
 use crate::frame::{Bins, Grid, Rect};
 use crate::method::algorithm::Job;
-use crate::method::judged::{Marks, PixelMarks, counted};
+use crate::method::judged::{Marks, PixelMarks, StageMarks, Watch, counted};
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Pixel, Real, Truth, Vector3};
 use crate::scene::Surfels;
 use crate::verify::client::Ties;
-use crate::verify::verdict::{Doubt, Fault, Judged};
+use crate::verify::verdict::{Doubt, Fault};
 use planes::Says;
 use primitives::{Pieces, PossiblePiece};
 
@@ -86,16 +86,18 @@ pub(in crate::method) fn judge<P: Profile>(
     cull: bool,
     snap: Snap,
     planes: &SamplePlanes<'_>,
-) -> Judged {
-    let mut marks = Marks::picture(job);
+    watch: Watch,
+) -> StageMarks {
+    let mut marks = watch.picture(job);
     let names = planes.names();
     if !names.is_empty() {
         let possible = AllPossible::<P>::new(job, cull, snap);
-        let tiles = job.grid().rects().into_iter().enumerate().collect();
-        let found = job.exec.ordered(tiles, |(tile, rect)| possible.judge(planes, (tile, rect)));
+        let found = job.exec.ordered(watch.parts(&job.grid()), |(tile, rect)| {
+            possible.judge(planes, (tile, rect), watch.marks(rect))
+        });
         found.into_iter().for_each(|part| marks.put(part));
     }
-    marks.whole("projection", names)
+    ("projection", names, marks)
 }
 
 impl<'a, P: Profile> AllPossible<'a, P> {
@@ -162,8 +164,12 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         }
     }
 
-    fn judge(&self, planes: &SamplePlanes<'_>, (tile, rect): (usize, Rect)) -> Marks {
-        let mut marks = Marks::new(rect);
+    fn judge(
+        &self,
+        planes: &SamplePlanes<'_>,
+        (tile, rect): (usize, Rect),
+        mut marks: Marks,
+    ) -> Marks {
         let claim = |(_, at)| Claim::new(planes, at, &self.pieces.unclear);
         let mut claims: Vec<Claim<P>> = counted(rect).map(claim).collect();
         self.each((tile, &rect), |pixel, one| {

@@ -2,17 +2,16 @@
 
 use super::planes::{CellPlanes, Level};
 use crate::composite::decide;
-use crate::frame::Rect;
 use crate::method::algorithm::Job;
 use crate::method::allowed::{MOST, Outcome, outcomes};
 use crate::method::checks::least_wrong;
-use crate::method::judged::{Marks, PixelMarks, counted};
+use crate::method::judged::{Marks, PixelMarks, StageMarks, Watch, counted};
 use crate::method::projection::verify::SamplePlanes;
 use crate::method::projection::{Has, SampleKind};
 use crate::method::pyramid::{Cell, Settings, pull, push};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Truth, Vector2};
-use crate::verify::verdict::{Doubt, Judged};
+use crate::verify::verdict::Doubt;
 
 /// Four cells.
 type Four<P> = [Cell<Ball<P>>; 4];
@@ -52,8 +51,8 @@ impl<'a, P: Profile> Levels<'a, P> {
     }
 
     /// Judges each level of the pull whose finer one is there.
-    pub(super) fn pull(&self) -> Judged {
-        let mut found = Found::new(self.job);
+    pub(super) fn pull(&self, watch: Watch) -> StageMarks {
+        let mut found = Phase::new(self.job, watch);
         for (level, planes) in (1..).zip(self.planes[0]) {
             let Some(fine) = &self.pulled[level - 1] else { continue };
             let side = pull::side(level - 1);
@@ -69,12 +68,12 @@ impl<'a, P: Profile> Levels<'a, P> {
                 outcomes.iter().map(of).collect()
             });
         }
-        found.marks.whole("pull", found.names)
+        ("pull", found.names, found.marks)
     }
 
     /// Judges each level of the push whose coarser one is there, and what the pull left of it.
-    pub(super) fn push(&self, settings: &Settings) -> Judged {
-        let mut found = Found::new(self.job);
+    pub(super) fn push(&self, settings: &Settings, watch: Watch) -> StageMarks {
+        let mut found = Phase::new(self.job, watch);
         for (level, planes) in self.planes[1].iter().enumerate() {
             let (Some(fine), Some(coarse)) = (&self.pulled[level], &self.pushed[level + 1]) else {
                 continue;
@@ -83,19 +82,20 @@ impl<'a, P: Profile> Levels<'a, P> {
                 pushed((fine, coarse), at, level, settings, pixel)
             });
         }
-        found.marks.whole("push", found.names)
+        ("push", found.names, found.marks)
     }
 }
 
 /// What was found of a phase.
-struct Found {
+struct Phase {
+    watch: Watch,
     marks: Marks,
     names: Vec<&'static str>,
 }
 
-impl Found {
-    fn new(job: &Job<'_>) -> Self {
-        Self { marks: Marks::picture(job), names: Vec::new() }
+impl Phase {
+    fn new(job: &Job<'_>, watch: Watch) -> Self {
+        Self { watch, marks: watch.picture(job), names: Vec::new() }
     }
 
     /// Judges the planes of a level by all that each cell may be.
@@ -115,9 +115,10 @@ impl Found {
                 self.names.push(name);
             }
         }
-        let tiles = job.exec.grid(width, height).rects();
-        let found = job.exec.ordered(tiles, |rect: Rect| {
-            let mut marks = Marks::new(rect);
+        let watch = self.watch;
+        let parts = watch.parts(&job.exec.grid(width, height));
+        let found = job.exec.ordered(parts, |(_, rect)| {
+            let mut marks = watch.marks(rect);
             for (pixel, at) in counted(rect) {
                 let mut pixel = marks.at(pixel);
                 let all = all(at, &mut pixel);

@@ -29,15 +29,16 @@ mod planes;
 mod tests;
 
 use super::Settings;
+use crate::error::Result;
 use crate::frame::pyramid;
 use crate::frame::raster::Snap;
 use crate::method::algorithm::Job;
-use crate::method::judged::{Marks, counted, judged};
+use crate::method::judged::{Found, Watch, counted};
 use crate::method::projection::verify::{self as samples, SamplePlanes};
 use crate::number::ball::Profile;
 use crate::verify::client::Client;
 use crate::verify::shift::Shifts;
-use crate::verify::verdict::Verdict;
+use crate::verify::verdict::{Check, Verdict};
 use levels::Levels;
 use pixel::PixelJudge;
 use planes::{CellPlanes, PicturePlanes};
@@ -52,6 +53,30 @@ pub(super) fn verify<P: Profile>(
     client: &Client,
     budget: f64,
 ) -> Verdict {
+    let (found, covered) = judge::<P>(job, settings, client, Watch::All);
+    let stages = found.judged(job);
+    let undecided = [1, 2].map(|i: usize| stages[i].doubtful(ANY)).iter().sum();
+    Verdict { stages, covered, undecided, budget, shifts: Shifts::default() }
+}
+
+/// Everything that is judged at one pixel: the cells of all levels that have its place, and the pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    (x, y): (u32, u32),
+) -> Result<Vec<Check>> {
+    job.camera.check_pixel(x, y)?;
+    Ok(judge::<P>(job, settings, client, Watch::One((x, y))).0.checks())
+}
+
+/// What is found of all stages, and how many pixels may be covered.
+fn judge<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    watch: Watch,
+) -> (Found<1>, u64) {
     // The settings have been checked: there is a grid of so many digits.
     let snap = Snap::new(settings.subpixel_bits).unwrap_or_default();
     let sizes = pyramid::sizes(job.camera.width, job.camera.height);
@@ -59,20 +84,18 @@ pub(super) fn verify<P: Profile>(
     let finest = SamplePlanes::new(client, job.scene);
     let pulled: Vec<_> = (1..=last).map(|level| CellPlanes::pulled(client, level)).collect();
     let pushed: Vec<_> = (0..last).map(|level| CellPlanes::pushed(client, level)).collect();
-    let projection = samples::judge::<P>(job, settings.cull, snap, &finest);
+    let projection = samples::judge::<P>(job, settings.cull, snap, &finest, watch);
     let levels = Levels::<P>::new(job, &sizes, &finest, [&pulled, &pushed]);
-    let mut stages = vec![projection, levels.pull(), levels.push(settings)];
+    let before = vec![projection, levels.pull(watch), levels.push(settings, watch)];
     let handed = PicturePlanes::new(client);
     let judge = PixelJudge::new(job, levels.finest(), &handed);
-    let found = job.exec.ordered(job.grid().rects(), |rect| {
-        let mut marks = Marks::new(rect);
+    let found = job.exec.ordered(watch.parts(&job.grid()), |(_, rect)| {
+        let mut marks = watch.marks(rect);
         let at = counted(rect);
         let covered = at.filter(|(pixel, at)| judge.judge(*at, &mut marks.at(*pixel))).count();
         ([marks], covered as u64)
     });
     let covered = found.iter().map(|(_, covered)| covered).sum();
     let tiles = found.into_iter().map(|(marks, _)| marks).collect();
-    stages.extend(judged(job, [("shading", judge.names())], tiles));
-    let undecided = [1, 2].map(|i: usize| stages[i].doubtful(ANY)).iter().sum();
-    Verdict { stages, covered, undecided, budget, shifts: Shifts::default() }
+    (Found { levels: before, stages: [("shading", judge.names())], tiles }, covered)
 }

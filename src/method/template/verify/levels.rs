@@ -1,17 +1,15 @@
 //! The propagation of a client, level by level.
 
 use super::planes::{CenterPlanes, Level};
-use crate::frame::Rect;
 use crate::method::algorithm::Job;
 use crate::method::allowed::{MOST, Outcome, outcomes};
 use crate::method::checks::least_wrong;
-use crate::method::judged::{Marks, PixelMarks, counted};
+use crate::method::judged::{PixelMarks, StageMarks, Watch, counted};
 use crate::method::projection::Has;
 use crate::method::projection::verify::SamplePlanes;
 use crate::method::template::{Center, Settings, propagation};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
-use crate::verify::verdict::Judged;
 
 /// The levels as a client has them.
 pub(super) struct Levels<'a, P: Profile> {
@@ -46,8 +44,8 @@ impl<'a, P: Profile> Levels<'a, P> {
     }
 
     /// Judges each level whose finer one is there.
-    pub(super) fn judge(&self) -> Judged {
-        let (mut marks, mut names) = (Marks::picture(self.job), Vec::new());
+    pub(super) fn judge(&self, watch: Watch) -> StageMarks {
+        let (mut marks, mut names) = (watch.picture(self.job), Vec::new());
         for (level, planes) in (1..).zip(self.planes) {
             let (Some(fine), own) = (&self.levels[level - 1], planes.names()) else { continue };
             if own.is_empty() {
@@ -56,9 +54,9 @@ impl<'a, P: Profile> Levels<'a, P> {
             names.extend(own.into_iter().filter(|name| !names.contains(name)).collect::<Vec<_>>());
             let [width, height] = self.sizes[level];
             let reach = Ball::from_f32(self.settings.reach(level - 1));
-            let tiles = self.job.exec.grid(width, height).rects();
-            let found = self.job.exec.ordered(tiles, |rect: Rect| {
-                let mut marks = Marks::new(rect);
+            let parts = watch.parts(&self.job.exec.grid(width, height));
+            let found = self.job.exec.ordered(parts, |(_, rect)| {
+                let mut marks = watch.marks(rect);
                 for (pixel, at) in counted(rect) {
                     let finer = propagation::four(fine, at.0, at.1);
                     cell(planes, at, (&finer, reach), &mut marks.at(pixel));
@@ -67,7 +65,7 @@ impl<'a, P: Profile> Levels<'a, P> {
             });
             found.into_iter().for_each(|part| marks.put(part));
         }
-        marks.whole("propagation", names)
+        ("propagation", names, marks)
     }
 }
 

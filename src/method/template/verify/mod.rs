@@ -28,15 +28,16 @@ mod planes;
 mod tests;
 
 use super::{Settings, propagation};
+use crate::error::Result;
 use crate::frame::pyramid;
 use crate::frame::raster::Snap;
 use crate::method::algorithm::Job;
-use crate::method::judged::{Marks, counted, judged};
+use crate::method::judged::{Found, Watch, counted};
 use crate::method::projection::verify::{self as samples, SamplePlanes};
 use crate::number::ball::Profile;
 use crate::verify::client::Client;
 use crate::verify::shift::Shifts;
-use crate::verify::verdict::Verdict;
+use crate::verify::verdict::{Check, Verdict};
 use levels::Levels;
 use pixel::PixelJudge;
 use planes::{CenterPlanes, PicturePlanes};
@@ -51,24 +52,46 @@ pub(super) fn verify<P: Profile>(
     client: &Client,
     budget: f64,
 ) -> Verdict {
+    let (found, covered) = judge::<P>(job, settings, client, Watch::All);
+    let stages = found.judged(job);
+    let undecided = stages[2].doubtful(ANY);
+    Verdict { stages, covered, undecided, budget, shifts: Shifts::default() }
+}
+
+/// Everything that is judged at one pixel: the cells of all levels that have its place, and the pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    (x, y): (u32, u32),
+) -> Result<Vec<Check>> {
+    job.camera.check_pixel(x, y)?;
+    Ok(judge::<P>(job, settings, client, Watch::One((x, y))).0.checks())
+}
+
+/// What is found of all stages, and how many pixels may be covered.
+fn judge<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    watch: Watch,
+) -> (Found<3>, u64) {
     let mut sizes = pyramid::sizes(job.camera.width, job.camera.height);
     sizes.truncate(propagation::top(settings, &sizes) + 1);
     let finest = SamplePlanes::new(client, job.scene);
     let coarser: Vec<_> = (1..sizes.len()).map(|level| CenterPlanes::new(client, level)).collect();
-    let projection = samples::judge::<P>(job, settings.cull, Snap::default(), &finest);
+    let projection = samples::judge::<P>(job, settings.cull, Snap::default(), &finest, watch);
     let levels = Levels::<P>::new(job, settings, &sizes, &finest, &coarser);
-    let propagation = levels.judge();
+    let propagation = levels.judge(watch);
     let handed = PicturePlanes::new(client);
     let judge = PixelJudge::new(job, settings, levels.all(), &handed);
-    let found = job.exec.ordered(job.grid().rects(), |rect| {
-        let mut marks = [(); 3].map(|()| Marks::new(rect));
+    let found = job.exec.ordered(watch.parts(&job.grid()), |(_, rect)| {
+        let mut marks = [(); 3].map(|()| watch.marks(rect));
         let covered = counted(rect).filter(|at| judge.judge(*at, &mut marks)).count();
         (marks, covered as u64)
     });
     let covered = found.iter().map(|(_, covered)| covered).sum();
     let tiles = found.into_iter().map(|(marks, _)| marks).collect();
-    let mut stages = vec![projection, propagation];
-    stages.extend(judged(job, handed.stages(judge.gathers()), tiles));
-    let undecided = stages[2].doubtful(ANY);
-    Verdict { stages, covered, undecided, budget, shifts: Shifts::default() }
+    let stages = handed.stages(judge.gathers());
+    (Found { levels: vec![projection, propagation], stages, tiles }, covered)
 }
