@@ -99,7 +99,8 @@ fn component_of<P: Profile>(
         channel: channel(),
         found: found.middle,
         truth: truth.middle,
-        radius: truth.radius + found.radius,
+        // Of what is not a number nothing is known.
+        radius: if found.middle.is_nan() { truth.radius } else { truth.radius + found.radius },
     });
 }
 

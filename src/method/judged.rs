@@ -109,7 +109,8 @@ impl PixelMarks<'_> {
         let Marks { rect, found, worst, log } = &mut *self.marks;
         if let Some(log) = log {
             let fault = fault();
-            let anything = matches!(&fault, Fault::Value { radius, .. } if radius.is_nan());
+            let unknown = matches!(&fault, Fault::Value { radius, .. } if radius.is_nan());
+            let anything = unknown && !(error > 1.0);
             if !anything {
                 log.push((error, fault));
             }

@@ -112,7 +112,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             }
         };
         let tangent = self.handed.tangent.map_or_else(own, |plane| plane.balls(at));
-        let null = |part: &Ball<P>| part.middle == 0.0 && part.radius == 0.0;
+        // Others have length 1, however coarsely they are stored.
+        let null = |part: &Ball<P>| part.middle == 0.0 && part.radius < 0.5;
         (!tangent.iter().all(null)).then_some(tangent)
     }
 
