@@ -1,6 +1,6 @@
 //! What a right implementation may leave of each stage, held against somebody's planes.
 //!
-//! Surfels are projected in [`Ball`](crate::number::Ball)s of a [`Profile`], each as it is drawn in its
+//! Surfels are projected in [`Ball`]s of a [`Profile`], each as it is drawn in its
 //! own group. Each stage is judged from what the client has of the stage before, as it is stored;
 //! what the client has not is taken from the balls.
 //!
