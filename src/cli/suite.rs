@@ -5,7 +5,8 @@ use super::{Ended, Ending, say};
 use serde::Deserialize;
 use splatref::verify::shift::{LIMITS, Shift, Shifts};
 use splatref::{Error, Result};
-use std::fs;
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
@@ -64,7 +65,11 @@ pub(super) fn run(args: &Args) -> Ended {
 }
 
 fn verdict(path: &Path) -> Result<Verdict> {
-    let text = fs::read_to_string(path).map_err(|source| Error::io(path, source))?;
+    let mut text = String::new();
+    // A verdict has some kilobytes: of anything longer the part that is read is no JSON.
+    let file = File::open(path).map(|file| file.take(1 << 24));
+    file.and_then(|mut file| file.read_to_string(&mut text))
+        .map_err(|source| Error::io(path, source))?;
     serde_json::from_str(&text)
         .map_err(|error| Error::format(path, format!("no verdict of `verify --json`: {error}")))
 }

@@ -14,6 +14,11 @@ pub struct Rect {
 }
 
 impl Rect {
+    /// One pixel.
+    pub(crate) fn pixel((x, y): (u32, u32)) -> Self {
+        Self { x0: x, y0: y, x1: x + 1, y1: y + 1 }
+    }
+
     /// Whether no pixel is inside.
     #[inline(always)]
     #[must_use]

@@ -27,11 +27,6 @@ pub(super) fn widened<P: Profile>(ball: Ball<P>, by: f64) -> Ball<P> {
     if by > 0.0 { Ball::new(ball.middle, ball.radius + by) } else { ball }
 }
 
-/// Both of three numbers.
-pub(super) fn either_of<P: Profile>(a: [Ball<P>; 3], b: [Ball<P>; 3]) -> [Ball<P>; 3] {
-    [0, 1, 2].map(|c| a[c].either(b[c]))
-}
-
 /// What the next stage reads of a stored value of this format: floats as they are; none of anything
 /// that each reader turns into a number.
 fn read<P: Profile>(value: f64, storage: Storage) -> Option<Ball<P>> {

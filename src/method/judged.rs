@@ -227,11 +227,22 @@ pub(super) enum Watch {
 }
 
 impl Watch {
+    /// A pixel of the picture.
+    ///
+    /// # Errors
+    /// [`crate::Error::Usage`] if the pixel is outside.
+    pub(super) fn one(job: &Job<'_>, (x, y): (u32, u32)) -> Result<Self> {
+        job.camera.check_pixel(x, y)?;
+        Ok(Self::One((x, y)))
+    }
+
     /// The parts of planes that are judged, each in its tile.
     pub(super) fn parts(self, grid: &Grid) -> Vec<(usize, Rect)> {
         match self {
             Self::All => grid.rects().into_iter().enumerate().collect(),
-            Self::One((x, y)) if grid.holds(x, y) => vec![(grid.place(x, y).0, pixel((x, y)))],
+            Self::One((x, y)) if grid.holds(x, y) => {
+                vec![(grid.place(x, y).0, Rect::pixel((x, y)))]
+            }
             Self::One(_) => Vec::new(),
         }
     }
@@ -246,12 +257,8 @@ impl Watch {
 
     /// The marks of all parts.
     pub(super) fn picture(self, job: &Job<'_>) -> Marks {
-        self.marks(if let Self::One(at) = self { pixel(at) } else { job.picture() })
+        self.marks(if let Self::One(at) = self { Rect::pixel(at) } else { job.picture() })
     }
-}
-
-fn pixel((x, y): (u32, u32)) -> Rect {
-    Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 }
 }
 
 /// What was found of a stage: its name, the planes that were judged, and the marks.

@@ -146,7 +146,7 @@ impl Place {
         let Job { camera, exec, .. } = *job;
         camera.check_pixel(x, y)?;
         let (tile, _) = exec.grid(camera.width, camera.height).place(x, y);
-        Ok(Self { tile, rect: Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 } })
+        Ok(Self { tile, rect: Rect::pixel((x, y)) })
     }
 
     /// The splats that may touch the pixel.

@@ -231,6 +231,7 @@ impl<'a> Session<'a> {
     ) -> Result<Vec<Check>> {
         let job = self.job(camera)?;
         self.check_client(camera, client)?;
+        self.ask(camera, Making::Verdict)?;
         match client.rounding {
             Rounding::Gpu => self.method.checks::<Gpu>(&job, client, pixel),
             Rounding::Ieee => self.method.checks::<Ieee>(&job, client, pixel),

@@ -92,7 +92,7 @@ fn pieces<R: Exact>(
     (x, y): (u32, u32),
     found: &mut Vec<Contender<R>>,
 ) {
-    let pixel = Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 };
+    let pixel = Rect::pixel((x, y));
     primitives::pieces(projector, id, |piece| {
         piece.for_each(&pixel, |at| {
             let sample = piece.sample(projector, &at);

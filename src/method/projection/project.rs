@@ -22,7 +22,7 @@ enum DrawnItem<R> {
 impl<R: Exact> DrawnItem<R> {
     fn bounds(&self) -> Rect {
         match self {
-            Self::Pixel([x, y], _) => Rect { x0: *x, y0: *y, x1: x + 1, y1: y + 1 },
+            Self::Pixel([x, y], _) => Rect::pixel((*x, *y)),
             Self::Piece(piece) => piece.bounds,
         }
     }

@@ -54,4 +54,9 @@ impl<P: Profile> Ball<P> {
     pub(crate) fn either(self, other: Self) -> Self {
         hull(true, self, other)
     }
+
+    /// Both of two triples.
+    pub(crate) fn either_of(a: [Self; 3], b: [Self; 3]) -> [Self; 3] {
+        [0, 1, 2].map(|c| a[c].either(b[c]))
+    }
 }

@@ -38,10 +38,7 @@ impl Map {
         };
         let first = square(s.middle.floor() as i64, t.middle.floor() as i64);
         let places = (upper.max(0)..=lower).flat_map(|j| (left..=right).map(move |i| (i, j)));
-        places.fold(first, |all, (i, j)| {
-            let own = square(i, j);
-            [0, 1, 2].map(|c| all[c].either(own[c]))
-        })
+        places.fold(first, |all, (i, j)| Ball::either_of(all, square(i, j)))
     }
 }
 

@@ -8,8 +8,8 @@ use crate::composite::sum;
 use crate::method::Holds;
 use crate::method::algorithm::Job;
 use crate::method::checks::{
-    Report, Shading, Surface, anything, either_of, input, inputs, least_wrong, number,
-    only_fitting, triple, whole, widened,
+    Report, Shading, Surface, anything, input, inputs, least_wrong, number, only_fitting, triple,
+    whole, widened,
 };
 use crate::method::ewa::attributes::Sums;
 use crate::method::judged::Marks;
@@ -98,8 +98,9 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             (self.opacity(at, sums), self.color(at, self.depth(at, nearest, sums), &averages))
         };
         let each = all(sums).iter().map(|sums| of(Some(sums)));
-        let (opacity, color) =
-            each.reduce(|a, b| (a.0.either(b.0), either_of(a.1, b.1))).unwrap_or_else(|| of(None));
+        let (opacity, color) = each
+            .reduce(|a, b| (a.0.either(b.0), Ball::either_of(a.1, b.1)))
+            .unwrap_or_else(|| of(None));
         (
             handed.opacity.map_or(opacity, |plane| input(&plane, at)),
             handed.shaded.map_or(color, |plane| inputs(&plane, at)),

@@ -64,10 +64,9 @@ pub(super) fn checks<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
     client: &Client,
-    (x, y): (u32, u32),
+    pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
-    job.camera.check_pixel(x, y)?;
-    Ok(judge::<P>(job, settings, client, Watch::One((x, y))).0.checks())
+    Ok(judge::<P>(job, settings, client, Watch::one(job, pixel)?).0.checks())
 }
 
 /// What is found of all stages, and how many pixels may be covered.
