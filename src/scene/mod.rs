@@ -2,6 +2,7 @@
 //!
 //! - [`bounds`]: what bounds a scene.
 //! - [`cloud`]: points as a file holds them, nothing derived, nothing checked.
+//! - [`objects`]: geometries that many objects share, and their motion.
 //! - [`surfels`]: the checked structure of arrays that every method takes.
 //! - [`camera`]: perspective and orthographic cameras.
 //! - `degenerate`: which points can be no surfels.
@@ -21,6 +22,7 @@ pub mod groups;
 pub mod hash;
 pub mod indexed;
 pub mod light;
+pub mod objects;
 pub mod surfels;
 pub mod transform;
 
@@ -30,6 +32,7 @@ pub use environment::Environment;
 pub use groups::Groups;
 pub use indexed::{Counts, Polylines, Primitives, Triangles, Vertices};
 pub use light::{Light, Phong};
+pub use objects::{Geometry, Motion, Object, Objects};
 pub use surfels::{Dropped, Surfels};
 pub use transform::Similarity;
 
@@ -50,6 +53,9 @@ pub struct Scene {
     pub material: Phong,
     /// What surrounds the surfels; black if absent.
     pub environment: Option<Environment>,
+    /// What the scene is made of, if it is made of objects. Surfels and primitives are then those of
+    /// the objects in their places, or none as long as nobody has asked for [`Scene::flattened`].
+    pub objects: Option<Objects>,
 }
 
 impl Scene {
@@ -69,6 +75,7 @@ impl Scene {
             lights: Vec::new(),
             material: Phong::default(),
             environment: None,
+            objects: None,
         }
     }
 }

@@ -285,6 +285,61 @@ impl Surfels {
     }
 }
 
+/// Surfels that need no check, while they are put together.
+pub(super) struct Arrays {
+    pub(super) position: Vec<Vec3>,
+    pub(super) normal: Vec<Vec3>,
+    pub(super) radius: Vec<f32>,
+    pub(super) color: Option<Vec<Vec3>>,
+    pub(super) opacity: Option<Vec<f32>>,
+    pub(super) tangents: Option<Vec<[Vec3; 2]>>,
+}
+
+impl Arrays {
+    /// None yet; with colours, opacities and half axes or not.
+    pub(super) fn new([color, opacity, tangents]: [bool; 3]) -> Self {
+        Self {
+            position: Vec::new(),
+            normal: Vec::new(),
+            radius: Vec::new(),
+            color: color.then(Vec::new),
+            opacity: opacity.then(Vec::new),
+            tangents: tangents.then(Vec::new),
+        }
+    }
+
+    /// Appends others, that have what these have.
+    pub(super) fn append(&mut self, others: Self) {
+        self.position.extend(others.position);
+        self.normal.extend(others.normal);
+        self.radius.extend(others.radius);
+        let (color, opacity) = (self.color.iter_mut(), self.opacity.iter_mut());
+        color.zip(others.color).for_each(|(to, from)| to.extend(from));
+        opacity.zip(others.opacity).for_each(|(to, from)| to.extend(from));
+        self.tangents.iter_mut().zip(others.tangents).for_each(|(to, from)| to.extend(from));
+    }
+
+    /// The surfels; the median radius and the sphere may be those of a whole of which these are a part.
+    pub(super) fn into_surfels(self, median_radius: f32, sphere: (DVec3, f64)) -> Surfels {
+        let Self { position, normal, radius, color, opacity, tangents } = self;
+        if position.is_empty() {
+            return Surfels::none();
+        }
+        let (groups, bounding_sphere) = (None, sphere);
+        Surfels {
+            position,
+            normal,
+            radius,
+            color,
+            opacity,
+            tangents,
+            groups,
+            median_radius,
+            bounding_sphere,
+        }
+    }
+}
+
 /// The element of rank (n - 1) / 2; there is at least one.
 fn lower_median(mut values: Vec<f32>) -> f32 {
     let middle = (values.len() - 1) / 2;

@@ -59,7 +59,7 @@ impl Similarity {
         cloud.tangent.iter_mut().flatten().for_each(|v| self.turn(v));
         cloud.radius.iter_mut().flatten().for_each(|radius| self.enlarge(radius));
         for half in cloud.tangents.iter_mut().flatten().flatten() {
-            *half = (self.rotation * (half.as_dvec3() * self.scale)).as_vec3();
+            *half = self.stretch(*half);
         }
     }
 
@@ -73,15 +73,20 @@ impl Similarity {
         vertices.radius.iter_mut().for_each(|radius| self.enlarge(radius));
     }
 
-    fn place(&self, p: &mut Vec3) {
+    pub(super) fn place(&self, p: &mut Vec3) {
         *p = (self.rotation * (p.as_dvec3() * self.scale) + self.translation).as_vec3();
     }
 
-    fn turn(&self, v: &mut Vec3) {
+    pub(super) fn turn(&self, v: &mut Vec3) {
         *v = (self.rotation * v.as_dvec3()).as_vec3();
     }
 
-    fn enlarge(&self, radius: &mut f32) {
+    /// A half axis, turned and scaled.
+    pub(super) fn stretch(&self, half: Vec3) -> Vec3 {
+        (self.rotation * (half.as_dvec3() * self.scale)).as_vec3()
+    }
+
+    pub(super) fn enlarge(&self, radius: &mut f32) {
         *radius = (f64::from(*radius) * self.scale) as f32;
     }
 }

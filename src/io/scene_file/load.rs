@@ -82,8 +82,13 @@ impl SceneFile {
         let (surfels, lost) = self.join_surfels(parts, primitives.is_empty(), exec)?;
         dropped += lost;
         let (name, lights) = (self.name.clone(), self.lights.clone());
-        let scene =
-            Scene { name, surfels, primitives, lights, material: self.material, environment };
+        let scene = Scene {
+            primitives,
+            lights,
+            material: self.material,
+            environment,
+            ..Scene::unlit(&name, surfels)
+        };
         Ok(Loaded { scene, models, dropped, dropped_primitives })
     }
 
