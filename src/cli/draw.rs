@@ -35,8 +35,8 @@ pub(super) fn draw<'s>(
             Cow::Owned(session.define::<f32>(camera, true)?)
         }
         OutputSettings { number: Number::F64, stages, .. } => {
-            let Picture { frame, tally, timings } = session.define::<f64>(camera, stages)?;
-            Cow::Owned(Picture { frame: frame.to_f32(), tally, timings })
+            let Picture { frame, tally, timings, seen } = session.define::<f64>(camera, stages)?;
+            Cow::Owned(Picture { frame: frame.to_f32(), tally, timings, seen })
         }
     })
 }

@@ -12,6 +12,7 @@ use crate::frame::{Exec, Frame, Pool};
 use crate::index::Index;
 use crate::index::grouping::{Extended, Grouping, GroupingReport};
 use crate::index::order::BackToFront;
+use crate::index::seen::Seen;
 use crate::number::Exact;
 use crate::number::ball::{Gpu, Ieee};
 use crate::scene::{Camera, Groups, Scene};
@@ -105,7 +106,7 @@ impl<'a> Session<'a> {
         method.check_scene(scene)?;
         let groups = groups.filter(|_| method.grouping().is_some());
         let order = method.needs_order().then(|| BackToFront::new(&scene.surfels, exec));
-        let index = Index { groups, order };
+        let index = Index { groups, order, seen: None };
         index.check(&scene.surfels)?;
         if method.grouping().is_some() {
             index.groups()?;
@@ -132,7 +133,22 @@ impl<'a> Session<'a> {
         self.index.groups.as_ref()
     }
 
-    /// The picture in `f32`, by the fast path where there is one, in the memory of the last one.
+    /// What the next frame is given of the last one: what [`Session::render`] saw, or what somebody
+    /// resumed; none before the first frame, and of a method that carries nothing.
+    #[must_use]
+    pub fn seen(&self) -> Option<&Seen> {
+        self.index.seen.as_ref()
+    }
+
+    /// Goes on from what a frame saw, as if this session had drawn it; from nothing if there is none.
+    /// A method that carries nothing takes no notice.
+    pub fn resume(&mut self, seen: Option<Seen>) {
+        self.index.seen = seen;
+    }
+
+    /// The picture in `f32`, by the fast path where there is one, in the memory of the last one. The
+    /// next picture is the next frame of a method that carries something from frame to frame; one that is
+    /// defined is so too, but leaves what the session carries as it is.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if the camera is out of range, or what the method asks of scene
@@ -152,6 +168,7 @@ impl<'a> Session<'a> {
         let job = Job { scene, index, camera, exec };
         let picture = self.method.draw(&job, &mut self.memory, &mut self.pool)?;
         self.pool.clear();
+        self.index.seen.clone_from(&picture.seen);
         Ok(self.picture.insert(picture))
     }
 

@@ -150,6 +150,26 @@ impl Surfels {
         }
     }
 
+    /// The surfels of ascending indices; one that is none is left out. Median radius and bounding sphere
+    /// stay those of all.
+    #[must_use]
+    pub fn some(&self, indices: &[u64]) -> Self {
+        let indices = indices.iter().map(|&i| i as usize).filter(|&i| i < self.len());
+        let indices: Vec<usize> = indices.collect();
+        fn of<T: Copy>(values: &[T], indices: &[usize]) -> Vec<T> {
+            indices.iter().map(|&i| values[i]).collect()
+        }
+        let arrays = Arrays {
+            position: of(&self.position, &indices),
+            normal: of(&self.normal, &indices),
+            radius: of(&self.radius, &indices),
+            color: self.color.as_ref().map(|color| of(color, &indices)),
+            opacity: self.opacity.as_ref().map(|opacity| of(opacity, &indices)),
+            tangents: self.tangents.as_ref().map(|tangents| of(tangents, &indices)),
+        };
+        arrays.into_surfels(self.median_radius, self.bounding_sphere)
+    }
+
     /// Whether two indices are those of surfels of the same place and shape, by all bits: what is drawn
     /// of one is drawn of the other.
     pub(crate) fn are_equal(&self, a: u32, b: u32) -> bool {

@@ -128,6 +128,12 @@ impl Ids {
         Some(Self { split, counts: counts.to_vec(), first, order })
     }
 
+    /// The ids of no objects.
+    #[must_use]
+    pub fn none() -> Self {
+        Self { split: Split::Even, counts: Vec::new(), first: Vec::new(), order: Vec::new() }
+    }
+
     /// How the bits are divided.
     #[must_use]
     pub fn split(&self) -> Split {
@@ -138,6 +144,12 @@ impl Ids {
     #[must_use]
     pub fn order(&self) -> &[u32] {
         &self.order
+    }
+
+    /// Whether ids have more than 32 bits.
+    #[must_use]
+    pub fn is_wide(&self) -> bool {
+        self.split == Split::Stencil
     }
 
     /// How many surfels an object has.
