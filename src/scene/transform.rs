@@ -1,5 +1,6 @@
 //! Moving, turning and scaling a model.
 
+use super::degenerate::unit;
 use super::{Cloud, Vertices};
 use crate::error::{Error, Result};
 use crate::number::elementary;
@@ -73,8 +74,21 @@ impl Similarity {
         vertices.radius.iter_mut().for_each(|radius| self.enlarge(radius));
     }
 
+    /// Position and normal of a surfel of its kind, which stay those of a surfel.
+    pub(crate) fn surfel(&self, position: Vec3, mut normal: Vec3) -> (Vec3, Vec3) {
+        self.turn(&mut normal);
+        unit(&mut normal);
+        (self.point(position), normal)
+    }
+
+    /// Where a point goes.
+    #[inline(always)]
+    pub(crate) fn point(&self, p: Vec3) -> Vec3 {
+        (self.rotation * (p.as_dvec3() * self.scale) + self.translation).as_vec3()
+    }
+
     pub(super) fn place(&self, p: &mut Vec3) {
-        *p = (self.rotation * (p.as_dvec3() * self.scale) + self.translation).as_vec3();
+        *p = self.point(*p);
     }
 
     pub(super) fn turn(&self, v: &mut Vec3) {

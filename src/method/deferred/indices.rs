@@ -6,7 +6,7 @@ use crate::composite::decide;
 use crate::method::algorithm::Job;
 use crate::method::projection::surfels::PointProjector;
 use crate::method::tiled::Tiled;
-use crate::number::{Exact, Vector3};
+use crate::number::{Exact, Real, Vector3};
 use crate::scene::Surfels;
 use crate::splat::{Fate, SplatSettings, View};
 
@@ -19,7 +19,7 @@ pub(super) struct Kept<R> {
     pub(super) id: u64,
 }
 
-impl<R: Exact> Kept<R> {
+impl<R: Real> Kept<R> {
     pub(super) const EMPTY: Self = Self { depth: R::INFINITY, id: NONE };
 }
 

@@ -50,6 +50,7 @@
 //! [`Exact`]: crate::number::Exact
 
 pub mod explain;
+mod fast;
 mod indices;
 mod part;
 mod picture;
@@ -62,7 +63,7 @@ mod visibility;
 pub use settings::Settings;
 
 use crate::error::{Error, Result};
-use crate::frame::NamedPlane;
+use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage};
@@ -80,6 +81,7 @@ impl Algorithm for Settings {
         "EWA splatting of the surfels that the last frame and an index buffer select [GBP04]";
     const STAGES: &'static [Stage] = planes::STAGES;
     const DRAWS_OBJECTS: bool = true;
+    const FAST_BYTES_A_PIXEL: Option<u64> = Some(192);
     type Memory = ();
 
     fn splats(&self) -> Option<&SplatSettings> {
@@ -92,6 +94,10 @@ impl Algorithm for Settings {
 
     fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         picture::define(job, self, stages)
+    }
+
+    fn draw(&self, job: &Job<'_>, (): &mut (), pool: &mut Pool) -> Result<Picture<f32>> {
+        picture::draw(job, self, pool)
     }
 
     fn stage<R: Exact>(

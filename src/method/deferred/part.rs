@@ -2,8 +2,10 @@
 
 use crate::frame::Exec;
 use crate::method::algorithm::Job;
+use crate::number::lanes::{LANES, Lanes};
 use crate::scene::objects::{Ids, Split};
-use crate::scene::{Scene, Surfels};
+use crate::scene::{Scene, Similarity, Surfels};
+use glam::Vec3;
 use std::borrow::Cow;
 
 /// The surfels of a scene: those of its objects, or of a scene without objects its own, as one.
@@ -40,6 +42,50 @@ impl<'a> Whole<'a> {
         }
     }
 
+    /// Whether surfels have colours.
+    pub(super) fn has_colors(&self) -> bool {
+        match &self.scene.objects {
+            Some(objects) => objects.have_colors(),
+            None => self.scene.surfels.color().is_some(),
+        }
+    }
+
+    /// All surfels in so many shares of about one size, in ascending ids.
+    pub(super) fn shares(&self, count: usize) -> Vec<Vec<Range<'_>>> {
+        let total = self.ids.total();
+        let ends: Vec<u64> = (1..=count as u64).map(|i| total * i / count as u64).collect();
+        let mut shares: Vec<Vec<Range<'_>>> = vec![Vec::new()];
+        let mut done = 0;
+        for &object in self.ids.order() {
+            let of_object = u64::from(self.ids.count(object));
+            let mut from = 0;
+            while from < of_object {
+                while shares.len() < count && done >= ends[shares.len() - 1] {
+                    shares.push(Vec::new());
+                }
+                let room = ends[shares.len() - 1] - done;
+                let to = of_object.min(from + room);
+                let last = shares.len() - 1;
+                shares[last].push(self.range(object, from as usize..to as usize));
+                done += to - from;
+                from = to;
+            }
+        }
+        shares
+    }
+
+    fn range(&self, object: u32, surfels: std::ops::Range<usize>) -> Range<'_> {
+        let first = self.ids.id(object, 0);
+        match &self.scene.objects {
+            Some(objects) => {
+                let place = &objects.places()[object as usize];
+                let place = (*place != Similarity::IDENTITY).then_some(place);
+                Range { of: &objects.geometry(object).surfels, place, first, surfels }
+            }
+            None => Range { of: &self.scene.surfels, place: None, first, surfels },
+        }
+    }
+
     /// The unit of epsilon.
     pub(super) fn median_radius(&self) -> f32 {
         match &self.scene.objects {
@@ -63,6 +109,55 @@ impl<'a> Whole<'a> {
     }
 }
 
+/// Neighbouring surfels of one object.
+pub(super) struct Range<'a> {
+    of: &'a Surfels,
+    /// Where the object is; none: the surfels are in their places.
+    place: Option<&'a Similarity>,
+    /// The id of the surfel 0.
+    first: u64,
+    pub(super) surfels: std::ops::Range<usize>,
+}
+
+impl Range<'_> {
+    pub(super) fn id(&self, surfel: usize) -> u64 {
+        self.first + surfel as u64
+    }
+
+    /// Position and normal of a surfel in its place.
+    pub(super) fn surfel(&self, i: usize) -> (Vec3, Vec3) {
+        let (position, normal) = (self.of.position()[i], self.of.normal()[i]);
+        self.place.map_or((position, normal), |place| place.surfel(position, normal))
+    }
+
+    /// The positions of [`LANES`] surfels from the `first` on; beyond the last those of the last.
+    #[inline(always)]
+    pub(super) fn positions(&self, first: usize) -> [Vec3; LANES] {
+        let all = &self.of.position()[..self.surfels.end];
+        match all[first..].first_chunk::<LANES>() {
+            Some(positions) => *positions,
+            None => std::array::from_fn(|i| all[(first + i).min(all.len() - 1)]),
+        }
+    }
+
+    /// Positions in their places, component by component.
+    #[inline(always)]
+    pub(super) fn moved(&self, positions: &[Vec3; LANES]) -> [Lanes; 3] {
+        let mut moved = [[0.0; LANES]; 3];
+        let Some(place) = self.place else {
+            for i in 0..LANES {
+                [moved[0][i], moved[1][i], moved[2][i]] = positions[i].to_array();
+            }
+            return moved;
+        };
+        let place = *place;
+        for i in 0..LANES {
+            [moved[0][i], moved[1][i], moved[2][i]] = place.point(positions[i]).to_array();
+        }
+        moved
+    }
+}
+
 /// Some surfels of a scene.
 pub(super) struct Part {
     scene: Scene,
@@ -78,11 +173,6 @@ impl Part {
     /// Their ids, ascending.
     pub(super) fn ids(&self) -> &[u64] {
         &self.ids
-    }
-
-    /// Whether surfels of the scene have colours.
-    pub(super) fn has_colors(&self) -> bool {
-        self.scene.surfels.color().is_some()
     }
 
     /// The id of the surfel of an index; [`super::visibility::NONE`] of that of none.

@@ -4,16 +4,16 @@
 use super::indices::{indices, selected};
 use super::part::{Part, Whole};
 use super::visibility::{Nearest, both, nearest};
-use super::{Settings, planes};
+use super::{Settings, fast, planes};
 use crate::error::Result;
-use crate::frame::{NamedPlane, Wanted};
+use crate::frame::{NamedPlane, Pool, Wanted};
 use crate::index::seen::Seen;
 use crate::method::algorithm::Job;
 use crate::method::ewa::attributes::{Sums, attributes};
 use crate::method::ewa::normalization::resolve;
 use crate::method::ewa::planes as ewa;
 use crate::method::given::Given;
-use crate::method::picture::{Clock, Picture, finish};
+use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::prepare::Prepared;
 use crate::method::resolved::{self, Resolved};
 use crate::method::stage::unknown;
@@ -59,11 +59,26 @@ pub(super) fn define<R: Exact>(
     }
     let wanted = Wanted {
         normal: stages || !job.scene.lights.is_empty(),
-        color: part.has_colors(),
+        color: whole.has_colors(),
         observed: false,
     };
     let target = resolved::framebuffer(job, &averages, wanted);
     Ok(Picture { seen: Some(now), ..finish(target, left, tally, clock, job) })
+}
+
+/// The fast path for `f32`. Without pass 3 the definition: the paper shows that for what it spoils.
+pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
+    if !settings.second {
+        return define(job, settings, false);
+    }
+    let wanted = Wanted {
+        normal: !job.scene.lights.is_empty(),
+        color: Whole::new(job.scene).has_colors(),
+        observed: false,
+    };
+    let mut target = framebuffer(job.camera, wanted, pool);
+    let (now, tally, laps) = fast::render(job, settings, &mut target)?;
+    Ok(Picture { seen: Some(now), ..finish(target, Vec::new(), tally, Clock::of(laps), job) })
 }
 
 /// One stage on somebody's planes.

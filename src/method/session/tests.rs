@@ -99,7 +99,8 @@ fn every_method_has_a_name_of_its_own_and_is_found_by_it() {
         assert_eq!(Method::by_name(method.name()).unwrap(), method);
     }
     let line = Method::by_name("evva").unwrap_err().to_string();
-    let names = "ewa, single-pass, transparent, transparent-hq, peeling, pyramid, template";
+    let names =
+        "ewa, deferred, single-pass, transparent, transparent-hq, peeling, pyramid, template";
     assert_eq!(line, format!("method `evva`; give one of {names}"));
 }
 
@@ -121,6 +122,8 @@ fn the_memory_of_an_earlier_picture_changes_no_bit() {
                 || Session::with_groups(&scene, method, Some(groups.clone()), &exec).unwrap();
             let mut again = session();
             for camera in [large, small, large, large] {
+                // What a frame saw is no memory: the next one is given it.
+                again.resume(None);
                 let after = again.render(&camera).unwrap();
                 assert!(after.tally.visible > 50, "{after:?}");
                 let defined = session().define::<f32>(&camera, false).unwrap();

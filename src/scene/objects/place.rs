@@ -104,6 +104,11 @@ impl Objects {
         all.into_surfels(self.median_radius, self.bounding_sphere())
     }
 
+    /// Whether some surfels have colours, which all have then.
+    pub(crate) fn have_colors(&self) -> bool {
+        self.has()[0]
+    }
+
     /// Whether some surfels have colours, opacities and half axes.
     fn has(&self) -> [bool; 3] {
         let of = |has: fn(&Surfels) -> bool| {
