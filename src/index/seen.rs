@@ -50,6 +50,40 @@ impl Seen {
         seen
     }
 
+    /// What was seen, as it was told: how many surfels of each object were selected, and the words. None
+    /// if it cannot be so: as many words, no flag of a group that does not exist, no more surfels than
+    /// there are.
+    #[must_use]
+    pub fn restored(ids: &Ids, group: u32, selected: Vec<u32>, words: Vec<u64>) -> Option<Self> {
+        if group == 0 {
+            return None;
+        }
+        let empty = Self::nothing(ids, group);
+        let few = |(selected, count): (&u32, &u32)| selected <= count;
+        let fits = words.len() == empty.words.len()
+            && selected.len() == empty.counts.len()
+            && selected.iter().zip(&empty.counts).all(few);
+        let exist = |object: usize| {
+            let groups = empty.counts[object].div_ceil(group) as usize;
+            let words = &words[empty.starts[object]..empty.starts[object + 1]];
+            groups.is_multiple_of(64) || words.last().is_none_or(|last| last >> (groups % 64) == 0)
+        };
+        let sound = fits && (0..empty.counts.len()).all(exist);
+        sound.then_some(Self { words, selected, ..empty })
+    }
+
+    /// How many surfels each object has.
+    #[must_use]
+    pub fn counts(&self) -> &[u32] {
+        &self.counts
+    }
+
+    /// The flags: of each object, from a word of its own on, a bit a group, the lowest first.
+    #[must_use]
+    pub fn words(&self) -> &[u64] {
+        &self.words
+    }
+
     /// m.
     #[must_use]
     pub fn group(&self) -> u32 {
