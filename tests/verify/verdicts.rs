@@ -164,13 +164,13 @@ fn a_unit_in_which_not_everything_is_within_epsilon_is_named() {
     let named_at = |near: f32, bug| {
         let (_, (scene, mut camera, mut settings)) = cases().swap_remove(2);
         camera.near = near;
-        settings.epsilon = Epsilon::World(0.05);
+        settings.epsilon = Epsilon::World(0.02);
         named(&(scene, camera, settings), bug).unwrap().unwrap()
     };
     for (near, bug, words) in [
         (0.5, Bug::EpsilonOfNearness, "a difference of 1/t"),
         (0.5, Bug::EpsilonOfDepthBuffer, "what a depth buffer holds"),
-        (0.25, Bug::EpsilonOfDepthBuffer, "what a depth buffer holds"),
+        (0.75, Bug::EpsilonOfDepthBuffer, "what a depth buffer holds"),
     ] {
         let said = named_at(near, bug);
         assert!(said.contains(words), "{}: {said}", bug.name());

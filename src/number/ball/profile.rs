@@ -86,9 +86,9 @@ impl Profile for Ieee {
 /// Source: WGSL (W3C), "Differences from IEEE-754", "Accuracy of Concrete Floating Point Expressions",
 /// "Reassociation and Fusion"; Vulkan (Khronos), appendix "Vulkan Environment for SPIR-V", "Precision of
 /// Individual Operations". The two say the same but for atan2: Vulkan grants its 4096 ulp to every
-/// operand, WGSL for a normal y and for |x| from 2^-126 to 2^126, and says nothing of others. `Decided:` those of
-/// Vulkan. A direction beside a plane of the axes has an operand that may be 0, and to the letter of
-/// WGSL no pixel there could be judged. Neither sin and cos (2^-11, from -pi to pi) nor acos (that of
+/// operand, WGSL for a normal y and for |x| from 2^-126 to 2^126, and says nothing of others.
+/// `Decided:` those of Vulkan. A direction beside a plane of the axes has an operand that may be 0, and
+/// to the letter of WGSL no pixel there could be judged. Neither sin and cos (2^-11, from -pi to pi) nor acos (that of
 /// atan2(sqrt(1 - x x), x), in WGSL at least 6.77e-5) are in any formula that is judged.
 ///
 /// A compiler adds the terms of a sum in any order across the functions of a formula, and not every
