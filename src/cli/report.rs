@@ -208,9 +208,13 @@ fn point(v: [f64; 3]) -> String {
     format!("({})", v.map(short).join(", "))
 }
 
-/// Five digits of a number.
+/// Five digits of a number; with a power of ten where it has more than a few zeros.
 pub(super) fn short(value: f64) -> String {
     let rounded = format!("{value:.4e}").parse().unwrap_or(value);
-    // -0 is 0 to a reader.
-    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
+    match rounded {
+        // -0 is 0 to a reader.
+        0.0 => "0".into(),
+        small if small.abs() < 1e-4 => format!("{small:e}"),
+        other => format!("{other}"),
+    }
 }
