@@ -10,7 +10,7 @@ pub(crate) mod point_tree;
 pub mod seen;
 
 use crate::error::{Error, Result};
-use crate::scene::{Camera, Groups, Surfels};
+use crate::scene::{Boxes, Camera, Groups, Surfels};
 use order::BackToFront;
 use seen::Seen;
 
@@ -32,6 +32,8 @@ pub struct Index {
     pub groups: Option<Groups>,
     /// The surfels from back to front.
     pub order: Option<BackToFront>,
+    /// Boxes around the surfels of a scene without objects.
+    pub boxes: Option<Boxes>,
     /// What the frame before saw; none before the first.
     pub seen: Option<Seen>,
 }

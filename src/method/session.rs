@@ -15,7 +15,7 @@ use crate::index::order::BackToFront;
 use crate::index::seen::Seen;
 use crate::number::Exact;
 use crate::number::ball::{Gpu, Ieee};
-use crate::scene::{Camera, Groups, Scene};
+use crate::scene::{Boxes, Camera, Groups, Scene};
 use crate::verify::client::{Client, Rounding};
 use crate::verify::verdict::{Check, Verdict};
 
@@ -106,7 +106,9 @@ impl<'a> Session<'a> {
         method.check_scene(scene)?;
         let groups = groups.filter(|_| method.grouping().is_some());
         let order = method.needs_order().then(|| BackToFront::new(&scene.surfels, exec));
-        let index = Index { groups, order, seen: None };
+        let alone = method.draws_objects() && scene.objects.is_none();
+        let boxes = alone.then(|| Boxes::new(&scene.surfels));
+        let index = Index { groups, order, boxes, seen: None };
         index.check(&scene.surfels)?;
         if method.grouping().is_some() {
             index.groups()?;

@@ -4,6 +4,7 @@
 //! - [`cloud`]: points as a file holds them, nothing derived, nothing checked.
 //! - [`objects`]: geometries that many objects share, and their motion.
 //! - [`surfels`]: the checked structure of arrays that every method takes.
+//! - [`boxes`]: what bounds neighbouring surfels.
 //! - [`camera`]: perspective and orthographic cameras.
 //! - `degenerate`: which points can be no surfels.
 //! - [`environment`]: the light that surrounds a scene.
@@ -14,6 +15,7 @@
 //! - [`transform`]: moving, turning and scaling a model.
 
 pub mod bounds;
+pub mod boxes;
 pub mod camera;
 pub mod cloud;
 mod degenerate;
@@ -26,6 +28,7 @@ pub mod objects;
 pub mod surfels;
 pub mod transform;
 
+pub use boxes::Boxes;
 pub use camera::{Camera, Lens, Pose, Projection};
 pub use cloud::Cloud;
 pub use environment::Environment;

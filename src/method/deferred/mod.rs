@@ -55,6 +55,7 @@ mod indices;
 mod part;
 mod picture;
 mod planes;
+pub mod queries;
 mod settings;
 #[cfg(test)]
 mod tests;

@@ -1,10 +1,11 @@
 //! All surfels of a scene by their ids, and some of them as a scene that the passes of `ewa` draw.
 
+use super::queries::Queries;
 use crate::frame::Exec;
 use crate::method::algorithm::Job;
 use crate::number::lanes::{LANES, Lanes};
 use crate::scene::objects::{Ids, Split};
-use crate::scene::{Scene, Similarity, Surfels};
+use crate::scene::{Boxes, Scene, Similarity, Surfels};
 use glam::Vec3;
 use std::borrow::Cow;
 
@@ -12,6 +13,8 @@ use std::borrow::Cow;
 pub(super) struct Whole<'a> {
     scene: &'a Scene,
     ids: Cow<'a, Ids>,
+    /// Of a scene without objects, if somebody made them.
+    boxes: Option<&'a Boxes>,
 }
 
 impl<'a> Whole<'a> {
@@ -25,7 +28,12 @@ impl<'a> Whole<'a> {
             Some(objects) => Cow::Borrowed(objects.ids()),
             None => Cow::Owned(alone()),
         };
-        Self { scene, ids }
+        Self { scene, ids, boxes: None }
+    }
+
+    /// With what the session made of the scene.
+    pub(super) fn of(job: &Job<'a>) -> Self {
+        Self { boxes: job.index.boxes.as_ref(), ..Self::new(job.scene) }
     }
 
     pub(super) fn ids(&self) -> &Ids {
@@ -80,9 +88,12 @@ impl<'a> Whole<'a> {
             Some(objects) => {
                 let place = &objects.places()[object as usize];
                 let place = (*place != Similarity::IDENTITY).then_some(place);
-                Range { of: &objects.geometry(object).surfels, place, first, surfels }
+                let boxes = Some(objects.boxes(object));
+                Range { of: &objects.geometry(object).surfels, place, boxes, first, surfels }
             }
-            None => Range { of: &self.scene.surfels, place: None, first, surfels },
+            None => {
+                Range { of: &self.scene.surfels, place: None, boxes: self.boxes, first, surfels }
+            }
         }
     }
 
@@ -114,9 +125,25 @@ pub(super) struct Range<'a> {
     of: &'a Surfels,
     /// Where the object is; none: the surfels are in their places.
     place: Option<&'a Similarity>,
+    /// Around them, in their own coordinates.
+    boxes: Option<&'a Boxes>,
     /// The id of the surfel 0.
     first: u64,
     pub(super) surfels: std::ops::Range<usize>,
+}
+
+impl<'a> Range<'a> {
+    /// The parts of which no query says that they are hidden.
+    pub(super) fn parts(&self, queries: &Queries<'_>) -> Vec<Self> {
+        let whole = || Self { surfels: self.surfels.clone(), ..*self };
+        let Some(boxes) = self.boxes else { return vec![whole()] };
+        if !queries.any(boxes.all(), self.place) {
+            return Vec::new();
+        }
+        let parts = boxes.parts(self.surfels.clone());
+        let open = parts.filter(|(_, corners)| queries.any(*corners, self.place));
+        open.map(|(surfels, _)| Self { surfels, ..*self }).collect()
+    }
 }
 
 impl Range<'_> {

@@ -222,10 +222,17 @@ proptest! {
         session.resume(seen.clone());
         let again = session.define::<f32>(&case.camera(at as u32), true).unwrap().frame;
         prop_assert_eq!(&again.planes, &frame.planes);
-        // The way a program draws it, and each stage on the planes of those before.
-        let drawn = session.render(&case.camera(at as u32)).unwrap();
-        for plane in &drawn.frame.planes {
-            prop_assert_eq!(Some(&plane.samples), frame.plane(&plane.name), "{}", &plane.name);
+        // The way a program draws it, with other threads and tiles too.
+        for exec in [exec, Exec::new(3, 8).unwrap(), Exec::new(2, 64).unwrap()] {
+            let mut session = Session::new(&scene, case.settings.into(), &exec).unwrap();
+            session.resume(seen.clone());
+            let drawn = session.render(&case.camera(at as u32)).unwrap();
+            for plane in &drawn.frame.planes {
+                prop_assert_eq!(Some(&plane.samples), frame.plane(&plane.name), "{}", &plane.name);
+            }
+            if let Some((_, next)) = whole.get(at + 1) {
+                prop_assert_eq!(session.seen(), next.as_ref());
+            }
         }
     }
 

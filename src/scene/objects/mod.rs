@@ -19,7 +19,7 @@ pub mod ids;
 pub mod motion;
 mod place;
 
-use super::{Primitives, Similarity, Surfels};
+use super::{Boxes, Primitives, Similarity, Surfels};
 use crate::error::{Error, Result};
 use glam::{DVec3, Vec3};
 pub use ids::{Ids, Split};
@@ -56,6 +56,8 @@ pub struct Objects {
     geometries: Arc<[Geometry]>,
     objects: Arc<[Object]>,
     ids: Arc<Ids>,
+    /// Of each geometry.
+    boxes: Arc<[Boxes]>,
     fill: Vec3,
     frame: u32,
     places: Vec<Similarity>,
@@ -78,7 +80,9 @@ impl Objects {
         };
         let counts = objects.iter().map(count).collect::<Result<Vec<_>>>()?;
         let ids = Ids::new(counts, |object| objects[object].name.clone())?;
+        let boxes = geometries.iter().map(|geometry| Boxes::new(&geometry.surfels)).collect();
         let still = Self {
+            boxes,
             geometries: geometries.into(),
             objects: objects.into(),
             ids: Arc::new(ids),
@@ -162,6 +166,12 @@ impl Objects {
     #[must_use]
     pub fn geometry(&self, object: u32) -> &Geometry {
         &self.geometries[self.objects[object as usize].geometry]
+    }
+
+    /// The boxes of the surfels of an object, in the coordinates of its geometry.
+    #[must_use]
+    pub fn boxes(&self, object: u32) -> &Boxes {
+        &self.boxes[self.objects[object as usize].geometry]
     }
 
     /// A sphere around all surfels and primitives of an object: middle and radius, in f64.

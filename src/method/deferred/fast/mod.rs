@@ -7,6 +7,7 @@ mod points;
 
 use super::part::{Part, Whole};
 use super::picture::{is_new, seen};
+use super::queries::Limits;
 use super::{Settings, visibility};
 use crate::composite::decide;
 use crate::error::Result;
@@ -19,7 +20,6 @@ use crate::method::picture::{Clock, Laps};
 use crate::method::prepare::Prepared;
 use crate::number::lanes::LANES;
 use crate::splat::{Shared, SplatSettings, Tally};
-use points::Limits;
 
 /// Draws a frame into a framebuffer, every pixel of it, with pass 3; and tells what it saw, what became
 /// of the selected surfels, and the wall times. The fused passes have shares of their common time.
@@ -28,7 +28,7 @@ pub(super) fn render(
     settings: &Settings,
     target: &mut Framebuffer<f32>,
 ) -> Result<(Seen, Tally, Laps)> {
-    let (whole, splats) = (Whole::new(job.scene), &settings.splats);
+    let (whole, splats) = (Whole::of(job), &settings.splats);
     let before = seen(job, settings, &whole)?;
     let mut clock = Clock::default();
     let flagged = whole.part(before.surfels(whole.ids()), job.exec);

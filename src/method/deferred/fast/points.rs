@@ -3,11 +3,12 @@
 //! The surfels are divided into as many shares as there are threads, in the order of their ids. Each
 //! share has a picture of its own, and the pictures are joined: the least depth of a pixel and, of equal
 //! ones, the lowest id is the same however the surfels are divided. Of most surfels the position says
-//! that they are not kept; the normals of the others alone are read and turned.
+//! that they are not kept, and of many a box around them; the normals of the others alone are read and turned.
 
 use super::super::Settings;
 use super::super::indices::Kept;
 use super::super::part::{Range, Whole};
+use super::super::queries::{Limits, Queries};
 use super::super::visibility::NONE;
 use crate::composite::decide;
 use crate::method::algorithm::Job;
@@ -15,13 +16,6 @@ use crate::method::projection::surfels::{PlacedPoint, PointProjector};
 use crate::number::lanes::{LANES, Lanes, vectorized};
 use crate::number::{Real, Vector3};
 use crate::splat::View;
-
-/// The greatest depth at each pixel that passes the test.
-pub(super) struct Limits {
-    pub(super) width: u32,
-    /// Row by row.
-    pub(super) values: Vec<f32>,
-}
 
 /// B(i), ascending.
 pub(super) fn selected(
@@ -31,11 +25,14 @@ pub(super) fn selected(
     limits: &Limits,
 ) -> Vec<u64> {
     let points = PointProjector::new(View::new(job.camera), settings.splats.cull);
+    let queries = Queries::new(job.camera, limits);
     let shares = whole.shares(job.exec.threads());
     let pictures = job.exec.ordered(shares, |ranges| {
         let mut kept = vec![Kept::EMPTY; limits.values.len()];
         for range in &ranges {
-            draw(&points, range, limits, &mut kept);
+            for part in range.parts(&queries) {
+                draw(&points, &part, limits, &mut kept);
+            }
         }
         kept
     });
