@@ -26,7 +26,7 @@ pub mod objects;
 pub mod surfels;
 pub mod transform;
 
-pub use camera::{Camera, Lens, Pose, Projection};
+pub use camera::{Camera, CameraMotion, Lens, Pose, Projection};
 pub use cloud::Cloud;
 pub use environment::Environment;
 pub use groups::Groups;
