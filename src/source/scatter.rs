@@ -1,7 +1,7 @@
 //! Places of many objects, by chance.
 //!
 //! Place i of a [`Scatter`], counted from 0, is computed in f64, each operation rounded, from the
-//! numbers u_j = [`random::unit`] of the seed and 5 i + j:
+//! numbers `u_j` = [`random::unit`] of the seed and 5 i + j:
 //!
 //! ```text
 //!   translation  low + u_0 (high - low) in x, likewise u_1 in y and u_2 in z
