@@ -54,7 +54,7 @@ pub struct Scene {
     /// What surrounds the surfels; black if absent.
     pub environment: Option<Environment>,
     /// What the scene is made of, if it is made of objects. Surfels and primitives are then those of
-    /// the objects in their places, or none as long as nobody has asked for [`Scene::flattened`].
+    /// the objects in their places, or none until [`crate::source::flatten()`] puts them there.
     pub objects: Option<Objects>,
 }
 

@@ -41,7 +41,7 @@ impl SceneFile {
     /// objects of them, in frame 0; reads the environment.
     ///
     /// A scene of objects has no surfels yet: [`SceneFile::ready`] gives those of a frame to methods
-    /// that draw surfels, and [`flatten`](crate::source::flatten) to anybody.
+    /// that draw surfels, and [`flatten`](crate::source::flatten()) to anybody.
     ///
     /// `progress` as in [`derive::surfels`].
     ///

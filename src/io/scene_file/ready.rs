@@ -54,7 +54,7 @@ impl Ready {
     /// The same scene in another frame, in the memory of this one.
     ///
     /// # Errors
-    /// As [`Ready::camera_at`], [`crate::scene::Objects::at`] and [`flatten`].
+    /// As [`Ready::camera_at`], [`crate::scene::Objects::at`] and [`flatten()`].
     pub fn at(mut self, frame: u32, exec: &Exec) -> Result<Self> {
         self.camera = self.camera_at(frame)?;
         self.frame = frame;

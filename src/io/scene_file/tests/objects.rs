@@ -102,9 +102,19 @@ fn a_model_beside_objects_has_its_own_surfels() {
     assert_eq!(object.loaded.scene.surfels.radius(), alone.radius());
 }
 
+/// Tables after a geometry called tree, the line that is named, and what is said of it.
+fn all_refused(cases: &[(&str, Option<usize>, &str)]) {
+    for (text, line, what) in cases {
+        let found = refused(&format!("{TREE}{text}"));
+        assert!(found.contains(what), "{text}: {found}");
+        let place = line.map_or(String::new(), |line| format!(" line {line}: "));
+        assert!(found.contains(&place), "{text}: {place} in {found}");
+    }
+}
+
 #[test]
-fn names_and_places_that_are_none_are_refused() {
-    for (text, line, what) in [
+fn names_that_are_none_are_refused() {
+    all_refused(&[
         ("[[object]]\nname = \"a\"\n", Some(5), "missing field `of`"),
         (
             "[[object]]\nof = \"oak\"\n",
@@ -130,6 +140,14 @@ fn names_and_places_that_are_none_are_refused() {
         ("[[geometry]]\nshape = \"torus\"\n", None, "a geometry needs a `name`"),
         ("", None, "there is no [[object]] and no [[model]]"),
         ("[[model]]\nname = \"a\"\nshape = \"torus\"\n", Some(5), "`name` means nothing to torus"),
+    ]);
+    let found = refused("[[object]]\nof = \"tree\"\n");
+    assert!(found.contains("no [[geometry]] has the name `tree`; there is none"), "{found}");
+}
+
+#[test]
+fn places_that_are_none_are_refused() {
+    all_refused(&[
         (
             "[[object]]\nof = \"tree\"\nkeys = [{ frame = 3 }, { frame = 3 }]\n",
             Some(5),
@@ -174,6 +192,12 @@ fn names_and_places_that_are_none_are_refused() {
             None,
             "low at most high",
         ),
+    ]);
+}
+
+#[test]
+fn sequences_and_cameras_that_are_none_are_refused() {
+    all_refused(&[
         ("[[object]]\nof = \"tree\"\n[sequence]\nframes = 0\n", None, "a sequence of 0 frames"),
         ("[[object]]\nof = \"tree\"\n[sequence]\nframes = 1000001\n", None, "give 1 to 1000000"),
         (
@@ -193,14 +217,7 @@ fn names_and_places_that_are_none_are_refused() {
             Some(7),
             "the same point",
         ),
-    ] {
-        let found = refused(&format!("{TREE}{text}"));
-        assert!(found.contains(what), "{text}: {found}");
-        let place = line.map_or(String::new(), |line| format!(" line {line}: "));
-        assert!(found.contains(&place), "{text}: {place} in {found}");
-    }
-    let found = refused("[[object]]\nof = \"tree\"\n");
-    assert!(found.contains("no [[geometry]] has the name `tree`; there is none"), "{found}");
+    ]);
 }
 
 #[test]
