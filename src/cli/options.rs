@@ -29,6 +29,9 @@ impl ExecOptions {
 /// What is pictured; each option replaces what a scene file says.
 #[derive(clap::Args)]
 pub(super) struct SceneOptions {
+    /// The frame of the sequence, from 0 [default: 0]
+    #[arg(long, value_name = "N", help_heading = "Camera")]
+    frame: Option<u32>,
     /// Size of the picture in pixels [default: 1024x768]
     #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Camera")]
     size: Option<[u32; 2]>,
@@ -103,7 +106,14 @@ impl SceneOptions {
     /// The scene that `name` stands for, a shape or a file, with these options on top.
     pub(super) fn scene_file(&self, name: &Path) -> Result<SceneFile> {
         let mut file = named(name, self.count, self.seed)?;
+        if let Some(frame) = self.frame {
+            file.check_frame(frame)?;
+            file.frame = frame;
+        }
         let camera = &mut file.camera;
+        if self.eye.or(self.target).or(self.up).is_some() {
+            camera.motion = None;
+        }
         replace(&mut camera.size, self.size);
         replace(&mut camera.eye, self.eye);
         replace(&mut camera.target, self.target);
@@ -114,7 +124,7 @@ impl SceneOptions {
         replace(&mut file.environment, self.environment.clone());
         if let Some(opacity) = self.opacity {
             check_opacity(opacity)?;
-            file.models.iter_mut().for_each(|model| model.opacity = Some(opacity));
+            file.all_models_mut().for_each(|model| model.opacity = Some(opacity));
         }
         self.choose_method(&mut file)?;
         file.output = self.number.chosen.on(file.output, "the output")?;

@@ -29,7 +29,7 @@ pub mod surfels;
 pub mod transform;
 
 pub use boxes::Boxes;
-pub use camera::{Camera, Lens, Pose, Projection};
+pub use camera::{Camera, CameraMotion, Lens, Pose, Projection};
 pub use cloud::Cloud;
 pub use environment::Environment;
 pub use groups::Groups;
@@ -57,7 +57,7 @@ pub struct Scene {
     /// What surrounds the surfels; black if absent.
     pub environment: Option<Environment>,
     /// What the scene is made of, if it is made of objects. Surfels and primitives are then those of
-    /// the objects in their places, or none as long as nobody has asked for [`Scene::flattened`].
+    /// the objects in their places, or none until [`crate::source::flatten()`] puts them there.
     pub objects: Option<Objects>,
 }
 

@@ -50,6 +50,28 @@ impl Similarity {
         Ok(())
     }
 
+    /// This similarity first and `next` after it, as one: with R, s and t of `next`
+    ///
+    /// ```text
+    ///   scale        s scale
+    ///   rotation     R rotation, each element a sum ((a + b) + c)
+    ///   translation  R (translation s) + t, the sums likewise
+    /// ```
+    ///
+    /// each operation rounded to f64. If `next` is [`Similarity::IDENTITY`] it is this one, bit for
+    /// bit.
+    #[must_use]
+    pub fn then(&self, next: &Self) -> Self {
+        if *next == Self::IDENTITY {
+            return *self;
+        }
+        Self {
+            rotation: next.rotation * self.rotation,
+            scale: next.scale * self.scale,
+            translation: next.rotation * (self.translation * next.scale) + next.translation,
+        }
+    }
+
     /// Applies it to every array of a cloud.
     pub fn apply(&self, cloud: &mut Cloud) {
         if *self == Self::IDENTITY {
@@ -105,6 +127,11 @@ impl Similarity {
     }
 }
 
+/// Whether something can be turned about this.
+pub(crate) fn is_axis(axis: DVec3) -> bool {
+    axis.length() > 0.0 && axis.is_finite()
+}
+
 /// The rotation about an axis of any length but 0, counter-clockwise when it points at the viewer.
 ///
 /// With k the axis divided by its length, c and s of the angle: `c I + s [k]x + (1 - c) k k^T`.
@@ -150,6 +177,25 @@ mod tests {
         moved.apply_to_vertices(&mut vertices);
         assert_eq!(vertices.position, cloud.position);
         assert_eq!((vertices.direction[0], vertices.radius[0]), (Vec3::Y, 1.0));
+    }
+
+    #[test]
+    fn one_after_the_other_is_both() {
+        let a = Similarity {
+            rotation: rotation(DVec3::ONE, 40.0),
+            scale: 3.0,
+            translation: DVec3::new(1.0, -2.0, 0.5),
+        };
+        let b = Similarity {
+            rotation: rotation(DVec3::X, -70.0),
+            scale: 0.25,
+            translation: DVec3::new(0.0, 4.0, 8.0),
+        };
+        let apply = |by: &Similarity, p: DVec3| by.rotation * (p * by.scale) + by.translation;
+        let p = DVec3::new(0.3, 0.6, -0.9);
+        let off = apply(&a.then(&b), p) - apply(&b, apply(&a, p));
+        assert!(off.length() < 1e-14, "{off}");
+        assert_eq!((a.then(&Similarity::IDENTITY), Similarity::IDENTITY.then(&b)), (a, b));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::Settings;
 use super::indices::{each_centre, indices, selected};
 use super::part::{Part, Whole};
-use super::picture::{is_new, seen};
+use super::picture::{flagged, is_new, seen};
 use super::visibility::{both, nearest};
 use crate::error::Result;
 use crate::method::algorithm::Job;
@@ -59,7 +59,7 @@ pub fn explain<R: Exact>(
     let place = Place::new(job, pixel)?;
     let (whole, splats) = (Whole::new(job.scene), &settings.splats);
     let before = seen(job, settings, &whole)?;
-    let flagged = whole.part(before.surfels(whole.ids()), job.exec);
+    let flagged = flagged(job, &whole, &before)?;
     let visible = nearest::<R>(job, splats, &flagged);
     let kept = indices(job, splats, &whole, &visible);
     let part = whole.part(selected(&kept), job.exec);

@@ -8,6 +8,7 @@ use super::{Settings, fast, planes};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool, Wanted};
 use crate::index::seen::Seen;
+use crate::memory;
 use crate::method::algorithm::Job;
 use crate::method::ewa::attributes::{Sums, attributes};
 use crate::method::ewa::normalization::resolve;
@@ -30,7 +31,7 @@ pub(super) fn define<R: Exact>(
     let mut clock = Clock::default();
     let whole = Whole::new(job.scene);
     let before = seen(job, settings, &whole)?;
-    let flagged = whole.part(before.surfels(whole.ids()), job.exec);
+    let flagged = flagged(job, &whole, &before)?;
     let visible = nearest::<R>(job, &settings.splats, &flagged);
     clock.lap("visibility");
 
@@ -95,7 +96,7 @@ pub(super) fn stage<R: Exact>(
     let depth = || planes::given_visibility(job, given, true);
     match stage {
         "visibility" => {
-            let flagged = whole.part(before.surfels(whole.ids()), job.exec);
+            let flagged = flagged(job, &whole, &before)?;
             let visible = nearest::<R>(job, &settings.splats, &flagged);
             Ok(planes::visibility(&visible, false).into())
         }
@@ -121,6 +122,20 @@ pub(super) fn stage<R: Exact>(
         _ => Err(unknown(stage)),
     }
 }
+
+/// The surfels that pass 1 draws.
+///
+/// # Errors
+/// [`crate::Error::Invalid`] if the process may not hold them.
+pub(super) fn flagged(job: &Job<'_>, whole: &Whole<'_>, before: &Seen) -> Result<Part> {
+    let ids = before.surfels(whole.ids());
+    memory::ask(ids.len() as u64 * OF_A_FLAGGED, || format!("{} flagged surfels", ids.len()))?;
+    Ok(whole.part(ids, job.exec))
+}
+
+/// Bytes of a surfel that pass 1 draws: placed, twice while they are put together, and projected in
+/// f64 with its bins.
+const OF_A_FLAGGED: u64 = 512;
 
 /// What the frame before saw; nothing before the first.
 pub(super) fn seen(job: &Job<'_>, settings: &Settings, whole: &Whole<'_>) -> Result<Seen> {

@@ -6,7 +6,7 @@
 mod points;
 
 use super::part::{Part, Whole};
-use super::picture::{is_new, seen};
+use super::picture::{flagged, is_new, seen};
 use super::queries::Limits;
 use super::{Settings, visibility};
 use crate::composite::decide;
@@ -31,7 +31,7 @@ pub(super) fn render(
     let (whole, splats) = (Whole::of(job), &settings.splats);
     let before = seen(job, settings, &whole)?;
     let mut clock = Clock::default();
-    let flagged = whole.part(before.surfels(whole.ids()), job.exec);
+    let flagged = flagged(job, &whole, &before)?;
     let first = First::draw(job, splats, &flagged);
     clock.lap("visibility");
 
