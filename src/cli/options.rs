@@ -7,7 +7,7 @@ use splatref::io::scene_file::{EnvironmentChoice, SceneFile, Source, check_opaci
 use splatref::method::Method;
 use splatref::scene::{Camera, Lens};
 use splatref::{Error, Result};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// How a picture is made; cannot change one bit of it.
 #[derive(clap::Args)]
@@ -32,6 +32,9 @@ pub(super) struct SceneOptions {
     /// The frame of the sequence, from 0 [default: 0]
     #[arg(long, value_name = "N", help_heading = "Camera")]
     frame: Option<u32>,
+    /// What the frame before saw, from render --keep-state; nothing if absent
+    #[arg(long, value_name = "FILE", help_heading = "Camera")]
+    state: Option<PathBuf>,
     /// Size of the picture in pixels [default: 1024x768]
     #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Camera")]
     size: Option<[u32; 2]>,
@@ -129,6 +132,11 @@ impl SceneOptions {
         self.choose_method(&mut file)?;
         file.output = self.number.chosen.on(file.output, "the output")?;
         Ok(file)
+    }
+
+    /// The file that says what the frame before saw.
+    pub(super) fn state(&self) -> Option<&Path> {
+        self.state.as_deref()
     }
 
     /// The method, its settings and its groups.

@@ -4,8 +4,10 @@ use super::options::{ExecOptions, SceneOptions};
 use super::rows::{OfFiles, RowOptions};
 use super::{Ended, Ending, draw, output, progress, report, sequence};
 use splatref::frame::{Exec, Frame};
+use splatref::index::seen::Seen;
 use splatref::io::replace::Pending;
 use splatref::io::scene_file::{FileKind, OutputSettings, Ready, SceneFile};
+use splatref::io::state::{self, State};
 use splatref::io::{exr, png, provenance};
 use splatref::method::Picture;
 use splatref::{Error, Result};
@@ -43,10 +45,13 @@ pub(super) struct Args {
     #[arg(long, value_name = "A..B", value_parser = sequence::frames,
         conflicts_with_all = ["repeat", "frame"])]
     frames: Option<Range<u32>>,
+    /// Where what the last frame saw goes, for --state (method deferred)
+    #[arg(long, value_name = "FILE")]
+    keep_state: Option<PathBuf>,
     #[command(flatten)]
     exec: ExecOptions,
     #[command(flatten)]
-    options: SceneOptions,
+    pub(super) options: SceneOptions,
 }
 
 pub(super) fn run(args: &Args) -> Ended {
@@ -62,7 +67,8 @@ pub(super) fn run(args: &Args) -> Ended {
     let picture = place(args, &file, None)?;
     let preview = picture.with_extension("png");
     let ready = draw::ready(&file, &exec)?;
-    let (mut session, made) = draw::session(&ready, &exec)?;
+    check_state(args, &ready, &file)?;
+    let (mut session, made) = draw::session(&ready, &args.options, &exec)?;
     let loading = start.elapsed();
     let Ready { loaded, camera, method, .. } = &ready;
     let scene = &loaded.scene;
@@ -71,8 +77,11 @@ pub(super) fn run(args: &Args) -> Ended {
 
     let mut times = Vec::new();
     let drawing = progress::during("rendering", || -> Result<_> {
+        let before = session.seen().cloned();
         for _ in 1..args.repeat {
             timed(&mut times, || draw::draw(&mut session, camera, file.output))?;
+            // The same frame again, not the next.
+            session.resume(before.clone());
         }
         timed(&mut times, || draw::draw(&mut session, camera, file.output))
     })?;
@@ -83,8 +92,9 @@ pub(super) fn run(args: &Args) -> Ended {
         let text = || provenance::text(scene, groups.as_ref(), camera, method, file.output.number);
         write(&picture, &drawing.frame, text, file.output, &exec)
     })?;
-    let (writing, tally) = (writing.elapsed(), drawing.tally);
+    let (writing, tally, seen) = (writing.elapsed(), drawing.tally, drawing.seen.clone());
     drop(drawing);
+    keep(args, &ready, ready.frame(), seen.as_ref())?;
 
     report::scene(loaded);
     report::camera(camera);
@@ -92,6 +102,7 @@ pub(super) fn run(args: &Args) -> Ended {
     report::method(method, scene, camera);
     report::groups(session.groups(), made.as_ref());
     report::tally(&tally);
+    report::selection(seen.as_ref());
     print_times(&exec, loading, times, writing);
     report::time("total", vec![start.elapsed()]);
     report::line("files", picture.display());
@@ -124,6 +135,24 @@ pub(super) fn place(args: &Args, file: &SceneFile, frame: Option<u32>) -> Result
             Ok(path)
         }
     }
+}
+
+/// Writes what a frame saw, if somebody asked for that.
+pub(super) fn keep(args: &Args, ready: &Ready, frame: u32, seen: Option<&Seen>) -> Result<()> {
+    let (Some(path), Some(seen)) = (&args.keep_state, seen) else { return Ok(()) };
+    let state = State { frame, seen: seen.clone() };
+    state::pending(path, &state, &ready.identity()?)?.put()
+}
+
+/// Whether a state can be kept where it was asked for: before anything is drawn.
+pub(super) fn check_state(args: &Args, ready: &Ready, file: &SceneFile) -> Result<()> {
+    let Some(path) = &args.keep_state else { return Ok(()) };
+    if !ready.method.draws_objects() {
+        let name = ready.method.name();
+        let what = format!("--keep-state: the method {name} carries nothing from frame to frame");
+        return Err(Error::Usage(what));
+    }
+    output::check(path, &args.scene, file)
 }
 
 /// Makes the folder of pictures, if nobody says where they go.

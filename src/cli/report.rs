@@ -3,6 +3,7 @@
 use super::say;
 use glam::Vec3;
 use splatref::index::grouping::GroupCoverage;
+use splatref::index::seen::Seen;
 use splatref::io::scene_file::{Loaded, ModelReport, OutputSettings};
 use splatref::method::Method;
 use splatref::method::session::Made;
@@ -235,6 +236,16 @@ pub(super) fn picture(camera: &Camera, output: OutputSettings) {
     line("picture", format!("{} x {} pixels, {number}{stages}", camera.width, camera.height));
 }
 
+/// What a method selected of the surfels, if it did.
+pub(super) fn selection(seen: Option<&Seen>) {
+    let Some(seen) = seen else { return };
+    let of = |counts: &[u32]| counts.iter().map(|&count| u64::from(count)).sum::<u64>();
+    let (all, selected) = (of(seen.counts()), of(seen.selected()));
+    let culled = 100.0 * (all - selected) as f64 / all.max(1) as f64;
+    line("selected", format!("{selected} of {all} surfels, {culled:.1} % culled"));
+}
+
+/// What became of the surfels.
 pub(super) fn tally(tally: &Tally) {
     line(
         "surfels",

@@ -1,9 +1,10 @@
 //! `splatref render --frames`: a picture for each frame of a sequence.
 
-use super::render::{Args, make_folder, place, threads, write};
+use super::render::{Args, check_state, keep, make_folder, place, threads, write};
 use super::{Ended, Ending, draw, progress, report};
 use splatref::Result;
 use splatref::frame::Exec;
+use splatref::index::seen::Seen;
 use splatref::io::provenance;
 use splatref::io::scene_file::{OutputSettings, SceneFile};
 use splatref::method::Session;
@@ -31,6 +32,8 @@ pub(super) fn render(args: &Args, file: &SceneFile, frames: Range<u32>, exec: &E
     let place = |frame| place(args, file, Some(frame));
     let places = frames.clone().map(place).collect::<Result<Vec<_>>>()?;
     let mut ready = draw::ready(file, exec)?;
+    check_state(args, &ready, file)?;
+    let mut seen = draw::seen(&ready, &args.options)?;
     let mut times = Times::default();
     times.add("loading", start.elapsed());
     report::scene(&ready.loaded);
@@ -40,6 +43,7 @@ pub(super) fn render(args: &Args, file: &SceneFile, frames: Range<u32>, exec: &E
     make_folder(args)?;
 
     let steps = progress::Steps::new("preparing");
+    let last = frames.end - 1;
     let all: Vec<_> = frames.zip(&places).collect();
     let show = |done: usize| steps.show("rendering", done as u64, all.len() as u64);
     let output = file.output;
@@ -47,17 +51,20 @@ pub(super) fn render(args: &Args, file: &SceneFile, frames: Range<u32>, exec: &E
         let mut session = times.of("preparing", || ready.session(exec, &|_, _, _| ()))?.0;
         for (done, (frame, path)) in all.iter().enumerate() {
             show(done);
-            one(&mut session, &ready.camera_at(*frame)?, path, (output, exec), &mut times)?;
+            session.resume(seen);
+            seen = one(&mut session, &ready.camera_at(*frame)?, path, (output, exec), &mut times)?;
         }
     } else {
         for (done, (frame, path)) in all.iter().enumerate() {
             show(done);
             ready = times.of("placing", || ready.at(*frame, exec))?;
             let mut session = times.of("preparing", || ready.session(exec, &|_, _, _| ()))?.0;
-            one(&mut session, &ready.camera, path, (output, exec), &mut times)?;
+            session.resume(seen);
+            seen = one(&mut session, &ready.camera, path, (output, exec), &mut times)?;
         }
     }
     drop(steps);
+    keep(args, &ready, last, seen.as_ref())?;
 
     report::line("time", format!("{}, sums over {} frames", threads(exec), places.len()));
     times.0.into_iter().for_each(|(what, time)| report::time(what, vec![time]));
@@ -66,19 +73,20 @@ pub(super) fn render(args: &Args, file: &SceneFile, frames: Range<u32>, exec: &E
     Ok(Ending::Good)
 }
 
-/// Draws and writes one frame.
+/// Draws and writes one frame; what it saw.
 fn one(
     session: &mut Session<'_>,
     camera: &Camera,
     path: &Path,
     (output, exec): (OutputSettings, &Exec),
     times: &mut Times,
-) -> Result<()> {
+) -> Result<Option<Seen>> {
     let (scene, method, groups) = (session.scene(), *session.method(), session.groups().cloned());
     let drawing = draw::draw(session, camera, output)?;
     drawing.timings.iter().for_each(|(stage, time)| times.add(stage, *time));
     let text = || provenance::text(scene, groups.as_ref(), camera, &method, output.number);
-    times.of("writing", || write(path, &drawing.frame, text, output, exec))
+    times.of("writing", || write(path, &drawing.frame, text, output, exec))?;
+    Ok(drawing.seen.clone())
 }
 
 /// The first and the last of the files.

@@ -217,6 +217,11 @@ impl Client {
         &self.frame
     }
 
+    /// The planes, to be changed.
+    pub(crate) fn frame_mut(&mut self) -> &mut Frame<f64> {
+        &mut self.frame
+    }
+
     /// The same client with other planes, each made of one by its name.
     pub(crate) fn mapped(&self, of: impl Fn(&str, &Samples<f64>) -> Samples<f64>) -> Self {
         let Frame { width, height, ref planes } = self.frame;

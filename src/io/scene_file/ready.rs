@@ -1,13 +1,16 @@
 //! From a scene file to a session.
 
 use super::{Loaded, SceneFile};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::grouping::Grouping;
+use crate::index::seen::Seen;
+use crate::io::state::{self, State};
 use crate::method::session::Made;
-use crate::method::{Method, Session};
-use crate::scene::{Camera, CameraMotion, Lens, Primitives, Surfels};
+use crate::method::{Method, Session, deferred};
+use crate::scene::{Camera, CameraMotion, Lens, Primitives, Scene, Surfels};
 use crate::source::flatten;
+use std::path::Path;
 
 /// What a scene file says, loaded and resolved: all that the picture of a frame needs.
 #[derive(Clone, Debug)]
@@ -79,15 +82,66 @@ impl Ready {
         self.loaded.scene.objects.as_ref().is_none_or(crate::scene::Objects::are_still)
     }
 
+    /// The frame.
+    #[must_use]
+    pub fn frame(&self) -> u32 {
+        self.frame
+    }
+
+    /// What names the scene in the files of states: its SHA-256, with objects as in frame 0.
+    ///
+    /// # Errors
+    /// As [`crate::scene::Objects::at`].
+    pub fn identity(&self) -> Result<String> {
+        let scene = &self.loaded.scene;
+        match &scene.objects {
+            None => Ok(scene.sha256()),
+            Some(objects) => {
+                let objects = Some(objects.at(0)?);
+                let (surfels, primitives) = (Surfels::none(), Primitives::default());
+                Ok(Scene { objects, surfels, primitives, ..scene.clone() }.sha256())
+            }
+        }
+    }
+
+    /// What the frame before saw, from a file.
+    ///
+    /// # Errors
+    /// As [`state::read`]; [`Error::Invalid`] if the method carries nothing from frame to frame, and
+    /// [`Error::Format`] if the state is not of the frame before.
+    pub fn state(&self, path: &Path) -> Result<Seen> {
+        let Method::Deferred(settings) = &self.method else {
+            let what = format!(
+                "the method {} carries nothing from frame to frame: give --method deferred, or no \
+                 state",
+                self.method.name()
+            );
+            return Err(Error::Invalid(what));
+        };
+        let scene = &self.loaded.scene;
+        let ids = deferred::ids(scene);
+        let State { frame, seen } = state::read(path, &self.identity()?, &ids)?;
+        if frame.checked_add(1) != Some(self.frame) {
+            let (next, own) = (u64::from(frame) + 1, self.frame);
+            let what =
+                format!("what frame {frame} saw is for frame {next}, and this is frame {own}");
+            return Err(Error::format(path, what));
+        }
+        seen.check(&ids, settings.flags).map_err(|error| Error::format(path, error.to_string()))?;
+        Ok(seen)
+    }
+
     /// Puts the objects in their places of the frame. What a method is given of them is decided here:
-    /// every method draws surfels.
+    /// the objects, or all their surfels.
     fn place(&mut self, exec: &Exec) -> Result<()> {
         let scene = &mut self.loaded.scene;
         if let Some(objects) = &scene.objects {
             scene.objects = Some(objects.at(self.frame)?);
             // Those of the last frame make room.
             (scene.surfels, scene.primitives) = (Surfels::none(), Primitives::default());
-            *scene = flatten(scene, exec)?;
+            if !self.method.draws_objects() {
+                *scene = flatten(scene, exec)?;
+            }
         }
         self.method.check_scene(scene)
     }

@@ -70,6 +70,7 @@ use crate::method::given::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::number::ball::Profile;
+use crate::scene::objects::Ids;
 use crate::scene::{Camera, Scene};
 use crate::splat::SplatSettings;
 use crate::verify::client::Client;
@@ -126,6 +127,12 @@ impl Algorithm for Settings {
         let median = part::Whole::new(scene).median_radius();
         vec![("epsilon_in_world_units", format!("{:?}", self.splats.epsilon.in_units(median)))]
     }
+}
+
+/// The ids of the surfels of a scene.
+#[must_use]
+pub fn ids(scene: &Scene) -> Ids {
+    part::Whole::new(scene).ids().clone()
 }
 
 /// There are no rules yet by which a client of this method is judged.

@@ -17,7 +17,12 @@
 //! Objects are numbered from 0 in the order of the scene, in `Two` those of each scheme on their own.
 //! [`NO_ID`] is never a surfel, and never the lowest 32 bits of one: a split in which a surfel would
 //! have them does not fit. (`Decided:` \[GBP04\] calls it the most improbable indicator; a scene in which it does occur
-//! takes the next split.) The order of every sum and of every tie in a scene of objects is that of
+//! takes the next split.) Planes of ids hold the lowest 32 bits. Where surfels are counted, as in the text
+//! of an explanation or of a verdict by a method that draws all surfels one by one, they are counted in
+//! the order of their ids; and so are the ids of a scene that has primitives, which are counted on after
+//! the surfels.
+//!
+//! The order of every sum and of every tie in a scene of objects is that of
 //! the ids: `Even`, `Single` and `Stencil` keep the order of the scene, `Two` has the large objects
 //! first.
 
@@ -61,6 +66,8 @@ pub struct Ids {
     first: Vec<u64>,
     /// The objects in the order of their ids.
     order: Vec<u32>,
+    /// How many surfels come before each of them, in that order.
+    before: Vec<u64>,
 }
 
 impl Ids {
@@ -125,13 +132,24 @@ impl Ids {
         }
         let mut order: Vec<_> = (0..counts.len() as u32).collect();
         order.sort_by_key(|&object| first[object as usize]);
-        Some(Self { split, counts: counts.to_vec(), first, order })
+        let mut sum = 0;
+        let before = order.iter().map(|&object| {
+            sum += u64::from(counts[object as usize]);
+            sum - u64::from(counts[object as usize])
+        });
+        Some(Self { split, before: before.collect(), counts: counts.to_vec(), first, order })
     }
 
     /// The ids of no objects.
     #[must_use]
     pub fn none() -> Self {
-        Self { split: Split::Even, counts: Vec::new(), first: Vec::new(), order: Vec::new() }
+        Self {
+            split: Split::Even,
+            counts: Vec::new(),
+            first: Vec::new(),
+            order: Vec::new(),
+            before: Vec::new(),
+        }
     }
 
     /// How the bits are divided.
@@ -168,6 +186,25 @@ impl Ids {
     #[must_use]
     pub fn id(&self, object: u32, surfel: u32) -> u64 {
         self.first[object as usize] + u64::from(surfel)
+    }
+
+    /// The id of which so many others are less; none if there are no more.
+    #[must_use]
+    pub fn nth(&self, rank: u64) -> Option<u64> {
+        let after = self.before.partition_point(|&before| before <= rank);
+        // Of objects without surfels the last one has the rank of the one after.
+        let (&object, before) = (self.order.get(after.checked_sub(1)?)?, self.before[after - 1]);
+        let surfel = rank - before;
+        (surfel < u64::from(self.count(object))).then(|| self.first[object as usize] + surfel)
+    }
+
+    /// How many ids are less than an id; none if it is the id of no surfel.
+    #[must_use]
+    pub fn rank(&self, id: u64) -> Option<u64> {
+        let (object, surfel) = self.find(id)?;
+        let first = self.first[object as usize];
+        let place = self.order.partition_point(|&other| self.first[other as usize] < first);
+        Some(self.before[place] + u64::from(surfel))
     }
 
     /// The object and the surfel of an id; none if it is the id of none.
@@ -267,6 +304,14 @@ mod tests {
                     prop_assert!(id as u32 != NO_ID, "{split:?}");
                     prop_assert!(split == Split::Stencil || id < 1 << 32);
                 }
+                let total = ids.total();
+                let rank = (total > 0).then(|| which.index(total as usize) as u64);
+                if let Some(rank) = rank {
+                    let id = ids.nth(rank).unwrap();
+                    prop_assert_eq!(ids.rank(id), Some(rank));
+                    prop_assert!(rank == 0 || ids.nth(rank - 1).unwrap() < id);
+                }
+                prop_assert_eq!(ids.nth(total), None);
                 // The id after the last of an object is nobody's, or the first of the next.
                 let end = ids.id(object as u32, counts[object]);
                 prop_assert!(ids.find(end).is_none_or(|(_, surfel)| surfel == 0));
