@@ -191,3 +191,46 @@ fn scenes_of_objects_that_cannot_be_are_refused() {
     }
     assert_eq!(names(at.path()), ["s.toml"]);
 }
+
+/// A sequence of the method that carries something is the same in one go and from a state.
+#[test]
+fn a_frame_goes_on_from_the_state_of_the_one_before() {
+    let at = walk();
+    let read = |name: &str| fs::read(at.path().join(name)).unwrap();
+    let render = ["render", "walk.toml", "--method", "deferred"];
+    let with = |more: &[&'static str]| [&render[..], more].concat();
+    let said = succeeds(at.path(), &with(&["--frames", "0..3", "-o", "w.exr"]));
+    assert!(said.contains("indices") && said.contains("difference"), "{said}");
+    succeeds(at.path(), &with(&["--frames", "0..2", "-o", "a.exr", "--keep-state", "s.bin"]));
+    succeeds(at.path(), &with(&["--frames", "2..3", "-o", "b.exr", "--state", "s.bin"]));
+    assert_eq!(read("b.0002.exr"), read("w.0002.exr"));
+    let one = ["--frame", "2", "--state", "s.bin", "-o", "c.exr"];
+    let said = succeeds(at.path(), &[&with(&one)[..], &["--repeat", "3"]].concat());
+    assert!(said.contains(" of 400 surfels, "), "{said}");
+    assert_eq!(read("c.exr"), read("w.0002.exr"), "repeated from the same state");
+    succeeds(at.path(), &with(&["--frame", "2", "-o", "d.exr"]));
+    assert_ne!(read("d.exr"), read("w.0002.exr"), "from nothing");
+    let explain = ["explain", "walk.toml", "16", "12", "--method", "deferred", "--frame", "2"];
+    let said = succeeds(at.path(), &[&explain[..], &["--state", "s.bin"]].concat());
+    assert!(said.contains("flagged") && said.contains("surfel"), "{said}");
+
+    // What cannot be.
+    let refused = |more: &[&'static str], code| fails(at.path(), &with(more), code);
+    let line = refused(&["--frame", "1", "--state", "s.bin", "-o", "x.exr"], 1);
+    assert!(line.contains("what frame 1 saw is for frame 2, and this is frame 1"), "{line}");
+    let line = refused(&["--frame", "2", "--state", "s.bin", "--flags", "8", "-o", "x.exr"], 1);
+    assert!(line.contains("groups of 64 surfels, the method 8: set --flags 64"), "{line}");
+    let line = refused(&["--frame", "2", "--state", "walk.toml", "-o", "x.exr"], 1);
+    assert!(line.contains("no state of splatref"), "{line}");
+    let line = refused(&["-o", "x.exr", "--keep-state", "walk.toml"], 2);
+    assert!(line.contains("walk.toml"), "{line}");
+    let ewa = ["render", "walk.toml", "-o", "x.exr", "--keep-state", "t.bin"];
+    let line = fails(at.path(), &ewa, 2);
+    assert!(line.contains("the method ewa carries nothing from frame to frame"), "{line}");
+    let other = WALK.replace("count = 100", "count = 101");
+    fs::write(at.path().join("other.toml"), other).unwrap();
+    let other = ["render", "other.toml", "--method", "deferred", "--frame", "2", "-o", "x.exr"];
+    let line = fails(at.path(), &[&other[..], &["--state", "s.bin"]].concat(), 1);
+    assert!(line.contains("the state is of another scene"), "{line}");
+    assert!(!at.path().join("x.exr").exists() && !at.path().join("t.bin").exists());
+}
