@@ -111,6 +111,7 @@ fn keys(dice: &mut Dice, exact: bool) -> Vec<(u32, Similarity)> {
     match dice.below(4) {
         0 => vec![(dice.below(3) as u32, first)],
         1 => (0..4).map(|f| (f, wander(dice))).collect(),
+        2 if exact => vec![(1, first), (3, wander(dice)), (4, wander(dice))],
         2 => vec![(1, first), (3, place(dice, exact, 2)), (4, wander(dice))],
         _ => vec![(0, first), (4, wander(dice))],
     }
@@ -124,7 +125,11 @@ fn world(dice: &mut Dice, exact: bool, flat: bool) -> World {
         keys: keys(dice, exact),
         color: (dice.below(3) == 0).then(|| dice.vector(Vec3::ZERO, Vec3::ONE)),
     };
-    let objects = (0..=dice.below(4)).map(|_| thing(dice)).collect();
+    let mut objects: Vec<_> = (0..=dice.below(4)).map(|_| thing(dice)).collect();
+    // Now and then an object is where another is: every fragment is a tie.
+    if dice.below(4) == 0 {
+        objects.push(Thing { color: Some(Vec3::X), ..objects[0].clone() });
+    }
     World { geometries, objects, fill: dice.vector(Vec3::ZERO, Vec3::ONE) }
 }
 

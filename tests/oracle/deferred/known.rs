@@ -13,32 +13,31 @@ use splatref::index::seen::Seen;
 use splatref::method::deferred::Settings;
 use splatref::method::{Picture, Session};
 use splatref::number::Exact;
-use splatref::scene::objects::Split;
 use splatref::scene::{Scene, Similarity, Surfels};
 use splatref::splat::{Epsilon, Kernel, Outline, SplatSettings};
 
-const RED: Vec3 = Vec3::X;
-const BLUE: Vec3 = Vec3::Z;
+pub(super) const RED: Vec3 = Vec3::X;
+pub(super) const BLUE: Vec3 = Vec3::Z;
 /// The id of the first surfel of the second object.
 const SECOND: u32 = 1 << 20;
 
-fn settings(outline: Outline, epsilon: f32) -> Settings {
+pub(super) fn settings(outline: Outline, epsilon: f32) -> Settings {
     let kernel = Kernel { outline, cutoff: 2.0, low_pass: 0.0 };
     let splats = SplatSettings { kernel, epsilon: Epsilon::World(epsilon), cull: true };
     Settings { splats, flags: 64, second: true }
 }
 
 /// Displaced to a place in the picture and a depth, where a [`Dot`] at (0, 0, 0) then is.
-fn to(x: f64, y: f64, depth: f64) -> Similarity {
+pub(super) fn to(x: f64, y: f64, depth: f64) -> Similarity {
     Similarity { translation: DVec3::new(x, -y, -depth), ..Similarity::IDENTITY }
 }
 
 /// One disc at the origin, of a radius.
-fn disc(radius: f32) -> Surfels {
+pub(super) fn disc(radius: f32) -> Surfels {
     exact_scene(&[Dot::new(0.0, 0.0, radius).at_depth(0.0)]).surfels
 }
 
-fn thing(geometry: usize, keys: &[(u32, Similarity)], color: Vec3) -> Thing {
+pub(super) fn thing(geometry: usize, keys: &[(u32, Similarity)], color: Vec3) -> Thing {
     Thing { geometry, keys: keys.to_vec(), color: Some(color) }
 }
 
@@ -50,7 +49,7 @@ fn world(all: &[(f32, &[(u32, Similarity)], Vec3)]) -> World {
 }
 
 /// A frame, given what another saw.
-fn shot<R: Exact>(
+pub(super) fn shot<R: Exact>(
     world: &World,
     settings: Settings,
     size: [u32; 2],
@@ -69,7 +68,7 @@ fn after(world: &World, group: u32, selected: &[u64]) -> Seen {
     Seen::of(world.objects().ids(), group, selected)
 }
 
-fn selected<R: Exact>(frame: &Frame<R>) -> Vec<u32> {
+pub(super) fn selected<R: Exact>(frame: &Frame<R>) -> Vec<u32> {
     let pixels = (frame.width * frame.height) as usize;
     let ids = (0..pixels).map(|i| index(frame, "indices.id", i));
     let mut all: Vec<_> = ids.filter(|id| *id != NO_ID).collect();
@@ -84,11 +83,11 @@ fn weight([cx, cy]: [i32; 2], [x, y]: [i32; 2], radius: i32) -> f64 {
 }
 
 /// What a pixel shows: colour, weight, depth, id.
-type Shows = ([f64; 3], f64, f64, u32);
+pub(super) type Shows = ([f64; 3], f64, f64, u32);
 
 const EMPTY: Shows = ([0.0; 3], 0.0, f64::INFINITY, NO_ID);
 
-fn assert_shows(frame: &Frame<f64>, [x, y]: [i32; 2], expected: Shows, name: &str) {
+pub(super) fn assert_shows(frame: &Frame<f64>, [x, y]: [i32; 2], expected: Shows, name: &str) {
     let i = (y as u32 * frame.width + x as u32) as usize;
     let (color, weight) = (value(frame, "", i), number(frame, "weight", i));
     let close = |a: f64, b: f64| (a - b).abs() <= 1e-14;
@@ -99,7 +98,7 @@ fn assert_shows(frame: &Frame<f64>, [x, y]: [i32; 2], expected: Shows, name: &st
     assert_eq!(rest, (expected.2, expected.3), "{name}, ({x}, {y}): depth and id");
 }
 
-fn rgb(v: Vec3) -> [f64; 3] {
+pub(super) fn rgb(v: Vec3) -> [f64; 3] {
     v.to_array().map(f64::from)
 }
 
@@ -147,7 +146,8 @@ fn deferred_a_centre_may_lie_as_deep_as_epsilon_behind_the_depth() {
     let red = weight([2, 2], [4, 2], 3);
     let mixed = [red / (red + 1.0), 0.0, 1.0 / (red + 1.0)];
     for outline in OUTLINES {
-        for (epsilon, passes) in [(1.0, true), (1.0_f32.next_down(), false), (0.0, false)] {
+        // The depth with the lesser of them is the number before 3 in `f32`.
+        for (epsilon, passes) in [(1.0, true), (1.0 - (-22.0_f32).exp2(), false), (0.0, false)] {
             let settings = settings(outline, epsilon);
             let name = &format!("{settings:?}");
             // Without depth nothing fails; pass 4 hides what lies behind.
@@ -194,40 +194,6 @@ fn deferred_equally_near_fragments_of_both_passes_go_to_the_lower_id() {
                 assert_eq!(index(&frame, "visibility.id", i), before, "{flagged:?}, column {x}");
             }
         }
-    }
-}
-
-/// 4096 objects of one disc and a last one of 2^17 + 1: its ids are the lowest.
-fn crowd(first: &[(u32, Similarity)], last: &[(u32, Similarity)]) -> World {
-    let behind = Dot::new(0.0, 0.0, 1.0).at_depth(-64.0);
-    let mut large = vec![behind; (1 << 17) + 1];
-    large[0] = behind.at_depth(0.0);
-    let geometries = vec![disc(1.0), exact_scene(&large).surfels];
-    let mut objects = vec![thing(0, &[(0, to(0.5, 0.5, -8.0))], RED); 4096];
-    objects[0] = thing(0, first, RED);
-    objects.push(thing(1, last, BLUE));
-    World { geometries, objects, fill: Vec3::ONE }
-}
-
-#[test]
-fn deferred_large_objects_win_ties_where_ids_are_of_two_schemes() {
-    let (here, there, away) = (to(1.5, 1.5, 2.0), to(5.5, 1.5, 2.0), to(1.5, 1.5, -4.0));
-    let settings = settings(Outline::Affine, 0.0);
-    let (small, centre) = (1_u32 << 31, 8 + 1);
-    // The small object is in pixel (1, 1) in both frames. The large one comes from another pixel,
-    // so that pass 1 draws both; or from behind the camera, so that pass 3 draws it.
-    for (from, flagged) in [(there, true), (away, false)] {
-        let world = crowd(&[(0, here)], &[(0, from), (1, here)]);
-        assert_eq!(world.objects().ids().split(), Split::Two);
-        let first = shot::<f64>(&world, settings, [8, 3], (0, None));
-        let both = if flagged { vec![0, small] } else { vec![small] };
-        assert_eq!(selected(&first.frame), both);
-        let Picture { frame, .. } = shot::<f64>(&world, settings, [8, 3], (1, first.seen.as_ref()));
-        let before = if flagged { 0 } else { small };
-        assert_eq!(index(&frame, "visibility.id", centre), before, "pass 1");
-        assert_eq!(selected(&frame), [0], "the last object of the scene has the lowest ids");
-        assert_eq!(index(&frame, "difference.id", centre), 0, "pass 3");
-        assert_shows(&frame, [1, 1], (rgb(BLUE), 1.0, 2.0, 0), "only the large one is selected");
     }
 }
 
@@ -313,4 +279,18 @@ fn deferred_what_is_seen_from_behind_takes_no_pixel_if_it_is_culled() {
         let normal = value(&frame, "normal", 4);
         assert_eq!(normal, [0.0, 0.0, 1.0], "towards the viewer");
     }
+}
+
+#[test]
+#[ignore = "differs: a frame that selects nothing lacks the planes `attributes` and `resolved`"]
+fn deferred_a_frame_that_selects_nothing_has_all_planes() {
+    // In frame 0 the disc is in the picture, in frame 1 behind the camera.
+    let moves = [(0, to(1.5, 1.5, 2.0)), (1, to(1.5, 1.5, -2.0))];
+    let world = world(&[(1.0, &moves, RED)]);
+    let names = |frame: u32| -> Vec<String> {
+        let settings = settings(Outline::Affine, 1.0);
+        let Picture { frame, .. } = shot::<f64>(&world, settings, [3; 2], (frame, None));
+        frame.planes.iter().map(|plane| plane.name.clone()).collect()
+    };
+    assert_eq!(names(0), names(1), "a scene with colours has planes of colours");
 }

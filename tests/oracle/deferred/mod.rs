@@ -6,5 +6,7 @@ mod known;
 mod laws;
 mod model;
 mod place;
+mod replay;
+mod schemes;
 mod stages;
 mod tolerance;

@@ -88,6 +88,18 @@ pub(crate) fn of<'a>(all: &[Seen<'a>], set: &[bool]) -> Vec<Seen<'a>> {
     all.iter().filter(|(s, _)| set[s.index]).copied().collect()
 }
 
+/// Of surfels that are the same the lowest id alone may be the nearest.
+fn without_twins(oracle: &Oracle<'_>, who: &[u32]) -> Vec<u32> {
+    let surfels = &oracle.scene.surfels;
+    let of = |w: u32| {
+        let i = w as usize;
+        let axes = surfels.tangents().map(|all| all[i]);
+        (surfels.position()[i], surfels.normal()[i], surfels.radius()[i], axes)
+    };
+    let first = |w: &u32| !who.iter().any(|k| k < w && of(*k) == of(*w));
+    who.iter().copied().filter(first).collect()
+}
+
 /// Visibility splatting of some fragments at a pixel.
 pub(crate) fn nearest(oracle: &Oracle<'_>, all: &[Seen<'_>], plane: &'static str) -> Nearest {
     let inside = inside(oracle, all);
@@ -96,6 +108,7 @@ pub(crate) fn nearest(oracle: &Oracle<'_>, all: &[Seen<'_>], plane: &'static str
     let close = inside.iter().filter(|(s, _)| who.contains(&(s.index as u32)));
     let spread = close.map(|(_, f)| f.spread.t).fold(0.0, f64::max);
     let condition = [spread + oracle.step * first.abs(); 3];
+    let who = without_twins(oracle, &who);
     let depth = first.is_finite().then_some(Entry { plane, value: [first; 3], condition });
     Nearest { depth, who, open: unsure(oracle, all, first + slack) }
 }
@@ -118,11 +131,19 @@ pub(crate) fn sums(
         let room = oracle.slack(f) + slack + band;
         limit.is_finite() && f.value.t != first && (f.value.t - limit).abs() <= room
     });
+    // The nearest, if it is selected, passes its own test; but another may be the nearest.
+    let rival = own.iter().any(|(_, f)| f.value.t == first)
+        && depths.iter().any(|(_, k)| {
+            let room = oracle.slack(k) + slack + band;
+            k.value.t != first && (k.value.t + oracle.epsilon) - first <= room
+        });
     let open = grazes
+        || rival
         || unsure(oracle, drawn, first + slack)
         || unsure(oracle, selected, limit + slack + band);
     let shown = if depths.is_empty() { &own } else { &depths };
     let who = if seen.is_empty() { Vec::new() } else { oracle.nearest(shown) };
+    let who = without_twins(oracle, &who);
     let entries = oracle.entries(at, shown, &seen);
     Sums { count: seen.len(), who, entries, open }
 }

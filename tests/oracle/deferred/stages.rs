@@ -190,7 +190,9 @@ fn compare_frame<R: Exact, const P: u32>(
     let chosen = selected(&picture.frame);
     let sets = Sets::new(&numbers, flags, &chosen, settings.second);
     let colored = flat.surfels.color().is_some();
-    assert_eq!(picture.frame.plane("attributes").is_some(), colored, "{}", sequence.name);
+    // See `known`: a frame that selects nothing lacks the planes of colours.
+    let found = picture.frame.plane("attributes").is_some();
+    assert!(found == colored || chosen.is_empty(), "colours of {}", sequence.name);
     let (frame, numbers, every) = (&picture.frame, &numbers, &every[..]);
     let name = &sequence.name;
     let mut shown = Shown { name, frame, numbers, every, arithmetic, measured, counts };
@@ -256,7 +258,7 @@ fn compare<R: Exact, const P: u32>(
 fn deferred_every_pass_equals_the_oracle() {
     let mut measured = Measured::default();
     let [mut narrow, mut wide] = <[Counts; 2]>::default();
-    for number in 0..72 {
+    for number in 0..96 {
         let sequence = sequence(number);
         compare::<f32, BITS>(&sequence, Arithmetic::F32, &mut measured, &mut narrow);
         let arithmetic = if sequence.exact { Arithmetic::F64 } else { Arithmetic::F64Rounded };
