@@ -50,32 +50,6 @@ fn deferred_stages_alone_leave_the_planes_of_the_picture() {
                     }
                     // A depth that comes back as a nearness is rounded once more.
                     let (name, place) = (&found.name, &sequence.name);
-                    // A depth that comes back as a nearness is rounded once more.
-                    let (name, place) = (&found.name, &sequence.name);
-                    if stage.name != "difference" {
-                        let n = (whole.width * whole.height) as usize;
-                        for i in (0..n)
-                            .filter(|&i| {
-                                crate::kit::planes::at(own, i)
-                                    != crate::kit::planes::at(&found.samples, i)
-                            })
-                            .take(2)
-                        {
-                            eprintln!(
-                                "STAGE {} '{name}' {i}: {:?} {:?}; {} lights, colours {}",
-                                stage.name,
-                                crate::kit::planes::at(own, i),
-                                crate::kit::planes::at(&found.samples, i),
-                                sequence.around.lights.len(),
-                                whole.plane("resolved").is_some()
-                            );
-                        }
-                        eprintln!(
-                            "  {place} B {}",
-                            numbers(&whole, "indices.id").iter().filter(|i| **i < 4e9).count()
-                        );
-                        continue;
-                    }
                     assert_eq!(stage.name, "difference", "'{name}' of {place}");
                     assert_eq!(camera.projection, Projection::Perspective, "'{name}' of {place}");
                     let pixels = (whole.width * whole.height) as usize;
