@@ -165,7 +165,7 @@ pub(crate) fn sequence(number: u64) -> Sequence {
     let roll = Mat4::from_rotation_z(dice.within(-3.0, 3.0));
     let frames = [[0, 1, 2, 3], [0, 3, 3, 5], [2, 1, 4, 0]][dice.below(3)];
     let frames = frames.into_iter().map(|frame| {
-        let mut camera = still.clone();
+        let mut camera = still;
         if exact {
             camera.view_from_world.w_axis.x += dice.within(-0.5, 0.5);
         } else {

@@ -37,12 +37,15 @@ pub(super) fn disc(radius: f32) -> Surfels {
     exact_scene(&[Dot::new(0.0, 0.0, radius).at_depth(0.0)]).surfels
 }
 
-pub(super) fn thing(geometry: usize, keys: &[(u32, Similarity)], color: Vec3) -> Thing {
+/// Keys of a motion.
+pub(super) type Keys<'a> = &'a [(u32, Similarity)];
+
+pub(super) fn thing(geometry: usize, keys: Keys<'_>, color: Vec3) -> Thing {
     Thing { geometry, keys: keys.to_vec(), color: Some(color) }
 }
 
 /// Objects of one disc each: its radius, its keys and its colour.
-fn world(all: &[(f32, &[(u32, Similarity)], Vec3)]) -> World {
+fn world(all: &[(f32, Keys<'_>, Vec3)]) -> World {
     let geometries = all.iter().map(|(radius, ..)| disc(*radius)).collect();
     let objects = all.iter().enumerate().map(|(i, (_, keys, color))| thing(i, keys, *color));
     World { geometries, objects: objects.collect(), fill: Vec3::ONE }

@@ -9,12 +9,8 @@ use crate::template::cases::{Dot, exact_scene};
 use glam::Vec3;
 use splatref::frame::NO_ID;
 use splatref::method::Picture;
-use splatref::scene::Similarity;
 use splatref::scene::objects::Split;
 use splatref::splat::Outline;
-
-/// Keys of a motion.
-type Keys<'a> = &'a [(u32, Similarity)];
 
 /// So many objects of one disc, behind the camera but for some, and a last one of 2^17 + 1, of which
 /// only the first is not behind the object.
