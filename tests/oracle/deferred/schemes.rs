@@ -1,7 +1,7 @@
 //! Known answers of scenes whose ids are of two schemes, or of more than 32 bits.
 
 use crate::deferred::known::{
-    BLUE, RED, assert_shows, disc, rgb, selected, settings, shot, thing, to,
+    BLUE, Keys, RED, assert_shows, disc, rgb, selected, settings, shot, thing, to,
 };
 use crate::deferred::place::World;
 use crate::kit::planes::index;
