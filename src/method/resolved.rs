@@ -133,12 +133,15 @@ pub(super) fn framebuffer<R: Exact>(
     }
 }
 
-/// The stage of shading, on somebody's averages.
-pub(super) fn shade<R: Exact>(job: &Job<'_>, given: &Given<'_, R>) -> Result<Vec<NamedPlane<R>>> {
+/// The stage of shading, on somebody's averages, of surfels with colours or without.
+pub(super) fn shade<R: Exact>(
+    job: &Job<'_>,
+    given: &Given<'_, R>,
+    colored: bool,
+) -> Result<Vec<NamedPlane<R>>> {
     let (depth, weight) = (given.scalar(&DEPTH, 0)?, given.scalar(&WEIGHT, 0)?);
     let lit = !job.scene.lights.is_empty();
     let normal = lit.then(|| given.triple(&NORMAL, 0)).transpose()?;
-    let colored = job.scene.surfels.color().is_some();
     let color = colored.then(|| given.triple(&COLOR, 0).cloned()).transpose()?;
     let (color, alpha) = shaded(job, depth, normal, weight, color);
     Ok(vec![SHADED.triple(0, color), ALPHA.scalar(0, alpha)])

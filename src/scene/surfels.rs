@@ -62,7 +62,7 @@ impl Surfels {
     /// Checks a complete cloud, drops what is degenerate, and counts it.
     ///
     /// A normal whose length is within 2^-20 of 1 is kept as it is; any other is divided by its
-    /// length in f64 and rounded once. Triangles, edges and the tangents of tubes are ignored.
+    /// length, sqrt((x x + y y) + z z), in f64, component by component, and rounded once. Triangles, edges and the tangents of tubes are ignored.
     ///
     /// # Errors
     /// [`Error::Invalid`] if normals or radii are missing, if an array has the wrong length, if
@@ -342,9 +342,6 @@ impl Arrays {
     /// The surfels; the median radius and the sphere may be those of a whole of which these are a part.
     pub(super) fn into_surfels(self, median_radius: f32, sphere: (DVec3, f64)) -> Surfels {
         let Self { position, normal, radius, color, opacity, tangents } = self;
-        if position.is_empty() {
-            return Surfels::none();
-        }
         let (groups, bounding_sphere) = (None, sphere);
         Surfels {
             position,

@@ -9,7 +9,14 @@ use glam::{DMat3, DVec3, Vec3};
 /// A similarity: a point p goes to `rotation (p scale) + translation`.
 ///
 /// Everything is computed in f64 and rounded to f32 once. Normals and tangents are turned, radii
-/// scaled, half axes both.
+/// scaled, half axes both: with x, y, z the coordinates and m0, m1, m2 a row of the rotation, t that
+/// of the translation and s the scale, a component is
+///
+/// ```text
+///   point      ((m0 (x s) + m1 (y s)) + m2 (z s)) + t
+///   normal     (m0 x + m1 y) + m2 z
+///   half axis  (m0 (x s) + m1 (y s)) + m2 (z s)          radius  r s
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Similarity {
     /// A rotation matrix, see [`Similarity::check`].

@@ -19,7 +19,10 @@
 //!    pass 3 left.
 //! 5. **Normalization**, as in [`super::ewa`]; then deferred shading.
 //!
-//! The flags of B(i) are what frame i + 1 is given. A frame is a function of flags, scene, camera and
+//! The stage `difference` run alone turns depths into nearness again: under a perspective camera its depths
+//! may be one rounding off those of the whole picture.
+//!
+//! The flags of B(i) are what frame i + 1 is given; no flags, and none set, give the same frame. A frame is a function of flags, scene, camera and
 //! settings alone.
 //!
 //! # Decided
@@ -29,18 +32,26 @@
 //!   test of pass 2 is biased. Without a bias, epsilon = 0, nearly every centre lies behind a splat of a
 //!   neighbour, and surfaces come and go; with too large a one the sheet behind is selected through
 //!   the gaps between the centres, and takes pixels from the sheet in front.
-//! - With culling on, a surfel that is seen from behind takes no pixel: no pass would draw it.
+//! - With culling on, a surfel that is seen from behind takes no pixel: no pass would draw it. One that
+//!   `ewa` calls `Degenerate`, such as one seen exactly edge-on, may be selected: it takes its pixel,
+//!   and no pass draws it.
+//! - The limit of passes 2 and 4, Z + epsilon, is one sum in the arithmetic of the picture. Epsilon in
+//!   median radii is that of [`crate::scene::Objects::median_radius`] in the frame, one product in `f32`.
 //! - A disc whose centre is outside the picture is lost even where it reaches into the picture, as in
 //!   every method that draws a surfel as one pixel.
 //! - Pass 1 draws all surfels of a flagged group. \[GBP04, 4.2\] also reads as if the list of B(i-1)
 //!   itself were drawn; then a surfel of B(i) - B(i-1) in a flagged group would be drawn by neither pass.
 //! - The id of a pixel is that of the nearest fragment of passes 1 and 3, and may be of a surfel that is
-//!   flagged and not in B(i). A pixel without weight is empty, whatever depth passes 1 and 3 left. Where
+//!   flagged and not in B(i): colour, normal and weight are of B(i), depth and id need not be. A pixel
+//!   without weight is empty, whatever depth passes 1 and 3 left. Where
 //!   these left no depth, as may be without pass 3, all fragments of B(i) are added up, and the pixel shows
-//!   depth and id of the nearest of them.
+//!   depth and id of the nearest of them. Where they did leave one, fragments of B(i) in front of that
+//!   depth are in the sums, and the pixel shows the depth of pass 1.
 //! - Opacity plays no part, as in [`super::ewa`].
 //!
 //! # What the papers' readers should expect
+//!
+//! The tally of a picture counts the surfels of B(i) alone.
 //!
 //! One surfel a pixel is selected. Where a pixel holds many centres the others are lost, and with
 //! them their colours: pictures of dense surfels flicker as these change places \[GBP04, 4.4\].
@@ -83,7 +94,7 @@ impl Algorithm for Settings {
         "EWA splatting of the surfels that the last frame and an index buffer select [GBP04]";
     const STAGES: &'static [Stage] = planes::STAGES;
     const DRAWS_OBJECTS: bool = true;
-    const FAST_BYTES_A_PIXEL: Option<u64> = Some(192);
+    const FAST_BYTES_A_PIXEL: Option<u64> = Some(256);
     type Memory = ();
 
     fn splats(&self) -> Option<&SplatSettings> {

@@ -118,7 +118,7 @@ pub(super) fn stage<R: Exact>(
             let averages = normalization(job, settings, &part, &depth, &sums);
             Ok(resolved::planes(&part.job(job), &averages))
         }
-        "shading" => resolved::shade(job, given),
+        "shading" => resolved::shade(job, given, whole.has_colors()),
         _ => Err(unknown(stage)),
     }
 }

@@ -62,7 +62,7 @@ pub(super) fn stage<R: Exact>(
             let sums = planes::given_attributes(job, given)?;
             Ok(resolved::planes(job, &visible.with(&sums, resolve)))
         }
-        "shading" => resolved::shade(job, given),
+        "shading" => resolved::shade(job, given, job.scene.surfels.color().is_some()),
         _ => Err(unknown(stage)),
     }
 }

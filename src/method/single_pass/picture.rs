@@ -110,7 +110,7 @@ pub(super) fn stage<R: Exact>(
             left.extend(resolved::planes(job, &composites.map(Composite::resolved)));
             Ok(left)
         }
-        "shading" => resolved::shade(job, given),
+        "shading" => resolved::shade(job, given, job.scene.surfels.color().is_some()),
         _ => Err(unknown(stage)),
     }
 }

@@ -14,10 +14,13 @@
 //!             objects of at most 2^20 surfels
 //! ```
 //!
-//! Objects are numbered from 0 in the order of the scene, in `Two` those of each scheme on their own.
+//! Objects are numbered from 0 in the order of the scene, in `Two` those of each scheme on their own; in
+//! `Stencil` object o has the number o + floor(o / 4095). `Single` takes the least n with which the
+//! largest object fits, or does not fit.
 //! [`NO_ID`] is never a surfel, and never the lowest 32 bits of one: a split in which a surfel would
 //! have them does not fit. (`Decided:` \[GBP04\] calls it the most improbable indicator; a scene in which it does occur
-//! takes the next split.) Planes of ids hold the lowest 32 bits. Where surfels are counted, as in the text
+//! takes the next split.) Planes of ids hold the lowest 32 bits; of
+//! wider ids two surfels of one picture may show the same number, but selection and ties know all bits. Where surfels are counted, as in the text
 //! of an explanation or of a verdict by a method that draws all surfels one by one, they are counted in
 //! the order of their ids; and so are the ids of a scene that has primitives, which are counted on after
 //! the surfels.

@@ -7,13 +7,17 @@
 //!
 //! A surfel of an object is that of its geometry, placed by [`Similarity::apply`] with the object's
 //! place in the frame, and then checked as [`Surfels::new`] checks a surfel, which makes its normal a
-//! unit vector again. What only some of the objects have the others get: the colour
-//! [`Objects::fill`], the opacity 1, the half axes of [`super::cloud::half_axes`]. The colour of an object
+//! unit vector again. A scene has colours, opacities or half axes if an object, or a geometry that an
+//! object uses, has; if none has a colour, that of the material holds. What only some of the objects have the others get: the colour
+//! [`Objects::fill`], the opacity 1, the half axes of [`super::cloud::half_axes`], of
+//! the placed normal and radius, before the normal is made a unit vector again. The colour of an object
 //! stands in the place of that of its geometry.
 //!
-//! `Decided:` the median radius, the unit of epsilon, is the lower median of the objects' median
+//! `Decided:` the median radius, the unit of epsilon, is the lower median, the element of rank
+//! (n - 1) / 2 over all surfels of all objects in the frame, of the objects' median
 //! radii, each its geometry's times the object's scale (in f64, rounded to f32) and counted once for
-//! each of its surfels: neither what is seen of a scene nor how it is selected changes epsilon.
+//! each of its surfels: neither what is seen of a scene nor how it is selected changes
+//! epsilon; where scales move, epsilon does from frame to frame.
 
 pub mod ids;
 pub mod motion;
@@ -62,6 +66,7 @@ pub struct Objects {
     frame: u32,
     places: Vec<Similarity>,
     median_radius: f32,
+    bounding_sphere: (DVec3, f64),
 }
 
 impl Objects {
@@ -90,6 +95,7 @@ impl Objects {
             frame: 0,
             places: Vec::new(),
             median_radius: 0.0,
+            bounding_sphere: (DVec3::ZERO, 0.0),
         };
         still.at(0)
     }
@@ -111,6 +117,7 @@ impl Objects {
             }
         }
         moved.median_radius = moved.median_of_medians();
+        moved.bounding_sphere = moved.sphere_of_spheres();
         Ok(moved)
     }
 
@@ -186,6 +193,10 @@ impl Objects {
     /// farthest that one of them reaches from there; in f64.
     #[must_use]
     pub fn bounding_sphere(&self) -> (DVec3, f64) {
+        self.bounding_sphere
+    }
+
+    fn sphere_of_spheres(&self) -> (DVec3, f64) {
         let spheres = (0..self.objects.len() as u32).map(|object| self.sphere(object));
         let spheres: Vec<_> = spheres.collect();
         let mut corners = [DVec3::INFINITY, DVec3::NEG_INFINITY];

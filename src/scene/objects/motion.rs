@@ -16,7 +16,8 @@
 //!                then divided by its length, and made a matrix
 //! ```
 //!
-//! Sums of four run `((w + x) + y) + z`. A key every half turn or more often says which way an
+//! p u + q v is a product and a product, then their sum; sin and atan2 are those of
+//! [`crate::number::elementary`]; a length is the root of the sum of four squares. Sums of four run `((w + x) + y) + z`. A key every half turn or more often says which way an
 //! object turns; a key after a whole turn says that the object rests.
 //!
 //! The quaternion (w, x, y, z) of a rotation m (`m.r.c`: row, column) is found from its greatest

@@ -285,7 +285,6 @@ fn deferred_what_is_seen_from_behind_takes_no_pixel_if_it_is_culled() {
 }
 
 #[test]
-#[ignore = "differs: a frame that selects nothing lacks the planes `attributes` and `resolved`"]
 fn deferred_a_frame_that_selects_nothing_has_all_planes() {
     // In frame 0 the disc is in the picture, in frame 1 behind the camera.
     let moves = [(0, to(1.5, 1.5, 2.0)), (1, to(1.5, 1.5, -2.0))];

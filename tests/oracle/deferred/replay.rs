@@ -40,10 +40,6 @@ fn deferred_stages_alone_leave_the_planes_of_the_picture() {
                 }
                 for found in &alone.planes {
                     let Some(own) = whole.plane(&found.name) else { continue };
-                    // See below.
-                    if stage.name == "shading" && found.name.is_empty() {
-                        continue;
-                    }
                     same += 1;
                     if bits(own) == bits(&found.samples) {
                         continue;
@@ -68,7 +64,6 @@ fn deferred_stages_alone_leave_the_planes_of_the_picture() {
 }
 
 #[test]
-#[ignore = "differs: of a scene of objects the stage `shading` alone shades the material's colour"]
 fn deferred_shading_alone_shades_the_colours() {
     let exec = Exec::sequential();
     for sequence in (0..24).map(sequence) {

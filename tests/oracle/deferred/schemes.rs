@@ -51,7 +51,6 @@ fn deferred_large_objects_win_ties_where_ids_are_of_two_schemes() {
 }
 
 #[test]
-#[ignore = "half a minute: a frame takes time with the square of the number of objects"]
 fn deferred_ids_of_more_than_32_bits_are_told_apart() {
     // Objects 0 and 4095 have the numbers 0 and 2^12: the lowest 32 bits of their ids are 0.
     let (here, there, last) = (to(1.5, 1.5, 2.0), to(5.5, 1.5, 2.0), to(5.5, 1.5, 3.0));

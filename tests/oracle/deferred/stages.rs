@@ -190,9 +190,8 @@ fn compare_frame<R: Exact, const P: u32>(
     let chosen = selected(&picture.frame);
     let sets = Sets::new(&numbers, flags, &chosen, settings.second);
     let colored = flat.surfels.color().is_some();
-    // See `known`: a frame that selects nothing lacks the planes of colours.
     let found = picture.frame.plane("attributes").is_some();
-    assert!(found == colored || chosen.is_empty(), "colours of {}", sequence.name);
+    assert!(found == colored, "colours of {}", sequence.name);
     let (frame, numbers, every) = (&picture.frame, &numbers, &every[..]);
     let name = &sequence.name;
     let mut shown = Shown { name, frame, numbers, every, arithmetic, measured, counts };

@@ -1,6 +1,6 @@
 //! Pass 2: every surfel as a point, against the depth of pass 1.
 //!
-//! The surfels are divided into as many shares as there are threads, in the order of their ids. Each
+//! The surfels are divided into as many shares as there are threads, up to [`SHARES`], in the order of their ids. Each
 //! share has a picture of its own, and the pictures are joined: the least depth of a pixel and, of equal
 //! ones, the lowest id is the same however the surfels are divided. Of most surfels the position says
 //! that they are not kept, and of many a box around them; the normals of the others alone are read and turned.
@@ -17,6 +17,9 @@ use crate::number::lanes::{LANES, Lanes, vectorized};
 use crate::number::{Real, Vector3};
 use crate::splat::View;
 
+/// The most shares: each takes a picture, 16 bytes a pixel.
+const SHARES: usize = 8;
+
 /// B(i), ascending.
 pub(super) fn selected(
     job: &Job<'_>,
@@ -26,7 +29,7 @@ pub(super) fn selected(
 ) -> Vec<u64> {
     let points = PointProjector::new(View::new(job.camera), settings.splats.cull);
     let queries = Queries::new(job.camera, limits);
-    let shares = whole.shares(job.exec.threads());
+    let shares = whole.shares(job.exec.threads().min(SHARES));
     let pictures = job.exec.ordered(shares, |ranges| {
         let mut kept = vec![Kept::EMPTY; limits.values.len()];
         for range in &ranges {
