@@ -36,7 +36,7 @@ pub(super) fn build(surfels: &Surfels, most: f32, exec: &Exec) -> Result<Sequent
     let count = surfels.len();
     if count > 1 << 31 {
         return Err(Error::Invalid(format!(
-            "a point tree of {count} surfels, but its nodes are numbered by 32 bits: split the model"
+            "a point tree of {count} surfels, but nodes are numbered by 32 bits: split the model"
         )));
     }
     memory::ask(count as u64 * BYTES_A_SURFEL, || format!("a point tree of {count} surfels"))?;
@@ -203,9 +203,7 @@ fn listed(surfels: &Surfels, ids: &[u32], nodes: Vec<Node>, exec: &Exec) -> Resu
     let (nodes, dropped) = Surfels::new_or_none(cloud, exec)?;
     if dropped.total() > 0 {
         return Err(Error::Invalid(
-            "the surfels are too far apart for a point tree: a disc around them leaves the range of \
-             f32"
-            .into(),
+            "the surfels are too far apart for a point tree: a disc leaves the range of f32".into(),
         ));
     }
     Ok(Sequential { nodes, near, far, gap, gap_from, parent, surfel })

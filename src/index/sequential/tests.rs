@@ -19,8 +19,8 @@ fn built(surfels: &Surfels) -> Sequential {
     Sequential::new(surfels, &Exec::sequential()).unwrap()
 }
 
-/// Surfels that lie in grids and at the same places, that look opposite ways, of sizes far apart; discs or
-/// ellipses.
+/// Surfels that lie in grids and at the same places, that look opposite ways, of sizes far apart;
+/// discs or ellipses.
 fn any_surfels() -> impl Strategy<Value = Surfels> {
     let coordinate = || prop_oneof![2 => (-3_i8..=3).prop_map(f32::from), 3 => -4.0_f32..4.0];
     let position = prop_oneof![
@@ -132,8 +132,9 @@ proptest! {
 
     #[test]
     fn distances_of_their_own_leave_no_hole(
-        surfels in any_surfels(), scale in any_scale(), eye in prop::array::uniform3(-20.0..20.0_f64),
-        close in any::<bool>(), off in prop::collection::vec(-1.0..1.0_f64, 16),
+        surfels in any_surfels(), scale in any_scale(), close in any::<bool>(),
+        eye in prop::array::uniform3(-20.0..20.0_f64),
+        off in prop::collection::vec(-1.0..1.0_f64, 16),
     ) {
         let tree = built(&surfels);
         let eye = DVec3::from(eye) * if close { 0.1 } else { 1.0 };
@@ -155,6 +156,28 @@ proptest! {
         let is_good = |i: usize| f64::from(tree.near()[i]) * scale <= distances[i];
         recursive(&tree, &children(&tree), 0, &is_good, &mut expected);
         prop_assert!(expected.iter().all(|i| taken.contains(i)));
+    }
+
+    #[test]
+    fn where_parent_and_child_nearly_miss_each_other_there_is_no_hole(
+        surfels in any_surfels(), node in any::<prop::sample::Index>(), away in 1.0..1e4_f64,
+        sooner in 0.0..1e-6_f64,
+    ) {
+        let tree = built(&surfels);
+        let node = node.index(tree.near().len());
+        let Some(parent) = tree.parent(node) else { return Ok(()) };
+        let [p, q] = [parent, node].map(|i| tree.nodes().position()[i].as_dvec3());
+        prop_assume!((p - q).length() > 0.0);
+        // The eye is on the line of both centres behind the parent's, which is just not good
+        // enough; and distances are as wrong as they may be.
+        let mut distances = distances(&tree, p + (p - q).normalize() * away);
+        for (i, distance) in distances.iter_mut().enumerate() {
+            *distance *= 1.0 + if i == node { 1.0 } else { -1.0 } / 4_194_304.0;
+        }
+        let scale = distances[parent] * (1.0 + sooner * sooner) / f64::from(tree.near()[parent]);
+        for path in paths(&tree) {
+            prop_assert!(path.iter().any(|&i| tree.holds(i, distances[i], scale)));
+        }
     }
 
     #[test]
@@ -197,7 +220,8 @@ proptest! {
             let [p, q] = [parent, i].map(|i| nodes.position()[i].as_dvec3());
             let reach = match nodes.tangents() {
                 Some(tangents) if tree.surfel(i).is_some() => {
-                    // The longest of many directions is at most a little shorter than the half axis.
+                    // The longest of many directions is at most a little shorter than the half
+                    // axis.
                     let [u, v] = tangents[i].map(Vec3::as_dvec3);
                     let at = |k: i32| {
                         let (x, y) = (f64::from(16 - k.abs()), f64::from(k));
@@ -298,7 +322,9 @@ fn a_colour_that_differs_keeps_a_plane_from_collapsing() {
 #[test]
 fn coincident_surfels_are_one_but_at_a_threshold_of_zero() {
     for n in [1, 2, 3, 5, 1000] {
-        let (normal, radius) = (Some(vec![Vec3::X; n]), Some(vec![0.5; n]));
+        // A normal a little too long makes the extents larger than the disc: no error is left.
+        let long = Vec3::X * (1.0 + 1.0 / 2_097_152.0);
+        let (normal, radius) = (Some(vec![long; n]), Some(vec![0.5; n]));
         let position = vec![Vec3::new(0.1, 0.7, -3.3); n];
         let tree = built(&made(Cloud { position, normal, radius, ..Cloud::default() }));
         assert_eq!(drawn(&tree, 0.01, 1e3), 1, "{n}");
