@@ -3,11 +3,13 @@
 //! - [`grouping`]: groups of surfels that do not overlap, so that a group shares one depth-image.
 //! - [`order`]: surfels from back to front.
 //! - [`seen`]: which surfels the frame before saw.
+//! - [`sequential`]: levels of detail as a list.
 
 pub mod grouping;
 pub mod order;
 pub(crate) mod point_tree;
 pub mod seen;
+pub mod sequential;
 
 use crate::error::{Error, Result};
 use crate::scene::{Boxes, Camera, Groups, Surfels};

@@ -75,16 +75,23 @@ fn split(part: HalfOfTree<'_>, leaf: usize) {
 
 /// Splits a range that is not empty once.
 fn halve<'a>((entries, axes): HalfOfTree<'a>) -> [HalfOfTree<'a>; 2] {
+    let (middle, axis) = divide(entries);
+    axes[middle] = axis as u8;
+    let (low, high) = entries.split_at_mut(middle);
+    let (low_axes, high_axes) = axes.split_at_mut(middle);
+    [(low, low_axes), (&mut high[1..], &mut high_axes[1..])]
+}
+
+/// Puts the point of rank `len / 2` of a range that is not empty where it belongs, those before it
+/// before it, and those after it after it; the rank and the axis.
+pub(super) fn divide(entries: &mut [Entry]) -> (usize, usize) {
     let axis = widest(entries.iter().map(|entry| entry.point));
     let middle = entries.len() / 2;
     entries.select_nth_unstable_by(middle, |a, b| {
         let by_coordinate = a.point[axis].partial_cmp(&b.point[axis]);
         by_coordinate.unwrap_or(Ordering::Equal).then(a.id.cmp(&b.id))
     });
-    axes[middle] = axis as u8;
-    let (low, high) = entries.split_at_mut(middle);
-    let (low_axes, high_axes) = axes.split_at_mut(middle);
-    [(low, low_axes), (&mut high[1..], &mut high_axes[1..])]
+    (middle, axis)
 }
 
 /// The axis of the largest extent of some points, the first of equal ones.
