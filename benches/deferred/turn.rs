@@ -1,0 +1,156 @@
+//! Holes and bleeding after a fast turn, with and without pass 3 \[GBP04, Fig. 3\].
+//!
+//! A model stands left of a board and in front of it, both at rest for three frames; in the next frame
+//! the model is turned, and then it rests again. The reference of a frame is the picture of `ewa` of all
+//! surfels of that frame; [`super::wrong`] says which pixels are wrong.
+
+use super::common::chart::{Axis, Series, svg};
+use super::common::models::models;
+use super::common::report::{Arguments, Table};
+use super::stage::{REST, Stage, object_of};
+use super::wrong::{Seen, Wrong};
+use splatref::Result;
+use splatref::frame::{Exec, Frame};
+use splatref::method::{Method, Session, deferred, ewa};
+use splatref::scene::{Camera, Scene};
+use splatref::source::Shape;
+use splatref::source::derive::{self, Derive};
+use splatref::source::flatten;
+
+const DEGREES: [f64; 9] = [0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
+const SIDES: [u32; 3] = [192, 384, 768];
+/// The size of the chart.
+const CHARTED: u32 = 384;
+/// The turn of which each kind of error is counted.
+const KINDS: f64 = 16.0;
+/// What the chart shows of a share of 0, in per cent.
+const LEAST: f64 = 0.001;
+
+/// The frame of the turn and the one after it, first without pass 3 and then with it.
+struct Turned([[Wrong; 2]; 2]);
+
+pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
+    let titles = DEGREES.map(|degrees| format!("{degrees}°"));
+    let mut columns = vec!["scene", "side, px", "pass 3", "frame"];
+    columns.extend(titles.iter().map(String::as_str));
+    let mut shares = Table::new(&columns);
+    let mut kinds = Vec::new();
+    let mut series = Vec::new();
+    for (name, stage) in stages(arguments, exec)? {
+        for side in SIDES {
+            let found = measured(&stage, &Stage::camera(side)?, exec)?;
+            for (second, pass) in ["off", "on"].into_iter().enumerate() {
+                for (after, frame) in ["of the turn", "after"].into_iter().enumerate() {
+                    let share = |turned: &Turned| turned.0[second][after].share();
+                    let cells = found.iter().map(|turned| format!("{:.3}", share(turned)));
+                    let cells = cells.collect::<Vec<_>>().join(" | ");
+                    shares.row(&format!("{name} | {side} | {pass} | {frame} | {cells}"));
+                }
+                let turned = DEGREES.iter().zip(&found);
+                let of_kinds = turned.clone().filter(|(degrees, _)| **degrees == KINDS);
+                kinds.extend(of_kinds.map(|(_, turned)| {
+                    format!("{name} | {side} | {pass} | {}", cells(&turned.0[second][0]))
+                }));
+                if side == CHARTED {
+                    let points = turned.filter(|(degrees, _)| **degrees > 0.0);
+                    let points = points.map(|(degrees, turned)| {
+                        let share = turned.0[second][0].share();
+                        [*degrees, if share > LEAST { share } else { LEAST }]
+                    });
+                    series.push(Series {
+                        name: format!("{name}, pass 3 {pass}"),
+                        points: points.collect(),
+                    });
+                }
+            }
+        }
+    }
+    shares.publish(arguments, "gbp04.md", "turn")?;
+    let mut table = Table::new(&[
+        "scene",
+        "side, px",
+        "pass 3",
+        "judged, px",
+        "holes",
+        "spill",
+        "another surface",
+        "another colour",
+        "all",
+    ]);
+    kinds.iter().for_each(|row| table.row(row));
+    table.publish(arguments, "gbp04.md", "kinds")?;
+    arguments.write("gbp04-turn.svg", &chart(&series))
+}
+
+/// The scenes whose names contain the pattern.
+fn stages(arguments: &Arguments, exec: &Exec) -> Result<Vec<(&'static str, Stage)>> {
+    let mut all = Vec::new();
+    for (name, shape, lean) in [("sphere", Shape::Sphere, 0.0), ("torus", Shape::Torus, 60.0)] {
+        if name.contains(&arguments.pattern) {
+            all.push((name, Stage::new(shape.surfels(40_000, 0)?, lean)?));
+        }
+    }
+    for (name, cloud) in models(&arguments.pattern, arguments)? {
+        if name == "bunny" {
+            let derived = derive::surfels(cloud, &Derive::default(), exec, &|_, _, _| ())?;
+            all.push((name, Stage::new(derived.0, 0.0)?));
+        }
+    }
+    Ok(all)
+}
+
+/// For each turn what is wrong.
+fn measured(stage: &Stage, camera: &Camera, exec: &Exec) -> Result<Vec<Turned>> {
+    let method = |second| Method::from(deferred::Settings { second, ..Default::default() });
+    let rest = stage.scene(0.0, REST)?;
+    let mut session = Session::new(&rest, method(true), exec)?;
+    for _ in 0..=REST {
+        session.render(camera)?;
+    }
+    let state = session.seen().cloned();
+    let mut found = Vec::new();
+    for degrees in DEGREES {
+        let scene = stage.scene(degrees, REST + 1)?;
+        let (reference, epsilon) = reference(&scene, camera, exec)?;
+        let mut turned = [[Wrong::default(); 2]; 2];
+        for (second, frames) in turned.iter_mut().enumerate() {
+            let mut session = Session::new(&scene, method(second == 1), exec)?;
+            session.resume(state.clone());
+            for wrong in frames {
+                let drawn = seen(&session.render(camera)?.frame, &scene)?;
+                *wrong = Wrong::count(&drawn, &reference, epsilon);
+            }
+        }
+        found.push(Turned(turned));
+    }
+    Ok(found)
+}
+
+/// The picture of all surfels, and epsilon in world units.
+fn reference(scene: &Scene, camera: &Camera, exec: &Exec) -> Result<(Seen, f32)> {
+    let flat = Scene { objects: None, ..flatten(scene, exec)? };
+    let settings = ewa::Settings::default();
+    let epsilon = settings.epsilon.resolve(&flat.surfels);
+    let mut session = Session::new(&flat, settings.into(), exec)?;
+    let ids = scene.objects.as_ref().map(|objects| objects.ids());
+    let object = |index| ids.and_then(|ids| object_of(ids, index));
+    Ok((Seen::of(&session.render(camera)?.frame, object)?, epsilon))
+}
+
+fn seen(frame: &Frame<f32>, scene: &Scene) -> Result<Seen> {
+    let ids = scene.objects.as_ref().map(|objects| objects.ids());
+    Seen::of(frame, |id| ids.and_then(|ids| ids.find(u64::from(id))).map(|(object, _)| object))
+}
+
+fn cells(wrong: &Wrong) -> String {
+    let Wrong { covered, holes, spill, surface, color } = *wrong;
+    let kinds = [holes, spill, surface, color].map(|n| format!("{:.3}", wrong.percent(n)));
+    format!("{covered} | {} | {:.3}", kinds.join(" | "), wrong.share())
+}
+
+fn chart(series: &[Series]) -> String {
+    let x = Axis { title: "degrees between two frames", ticks: DEGREES[1..].to_vec() };
+    let ticks = vec![0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0];
+    let y = Axis { title: "wrong pixels, per cent of the covered ones", ticks };
+    svg(&format!("The frame of a turn, {CHARTED} x {CHARTED}"), [&x, &y], series, ("", &[]))
+}
