@@ -29,7 +29,7 @@ const FRAMES: u32 = 12;
 const PASSES: [&str; 6] =
     ["visibility", "indices", "difference", "attributes", "normalization", "shading"];
 const PREPARED: &str = "projection";
-/// Primitives a second and milliseconds of each of [`PASSES`] in the paper.
+/// Milliseconds and primitives a second of each of [`PASSES`] in the paper.
 const PAPER: [&str; 6] = [
     "7-11, 11.5-13.5 M/s",
     "90-110 M/s; reading 6.6, sorting 1.7-2.2",
@@ -123,7 +123,9 @@ fn passes(
         .zip(with.passes)
         .map(|(&count, time)| {
             let (thousands, rate) = (count as f64 / 1e3, count as f64 / time / 1e3);
-            format!("{thousands:.1} k, {rate:.1} M/s")
+            // A rate of a few primitives says nothing.
+            let rate = if count < 10_000 { String::new() } else { format!(", {rate:.1} M/s") };
+            format!("{thousands:.1} k{rate}")
         })
         .collect();
     rows.push(format!("{} | primitives | | {} | |", subject.name, drawn.join(" | ")));
@@ -135,7 +137,7 @@ fn measured(subject: &Subject, method: Method, exec: &Exec) -> Result<Measured> 
     let taken = if subject.is_still() {
         still(subject, method, exec)?
     } else {
-        (moving(subject, method, exec))?
+        moving(subject, method, exec)?
     };
     let counted = &taken[BEFORE as usize..];
     let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;

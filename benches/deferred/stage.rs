@@ -11,8 +11,7 @@ use splatref::scene::{
 /// The model is at rest up to this frame, and turned in the next.
 pub(crate) const REST: u32 = 2;
 
-/// A model of about radius 1 around the origin that is turned once, left of a board that is at rest
-/// behind it.
+/// A model in the unit sphere that is turned once, before a board that is at rest.
 pub(crate) struct Stage {
     model: Surfels,
     base: Similarity,
@@ -26,7 +25,7 @@ impl Stage {
         let lean: DMat3 = rotation(DVec3::X, lean);
         let scale = 1.0 / radius;
         let base = Similarity { rotation: lean, scale, translation: lean * (center * -scale) };
-        Ok(Self { model: along_a_curve(model)?, base, board: board(150, 1.5, 0.25)? })
+        Ok(Self { model: along_a_curve(model)?, base, board: board(200, 2.0, 0.25)? })
     }
 
     /// The scene in which the model is turned by some degrees about +y after [`REST`].
@@ -37,7 +36,8 @@ impl Stage {
             translation: turn * self.base.translation,
             ..self.base
         };
-        let behind = Similarity { translation: DVec3::new(1.5, 0.0, -1.5), ..Similarity::IDENTITY };
+        let behind =
+            Similarity { translation: DVec3::new(0.25, 0.0, -1.5), ..Similarity::IDENTITY };
         let geometry = |name: &str, surfels: &Surfels| Geometry {
             name: name.into(),
             surfels: surfels.clone(),

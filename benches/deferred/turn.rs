@@ -1,7 +1,7 @@
 //! Holes and bleeding after a fast turn, with and without pass 3 \[GBP04, Fig. 3\].
 //!
-//! A model stands left of a board and in front of it, both at rest for three frames; in the next frame
-//! the model is turned, and then it rests again. The reference of a frame is the picture of `ewa` of all
+//! A model stands before a board, both at rest for three frames; in the next frame the model is turned,
+//! and then it rests again. The reference of a frame is the picture of `ewa` of all
 //! surfels of that frame; [`super::wrong`] says which pixels are wrong.
 
 use super::common::chart::{Axis, Series, svg};
@@ -17,69 +17,75 @@ use splatref::source::Shape;
 use splatref::source::derive::{self, Derive};
 use splatref::source::flatten;
 
-const DEGREES: [f64; 9] = [0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
+const DEGREES: [f64; 11] = [0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
 const SIDES: [u32; 3] = [192, 384, 768];
-/// The size of the chart.
-const CHARTED: u32 = 384;
-/// The turn of which each kind of error is counted.
-const KINDS: f64 = 16.0;
+/// m: surfels that share a flag.
+const FLAGS: [u32; 2] = [1, 64];
+/// The size and the m of the chart.
+const CHARTED: (u32, u32) = (384, 64);
+/// The turns of which each kind of error is counted, at the size of the chart.
+const KINDS: [f64; 2] = [0.0, 32.0];
 /// What the chart shows of a share of 0, in per cent.
 const LEAST: f64 = 0.001;
 
 /// The frame of the turn and the one after it, first without pass 3 and then with it.
-struct Turned([[Wrong; 2]; 2]);
+type Turned = [[Wrong; 2]; 2];
 
 pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
     let titles = DEGREES.map(|degrees| format!("{degrees}°"));
-    let mut columns = vec!["scene", "side, px", "pass 3", "frame"];
+    let mut columns = vec!["scene", "side, px", "m", "pass 3", "frame"];
     columns.extend(titles.iter().map(String::as_str));
     let mut shares = Table::new(&columns);
-    let mut kinds = Vec::new();
-    let mut series = Vec::new();
+    let (mut kinds, mut series) = (Vec::new(), Vec::new());
     for (name, stage) in stages(arguments, exec)? {
-        for side in SIDES {
-            let found = measured(&stage, &Stage::camera(side)?, exec)?;
+        for (side, flags) in SIDES.into_iter().flat_map(|side| FLAGS.map(|flags| (side, flags))) {
+            let found = measured(&stage, flags, &Stage::camera(side)?, exec)?;
             for (second, pass) in ["off", "on"].into_iter().enumerate() {
                 for (after, frame) in ["of the turn", "after"].into_iter().enumerate() {
-                    let share = |turned: &Turned| turned.0[second][after].share();
-                    let cells = found.iter().map(|turned| format!("{:.3}", share(turned)));
+                    let cells = found.iter().map(|of| format!("{:.3}", of[second][after].share()));
                     let cells = cells.collect::<Vec<_>>().join(" | ");
-                    shares.row(&format!("{name} | {side} | {pass} | {frame} | {cells}"));
+                    shares.row(&format!("{name} | {side} | {flags} | {pass} | {frame} | {cells}"));
                 }
-                let turned = DEGREES.iter().zip(&found);
-                let of_kinds = turned.clone().filter(|(degrees, _)| **degrees == KINDS);
-                kinds.extend(of_kinds.map(|(_, turned)| {
-                    format!("{name} | {side} | {pass} | {}", cells(&turned.0[second][0]))
-                }));
-                if side == CHARTED {
-                    let points = turned.filter(|(degrees, _)| **degrees > 0.0);
-                    let points = points.map(|(degrees, turned)| {
-                        let share = turned.0[second][0].share();
+                let turned = || DEGREES.iter().zip(found.iter().map(|of| of[second][0]));
+                if side == CHARTED.0 {
+                    let of_kinds = turned().filter(|(degrees, _)| KINDS.contains(degrees));
+                    kinds.extend(of_kinds.map(|(degrees, wrong)| {
+                        format!("{name} | {degrees}° | {flags} | {pass} | {}", cells(&wrong))
+                    }));
+                }
+                if (side, flags) == CHARTED {
+                    let points = turned().filter(|(degrees, _)| **degrees > 0.0);
+                    let points = points.map(|(degrees, wrong)| {
+                        let share = wrong.share();
                         [*degrees, if share > LEAST { share } else { LEAST }]
                     });
-                    series.push(Series {
-                        name: format!("{name}, pass 3 {pass}"),
-                        points: points.collect(),
-                    });
+                    let name = format!("{name}, pass 3 {pass}");
+                    series.push(Series { name, points: points.collect() });
                 }
             }
         }
     }
     shares.publish(arguments, "gbp04.md", "turn")?;
+    publish_kinds(&kinds, arguments)?;
+    arguments.write("gbp04-turn.svg", &chart(&series))
+}
+
+fn publish_kinds(kinds: &[String], arguments: &Arguments) -> Result<()> {
     let mut table = Table::new(&[
         "scene",
-        "side, px",
+        "turn",
+        "m",
         "pass 3",
         "judged, px",
-        "holes",
-        "spill",
-        "another surface",
-        "another colour",
-        "all",
+        "holes, %",
+        "spill, %",
+        "another surface, %",
+        "another colour, %",
+        "all, %",
+        "gaps, px",
     ]);
     kinds.iter().for_each(|row| table.row(row));
-    table.publish(arguments, "gbp04.md", "kinds")?;
-    arguments.write("gbp04-turn.svg", &chart(&series))
+    table.publish(arguments, "gbp04.md", "kinds")
 }
 
 /// The scenes whose names contain the pattern.
@@ -100,8 +106,8 @@ fn stages(arguments: &Arguments, exec: &Exec) -> Result<Vec<(&'static str, Stage
 }
 
 /// For each turn what is wrong.
-fn measured(stage: &Stage, camera: &Camera, exec: &Exec) -> Result<Vec<Turned>> {
-    let method = |second| Method::from(deferred::Settings { second, ..Default::default() });
+fn measured(stage: &Stage, flags: u32, camera: &Camera, exec: &Exec) -> Result<Vec<Turned>> {
+    let method = |second| Method::from(deferred::Settings { second, flags, ..Default::default() });
     let rest = stage.scene(0.0, REST)?;
     let mut session = Session::new(&rest, method(true), exec)?;
     for _ in 0..=REST {
@@ -112,7 +118,7 @@ fn measured(stage: &Stage, camera: &Camera, exec: &Exec) -> Result<Vec<Turned>> 
     for degrees in DEGREES {
         let scene = stage.scene(degrees, REST + 1)?;
         let (reference, epsilon) = reference(&scene, camera, exec)?;
-        let mut turned = [[Wrong::default(); 2]; 2];
+        let mut turned = Turned::default();
         for (second, frames) in turned.iter_mut().enumerate() {
             let mut session = Session::new(&scene, method(second == 1), exec)?;
             session.resume(state.clone());
@@ -121,7 +127,7 @@ fn measured(stage: &Stage, camera: &Camera, exec: &Exec) -> Result<Vec<Turned>> 
                 *wrong = Wrong::count(&drawn, &reference, epsilon);
             }
         }
-        found.push(Turned(turned));
+        found.push(turned);
     }
     Ok(found)
 }
@@ -143,14 +149,15 @@ fn seen(frame: &Frame<f32>, scene: &Scene) -> Result<Seen> {
 }
 
 fn cells(wrong: &Wrong) -> String {
-    let Wrong { covered, holes, spill, surface, color } = *wrong;
+    let Wrong { covered, holes, spill, surface, color, gaps } = *wrong;
     let kinds = [holes, spill, surface, color].map(|n| format!("{:.3}", wrong.percent(n)));
-    format!("{covered} | {} | {:.3}", kinds.join(" | "), wrong.share())
+    format!("{covered} | {} | {:.3} | {gaps}", kinds.join(" | "), wrong.share())
 }
 
 fn chart(series: &[Series]) -> String {
     let x = Axis { title: "degrees between two frames", ticks: DEGREES[1..].to_vec() };
     let ticks = vec![0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0];
     let y = Axis { title: "wrong pixels, per cent of the covered ones", ticks };
-    svg(&format!("The frame of a turn, {CHARTED} x {CHARTED}"), [&x, &y], series, ("", &[]))
+    let (side, flags) = CHARTED;
+    svg(&format!("The frame of a turn, {side} x {side}, m = {flags}"), [&x, &y], series, ("", &[]))
 }

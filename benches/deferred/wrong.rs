@@ -2,8 +2,8 @@
 //!
 //! A pixel of the reference is on a border if one of the pixels around it, of which there are up to
 //! eight, is empty where it is not or the other way round, shows another object, or is nearer or farther
-//! by more than 4 epsilon. Pixels on borders are not judged. Another pixel is wrong if it is the first of
-//! these:
+//! by more than 4 epsilon. Pixels on borders are not judged, but those are counted that are empty where
+//! the reference is covered: gaps. Another pixel is wrong, as the first of these that it is:
 //!
 //! - a hole: empty where the reference is covered
 //! - spill: covered where the reference is empty
@@ -59,13 +59,19 @@ pub(crate) struct Wrong {
     pub(crate) spill: u32,
     pub(crate) surface: u32,
     pub(crate) color: u32,
+    /// On borders, no part of the others.
+    pub(crate) gaps: u32,
 }
 
 impl Wrong {
     /// A picture against its reference; epsilon in world units.
     pub(crate) fn count(picture: &Seen, reference: &Seen, epsilon: f32) -> Self {
         let mut counts = Self::default();
-        for i in (0..reference.depth.len()).filter(|&i| !reference.is_on_border(i, epsilon)) {
+        for i in 0..reference.depth.len() {
+            if reference.is_on_border(i, epsilon) {
+                counts.gaps += u32::from(reference.covers(i) && !picture.covers(i));
+                continue;
+            }
             counts.covered += u32::from(reference.covers(i));
             match (picture.covers(i), reference.covers(i)) {
                 (false, false) => {}
