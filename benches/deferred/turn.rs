@@ -18,10 +18,9 @@ use splatref::source::derive::{self, Derive};
 use splatref::source::flatten;
 
 const DEGREES: [f64; 11] = [0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
-const SIDES: [u32; 3] = [192, 384, 768];
-/// m: surfels that share a flag.
-const FLAGS: [u32; 2] = [1, 64];
-/// The size and the m of the chart.
+/// The side of the picture, and m, how many surfels share a flag.
+const VIEWS: [(u32, u32); 4] = [(192, 64), (384, 1), (384, 64), (768, 64)];
+/// The size at which kinds of errors and frames after turns are looked at, and the m of the chart.
 const CHARTED: (u32, u32) = (384, 64);
 /// The turns of which each kind of error is counted, at the size of the chart.
 const KINDS: [f64; 2] = [0.0, 32.0];
@@ -38,10 +37,12 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
     let mut shares = Table::new(&columns);
     let (mut kinds, mut series) = (Vec::new(), Vec::new());
     for (name, stage) in stages(arguments, exec)? {
-        for (side, flags) in SIDES.into_iter().flat_map(|side| FLAGS.map(|flags| (side, flags))) {
-            let found = measured(&stage, flags, &Stage::camera(side)?, exec)?;
+        for (side, flags) in VIEWS {
+            let frames = ["of the turn", "after"];
+            let frames = &frames[..1 + usize::from(side == CHARTED.0)];
+            let found = measured(&stage, flags, frames.len(), &Stage::camera(side)?, exec)?;
             for (second, pass) in ["off", "on"].into_iter().enumerate() {
-                for (after, frame) in ["of the turn", "after"].into_iter().enumerate() {
+                for (after, frame) in frames.iter().enumerate() {
                     let cells = found.iter().map(|of| format!("{:.3}", of[second][after].share()));
                     let cells = cells.collect::<Vec<_>>().join(" | ");
                     shares.row(&format!("{name} | {side} | {flags} | {pass} | {frame} | {cells}"));
@@ -105,8 +106,14 @@ fn stages(arguments: &Arguments, exec: &Exec) -> Result<Vec<(&'static str, Stage
     Ok(all)
 }
 
-/// For each turn what is wrong.
-fn measured(stage: &Stage, flags: u32, camera: &Camera, exec: &Exec) -> Result<Vec<Turned>> {
+/// For each turn what is wrong, in so many frames.
+fn measured(
+    stage: &Stage,
+    flags: u32,
+    frames: usize,
+    camera: &Camera,
+    exec: &Exec,
+) -> Result<Vec<Turned>> {
     let method = |second| Method::from(deferred::Settings { second, flags, ..Default::default() });
     let rest = stage.scene(0.0, REST)?;
     let mut session = Session::new(&rest, method(true), exec)?;
@@ -119,10 +126,10 @@ fn measured(stage: &Stage, flags: u32, camera: &Camera, exec: &Exec) -> Result<V
         let scene = stage.scene(degrees, REST + 1)?;
         let (reference, epsilon) = reference(&scene, camera, exec)?;
         let mut turned = Turned::default();
-        for (second, frames) in turned.iter_mut().enumerate() {
+        for (second, of) in turned.iter_mut().enumerate() {
             let mut session = Session::new(&scene, method(second == 1), exec)?;
             session.resume(state.clone());
-            for wrong in frames {
+            for wrong in &mut of[..frames] {
                 let drawn = seen(&session.render(camera)?.frame, &scene)?;
                 *wrong = Wrong::count(&drawn, &reference, epsilon);
             }
