@@ -10,7 +10,7 @@ pub(crate) struct Bar {
 
 const WIDTH: f64 = 760.0;
 /// Left and right of the plot, and where the first bar is.
-const PLOT: [f64; 3] = [220.0, 730.0, 84.0];
+const PLOT: [f64; 3] = [260.0, 730.0, 84.0];
 /// From a bar to the next, and how thick it is.
 const STEP: f64 = 26.0;
 const THICK: f64 = 18.0;

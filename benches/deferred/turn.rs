@@ -163,7 +163,7 @@ fn cells(wrong: &Wrong) -> String {
 
 fn chart(series: &[Series]) -> String {
     let x = Axis { title: "degrees between two frames", ticks: DEGREES[1..].to_vec() };
-    let ticks = vec![0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0];
+    let ticks = vec![0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0];
     let y = Axis { title: "wrong pixels, per cent of the covered ones", ticks };
     let (side, flags) = CHARTED;
     svg(&format!("The frame of a turn, {side} x {side}, m = {flags}"), [&x, &y], series, ("", &[]))
