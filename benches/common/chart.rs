@@ -20,8 +20,9 @@ const HEIGHT: f64 = 440.0;
 /// Left, top, right and bottom of the plot.
 const PLOT: [f64; 4] = [70.0, 40.0, 570.0, 385.0];
 /// Colours that differ in lightness as well as in hue [Okabe, Ito 2008].
-const COLORS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
-const STYLE: &str = "\
+pub(crate) const COLORS: [&str; 6] =
+    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+pub(crate) const STYLE: &str = "\
 .page { fill: #ffffff } .text { fill: #24292f; font: 13px sans-serif } .grid { stroke: #d0d7de }
 @media (prefers-color-scheme: dark) {
   .page { fill: #0d1117 } .text { fill: #e6edf3 } .grid { stroke: #30363d }
@@ -55,7 +56,7 @@ fn log(value: f64) -> f64 {
 }
 
 /// The chart. The marks of a series are joined in their order and grow from step to step; `steps`
-/// are a title and the names of the steps.
+/// are a title and the names of the steps. Without names all marks are of one size.
 pub(crate) fn svg(
     title: &str,
     [x, y]: [&Axis; 2],
@@ -65,7 +66,7 @@ pub(crate) fn svg(
     let [left, top, right, bottom] = PLOT;
     let across = |v: f64| left + x.at(v) * (right - left);
     let up = |v: f64| bottom - y.at(v) * (bottom - top);
-    let mut out = Svg(String::new());
+    let mut out = Svg::default();
     out.element(&format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\">\n\
          <title>{title}</title>\n<style>\n{STYLE}\n</style>\n\
@@ -95,7 +96,7 @@ pub(crate) fn svg(
             joined.join(" ")
         ));
         for (step, (x, y)) in places.iter().enumerate() {
-            out.disc(*x, *y, radius(step), color);
+            out.disc(*x, *y, radius(if steps.1.is_empty() { 0 } else { step }), color);
         }
         let row = top + 8.0 + 22.0 * index as f64;
         out.disc(right + 22.0, row, 4.0, color);
@@ -108,7 +109,7 @@ pub(crate) fn svg(
         out.disc(right + 22.0, row - 4.0, radius(step), "#808080");
         out.text(right + 36.0, row, "start", name);
     }
-    out.0 + "</svg>\n"
+    out.finish()
 }
 
 /// The radius of a mark, in px.
@@ -117,26 +118,32 @@ fn radius(step: usize) -> f64 {
 }
 
 /// The elements so far, one a line.
-struct Svg(String);
+#[derive(Default)]
+pub(crate) struct Svg(String);
 
 impl Svg {
-    fn element(&mut self, text: &str) {
+    /// The whole file.
+    pub(crate) fn finish(self) -> String {
+        self.0 + "</svg>\n"
+    }
+
+    pub(crate) fn element(&mut self, text: &str) {
         self.0.push_str(text);
         self.0.push('\n');
     }
 
-    fn line(&mut self, [x1, y1, x2, y2]: [f64; 4]) {
+    pub(crate) fn line(&mut self, [x1, y1, x2, y2]: [f64; 4]) {
         let _ = writeln!(self.0, "<path class=\"grid\" d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\"/>");
     }
 
-    fn text(&mut self, x: f64, y: f64, anchor: &str, text: &str) {
+    pub(crate) fn text(&mut self, x: f64, y: f64, anchor: &str, text: &str) {
         let _ = writeln!(
             self.0,
             "<text class=\"text\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>"
         );
     }
 
-    fn disc(&mut self, x: f64, y: f64, r: f64, color: &str) {
+    pub(crate) fn disc(&mut self, x: f64, y: f64, r: f64, color: &str) {
         let _ =
             writeln!(self.0, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{r}\" fill=\"{color}\"/>");
     }

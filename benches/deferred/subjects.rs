@@ -1,0 +1,173 @@
+//! The scenes of Table 1 and of its passes, as near to the paper's as what there is allows.
+
+use super::common::models;
+use super::common::report::Arguments;
+use super::stage::along_a_curve;
+use glam::{DVec3, Vec3};
+use splatref::Result;
+use splatref::frame::Exec;
+use splatref::io::ply;
+use splatref::number::random::unit;
+use splatref::scene::objects::{Geometry, Ids, Motion, Object, Objects, Split};
+use splatref::scene::transform::rotation;
+use splatref::scene::{Camera, Cloud, Lens, Primitives, Scene, Similarity, Surfels};
+use splatref::source::derive::{self, Derive};
+use splatref::source::plant::{LEAVES, apple_tree};
+use splatref::splat::SplatSettings;
+use std::path::PathBuf;
+
+const SIDE: u32 = 512;
+/// Turn of the camera about +y between two frames, in degrees.
+const STEP: f64 = 1.0;
+
+/// A scene, its camera by the frame, and what the paper says of it: frames a second without selection,
+/// percentage culled, frames a second with it.
+pub(crate) struct Subject {
+    pub(crate) name: &'static str,
+    pub(crate) scene: Scene,
+    pub(crate) splats: SplatSettings,
+    pub(crate) paper: [&'static str; 3],
+    around: (DVec3, f64),
+    from: DVec3,
+}
+
+impl Subject {
+    pub(crate) fn camera(&self, frame: u32) -> Result<Camera> {
+        let from = rotation(DVec3::Y, STEP * f64::from(frame)) * self.from;
+        Camera::framing(SIDE, SIDE, self.around, from, Lens::FieldOfView(34.0))
+    }
+
+    /// The scene in a frame.
+    pub(crate) fn at(&self, frame: u32) -> Result<Scene> {
+        let objects = self.scene.objects.as_ref().map(|objects| objects.at(frame)).transpose()?;
+        Ok(Scene { objects, ..self.scene.clone() })
+    }
+
+    /// Whether the scene is the same in every frame.
+    pub(crate) fn is_still(&self) -> bool {
+        self.scene.objects.as_ref().is_none_or(Objects::are_still)
+    }
+
+    /// The ids of the surfels, as the method has them.
+    pub(crate) fn ids(&self) -> Ids {
+        let alone = || Ids::of(Split::Single(32), &[self.scene.surfels.len() as u32]);
+        let objects = self.scene.objects.as_ref().map(|objects| objects.ids().clone());
+        objects.or_else(alone).unwrap_or_else(Ids::none)
+    }
+}
+
+/// Something that makes a scene.
+type Maker<'a> = Box<dyn Fn() -> Result<Subject> + 'a>;
+
+/// The scenes whose names contain the pattern, each made when it is asked for.
+pub(crate) fn subjects<'a>(
+    arguments: &Arguments,
+    exec: &'a Exec,
+) -> Result<impl Iterator<Item = Result<Subject>> + use<'a>> {
+    let mut made: Vec<Maker<'a>> = Vec::new();
+    let wanted = |name: &str| name.contains(&arguments.pattern);
+    let scan = |name: &str| -> Result<Option<PathBuf>> {
+        let path = models::path(name);
+        if path.exists() {
+            return Ok(Some(path));
+        }
+        arguments.without(&path).map(|()| None)
+    };
+    for (name, sorted) in [(HEAD, true), (SHUFFLED, false)].into_iter().filter(|n| wanted(n.0)) {
+        if let Some(path) = scan("igea")? {
+            made.push(Box::new(move || head(name, &ply::read(&path)?, sorted, exec)));
+        }
+    }
+    if wanted(TREE) {
+        made.push(Box::new(tree));
+    }
+    if wanted(CROWD)
+        && let Some(path) = scan("armadillo")?
+    {
+        made.push(Box::new(move || crowd(&ply::read(&path)?, exec)));
+    }
+    Ok(made.into_iter().map(|make| make()))
+}
+
+const HEAD: &str = "head, 285 k";
+const SHUFFLED: &str = "the same, in random order";
+const TREE: &str = "tree, 750 k";
+const CROWD: &str = "200 objects, 450 k in all";
+
+/// Igea, a head, sampled evenly at random, with derived radii.
+fn head(name: &'static str, mesh: &Cloud, sorted: bool, exec: &Exec) -> Result<Subject> {
+    let derived = sampled(mesh, 285_000, exec)?;
+    let surfels = if sorted { along_a_curve(derived)? } else { derived };
+    let around = surfels.bounding_sphere();
+    let paper = if sorted { ["34", "70", "39"] } else { [""; 3] };
+    let (scene, splats) = (Scene::lit(name, surfels), SplatSettings::default());
+    Ok(Subject { name, scene, splats, paper, around, from: DVec3::Z })
+}
+
+fn sampled(mesh: &Cloud, count: usize, exec: &Exec) -> Result<Surfels> {
+    let points = models::resample(mesh, count, 1);
+    Ok(derive::surfels(points, &Derive::default(), exec, &|_, _, _| ())?.0)
+}
+
+/// Points on the triangles of all leaves and branches of a tree, evenly at random, with the spacing as
+/// radius, seen from both sides.
+fn tree() -> Result<Subject> {
+    let count = 750_000;
+    let triangles = apple_tree(LEAVES, 0)?.polygons()?.triangles;
+    let (vertices, triangles) = triangles.into_parts();
+    let mesh = Cloud {
+        position: vertices.position,
+        normal: Some(vertices.direction),
+        color: vertices.color,
+        triangles,
+        ..Cloud::default()
+    };
+    let corner = |i: u32| mesh.position[i as usize].as_dvec3();
+    let double =
+        |&[a, b, c]: &[u32; 3]| (corner(b) - corner(a)).cross(corner(c) - corner(a)).length();
+    let area = mesh.triangles.iter().map(double).sum::<f64>() / 2.0;
+    let mut cloud = models::resample(&mesh, count, 1);
+    cloud.radius = Some(vec![(area / count as f64).sqrt() as f32; count]);
+    let surfels = along_a_curve(Surfels::new(cloud)?.0)?;
+    Ok(Subject {
+        name: TREE,
+        around: surfels.bounding_sphere(),
+        scene: Scene::lit(TREE, surfels),
+        splats: SplatSettings::BOTH_SIDES,
+        paper: ["8.6", "88", "32"],
+        from: DVec3::new(0.0, 0.25, 1.0),
+    })
+}
+
+/// Armadillos of 2,250 surfels in ten ranks of twenty, which walk and turn.
+fn crowd(mesh: &Cloud, exec: &Exec) -> Result<Subject> {
+    let surfels = along_a_curve(sampled(mesh, 2_250, exec)?)?;
+    let (center, radius) = surfels.bounding_sphere();
+    let primitives = Primitives::default();
+    let geometry = Geometry { name: "armadillo".into(), surfels, primitives };
+    let place = |i: u32, degrees: f64, way: f64| {
+        let turn = rotation(DVec3::Y, degrees + 60.0 * f64::from(unit(1, u64::from(i))) - 30.0);
+        let (column, rank) = (f64::from(i % 20) - 9.5, f64::from(i / 20) - 4.5);
+        let stand = DVec3::new(column, 0.0, -1.25 * rank + way);
+        let scale = 1.0 / radius;
+        Similarity { rotation: turn, scale, translation: stand - turn * (center * scale) }
+    };
+    // In 32 frames half a turn and two steps.
+    let object = |i: u32| -> Result<Object> {
+        let away = if i.is_multiple_of(2) { 90.0 } else { -90.0 };
+        let keys = vec![(0, place(i, 180.0, 0.0)), (32, place(i, 180.0 + away, 1.0))];
+        let color = [0, 1, 2].map(|c| 0.25 + 0.625 * unit(2, u64::from(3 * i + c)));
+        let (name, motion) = (format!("armadillo {i}"), Motion::new(keys)?);
+        Ok(Object { name, geometry: 0, motion, color: Some(Vec3::from(color)) })
+    };
+    let objects = (0..200).map(object).collect::<Result<Vec<_>>>()?;
+    let objects = Objects::new(vec![geometry], objects, Vec3::splat(0.75))?;
+    Ok(Subject {
+        name: CROWD,
+        around: (DVec3::ZERO, 9.0),
+        scene: Scene { objects: Some(objects), ..Scene::lit(CROWD, Surfels::none()) },
+        splats: SplatSettings::default(),
+        paper: ["11.5", "90", "33.5"],
+        from: DVec3::new(0.0, 0.2, 1.0),
+    })
+}
