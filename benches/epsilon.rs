@@ -19,7 +19,7 @@ mod common;
 use common::mesh::Mesh;
 use common::models::models;
 use common::report::{Arguments, Table};
-use common::shot::{Shot, lit};
+use common::shot::Shot;
 use glam::Vec3;
 use splatref::Result;
 use splatref::frame::{Exec, Frame, Plane, Samples};
@@ -100,7 +100,7 @@ fn shapes(pattern: &str) -> Result<Vec<Subject>> {
     let mut subjects = Vec::new();
     for name in SHAPES.into_iter().filter(|name| name.contains(pattern)) {
         let Some(shape) = Shape::by_name(name) else { continue };
-        let scene = lit(name, shape.surfels(SURFELS, 0)?);
+        let scene = Scene::lit(name, shape.surfels(SURFELS, 0)?);
         let camera = move |height: u32| {
             Camera::new(height * 4 / 3, height, shape.default_pose(), shape.default_lens())
         };
@@ -119,7 +119,7 @@ fn scans(arguments: &Arguments, exec: &Exec) -> Result<Vec<Subject>> {
             let lens = Lens::FieldOfView(scene_file::DEFAULT_FIELD_OF_VIEW);
             Camera::framing(height * 4 / 3, height, sphere, scene_file::DEFAULT_SIDE, lens)
         };
-        let scene = lit(name, surfels);
+        let scene = Scene::lit(name, surfels);
         let truth = Truth::Mesh(Box::new(Mesh::new(cloud, &scene, exec)?));
         subjects.push(Subject { name: name.to_owned(), scene, camera: Box::new(camera), truth });
     }

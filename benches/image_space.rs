@@ -19,7 +19,7 @@ use splatref::Result;
 use splatref::frame::Exec;
 use splatref::method::pyramid::{self, Weights};
 use splatref::method::{Method, Session, template};
-use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Scene, Surfels};
+use splatref::scene::{Camera, Cloud, Lens, Scene, Surfels};
 use splatref::source::Shape;
 use std::time::{Duration, Instant};
 
@@ -157,14 +157,7 @@ fn scene(scan: Option<&Cloud>, count: usize, colored: bool) -> Result<Scene> {
         |cloud: &Cloud| cloud.position.iter().map(|p| p.abs().min(glam::Vec3::ONE)).collect();
     cloud.color = colored.then(|| paint(&cloud));
     let surfels = Surfels::new(cloud)?.0;
-    Ok(Scene {
-        name: "sampling".into(),
-        surfels,
-        primitives: Default::default(),
-        lights: vec![Light::DEFAULT],
-        material: Phong::default(),
-        environment: None,
-    })
+    Ok(Scene::lit("sampling", surfels))
 }
 
 /// The times of whole pictures, and of each stage, and how many surfels are seen.

@@ -19,7 +19,7 @@ mod common;
 use common::mesh::Mesh;
 use common::models::models;
 use common::report::{Arguments, Table};
-use common::shot::{Shot, lit};
+use common::shot::Shot;
 use glam::{DVec3, Vec3};
 use splatref::Result;
 use splatref::frame::Exec;
@@ -59,7 +59,7 @@ fn main() -> Result<()> {
     for (name, cloud) in clouds.into_iter().filter(|c| c.0.contains(&arguments.pattern)) {
         let points = derive::surfels(cloud.clone(), &Derive::default(), &exec, &|_, _, _| ())?.0;
         let (points, facets) =
-            (lit(&name, points), lit(&name, derive::facets(cloud.clone(), &exec)?.0));
+            (Scene::lit(&name, points), Scene::lit(&name, derive::facets(cloud.clone(), &exec)?.0));
         let mesh = Mesh::new(cloud, &points, &exec)?;
         let sphere = points.surfels.bounding_sphere();
         let truths = HEIGHTS.map(|height| true_picture(&mesh, sphere, height, &exec));

@@ -13,7 +13,7 @@ mod common;
 
 use common::chart::{Axis, Series, svg};
 use common::report::{Arguments, Table, machine};
-use common::shot::{Shot, lit};
+use common::shot::Shot;
 use common::sphere::cell;
 use splatref::frame::{Exec, Image};
 use splatref::index::grouping::{Rules, group};
@@ -40,7 +40,7 @@ fn main() -> Result<()> {
         .collect();
     let mut table = Table::new(&["surfels", "method", "frame, ms", "RMSE", "SSIM"]);
     for (count, label) in COUNTS {
-        let scene = lit("cluster", shape.surfels(count, 0)?);
+        let scene = Scene::lit("cluster", shape.surfels(count, 0)?);
         let truth = Image::from(&Shot::truth(&scene, &shape, &camera, &exec)?.to_frame());
         let rows = methods().into_iter().zip(&mut series);
         for ((name, method), series) in rows.filter(|row| row.0.0.contains(&arguments.pattern)) {

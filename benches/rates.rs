@@ -17,7 +17,6 @@ mod common;
 
 use common::models::{self, resample, scaled};
 use common::report::{Arguments, Table};
-use common::shot::lit;
 use common::sphere::{STANDARD, camera, cell, sphere};
 use glam::DVec3;
 use splatref::frame::Exec;
@@ -25,7 +24,7 @@ use splatref::index::grouping::{Extension, Grouping, Rules};
 use splatref::io::ply;
 use splatref::method::single_pass::{BinCount, DepthTest};
 use splatref::method::{Method, Session, ewa, peeling, single_pass, transparent, transparent_hq};
-use splatref::scene::{Camera, Groups, Lens, Surfels};
+use splatref::scene::{Camera, Groups, Lens, Scene, Surfels};
 use splatref::source::Shape;
 use splatref::source::derive::{self, Derive};
 use splatref::splat::SplatSettings;
@@ -172,7 +171,7 @@ const BASE: usize = 0;
 fn draw(subject: &Subject, rows: &[Row], exec: &Exec) -> Result<Vec<Vec<Duration>>> {
     let mut cloud = subject.surfels.clone().into_cloud();
     cloud.opacity = Some(vec![0.4; cloud.position.len()]);
-    let scene = lit(&subject.name, Surfels::new(cloud)?.0);
+    let scene = Scene::lit(&subject.name, Surfels::new(cloud)?.0);
     let sessions = rows
         .iter()
         .map(|(_, method, groups, _)| Session::with_groups(&scene, *method, groups.clone(), exec));

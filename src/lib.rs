@@ -64,6 +64,7 @@
 //!   before any view:   index::grouping ◀────┤                                tiles │
 //!                      index::order ◀───────┘                                      ▼
 //!   method::ewa            visibility ─▶ attributes ─▶ normalization ────────────┐
+//!   method::deferred       visibility ─▶ indices ─▶ the passes of ewa ───────────┤
 //!   method::single_pass    depth-images of groups ─▶ compositing ────────────────┤
 //!   method::transparent    blended groups ─▶ average ────────────────────────────┤
 //!   method::transparent_hq nearest layer ─▶ blended groups ─▶ average ───────────┤
@@ -81,6 +82,9 @@
 //!   nearest surface, the second adds the fragments within epsilon of that surface. *To know:* the
 //!   visible surface is a band of depth; its width epsilon is a setting, in world units or in median
 //!   radii.
+//! - [`method::deferred`]: the passes of EWA on the surfels that an index buffer keeps, in scenes of
+//!   moving objects \[GBP04\]. *To know:* what a frame saw is given to the next; one surfel a pixel is
+//!   kept, so that dense surfels flicker.
 //! - [`method::single_pass`]: one geometry pass into a depth-image a group \[ZP06, Algorithm 1\].
 //!   *To know:* surfels of one group must not overlap, or little; [`index::grouping`] makes the
 //!   groups, and c says how little.

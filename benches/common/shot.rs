@@ -2,7 +2,7 @@
 
 use splatref::Result;
 use splatref::frame::{Exec, Frame, NamedPlane, Plane, Samples};
-use splatref::scene::{Camera, Light, Phong, Primitives, Scene, Surfels};
+use splatref::scene::{Camera, Scene};
 use splatref::shade::phong::Shader;
 use splatref::source::Shape;
 use splatref::splat::View;
@@ -66,17 +66,5 @@ impl Shot {
         let (width, height) = (self.color.width(), self.color.height());
         let color = NamedPlane { name: String::new(), samples: Samples::Color(self.color.clone()) };
         Frame { width, height, planes: vec![color] }
-    }
-}
-
-/// Surfels under the headlight of scenes that name no light.
-pub(crate) fn lit(name: &str, surfels: Surfels) -> Scene {
-    Scene {
-        name: name.to_owned(),
-        surfels,
-        primitives: Primitives::default(),
-        lights: vec![Light::DEFAULT],
-        material: Phong::default(),
-        environment: None,
     }
 }

@@ -6,7 +6,7 @@
 //! a part of the true one.
 
 use crate::common::report::{Arguments, Table};
-use crate::common::shot::{Shot, lit};
+use crate::common::shot::Shot;
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::method::{Method, Session, ewa, pyramid, template};
@@ -27,7 +27,7 @@ pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
     for count in [1_000, 3_000, 10_000, 100_000] {
         let shape = Shape::Sphere;
         let camera = Camera::new(600, 600, shape.default_pose(), shape.default_lens())?;
-        let mut scene = lit("sphere", shape.surfels(count, 0)?);
+        let mut scene = Scene::lit("sphere", shape.surfels(count, 0)?);
         scene.material = Phong { specular: 0.6, shininess: 60.0, ..Phong::default() };
         let truth = Shot::truth(&scene, &shape, &camera, exec)?;
         let before = shaded(&scene, &camera)?;

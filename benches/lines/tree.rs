@@ -6,7 +6,7 @@
 
 use crate::common::mesh::Mesh;
 use crate::common::report::{Arguments, Table};
-use crate::common::shot::{Shot, lit};
+use crate::common::shot::Shot;
 use glam::{DVec3, Vec3};
 use splatref::Result;
 use splatref::frame::{Exec, Plane};
@@ -61,7 +61,7 @@ pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
 
 /// Primitives under the headlight.
 pub(crate) fn scene(primitives: Primitives) -> Scene {
-    Scene { primitives, ..lit("tree", Surfels::none()) }
+    Scene { primitives, ..Scene::lit("tree", Surfels::none()) }
 }
 
 fn against(shot: &Shot, truth: &Shot) -> String {

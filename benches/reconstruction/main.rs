@@ -25,7 +25,7 @@ mod stability;
 
 use common::models::{models, resample};
 use common::report::Arguments;
-use common::shot::{Shot, lit};
+use common::shot::Shot;
 use splatref::Result;
 use splatref::frame::{Exec, Frame};
 use splatref::io::{png, scene_file};
@@ -87,7 +87,12 @@ fn shapes(pattern: &str) -> Result<Vec<Subject>> {
                 lens = Lens::Orthographic(height * (pose.target - pose.eye).length());
             }
             let camera = Camera::new(WIDTH, HEIGHT, pose, lens)?;
-            subjects.push(Subject { scene: lit(&name, surfels), name, camera, shape: Some(shape) });
+            subjects.push(Subject {
+                scene: Scene::lit(&name, surfels),
+                name,
+                camera,
+                shape: Some(shape),
+            });
         }
     }
     Ok(subjects)
@@ -158,7 +163,7 @@ impl Bench {
             let mut add = |name: String, surfels: Surfels| {
                 if name.contains(pattern) {
                     subjects.push(Subject {
-                        scene: lit(&name, surfels),
+                        scene: Scene::lit(&name, surfels),
                         name,
                         camera,
                         shape: None,

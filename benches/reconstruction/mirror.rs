@@ -10,7 +10,7 @@
 //! - painted: pixels that only one of the two pictures paints, per mille of the painted
 
 use super::common::report::Table;
-use super::common::shot::{Shot, lit};
+use super::common::shot::Shot;
 use super::{Bench, EWA, Subject, methods, splatting};
 use glam::{Mat4, Vec3};
 use splatref::Result;
@@ -18,7 +18,7 @@ use splatref::frame::{Frame, Samples};
 use splatref::method::Method;
 use splatref::number::Real;
 use splatref::number::elementary::atan2;
-use splatref::scene::{Camera, Surfels};
+use splatref::scene::{Camera, Scene, Surfels};
 
 const SIDE: u32 = 512;
 const SCENES: [&str; 6] = ["sphere 10 k", "torus 10 k", "cluster 10 k", "bunny", "dragon", "koala"];
@@ -59,7 +59,7 @@ fn mirrored(subject: &Subject, camera: &Camera) -> Result<Subject> {
     let turn = |v: &mut Vec3| v.x = -v.x;
     cloud.position.iter_mut().for_each(turn);
     cloud.normal.iter_mut().flatten().for_each(turn);
-    let scene = lit(&subject.name, Surfels::new(cloud)?.0);
+    let scene = Scene::lit(&subject.name, Surfels::new(cloud)?.0);
     let mirror = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
     let view_from_world = mirror * camera.view_from_world * mirror;
     let camera = Camera { view_from_world, ..*camera };

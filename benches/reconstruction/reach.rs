@@ -8,7 +8,6 @@
 //! of the disc's: `beyond`.
 
 use super::common::report::Table;
-use super::common::shot::lit;
 use super::{Bench, methods};
 use glam::{DVec3, Vec3};
 use splatref::Result;
@@ -113,5 +112,5 @@ fn disc(radius: f32, tilt: f64, place: u64) -> Result<(Scene, Camera)> {
     };
     let pose = Pose { eye: DVec3::new(0.0, 0.0, 1024.0), target: DVec3::ZERO, up: DVec3::Y };
     let camera = Camera::new(SIDE, SIDE, pose, Lens::Orthographic(f64::from(SIDE)))?;
-    Ok((lit("disc", Surfels::new(cloud)?.0), camera))
+    Ok((Scene::lit("disc", Surfels::new(cloud)?.0), camera))
 }

@@ -1,8 +1,10 @@
 //! A picture in the number type and with the planes that were asked for, as files hold it.
 
+use super::options::SceneOptions;
 use super::progress;
 use splatref::Result;
 use splatref::frame::Exec;
+use splatref::index::seen::Seen;
 use splatref::io::scene_file::{Number, OutputSettings, Ready, SceneFile};
 use splatref::method::session::Made;
 use splatref::method::{Picture, Session};
@@ -15,10 +17,22 @@ pub(super) fn ready(file: &SceneFile, exec: &Exec) -> Result<Ready> {
     file.ready(exec, &|what, done, of| steps.show(what, done, of))
 }
 
-/// Prepares a scene for its method, with progress.
-pub(super) fn session<'a>(ready: &'a Ready, exec: &'a Exec) -> Result<(Session<'a>, Option<Made>)> {
+/// Prepares a scene for its method, with progress; the session goes on from what the frame before saw.
+pub(super) fn session<'a>(
+    ready: &'a Ready,
+    options: &SceneOptions,
+    exec: &'a Exec,
+) -> Result<(Session<'a>, Option<Made>)> {
     let steps = progress::Steps::new("preparing");
-    ready.session(exec, &|what, done, of| steps.show(what, done, of))
+    let seen = seen(ready, options)?;
+    let (mut session, made) = ready.session(exec, &|what, done, of| steps.show(what, done, of))?;
+    session.resume(seen);
+    Ok((session, made))
+}
+
+/// What the frame before saw, if somebody says.
+pub(super) fn seen(ready: &Ready, options: &SceneOptions) -> Result<Option<Seen>> {
+    options.state().map(|path| ready.state(path)).transpose()
 }
 
 /// Draws.
@@ -35,8 +49,8 @@ pub(super) fn draw<'s>(
             Cow::Owned(session.define::<f32>(camera, true)?)
         }
         OutputSettings { number: Number::F64, stages, .. } => {
-            let Picture { frame, tally, timings } = session.define::<f64>(camera, stages)?;
-            Cow::Owned(Picture { frame: frame.to_f32(), tally, timings })
+            let Picture { frame, tally, timings, seen } = session.define::<f64>(camera, stages)?;
+            Cow::Owned(Picture { frame: frame.to_f32(), tally, timings, seen })
         }
     })
 }

@@ -38,7 +38,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let exec = args.exec.exec()?;
     let ready = draw::ready(&file, &exec)?;
     ready.camera.check_pixel(args.x, args.y)?;
-    let (session, made) = draw::session(&ready, &exec)?;
+    let (session, made) = draw::session(&ready, &args.options, &exec)?;
     let pixel = (args.x, args.y);
     let text = match file.output.number {
         Number::F32 => session.explain::<f32>(&ready.camera, pixel)?,

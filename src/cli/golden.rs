@@ -4,9 +4,11 @@ use super::options::ExecOptions;
 use super::{Ended, Ending, draw, say};
 use splatref::frame::image::{Image, Values};
 use splatref::frame::{Exec, Frame, Plane, Samples};
+use splatref::index::seen::Seen;
 use splatref::io::exr::{self, Compression};
 use splatref::io::scene_file::{Ready, SceneFile};
 use splatref::io::{png, provenance};
+use splatref::method::Picture;
 use splatref::verify::compare::{Comparison, Criteria, Relation, Verdict, compare};
 use splatref::verify::digest;
 use splatref::{Error, Result};
@@ -115,16 +117,34 @@ fn check(args: &Args, exec: &Exec, name: &str) -> Result<(Image, bool)> {
     Ok((actual, false))
 }
 
+/// Draws a golden; of a sequence its last frame, after those before.
 fn render(dir: &Path, exec: &Exec, name: &str) -> Result<Case> {
     let (scene, picture) = (dir.join(format!("{name}.toml")), dir.join(format!("{name}.exr")));
     let file = SceneFile::read(&scene)?;
-    let ready = draw::ready(&file, exec)?;
-    let (mut session, _) = draw::session(&ready, exec)?;
-    let frame = draw::draw(&mut session, &ready.camera, file.output)?.into_owned().frame;
-    let Ready { loaded, camera, method, .. } = &ready;
+    let mut ready = draw::ready(&file, exec)?;
+    let mut seen = None;
+    for frame in 0..file.frames - 1 {
+        ready = ready.at(frame, exec)?;
+        seen = picture_of(&ready, seen, &file, exec)?.0.seen;
+    }
+    ready = ready.at(file.frames - 1, exec)?;
+    let (drawn, text) = picture_of(&ready, seen, &file, exec)?;
+    Ok(Case { scene, picture, text, frame: drawn.frame })
+}
+
+/// The picture of a frame after what the frame before saw, and its text.
+fn picture_of(
+    ready: &Ready,
+    seen: Option<Seen>,
+    file: &SceneFile,
+    exec: &Exec,
+) -> Result<(Picture<f32>, String)> {
+    let Ready { loaded, camera, method, .. } = ready;
+    let (mut session, _) = ready.session(exec, &|_, _, _| ())?;
+    session.resume(seen);
+    let drawn = draw::draw(&mut session, camera, file.output)?.into_owned();
     let (groups, number) = (session.groups(), file.output.number);
-    let text = provenance::text(&loaded.scene, groups, camera, method, number);
-    Ok(Case { scene, picture, text, frame })
+    Ok((drawn, provenance::text(&loaded.scene, groups, camera, method, number)))
 }
 
 /// The first planes that differ, and how to look into the first pixel.

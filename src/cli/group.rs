@@ -9,6 +9,7 @@ use splatref::io::ply;
 use splatref::io::scene_file::{FileKind, GroupChoice};
 use splatref::scene::Groups;
 use splatref::scene::Scene;
+use splatref::source::flatten;
 use splatref::{Error, Result};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -50,7 +51,8 @@ pub(super) fn run(args: &Args) -> Ended {
     let exec = Exec::new(args.threads, 32)?;
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let loaded = file.load(&exec, &show)?;
+    let mut loaded = file.load(&exec, &show)?;
+    loaded.scene = flatten(&loaded.scene, &exec)?;
     let Scene { name, primitives, .. } = &loaded.scene;
     if !primitives.is_empty() {
         let what = format!("{name} has triangles or lines; only surfels are divided into groups");

@@ -5,7 +5,7 @@ use super::{Ended, Ending, progress, say};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
-use splatref::io::scene_file::{Draw, EnvironmentChoice, FileKind, SceneFile, Source};
+use splatref::io::scene_file::{Draw, EnvironmentChoice, FileKind, Model, SceneFile, Source};
 use splatref::io::{ply, scene_file::Loaded};
 use splatref::scene::Light;
 use splatref::source::derive::{self, Derive};
@@ -74,23 +74,8 @@ fn points(path: &Path) -> Result<()> {
 
 fn scene(path: &Path) -> Result<()> {
     let file = SceneFile::read(path)?;
-    for model in &file.models {
-        line(
-            "source",
-            match &model.source {
-                Source::File { path, .. } => match model.draw {
-                    Draw::Surfels => path.display().to_string(),
-                    draw => format!("{}, drawn as {}", path.display(), draw.word()),
-                },
-                Source::Shape { shape, count, seed } => {
-                    format!("{shape:?}, about {count} surfels, seed {seed}")
-                }
-                Source::Tree { leaves, seed } => {
-                    let word = model.draw.word();
-                    format!("Tree of {leaves} leaves, seed {seed}, drawn as {word}")
-                }
-            },
-        );
+    for model in file.all_models() {
+        line("source", source(model));
     }
     let steps = progress::Steps::new("loading");
     let loaded: Loaded =
@@ -98,6 +83,9 @@ fn scene(path: &Path) -> Result<()> {
     drop(steps);
     report::scene(&loaded);
     line("  sha256", loaded.scene.sha256());
+    if file.frames > 1 {
+        line("frames", file.frames);
+    }
     for light in &file.lights {
         line(
             "light",
@@ -116,8 +104,30 @@ fn scene(path: &Path) -> Result<()> {
     let camera = file.camera(&loaded.scene)?;
     report::camera(&camera);
     report::picture(&camera, file.output);
-    report::method(&file.method.method()?, &loaded.scene, &camera);
+    let method = file.method.method()?;
+    match &loaded.scene.objects {
+        None => report::method(&method, &loaded.scene, &camera),
+        // What the settings come to is known of surfels in their places, of which there may be more
+        // than fit.
+        Some(_) => report::settings(&method),
+    }
     Ok(())
+}
+
+fn source(model: &Model) -> String {
+    match &model.source {
+        Source::File { path, .. } => match model.draw {
+            Draw::Surfels => path.display().to_string(),
+            draw => format!("{}, drawn as {}", path.display(), draw.word()),
+        },
+        Source::Shape { shape, count, seed } => {
+            format!("{shape:?}, about {count} surfels, seed {seed}")
+        }
+        Source::Tree { leaves, seed } => {
+            let word = model.draw.word();
+            format!("Tree of {leaves} leaves, seed {seed}, drawn as {word}")
+        }
+    }
 }
 
 fn picture(path: &Path) -> Result<()> {

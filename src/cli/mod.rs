@@ -19,6 +19,7 @@ mod project;
 mod render;
 mod report;
 mod rows;
+mod sequence;
 mod suite;
 mod verify;
 mod words;

@@ -7,7 +7,7 @@ use splatref::io::scene_file::{EnvironmentChoice, SceneFile, Source, check_opaci
 use splatref::method::Method;
 use splatref::scene::{Camera, Lens};
 use splatref::{Error, Result};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// How a picture is made; cannot change one bit of it.
 #[derive(clap::Args)]
@@ -29,6 +29,12 @@ impl ExecOptions {
 /// What is pictured; each option replaces what a scene file says.
 #[derive(clap::Args)]
 pub(super) struct SceneOptions {
+    /// The frame of the sequence, from 0 [default: 0]
+    #[arg(long, value_name = "N", help_heading = "Camera")]
+    frame: Option<u32>,
+    /// What the frame before saw, from render --keep-state; nothing if absent
+    #[arg(long, value_name = "FILE", help_heading = "Camera")]
+    state: Option<PathBuf>,
     /// Size of the picture in pixels [default: 1024x768]
     #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Camera")]
     size: Option<[u32; 2]>,
@@ -103,7 +109,14 @@ impl SceneOptions {
     /// The scene that `name` stands for, a shape or a file, with these options on top.
     pub(super) fn scene_file(&self, name: &Path) -> Result<SceneFile> {
         let mut file = named(name, self.count, self.seed)?;
+        if let Some(frame) = self.frame {
+            file.check_frame(frame)?;
+            file.frame = frame;
+        }
         let camera = &mut file.camera;
+        if self.eye.or(self.target).or(self.up).is_some() {
+            camera.motion = None;
+        }
         replace(&mut camera.size, self.size);
         replace(&mut camera.eye, self.eye);
         replace(&mut camera.target, self.target);
@@ -114,11 +127,16 @@ impl SceneOptions {
         replace(&mut file.environment, self.environment.clone());
         if let Some(opacity) = self.opacity {
             check_opacity(opacity)?;
-            file.models.iter_mut().for_each(|model| model.opacity = Some(opacity));
+            file.all_models_mut().for_each(|model| model.opacity = Some(opacity));
         }
         self.choose_method(&mut file)?;
         file.output = self.number.chosen.on(file.output, "the output")?;
         Ok(file)
+    }
+
+    /// The file that says what the frame before saw.
+    pub(super) fn state(&self) -> Option<&Path> {
+        self.state.as_deref()
     }
 
     /// The method, its settings and its groups.

@@ -2,14 +2,18 @@
 
 use super::options::{ExecOptions, SceneOptions};
 use super::rows::{OfFiles, RowOptions};
-use super::{Ended, Ending, draw, output, progress, report};
+use super::{Ended, Ending, draw, output, progress, report, sequence};
+use splatref::frame::{Exec, Frame};
+use splatref::index::seen::Seen;
 use splatref::io::replace::Pending;
-use splatref::io::scene_file::{FileKind, Ready, SceneFile};
+use splatref::io::scene_file::{FileKind, OutputSettings, Ready, SceneFile};
+use splatref::io::state::{self, State};
 use splatref::io::{exr, png, provenance};
 use splatref::method::Picture;
 use splatref::{Error, Result};
 use std::borrow::Cow;
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -20,7 +24,8 @@ Examples:
   splatref render torus --count 5000 --outline raycast --stages
   splatref render tree --method pyramid
   splatref render bunny.ply --eye -1,2,3 --target 0,0.1,0 --fov 30 -o bunny.exr
-  splatref render scene.toml --number f64 --epsilon 1.5r")]
+  splatref render scene.toml --number f64 --epsilon 1.5r
+  splatref render scene.toml --frames 0..60 -o out/walk.exr")]
 pub(super) struct Args {
     /// A .ply, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster,
     /// or tree (with --method pyramid)
@@ -35,10 +40,18 @@ pub(super) struct Args {
     #[arg(long, value_name = "N", default_value_t = 1,
         value_parser = clap::value_parser!(u32).range(1..))]
     repeat: u32,
+    /// Frames of the sequence, B not among them, each into an EXR and a PNG of its own: out/walk.exr
+    /// becomes out/walk.0000.exr and so on
+    #[arg(long, value_name = "A..B", value_parser = sequence::frames,
+        conflicts_with_all = ["repeat", "frame"])]
+    frames: Option<Range<u32>>,
+    /// Where what the last frame saw goes, for --state (method deferred)
+    #[arg(long, value_name = "FILE")]
+    keep_state: Option<PathBuf>,
     #[command(flatten)]
     exec: ExecOptions,
     #[command(flatten)]
-    options: SceneOptions,
+    pub(super) options: SceneOptions,
 }
 
 pub(super) fn run(args: &Args) -> Ended {
@@ -46,10 +59,16 @@ pub(super) fn run(args: &Args) -> Ended {
     let mut file = args.options.scene_file(&args.scene)?;
     file.output = args.files.chosen.on(file.output, "the output")?;
     let exec = args.exec.exec()?;
-    let picture = place(args, &file)?;
+    if let Some(frames) = &args.frames {
+        file.check_frame(frames.end - 1)?;
+        file.frame = frames.start;
+        return sequence::render(args, &file, frames.clone(), &exec);
+    }
+    let picture = place(args, &file, None)?;
     let preview = picture.with_extension("png");
     let ready = draw::ready(&file, &exec)?;
-    let (mut session, made) = draw::session(&ready, &exec)?;
+    check_state(args, &ready, &file)?;
+    let (mut session, made) = draw::session(&ready, &args.options, &exec)?;
     let loading = start.elapsed();
     let Ready { loaded, camera, method, .. } = &ready;
     let scene = &loaded.scene;
@@ -58,32 +77,24 @@ pub(super) fn run(args: &Args) -> Ended {
 
     let mut times = Vec::new();
     let drawing = progress::during("rendering", || -> Result<_> {
+        let before = session.seen().cloned();
         for _ in 1..args.repeat {
             timed(&mut times, || draw::draw(&mut session, camera, file.output))?;
+            // The same frame again, not the next.
+            session.resume(before.clone());
         }
         timed(&mut times, || draw::draw(&mut session, camera, file.output))
     })?;
 
     let writing = Instant::now();
-    if args.output.is_none() {
-        let folder = Path::new(FOLDER);
-        fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
-    }
+    make_folder(args)?;
     progress::during("writing", || -> Result<()> {
-        let frame = &drawing.frame;
         let text = || provenance::text(scene, groups.as_ref(), camera, method, file.output.number);
-        let compression = file.output.compression;
-        let (small, large) = exec.join(
-            || png::pending_frame(&preview, frame),
-            || exr::pending(&picture, frame, &text(), compression, &exec),
-        );
-        // Both are written before one is put in its place.
-        let (small, large) = (small?, large?);
-        large.put()?;
-        small.map_or(Ok(()), Pending::put)
+        write(&picture, &drawing.frame, text, file.output, &exec)
     })?;
-    let (writing, tally) = (writing.elapsed(), drawing.tally);
+    let (writing, tally, seen) = (writing.elapsed(), drawing.tally, drawing.seen.clone());
     drop(drawing);
+    keep(args, &ready, ready.frame(), seen.as_ref())?;
 
     report::scene(loaded);
     report::camera(camera);
@@ -91,6 +102,7 @@ pub(super) fn run(args: &Args) -> Ended {
     report::method(method, scene, camera);
     report::groups(session.groups(), made.as_ref());
     report::tally(&tally);
+    report::selection(seen.as_ref());
     print_times(&exec, loading, times, writing);
     report::time("total", vec![start.elapsed()]);
     report::line("files", picture.display());
@@ -101,23 +113,72 @@ pub(super) fn run(args: &Args) -> Ended {
 /// Where pictures go of which nobody says; made when they are written.
 const FOLDER: &str = "out";
 
-/// Where the picture goes.
-fn place(args: &Args, file: &SceneFile) -> Result<PathBuf> {
+/// Where the picture goes, or that of a frame.
+pub(super) fn place(args: &Args, file: &SceneFile, frame: Option<u32>) -> Result<PathBuf> {
+    let named = |path: &Path| match frame {
+        None => path.to_owned(),
+        Some(frame) => path.with_extension(format!("{frame:04}.exr")),
+    };
     match &args.output {
         Some(path) if matches!(FileKind::of(path), Ok(FileKind::Exr)) => {
-            output::check(path, &args.scene, file)?;
-            Ok(path.clone())
+            let path = named(path);
+            output::check(&path, &args.scene, file)?;
+            Ok(path)
         }
         Some(path) => {
             let path = path.display();
             Err(Error::Usage(format!("{path}: the picture is an EXR; give a name in .exr")))
         }
         None => {
-            let path = Path::new(FOLDER).join(format!("{}.exr", file.name));
+            let path = named(&Path::new(FOLDER).join(format!("{}.exr", file.name)));
             output::check_unread(&path, &args.scene, file)?;
             Ok(path)
         }
     }
+}
+
+/// Writes what a frame saw, if somebody asked for that.
+pub(super) fn keep(args: &Args, ready: &Ready, frame: u32, seen: Option<&Seen>) -> Result<()> {
+    let (Some(path), Some(seen)) = (&args.keep_state, seen) else { return Ok(()) };
+    let state = State { frame, seen: seen.clone() };
+    state::pending(path, &state, &ready.identity()?)?.put()
+}
+
+/// Whether a state can be kept where it was asked for: before anything is drawn.
+pub(super) fn check_state(args: &Args, ready: &Ready, file: &SceneFile) -> Result<()> {
+    let Some(path) = &args.keep_state else { return Ok(()) };
+    if !ready.method.draws_objects() {
+        let name = ready.method.name();
+        let what = format!("--keep-state: the method {name} carries nothing from frame to frame");
+        return Err(Error::Usage(what));
+    }
+    output::check(path, &args.scene, file)
+}
+
+/// Makes the folder of pictures, if nobody says where they go.
+pub(super) fn make_folder(args: &Args) -> Result<()> {
+    if args.output.is_some() {
+        return Ok(());
+    }
+    let folder = Path::new(FOLDER);
+    fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))
+}
+
+/// Writes a picture and its preview, both before one is put in its place.
+pub(super) fn write(
+    picture: &Path,
+    frame: &Frame<f32>,
+    text: impl Fn() -> String + Sync,
+    output: OutputSettings,
+    exec: &Exec,
+) -> Result<()> {
+    let (small, large) = exec.join(
+        || png::pending_frame(&picture.with_extension("png"), frame),
+        || exr::pending(picture, frame, &text(), output.compression, exec),
+    );
+    let (small, large) = (small?, large?);
+    large.put()?;
+    small.map_or(Ok(()), Pending::put)
 }
 
 /// Each stage, and last the whole, of each repetition.
@@ -136,11 +197,16 @@ fn timed<'s>(
     Ok(drawing)
 }
 
-fn print_times(exec: &splatref::frame::Exec, loading: Duration, times: Times, writing: Duration) {
-    let threads = match exec.threads() {
+/// How many threads there are, in words.
+pub(super) fn threads(exec: &Exec) -> String {
+    match exec.threads() {
         1 => "1 thread".into(),
         n => format!("{n} threads"),
-    };
+    }
+}
+
+fn print_times(exec: &Exec, loading: Duration, times: Times, writing: Duration) {
+    let threads = threads(exec);
     let of = match times.len() {
         1 => String::new(),
         n => format!(", minimum and median of {n} pictures"),

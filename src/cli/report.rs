@@ -3,10 +3,12 @@
 use super::say;
 use glam::Vec3;
 use splatref::index::grouping::GroupCoverage;
+use splatref::index::seen::Seen;
 use splatref::io::scene_file::{Loaded, ModelReport, OutputSettings};
 use splatref::method::Method;
 use splatref::method::session::Made;
-use splatref::scene::{Camera, Counts, Dropped, Groups, Projection, Scene, Surfels};
+use splatref::scene::objects::Split;
+use splatref::scene::{Camera, Counts, Dropped, Groups, Objects, Projection, Scene, Surfels};
 use splatref::setting::{Fields, Word};
 use splatref::source::derive::Origin;
 use splatref::splat::Tally;
@@ -20,13 +22,16 @@ pub(super) fn line(label: &str, text: impl std::fmt::Display) {
 /// The models, what was derived for them, and what was dropped.
 pub(super) fn scene(loaded: &Loaded) {
     let scene = &loaded.scene;
-    let (name, all) = (&scene.name, content(scene.surfels.len(), scene.primitives.counts()));
+    if let Some(objects) = &scene.objects {
+        return objects_of(loaded, objects);
+    }
+    let (name, all) = (&scene.name, content(scene.surfels.len() as u64, scene.primitives.counts()));
     match loaded.models.as_slice() {
         [one] => line("scene", format!("{name}: {all}, {}", origin(one))),
         several => {
             line("scene", format!("{name}: {all}"));
             for model in several {
-                let all = content(model.surfels, model.primitives);
+                let all = content(model.surfels as u64, model.primitives);
                 line("  model", format!("{}: {all}, {}", model.name, origin(model)));
             }
         }
@@ -36,14 +41,56 @@ pub(super) fn scene(loaded: &Loaded) {
     radius(&scene.surfels);
 }
 
+/// A scene of objects, whether its surfels are in their places or not.
+fn objects_of(loaded: &Loaded, objects: &Objects) {
+    let ids = objects.ids();
+    let mut used = vec![0_usize; loaded.models.len()];
+    objects.objects().iter().for_each(|object| used[object.geometry] += 1);
+    let total = loaded.models.iter().zip(&used).fold(Counts::default(), |total, (model, used)| {
+        let Counts { triangles, ribbons, tubes } = model.primitives;
+        Counts {
+            triangles: total.triangles + used * triangles,
+            ribbons: total.ribbons + used * ribbons,
+            tubes: total.tubes + used * tubes,
+        }
+    });
+    line("scene", format!("{}: {}", loaded.scene.name, content(ids.total(), total)));
+    let (count, geometries) = (objects.objects().len(), loaded.models.len());
+    line("  objects", format!("{count} of {geometries} geometries, ids of {}", split(ids.split())));
+    for (model, used) in loaded.models.iter().zip(used) {
+        let all = content(model.surfels as u64, model.primitives);
+        let of = origin(model);
+        line("  geometry", format!("{}: {all}, {of}; used by {used} objects", model.name));
+    }
+    line("  dropped", dropped(&loaded.dropped, loaded.dropped_primitives));
+    let (middle, radius) = objects.bounding_sphere();
+    let (middle, radius) = (point(middle.to_array()), short(radius));
+    line("  bounds", format!("a sphere around {middle} of radius {radius}"));
+    if ids.total() > 0 {
+        median(objects.median_radius());
+    }
+}
+
+/// Which bits of an id are the object's.
+fn split(split: Split) -> String {
+    match split {
+        Split::Even => "12 bits of the object and 20 of the surfel".into(),
+        Split::Two => "1 bit, then 11 and 20 of object and surfel, or 14 and 17".into(),
+        Split::Single(n) => format!("{} bits of the object and {n} of the surfel", 32 - n),
+        Split::Stencil => {
+            "20 bits of the object, 8 of them beside the 32, and 20 of the surfel".into()
+        }
+    }
+}
+
 /// What a scene or a model has, in words.
-fn content(surfels: usize, primitives: Counts) -> String {
+fn content(surfels: u64, primitives: Counts) -> String {
     let Counts { triangles, ribbons, tubes } = primitives;
     let parts = [
         (surfels, "surfels"),
-        (triangles, "triangles"),
-        (ribbons, "segments of ribbons"),
-        (tubes, "segments of tubes"),
+        (triangles as u64, "triangles"),
+        (ribbons as u64, "segments of ribbons"),
+        (tubes as u64, "segments of tubes"),
     ];
     let parts = parts.iter().filter(|(count, _)| *count > 0);
     let parts: Vec<String> = parts.map(|(count, what)| format!("{count} {what}")).collect();
@@ -70,8 +117,12 @@ pub(super) fn bounds((low, high): (Vec3, Vec3)) {
 /// How large surfels are, if there are any.
 pub(super) fn radius(surfels: &Surfels) {
     if !surfels.is_empty() {
-        line("  radius", format!("{} in the median", short(f64::from(surfels.median_radius()))));
+        median(surfels.median_radius());
     }
+}
+
+fn median(radius: f32) {
+    line("  radius", format!("{} in the median", short(f64::from(radius))));
 }
 
 const FACETS: &str = "of ellipses, a triangle each";
@@ -137,12 +188,17 @@ pub(super) fn camera(camera: &Camera) {
 
 /// The method, its settings, and what these come to in a scene.
 pub(super) fn method(method: &Method, scene: &Scene, camera: &Camera) {
-    let values = method.values().into_iter().map(|(name, value)| (name, value.text()));
-    let settings: Vec<String> = values.map(|(name, value)| format!("{name} = {value}")).collect();
-    line("method", format!("{}, {}", method.name(), settings.join(", ")));
+    settings(method);
     for (name, value) in method.resolved(scene, camera) {
         line("", format!("{name} = {value}"));
     }
+}
+
+/// The method and its settings.
+pub(super) fn settings(method: &Method) {
+    let values = method.values().into_iter().map(|(name, value)| (name, value.text()));
+    let settings: Vec<String> = values.map(|(name, value)| format!("{name} = {value}")).collect();
+    line("method", format!("{}, {}", method.name(), settings.join(", ")));
 }
 
 /// The groups, and how they were made.
@@ -180,6 +236,16 @@ pub(super) fn picture(camera: &Camera, output: OutputSettings) {
     line("picture", format!("{} x {} pixels, {number}{stages}", camera.width, camera.height));
 }
 
+/// What a method selected of the surfels, if it did.
+pub(super) fn selection(seen: Option<&Seen>) {
+    let Some(seen) = seen else { return };
+    let of = |counts: &[u32]| counts.iter().map(|&count| u64::from(count)).sum::<u64>();
+    let (all, selected) = (of(seen.counts()), of(seen.selected()));
+    let culled = 100.0 * (all - selected) as f64 / all.max(1) as f64;
+    line("selected", format!("{selected} of {all} surfels, {culled:.1} % culled"));
+}
+
+/// What became of the surfels.
 pub(super) fn tally(tally: &Tally) {
     line(
         "surfels",
@@ -208,9 +274,13 @@ fn point(v: [f64; 3]) -> String {
     format!("({})", v.map(short).join(", "))
 }
 
-/// Five digits of a number.
+/// Five digits of a number; with a power of ten where it has more than a few zeros.
 pub(super) fn short(value: f64) -> String {
     let rounded = format!("{value:.4e}").parse().unwrap_or(value);
-    // -0 is 0 to a reader.
-    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
+    match rounded {
+        // -0 is 0 to a reader.
+        0.0 => "0".into(),
+        small if small.abs() < 1e-4 => format!("{small:e}"),
+        other => format!("{other}"),
+    }
 }

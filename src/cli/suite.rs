@@ -5,6 +5,7 @@ use super::{Ended, Ending, say};
 use serde::Deserialize;
 use splatref::verify::shift::{LIMITS, Shift, Shifts};
 use splatref::{Error, Result};
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -12,7 +13,8 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = "\
 Decisions beside a limit are undecided in each picture. Over several scenes they show a limit that is a
-little off: rounding turns about as many to either side.
+little off: rounding turns about as many to either side. A verdict that is named twice, or of which there
+is a copy, counts once.
 
 Examples:
   splatref verify a.toml a.exr --promise ieee --json a.json
@@ -36,17 +38,31 @@ struct Verdict {
 }
 
 pub(super) fn run(args: &Args) -> Ended {
-    let verdicts = args.verdicts.iter().map(|path| Ok((path, verdict(path)?)));
-    let verdicts = verdicts.collect::<Result<Vec<_>>>()?;
-    for (path, Verdict { outcome, promise, .. }) in &verdicts {
-        say(format!("{outcome:<12} {promise:<5} {}", path.display()));
+    // One verdict added to itself would lean more than its picture does. Two pictures have the same text
+    // only where nothing leans.
+    let mut seen: BTreeMap<String, &Path> = BTreeMap::new();
+    let mut verdicts = Vec::new();
+    for path in &args.verdicts {
+        let (text, verdict) = verdict(path)?;
+        let Verdict { outcome, promise, .. } = &verdict;
+        let first = *seen.entry(text).or_insert(path);
+        if std::ptr::eq(first, path.as_path()) {
+            say(format!("{outcome:<12} {promise:<5} {}", path.display()));
+            verdicts.push(verdict);
+        } else {
+            let (path, first) = (path.display(), first.display());
+            say(format!(
+                "{:<12} {promise:<5} {path}: the verdict of {first}, counted once",
+                "again"
+            ));
+        }
     }
-    let any = |word: &str| verdicts.iter().any(|(_, verdict)| verdict.outcome == word);
+    let any = |word: &str| verdicts.iter().any(|verdict| verdict.outcome == word);
     let mut leans = false;
     // What one promise calls undecided is certain by the other.
     for promise in ["ieee", "gpu"] {
-        let own = verdicts.iter().filter(|(_, verdict)| verdict.promise == promise);
-        let all = together(own.flat_map(|(_, verdict)| &verdict.shifts));
+        let own = verdicts.iter().filter(|verdict| verdict.promise == promise);
+        let all = together(own.flat_map(|verdict| &verdict.shifts));
         for (limit, shift) in LIMITS.iter().zip(&all).filter(|(_, shift)| shift.decisions > 0) {
             // An inexact operation may lean, if it does so lawfully.
             let alarms = promise == "ieee" && shift.alarms();
@@ -64,14 +80,16 @@ pub(super) fn run(args: &Args) -> Ended {
     })
 }
 
-fn verdict(path: &Path) -> Result<Verdict> {
+/// A verdict, and its text.
+fn verdict(path: &Path) -> Result<(String, Verdict)> {
     let mut text = String::new();
     // A verdict has some kilobytes: of anything longer the part that is read is no JSON.
     let file = File::open(path).map(|file| file.take(1 << 24));
     file.and_then(|mut file| file.read_to_string(&mut text))
         .map_err(|source| Error::io(path, source))?;
-    serde_json::from_str(&text)
-        .map_err(|error| Error::format(path, format!("no verdict of `verify --json`: {error}")))
+    let verdict = serde_json::from_str(&text)
+        .map_err(|error| Error::format(path, format!("no verdict of `verify --json`: {error}")))?;
+    Ok((text, verdict))
 }
 
 /// What pictures say together.

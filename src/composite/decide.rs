@@ -51,7 +51,7 @@ pub fn nearer<R: Real>(w: R, than: R) -> R::Truth {
 ///
 /// Source: the id of the compositing pass, \[ZP06, section 3.2\]; `Decided:` the tie.
 #[inline(always)]
-pub fn nearer_or_lower<R: Real>((w, surfel): (R, u32), (than, id): (R, u32)) -> R::Truth {
+pub fn nearer_or_lower<R: Real, I: Ord>((w, surfel): (R, I), (than, id): (R, I)) -> R::Truth {
     w.gt(than) | (w.ge(than) & R::Truth::from(surfel < id))
 }
 

@@ -2,14 +2,17 @@
 //!
 //! - [`grouping`]: groups of surfels that do not overlap, so that a group shares one depth-image.
 //! - [`order`]: surfels from back to front.
+//! - [`seen`]: which surfels the frame before saw.
 
 pub mod grouping;
 pub mod order;
 pub(crate) mod point_tree;
+pub mod seen;
 
 use crate::error::{Error, Result};
-use crate::scene::{Camera, Groups, Surfels};
+use crate::scene::{Boxes, Camera, Groups, Surfels};
 use order::BackToFront;
+use seen::Seen;
 
 /// What a view draws as one splat: a surfel, in one of its groups.
 ///
@@ -29,6 +32,10 @@ pub struct Index {
     pub groups: Option<Groups>,
     /// The surfels from back to front.
     pub order: Option<BackToFront>,
+    /// Boxes around the surfels of a scene without objects.
+    pub boxes: Option<Boxes>,
+    /// What the frame before saw; none before the first.
+    pub seen: Option<Seen>,
 }
 
 impl Index {

@@ -31,12 +31,17 @@ pub(super) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
 
 /// What is wrong of a text that should be TOML, and in which line.
 pub(super) fn no_toml(path: &Path, text: &str, error: &toml::de::Error) -> Error {
-    let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
+    let line = error.span().map(|span| line(text, span.start));
     let what = error.message().trim().replace('\n', " ");
     match line {
         Some(line) => Error::format(path, format!("line {line}: {what}")),
         None => Error::format(path, what),
     }
+}
+
+/// The line of a byte of a text, counted from 1.
+pub(super) fn line(text: &str, at: usize) -> usize {
+    1 + text[..at].matches('\n').count()
 }
 
 /// All bytes of a file from where it stands, at most `length`, even if it grows meanwhile.

@@ -10,6 +10,7 @@
 //! - [`provenance`]: the text that a picture carries.
 //! - [`replace`]: output files that are whole or not there.
 //! - [`scene_file`]: scenes as TOML: models, lights, camera, settings.
+//! - [`state`]: what a frame saw.
 //! - [`srgb`]: the transfer function between stored colours and linear light.
 
 pub mod client;
@@ -24,6 +25,7 @@ pub mod provenance;
 pub mod replace;
 pub mod scene_file;
 pub mod srgb;
+pub mod state;
 
 /// A result or the reason why not, without the file's name.
 type Reason<T> = Result<T, String>;

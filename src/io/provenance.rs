@@ -65,7 +65,7 @@ pub fn text(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Lens, Light, Phong, Pose};
+    use crate::scene::{Lens, Pose};
     use crate::setting::Value;
     use crate::source::Shape;
     use crate::splat::{Epsilon, SplatSettings};
@@ -76,16 +76,7 @@ mod tests {
         let shape = Shape::by_name("torus").unwrap();
         let name = "a \"b\"\n\u{e4}".to_owned();
         let surfels = shape.surfels(100, 0).unwrap();
-        let lights = vec![Light::DEFAULT];
-        let material = Phong::default();
-        let scene = Scene {
-            name: name.clone(),
-            surfels,
-            lights,
-            material,
-            primitives: Default::default(),
-            environment: None,
-        };
+        let scene = Scene::lit(&name, surfels);
         let eye = DVec3::new(0.1, 1.0 / 3.0, 5.0);
         let pose = Pose { eye, target: DVec3::ZERO, up: DVec3::Y };
         let camera = Camera::new(61, 47, pose, Lens::FieldOfView(33.3)).unwrap();

@@ -4,18 +4,45 @@ use super::algorithm::Job;
 use super::picture::before_light;
 use crate::composite::over::Blend;
 use crate::frame::named::{COLOR, VECTOR, component};
-use crate::method::Holds;
+use crate::method::projection::Has;
+use crate::method::{Holds, PlaneRow, When};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector3};
 use crate::scene::Environment;
 use crate::shade::phong::Shader;
 use crate::splat::View;
-use crate::verify::client::{Storage, Stored};
+use crate::verify::client::{Client, Storage, Stored};
 use crate::verify::verdict::Fault;
+use std::ops::Range;
 
 /// Told of a check: the place of its stage among those that are judged together, by how many bounds
 /// the client errs, NaN if there are none, and what is wrong if that is above 1.
 pub(super) type Report<'a> = dyn FnMut(usize, f64, &dyn Fn() -> Fault) + 'a;
+
+/// What a client has not of these levels of a stage, if it has any of them: a level of which it has
+/// nothing, else each plane by its name.
+pub(super) fn missing(
+    client: &Client,
+    rows: &[PlaneRow],
+    levels: Range<usize>,
+    has: Has,
+) -> Vec<String> {
+    let wanted = |row: &&PlaneRow| match row.when {
+        When::Colored => has.color,
+        When::StagesOfTubes => has.tangent,
+        _ => true,
+    };
+    let mut any = false;
+    let mut missing = Vec::new();
+    for level in levels {
+        let names = rows.iter().filter(wanted).map(|row| row.numbered(level));
+        let (there, not): (Vec<_>, Vec<_>) =
+            names.partition(|name| client.frame().plane(name).is_some());
+        any |= !there.is_empty();
+        missing.extend(if there.is_empty() { vec![format!("level {level}")] } else { not });
+    }
+    if any { missing } else { Vec::new() }
+}
 
 /// Any number, or none.
 pub(super) fn anything<P: Profile>() -> Ball<P> {

@@ -97,11 +97,18 @@ impl<'a, R: Exact> Given<'a, R> {
         };
         let scene = self.job.scene;
         let count = scene.surfels.len() + scene.primitives.len();
-        let unknown = |id: &&u32| **id != NO_ID && **id as usize >= count;
-        if let Some(id) = plane.values().iter().find(unknown) {
+        let objects = scene.objects.as_ref().filter(|_| count == 0);
+        let known = |id: u32| match objects {
+            Some(objects) => objects.ids().find(id.into()).is_some(),
+            None => (id as usize) < count,
+        };
+        if let Some(id) = plane.values().iter().find(|&&id| id != NO_ID && !known(id)) {
             let name = row.numbered(number);
-            let what = format!("the plane `{name}` has the id {id}; the scene has {count} of them");
-            return Err(Error::Invalid(what));
+            let of = match objects {
+                Some(_) => "none of the scene's".into(),
+                None => format!("the scene has {count} of them"),
+            };
+            return Err(Error::Invalid(format!("the plane `{name}` has the id {id}; {of}")));
         }
         self.sized(row, number, plane)
     }

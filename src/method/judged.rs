@@ -176,6 +176,7 @@ fn whole(
     let mut judged = Judged {
         stage,
         planes,
+        missing: Vec::new(),
         errors: Plane::filled(width, height, 0.0),
         doubts: Plane::filled(width, height, 0),
         wrong: 0,
@@ -324,7 +325,7 @@ pub(super) fn verdict<const N: usize>(
     }
     let Counts { covered, undecided, told } = all;
     let stages = judged(job, stages, tiles);
-    Verdict { stages, covered, undecided, budget, shifts: told.shifts() }
+    Verdict::new(stages, [covered, undecided], budget, told.shifts())
 }
 
 /// Everything that `judge` asks at one pixel.

@@ -4,6 +4,8 @@
 //! them. The rows, each a folder whose page is the specification:
 //!
 //! - [`ewa`]: EWA surface splatting in two geometry passes and a normalization \[ZPvBG01, GP03\].
+//! - [`deferred`]: the passes of `ewa` on visible surfels only, which the last frame helps to find
+//!   \[GBP04\].
 //! - [`single_pass`]: one geometry pass into the depth-images of groups, then compositing \[ZP06\].
 //! - [`transparent`]: layers blended from back to front within groups \[ZP06\].
 //! - [`transparent_hq`]: the same behind a nearest layer in high quality \[ZP06\].
@@ -52,6 +54,7 @@
 mod algorithm;
 mod allowed;
 mod checks;
+pub mod deferred;
 pub mod ewa;
 mod fast;
 mod fragment;

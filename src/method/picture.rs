@@ -3,6 +3,7 @@
 use super::algorithm::Job;
 use crate::composite::over::Blend;
 use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Pool, Samples, Wanted};
+use crate::index::seen::Seen;
 use crate::number::{Exact, Real, Truth};
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
@@ -20,6 +21,8 @@ pub struct Picture<R> {
     pub tally: Tally,
     /// The wall time of each stage, in order.
     pub timings: Laps,
+    /// What the frame saw, if its method carries that to the next.
+    pub seen: Option<Seen>,
 }
 
 /// Deferred shading, and the planes of the picture.
@@ -40,7 +43,12 @@ pub(super) fn finish<R: Exact>(
     planes.extend(normal.map(|p| named("normal", Samples::Vector(p))));
     planes.push(named("weight", Samples::Scalar(weight)));
     planes.push(named("id", Samples::Index(id)));
-    Picture { frame: Frame { width, height, planes }, tally, timings: clock.into_laps() }
+    Picture {
+        frame: Frame { width, height, planes },
+        tally,
+        timings: clock.into_laps(),
+        seen: None,
+    }
 }
 
 /// The colour and the opacity of a picture: deferred shading before the environment of the scene.

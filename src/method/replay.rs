@@ -118,6 +118,13 @@ impl<R: Exact> Touch<R> {
 impl<R: Exact> fmt::Display for Touch<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "surfel {:>8}", self.surfel)?;
+        self.fmt_decisions(f)
+    }
+}
+
+impl<R: Exact> Touch<R> {
+    /// What was decided, and what came out.
+    pub(super) fn fmt_decisions(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, decision) in self.decisions.iter().enumerate() {
             write!(f, "{}{decision}", if i == 0 { "  " } else { "   " })?;
         }

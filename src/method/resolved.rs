@@ -7,7 +7,7 @@ use super::picture::shaded;
 use super::stage::{Holds, PlaneRow, Stage, When};
 use super::tiled::Tiled;
 use crate::error::Result;
-use crate::frame::{Framebuffer, NamedPlane, Wanted};
+use crate::frame::{Framebuffer, NO_ID, NamedPlane, Wanted};
 use crate::number::Exact;
 
 /// The averages at a pixel.
@@ -23,6 +23,17 @@ pub(super) struct Resolved<R> {
     pub(super) normal: [R; 3],
     /// Average colour; 0 where the scene has none.
     pub(super) color: [R; 3],
+}
+
+impl<R: Exact> Resolved<R> {
+    /// A pixel without weight.
+    pub(super) const EMPTY: Self = Self {
+        depth: R::INFINITY,
+        id: NO_ID,
+        weight: R::ZERO,
+        normal: [R::ZERO; 3],
+        color: [R::ZERO; 3],
+    };
 }
 
 pub(super) const COLOR: PlaneRow = PlaneRow::new(

@@ -8,15 +8,18 @@ use super::algorithm::Job;
 use super::table::Memory;
 use super::{Method, Picture};
 use crate::error::{Error, Result};
-use crate::frame::{Exec, Frame, Pool};
+use crate::frame::{Exec, Frame, NO_ID, Pool, Samples};
 use crate::index::Index;
 use crate::index::grouping::{Extended, Grouping, GroupingReport};
 use crate::index::order::BackToFront;
+use crate::index::seen::Seen;
 use crate::number::Exact;
 use crate::number::ball::{Gpu, Ieee};
-use crate::scene::{Camera, Groups, Scene};
+use crate::scene::objects::{Ids, Objects};
+use crate::scene::{Boxes, Camera, Groups, Scene};
 use crate::verify::client::{Client, Rounding};
 use crate::verify::verdict::{Check, Verdict};
+use std::borrow::Cow;
 
 /// A scene, a method, what the method prepared of the scene, and memory that is used again.
 ///
@@ -105,7 +108,9 @@ impl<'a> Session<'a> {
         method.check_scene(scene)?;
         let groups = groups.filter(|_| method.grouping().is_some());
         let order = method.needs_order().then(|| BackToFront::new(&scene.surfels, exec));
-        let index = Index { groups, order };
+        let alone = method.draws_objects() && scene.objects.is_none();
+        let boxes = alone.then(|| Boxes::new(&scene.surfels));
+        let index = Index { groups, order, boxes, seen: None };
         index.check(&scene.surfels)?;
         if method.grouping().is_some() {
             index.groups()?;
@@ -132,7 +137,22 @@ impl<'a> Session<'a> {
         self.index.groups.as_ref()
     }
 
-    /// The picture in `f32`, by the fast path where there is one, in the memory of the last one.
+    /// What the next frame is given of the last one: what [`Session::render`] saw, or what somebody
+    /// resumed; none before the first frame, and of a method that carries nothing.
+    #[must_use]
+    pub fn seen(&self) -> Option<&Seen> {
+        self.index.seen.as_ref()
+    }
+
+    /// Goes on from what a frame saw, as if this session had drawn it; from nothing if there is none.
+    /// A method that carries nothing takes no notice.
+    pub fn resume(&mut self, seen: Option<Seen>) {
+        self.index.seen = seen;
+    }
+
+    /// The picture in `f32`, by the fast path where there is one, in the memory of the last one. The
+    /// next picture is the next frame of a method that carries something from frame to frame; one that is
+    /// defined is so too, but leaves what the session carries as it is.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if the camera is out of range, or what the method asks of scene
@@ -152,6 +172,9 @@ impl<'a> Session<'a> {
         let job = Job { scene, index, camera, exec };
         let picture = self.method.draw(&job, &mut self.memory, &mut self.pool)?;
         self.pool.clear();
+        self.index.seen.clone_from(&picture.seen);
+        let mut picture = picture;
+        self.name_surfels(&mut picture.frame);
         Ok(self.picture.insert(picture))
     }
 
@@ -163,7 +186,35 @@ impl<'a> Session<'a> {
     pub fn define<R: Exact>(&self, camera: &Camera, stages: bool) -> Result<Picture<R>> {
         let job = self.job(camera)?;
         self.ask(camera, Making::Define { number: size_of::<R>() as u64, stages })?;
-        self.method.define(&job, stages)
+        let mut picture = self.method.define(&job, stages)?;
+        self.name_surfels(&mut picture.frame);
+        Ok(picture)
+    }
+
+    /// The ids of the surfels in planes of ids, where a method that draws surfels draws those of objects;
+    /// none where it names them by their indices. Primitives are counted on after the surfels: a scene
+    /// that has any keeps its indices.
+    fn names(&self) -> Option<&Ids> {
+        let objects = self.scene.objects.as_ref().filter(|_| !self.method.draws_objects());
+        objects.filter(|_| self.scene.primitives.is_empty()).map(Objects::ids)
+    }
+
+    /// Puts the ids of surfels in the place of their indices; the lowest 32 bits of each.
+    fn name_surfels<R>(&self, frame: &mut Frame<R>) {
+        let Some(ids) = self.names() else { return };
+        each_id(frame, |index| ids.nth(index.into()).map(|id| id as u32));
+    }
+
+    /// Puts indices in the place of the ids of surfels.
+    fn number_surfels<R>(&self, frame: &mut Frame<R>) -> Result<()> {
+        let Some(ids) = self.names() else { return Ok(()) };
+        if ids.is_wide() {
+            let what = "ids of 40 bits: planes of ids hold 32 of them, which do not say the surfel";
+            return Err(Error::Invalid(what.into()));
+        }
+        // What is the id of none is the index of none.
+        each_id(frame, |id| Some(ids.rank(id.into()).map_or(NO_ID - 1, |rank| rank as u32)));
+        Ok(())
     }
 
     /// Runs one stage of the method on somebody's planes of the stages that it reads, and gives
@@ -178,7 +229,15 @@ impl<'a> Session<'a> {
         stage: &str,
         from: &Frame<R>,
     ) -> Result<Frame<R>> {
-        self.method.stage(&self.job(camera)?, stage, from)
+        let job = self.job(camera)?;
+        if self.names().is_none() {
+            return self.method.stage(&job, stage, from);
+        }
+        let mut numbered = from.clone();
+        self.number_surfels(&mut numbered)?;
+        let mut left = self.method.stage(&job, stage, &numbered)?;
+        self.name_surfels(&mut left);
+        Ok(left)
     }
 
     /// Every decision at one pixel, in words.
@@ -213,6 +272,7 @@ impl<'a> Session<'a> {
         let job = self.job(camera)?;
         self.check_client(camera, client)?;
         self.ask(camera, Making::Verdict)?;
+        let client = &*self.numbered(client)?;
         match client.rounding {
             Rounding::Gpu => method.verify::<Gpu>(&job, client, budget),
             Rounding::Ieee => method.verify::<Ieee>(&job, client, budget),
@@ -232,10 +292,21 @@ impl<'a> Session<'a> {
         let job = self.job(camera)?;
         self.check_client(camera, client)?;
         self.ask(camera, Making::Verdict)?;
+        let client = &*self.numbered(client)?;
         match client.rounding {
             Rounding::Gpu => self.method.checks::<Gpu>(&job, client, pixel),
             Rounding::Ieee => self.method.checks::<Ieee>(&job, client, pixel),
         }
+    }
+
+    /// A client with indices of surfels in the place of their ids.
+    fn numbered<'c>(&self, client: &'c Client) -> Result<Cow<'c, Client>> {
+        if self.names().is_none() {
+            return Ok(Cow::Borrowed(client));
+        }
+        let mut numbered = client.clone();
+        self.number_surfels(numbered.frame_mut())?;
+        Ok(Cow::Owned(numbered))
     }
 
     /// Whether there is something to judge, and nothing that is not.
@@ -283,6 +354,16 @@ impl<'a> Session<'a> {
     fn job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {
         camera.check()?;
         Ok(Job { scene: self.scene, index: &self.index, camera, exec: self.exec })
+    }
+}
+
+/// Changes every id of a frame that is that of something.
+fn each_id<R>(frame: &mut Frame<R>, of: impl Fn(u32) -> Option<u32>) {
+    for plane in &mut frame.planes {
+        if let Samples::Index(ids) = &mut plane.samples {
+            let some = ids.values_mut().iter_mut().filter(|id| **id != NO_ID);
+            some.for_each(|id| *id = of(*id).unwrap_or(*id));
+        }
     }
 }
 

@@ -3,7 +3,8 @@
 use super::algorithm::{Algorithm, Job};
 use super::given::Given;
 use super::{
-    Picture, Stage, ewa, peeling, pyramid, single_pass, template, transparent, transparent_hq,
+    Picture, Stage, deferred, ewa, peeling, pyramid, single_pass, template, transparent,
+    transparent_hq,
 };
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Pool};
@@ -73,6 +74,12 @@ macro_rules! methods {
             #[must_use]
             pub fn draws_primitives(&self) -> bool {
                 match self { $(Self::$method(_) => <$settings>::DRAWS_PRIMITIVES,)* }
+            }
+
+            /// Whether the objects of a scene are drawn as they are; else the scene must be made flat.
+            #[must_use]
+            pub fn draws_objects(&self) -> bool {
+                match self { $(Self::$method(_) => <$settings>::DRAWS_OBJECTS,)* }
             }
 
             /// How surfels are divided into groups if nobody says; none: the method draws no groups.
@@ -185,6 +192,8 @@ macro_rules! methods {
 methods! {
     /// EWA splatting in 2+1 passes.
     Ewa(ewa::Settings),
+    /// Deferred splatting \[GBP04\].
+    Deferred(deferred::Settings),
     /// Algorithm 1 of \[ZP06\].
     SinglePass(single_pass::Settings),
     /// Algorithm 2 of \[ZP06\].
@@ -221,8 +230,17 @@ impl Method {
     /// Whether the method can draw all of a scene.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the scene has primitives and the method draws surfels alone.
+    /// [`Error::Invalid`] if the scene has primitives and the method draws surfels alone, or if the
+    /// scene is of objects, has not been made flat, and the method does not draw objects.
     pub fn check_scene(&self, scene: &Scene) -> Result<()> {
+        let flat = !scene.surfels.is_empty() || !scene.primitives.is_empty();
+        if scene.objects.is_some() && !flat && !self.draws_objects() {
+            return Err(Error::Invalid(format!(
+                "{} is of objects, which the method {} does not draw: make it flat first",
+                scene.name,
+                self.name()
+            )));
+        }
         if scene.primitives.is_empty() || self.draws_primitives() {
             return Ok(());
         }

@@ -51,6 +51,17 @@ impl<T> Tiled<T> {
         &self.tiles[tile][pixel]
     }
 
+    /// The record of a pixel, to be changed.
+    pub(super) fn at_mut(&mut self, x: u32, y: u32) -> &mut T {
+        let (tile, pixel) = self.grid.place(x, y);
+        &mut self.tiles[tile][pixel]
+    }
+
+    /// All records, tile by tile.
+    pub(super) fn iter(&self) -> impl Iterator<Item = &T> {
+        self.tiles.iter().flatten()
+    }
+
     /// A record made of each record.
     pub(super) fn map<U>(&self, of: impl Fn(&T) -> U) -> Tiled<U> {
         let tiles = self.tiles.iter().map(|pixels| pixels.iter().map(&of).collect());

@@ -1,6 +1,6 @@
 //! What bounds a whole scene, surfels and primitives.
 
-use super::Scene;
+use super::{Primitives, Scene, Surfels};
 use glam::{DVec3, Vec3};
 
 impl Scene {
@@ -8,35 +8,47 @@ impl Scene {
     /// vertices that a primitive uses. Both are the origin if the scene is empty.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        let surfels = (!self.surfels.is_empty()).then(|| self.surfels.bounds());
-        let vertices = self.primitives.used().map(|(position, _)| (position, position));
-        let all = surfels.into_iter().chain(vertices);
-        all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
+        corners(&self.surfels, &self.primitives)
     }
 
     /// A sphere around everything: that of the surfels, see [`super::Surfels::bounding_sphere`], if
     /// there is nothing else. Otherwise the middle of [`Scene::bounds`], and the largest distance
-    /// from there to a surfel plus its reach or to a used vertex plus its radius; in f64.
+    /// from there to a surfel plus its reach or to a used vertex plus its radius; in f64. Of a scene
+    /// of objects [`super::Objects::bounding_sphere`].
     #[must_use]
     pub fn bounding_sphere(&self) -> (DVec3, f64) {
-        if self.primitives.is_empty() {
-            return self.surfels.bounding_sphere();
+        match &self.objects {
+            Some(objects) => objects.bounding_sphere(),
+            None => sphere(&self.surfels, &self.primitives),
         }
-        let (low, high) = self.bounds();
-        let center = (low.as_dvec3() + high.as_dvec3()) / 2.0;
-        let reach = |(position, radius): (Vec3, f32)| {
-            (position.as_dvec3() - center).length() + f64::from(radius)
-        };
-        let surfels = self.surfels.reach(center);
-        let most = |most, far| if far > most { far } else { most };
-        (center, self.primitives.used().map(reach).fold(surfels, most))
     }
+}
+
+fn corners(surfels: &Surfels, primitives: &Primitives) -> (Vec3, Vec3) {
+    let surfels = (!surfels.is_empty()).then(|| surfels.bounds());
+    let vertices = primitives.used().map(|(position, _)| (position, position));
+    let all = surfels.into_iter().chain(vertices);
+    all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
+}
+
+/// See [`Scene::bounding_sphere`].
+pub(super) fn sphere(surfels: &Surfels, primitives: &Primitives) -> (DVec3, f64) {
+    if primitives.is_empty() {
+        return surfels.bounding_sphere();
+    }
+    let (low, high) = corners(surfels, primitives);
+    let center = (low.as_dvec3() + high.as_dvec3()) / 2.0;
+    let reach = |(position, radius): (Vec3, f32)| {
+        (position.as_dvec3() - center).length() + f64::from(radius)
+    };
+    let most = |most, far| if far > most { far } else { most };
+    (center, primitives.used().map(reach).fold(surfels.reach(center), most))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Cloud, Phong, Polylines, Primitives, Surfels, Triangles, Vertices};
+    use crate::scene::{Cloud, Polylines, Primitives, Surfels, Triangles, Vertices};
 
     fn vertices(position: &[Vec3], radius: f32) -> Vertices {
         let n = position.len();
@@ -55,8 +67,7 @@ mod tests {
         let line = [Vec3::new(1.0, 2.0, -3.0), Vec3::new(1.0, 2.0, 5.0)];
         let (tubes, _) = Polylines::new(vertices(&line, 0.5), vec![[0, 1]]).unwrap();
         let primitives = Primitives { triangles, tubes, ..Primitives::default() };
-        let (lights, material) = (vec![], Phong::default());
-        Scene { name: "a".into(), surfels, primitives, lights, material, environment: None }
+        Scene { primitives, ..Scene::unlit("a", surfels) }
     }
 
     #[test]

@@ -26,8 +26,11 @@
 //! and the quotient or product of a vector and a number is taken component by component. The fields
 //! of [`Camera`] are rounded to `f32` at the end, once.
 
+pub mod motion;
+
 use crate::error::{Error, Result};
-use glam::{DMat4, DVec3, Mat4};
+use glam::{DMat3, DMat4, DVec3, Mat4};
+pub use motion::CameraMotion;
 
 /// How depth shrinks what is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,39 +135,8 @@ impl Camera {
     pub fn new(width: u32, height: u32, pose: Pose, lens: Lens) -> Result<Self> {
         Self::check_size(width, height)?;
         let (projection, scale) = scale(height, lens)?;
-        let invalid = |what: &str| Err(Error::Invalid(format!("camera: {what}")));
-        let Pose { eye, target, up } = pose;
-        if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
-            return invalid("eye, target and up must be finite numbers");
-        }
-        let distance = (target - eye).length();
-        if distance == 0.0 {
-            return invalid("eye and target are the same point: move one of them");
-        }
-        // The square of such a length is beyond f64, and a position beyond f32.
-        if distance > MAX_DISTANCE || eye.abs().max_element() > MAX_DISTANCE {
-            let what = format!("eye or target is farther away than {MAX_DISTANCE:e}");
-            return invalid(&format!("{what}, about the most that f32 holds"));
-        }
-        let back = (eye - target) / distance;
-        // Only the direction of up counts, and the square of its length must be in f64.
-        let largest = up.abs().max_element();
-        let up = if (1e-100..=1e100).contains(&largest) { up } else { up / largest };
-        let right = up.cross(back);
-        // An up of 0 is NaN by now. An angle below 1e-6 between up and the view leaves no digits for `right`.
-        if !(right.length() > 1e-6 * up.length()) {
-            return invalid("up is zero or parallel to the line of sight: choose another --up");
-        }
-        let right = right.normalize();
-        let up = back.cross(right);
-        let rotation = DMat4::from_cols(
-            right.extend(0.0),
-            up.extend(0.0),
-            back.extend(0.0),
-            DVec3::ZERO.extend(1.0),
-        )
-        .transpose();
-        let view = rotation * DMat4::from_translation(-eye);
+        let (axes, distance) = axes(pose)?;
+        let view = DMat4::from_mat3(axes.transpose()) * DMat4::from_translation(-pose.eye);
         let camera = Self {
             width,
             height,
@@ -296,6 +268,37 @@ impl Camera {
     pub fn eye(&self) -> DVec3 {
         self.view_from_world.as_dmat4().inverse().w_axis.truncate()
     }
+}
+
+/// Right, up and back of a pose, as columns, and the distance from eye to target: r, v, b and
+/// distance of [`Camera::new`], whose errors are these.
+fn axes(pose: Pose) -> Result<(DMat3, f64)> {
+    let invalid = |what: &str| Err(Error::Invalid(format!("camera: {what}")));
+    let Pose { eye, target, up } = pose;
+    if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
+        return invalid("eye, target and up must be finite numbers");
+    }
+    let distance = (target - eye).length();
+    if distance == 0.0 {
+        return invalid("eye and target are the same point: move one of them");
+    }
+    // The square of such a length is beyond f64, and a position beyond f32.
+    if distance > MAX_DISTANCE || eye.abs().max_element() > MAX_DISTANCE {
+        let what = format!("eye or target is farther away than {MAX_DISTANCE:e}");
+        return invalid(&format!("{what}, about the most that f32 holds"));
+    }
+    let back = (eye - target) / distance;
+    // Only the direction of up counts, and the square of its length must be in f64.
+    let largest = up.abs().max_element();
+    let up = if (1e-100..=1e100).contains(&largest) { up } else { up / largest };
+    let right = up.cross(back);
+    // An up of 0 is NaN by now. An angle below 1e-6 between up and the view leaves no digits for `right`.
+    if !(right.length() > 1e-6 * up.length()) {
+        return invalid("up is zero or parallel to the line of sight: choose another --up");
+    }
+    let right = right.normalize();
+    let up = back.cross(right);
+    Ok((DMat3::from_cols(right, up, back), distance))
 }
 
 /// Projection and pixels per unit of a lens.

@@ -1,7 +1,7 @@
 //! Points as a file holds them: nothing derived, nothing checked but the lengths of the arrays.
 
 use super::Groups;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Points, with whatever else their file gave.
 ///
@@ -77,4 +77,33 @@ fn corners<const N: usize>(all: &mut Vec<[u32; N]>, index: &[Option<u32>]) {
         }
         found
     });
+}
+
+/// Two perpendicular half axes of a disc of a normal n and a radius r, in f64, with n and r as they
+/// are, in `f32`:
+///
+/// ```text
+///   a    = the coordinate axis, of components 0 and 1, along which n is shortest:
+///          x if |n.x| <= |n.y| and |n.x| <= |n.z|, else y if |n.y| <= |n.z|, else z
+///   c    = a x n                      (a.y n.z - n.y a.z, a.z n.x - n.z a.x, a.x n.y - n.x a.y)
+///   u    = c (1 / |c|)                |c| = sqrt((c.x c.x + c.y c.y) + c.z c.z)
+///   v    = n x u                      not divided by its length
+///   half axes u r, then v r           each component times r, rounded to f32 once
+/// ```
+///
+/// u x v points along n.
+#[must_use]
+pub fn half_axes(normal: Vec3, radius: f32) -> [Vec3; 2] {
+    let n = normal.as_dvec3();
+    let [x, y, z] = normal.abs().to_array();
+    let axis = if x <= y && x <= z {
+        DVec3::X
+    } else if y <= z {
+        DVec3::Y
+    } else {
+        DVec3::Z
+    };
+    let u = axis.cross(n).normalize();
+    let v = n.cross(u);
+    [u, v].map(|half| (half * f64::from(radius)).as_vec3())
 }

@@ -1,7 +1,7 @@
 //! The identity of a scene: one hash over everything a picture depends on but camera and settings.
 
 use super::indexed::Indexed;
-use super::{Environment, Light, Phong, Scene};
+use super::{Environment, Light, Objects, Phong, Primitives, Scene, Surfels};
 use crate::scene::Groups;
 use glam::Vec3;
 use sha2::{Digest, Sha256};
@@ -25,19 +25,26 @@ impl Scene {
     ///     each: u64 count of vertices; position (3 f32), direction (3 f32), radius (f32); colour
     ///     (3 f32) after a byte 1, or a byte 0 alone; u64 count of primitives; the vertices of
     ///     each (u32)
+    ///   objects: nothing if there are none; else a byte 4, then
+    ///     u64 count of geometries, each: surfels and primitives as above, primitives also if there
+    ///       are none
+    ///     the colour of objects without one (3 f32)
+    ///     u64 count of objects, each: geometry (u64), colour (3 f32) after a byte 1, or a byte 0
+    ///       alone; rotation row by row, scale and translation in the frame (13 f64)
     /// ```
+    ///
+    /// A scene of objects has no surfels and no primitives but those of its geometries, whether it is
+    /// [flat](mod@crate::source::flatten) or not.
     #[must_use]
     pub fn sha256(&self) -> String {
         let mut hash = Hasher(Sha256::new());
         hash.0.update(b"splatref scene 1\n");
-        let surfels = &self.surfels;
-        hash.count(surfels.len());
-        hash.floats(surfels.position().iter().flat_map(Vec3::to_array));
-        hash.floats(surfels.normal().iter().flat_map(Vec3::to_array));
-        hash.floats(surfels.radius().iter().copied());
-        hash.optional(surfels.color(), |c| c.to_array());
-        hash.optional(surfels.opacity(), |&o| [o]);
-        hash.optional(surfels.tangents(), |[u, v]| [u.x, u.y, u.z, v.x, v.y, v.z]);
+        let none = (Surfels::none(), Primitives::default());
+        let (surfels, primitives) = match &self.objects {
+            None => (&self.surfels, &self.primitives),
+            Some(_) => (&none.0, &none.1),
+        };
+        hash.surfels(surfels);
         hash.count(self.lights.len());
         for light in &self.lights {
             let (kind, place, color) = match *light {
@@ -61,12 +68,13 @@ impl Scene {
                 hash.floats(pixels.values().iter().flatten().copied());
             }
         }
-        let primitives = &self.primitives;
         if !primitives.is_empty() {
             hash.0.update([3]);
-            hash.indexed(&primitives.triangles);
-            hash.indexed(&primitives.ribbons);
-            hash.indexed(&primitives.tubes);
+            hash.primitives(primitives);
+        }
+        if let Some(objects) = &self.objects {
+            hash.0.update([4]);
+            hash.objects(objects);
         }
         hash.finish()
     }
@@ -107,6 +115,39 @@ impl Hasher {
         values.into_iter().for_each(|value| self.0.update(value.to_le_bytes()));
     }
 
+    fn surfels(&mut self, surfels: &Surfels) {
+        self.count(surfels.len());
+        self.floats(surfels.position().iter().flat_map(Vec3::to_array));
+        self.floats(surfels.normal().iter().flat_map(Vec3::to_array));
+        self.floats(surfels.radius().iter().copied());
+        self.optional(surfels.color(), |c| c.to_array());
+        self.optional(surfels.opacity(), |&o| [o]);
+        self.optional(surfels.tangents(), |[u, v]| [u.x, u.y, u.z, v.x, v.y, v.z]);
+    }
+
+    fn primitives(&mut self, primitives: &Primitives) {
+        self.indexed(&primitives.triangles);
+        self.indexed(&primitives.ribbons);
+        self.indexed(&primitives.tubes);
+    }
+
+    fn objects(&mut self, objects: &Objects) {
+        self.count(objects.geometries().len());
+        for geometry in objects.geometries() {
+            self.surfels(&geometry.surfels);
+            self.primitives(&geometry.primitives);
+        }
+        self.floats(objects.fill().to_array());
+        self.count(objects.objects().len());
+        for (object, place) in objects.objects().iter().zip(objects.places()) {
+            self.count(object.geometry);
+            self.optional(object.color.as_ref().map(std::slice::from_ref), |c| c.to_array());
+            let rows = place.rotation.transpose().to_cols_array();
+            let place = rows.into_iter().chain([place.scale]).chain(place.translation.to_array());
+            place.for_each(|value| self.0.update(value.to_le_bytes()));
+        }
+    }
+
     fn optional<T, const N: usize>(&mut self, values: Option<&[T]>, of: impl Fn(&T) -> [f32; N]) {
         self.0.update([u8::from(values.is_some())]);
         self.floats(values.unwrap_or_default().iter().flat_map(of));
@@ -139,15 +180,7 @@ mod tests {
     fn scene(cloud: Cloud) -> Scene {
         let lights = vec![Light::Point { position: Vec3::X, color: Vec3::ONE }];
         let surfels = Surfels::new(cloud).unwrap().0;
-        let material = Phong::default();
-        Scene {
-            name: "a".into(),
-            surfels,
-            lights,
-            material,
-            primitives: Default::default(),
-            environment: None,
-        }
+        Scene { lights, ..Scene::unlit("a", surfels) }
     }
 
     fn cloud() -> Cloud {

@@ -2,7 +2,9 @@
 //!
 //! - [`bounds`]: what bounds a scene.
 //! - [`cloud`]: points as a file holds them, nothing derived, nothing checked.
+//! - [`objects`]: geometries that many objects share, and their motion.
 //! - [`surfels`]: the checked structure of arrays that every method takes.
+//! - [`boxes`]: what bounds neighbouring surfels.
 //! - [`camera`]: perspective and orthographic cameras.
 //! - `degenerate`: which points can be no surfels.
 //! - [`environment`]: the light that surrounds a scene.
@@ -13,6 +15,7 @@
 //! - [`transform`]: moving, turning and scaling a model.
 
 pub mod bounds;
+pub mod boxes;
 pub mod camera;
 pub mod cloud;
 mod degenerate;
@@ -21,15 +24,18 @@ pub mod groups;
 pub mod hash;
 pub mod indexed;
 pub mod light;
+pub mod objects;
 pub mod surfels;
 pub mod transform;
 
-pub use camera::{Camera, Lens, Pose, Projection};
+pub use boxes::Boxes;
+pub use camera::{Camera, CameraMotion, Lens, Pose, Projection};
 pub use cloud::Cloud;
 pub use environment::Environment;
 pub use groups::Groups;
 pub use indexed::{Counts, Polylines, Primitives, Triangles, Vertices};
 pub use light::{Light, Phong};
+pub use objects::{Geometry, Motion, Object, Objects};
 pub use surfels::{Dropped, Surfels};
 pub use transform::Similarity;
 
@@ -50,6 +56,9 @@ pub struct Scene {
     pub material: Phong,
     /// What surrounds the surfels; black if absent.
     pub environment: Option<Environment>,
+    /// What the scene is made of, if it is made of objects. Surfels and primitives are then those of
+    /// the objects in their places, or none until [`crate::source::flatten()`] puts them there.
+    pub objects: Option<Objects>,
 }
 
 impl Scene {
@@ -69,6 +78,7 @@ impl Scene {
             lights: Vec::new(),
             material: Phong::default(),
             environment: None,
+            objects: None,
         }
     }
 }

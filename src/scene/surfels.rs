@@ -150,6 +150,26 @@ impl Surfels {
         }
     }
 
+    /// The surfels of ascending indices; one that is none is left out. Median radius and bounding sphere
+    /// stay those of all.
+    #[must_use]
+    pub fn some(&self, indices: &[u64]) -> Self {
+        let indices = indices.iter().map(|&i| i as usize).filter(|&i| i < self.len());
+        let indices: Vec<usize> = indices.collect();
+        fn of<T: Copy>(values: &[T], indices: &[usize]) -> Vec<T> {
+            indices.iter().map(|&i| values[i]).collect()
+        }
+        let arrays = Arrays {
+            position: of(&self.position, &indices),
+            normal: of(&self.normal, &indices),
+            radius: of(&self.radius, &indices),
+            color: self.color.as_ref().map(|color| of(color, &indices)),
+            opacity: self.opacity.as_ref().map(|opacity| of(opacity, &indices)),
+            tangents: self.tangents.as_ref().map(|tangents| of(tangents, &indices)),
+        };
+        arrays.into_surfels(self.median_radius, self.bounding_sphere)
+    }
+
     /// Whether two indices are those of surfels of the same place and shape, by all bits: what is drawn
     /// of one is drawn of the other.
     pub(crate) fn are_equal(&self, a: u32, b: u32) -> bool {
@@ -281,6 +301,61 @@ impl Surfels {
             tangents: self.tangents,
             groups: self.groups,
             ..Cloud::default()
+        }
+    }
+}
+
+/// Surfels that need no check, while they are put together.
+pub(super) struct Arrays {
+    pub(super) position: Vec<Vec3>,
+    pub(super) normal: Vec<Vec3>,
+    pub(super) radius: Vec<f32>,
+    pub(super) color: Option<Vec<Vec3>>,
+    pub(super) opacity: Option<Vec<f32>>,
+    pub(super) tangents: Option<Vec<[Vec3; 2]>>,
+}
+
+impl Arrays {
+    /// None yet; with colours, opacities and half axes or not.
+    pub(super) fn new([color, opacity, tangents]: [bool; 3]) -> Self {
+        Self {
+            position: Vec::new(),
+            normal: Vec::new(),
+            radius: Vec::new(),
+            color: color.then(Vec::new),
+            opacity: opacity.then(Vec::new),
+            tangents: tangents.then(Vec::new),
+        }
+    }
+
+    /// Appends others, that have what these have.
+    pub(super) fn append(&mut self, others: Self) {
+        self.position.extend(others.position);
+        self.normal.extend(others.normal);
+        self.radius.extend(others.radius);
+        let (color, opacity) = (self.color.iter_mut(), self.opacity.iter_mut());
+        color.zip(others.color).for_each(|(to, from)| to.extend(from));
+        opacity.zip(others.opacity).for_each(|(to, from)| to.extend(from));
+        self.tangents.iter_mut().zip(others.tangents).for_each(|(to, from)| to.extend(from));
+    }
+
+    /// The surfels; the median radius and the sphere may be those of a whole of which these are a part.
+    pub(super) fn into_surfels(self, median_radius: f32, sphere: (DVec3, f64)) -> Surfels {
+        let Self { position, normal, radius, color, opacity, tangents } = self;
+        if position.is_empty() {
+            return Surfels::none();
+        }
+        let (groups, bounding_sphere) = (None, sphere);
+        Surfels {
+            position,
+            normal,
+            radius,
+            color,
+            opacity,
+            tangents,
+            groups,
+            median_radius,
+            bounding_sphere,
         }
     }
 }

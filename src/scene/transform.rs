@@ -1,5 +1,6 @@
 //! Moving, turning and scaling a model.
 
+use super::degenerate::unit;
 use super::{Cloud, Vertices};
 use crate::error::{Error, Result};
 use crate::number::elementary;
@@ -49,6 +50,28 @@ impl Similarity {
         Ok(())
     }
 
+    /// This similarity first and `next` after it, as one: with R, s and t of `next`
+    ///
+    /// ```text
+    ///   scale        s scale
+    ///   rotation     R rotation, each element a sum ((a + b) + c)
+    ///   translation  R (translation s) + t, the sums likewise
+    /// ```
+    ///
+    /// each operation rounded to f64. If `next` is [`Similarity::IDENTITY`] it is this one, bit for
+    /// bit.
+    #[must_use]
+    pub fn then(&self, next: &Self) -> Self {
+        if *next == Self::IDENTITY {
+            return *self;
+        }
+        Self {
+            rotation: next.rotation * self.rotation,
+            scale: next.scale * self.scale,
+            translation: next.rotation * (self.translation * next.scale) + next.translation,
+        }
+    }
+
     /// Applies it to every array of a cloud.
     pub fn apply(&self, cloud: &mut Cloud) {
         if *self == Self::IDENTITY {
@@ -59,7 +82,7 @@ impl Similarity {
         cloud.tangent.iter_mut().flatten().for_each(|v| self.turn(v));
         cloud.radius.iter_mut().flatten().for_each(|radius| self.enlarge(radius));
         for half in cloud.tangents.iter_mut().flatten().flatten() {
-            *half = (self.rotation * (half.as_dvec3() * self.scale)).as_vec3();
+            *half = self.stretch(*half);
         }
     }
 
@@ -73,17 +96,40 @@ impl Similarity {
         vertices.radius.iter_mut().for_each(|radius| self.enlarge(radius));
     }
 
-    fn place(&self, p: &mut Vec3) {
-        *p = (self.rotation * (p.as_dvec3() * self.scale) + self.translation).as_vec3();
+    /// Position and normal of a surfel of its kind, which stay those of a surfel.
+    pub(crate) fn surfel(&self, position: Vec3, mut normal: Vec3) -> (Vec3, Vec3) {
+        self.turn(&mut normal);
+        unit(&mut normal);
+        (self.point(position), normal)
     }
 
-    fn turn(&self, v: &mut Vec3) {
+    /// Where a point goes.
+    #[inline(always)]
+    pub(crate) fn point(&self, p: Vec3) -> Vec3 {
+        (self.rotation * (p.as_dvec3() * self.scale) + self.translation).as_vec3()
+    }
+
+    pub(super) fn place(&self, p: &mut Vec3) {
+        *p = self.point(*p);
+    }
+
+    pub(super) fn turn(&self, v: &mut Vec3) {
         *v = (self.rotation * v.as_dvec3()).as_vec3();
     }
 
-    fn enlarge(&self, radius: &mut f32) {
+    /// A half axis, turned and scaled.
+    pub(super) fn stretch(&self, half: Vec3) -> Vec3 {
+        (self.rotation * (half.as_dvec3() * self.scale)).as_vec3()
+    }
+
+    pub(super) fn enlarge(&self, radius: &mut f32) {
         *radius = (f64::from(*radius) * self.scale) as f32;
     }
+}
+
+/// Whether something can be turned about this.
+pub(crate) fn is_axis(axis: DVec3) -> bool {
+    axis.length() > 0.0 && axis.is_finite()
 }
 
 /// The rotation about an axis of any length but 0, counter-clockwise when it points at the viewer.
@@ -131,6 +177,25 @@ mod tests {
         moved.apply_to_vertices(&mut vertices);
         assert_eq!(vertices.position, cloud.position);
         assert_eq!((vertices.direction[0], vertices.radius[0]), (Vec3::Y, 1.0));
+    }
+
+    #[test]
+    fn one_after_the_other_is_both() {
+        let a = Similarity {
+            rotation: rotation(DVec3::ONE, 40.0),
+            scale: 3.0,
+            translation: DVec3::new(1.0, -2.0, 0.5),
+        };
+        let b = Similarity {
+            rotation: rotation(DVec3::X, -70.0),
+            scale: 0.25,
+            translation: DVec3::new(0.0, 4.0, 8.0),
+        };
+        let apply = |by: &Similarity, p: DVec3| by.rotation * (p * by.scale) + by.translation;
+        let p = DVec3::new(0.3, 0.6, -0.9);
+        let off = apply(&a.then(&b), p) - apply(&b, apply(&a, p));
+        assert!(off.length() < 1e-14, "{off}");
+        assert_eq!((a.then(&Similarity::IDENTITY), Similarity::IDENTITY.then(&b)), (a, b));
     }
 
     #[test]

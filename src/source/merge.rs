@@ -1,28 +1,17 @@
 //! Several models as one: their clouds, and their primitives.
 
 use crate::error::Result;
+use crate::scene::cloud::half_axes;
 use crate::scene::indexed::Indexed;
 use crate::scene::{Cloud, Primitives, Vertices};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 /// Joins complete clouds, with normals and radii, in their order; triangles, edges and the
 /// tangents of tubes are left out, and so are the groups of several, which know nothing of each
 /// other.
 ///
 /// What only some of them have is filled in for the others: colour by `color`, opacity by 1, the
-/// half axes of a disc by two perpendicular ones of the length of its radius. These half axes are,
-/// in f64, with n the normal and r the radius of the surfel as they are, in `f32`:
-///
-/// ```text
-///   a    = the coordinate axis, of components 0 and 1, along which n is shortest:
-///          x if |n.x| <= |n.y| and |n.x| <= |n.z|, else y if |n.y| <= |n.z|, else z
-///   c    = a x n                      (a.y n.z - n.y a.z, a.z n.x - n.z a.x, a.x n.y - n.x a.y)
-///   u    = c (1 / |c|)                |c| = sqrt((c.x c.x + c.y c.y) + c.z c.z)
-///   v    = n x u                      not divided by its length
-///   half axes u r, then v r           each component times r, rounded to f32 once
-/// ```
-///
-/// u x v points along n. A single cloud is left as it is: nothing is filled in.
+/// half axes of a disc by [`half_axes`]. A single cloud is left as it is: nothing is filled in.
 #[must_use]
 pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
     let colored = clouds.iter().any(|c| c.color.is_some());
@@ -46,7 +35,7 @@ pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
         let normal = cloud.normal.unwrap_or_default();
         let radius = cloud.radius.unwrap_or_default();
         if let Some(to) = &mut all.tangents {
-            let discs = || normal.iter().zip(&radius).map(|(&n, &r)| disc(n, r)).collect();
+            let discs = || normal.iter().zip(&radius).map(|(&n, &r)| half_axes(n, r)).collect();
             to.extend(cloud.tangents.unwrap_or_else(discs));
         }
         append(&mut all.color, cloud.color, n, color);
@@ -104,25 +93,10 @@ fn append<T: Clone>(to: &mut Option<Vec<T>>, values: Option<Vec<T>>, n: usize, m
     }
 }
 
-/// Two perpendicular half axes of a disc, see [`merge`].
-fn disc(normal: Vec3, radius: f32) -> [Vec3; 2] {
-    let n = normal.as_dvec3();
-    let [x, y, z] = normal.abs().to_array();
-    let axis = if x <= y && x <= z {
-        DVec3::X
-    } else if y <= z {
-        DVec3::Y
-    } else {
-        DVec3::Z
-    };
-    let u = axis.cross(n).normalize();
-    let v = n.cross(u);
-    [u, v].map(|half| (half * f64::from(radius)).as_vec3())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
 
     fn cloud(n: usize) -> Cloud {
         Cloud {
@@ -177,7 +151,7 @@ mod tests {
             let inverse = 1.0 / ((c[0] * c[0] + c[1] * c[1]) + c[2] * c[2]).sqrt();
             let u = c.map(|component| component * inverse);
             let bits = |half: [f64; 3]| half.map(|c| ((c * f64::from(0.3_f32)) as f32).to_bits());
-            let found = disc(normal, 0.3).map(|half| half.to_array().map(f32::to_bits));
+            let found = half_axes(normal, 0.3).map(|half| half.to_array().map(f32::to_bits));
             assert_eq!(found, [bits(u), bits(cross(n, u))], "{normal}");
         }
     }

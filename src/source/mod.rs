@@ -1,15 +1,22 @@
-//! What makes a scene: derived attributes, procedural shapes, plants, and several models as one.
+//! What makes a scene: derived attributes, procedural shapes, plants, several models as one,
+//! and places of many objects.
 //!
 //! - [`mod@derive`]: from what a file gives to complete surfels.
+//! - [`mod@flatten`]: a scene of objects as a scene of surfels.
 //! - [`hybrid`]: a mesh as polygons here and surfels there.
 //! - [`merge`]: several models as one.
 //! - [`plant`]: a tree of triangles, and the ribbons and tubes that stand for the tree.
 //! - [`procedural`]: shapes whose true picture is known.
+//! - [`scatter`]: places of many objects.
 
 pub mod derive;
+pub mod flatten;
 pub mod hybrid;
 pub mod merge;
 pub mod plant;
 pub mod procedural;
+pub mod scatter;
 
+pub use flatten::flatten;
 pub use procedural::Shape;
+pub use scatter::Scatter;

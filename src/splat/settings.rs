@@ -124,9 +124,15 @@ impl Epsilon {
     /// The depth in world units; the product with the median is rounded once.
     #[must_use]
     pub fn resolve(&self, surfels: &Surfels) -> f32 {
+        self.in_units(surfels.median_radius())
+    }
+
+    /// The depth in world units, with this median radius.
+    #[must_use]
+    pub fn in_units(&self, median_radius: f32) -> f32 {
         match *self {
             Self::World(depth) => depth,
-            Self::MedianRadii(count) => count * surfels.median_radius(),
+            Self::MedianRadii(count) => count * median_radius,
         }
     }
 }

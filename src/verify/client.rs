@@ -45,6 +45,23 @@ impl Words for Ties {
         &[("lowest", Self::Lowest), ("last", Self::Last), ("any", Self::Any)];
 }
 
+/// Where the band of visible fragments behind a nearest one at depth t ends, as a client is supposed to
+/// have it. Of the method `ewa`; every other client has [`Band::Depth`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Band {
+    /// The rule: t + epsilon.
+    #[default]
+    Depth,
+    /// t - epsilon, so that no fragment is in it, not even the nearest.
+    Before,
+    /// Where nearness is less than 1/t - u epsilon, of this u.
+    OfNearness(f64),
+    /// Where the ray of the pixel is epsilon longer.
+    AlongRay,
+    /// t and so many radii of the surfel of the nearest fragment.
+    RadiiOfNearest(f32),
+}
+
 /// The planes of a client.
 ///
 /// Depth is t in world units, +inf where a pixel is empty, whatever the client stores; ids are
@@ -58,6 +75,8 @@ pub struct Client {
     pub rounding: Rounding,
     /// Which of equally near fragments it says that it keeps.
     pub ties: Ties,
+    /// What is supposed of its epsilon.
+    pub(crate) band: Band,
     /// How the sums of the attribute pass are stored between two additions.
     pub accumulator: Storage,
     /// The splats that the client has projected, in ascending surfel index: the stages that follow are
@@ -110,9 +129,13 @@ impl Stored<'_, [f64; 3]> {
     }
 }
 
-/// A stored number with the radius that its storage gives; of NaN nothing is known.
+/// A stored number with the radius that its storage gives; of NaN nothing is known, and what is below the
+/// normal numbers may be read as 0.
 #[inline]
 fn known<P: Profile>(value: f64, radius: f64) -> Ball<P> {
+    let size = value.abs();
+    let flushed = P::FLUSHES && size < f64::from(f32::MIN_POSITIVE) && radius < size;
+    let radius = if flushed { size } else { radius };
     Ball::new(value, if value.is_nan() { f64::NAN } else { radius })
 }
 
@@ -144,6 +167,7 @@ impl Client {
             radii: BTreeMap::new(),
             rounding: Rounding::default(),
             ties: Ties::default(),
+            band: Band::default(),
             accumulator: Storage::Single,
             records: None,
             unknown: Vec::new(),
@@ -191,6 +215,11 @@ impl Client {
     #[must_use]
     pub fn frame(&self) -> &Frame<f64> {
         &self.frame
+    }
+
+    /// The planes, to be changed.
+    pub(crate) fn frame_mut(&mut self) -> &mut Frame<f64> {
+        &mut self.frame
     }
 
     /// The same client with other planes, each made of one by its name.
@@ -265,5 +294,22 @@ impl Client {
         let own = self.storage.get(&channel).or_else(|| self.storage.get(row.name));
         let storage = own.copied().unwrap_or_default();
         Stored { name: row.name, number, plane, storage, radii: self.radii(&channel) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::ball::{Gpu, Ieee};
+
+    #[test]
+    fn a_stored_number_below_the_normal_ones_may_be_0() {
+        let tiny = f64::from(f32::from_bits(1));
+        let quotient = |divisor| Ball::<Gpu>::exact(1e-30) / known(divisor, 0.0);
+        assert!(!quotient(tiny).radius.is_finite());
+        assert!(quotient(f64::from(f32::MIN_POSITIVE)).radius.is_finite());
+        // An implementation that flushes nothing divides.
+        let quotient = Ball::<Ieee>::exact(tiny) / known(tiny, 0.0);
+        assert_eq!((quotient.middle, quotient.radius), (1.0, 0.0));
     }
 }

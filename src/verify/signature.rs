@@ -3,9 +3,12 @@
 //! Some mistakes show in what the wrong pixels have in common. For the others the client is judged
 //! again, as if a mistake were the rule: with another setting, another camera, or with its planes
 //! turned back. A mistake is named if of the wrong pixels of the first wrong stage and the next at
-//! most one in five stays wrong; of several the one that leaves the fewest in all stages.
+//! most one in five stays wrong; of several the one that leaves the fewest in all stages. The rarer
+//! mistakes are supposed where a common one does not explain everything.
 
-use super::client::{Client, Storage, Ties};
+mod epsilon;
+
+use super::client::{Band, Client, Storage, Ties};
 use super::verdict::{Judged, Verdict};
 use crate::error::Result;
 use crate::frame::Samples;
@@ -13,7 +16,6 @@ use crate::io::srgb;
 use crate::method::{Method, Session};
 use crate::scene::Camera;
 use crate::setting::{Fields, Value};
-use crate::splat::Epsilon;
 
 /// What would be otherwise if a mistake were the rule.
 enum Change {
@@ -27,6 +29,11 @@ enum Change {
     Decoded,
     /// Colours are not divided by the weight.
     Divided,
+    Band(Band),
+    /// The depths are moved by this.
+    Moved(f64),
+    /// What is added up lies behind the band.
+    Behind,
 }
 
 impl Change {
@@ -49,6 +56,12 @@ impl Change {
                 as_if(Client { accumulator: *accumulator, ..client.clone() })
             }
             Self::Flipped => as_if(client.flipped()),
+            Self::Band(band) => as_if(epsilon::banded(client, *band)),
+            Self::Moved(by) => as_if(epsilon::moved_back(client, *by)),
+            Self::Behind => match epsilon::behind(session, camera, client) {
+                Some((method, client)) => session.verify_as(&method, camera, &client, budget),
+                None => as_if(client.clone()),
+            },
             Self::Decoded => {
                 // An encoding in f32 is no better, for the power of a shading language.
                 let lost = 1.0 / 262_144.0;
@@ -83,11 +96,16 @@ pub fn signature(
     let before = verdict.stages.iter().take_while(|stage| stage.stage != wrong.stage);
     let unseen = before.filter(|stage| stage.planes.is_empty()).chain([wrong]);
     let stages: Vec<_> = unseen.map(|stage| stage.stage).collect();
-    for (what, change) in stages.iter().flat_map(|stage| supposed(session, camera, client, stage)) {
-        let verdict = change.judge(session, camera, client, verdict.budget)?;
-        let [cured, left] = wrong_of(&verdict, wrong.stage);
-        if 5 * cured <= all[0] && best.as_ref().is_none_or(|(least, _)| left < *least) {
-            best = Some((left, what));
+    for supposed in [common_mistakes, rare_mistakes] {
+        for (what, change) in stages.iter().flat_map(|of| supposed(session, camera, client, of)) {
+            let verdict = change.judge(session, camera, client, verdict.budget)?;
+            let [cured, left] = wrong_of(&verdict, wrong.stage);
+            if 5 * cured <= all[0] && best.as_ref().is_none_or(|(least, _)| left < *least) {
+                best = Some((left, what));
+            }
+        }
+        if best.as_ref().is_some_and(|(left, _)| *left == 0) {
+            break;
         }
     }
     Ok(best.map(|(_, what)| what).or_else(|| common(session.method(), verdict, wrong)))
@@ -141,7 +159,7 @@ fn common(method: &Method, verdict: &Verdict, wrong: &Judged) -> Option<String> 
 }
 
 /// The mistakes that show in a stage first, in words and as changes.
-fn supposed(
+fn common_mistakes(
     session: &Session<'_>,
     camera: &Camera,
     client: &Client,
@@ -170,6 +188,7 @@ fn supposed(
         }
         "attributes" => {
             all.extend(settings(session, &ATTRIBUTES));
+            all.extend(epsilon::other_unit(session.method()));
             all.push(("sums in half floats".into(), Change::Accumulator(Storage::Half)));
         }
         "normalization" | "shading" => {
@@ -183,6 +202,20 @@ fn supposed(
     all
 }
 
+/// Those that are made less often.
+fn rare_mistakes(
+    session: &Session<'_>,
+    camera: &Camera,
+    client: &Client,
+    stage: &str,
+) -> Vec<(String, Change)> {
+    match stage {
+        "visibility" => epsilon::moved(session, client),
+        "attributes" => epsilon::bands(session, camera, client),
+        _ => Vec::new(),
+    }
+}
+
 /// A setting that is wrong: its name, what follows from its value, and in words.
 type WrongSetting = (&'static str, fn(&Method, f32) -> Option<Value>, &'static str);
 
@@ -194,24 +227,19 @@ const VISIBILITY: [WrongSetting; 4] = [
 ];
 
 const ATTRIBUTES: [WrongSetting; 4] = [
-    ("epsilon", |method, _| scaled(method, 0.5), "epsilon is half as wide"),
-    ("epsilon", |method, _| scaled(method, 2.0), "epsilon is twice as wide"),
-    ("epsilon", |method, _| scaled(method, 0.0), "epsilon is 0"),
-    ("epsilon", |_, _| Some(Value::Text("inf".into())), "epsilon is ignored"),
+    ("epsilon", |method, _| epsilon::scaled(method, 0.5), "epsilon is half as wide"),
+    ("epsilon", |method, _| epsilon::scaled(method, 2.0), "epsilon is twice as wide"),
+    ("epsilon", |method, _| epsilon::scaled(method, 0.0), "epsilon is 0"),
+    (
+        "epsilon",
+        |_, _| Some(Value::Text("inf".into())),
+        "epsilon is ignored, or in a unit in which everything is within it",
+    ),
 ];
 
 /// The other value of a switch.
 fn switched(method: &Method, _: f32) -> Option<Value> {
     method.splats().map(|splats| Value::Switch(!splats.cull))
-}
-
-/// Epsilon times a factor.
-fn scaled(method: &Method, factor: f32) -> Option<Value> {
-    let text = match method.splats()?.epsilon {
-        Epsilon::World(depth) => format!("{:?}", depth * factor),
-        Epsilon::MedianRadii(count) => format!("{:?}r", count * factor),
-    };
-    Some(Value::Text(text))
 }
 
 /// The method with each of some wrong settings, as far as the method has them.
@@ -255,14 +283,5 @@ impl Client {
             }
             other => other.clone(),
         })
-    }
-
-    /// The depth that the visibility pass is judged by: its plane, and the greatest finite value.
-    fn depth_of_visibility(&self) -> Option<(&'static str, f64)> {
-        let name =
-            ["visibility.Z", "Z"].into_iter().find(|name| self.frame().scalar(name).is_ok())?;
-        let values = self.frame().scalar(name).ok()?.values();
-        let finite = values.iter().filter(|depth| depth.is_finite());
-        Some((name, finite.fold(0.0, |most, &depth| if depth > most { depth } else { most })))
     }
 }

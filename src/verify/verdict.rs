@@ -1,9 +1,12 @@
 //! What was found of a client's planes: stage by stage, pixel by pixel, and in one word.
 
+mod fault;
+
+pub use fault::{Check, Fault};
+
 use super::shift::Shifts;
-use crate::frame::{NO_ID, Plane};
+use crate::frame::Plane;
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// A decision that right implementations may take either way, as a bit of the ambiguity mask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,133 +51,6 @@ impl Doubt {
     pub const OF_SUMS: u8 = !(Self::Nearer as u8);
 }
 
-/// What is wrong at a pixel.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Fault {
-    /// A number that no right implementation leaves.
-    Value {
-        /// The channel.
-        channel: String,
-        /// What the client has.
-        found: f64,
-        /// The truth of the stage.
-        truth: f64,
-        /// How far from that a right implementation may be.
-        radius: f64,
-    },
-    /// An index or a count that no right implementation leaves.
-    Whole {
-        /// The channel.
-        channel: String,
-        /// What the client has.
-        found: u32,
-        /// What must be there.
-        truth: u32,
-    },
-    /// A surfel that certainly is drawn has no record.
-    NotProjected {
-        /// The surfel.
-        surfel: u32,
-    },
-    /// A surfel that certainly is not drawn has a record.
-    Projected {
-        /// The surfel.
-        surfel: u32,
-    },
-    /// Normal, opacity or colour of a record are not those of its surfel.
-    Copied {
-        /// The surfel.
-        surfel: u32,
-    },
-    /// The surfel of the client has no fragment at the pixel, or is not of the group.
-    Absent {
-        /// The surfel, or the primitive by its id.
-        surfel: u32,
-    },
-    /// The surfel of the client has a fragment at the pixel, which is outside the cut-off.
-    Outside {
-        /// The surfel.
-        surfel: u32,
-        /// q of the fragment divided by the limit of q.
-        rim: f64,
-    },
-    /// No fragment has the client's depth; one that comes closest.
-    NoSuchDepth {
-        /// The client's depth.
-        found: f64,
-        /// The closest.
-        closest: f64,
-    },
-    /// Of equally near surfels the client has another than it says.
-    Tie {
-        /// The surfel that should be there.
-        surfel: u32,
-        /// The client's.
-        found: u32,
-    },
-    /// A surfel that certainly is in front was left out.
-    LeftOut {
-        /// The surfel, or the primitive by its id.
-        surfel: u32,
-        /// q of its fragment divided by the limit of q; 0 of what has no rim.
-        rim: f64,
-        /// Its depth.
-        depth: f64,
-        /// The client's; +inf if the pixel is empty.
-        found: f64,
-    },
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Value { channel, found, truth, radius } => {
-                write!(f, "{channel} is {found}, ")?;
-                if *radius == 0.0 {
-                    write!(f, "right is {truth}")
-                } else {
-                    write!(f, "right are {} to {}", truth - radius, truth + radius)
-                }
-            }
-            Self::Whole { channel, found, truth } => {
-                write!(f, "{channel} is {}, right is {}", whole(*found), whole(*truth))
-            }
-            Self::NotProjected { surfel } => {
-                write!(f, "surfel {surfel} is drawn, and has no record")
-            }
-            Self::Projected { surfel } => {
-                write!(f, "surfel {surfel} is not drawn, and has a record")
-            }
-            Self::Copied { surfel } => {
-                write!(
-                    f,
-                    "normal, opacity or colour of the record are not those of surfel {surfel}"
-                )
-            }
-            Self::Absent { surfel } => {
-                write!(f, "the id is {}, which does not reach the pixel", whole(*surfel))
-            }
-            Self::NoSuchDepth { found, closest } => {
-                write!(f, "no surfel has the depth {found}; the closest has {closest}")
-            }
-            Self::Tie { surfel, found } => {
-                write!(f, "the id is {found}; surfel {surfel} is equally near and comes first")
-            }
-            Self::Outside { surfel, rim } => {
-                write!(f, "the id is {surfel}, which is outside there: q is {rim} of its limit")
-            }
-            Self::LeftOut { surfel, depth, found, .. } => {
-                write!(f, "surfel {surfel} at depth {depth} is left out; the client has {found}")
-            }
-        }
-    }
-}
-
-/// An index in words.
-fn whole(value: u32) -> String {
-    if value == NO_ID { "none".into() } else { value.to_string() }
-}
-
 /// A wrong pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
@@ -184,30 +60,6 @@ pub struct Finding {
     pub fault: Fault,
     /// By how many bounds: above 1; +inf if no bound can be given.
     pub error: f64,
-}
-
-/// One value of a client at a pixel, against what it may be.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Check {
-    /// The stage that leaves it.
-    pub stage: &'static str,
-    /// The value, and what may be there; wrong only if the error is above 1.
-    pub fault: Fault,
-    /// By how many bounds it errs; NaN if it has none.
-    pub error: f64,
-}
-
-impl fmt::Display for Check {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { stage, fault, error } = self;
-        let word = match *error {
-            error if error.is_nan() => "open ",
-            error if error > 1.0 => "WRONG",
-            _ => "right",
-        };
-        write!(f, "{stage:<14} {word}  {fault}")?;
-        if *error > 0.0 && error.is_finite() { write!(f, "  ({error:.3} bounds)") } else { Ok(()) }
-    }
 }
 
 /// What is wrong at a pixel, as far as [`Causes`] count it.
@@ -308,6 +160,9 @@ pub struct Judged {
     pub stage: &'static str,
     /// The planes of the client that were judged; empty if there are none.
     pub planes: Vec<&'static str>,
+    /// What the client has not of a stage that has levels, if it has others: whole levels, or planes. What
+    /// follows from these is not judged.
+    pub missing: Vec<String>,
     /// The error of each pixel in bounds: up to 1 it is right.
     pub errors: Plane<f32>,
     /// The [`Doubt`]s at each pixel.
@@ -348,6 +203,8 @@ pub struct Verdict {
     pub covered: u64,
     /// In how many of them the sums are undecided.
     pub undecided: u64,
+    /// How many pixels have a number in some stage of which no bound can be given.
+    pub unbounded: u64,
     /// The greatest share of undecided pixels of which a picture can be judged.
     pub budget: f64,
     /// To which side the undecided decisions lean, by limit, where the method asks.
@@ -360,12 +217,29 @@ impl Verdict {
     /// 1.3 % under `gpu`, at most 0.2 % under `ieee`.
     pub const BUDGET: f64 = 0.02;
 
+    /// Of what was found stage by stage, and of pixels that may be covered and that are undecided.
+    pub(crate) fn new(
+        stages: Vec<Judged>,
+        [covered, undecided]: [u64; 2],
+        budget: f64,
+        shifts: Shifts,
+    ) -> Self {
+        let unbounded = unbounded(&stages);
+        Self { stages, covered, undecided, unbounded, budget, shifts }
+    }
+
+    /// The same with a stage before the others.
+    pub(crate) fn after(mut self, first: Judged) -> Self {
+        self.stages.insert(0, first);
+        Self { unbounded: unbounded(&self.stages), ..self }
+    }
+
     /// In a word. What is wrong is wrong, however much is undecided.
     #[must_use]
     pub fn outcome(&self) -> Outcome {
         if self.first_wrong().is_some() {
             Outcome::Wrong
-        } else if self.judges() && self.within(self.undecided) && self.within(self.unbounded()) {
+        } else if self.judges() && self.within(self.undecided) && self.within(self.unbounded) {
             Outcome::Right
         } else {
             Outcome::Undecidable
@@ -375,17 +249,6 @@ impl Verdict {
     /// Whether so many pixels may be undecided.
     fn within(&self, pixels: u64) -> bool {
         pixels as f64 <= self.budget * self.covered as f64
-    }
-
-    /// How many pixels have a number in some stage of which no bound can be given.
-    #[must_use]
-    pub fn unbounded(&self) -> u64 {
-        let pixels = self.stages.iter().map(|stage| stage.doubts.values().len()).max();
-        let at = |pixel: &usize| {
-            let doubts = self.stages.iter().filter_map(|stage| stage.doubts.values().get(*pixel));
-            doubts.fold(0, |all, doubts| all | doubts) & Doubt::Unbounded as u8 != 0
-        };
-        (0..pixels.unwrap_or(0)).filter(at).count() as u64
     }
 
     /// Whether any plane of the client is judged.
@@ -398,5 +261,43 @@ impl Verdict {
     #[must_use]
     pub fn first_wrong(&self) -> Option<&Judged> {
         self.stages.iter().find(|stage| stage.wrong > 0)
+    }
+}
+
+/// How many pixels have a number in some stage of which no bound can be given.
+fn unbounded(stages: &[Judged]) -> u64 {
+    let pixels = stages.iter().map(|stage| stage.doubts.values().len()).max();
+    let at = |pixel: &usize| {
+        let mut doubts = stages.iter().filter_map(|stage| stage.doubts.values().get(*pixel));
+        doubts.any(|doubts| doubts & Doubt::Unbounded as u8 != 0)
+    };
+    (0..pixels.unwrap_or(0)).filter(at).count() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stage(doubts: [u8; 3]) -> Judged {
+        Judged {
+            stage: "stage",
+            planes: vec!["plane"],
+            missing: Vec::new(),
+            errors: Plane::filled(3, 1, 0.0),
+            doubts: Plane::from_values(3, 1, doubts.to_vec()),
+            wrong: 0,
+            causes: Causes::default(),
+            worst: None,
+        }
+    }
+
+    #[test]
+    fn a_pixel_without_bounds_in_two_stages_is_one() {
+        let without = Doubt::Unbounded as u8;
+        let stages = vec![stage([0, without, Doubt::Side as u8]), stage([0, without | 1, 0])];
+        let verdict = Verdict::new(stages, [3, 0], 0.5, Shifts::default());
+        assert_eq!((verdict.unbounded, verdict.outcome()), (1, Outcome::Right));
+        let verdict = verdict.after(stage([without, 0, 0]));
+        assert_eq!((verdict.unbounded, verdict.outcome()), (2, Outcome::Undecidable));
     }
 }

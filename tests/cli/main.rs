@@ -13,6 +13,7 @@ mod primitives;
 mod project;
 mod refusals;
 mod reports;
+mod sequence;
 mod verify;
 
 use splatref::frame::image::{Image, Values};

@@ -75,8 +75,8 @@ fn the_errors_are_written_as_json_and_exr() {
 #[test]
 fn verdicts_of_a_suite_are_added() {
     let at = pictures();
-    for json in ["a.json", "b.json"] {
-        assert_eq!(verified(&at, "mine.exr", &["--promise", "ieee", "--json", json]).0, 0);
+    for (client, json) in [("mine.exr", "a.json"), ("plain.exr", "b.json")] {
+        assert_eq!(verified(&at, client, &["--promise", "ieee", "--json", json]).0, 0);
     }
     let said = succeeds(at.path(), &["suite", "a.json", "b.json"]);
     assert_eq!(said.matches("right        ieee").count(), 2, "{said}");
@@ -91,7 +91,20 @@ fn verdicts_of_a_suite_are_added() {
     fs::write(at.path().join("a.json"), json.to_string()).unwrap();
     let one = succeeds(at.path(), &["suite", "a.json"]);
     assert!(one.contains("1.0e-5 of itself too small; z = -4.0"), "{one}");
-    let output = splatref(at.path(), &["suite", "a.json", "a.json"]);
+    // Named twice, or copied, it leans no more.
+    fs::copy(at.path().join("a.json"), at.path().join("copy.json")).unwrap();
+    let thrice = succeeds(at.path(), &["suite", "a.json", "./a.json", "copy.json"]);
+    assert!(thrice.contains("cut-off: 100 undecided decisions"), "{thrice}");
+    for again in ["./a.json", "copy.json"] {
+        assert!(
+            thrice.contains(&format!("{again}: the verdict of a.json, counted once")),
+            "{thrice}"
+        );
+    }
+    // Another picture that leans the same way.
+    json["covered"] = 1.into();
+    fs::write(at.path().join("b.json"), json.to_string()).unwrap();
+    let output = splatref(at.path(), &["suite", "a.json", "b.json"]);
     let said = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("WRONG        ieee  cut-off: 200 undecided decisions"), "{said}");

@@ -7,6 +7,7 @@
 //!   error, the projection to pixels, tables of tolerances and goldens, for all oracles.
 //! - [`ewa`]: the 2+1-pass method by a renderer in f64 without tiles, bins or bounds, that shares no
 //!   formula with the crate.
+//! - [`deferred`]: deferred splatting, frame by frame of moving objects, over the splats of [`ewa`].
 //! - [`single_pass`]: Algorithm 1 by brute force, and where it is the 2+1-pass method.
 //! - [`transparent`]: Algorithms 2 and 3 by every surfel in every group, environments and refraction
 //!   by angles.
@@ -40,6 +41,7 @@ mod bits;
 mod bounds;
 mod composite;
 mod counter;
+mod deferred;
 mod ewa;
 mod kit;
 mod layered;

@@ -4,6 +4,7 @@ use crate::cases::{Case, cases};
 use crate::client::{Bug, Habit, How, records, render};
 use splatref::frame::Exec;
 use splatref::method::{Method, Session};
+use splatref::splat::Epsilon;
 use splatref::verify::client::{Client, Rounding, Ties};
 use splatref::verify::signature::signature;
 use splatref::verify::verdict::Verdict;
@@ -128,6 +129,11 @@ fn stage_of(bug: Bug) -> &'static str {
         | Bug::EpsilonDouble
         | Bug::EpsilonIgnored
         | Bug::EpsilonOfNearness
+        | Bug::EpsilonOfDepthBuffer
+        | Bug::EpsilonAlongRay
+        | Bug::EpsilonOfNearestRadius
+        | Bug::EpsilonOtherUnit
+        | Bug::EpsilonReversed
         | Bug::NormalsNotReversed
         | Bug::HalfSums
         | Bug::SumsSaturate
@@ -141,9 +147,61 @@ fn stage_of(bug: Bug) -> &'static str {
     }
 }
 
+/// What is said of a client with a bug, if it is wrong.
+fn named((scene, camera, settings): &Case, bug: Bug) -> Option<Option<String>> {
+    let exec = Exec::sequential();
+    let session = Session::new(scene, Method::Ewa(*settings), &exec).unwrap();
+    let how = How { habit: Habit::Plain, bug: Some(bug) };
+    let mut client = Client::from(&render(scene, camera, settings, how));
+    client.rounding = Rounding::Ieee;
+    let verdict = session.verify(camera, &client, 1.0).unwrap();
+    verdict.first_wrong()?;
+    Some(signature(&session, camera, &client, &verdict).unwrap())
+}
+
+#[test]
+fn a_unit_in_which_not_everything_is_within_epsilon_is_named() {
+    let named_at = |near: f32, bug| {
+        let (_, (scene, mut camera, mut settings)) = cases().swap_remove(2);
+        camera.near = near;
+        settings.epsilon = Epsilon::World(0.02);
+        named(&(scene, camera, settings), bug).unwrap().unwrap()
+    };
+    for (near, bug, words) in [
+        (0.5, Bug::EpsilonOfNearness, "a difference of 1/t"),
+        (0.5, Bug::EpsilonOfDepthBuffer, "what a depth buffer holds"),
+        (0.75, Bug::EpsilonOfDepthBuffer, "what a depth buffer holds"),
+    ] {
+        let said = named_at(near, bug);
+        assert!(said.contains(words), "{}: {said}", bug.name());
+    }
+}
+
+#[test]
+fn what_is_not_of_epsilon_is_not_called_so() {
+    for bug in [
+        Bug::AmplitudeMissing,
+        Bug::RaysAffine,
+        Bug::ExpWithoutHalf,
+        Bug::FastExp,
+        Bug::NormalsNotReversed,
+        Bug::SumsSaturate,
+        Bug::CountOffByOne,
+        Bug::NearestTwice,
+        Bug::SplatTwice,
+        Bug::WeightOff,
+        Bug::DepthOfCenter,
+        Bug::SlopeSign,
+    ] {
+        for (name, case) in cases().into_iter().take(3) {
+            let said = named(&case, bug).flatten().unwrap_or_default();
+            assert!(!said.contains("epsilon"), "{}, {name}: {said}", bug.name());
+        }
+    }
+}
+
 #[test]
 fn known_mistakes_are_named() {
-    let exec = Exec::sequential();
     let cases = cases();
     for (bug, words) in [
         (Bug::NoHalfPixel, "half a pixel"),
@@ -159,6 +217,15 @@ fn known_mistakes_are_named() {
         (Bug::EpsilonHalf, "half as wide"),
         (Bug::EpsilonDouble, "twice as wide"),
         (Bug::EpsilonIgnored, "ignored"),
+        (Bug::EpsilonSubtracted, "wrong side"),
+        (Bug::EpsilonReversed, "lies behind"),
+        (Bug::EpsilonOtherUnit, "unit"),
+        (Bug::EpsilonOfNearness, "unit"),
+        (Bug::EpsilonOfDepthBuffer, "unit"),
+        (Bug::EpsilonAlongRay, "along the ray"),
+        (Bug::EpsilonOfNearestRadius, "radii of the nearest"),
+        (Bug::DiscsMovedBack, "moved back"),
+        (Bug::DiscsMovedForward, "moved towards the eye"),
         (Bug::HalfSums, "half floats"),
         (Bug::SplatMissing, "is missing"),
         (Bug::ColorNotDivided, "multiplied by the weight"),
@@ -166,15 +233,7 @@ fn known_mistakes_are_named() {
         (Bug::PixelNan, "NaN in 1 of"),
         (Bug::RowsFlipped, "rows are flipped"),
     ] {
-        let how = How { habit: Habit::Plain, bug: Some(bug) };
-        let said = cases.iter().filter_map(|(_, (scene, camera, settings))| {
-            let session = Session::new(scene, Method::Ewa(*settings), &exec).unwrap();
-            let mut client = Client::from(&render(scene, camera, settings, how));
-            client.rounding = Rounding::Ieee;
-            let verdict = session.verify(camera, &client, 1.0).unwrap();
-            verdict.first_wrong()?;
-            signature(&session, camera, &client, &verdict).unwrap()
-        });
+        let said = cases.iter().filter_map(|(_, case)| named(case, bug).flatten());
         let said: Vec<String> = said.collect();
         let right = said.iter().filter(|said| said.contains(words)).count();
         println!("{}: {right} of {}: {said:?}", bug.name(), said.len());

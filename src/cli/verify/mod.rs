@@ -69,7 +69,7 @@ fn judge(args: &Args) -> Ended {
     let described = Description::open(&args.client)?;
     check(args, &file, &described)?;
     let ready = draw::ready(&file, &exec)?;
-    let (session, _) = draw::session(&ready, &exec)?;
+    let (session, _) = draw::session(&ready, &args.options, &exec)?;
     let camera = &ready.camera;
     let client =
         progress::during("reading", || read((&described, args.promise), &session, camera, &exec))?;

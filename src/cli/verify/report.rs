@@ -77,9 +77,8 @@ impl<'a> Seen<'a> {
 
     /// The verdict in a sentence.
     fn ending(&self) -> String {
-        let Verdict { undecided, covered, budget, .. } = self.verdict;
+        let Verdict { undecided, covered, unbounded, budget, .. } = self.verdict;
         let share = |pixels: u64| 100.0 * pixels as f64 / (*covered).max(1) as f64;
-        let unbounded = self.verdict.unbounded();
         match self.verdict.outcome() {
             Outcome::Right => {
                 format!("right: of {covered} covered pixels {undecided} have undecided sums")
@@ -92,7 +91,7 @@ impl<'a> Seen<'a> {
                 "undecidable: the sums of {} % of the covered pixels may be either way, {} % have numbers \
                  without bounds, {} % are allowed",
                 short(share(*undecided)),
-                short(share(unbounded)),
+                short(share(*unbounded)),
                 short(100.0 * budget)
             ),
         }
@@ -167,7 +166,11 @@ fn judged(stage: &Judged) -> String {
         [] => String::new(),
         doubts => format!("; undecided: {}", doubts.join(", ")),
     };
-    format!("{what} ({}){doubts}", names.join(", "))
+    let missing = match stage.missing.as_slice() {
+        [] => String::new(),
+        missing => format!("; not handed in: {}", missing.join(", ")),
+    };
+    format!("{what} ({}){doubts}{missing}", names.join(", "))
 }
 
 /// To which side the undecided decisions at a limit lean.
@@ -185,8 +188,14 @@ pub(in crate::cli) fn leaning(limit: Doubt, shift: &Shift) -> String {
 
 /// What else could be handed in, so that more is judged.
 fn next(verdict: &Verdict) -> Option<String> {
-    let stage = verdict.stages.iter().find(|stage| stage.planes.is_empty())?;
-    Some(format!("hand in the planes of the stage {}: render --stages shows which", stage.stage))
+    let lacks = |stage: &&Judged| stage.planes.is_empty() || !stage.missing.is_empty();
+    let Judged { stage, missing, .. } = verdict.stages.iter().find(lacks)?;
+    Some(match missing.as_slice() {
+        [] => format!("hand in the planes of the stage {stage}: render --stages shows which"),
+        [first, ..] => {
+            format!("hand in {first} of the stage {stage}: what follows from it is not judged")
+        }
+    })
 }
 
 /// A verdict as JSON. What is infinite is null.
@@ -235,6 +244,7 @@ impl JsonShift {
 struct JsonStage<'a> {
     stage: &'static str,
     planes: &'a [&'static str],
+    missing: &'a [String],
     wrong: u64,
     undecided: Vec<(&'static str, u64)>,
     worst: Option<JsonFinding>,
@@ -256,6 +266,7 @@ impl<'a> JsonStage<'a> {
         Self {
             stage: stage.stage,
             planes: &stage.planes,
+            missing: &stage.missing,
             wrong: stage.wrong,
             undecided: undecided.to_vec(),
             worst: stage.worst.as_ref().map(JsonFinding::new),

@@ -24,6 +24,7 @@ pub(super) fn plane(
     numbers: Numbers,
 ) -> Reason<(Samples<f64>, Storage)> {
     check_keys(wanted, kind)?;
+    check_encoding(wanted)?;
     let (holds, keys, file) = (wanted.row.holds, &wanted.keys, numbers.file);
     let format = keys.format.unwrap_or(file);
     if !format.fits(file) {
@@ -45,7 +46,9 @@ pub(super) fn plane(
         }
         _ => {
             let numbers = Scaled::new(keys, format, numbers)?;
-            let (components, storage) = if wanted.is_depth() {
+            let (components, storage) = if wanted.is_octahedral() {
+                octahedral(keys, numbers)
+            } else if wanted.is_depth() {
                 depths(keys, numbers)?
             } else if holds == Holds::Color {
                 colors(keys, kind, numbers)?
@@ -63,6 +66,7 @@ fn check_keys(wanted: &Wanted, kind: Kind) -> Reason<()> {
     let Wanted { keys, row, .. } = wanted;
     let (is_depth, is_raw) = (wanted.is_depth(), kind == Kind::Raw);
     let (is_color, is_index) = (row.holds == Holds::Color, row.holds == Holds::Index);
+    let is_vector = row.holds == Holds::Vector;
     let has_channels = matches!(kind, Kind::Exr | Kind::Png);
     let is_number = !is_index && row.holds != Holds::Count;
     for (key, given, means) in [
@@ -73,7 +77,7 @@ fn check_keys(wanted: &Wanted, kind: Kind) -> Reason<()> {
         ("empty", keys.empty.is_some(), is_depth || is_index),
         ("id_base", keys.id_base.is_some(), is_index),
         ("premultiplied", keys.premultiplied.is_some(), is_color),
-        ("encoding", keys.encoding.is_some(), is_color),
+        ("encoding", keys.encoding.is_some(), is_color || is_vector),
         ("range", keys.range.is_some(), is_number),
         ("meaning", wanted.own_depth.meaning.is_some(), is_depth),
         ("near", wanted.own_depth.near.is_some(), is_depth),
@@ -92,6 +96,36 @@ fn check_keys(wanted: &Wanted, kind: Kind) -> Reason<()> {
         }
     }
     Ok(())
+}
+
+/// The planes that hold unit vectors.
+const UNIT: [&str; 2] = ["normal", "projection.normal"];
+
+/// That the encoding is one of what the plane holds.
+fn check_encoding(wanted: &Wanted) -> Reason<()> {
+    let holds = wanted.row.holds;
+    match wanted.keys.encoding {
+        Some(Encoding::Octahedral) if !UNIT.contains(&wanted.row.name) => {
+            let unit = UNIT.join(" and ");
+            Err(format!("encoding is octahedral, which is for unit vectors: {unit}"))
+        }
+        Some(Encoding::Linear | Encoding::Srgb) if holds == Holds::Vector => {
+            Err("encoding is that of colours; of vectors give \"octahedral\", or remove it".into())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The two numbers of unit vectors, from -1 to 1, and 0 until they are decoded.
+fn octahedral(keys: &PlaneKeys, numbers: Scaled) -> (Vec<Vec<f64>>, Storage) {
+    let whole = keys.range.is_none() && numbers.format.is_unorm();
+    let range = if whole { Some([-1.0, 1.0]) } else { keys.range };
+    let [low, high] = range.unwrap_or([0.0, 1.0]);
+    let storage = numbers.format.storage(high - low);
+    let mut components = numbers.map(|v| ranged(v, range));
+    let zeros = vec![0.0; components.first().map_or(0, Vec::len)];
+    components.push(zeros);
+    (components, storage)
 }
 
 /// The surfels of a plane.
@@ -296,7 +330,8 @@ fn linear(near: f64, far: f64, format: Format) -> Storage {
 fn colors(keys: &PlaneKeys, kind: Kind, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)> {
     let usual = if kind == Kind::Png { Encoding::Srgb } else { Encoding::Linear };
     match (keys.encoding.unwrap_or(usual), keys.range) {
-        (Encoding::Linear, range) => {
+        // Colours in two numbers have been refused.
+        (Encoding::Linear | Encoding::Octahedral, range) => {
             let storage = numbers.storage;
             Ok((numbers.map(|v| ranged(v, range)), storage))
         }

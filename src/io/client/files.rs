@@ -96,7 +96,7 @@ impl<'e> Files<'e> {
         size: [u32; 2],
     ) -> Result<Numbers> {
         let Wanted { keys, row, key, .. } = wanted;
-        let components = row.holds.channels("").len();
+        let components = wanted.channels().len();
         let refused = |what: String| Error::format(path, format!("planes.{key}: {what}"));
         match kind {
             Kind::Raw => {

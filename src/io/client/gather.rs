@@ -2,12 +2,13 @@
 
 use super::convert;
 use super::files::{Files, Kind, Numbers};
-use super::parse::{DepthKeys, PlaneKeys, Sidecar};
+use super::octahedral;
+use super::parse::{DepthKeys, Encoding, PlaneKeys, Sidecar};
 use super::records;
 use super::straight::straight;
 use crate::error::{Error, Result};
 use crate::frame::named::{COLOR, component};
-use crate::frame::{Exec, Frame, Image, Samples};
+use crate::frame::{Exec, Frame, Image, Plane, Samples};
 use crate::io::Reason;
 use crate::method::{Holds, PlaneRow, Stage};
 use crate::verify::client::{Client, Storage};
@@ -40,9 +41,16 @@ impl Wanted {
         self.row.holds == Holds::Scalar && (self.name == "Z" || self.name.ends_with(".Z"))
     }
 
-    /// The names that the crate has for its channels.
+    /// Whether it holds unit vectors in two numbers a pixel.
+    pub(super) fn is_octahedral(&self) -> bool {
+        self.keys.encoding == Some(Encoding::Octahedral)
+    }
+
+    /// The names that the crate has for its channels; of two numbers those of the first two.
     pub(super) fn channels(&self) -> Vec<String> {
-        self.row.holds.channels(&self.name)
+        let mut channels = self.row.holds.channels(&self.name);
+        channels.truncate(if self.is_octahedral() { 2 } else { 3 });
+        channels
     }
 }
 
@@ -212,28 +220,31 @@ fn turned(sidecar: &Sidecar, wanted: Wanted, kind: Kind, mut numbers: Numbers) -
     Ok(Read { wanted, samples, storage })
 }
 
-/// The client of these planes, colours divided by alpha where they were multiplied by it.
+/// The client of these planes, colours divided by alpha where they were multiplied by it, vectors
+/// decoded where they are two numbers.
 fn joined(mut planes: Vec<Read>) -> Result<Client> {
     let mut radii = Vec::new();
     for i in 0..planes.len() {
         let Read { wanted, samples, storage } = &planes[i];
-        let (true, Samples::Color(color)) = (wanted.keys.premultiplied == Some(true), samples)
-        else {
-            continue;
+        let (changed, off) = match samples {
+            Samples::Color(color) if wanted.keys.premultiplied == Some(true) => {
+                let name = component(&wanted.name, "A");
+                let alpha = other(&planes, wanted, ("premultiplied", &name))?;
+                super::ask([color.width(), color.height()], 3).map_err(Error::Invalid)?;
+                let (values, off) = straight((color, *storage), alpha);
+                (Samples::Color(values), off)
+            }
+            Samples::Vector(pairs) if wanted.is_octahedral() => {
+                let (layer, _) = wanted.name.rsplit_once('.').unwrap_or_default();
+                let (depths, _) = other(&planes, wanted, ("octahedral", &component(layer, "Z")))?;
+                super::ask([pairs.width(), pairs.height()], 3).map_err(Error::Invalid)?;
+                let (values, off) = octahedral::decoded((pairs, *storage), depths);
+                (Samples::Vector(values), off)
+            }
+            _ => continue,
         };
-        let name = component(&wanted.name, "A");
-        let alpha = planes.iter().find_map(|plane| match &plane.samples {
-            Samples::Scalar(alpha) if plane.wanted.name == name => Some((alpha, plane.storage)),
-            _ => None,
-        });
-        let alpha = alpha.ok_or_else(|| {
-            let key = &wanted.key;
-            Error::Invalid(format!("planes.{key}: `premultiplied` needs the plane `{name}`"))
-        })?;
-        super::ask([color.width(), color.height()], 3).map_err(Error::Invalid)?;
-        let (values, off) = straight((color, *storage), alpha);
         radii.push((wanted.name.clone(), off));
-        planes[i].samples = Samples::Color(values);
+        planes[i].samples = changed;
     }
     let (width, height) = planes.first().map_or((0, 0), |plane| plane.samples.size());
     let mut frame = Frame::new(width, height);
@@ -246,4 +257,19 @@ fn joined(mut planes: Vec<Read>) -> Result<Client> {
     let client =
         storages.into_iter().fold(client, |client, (name, storage)| client.stored(&name, storage));
     radii.into_iter().try_fold(client, |client, (name, off)| client.within(&name, off))
+}
+
+/// The plane that a key of another needs.
+fn other<'a>(
+    planes: &'a [Read],
+    wanted: &Wanted,
+    (key, name): (&str, &str),
+) -> Result<(&'a Plane<f64>, Storage)> {
+    let found = planes.iter().find_map(|plane| match &plane.samples {
+        Samples::Scalar(found) if plane.wanted.name == name => Some((found, plane.storage)),
+        _ => None,
+    });
+    found.ok_or_else(|| {
+        Error::Invalid(format!("planes.{}: `{key}` needs the plane `{name}`", wanted.key))
+    })
 }

@@ -86,12 +86,12 @@ impl Keys {
         })
     }
 
-    /// One name, or three.
+    /// One name, two or three.
     pub(super) fn names(&mut self, key: &'static str) -> Reason<Option<Vec<String>>> {
-        let wanted = "the name of a channel, or of three: [\"r\", \"g\", \"b\"]";
+        let wanted = "the name of a channel, or of two or three: [\"r\", \"g\", \"b\"]";
         self.typed(key, wanted, |value| match value {
             Value::String(name) => Some(vec![name.clone()]),
-            Value::Array(names) if names.len() == 3 => {
+            Value::Array(names) if (2..=3).contains(&names.len()) => {
                 names.iter().map(|name| name.as_str().map(str::to_owned)).collect()
             }
             _ => None,

@@ -31,13 +31,14 @@
 //! | key | values, the default first | what |
 //! |---|---|---|
 //! | `file` | that of all planes | `.exr`, `.npy`, `.png`, `.raw` or `.bin` |
-//! | `channel` | the crate's names | a channel of an EXR or a PNG, or three: `["r", "g", "b"]`. A PNG has `R`, `G`, `B` and `A`; one number a pixel is taken from a grey one without asking |
+//! | `channel` | the crate's names | a channel of an EXR or a PNG, or three: `["r", "g", "b"]`; two of octahedral vectors. A PNG has `R`, `G`, `B` and `A`; one number a pixel is taken from a grey one without asking |
 //! | `format` | see below | how the numbers are stored in a raw file; in others, what they passed through |
 //! | `offset`, `row_stride`, `pixel_stride` | 0, tight, tight | bytes in a raw file before the first pixel, from row to row, from pixel to pixel |
 //! | `empty` | see below | of depths and indices: the number of an empty pixel, as it is stored (rounded to what the file can hold); `nan` is any NaN |
 //! | `id_base` | 0 | of indices: the number of the first surfel |
 //! | `premultiplied` | `false`, `true` | of colours: multiplied by the plane `A` of their layer (`A` of the picture, `blended.A` of `blended`), which must be there; linear light is divided by it, and left alone where it is 0 |
 //! | `encoding` | `"linear"` (of a PNG `"srgb"`), `"srgb"` | of colours, see [`crate::io::srgb`] |
+//! | | `"octahedral"` | of `normal` and `projection.normal`: unit vectors in two numbers, see below |
 //! | `range` | \[0, 1\] | of unorm and `rgb10a2`: which numbers 0 and 1 mean; `[-1, 1]` of the components of normals. Depths must be t |
 //! | `meaning`, `near`, `far` | those of `[depth]` | of depths |
 //!
@@ -84,6 +85,26 @@
 //! is also what a depth buffer holds under an orthographic camera, and where n may lie behind f. A
 //! surface at the far end that has the number of an empty pixel is taken for one.
 //!
+//! # Normals
+//!
+//! Three components from -1 to 1, or with `encoding = "octahedral"` the two numbers u and v of the
+//! `oct` of Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT
+//! 3(2), 2014, in any format but the packed ones:
+//!
+//! ```text
+//!   w         = 1 - |u| - |v|
+//!   (x, y)    = (u, v), or ((1 - |v|) sign u, (1 - |u|) sign v) where w < 0, with sign 0 = 1
+//!   normal    = (x, y, w) / |(x, y, w)|
+//! ```
+//!
+//! in the space of the plane, which is that of the world of `normal`. Of unorm the `range` is [-1, 1] if
+//! none is given. They are `X` and `Y` of an EXR, `R` and `G` of a PNG, if no `channel` is given; an NPY
+//! is not read. With r, what the format may lose of u and v and 2^-20 for the encoding, d = sqrt(6) r and
+//! l = |(x, y, w)|, a component may lie off by 2 d / (2 l - d), and 2^-19 for the length that is
+//! forgotten: about 3 to 4 r. The null vector has no code. So the plane `Z` beside it must be there
+//! (`projection.Z` of `projection.normal`), and where that is +inf the vector is not read. Numbers beyond
+//! the square are NaN.
+//!
 //! # Indices
 //!
 //! `empty` is `0xFFFF_FFFF` if absent (-1 as `i32`), and `id_base - 1` if there is an `id_base` above 0.
@@ -99,6 +120,7 @@ mod files;
 mod format;
 mod gather;
 mod keys;
+mod octahedral;
 mod parse;
 mod raw;
 mod records;

@@ -78,16 +78,18 @@ impl Meaning {
     }
 }
 
-/// What a number says of a colour.
+/// What numbers say of a colour, or of a unit vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Linear,
     Srgb,
+    /// Of unit vectors, in two numbers.
+    Octahedral,
 }
 
 impl Words for Encoding {
     const WORDS: &'static [(&'static str, Self)] =
-        &[("linear", Self::Linear), ("srgb", Self::Srgb)];
+        &[("linear", Self::Linear), ("srgb", Self::Srgb), ("octahedral", Self::Octahedral)];
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]

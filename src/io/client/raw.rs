@@ -53,7 +53,8 @@ impl Layout {
     fn new(keys: &PlaneKeys, format: Format, components: usize, size: [u32; 2]) -> Reason<Self> {
         if format.is_packed() && components != 3 {
             let word = format.word();
-            return Err(format!("{word} has three numbers a pixel, and the plane holds one"));
+            let holds = if components == 1 { "one" } else { "two" };
+            return Err(format!("{word} has three numbers a pixel, and the plane holds {holds}"));
         }
         let least = pixel_bytes(format, components);
         let pixel = keys.pixel_stride.unwrap_or(least);

@@ -43,6 +43,7 @@ mod edges;
 mod faces;
 mod groups;
 mod header;
+mod numbers;
 mod rows;
 mod slabs;
 #[cfg(test)]
@@ -51,6 +52,7 @@ mod values;
 mod vertices;
 mod write;
 
+pub(in crate::io) use numbers::numbers;
 pub use write::write;
 
 use crate::error::{Error, Result};

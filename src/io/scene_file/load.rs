@@ -4,7 +4,8 @@ use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, stem};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::{environment, ply};
-use crate::scene::{Cloud, Counts, Dropped, Environment, Primitives, Scene, Similarity, Surfels};
+use crate::scene::{Cloud, Counts, Dropped, Environment, Geometry, Object, Objects};
+use crate::scene::{Primitives, Scene, Similarity, Surfels};
 use crate::source::derive::{self, Derive, Derived};
 use crate::source::merge::{join, merge};
 use crate::source::plant;
@@ -14,7 +15,7 @@ use crate::source::plant;
 pub struct Loaded {
     /// The scene.
     pub scene: Scene,
-    /// Its models, in order.
+    /// Its models, in order; of a scene of objects its geometries.
     pub models: Vec<ModelReport>,
     /// Points of all models that became no surfel, where they should have.
     pub dropped: Dropped,
@@ -25,7 +26,7 @@ pub struct Loaded {
 /// What became of a model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ModelReport {
-    /// The name of the file without its extension, or of the shape.
+    /// The name of the file without its extension, of the shape, or of the geometry.
     pub name: String,
     /// How many surfels it gave.
     pub surfels: usize,
@@ -36,55 +37,86 @@ pub struct ModelReport {
 }
 
 impl SceneFile {
-    /// Reads the model files, derives what they do not give, and joins the models in order; reads
-    /// the environment.
+    /// Reads the model files, derives what they do not give, and joins the models in order, or makes
+    /// objects of them, in frame 0; reads the environment.
+    ///
+    /// A scene of objects has no surfels yet: [`SceneFile::ready`] gives those of a frame to methods
+    /// that draw surfels, and [`flatten`](crate::source::flatten()) to anybody.
     ///
     /// `progress` as in [`derive::surfels`].
     ///
     /// # Errors
     /// Those of [`environment::read`], [`ply::read`], [`crate::source::Shape::surfels`],
     /// [`plant::apple_tree`], and of [`derive::surfels`] and its like for polygons and lines, the
-    /// file named; [`Error::Invalid`] if neither a surfel nor a primitive is left or there are too
-    /// many, if a model cannot be drawn as it says, or if one that is not drawn as points was given
-    /// an opacity.
+    /// file named; of [tables](super::places) and [`Objects::new`]; [`Error::Invalid`] if neither a
+    /// surfel nor a primitive is left or there are too many, if a model cannot be drawn as it says, or
+    /// if one that is not drawn as points was given an opacity.
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
-        self.models.iter().try_for_each(check_draw)?;
+        self.all_models().try_for_each(check_draw)?;
+        // What is wrong with objects is said before large files are read.
+        let objects = if self.geometries.is_empty() { None } else { Some(self.objects()?) };
         let environment = match &self.environment {
             None => None,
             Some(EnvironmentChoice::Sky) => Some(Environment::Sky),
             Some(EnvironmentChoice::File(path)) => Some(environment::read(path, exec)?),
         };
-        let (mut models, mut parts, mut primitives) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut dropped, mut dropped_primitives) = (Dropped::default(), 0);
+        let scene = Scene {
+            lights: self.lights.clone(),
+            material: self.material,
+            environment,
+            ..Scene::unlit(&self.name, Surfels::none())
+        };
+        let (models, dropped) = (Vec::new(), Dropped::default());
+        let mut loaded = Loaded { scene, models, dropped, dropped_primitives: 0 };
+        match objects {
+            None => self.load_models(&mut loaded, exec, progress)?,
+            Some(objects) => self.load_objects(objects, &mut loaded, exec, progress)?,
+        }
+        Ok(loaded)
+    }
+
+    /// The models as one.
+    fn load_models(
+        &self,
+        loaded: &mut Loaded,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<()> {
+        let (mut parts, mut primitives) = (Vec::new(), Vec::new());
         for model in &self.models {
-            let ModelParts { surfels, primitives: more, derived } = read(model, exec, progress)?;
-            let counts = more.counts();
-            let name = model.source.name();
-            models.push(ModelReport { name, surfels: surfels.len(), primitives: counts, derived });
-            // What a transform took out of the range of f32 is dropped here, or of surfels below.
-            let (more, lost) = more.map(|vertices| {
-                if let Some(color) = model.color {
-                    vertices.color = Some(vec![color; vertices.position.len()]);
-                }
-                model.transform.apply_to_vertices(vertices);
-            })?;
+            let (surfels, more) = loaded.read(model, model.source.name(), exec, progress)?;
             if !surfels.is_empty() {
                 parts.push((model, surfels));
             }
             primitives.push(more);
-            dropped_primitives += lost;
-            if let Some(derived) = derived {
-                dropped += derived.dropped;
-                dropped_primitives += derived.dropped_primitives;
-            }
         }
         let primitives = join(primitives, self.material.color)?;
         let (surfels, lost) = self.join_surfels(parts, primitives.is_empty(), exec)?;
-        dropped += lost;
-        let (name, lights) = (self.name.clone(), self.lights.clone());
-        let scene =
-            Scene { name, surfels, primitives, lights, material: self.material, environment };
-        Ok(Loaded { scene, models, dropped, dropped_primitives })
+        loaded.dropped += lost;
+        (loaded.scene.surfels, loaded.scene.primitives) = (surfels, primitives);
+        Ok(())
+    }
+
+    /// The models and the geometries as geometries of objects.
+    fn load_objects(
+        &self,
+        objects: Vec<Object>,
+        loaded: &mut Loaded,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<()> {
+        let own = self.models.iter().map(|model| (model.source.name(), model));
+        let named = self.geometries.iter().map(|geometry| (geometry.name.clone(), &geometry.model));
+        let mut geometries = Vec::new();
+        for (name, model) in own.chain(named) {
+            let (surfels, primitives) = loaded.read(model, name.clone(), exec, progress)?;
+            let parts = if surfels.is_empty() { vec![] } else { vec![(model, surfels)] };
+            let (surfels, lost) = self.join_surfels(parts, primitives.is_empty(), exec)?;
+            loaded.dropped += lost;
+            geometries.push(Geometry { name, surfels, primitives });
+        }
+        loaded.scene.objects = Some(Objects::new(geometries, objects, self.material.color)?);
+        Ok(())
     }
 
     /// The surfels of all models, in their places; there must be some if they are `alone`.
@@ -101,6 +133,34 @@ impl SceneFile {
         let clouds = parts.into_iter().map(|(model, surfels)| placed(model, surfels));
         let all = merge(clouds.collect(), self.material.color);
         if alone { Surfels::new_with(all, exec) } else { Surfels::new_or_none(all, exec) }
+    }
+}
+
+impl Loaded {
+    /// Reads a model: its surfels where its file has them, its primitives in their places.
+    fn read(
+        &mut self,
+        model: &Model,
+        name: String,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<(Surfels, Primitives)> {
+        let ModelParts { surfels, primitives, derived } = read(model, exec, progress)?;
+        let counts = primitives.counts();
+        self.models.push(ModelReport { name, surfels: surfels.len(), primitives: counts, derived });
+        // What a transform took out of the range of f32 is dropped here, or of surfels later.
+        let (primitives, lost) = primitives.map(|vertices| {
+            if let Some(color) = model.color {
+                vertices.color = Some(vec![color; vertices.position.len()]);
+            }
+            model.transform.apply_to_vertices(vertices);
+        })?;
+        self.dropped_primitives += lost;
+        if let Some(derived) = derived {
+            self.dropped += derived.dropped;
+            self.dropped_primitives += derived.dropped_primitives;
+        }
+        Ok((surfels, primitives))
     }
 }
 

@@ -19,8 +19,20 @@
 //! name = "pyramid"
 //! ```
 //!
+//! A scene of objects, over a sequence of frames (see [`crate::scene::objects`]):
+//!
+//! ```toml
+#![doc = include_str!("objects.toml")]
+//! ```
+//!
+//! A scene with a geometry is one of objects: its models are objects too, which come first, in order,
+//! each of a geometry of its own, at rest. Its geometries are those of the models and then the named
+//! ones. Where objects have no place of their own they are where their geometry is. Frames are
+//! counted from 0; keys may lie beyond the last frame. A camera that is not chosen shows the scene as
+//! it is in frame 0, in every frame.
+//!
 //! Numbers are read as f64 and rounded to f32 where the scene holds f32; any decimal that `f32`
-//! prints comes back with its bits. Keys that are in neither of these are refused, so that a typing
+//! prints comes back with its bits. Keys that are in none of these are refused, so that a typing
 //! error is not a default.
 //!
 //! [`SceneFile`] is what such a file says; [`SceneFile::open`] leads from a name to a picture. One
@@ -31,8 +43,10 @@
 mod choice;
 mod draw;
 mod load;
+mod objects;
 mod open;
 mod parse;
+pub mod places;
 mod ready;
 #[cfg(test)]
 mod tests;
@@ -40,6 +54,7 @@ mod tests;
 pub use choice::{Choice, GroupChoice, MethodChoice, Number, OutputSettings};
 pub use draw::Draw;
 pub use load::{Loaded, ModelReport};
+pub use objects::{Geometry, MOST_FRAMES, ObjectChoice, Places};
 pub use open::{FileKind, TREE, shapes};
 pub use ready::Ready;
 
@@ -47,7 +62,7 @@ use crate::error::{Error, Result};
 use crate::index::grouping::Grouping;
 use crate::io::input;
 use crate::method::Method;
-use crate::scene::{Camera, Lens, Light, Phong, Pose, Scene, Similarity};
+use crate::scene::{Camera, CameraMotion, Lens, Light, Phong, Pose, Scene, Similarity};
 use crate::source::Shape;
 use glam::{DVec3, Vec3};
 use std::path::{Path, PathBuf};
@@ -66,8 +81,16 @@ pub const DEFAULT_SIDE: DVec3 = DVec3::new(0.5, 0.375, 1.0);
 pub struct SceneFile {
     /// What the scene is called: the name of the file without its extension, or of the shape.
     pub name: String,
-    /// The models, at least one.
+    /// The models; at least one if there are no objects.
     pub models: Vec<Model>,
+    /// What objects are copies of.
+    pub geometries: Vec<Geometry>,
+    /// The objects beside the models.
+    pub objects: Vec<ObjectChoice>,
+    /// How many frames there are, 1 to [`MOST_FRAMES`].
+    pub frames: u32,
+    /// The frame that is pictured: 0, unless somebody asks for another.
+    pub frame: u32,
     /// Where it is seen from.
     pub camera: CameraChoice,
     /// The lights; none at all shows the colours unlit.
@@ -128,7 +151,7 @@ pub enum Source {
 }
 
 /// A camera as far as it was chosen.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct CameraChoice {
     /// Width and height in pixels.
     pub size: Option<[u32; 2]>,
@@ -138,6 +161,8 @@ pub struct CameraChoice {
     pub target: Option<DVec3>,
     /// See [`Pose`].
     pub up: Option<DVec3>,
+    /// Keys over frames, in place of these three.
+    pub motion: Option<CameraMotion>,
     /// The opening.
     pub lens: Option<Lens>,
 }
@@ -191,6 +216,10 @@ impl SceneFile {
         Self {
             name: source.name(),
             models: vec![Model { source, draw, transform, color: None, opacity: None }],
+            geometries: Vec::new(),
+            objects: Vec::new(),
+            frames: 1,
+            frame: 0,
             camera: CameraChoice::default(),
             lights: vec![Light::DEFAULT],
             material: Phong::default(),
@@ -203,18 +232,47 @@ impl SceneFile {
 
     /// The files that loading reads.
     pub fn reads(&self) -> impl Iterator<Item = &Path> {
-        let models = self.models.iter().filter_map(|model| match &model.source {
+        let models = self.all_models().filter_map(|model| match &model.source {
             Source::File { path, .. } => Some(path.as_path()),
             Source::Shape { .. } | Source::Tree { .. } => None,
+        });
+        let tables = self.objects.iter().filter_map(|object| match &object.places {
+            Places::Table { path, .. } => Some(path.as_path()),
+            Places::One(_) | Places::Scatter { .. } => None,
         });
         let environment = self.environment.iter().filter_map(|environment| match environment {
             EnvironmentChoice::File(path) => Some(path.as_path()),
             EnvironmentChoice::Sky => None,
         });
-        models.chain(environment)
+        models.chain(tables).chain(environment)
     }
 
-    /// The camera: what was chosen, and for the rest what shows `scene`, this one when loaded.
+    /// The models, and those of the geometries.
+    pub fn all_models(&self) -> impl Iterator<Item = &Model> {
+        self.models.iter().chain(self.geometries.iter().map(|geometry| &geometry.model))
+    }
+
+    /// The same, to be changed.
+    pub fn all_models_mut(&mut self) -> impl Iterator<Item = &mut Model> {
+        let of_geometries = self.geometries.iter_mut().map(|geometry| &mut geometry.model);
+        self.models.iter_mut().chain(of_geometries)
+    }
+
+    /// Whether there is such a frame.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if not.
+    pub fn check_frame(&self, frame: u32) -> Result<()> {
+        if frame < self.frames {
+            return Ok(());
+        }
+        Err(Error::Usage(match self.frames {
+            1 => format!("frame {frame} of {}, which has no [sequence]: give 0", self.name),
+            frames => format!("frame {frame} of {}: give 0 to {}", self.name, frames - 1),
+        }))
+    }
+
+    /// The camera in the frame that is pictured: what was chosen, and for the rest what shows `scene`, this one when loaded.
     ///
     /// A scene of one shape that is not transformed has the shape's own pose and lens. Any other is
     /// framed from [`DEFAULT_SIDE`], see [`Camera::framing`]; where only the eye was chosen it
@@ -224,19 +282,12 @@ impl SceneFile {
     /// # Errors
     /// [`Error::Invalid`] as [`Camera::new`].
     pub fn camera(&self, scene: &Scene) -> Result<Camera> {
-        let CameraChoice { size, eye, target, up, lens } = self.camera;
+        let CameraChoice { size, eye, target, up, ref motion, .. } = self.camera;
         let [width, height] = size.unwrap_or(DEFAULT_SIZE);
-        let shape = match self.models.as_slice() {
-            [Model { source: Source::Shape { shape, .. }, transform, .. }]
-                if *transform == Similarity::IDENTITY =>
-            {
-                Some(shape)
-            }
-            _ => None,
-        };
-        let lens = lens
-            .or_else(|| shape.map(Shape::default_lens))
-            .unwrap_or(Lens::FieldOfView(DEFAULT_FIELD_OF_VIEW));
+        let (shape, lens) = (self.shape(), self.lens());
+        if let Some(motion) = motion {
+            return Camera::new(width, height, motion.at(self.frame), lens);
+        }
         if let (Some(eye), Some(target)) = (eye, target) {
             return Camera::new(
                 width,
@@ -267,6 +318,24 @@ impl SceneFile {
 }
 
 impl SceneFile {
+    /// The shape that is all there is, where it is.
+    fn shape(&self) -> Option<&Shape> {
+        match self.models.as_slice() {
+            [Model { source: Source::Shape { shape, .. }, transform, .. }]
+                if *transform == Similarity::IDENTITY && self.objects.is_empty() =>
+            {
+                Some(shape)
+            }
+            _ => None,
+        }
+    }
+
+    /// The lens, see [`SceneFile::camera`].
+    fn lens(&self) -> Lens {
+        let own = || self.shape().map(Shape::default_lens);
+        self.camera.lens.or_else(own).unwrap_or(Lens::FieldOfView(DEFAULT_FIELD_OF_VIEW))
+    }
+
     /// The grouping that was chosen for a method; none: that of the file, or of the method.
     ///
     /// # Errors

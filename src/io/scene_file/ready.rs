@@ -1,14 +1,18 @@
 //! From a scene file to a session.
 
 use super::{Loaded, SceneFile};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::grouping::Grouping;
+use crate::index::seen::Seen;
+use crate::io::state::{self, State};
 use crate::method::session::Made;
-use crate::method::{Method, Session};
-use crate::scene::Camera;
+use crate::method::{Method, Session, deferred};
+use crate::scene::{Camera, CameraMotion, Lens, Primitives, Scene, Surfels};
+use crate::source::flatten;
+use std::path::Path;
 
-/// What a scene file says, loaded and resolved: all that a picture needs.
+/// What a scene file says, loaded and resolved: all that the picture of a frame needs.
 #[derive(Clone, Debug)]
 pub struct Ready {
     /// The scene, and how it came about.
@@ -19,28 +23,129 @@ pub struct Ready {
     pub method: Method,
     /// How groups are made; none: those of the scene, or as the method says.
     pub grouping: Option<Grouping>,
+    /// The frame.
+    frame: u32,
+    /// How the camera moves, if it does, and its lens.
+    motion: Option<(CameraMotion, Lens)>,
 }
 
 impl SceneFile {
-    /// Loads the scene and resolves camera and method. What is wrong with the settings is said
-    /// before much is read.
+    /// Loads the scene in the frame that is pictured and resolves camera and method. What is wrong
+    /// with the settings is said before much is read.
     ///
     /// `progress` is told the name of a step, how much of it is done, and of how much.
     ///
     /// # Errors
-    /// As [`SceneFile::load`] and [`SceneFile::camera`]; [`crate::Error::Invalid`] if a setting is
+    /// As [`SceneFile::check_frame`], [`SceneFile::load`], [`SceneFile::camera`] and [`Ready::at`];
+    /// [`crate::Error::Invalid`] if a setting is
     /// out of range or not of the method, or if the method cannot draw the scene.
     pub fn ready(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Ready> {
         let method = self.method.method()?;
         let grouping = self.grouping(&method)?;
+        self.check_frame(self.frame)?;
         let loaded = self.load(exec, progress)?;
-        method.check_scene(&loaded.scene)?;
         let camera = self.camera(&loaded.scene)?;
-        Ok(Ready { loaded, camera, method, grouping })
+        let (frame, motion) = (self.frame, self.camera.motion.clone());
+        let motion = motion.map(|motion| (motion, self.lens()));
+        let mut ready = Ready { loaded, camera, method, grouping, frame, motion };
+        ready.place(exec)?;
+        Ok(ready)
     }
 }
 
 impl Ready {
+    /// The same scene in another frame, in the memory of this one.
+    ///
+    /// # Errors
+    /// As [`Ready::camera_at`], [`crate::scene::Objects::at`] and [`flatten()`].
+    pub fn at(mut self, frame: u32, exec: &Exec) -> Result<Self> {
+        self.camera = self.camera_at(frame)?;
+        self.frame = frame;
+        if !self.is_still() {
+            self.place(exec)?;
+        }
+        Ok(self)
+    }
+
+    /// The camera in a frame.
+    ///
+    /// # Errors
+    /// As [`Camera::new`].
+    pub fn camera_at(&self, frame: u32) -> Result<Camera> {
+        let Some((motion, lens)) = &self.motion else { return Ok(self.camera) };
+        Camera::new(self.camera.width, self.camera.height, motion.at(frame), *lens)
+    }
+
+    /// Whether the scene is the same in every frame, so that one session draws all of them.
+    #[must_use]
+    pub fn is_still(&self) -> bool {
+        self.loaded.scene.objects.as_ref().is_none_or(crate::scene::Objects::are_still)
+    }
+
+    /// The frame.
+    #[must_use]
+    pub fn frame(&self) -> u32 {
+        self.frame
+    }
+
+    /// What names the scene in the files of states: its SHA-256, with objects as in frame 0.
+    ///
+    /// # Errors
+    /// As [`crate::scene::Objects::at`].
+    pub fn identity(&self) -> Result<String> {
+        let scene = &self.loaded.scene;
+        match &scene.objects {
+            None => Ok(scene.sha256()),
+            Some(objects) => {
+                let objects = Some(objects.at(0)?);
+                let (surfels, primitives) = (Surfels::none(), Primitives::default());
+                Ok(Scene { objects, surfels, primitives, ..scene.clone() }.sha256())
+            }
+        }
+    }
+
+    /// What the frame before saw, from a file.
+    ///
+    /// # Errors
+    /// As [`state::read`]; [`Error::Invalid`] if the method carries nothing from frame to frame, and
+    /// [`Error::Format`] if the state is not of the frame before.
+    pub fn state(&self, path: &Path) -> Result<Seen> {
+        let Method::Deferred(settings) = &self.method else {
+            let what = format!(
+                "the method {} carries nothing from frame to frame: give --method deferred, or no \
+                 state",
+                self.method.name()
+            );
+            return Err(Error::Invalid(what));
+        };
+        let scene = &self.loaded.scene;
+        let ids = deferred::ids(scene);
+        let State { frame, seen } = state::read(path, &self.identity()?, &ids)?;
+        if frame.checked_add(1) != Some(self.frame) {
+            let (next, own) = (u64::from(frame) + 1, self.frame);
+            let what =
+                format!("what frame {frame} saw is for frame {next}, and this is frame {own}");
+            return Err(Error::format(path, what));
+        }
+        seen.check(&ids, settings.flags).map_err(|error| Error::format(path, error.to_string()))?;
+        Ok(seen)
+    }
+
+    /// Puts the objects in their places of the frame. What a method is given of them is decided here:
+    /// the objects, or all their surfels.
+    fn place(&mut self, exec: &Exec) -> Result<()> {
+        let scene = &mut self.loaded.scene;
+        if let Some(objects) = &scene.objects {
+            scene.objects = Some(objects.at(self.frame)?);
+            // Those of the last frame make room.
+            (scene.surfels, scene.primitives) = (Surfels::none(), Primitives::default());
+            if !self.method.draws_objects() {
+                *scene = flatten(scene, exec)?;
+            }
+        }
+        self.method.check_scene(scene)
+    }
+
     /// A session of the scene and the method, and how groups were made, if they were.
     ///
     /// # Errors

@@ -1,4 +1,5 @@
 mod draw;
+mod objects;
 
 use super::*;
 use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples};
@@ -59,6 +60,7 @@ fn the_example_says_what_it_says() {
         eye: Some(DVec3::new(0.0, 1.0, 5.0)),
         target: Some(DVec3::ZERO),
         up: Some(DVec3::Y),
+        motion: None,
         lens: Some(Lens::FieldOfView(40.0)),
     };
     assert_eq!(file.camera, camera);

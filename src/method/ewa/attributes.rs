@@ -28,7 +28,7 @@ pub(in crate::method) struct Sums<R> {
 }
 
 /// Attribute splatting over the picture.
-pub(super) fn attributes<R: Exact>(
+pub(in crate::method) fn attributes<R: Exact>(
     job: &Job<'_>,
     splats: &Prepared<R, Splat<R>>,
     visible: &Tiled<Foremost<R>>,

@@ -61,7 +61,7 @@ mod fast;
 mod margin;
 pub(super) mod normalization;
 mod picture;
-mod planes;
+pub(super) mod planes;
 pub(super) mod possible;
 pub mod verify;
 pub(super) mod visibility;

@@ -28,7 +28,7 @@ impl<R: Exact> Foremost<R> {
 }
 
 /// Visibility splatting over the picture.
-pub(super) fn visibility<R: Exact>(
+pub(in crate::method) fn visibility<R: Exact>(
     job: &Job<'_>,
     splats: &Prepared<R, Splat<R>>,
 ) -> Tiled<Foremost<R>> {

@@ -29,7 +29,7 @@ pub(super) fn define<R: Exact>(
     left.extend(planes::shown(shown(job, &peeled.pixels.map(|pixel| pixel.blend))));
     left.extend(planes::pixels(&peeled.pixels));
     let (frame, timings) = (job.frame(left), clock.into_laps());
-    Ok(Picture { frame, tally: peeling.splats.tally, timings })
+    Ok(Picture { frame, tally: peeling.splats.tally, timings, seen: None })
 }
 
 /// What the stage of layers leaves.

@@ -4,7 +4,7 @@ use crate::frame::{Exec, NO_ID, Plane, Samples};
 use crate::method::{Method, Picture, Session};
 use crate::number::Exact;
 use crate::number::random::unit;
-use crate::scene::{Camera, Cloud, Lens, Light, Phong, Pose, Scene, Surfels};
+use crate::scene::{Camera, Cloud, Lens, Light, Pose, Scene, Surfels};
 use crate::shade::phong::Shader;
 use crate::source::Shape;
 use crate::splat::{
@@ -15,8 +15,7 @@ use proptest::prelude::*;
 
 fn scene(cloud: Cloud, lights: Vec<Light>) -> Scene {
     let surfels = Surfels::new(cloud).unwrap().0;
-    let (name, material) = ("test".into(), Phong::default());
-    Scene { name, surfels, lights, material, primitives: Default::default(), environment: None }
+    Scene { lights, ..Scene::unlit("test", surfels) }
 }
 
 /// Looks from the origin along -z.

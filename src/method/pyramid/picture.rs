@@ -70,7 +70,12 @@ fn finish<R: Exact>(
     let shaded = target.shaded(job);
     clock.lap("shading");
     planes.extend(planes::write_picture(shaded));
-    Picture { frame: Frame { width, height, planes }, tally, timings: clock.into_laps() }
+    Picture {
+        frame: Frame { width, height, planes },
+        tally,
+        timings: clock.into_laps(),
+        seen: None,
+    }
 }
 
 /// The planes of consecutive levels.

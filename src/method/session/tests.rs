@@ -3,9 +3,11 @@
 use super::*;
 use crate::index::grouping::{Extension, Rules};
 use crate::method::tests::{cameras, scene, surfels};
-use crate::scene::{Light, Surfels, Triangles, Vertices};
-use crate::source::Shape;
-use glam::Vec3;
+use crate::scene::{
+    Geometry, Light, Motion, Object, Primitives, Similarity, Surfels, Triangles, Vertices,
+};
+use crate::source::{Shape, flatten};
+use glam::{DVec3, Vec3};
 
 /// A few surfels of a sphere, and a camera.
 fn sphere() -> (Scene, Camera) {
@@ -99,7 +101,8 @@ fn every_method_has_a_name_of_its_own_and_is_found_by_it() {
         assert_eq!(Method::by_name(method.name()).unwrap(), method);
     }
     let line = Method::by_name("evva").unwrap_err().to_string();
-    let names = "ewa, single-pass, transparent, transparent-hq, peeling, pyramid, template";
+    let names =
+        "ewa, deferred, single-pass, transparent, transparent-hq, peeling, pyramid, template";
     assert_eq!(line, format!("method `evva`; give one of {names}"));
 }
 
@@ -121,6 +124,8 @@ fn the_memory_of_an_earlier_picture_changes_no_bit() {
                 || Session::with_groups(&scene, method, Some(groups.clone()), &exec).unwrap();
             let mut again = session();
             for camera in [large, small, large, large] {
+                // What a frame saw is no memory: the next one is given it.
+                again.resume(None);
                 let after = again.render(&camera).unwrap();
                 assert!(after.tally.visible > 50, "{after:?}");
                 let defined = session().define::<f32>(&camera, false).unwrap();
@@ -129,5 +134,61 @@ fn the_memory_of_an_earlier_picture_changes_no_bit() {
                 assert!(same, "{method:?}, scene {i}");
             }
         }
+    }
+}
+
+/// Two spheres of one geometry in their places, and the same surfels without objects.
+fn two_spheres() -> [Scene; 2] {
+    let (surfels, primitives) = (Shape::Sphere.surfels(300, 1).unwrap(), Primitives::default());
+    let geometry = Geometry { name: "sphere".into(), surfels, primitives };
+    let object = |x: f64| {
+        let translation = DVec3::new(x, 0.25 * x, x);
+        let motion = Motion::still(Similarity { translation, ..Similarity::IDENTITY });
+        Object { name: format!("at {x}"), geometry: 0, motion, color: None }
+    };
+    let objects = Objects::new(vec![geometry], vec![object(-0.5), object(0.5)], Vec3::ONE).unwrap();
+    let scene = Scene { objects: Some(objects), ..Scene::lit("two", Surfels::none()) };
+    let flat = flatten(&scene, &Exec::sequential()).unwrap();
+    [Scene { objects: None, ..flat.clone() }, flat]
+}
+
+/// Planes of ids name the surfels of objects, whichever way they come out or go in.
+#[test]
+fn surfels_of_objects_are_named_by_their_ids() {
+    let exec = Exec::sequential();
+    let [plain, objects] = two_spheres();
+    let ids = objects.objects.as_ref().unwrap().ids().clone();
+    assert_eq!((ids.id(1, 7), ids.rank(ids.id(1, 7))), (1 << 20 | 7, Some(307)));
+    let camera = cameras()[6];
+    for method in Method::all().into_iter().filter(|method| !method.draws_objects()) {
+        let session = |scene| {
+            let groups = Groups::new(vec![0; 600], vec![], vec![1.0]).unwrap();
+            Session::with_groups(scene, method, Some(groups), &exec).unwrap()
+        };
+        let (mut own, of) = (session(&objects), session(&plain));
+        let (named, indices) = (own.define::<f64>(&camera, true), of.define::<f64>(&camera, true));
+        let (named, indices) = (named.unwrap().frame, indices.unwrap().frame);
+        let mut large = 0;
+        for (named, indices) in named.planes.iter().zip(&indices.planes) {
+            let (Samples::Index(named), Samples::Index(indices)) =
+                (&named.samples, &indices.samples)
+            else {
+                assert_eq!(named, indices, "{method:?}");
+                continue;
+            };
+            for (&id, &index) in named.values().iter().zip(indices.values()) {
+                let expected = ids.nth(index.into()).map_or(NO_ID, |id| id as u32);
+                assert_eq!(id, expected, "{method:?}");
+                large += u32::from(id != NO_ID && id >= 1 << 20);
+            }
+        }
+        assert!(large > 50, "{method:?}: both spheres are seen");
+        let rendered = own.render(&camera).unwrap();
+        assert_eq!(rendered.frame.plane("id").is_some(), indices.plane("id").is_some());
+        let verdict = |session: &Session<'_>| {
+            let client = Client::from(&session.define::<f32>(&camera, true).unwrap().frame);
+            session.verify(&camera, &client, 0.02).unwrap().outcome()
+        };
+        assert_eq!(verdict(&own), verdict(&of), "{method:?}");
     }
 }

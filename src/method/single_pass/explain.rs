@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn an_explanation_is_what_the_picture_shows() {
         let (scene, groups) = sphere_of_groups();
-        let index = Index { groups: Some(groups), order: None };
+        let index = Index { groups: Some(groups), ..Index::default() };
         let lens = Lens::FieldOfView(40.0);
         let camera = Camera::new(19, 17, Shape::Sphere.default_pose(), lens).unwrap();
         let exec = Exec::new(1, 8).unwrap();

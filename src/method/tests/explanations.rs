@@ -31,7 +31,7 @@ impl Example {
         let own = (0..120).map(|i| (i % 3) as u8).collect();
         let groups = Groups::new(own, Vec::new(), vec![1.0, 1.5, 1.0]).unwrap();
         let order = BackToFront::new(&scene.surfels, &exec);
-        let index = Index { groups: Some(groups), order: Some(order) };
+        let index = Index { groups: Some(groups), order: Some(order), ..Index::default() };
         Self { scene, index, camera: cameras()[4], exec }
     }
 

@@ -170,6 +170,7 @@ fn pictures_have_the_planes_of_the_page() {
                     let names = picture.frame.planes.iter().map(|plane| plane.name.as_str());
                     agrees(&session, &camera, stages, names.collect());
                 }
+                session.resume(None);
                 let picture = session.render(&camera).unwrap().clone();
                 let names = picture.frame.planes.iter().map(|plane| plane.name.as_str());
                 agrees(&session, &camera, false, names.collect());

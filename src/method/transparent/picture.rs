@@ -31,7 +31,7 @@ pub(super) fn define<R: Exact>(
     }
     left.extend(picture(job, &averages));
     let (frame, timings) = (job.frame(left), clock.into_laps());
-    Ok(Picture { frame, tally: blending.tally(), timings })
+    Ok(Picture { frame, tally: blending.tally(), timings, seen: None })
 }
 
 /// The planes of every picture.

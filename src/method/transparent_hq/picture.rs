@@ -55,7 +55,7 @@ pub(super) fn define<R: Exact>(
     left.extend(planes::compositing(job, &blends, &near, &averages));
     left.extend(planes::nearest(&near));
     let (frame, timings) = (job.frame(left), clock.into_laps());
-    Ok(Picture { frame, tally: geometry.splats.tally, timings })
+    Ok(Picture { frame, tally: geometry.splats.tally, timings, seen: None })
 }
 
 /// Whether there is something to be refracted.

@@ -11,7 +11,8 @@ impl<P: Profile> Ball<P> {
     ///
     /// With the distance d of the midpoint from the origin and a radius r of the point, the spread is
     /// r / (d - r), which is more than the arcsine of r / d; a whole turn where the point may be the
-    /// origin. An angle that is not rounded to nearest is 4096 ulp off, as WGSL and Vulkan publish it.
+    /// origin. An angle that is not rounded to nearest is 4096 ulp off, see [`super::Gpu`], wherever the
+    /// point is.
     pub(crate) fn angle(self, x: Self) -> Self {
         let middle = elementary::atan2(self.middle, x.middle);
         let reach = (self.radius + x.radius) * SLACK;

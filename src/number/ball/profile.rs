@@ -20,7 +20,7 @@ pub trait Profile: Copy + Send + Sync + 'static {
     const PRODUCT: f64;
     /// Of a quotient.
     const QUOTIENT: f64;
-    /// The largest divisor of which a quotient keeps that promise.
+    /// The largest divisor of which a quotient keeps that promise; the least is the least normal number.
     const LARGEST_DIVISOR: f64;
     /// Of a square root.
     const ROOT: f64;
@@ -73,11 +73,30 @@ impl Profile for Ieee {
     fn choose(_truth: bool, _yes: (), _no: ()) {}
 }
 
-/// What WGSL and Vulkan publish for `f32`: a correctly rounded operation gives either neighbour of
-/// the exact value; a quotient is 2.5 ulp, an inverse square root 2 ulp and e^x 3 + 2 |x| ulp off; a
-/// square root is the inverse of the inverse square root; x^y is e2^(y log2 x), of a base-2 exponential
-/// 3 + 2 |z| ulp off and a logarithm 3 ulp or 2^-21 off; products are fused with sums, the terms of
-/// sums added in any order, and numbers below the normal ones flushed to 0.
+/// What WGSL and Vulkan publish for `f32`; an ulp is at most 2 u of its number.
+///
+/// | operation | published | here, in u of the result |
+/// |---|---|---|
+/// | x + y, x - y, x y | correctly rounded, up or down | 2 |
+/// | x / y | 2.5 ulp for \|y\| from 2^-126 to 2^126 | 5; unbounded where y may be of another size |
+/// | inversesqrt x | 2 ulp | 4 |
+/// | sqrt x | that of 1 / inversesqrt x | 4 + 5 |
+/// | e^x, 2^x | 3 + 2 \|x\| ulp | 6 + 4 \|x\| |
+/// | log2 x | 3 ulp, but 2^-21 for x from 0.5 to 2 | in those of x^y alone |
+/// | x^y | that of exp2(y log2 x) | 6 + 4 \|z\| + 8 \|z\| + 8 y, z = y log2 x |
+/// | atan2(y, x) | 4096 ulp | 8192 |
+///
+/// Products are fused with sums, the terms of sums added in any order, and numbers below the normal ones
+/// flushed to 0, those that are read as well as those that are computed. So a number that may be less
+/// than 2^-126 may be 0, and a quotient by it has no bounds.
+///
+/// Source: WGSL (W3C), "Differences from IEEE-754", "Accuracy of Concrete Floating Point Expressions",
+/// "Reassociation and Fusion"; Vulkan (Khronos), appendix "Vulkan Environment for SPIR-V", "Precision of
+/// Individual Operations". The two say the same but for atan2: Vulkan grants its 4096 ulp to every
+/// operand, WGSL for a normal y and for |x| from 2^-126 to 2^126, and says nothing of others.
+/// `Decided:` those of Vulkan. A direction beside a plane of the axes has an operand that may be 0, and
+/// to the letter of WGSL no pixel there could be judged. Neither sin and cos (2^-11, from -pi to pi) nor acos (that of
+/// atan2(sqrt(1 - x x), x), in WGSL at least 6.77e-5) are in any formula that is judged.
 ///
 /// A compiler adds the terms of a sum in any order across the functions of a formula, and not every
 /// such sum has a name. So a ball carries the magnitude of its terms, how many additions there are,

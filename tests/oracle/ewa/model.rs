@@ -112,7 +112,7 @@ impl<'a> Oracle<'a> {
     }
 
     /// The least depth, and its rounding error.
-    fn first(&self, inside: &[Seen<'_>]) -> (f64, f64) {
+    pub(crate) fn first(&self, inside: &[Seen<'_>]) -> (f64, f64) {
         let first = inside.iter().map(|(_, f)| f.value.t).fold(f64::INFINITY, f64::min);
         let those = inside.iter().filter(|(_, f)| f.value.t == first);
         (first, those.map(|(_, f)| self.slack(f)).fold(0.0, f64::max))

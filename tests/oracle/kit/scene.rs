@@ -2,9 +2,7 @@
 
 use crate::kit::dice::Dice;
 use glam::{DVec3, Mat4, Vec3};
-use splatref::scene::{
-    Camera, Cloud, Groups, Lens, Light, Phong, Pose, Primitives, Scene, Surfels,
-};
+use splatref::scene::{Camera, Cloud, Groups, Lens, Light, Pose, Scene, Surfels};
 use splatref::source::Shape;
 use splatref::splat::Outline;
 
@@ -15,14 +13,7 @@ pub(crate) const AHEAD: Pose = Pose { eye: DVec3::ZERO, target: DVec3::NEG_Z, up
 
 /// Unlit, of the default material.
 pub(crate) fn scene(surfels: Surfels) -> Scene {
-    Scene {
-        name: String::new(),
-        surfels,
-        lights: Vec::new(),
-        material: Phong::default(),
-        primitives: Primitives::default(),
-        environment: None,
-    }
+    Scene::unlit("", surfels)
 }
 
 /// The surfels of a cloud that are any, none of no points.

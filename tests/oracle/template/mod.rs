@@ -1,6 +1,6 @@
 //! Reconstruction with templates of \[MOC08\].
 
-mod cases;
+pub(crate) mod cases;
 mod cover;
 mod known;
 mod laws;

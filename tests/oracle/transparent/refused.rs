@@ -136,7 +136,7 @@ fn groups_and_orders_of_other_surfels_are_refused() {
     for count in [8, 500] {
         let other = splatref::source::Shape::Sphere.surfels(count, 0).expect("few surfels");
         let order = Some(BackToFront::new(&other, &Exec::sequential()));
-        let index = Index { groups: None, order };
+        let index = Index { order, ..Index::default() };
         let line = index.check(&subject(|_| ()).scene.surfels).expect_err("other surfels");
         assert!(
             line.to_string().contains("order") && line.to_string().contains(&there.to_string())

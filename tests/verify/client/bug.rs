@@ -80,6 +80,20 @@ named! {
         EpsilonIgnored,
         /// Epsilon is compared with a difference of nearness.
         EpsilonOfNearness,
+        /// Epsilon is compared with a difference of what a depth buffer holds.
+        EpsilonOfDepthBuffer,
+        /// Epsilon is a distance along the ray of the pixel.
+        EpsilonAlongRay,
+        /// Epsilon in radii is in those of the nearest surfel.
+        EpsilonOfNearestRadius,
+        /// Epsilon in radii is in world units, or the reverse.
+        EpsilonOtherUnit,
+        /// t > nearest + epsilon.
+        EpsilonReversed,
+        /// The visibility pass draws discs that are moved back by epsilon, and hands in their depth.
+        DiscsMovedBack,
+        /// It draws discs that are moved towards the eye.
+        DiscsMovedForward,
         /// What is seen from behind keeps its normal.
         NormalsNotReversed,
         /// The sums are of 16 bits.

@@ -121,18 +121,37 @@ pub(crate) fn visibility(shared: &Shared<'_>, splats: &[Splat], targets: &mut Ta
     for at in 0..targets.nearness.len() {
         let w = targets.nearness[at];
         let empty = w == shared.empty();
-        targets.depth[at] =
-            if empty { f32::INFINITY } else { depth(shared, shared.number(w)).value };
+        let depth = match shared.how.bug {
+            _ if empty => shared.number(f32::INFINITY),
+            Some(Bug::DiscsMovedBack) => depth(shared, shared.number(w)) + shared.epsilon,
+            Some(Bug::DiscsMovedForward) => depth(shared, shared.number(w)) - shared.epsilon,
+            _ => depth(shared, shared.number(w)),
+        };
+        targets.depth[at] = depth.value;
     }
 }
 
 /// Whether a fragment belongs to the visible surface.
-fn visible(shared: &Shared<'_>, w: Number, nearness: f32, nearest: f32) -> bool {
-    let (t, nearest) = (depth(shared, w), shared.number(nearest));
-    match shared.how.bug {
+fn visible(shared: &Shared<'_>, w: Number, pixel: [u32; 2], targets: &Targets) -> bool {
+    let at = targets.index(pixel);
+    let (t, nearest) = (depth(shared, w), shared.number(targets.depth[at]));
+    let nearness = shared.number(targets.nearness[at]);
+    let bug = shared.how.bug.filter(|bug| *bug != Bug::EpsilonOfNearestRadius || shared.in_radii);
+    match bug {
         Some(Bug::EpsilonSubtracted) => t <= nearest - shared.epsilon,
         Some(Bug::EpsilonStrict) => t < nearest + shared.epsilon,
-        Some(Bug::EpsilonOfNearness) => w >= shared.number(nearness) - shared.epsilon,
+        Some(Bug::EpsilonReversed) => t > nearest + shared.epsilon,
+        Some(Bug::EpsilonOfNearness) => w >= nearness - shared.epsilon,
+        Some(Bug::EpsilonOfDepthBuffer) if shared.perspective => {
+            let z = |w: Number| shared.number(1.0) - w * shared.near;
+            z(w) <= z(nearness) + shared.epsilon
+        }
+        Some(Bug::EpsilonAlongRay) => t <= nearest + shared.epsilon / shared.ray(pixel),
+        Some(Bug::EpsilonOfNearestRadius) => {
+            let radius = shared.scene.surfels.radius()[targets.id[at] as usize];
+            t <= nearest + shared.number(shared.written) * radius
+        }
+        Some(Bug::DiscsMovedBack | Bug::DiscsMovedForward) => t <= nearest,
         _ => t <= nearest + shared.epsilon,
     }
 }
@@ -157,7 +176,7 @@ pub(crate) fn attributes(shared: &Shared<'_>, splats: &[Splat], targets: &mut Ta
         for pixel in pixels(shared, &splat) {
             let (q, w) = fragment(shared, &splat, pixel, Pass::Attributes);
             let at = targets.index(pixel);
-            if !inside(shared, q) || !visible(shared, w, targets.nearness[at], targets.depth[at]) {
+            if !inside(shared, q) || !visible(shared, w, pixel, targets) {
                 continue;
             }
             let weight = weight(shared, &splat, q);

@@ -29,6 +29,9 @@ pub(crate) struct Shared<'a> {
     pub(crate) low_pass: Number,
     /// In world units.
     pub(crate) epsilon: Number,
+    /// The number that the settings have for it, and whether it counts radii.
+    pub(crate) written: f32,
+    pub(crate) in_radii: bool,
     pub(crate) cull: bool,
 }
 
@@ -78,8 +81,23 @@ impl<'a> Shared<'a> {
                 Some(Bug::EpsilonIgnored) => number(f32::INFINITY),
                 _ => epsilon(settings, &scene.surfels, how),
             },
+            written: match settings.epsilon {
+                Epsilon::World(number) | Epsilon::MedianRadii(number) => number,
+            },
+            in_radii: matches!(settings.epsilon, Epsilon::MedianRadii(_)),
             cull: settings.cull,
         }
+    }
+
+    /// The length of the ray of a pixel up to depth 1.
+    pub(crate) fn ray(&self, pixel: [u32; 2]) -> Number {
+        let one = self.number(1.0);
+        if !self.perspective {
+            return one;
+        }
+        let [x, y] = pixel.map(|side| self.number(side as f32 + 0.5));
+        let (x, y) = ((x - self.cx) / self.fx, (y - self.cy) / self.fy);
+        sum(x * x, y * y, one).sqrt()
     }
 
     pub(crate) fn number(&self, value: f32) -> Number {
@@ -115,7 +133,12 @@ impl<'a> Shared<'a> {
 
 /// Epsilon in world units; the median is the lower one.
 fn epsilon(settings: &SplatSettings, surfels: &Surfels, how: How) -> Number {
-    match settings.epsilon {
+    let meant = match settings.epsilon {
+        Epsilon::World(number) if how.has(Bug::EpsilonOtherUnit) => Epsilon::MedianRadii(number),
+        Epsilon::MedianRadii(number) if how.has(Bug::EpsilonOtherUnit) => Epsilon::World(number),
+        own => own,
+    };
+    match meant {
         Epsilon::World(depth) => how.habit.number(depth),
         Epsilon::MedianRadii(count) => {
             let mut radii = surfels.radius().to_vec();

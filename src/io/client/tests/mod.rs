@@ -1,6 +1,7 @@
 //! Files of every kind, whose numbers were computed by hand.
 
 mod depths;
+mod normals;
 mod pictures;
 mod planes;
 mod refused;

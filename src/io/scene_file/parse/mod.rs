@@ -3,36 +3,69 @@
 //! Each table is read into a struct that mirrors its keys and then converted; a conversion that
 //! fails is reported by serde at the table's place in the text.
 
+/// Implements `Deserialize` through a struct that mirrors the keys.
+macro_rules! through {
+    ($($target:ty: $raw:ty, $convert:expr;)*) => {$(
+        impl<'de> Deserialize<'de> for $target {
+            fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
+                let convert: fn($raw) -> std::result::Result<$target, String> = $convert;
+                <$raw>::deserialize(from).and_then(|raw| convert(raw).map_err(de::Error::custom))
+            }
+        }
+    )*};
+}
+
+mod camera;
 mod exactly;
+mod model;
+mod object;
 mod table;
+mod transform;
 
 use super::{
-    CameraChoice, DEFAULT_COUNT, Draw, EnvironmentChoice, GroupChoice, MethodChoice, Model,
-    OutputSettings, SceneFile, Source, TREE, check_opacity, shapes, stem,
+    CameraChoice, EnvironmentChoice, Geometry, GroupChoice, MOST_FRAMES, MethodChoice, Model,
+    OutputSettings, Places, SceneFile, Source, stem,
 };
 use crate::error::{Error, Result};
 use crate::io::input;
-use crate::scene::light::{MAX_RADIANCE, is_color};
-use crate::scene::transform::{self, Similarity};
-use crate::scene::{Lens, Light, Phong};
-use crate::source::{Shape, plant};
+use crate::scene::{Light, Phong};
+use camera::RawCamera;
 use exactly::Exactly;
-use glam::{DMat3, DVec3, Vec3};
+use model::RawModel;
+use object::Unresolved;
 use serde::de::{self, Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
 
 pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
     let file: File = toml::from_str(text).map_err(|error| input::no_toml(path, text, &error))?;
-    if file.model.is_empty() {
-        let what = "there is no [[model]]: name a file or a shape";
+    for (i, geometry) in file.geometry.iter().enumerate() {
+        if file.geometry[..i].iter().any(|other| other.name == geometry.name) {
+            let what = format!("two [[geometry]] have the name `{}`: rename one", geometry.name);
+            return Err(Error::format(path, what));
+        }
+    }
+    if file.model.is_empty() && file.object.is_empty() {
+        let what = match file.geometry.as_slice() {
+            [] => "there is no [[model]]: name a file or a shape",
+            _ => "there is no [[object]] and no [[model]]: geometries are not drawn by themselves",
+        };
         return Err(Error::format(path, what));
     }
+    let objects = object::resolve(file.object, &file.geometry).map_err(|(at, what)| {
+        Error::format(path, format!("line {}: {what}", input::line(text, at)))
+    })?;
+    let (mut models, mut geometries, mut objects) = (file.model, file.geometry, objects);
     // Joining keeps a path that is absolute.
     let beside = |other: &Path| path.parent().unwrap_or(Path::new("")).join(other);
-    let mut models = file.model;
-    for model in &mut models {
+    for model in models.iter_mut().chain(geometries.iter_mut().map(|geometry| &mut geometry.model))
+    {
         if let Source::File { path: model, .. } = &mut model.source {
             *model = beside(model);
+        }
+    }
+    for object in &mut objects {
+        if let Places::Table { path: table, .. } = &mut object.places {
+            *table = beside(table);
         }
     }
     let mut environment = file.environment;
@@ -42,6 +75,10 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
     Ok(SceneFile {
         name: stem(path),
         models,
+        geometries,
+        objects,
+        frames: file.sequence.0,
+        frame: 0,
         camera: file.camera,
         lights: file.light.unwrap_or_else(|| vec![Light::DEFAULT]),
         material: file.material,
@@ -58,6 +95,12 @@ struct File {
     #[serde(default)]
     model: Vec<Model>,
     #[serde(default)]
+    geometry: Vec<Geometry>,
+    #[serde(default)]
+    object: Vec<Unresolved>,
+    #[serde(default)]
+    sequence: Sequence,
+    #[serde(default)]
     camera: CameraChoice,
     light: Option<Vec<Light>>,
     #[serde(default)]
@@ -71,200 +114,37 @@ struct File {
     output: OutputSettings,
 }
 
-/// Implements `Deserialize` through a struct that mirrors the keys.
-macro_rules! through {
-    ($($target:ty: $raw:ty, $convert:expr;)*) => {$(
-        impl<'de> Deserialize<'de> for $target {
-            fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
-                let convert: fn($raw) -> std::result::Result<$target, String> = $convert;
-                <$raw>::deserialize(from).and_then(|raw| convert(raw).map_err(de::Error::custom))
-            }
-        }
-    )*};
-}
-
 through! {
     Model: RawModel, RawModel::model;
+    Geometry: RawModel, RawModel::geometry;
+    Sequence: RawSequence, RawSequence::sequence;
     CameraChoice: RawCamera, RawCamera::choice;
     Light: RawLight, RawLight::light;
     Phong: RawMaterial, RawMaterial::material;
     EnvironmentChoice: RawEnvironment, RawEnvironment::choice;
 }
 
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawModel {
-    file: Option<PathBuf>,
-    radius: Option<f32>,
-    draw: Option<String>,
-    split: Option<Exactly<f64, 4>>,
-    shape: Option<String>,
-    square: Option<f32>,
-    gap: Option<f32>,
-    step: Option<f32>,
-    thickness: Option<f32>,
-    count: Option<usize>,
-    leaves: Option<usize>,
-    seed: Option<u64>,
-    color: Option<Exactly<f32, 3>>,
-    opacity: Option<f32>,
-    #[serde(default)]
-    transform: RawTransform,
-}
+/// How many frames there are.
+struct Sequence(u32);
 
-impl RawModel {
-    fn model(mut self) -> std::result::Result<Model, String> {
-        let source = self.source()?;
-        let draw = Draw::choose(self.draw.as_deref(), self.split.map(|split| split.0), &source)?;
-        let without = matches!(draw, Draw::Polygons | Draw::Facets);
-        if without && matches!(source, Source::File { radius: Some(_), .. }) {
-            return Err(format!("`radius` means nothing to {}: remove it", draw.word()));
-        }
-        if let Some(key) = self.left() {
-            let of = match &source {
-                Source::File { .. } => "a file",
-                Source::Shape { shape, .. } => shape.name(),
-                Source::Tree { .. } => TREE,
-            };
-            return Err(format!("`{key}` means nothing to {of}: remove it"));
-        }
-        let color = self.color.map(|color| Vec3::from_array(color.0));
-        if !color.is_none_or(is_color) {
-            return Err(format!("color must be three numbers in [0, {MAX_RADIANCE}]"));
-        }
-        if let Some(opacity) = self.opacity {
-            check_opacity(opacity).map_err(|error| error.to_string())?;
-        }
-        let (transform, opacity) = (self.transform.similarity()?, self.opacity);
-        Ok(Model { source, draw, transform, color, opacity })
-    }
-
-    /// The source; takes every key that it uses.
-    fn source(&mut self) -> std::result::Result<Source, String> {
-        match (self.file.take(), self.shape.take()) {
-            (Some(path), None) => Ok(Source::File { path, radius: self.radius.take() }),
-            (None, Some(name)) if name == TREE => {
-                let leaves = self.leaves.take().unwrap_or(plant::LEAVES);
-                Ok(Source::Tree { leaves, seed: self.seed.take().unwrap_or(0) })
-            }
-            (None, Some(name)) => {
-                let shape = Shape::by_name(&name)
-                    .ok_or_else(|| format!("shape `{name}`; give one of {}", shapes()))?;
-                let shape = self.parameters(shape);
-                let count = self.count.take().unwrap_or(DEFAULT_COUNT);
-                Ok(Source::Shape { shape, count, seed: self.seed.take().unwrap_or(0) })
-            }
-            _ => Err("a model is either a `file` or a `shape`".into()),
-        }
-    }
-
-    /// A key that was given and that the source has not taken.
-    fn left(&self) -> Option<&'static str> {
-        let keys = [
-            ("radius", self.radius.is_some()),
-            ("square", self.square.is_some()),
-            ("gap", self.gap.is_some()),
-            ("step", self.step.is_some()),
-            ("thickness", self.thickness.is_some()),
-            ("count", self.count.is_some()),
-            ("leaves", self.leaves.is_some()),
-            ("seed", self.seed.is_some()),
-        ];
-        keys.iter().find(|(_, is_left)| *is_left).map(|(key, _)| *key)
-    }
-
-    /// The shape with the parameters that were given for it.
-    fn parameters(&mut self, mut shape: Shape) -> Shape {
-        let given = |parameter: &mut f32, key: &mut Option<f32>| {
-            *parameter = key.take().unwrap_or(*parameter);
-        };
-        match &mut shape {
-            Shape::Sphere | Shape::Torus | Shape::Cluster => {}
-            Shape::Checkerboard { square } => given(square, &mut self.square),
-            Shape::Sheets { gap } => given(gap, &mut self.gap),
-            Shape::Staircase { step, thickness } => {
-                given(step, &mut self.step);
-                given(thickness, &mut self.thickness);
-            }
-        }
-        shape
-    }
-}
-
-#[derive(serde::Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-struct RawTransform {
-    scale: Option<f64>,
-    rotate: Option<RawRotation>,
-    translate: Option<Exactly<f64, 3>>,
-}
-
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawRotation {
-    axis: Option<Exactly<f64, 3>>,
-    degrees: Option<f64>,
-    matrix: Option<Exactly<Exactly<f64, 3>, 3>>,
-}
-
-impl RawTransform {
-    fn similarity(self) -> std::result::Result<Similarity, String> {
-        let rotation = match self.rotate {
-            None => DMat3::IDENTITY,
-            Some(RawRotation { axis: Some(axis), degrees: Some(degrees), matrix: None }) => {
-                let axis = DVec3::from_array(axis.0);
-                if !(axis.length() > 0.0 && axis.is_finite() && degrees.is_finite()) {
-                    return Err("rotate: axis must not be 0, nor any number infinite".into());
-                }
-                transform::rotation(axis, degrees)
-            }
-            Some(RawRotation { axis: None, degrees: None, matrix: Some(rows) }) => {
-                DMat3::from_cols_array_2d(&rows.0.map(|row| row.0)).transpose()
-            }
-            Some(_) => return Err("rotate: give axis and degrees, or a matrix".into()),
-        };
-        let similarity = Similarity {
-            rotation,
-            scale: self.scale.unwrap_or(1.0),
-            translation: self.translate.map_or(DVec3::ZERO, |by| by.0.into()),
-        };
-        similarity.check().map_err(|error| error.to_string())?;
-        Ok(similarity)
+impl Default for Sequence {
+    fn default() -> Self {
+        Self(1)
     }
 }
 
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawCamera {
-    size: Option<Exactly<u32, 2>>,
-    eye: Option<Exactly<f64, 3>>,
-    target: Option<Exactly<f64, 3>>,
-    up: Option<Exactly<f64, 3>>,
-    fov: Option<f64>,
-    focal: Option<f64>,
-    ortho: Option<f64>,
+struct RawSequence {
+    frames: u32,
 }
 
-impl RawCamera {
-    fn choice(self) -> std::result::Result<CameraChoice, String> {
-        let lenses = [
-            self.fov.map(Lens::FieldOfView),
-            self.focal.map(Lens::Focal),
-            self.ortho.map(Lens::Orthographic),
-        ];
-        let mut lenses = lenses.into_iter().flatten();
-        let lens = lenses.next();
-        if lenses.next().is_some() {
-            return Err("camera: give one of fov, focal and ortho".into());
+impl RawSequence {
+    fn sequence(self) -> std::result::Result<Sequence, String> {
+        if (1..=MOST_FRAMES).contains(&self.frames) {
+            return Ok(Sequence(self.frames));
         }
-        let vector = |v: Option<Exactly<f64, 3>>| v.map(|v| DVec3::from_array(v.0));
-        Ok(CameraChoice {
-            size: self.size.map(|size| size.0),
-            eye: vector(self.eye),
-            target: vector(self.target),
-            up: vector(self.up),
-            lens,
-        })
+        Err(format!("a sequence of {} frames; give 1 to {MOST_FRAMES}", self.frames))
     }
 }
 

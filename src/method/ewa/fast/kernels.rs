@@ -8,16 +8,26 @@ use crate::splat::{Footprint, Shared};
 
 impl Tile {
     /// Visibility splatting.
-    pub(super) fn visibility(&mut self, shared: &Shared<f32>) {
+    pub(in crate::method) fn visibility(&mut self, shared: &Shared<f32>) {
         if shared.ray_cast {
-            visibility::<true>(self, shared);
+            visibility::<true, false>(self, shared);
         } else {
-            visibility::<false>(self, shared);
+            visibility::<false, false>(self, shared);
+        }
+    }
+
+    /// Visibility splatting over what another pass has left: of equally near fragments the one of the
+    /// lower surfel stays.
+    pub(in crate::method) fn visibility_over(&mut self, shared: &Shared<f32>) {
+        if shared.ray_cast {
+            visibility::<true, true>(self, shared);
+        } else {
+            visibility::<false, true>(self, shared);
         }
     }
 
     /// Attribute splatting.
-    pub(super) fn attributes(&mut self, shared: &Shared<f32>) {
+    pub(in crate::method) fn attributes(&mut self, shared: &Shared<f32>) {
         match (shared.ray_cast, self.normal, self.color) {
             (false, false, false) => attributes::<false, false, false>(self, shared),
             (false, false, true) => attributes::<false, false, true>(self, shared),
@@ -32,13 +42,16 @@ impl Tile {
 }
 
 vectorized!(
-    fn visibility<const RAY_CAST: bool>(tile: &mut Tile, shared: &Shared<f32>) {
+    fn visibility<const RAY_CAST: bool, const OVER: bool>(tile: &mut Tile, shared: &Shared<f32>) {
         let shared = *shared;
         for splat in &tile.splats {
             each_block::<RAY_CAST>(splat, &tile.grid, &shared, |block, q, w| {
                 let block = &mut tile.blocks[block];
                 let inside = inside(q, w, shared.limit);
-                let nearer = mask(|i| inside[i] > block.nearest[i]);
+                let nearer = mask(|i| {
+                    let lower = OVER & (splat.surfel < block.id[i]);
+                    (inside[i] > block.nearest[i]) | (lower & (inside[i] >= block.nearest[i]))
+                });
                 block.nearest = select(&nearer, &inside, &block.nearest);
                 block.id = select_u32(&nearer, &[splat.surfel; LANES], &block.id);
             });

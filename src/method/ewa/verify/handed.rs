@@ -5,7 +5,7 @@ use crate::method::ewa::planes;
 use crate::method::resolved;
 use crate::method::stage::PlaneRow;
 use crate::splat::record::SplatRecord;
-use crate::verify::client::{Client, Storage, Stored, Ties};
+use crate::verify::client::{Band, Client, Storage, Stored, Ties};
 
 /// The planes of a client, each if it is there.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +16,7 @@ pub(in crate::method) struct Handed<'a> {
     pub(in crate::method) depth: Option<Stored<'a, f64>>,
     pub(in crate::method) id: Option<Stored<'a, u32>>,
     pub(in crate::method) ties: Ties,
+    pub(in crate::method) band: Band,
     /// The sums of the attribute pass; its weight may be the picture's.
     pub(in crate::method) weight: Option<Stored<'a, f64>>,
     pub(in crate::method) normal_sum: Option<Stored<'a, [f64; 3]>>,
@@ -77,6 +78,7 @@ impl<'a> Handed<'a> {
             depth,
             id: own.or(other),
             ties: client.ties,
+            band: client.band,
             weight,
             normal_sum: client.triple(&rows.normal),
             color_sum: client.triple(&rows.color),

@@ -36,6 +36,7 @@
 //! ball's radius and of what its format may lose: up to 1 is right. The error of a certificate that
 //! fails is the distance of the decision that had to be otherwise; of an id or a count it is +inf.
 
+mod band;
 pub(in crate::method) mod certificate;
 pub(in crate::method) mod handed;
 pub(in crate::method) mod pixel;
@@ -55,6 +56,7 @@ use crate::scene::Surfels;
 use crate::verify::client::Client;
 use crate::verify::shift::Told;
 use crate::verify::verdict::{Check, Doubt, Verdict};
+use band::Bands;
 use handed::Handed;
 use pixel::PixelJudge;
 use sums::Continuations;
@@ -69,12 +71,12 @@ pub(super) fn verify<P: Profile>(
 ) -> Verdict {
     let handed = Handed::new(client);
     let judge = Judge::<P>::new(job, settings, &handed);
-    let mut verdict =
+    let verdict =
         judged::verdict(job, handed.stages(), budget, |tile, marks| judge.judge(tile, marks));
-    if let Some(records) = &client.records {
-        verdict.stages.insert(0, records::judge::<P>(job, settings, records));
+    match &client.records {
+        Some(records) => verdict.after(records::judge::<P>(job, settings, records)),
+        None => verdict,
     }
-    verdict
 }
 
 /// Everything that is judged at one pixel.
@@ -95,6 +97,7 @@ struct Judge<'a, P: Profile> {
     surfels: &'a Surfels,
     handed: &'a Handed<'a>,
     splats: SwiftSplats<P>,
+    bands: Bands<'a, P>,
     pixels: PixelJudge<'a, P>,
 }
 
@@ -104,15 +107,18 @@ impl<'a, P: Profile> Judge<'a, P> {
             Some(records) => records::project(job, settings, records),
             None => swift::project(job, settings),
         };
-        Self { surfels: &job.scene.surfels, handed, splats, pixels: PixelJudge::new(job, handed) }
+        let bands = Bands::new(job, handed.band, splats.epsilon);
+        let pixels = PixelJudge::new(job, handed);
+        Self { surfels: &job.scene.surfels, handed, splats, bands, pixels }
     }
 
     /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
-        let Self { surfels, handed, splats, pixels } = self;
+        let Self { surfels, handed, splats, bands, pixels } = self;
         let [first, rest @ ..] = marks;
         let nearest = certificate::judge(splats, (handed, surfels), (tile, &rect), first);
-        let sums = sums::continuations(splats, surfels, &nearest, (tile, &rect), &mut rest[0]);
+        let limits = bands.moved(&nearest, &rect);
+        let sums = sums::continuations(splats, surfels, &limits, (tile, &rect), &mut rest[0]);
         let (mut covered, mut told) = (0, Told::default());
         for (pixel, at) in counted(rect) {
             let taken = pixels.judge((pixel, at), &nearest[pixel], &sums[pixel], rest);

@@ -138,7 +138,7 @@ fn what_has_no_bounds_is_not_right() {
         let client = Client::from(&frame).stored("weight", Storage::Steps(16.0));
         let verdict = session.verify(camera, &client, 0.5).unwrap();
         assert_eq!(verdict.first_wrong().map(|stage| stage.stage), None);
-        assert!(verdict.unbounded() > verdict.covered / 2);
+        assert!(verdict.unbounded > verdict.covered / 2);
         assert_eq!(verdict.outcome(), Outcome::Undecidable);
     });
 }

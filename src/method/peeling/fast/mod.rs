@@ -62,7 +62,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Pictu
     left.extend(planes::pixel_planes(depth, id, layers));
     clock.lap("blending");
     let (frame, timings) = (job.frame(left), clock.into_laps());
-    Picture { frame, tally: peeling.prepared.tally, timings }
+    Picture { frame, tally: peeling.prepared.tally, timings, seen: None }
 }
 
 impl<'a> FastPeeling<'a> {

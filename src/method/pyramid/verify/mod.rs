@@ -29,11 +29,14 @@ mod planes;
 mod tests;
 
 use super::Settings;
+use super::planes::{PULL, PUSH};
 use crate::error::Result;
 use crate::frame::pyramid;
 use crate::frame::raster::Snap;
 use crate::method::algorithm::Job;
+use crate::method::checks::missing;
 use crate::method::judged::{Found, Watch, counted};
+use crate::method::projection::Has;
 use crate::method::projection::verify::{self as samples, SamplePlanes};
 use crate::number::ball::Profile;
 use crate::verify::client::Client;
@@ -54,9 +57,13 @@ pub(super) fn verify<P: Profile>(
     budget: f64,
 ) -> Verdict {
     let (found, covered) = judge::<P>(job, settings, client, Watch::All);
-    let stages = found.judged(job);
+    let mut stages = found.judged(job);
+    let last = pyramid::sizes(job.camera.width, job.camera.height).len() - 1;
+    let has = Has::of(job.scene);
+    stages[1].missing = missing(client, &PULL, 1..last + 1, has);
+    stages[2].missing = missing(client, &PUSH, 0..last, has);
     let undecided = [1, 2].map(|i: usize| stages[i].doubtful(ANY)).iter().sum();
-    Verdict { stages, covered, undecided, budget, shifts: Shifts::default() }
+    Verdict::new(stages, [covered, undecided], budget, Shifts::default())
 }
 
 /// Everything that is judged at one pixel: the cells of all levels that have its place, and the pixel.

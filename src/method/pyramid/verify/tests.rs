@@ -1,4 +1,4 @@
-use crate::method::Method;
+use crate::frame::{Exec, Frame};
 use crate::method::projection::SampleKind;
 use crate::method::projection::tests::lit;
 use crate::method::pyramid::tests::indexed;
@@ -7,9 +7,11 @@ use crate::method::tests::verdicts::{
     Slip, assert_found, assert_found_where, assert_right, assert_right_in_halves,
 };
 use crate::method::tests::{scene, surfels};
+use crate::method::{Method, Session};
 use crate::scene::indexed::{Indexed, Vertices};
 use crate::scene::{Camera, Lens, Primitives, Scene};
 use crate::source::Shape;
+use crate::verify::client::Client;
 
 fn camera(shape: Shape, size: [u32; 2], lens: Option<Lens>) -> Camera {
     let lens = lens.unwrap_or(shape.default_lens());
@@ -152,4 +154,34 @@ fn a_client_that_keeps_its_planes_in_halves_is_right() {
         &camera(Shape::Sphere, [37, 29], None),
         Method::Pyramid(Settings::default()),
     );
+}
+
+#[test]
+fn levels_that_are_not_handed_in_are_said() {
+    let scene = Scene::lit("", surfels(300, 0.2, true, 3));
+    let (camera, exec) = (camera(Shape::Sphere, [45, 37], None), Exec::sequential());
+    let session = Session::new(&scene, Method::Pyramid(Settings::default()), &exec).unwrap();
+    let whole = session.define::<f32>(&camera, true).unwrap().frame;
+    let missing = |without: &dyn Fn(&str) -> bool| {
+        let planes = whole.planes.iter().filter(|plane| !without(&plane.name)).cloned();
+        let frame = Frame { planes: planes.collect(), ..whole };
+        let verdict = session.verify(&camera, &Client::from(&frame), 1.0).unwrap();
+        assert_eq!(verdict.first_wrong().map(|stage| stage.stage), None);
+        let stages = verdict.stages.into_iter().map(|stage| (stage.stage, stage.missing));
+        stages.collect::<Vec<_>>()
+    };
+    let none = || Vec::<String>::new();
+    let all = |pull, push| {
+        vec![("projection", none()), ("pull", pull), ("push", push), ("shading", none())]
+    };
+    assert_eq!(missing(&|_| false), all(none(), none()));
+    // Of six levels the last two of the pull, and one plane.
+    let last = |name: &str| name.starts_with("pull05") || name.starts_with("pull06");
+    let found = missing(&|name| last(name) || name == "pull02.normal");
+    let expected = ["pull02.normal", "level 5", "level 6"].map(str::to_owned).to_vec();
+    assert_eq!(found, all(expected, none()));
+    let found = missing(&|name| name.starts_with("push00"));
+    assert_eq!(found, all(none(), vec!["level 0".into()]));
+    // A phase of which nothing is there is not judged.
+    assert_eq!(missing(&|name| name.starts_with("pull")), all(none(), none()));
 }

@@ -27,12 +27,15 @@ mod planes;
 #[cfg(test)]
 mod tests;
 
+use super::planes::LEVELS;
 use super::{Settings, propagation};
 use crate::error::Result;
 use crate::frame::pyramid;
 use crate::frame::raster::Snap;
 use crate::method::algorithm::Job;
+use crate::method::checks::missing;
 use crate::method::judged::{Found, Watch, counted};
+use crate::method::projection::Has;
 use crate::method::projection::verify::{self as samples, SamplePlanes};
 use crate::number::ball::Profile;
 use crate::verify::client::Client;
@@ -53,9 +56,11 @@ pub(super) fn verify<P: Profile>(
     budget: f64,
 ) -> Verdict {
     let (found, covered) = judge::<P>(job, settings, client, Watch::All);
-    let stages = found.judged(job);
+    let mut stages = found.judged(job);
+    stages[1].missing =
+        missing(client, &LEVELS, 1..levels(job, settings).len(), Has::of(job.scene));
     let undecided = stages[2].doubtful(ANY);
-    Verdict { stages, covered, undecided, budget, shifts: Shifts::default() }
+    Verdict::new(stages, [covered, undecided], budget, Shifts::default())
 }
 
 /// Everything that is judged at one pixel: the cells of all levels that have its place, and the pixel.
@@ -68,6 +73,13 @@ pub(super) fn checks<P: Profile>(
     Ok(judge::<P>(job, settings, client, Watch::one(job, pixel)?).0.checks())
 }
 
+/// The sizes of the levels that there are.
+fn levels(job: &Job<'_>, settings: &Settings) -> Vec<[u32; 2]> {
+    let mut sizes = pyramid::sizes(job.camera.width, job.camera.height);
+    sizes.truncate(propagation::top(settings, &sizes) + 1);
+    sizes
+}
+
 /// What is found of all stages, and how many pixels may be covered.
 fn judge<P: Profile>(
     job: &Job<'_>,
@@ -75,8 +87,7 @@ fn judge<P: Profile>(
     client: &Client,
     watch: Watch,
 ) -> (Found<3>, u64) {
-    let mut sizes = pyramid::sizes(job.camera.width, job.camera.height);
-    sizes.truncate(propagation::top(settings, &sizes) + 1);
+    let sizes = levels(job, settings);
     let finest = SamplePlanes::new(client, job.scene);
     let coarser: Vec<_> = (1..sizes.len()).map(|level| CenterPlanes::new(client, level)).collect();
     let projection = samples::judge::<P>(job, settings.cull, Snap::default(), &finest, watch);

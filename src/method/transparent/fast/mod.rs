@@ -59,7 +59,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     left.extend(planes::nearest_planes(depth, id, layers));
     clock.lap("averaging");
     let (frame, timings) = (job.frame(left), clock.into_laps());
-    Ok(Picture { frame, tally: blending.prepared.tally, timings })
+    Ok(Picture { frame, tally: blending.prepared.tally, timings, seen: None })
 }
 
 impl FastBlending {

@@ -67,5 +67,5 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     left.extend(planes::nearest_planes(depth, normal, weight, id));
     clock.lap("compositing");
     let (frame, timings) = (job.frame(left), clock.into_laps());
-    Ok(Picture { frame, tally: nearest.prepared.tally, timings })
+    Ok(Picture { frame, tally: nearest.prepared.tally, timings, seen: None })
 }

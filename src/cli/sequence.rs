@@ -1,0 +1,121 @@
+//! `splatref render --frames`: a picture for each frame of a sequence.
+
+use super::render::{Args, check_state, keep, make_folder, place, threads, write};
+use super::{Ended, Ending, draw, progress, report};
+use splatref::Result;
+use splatref::frame::Exec;
+use splatref::index::seen::Seen;
+use splatref::io::provenance;
+use splatref::io::scene_file::{OutputSettings, SceneFile};
+use splatref::method::Session;
+use splatref::scene::Camera;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// `0..60`.
+pub(super) fn frames(text: &str) -> std::result::Result<Range<u32>, String> {
+    let ends = text.split_once("..").and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+    match ends {
+        Some((start, end)) if start < end => Ok(start..end),
+        Some((start, end)) => Err(format!(
+            "no frame is in {start}..{end}; the end is not included: give the first and one after the \
+             last"
+        )),
+        None => Err("give the first frame and one after the last, such as 0..60".into()),
+    }
+}
+
+/// Renders the frames of a scene file, which stands in the first of them.
+pub(super) fn render(args: &Args, file: &SceneFile, frames: Range<u32>, exec: &Exec) -> Ended {
+    let start = Instant::now();
+    let place = |frame| place(args, file, Some(frame));
+    let places = frames.clone().map(place).collect::<Result<Vec<_>>>()?;
+    let mut ready = draw::ready(file, exec)?;
+    check_state(args, &ready, file)?;
+    let mut seen = draw::seen(&ready, &args.options)?;
+    let mut times = Times::default();
+    times.add("loading", start.elapsed());
+    report::scene(&ready.loaded);
+    report::camera(&ready.camera);
+    report::picture(&ready.camera, file.output);
+    report::method(&ready.method, &ready.loaded.scene, &ready.camera);
+    make_folder(args)?;
+
+    let steps = progress::Steps::new("preparing");
+    let last = frames.end - 1;
+    let all: Vec<_> = frames.zip(&places).collect();
+    let show = |done: usize| steps.show("rendering", done as u64, all.len() as u64);
+    let output = file.output;
+    if ready.is_still() {
+        let mut session = times.of("preparing", || ready.session(exec, &|_, _, _| ()))?.0;
+        for (done, (frame, path)) in all.iter().enumerate() {
+            show(done);
+            session.resume(seen);
+            seen = one(&mut session, &ready.camera_at(*frame)?, path, (output, exec), &mut times)?;
+        }
+    } else {
+        for (done, (frame, path)) in all.iter().enumerate() {
+            show(done);
+            ready = times.of("placing", || ready.at(*frame, exec))?;
+            let mut session = times.of("preparing", || ready.session(exec, &|_, _, _| ()))?.0;
+            session.resume(seen);
+            seen = one(&mut session, &ready.camera, path, (output, exec), &mut times)?;
+        }
+    }
+    drop(steps);
+    keep(args, &ready, last, seen.as_ref())?;
+
+    report::line("time", format!("{}, sums over {} frames", threads(exec), places.len()));
+    times.0.into_iter().for_each(|(what, time)| report::time(what, vec![time]));
+    report::time("total", vec![start.elapsed()]);
+    files(&places);
+    Ok(Ending::Good)
+}
+
+/// Draws and writes one frame; what it saw.
+fn one(
+    session: &mut Session<'_>,
+    camera: &Camera,
+    path: &Path,
+    (output, exec): (OutputSettings, &Exec),
+    times: &mut Times,
+) -> Result<Option<Seen>> {
+    let (scene, method, groups) = (session.scene(), *session.method(), session.groups().cloned());
+    let drawing = draw::draw(session, camera, output)?;
+    drawing.timings.iter().for_each(|(stage, time)| times.add(stage, *time));
+    let text = || provenance::text(scene, groups.as_ref(), camera, &method, output.number);
+    times.of("writing", || write(path, &drawing.frame, text, output, exec))?;
+    Ok(drawing.seen.clone())
+}
+
+/// The first and the last of the files.
+fn files(places: &[PathBuf]) {
+    let [Some(first), Some(last)] = [places.first(), places.last()] else { return };
+    for (label, end) in [("files", "exr"), ("", "png")] {
+        let [first, last] = [first, last].map(|path| path.with_extension(end));
+        let (first, last) = (first.display(), last.display());
+        let all = if places.len() == 1 { first.to_string() } else { format!("{first} to {last}") };
+        report::line(label, all);
+    }
+}
+
+/// How long each step took in all frames, in the order in which steps came first.
+#[derive(Default)]
+struct Times(Vec<(&'static str, Duration)>);
+
+impl Times {
+    fn add(&mut self, what: &'static str, time: Duration) {
+        match self.0.iter_mut().find(|(known, _)| *known == what) {
+            Some((_, sum)) => *sum += time,
+            None => self.0.push((what, time)),
+        }
+    }
+
+    fn of<T>(&mut self, what: &'static str, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let done = work();
+        self.add(what, start.elapsed());
+        done
+    }
+}

@@ -1,0 +1,139 @@
+//! Objects of a scene file, and where they are.
+
+use super::{Model, SceneFile, places};
+use crate::error::{Error, Result};
+use crate::memory;
+use crate::scene::{Motion, Object, Similarity};
+use crate::source::Scatter;
+use glam::Vec3;
+use std::path::PathBuf;
+
+/// The most frames of a sequence.
+pub const MOST_FRAMES: u32 = 1_000_000;
+
+/// What objects are copies of: a model that is not drawn by itself. Its transform, its colour and its
+/// opacity are the geometry's own, in every object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Geometry {
+    /// What it is called.
+    pub name: String,
+    /// Where it comes from.
+    pub model: Model,
+}
+
+/// An object of a geometry, or many.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjectChoice {
+    /// What it is called. If absent the name of the geometry, a point, and how many objects of the
+    /// geometry come before it. Of a table or a scatter: this name, a point, and the number of the
+    /// row or the place, from 0.
+    pub name: Option<String>,
+    /// The geometry, by its place in [`SceneFile::geometries`].
+    pub geometry: usize,
+    /// Linear RGB, in place of the geometry's.
+    pub color: Option<Vec3>,
+    /// Where it is.
+    pub places: Places,
+}
+
+/// Where objects are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Places {
+    /// One object, which may move.
+    One(Motion),
+    /// An object for each row of a [table](mod@places).
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// What comes after the place of each row, see [`Similarity::then`].
+        transform: Similarity,
+    },
+    /// Objects by chance.
+    Scatter {
+        /// Where.
+        scatter: Scatter,
+        /// What comes after each place, see [`Similarity::then`].
+        transform: Similarity,
+    },
+}
+
+/// Bytes of an object: itself, its name and its key, its place in two frames, its sphere, its ids.
+const OF_AN_OBJECT: u64 = 768;
+
+impl SceneFile {
+    /// The objects: of each model one, then those that the file lists; `geometries` are numbered in
+    /// the same way.
+    ///
+    /// # Errors
+    /// As [`places::read`]; [`Error::Invalid`] if there are 2^32 or more, or if the process may not
+    /// hold them.
+    pub(super) fn objects(&self) -> Result<Vec<Object>> {
+        let tables = self.objects.iter().map(|object| match &object.places {
+            Places::Table { path, .. } => places::read(path).map(Some),
+            Places::One(_) | Places::Scatter { .. } => Ok(None),
+        });
+        let tables = tables.collect::<Result<Vec<_>>>()?;
+        let counts = self.objects.iter().zip(&tables).map(|(object, table)| match &object.places {
+            Places::One(_) => 1,
+            Places::Table { .. } => table.as_ref().map_or(0, Vec::len) as u64,
+            Places::Scatter { scatter, .. } => u64::from(scatter.count),
+        });
+        let total = counts.sum::<u64>() + self.models.len() as u64;
+        if total > u64::from(u32::MAX) {
+            return Err(Error::Invalid(format!("{total} objects; {} are the most", u32::MAX)));
+        }
+        memory::ask(total * OF_AN_OBJECT, || format!("{total} objects"))?;
+        let mut all = Vec::with_capacity(total as usize);
+        all.extend(self.models.iter().enumerate().map(|(geometry, model)| Object {
+            name: model.source.name(),
+            geometry,
+            motion: Motion::still(Similarity::IDENTITY),
+            color: None,
+        }));
+        let mut before = vec![0_u32; self.geometries.len()];
+        for (object, table) in self.objects.iter().zip(tables) {
+            self.add(object, table, &mut before[object.geometry], &mut all)?;
+        }
+        Ok(all)
+    }
+
+    /// Appends an object, or all of a table or of a scatter. `before` counts those of the geometry.
+    fn add(
+        &self,
+        object: &ObjectChoice,
+        table: Option<Vec<places::Row>>,
+        before: &mut u32,
+        all: &mut Vec<Object>,
+    ) -> Result<()> {
+        let ObjectChoice { name, geometry, color, places } = object;
+        let of = &self.geometries[*geometry].name;
+        let mut add = |number: u32, motion, color| {
+            let name = match (name, places) {
+                (None, _) => format!("{of}.{before}"),
+                (Some(name), Places::One(_)) => name.clone(),
+                (Some(name), _) => format!("{name}.{number}"),
+            };
+            *before += 1;
+            all.push(Object { name, geometry: self.models.len() + geometry, motion, color });
+        };
+        match places {
+            Places::One(motion) => add(0, motion.clone(), *color),
+            Places::Table { path, transform } => {
+                for (number, row) in (0..).zip(table.unwrap_or_default()) {
+                    if row.color.is_some() && color.is_some() {
+                        let what = "the rows have colours, and the object has one: remove one";
+                        return Err(Error::format(path, what));
+                    }
+                    let motion = Motion::still(row.place.then(transform));
+                    add(number, motion, row.color.or(*color));
+                }
+            }
+            Places::Scatter { scatter, transform } => {
+                for i in 0..scatter.count {
+                    add(i, Motion::still(scatter.place(i).then(transform)), *color);
+                }
+            }
+        }
+        Ok(())
+    }
+}

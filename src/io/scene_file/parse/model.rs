@@ -1,0 +1,122 @@
+//! Models and geometries.
+
+use super::exactly::Exactly;
+use super::transform::RawTransform;
+use crate::io::scene_file::{DEFAULT_COUNT, Draw, Geometry, Model, Source, TREE};
+use crate::io::scene_file::{check_opacity, shapes};
+use crate::scene::light::{MAX_RADIANCE, is_color};
+use crate::source::{Shape, plant};
+use glam::Vec3;
+use std::path::PathBuf;
+
+/// A model, or a geometry.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawModel {
+    name: Option<String>,
+    file: Option<PathBuf>,
+    radius: Option<f32>,
+    draw: Option<String>,
+    split: Option<Exactly<f64, 4>>,
+    shape: Option<String>,
+    square: Option<f32>,
+    gap: Option<f32>,
+    step: Option<f32>,
+    thickness: Option<f32>,
+    count: Option<usize>,
+    leaves: Option<usize>,
+    seed: Option<u64>,
+    color: Option<Exactly<f32, 3>>,
+    opacity: Option<f32>,
+    #[serde(default)]
+    transform: RawTransform,
+}
+
+impl RawModel {
+    pub(super) fn geometry(mut self) -> Result<Geometry, String> {
+        let name = self.name.take().ok_or("a geometry needs a `name`, for objects to be of it")?;
+        Ok(Geometry { name, model: self.model()? })
+    }
+
+    pub(super) fn model(mut self) -> Result<Model, String> {
+        let source = self.source()?;
+        let draw = Draw::choose(self.draw.as_deref(), self.split.map(|split| split.0), &source)?;
+        let without = matches!(draw, Draw::Polygons | Draw::Facets);
+        if without && matches!(source, Source::File { radius: Some(_), .. }) {
+            return Err(format!("`radius` means nothing to {}: remove it", draw.word()));
+        }
+        if let Some(key) = self.left() {
+            let of = match &source {
+                Source::File { .. } => "a file",
+                Source::Shape { shape, .. } => shape.name(),
+                Source::Tree { .. } => TREE,
+            };
+            return Err(format!("`{key}` means nothing to {of}: remove it"));
+        }
+        let color = self.color.map(color).transpose()?;
+        if let Some(opacity) = self.opacity {
+            check_opacity(opacity).map_err(|error| error.to_string())?;
+        }
+        let (transform, opacity) = (self.transform.similarity()?, self.opacity);
+        Ok(Model { source, draw, transform, color, opacity })
+    }
+
+    /// The source; takes every key that it uses.
+    fn source(&mut self) -> Result<Source, String> {
+        match (self.file.take(), self.shape.take()) {
+            (Some(path), None) => Ok(Source::File { path, radius: self.radius.take() }),
+            (None, Some(name)) if name == TREE => {
+                let leaves = self.leaves.take().unwrap_or(plant::LEAVES);
+                Ok(Source::Tree { leaves, seed: self.seed.take().unwrap_or(0) })
+            }
+            (None, Some(name)) => {
+                let shape = Shape::by_name(&name)
+                    .ok_or_else(|| format!("shape `{name}`; give one of {}", shapes()))?;
+                let shape = self.parameters(shape);
+                let count = self.count.take().unwrap_or(DEFAULT_COUNT);
+                Ok(Source::Shape { shape, count, seed: self.seed.take().unwrap_or(0) })
+            }
+            _ => Err("a model is either a `file` or a `shape`".into()),
+        }
+    }
+
+    /// A key that was given and that the source has not taken.
+    fn left(&self) -> Option<&'static str> {
+        let keys = [
+            ("name", self.name.is_some()),
+            ("radius", self.radius.is_some()),
+            ("square", self.square.is_some()),
+            ("gap", self.gap.is_some()),
+            ("step", self.step.is_some()),
+            ("thickness", self.thickness.is_some()),
+            ("count", self.count.is_some()),
+            ("leaves", self.leaves.is_some()),
+            ("seed", self.seed.is_some()),
+        ];
+        keys.iter().find(|(_, is_left)| *is_left).map(|(key, _)| *key)
+    }
+
+    /// The shape with the parameters that were given for it.
+    fn parameters(&mut self, mut shape: Shape) -> Shape {
+        let given = |parameter: &mut f32, key: &mut Option<f32>| {
+            *parameter = key.take().unwrap_or(*parameter);
+        };
+        match &mut shape {
+            Shape::Sphere | Shape::Torus | Shape::Cluster => {}
+            Shape::Checkerboard { square } => given(square, &mut self.square),
+            Shape::Sheets { gap } => given(gap, &mut self.gap),
+            Shape::Staircase { step, thickness } => {
+                given(step, &mut self.step);
+                given(thickness, &mut self.thickness);
+            }
+        }
+        shape
+    }
+}
+
+/// A colour for all of something.
+pub(super) fn color(color: Exactly<f32, 3>) -> Result<Vec3, String> {
+    let color = Vec3::from_array(color.0);
+    let refused = || format!("color must be three numbers in [0, {MAX_RADIANCE}]");
+    is_color(color).then_some(color).ok_or_else(refused)
+}

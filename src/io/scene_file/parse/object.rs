@@ -1,0 +1,160 @@
+//! Objects: what they are of, and where.
+
+use super::exactly::Exactly;
+use super::model::color;
+use super::transform::{RawRotation, RawTransform};
+use crate::io::scene_file::{Geometry, ObjectChoice, Places};
+use crate::scene::{Motion, Similarity};
+use crate::source::Scatter;
+use glam::{DVec3, Vec3};
+use serde::de::{self, Deserialize, Deserializer};
+use std::path::PathBuf;
+use toml::Spanned;
+
+/// Objects of what is named, which may be anything.
+pub(super) struct Unresolved {
+    of: Spanned<String>,
+    name: Option<String>,
+    color: Option<Vec3>,
+    places: Places,
+}
+
+through! {
+    Unresolved: RawObject, RawObject::object;
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawObject {
+    of: Spanned<String>,
+    name: Option<String>,
+    color: Option<Exactly<f32, 3>>,
+    transform: Option<RawTransform>,
+    keys: Option<Vec<RawKey>>,
+    table: Option<PathBuf>,
+    scatter: Option<RawScatter>,
+}
+
+/// Where an object is in a frame.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawKey {
+    frame: u32,
+    scale: Option<f64>,
+    rotate: Option<RawRotation>,
+    translate: Option<Exactly<f64, 3>>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawScatter {
+    count: u64,
+    #[serde(default)]
+    seed: u64,
+    low: Exactly<f64, 3>,
+    high: Exactly<f64, 3>,
+    #[serde(default = "unchanged")]
+    scale: Exactly<f64, 2>,
+    axis: Option<Exactly<f64, 3>>,
+}
+
+fn unchanged() -> Exactly<f64, 2> {
+    Exactly([1.0; 2])
+}
+
+impl RawObject {
+    fn object(self) -> Result<Unresolved, String> {
+        let Self { of, name, color: given, transform, keys, table, scatter } = self;
+        let still = transform.is_some();
+        let transform = transform.map_or(Ok(Similarity::IDENTITY), RawTransform::similarity)?;
+        let places = match (keys, table, scatter) {
+            (None, None, None) => Places::One(Motion::still(transform)),
+            (Some(_), None, None) if still => {
+                let what = "an object has a transform, or keys that say where it is: remove one";
+                return Err(what.into());
+            }
+            (Some(keys), None, None) => {
+                let keys = keys.into_iter().map(RawKey::place).collect::<Result<_, _>>()?;
+                Places::One(Motion::new(keys).map_err(|error| error.to_string())?)
+            }
+            (None, Some(path), None) => Places::Table { path, transform },
+            (None, None, Some(scatter)) => {
+                Places::Scatter { scatter: scatter.scatter()?, transform }
+            }
+            _ => return Err("give one of `keys`, `table` and `scatter`".into()),
+        };
+        Ok(Unresolved { of, name, color: given.map(color).transpose()?, places })
+    }
+}
+
+impl RawKey {
+    fn place(self) -> Result<(u32, Similarity), String> {
+        let Self { frame, scale, rotate, translate } = self;
+        let place = RawTransform { scale, rotate, translate }.similarity();
+        place.map(|place| (frame, place)).map_err(|what| format!("frame {frame}: {what}"))
+    }
+}
+
+impl RawScatter {
+    fn scatter(self) -> Result<Scatter, String> {
+        let count = u32::try_from(self.count).map_err(|_| {
+            format!("a scatter of {} objects; give at most {}", self.count, u32::MAX)
+        })?;
+        let scatter = Scatter {
+            count,
+            seed: self.seed,
+            low: self.low.0.into(),
+            high: self.high.0.into(),
+            scale: self.scale.0,
+            axis: self.axis.map(|axis| DVec3::from_array(axis.0)),
+        };
+        scatter.check().map(|()| scatter).map_err(|error| error.to_string())
+    }
+}
+
+/// The objects with their geometries, or where in the text what is wrong.
+pub(super) fn resolve(
+    objects: Vec<Unresolved>,
+    geometries: &[Geometry],
+) -> Result<Vec<ObjectChoice>, (usize, String)> {
+    let found = objects.iter().map(|object| geometry_of(object, &objects, geometries));
+    let found = found.collect::<Result<Vec<_>, _>>()?;
+    let resolved = objects.into_iter().zip(found).map(|(object, geometry)| {
+        let Unresolved { name, color, places, .. } = object;
+        ObjectChoice { name, geometry, color, places }
+    });
+    Ok(resolved.collect())
+}
+
+/// The geometry that an object is of.
+fn geometry_of(
+    object: &Unresolved,
+    objects: &[Unresolved],
+    geometries: &[Geometry],
+) -> Result<usize, (usize, String)> {
+    let of = object.of.get_ref();
+    if let Some(geometry) = geometries.iter().position(|geometry| geometry.name == *of) {
+        return Ok(geometry);
+    }
+    // It may be the name of an object, whose `of` may be one again.
+    let mut names = vec![of.as_str()];
+    let next = |name: &str| objects.iter().find(|object| object.name.as_deref() == Some(name));
+    let mut cycle = false;
+    while let Some(next) = names.last().and_then(|name| next(name)).filter(|_| !cycle) {
+        cycle = names.contains(&next.of.get_ref().as_str());
+        names.push(next.of.get_ref());
+    }
+    let known: Vec<_> = geometries.iter().map(|geometry| geometry.name.as_str()).collect();
+    let known = match known.as_slice() {
+        [] => "there is none".to_owned(),
+        known => format!("the geometries are {}", known.join(", ")),
+    };
+    let what = if cycle {
+        format!("a cycle of names, {}: an object is of a geometry; {known}", names.join(" of "))
+    } else if names.len() > 1 {
+        format!("`{of}` is an object: an object is of a geometry; {known}")
+    } else {
+        format!("no [[geometry]] has the name `{of}`; {known}")
+    };
+    Err((object.of.span().start, what))
+}

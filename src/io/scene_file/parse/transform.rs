@@ -1,0 +1,47 @@
+//! Places and turns.
+
+use super::exactly::Exactly;
+use crate::scene::transform::{self, Similarity};
+use glam::{DMat3, DVec3};
+
+#[derive(serde::Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawTransform {
+    pub(super) scale: Option<f64>,
+    pub(super) rotate: Option<RawRotation>,
+    pub(super) translate: Option<Exactly<f64, 3>>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawRotation {
+    axis: Option<Exactly<f64, 3>>,
+    degrees: Option<f64>,
+    matrix: Option<Exactly<Exactly<f64, 3>, 3>>,
+}
+
+impl RawTransform {
+    pub(super) fn similarity(self) -> Result<Similarity, String> {
+        let rotation = match self.rotate {
+            None => DMat3::IDENTITY,
+            Some(RawRotation { axis: Some(axis), degrees: Some(degrees), matrix: None }) => {
+                let axis = DVec3::from_array(axis.0);
+                if !(transform::is_axis(axis) && degrees.is_finite()) {
+                    return Err("rotate: axis must not be 0, nor any number infinite".into());
+                }
+                transform::rotation(axis, degrees)
+            }
+            Some(RawRotation { axis: None, degrees: None, matrix: Some(rows) }) => {
+                DMat3::from_cols_array_2d(&rows.0.map(|row| row.0)).transpose()
+            }
+            Some(_) => return Err("rotate: give axis and degrees, or a matrix".into()),
+        };
+        let similarity = Similarity {
+            rotation,
+            scale: self.scale.unwrap_or(1.0),
+            translation: self.translate.map_or(DVec3::ZERO, |by| by.0.into()),
+        };
+        similarity.check().map_err(|error| error.to_string())?;
+        Ok(similarity)
+    }
+}

@@ -1,0 +1,169 @@
+//! What a frame saw as a file, so that the next frame can be drawn without those before it.
+//!
+//! Little-endian, one after the other:
+//!
+//! ```text
+//!   "splatref state 1\n"
+//!   64 hexadecimal digits: the SHA-256 of the scene, of objects in frame 0, see Scene::sha256
+//!   u32  the frame that saw
+//!   u32  m, how many surfels share a flag
+//!   u64  how many objects there are, each: u32 its surfels, u32 how many of them were selected
+//!   the flags of each object, a bit a group, the lowest bit of a u64 first; each object begins with a
+//!     u64
+//! ```
+
+use super::input;
+use super::replace::Pending;
+use crate::error::{Error, Result};
+use crate::index::seen::Seen;
+use crate::scene::objects::Ids;
+use std::io::Write;
+use std::path::Path;
+
+const MAGIC: &[u8] = b"splatref state 1\n";
+const DIGITS: usize = 64;
+
+/// What a frame saw, with its number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct State {
+    /// The frame that saw.
+    pub frame: u32,
+    /// What it saw.
+    pub seen: Seen,
+}
+
+/// Writes a state of a scene to a file beside `path`.
+///
+/// # Errors
+/// As [`Pending::write`].
+pub fn pending(path: &Path, state: &State, scene: &str) -> Result<Pending> {
+    let State { frame, seen } = state;
+    Pending::write(path, |to| {
+        to.write_all(MAGIC)?;
+        to.write_all(scene.as_bytes())?;
+        to.write_all(&frame.to_le_bytes())?;
+        to.write_all(&seen.group().to_le_bytes())?;
+        to.write_all(&(seen.counts().len() as u64).to_le_bytes())?;
+        for (count, selected) in seen.counts().iter().zip(seen.selected()) {
+            to.write_all(&count.to_le_bytes())?;
+            to.write_all(&selected.to_le_bytes())?;
+        }
+        seen.words().iter().try_for_each(|word| to.write_all(&word.to_le_bytes()))
+    })
+}
+
+/// Reads a state of a scene, whose surfels have these ids.
+///
+/// # Errors
+/// [`Error::Io`] if the file cannot be read; [`Error::Format`] if it is no state, or one of another
+/// scene.
+pub fn read(path: &Path, scene: &str, ids: &Ids) -> Result<State> {
+    let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
+    parse(&bytes, scene, ids).map_err(|what| Error::format(path, what))
+}
+
+fn parse(bytes: &[u8], scene: &str, ids: &Ids) -> std::result::Result<State, String> {
+    let rest = bytes.strip_prefix(MAGIC).ok_or("this is no state of splatref")?;
+    let mut rest = Numbers(rest);
+    if rest.take::<DIGITS>()? != scene.as_bytes() {
+        return Err("the state is of another scene".into());
+    }
+    let [frame, group] = [rest.word()?, rest.word()?];
+    let objects = u64::from_le_bytes(rest.take()?);
+    if group == 0 || objects != ids.order().len() as u64 {
+        return Err("the state is of another scene".into());
+    }
+    let mut selected = Vec::new();
+    for object in 0..ids.order().len() as u32 {
+        if rest.word()? != ids.count(object) {
+            return Err("the state is of another scene".into());
+        }
+        selected.push(rest.word()?);
+    }
+    let mut words = Vec::with_capacity(rest.0.len() / 8);
+    while !rest.0.is_empty() {
+        words.push(u64::from_le_bytes(rest.take()?));
+    }
+    let seen = Seen::restored(ids, group, selected, words).ok_or("the state is damaged")?;
+    Ok(State { frame, seen })
+}
+
+/// Bytes that are read from the front.
+struct Numbers<'a>(&'a [u8]);
+
+impl Numbers<'_> {
+    fn take<const N: usize>(&mut self) -> std::result::Result<[u8; N], String> {
+        let (first, rest) = self.0.split_first_chunk::<N>().ok_or("the state ends too early")?;
+        self.0 = rest;
+        Ok(*first)
+    }
+
+    fn word(&mut self) -> std::result::Result<u32, String> {
+        self.take().map(u32::from_le_bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const SCENE: &str = "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef";
+
+    fn ids(counts: &[u32]) -> Ids {
+        Ids::new(counts.to_vec(), |_| String::new()).unwrap()
+    }
+
+    fn file(folder: &Path, counts: &[u32], group: u32) -> (State, Vec<u8>) {
+        let ids = ids(counts);
+        let some = (0..counts[0]).step_by(7).map(|surfel| ids.id(0, surfel));
+        let seen = Seen::of(&ids, group, &some.collect::<Vec<_>>());
+        let (state, path) = (State { frame: 56, seen }, folder.join("s.bin"));
+        pending(&path, &state, SCENE).unwrap().put().unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        assert_eq!(read(&path, SCENE, &ids).unwrap(), state);
+        (state, bytes)
+    }
+
+    #[test]
+    fn a_state_that_is_none_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let counts = [1000, 3, 0, 65];
+        let (_, bytes) = file(folder.path(), &counts, 5);
+        let words = |bytes: &[u8], scene: &str, counts: &[u32]| {
+            parse(bytes, scene, &ids(counts)).unwrap_err()
+        };
+        let other = SCENE.replace('0', "1");
+        assert_eq!(words(&bytes, &other, &counts), "the state is of another scene");
+        for counts in [&counts[..3], &[1000, 3, 1, 65], &[999, 3, 0, 65]] {
+            assert_eq!(words(&bytes, SCENE, counts), "the state is of another scene");
+        }
+        assert_eq!(words(b"splatref state 2\n", SCENE, &counts), "this is no state of splatref");
+        for end in 0..bytes.len() {
+            parse(&bytes[..end], SCENE, &ids(&counts)).unwrap_err();
+        }
+        assert_eq!(words(&[&bytes[..], &[0; 8]].concat(), SCENE, &counts), "the state is damaged");
+        // A flag of a group that does not exist.
+        let mut high = bytes.clone();
+        *high.last_mut().unwrap() |= 0x80;
+        assert_eq!(words(&high, SCENE, &counts), "the state is damaged");
+        // More surfels selected than there are.
+        let mut many = bytes;
+        many[MAGIC.len() + DIGITS + 16 + 8 + 4] = 200;
+        assert_eq!(words(&many, SCENE, &counts), "the state is damaged");
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_make_it_panic(mut noise in prop::collection::vec(any::<u8>(), 0..80), at in 0..120_usize) {
+            let folder = tempfile::tempdir().unwrap();
+            let (_, mut bytes) = file(folder.path(), &[90, 3], 1);
+            let at = at.min(bytes.len());
+            bytes.truncate(at);
+            bytes.append(&mut noise);
+            if let Ok(state) = parse(&bytes, SCENE, &ids(&[90, 3])) {
+                prop_assert!(state.seen.check(&ids(&[90, 3]), state.seen.group()).is_ok());
+            }
+        }
+    }
+}

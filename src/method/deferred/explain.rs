@@ -1,0 +1,157 @@
+//! Every decision of every pass at one pixel, with its operands.
+
+use super::Settings;
+use super::indices::{each_centre, indices, selected};
+use super::part::{Part, Whole};
+use super::picture::{flagged, is_new, seen};
+use super::visibility::{both, nearest};
+use crate::error::Result;
+use crate::method::algorithm::Job;
+use crate::method::prepare::Prepared;
+use crate::method::replay::{Decision, Place, Touch, touch};
+use crate::number::Exact;
+use crate::splat::{Splat, SplatSettings};
+use std::fmt;
+
+/// What happened at one pixel.
+#[derive(Clone, Debug)]
+pub struct DeferredReplay<R> {
+    /// Column and row.
+    pub pixel: (u32, u32),
+    /// How many surfels there are, how many have a flag that is set, and how many were selected.
+    pub counts: [u64; 3],
+    /// Pass 1: the splats that reach the pixel, by name, in the order of ids.
+    pub before: Vec<(String, Touch<R>)>,
+    /// The depth that pass 1 leaves.
+    pub visible: R,
+    /// The depth of the visible band in world units.
+    pub epsilon: R,
+    /// Pass 2: the surfels whose centre is in the pixel: name, depth, and the tests.
+    pub centres: Vec<Centre<R>>,
+    /// Pass 3.
+    pub fresh: Vec<(String, Touch<R>)>,
+    /// The depth that pass 3 leaves.
+    pub nearest: R,
+    /// Pass 4: the splats of B(i) that reach the pixel; each gives its weight, if it is visible.
+    pub sums: Vec<(String, Touch<R>)>,
+}
+
+/// A surfel whose centre is in the pixel.
+#[derive(Clone, Debug)]
+pub struct Centre<R> {
+    /// Which.
+    pub name: String,
+    /// The test against the depth of pass 1.
+    pub visible: Decision<R>,
+    /// Whether it is the one that is kept.
+    pub kept: bool,
+}
+
+/// Replays all passes at one pixel.
+///
+/// # Errors
+/// [`crate::Error::Usage`] if the pixel is outside the picture; else as the picture.
+pub fn explain<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    pixel: (u32, u32),
+) -> Result<DeferredReplay<R>> {
+    let place = Place::new(job, pixel)?;
+    let (whole, splats) = (Whole::new(job.scene), &settings.splats);
+    let before = seen(job, settings, &whole)?;
+    let flagged = flagged(job, &whole, &before)?;
+    let visible = nearest::<R>(job, splats, &flagged);
+    let kept = indices(job, splats, &whole, &visible);
+    let part = whole.part(selected(&kept), job.exec);
+    let unseen = part.ids().iter().copied().filter(|&id| is_new(&whole, &before, id));
+    let fresh = whole.part(if settings.second { unseen.collect() } else { Vec::new() }, job.exec);
+    let depth = both(&visible, &nearest(job, splats, &fresh));
+
+    let (x, y) = pixel;
+    let at = visible.at(x, y);
+    let epsilon = R::from_f32(splats.epsilon.in_units(whole.median_radius()));
+    let mut centres = Vec::new();
+    each_centre::<R>(job, splats, &whole, |id, found, t| {
+        if found == [x, y] {
+            let visible = Decision::visible(t, at.depth, epsilon);
+            let kept = kept.at(x, y).id == id;
+            centres.push(Centre { name: whole.name(id), visible, kept });
+        }
+    });
+    let pass = |part: &Part, each: &dyn Fn(&mut Touch<R>, &Splat<R>)| {
+        touches(job, splats, (part, &whole), &place, each)
+    };
+    let nothing = |_: &mut Touch<R>, _: &Splat<R>| ();
+    let end = depth.at(x, y).depth;
+    let weigh = |touch: &mut Touch<R>, splat: &Splat<R>| {
+        let t = touch.t;
+        touch.decide(|| Decision::visible(t, end, epsilon));
+        touch.gives = touch.passes().then(|| ("weight", splat.footprint.weight(touch.q)));
+    };
+    let all = whole.ids().total();
+    Ok(DeferredReplay {
+        pixel,
+        counts: [all, flagged.ids().len() as u64, part.ids().len() as u64],
+        before: pass(&flagged, &nothing),
+        visible: at.depth,
+        epsilon,
+        centres,
+        fresh: pass(&fresh, &nothing),
+        nearest: end,
+        sums: pass(&part, &weigh),
+    })
+}
+
+/// The splats of a part at the pixel.
+fn touches<R: Exact>(
+    job: &Job<'_>,
+    settings: &SplatSettings,
+    (part, whole): (&Part, &Whole<'_>),
+    place: &Place,
+    each: &dyn Fn(&mut Touch<R>, &Splat<R>),
+) -> Vec<(String, Touch<R>)> {
+    let job = part.job(job);
+    let prepared = Prepared::splats(&job, settings);
+    let tile = place.splats(&prepared);
+    let mut touches = Vec::new();
+    tile.each_in_bounds(|splat, _, q, w| {
+        let mut seen = touch(tile.shared(), splat.surfel, q, w);
+        each(&mut seen, splat);
+        touches.push((whole.name(part.id(splat.surfel)), seen));
+    });
+    touches
+}
+
+impl<R: Exact> fmt::Display for DeferredReplay<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ((x, y), [all, flagged, selected]) = (self.pixel, self.counts);
+        writeln!(
+            f,
+            "pixel ({x}, {y}); of {all} surfels {flagged} are flagged, {selected} selected"
+        )?;
+        let pass = |f: &mut fmt::Formatter<'_>, what: &str, touches: &[(String, Touch<R>)]| {
+            writeln!(f, "\n{what}: {} splats reach the pixel", touches.len())?;
+            for (name, touch) in touches {
+                write!(f, "  {name:<24}")?;
+                touch.fmt_decisions(f)?;
+                writeln!(f)?;
+            }
+            Ok(())
+        };
+        pass(f, "1. visibility splatting of the flagged surfels", &self.before)?;
+        let (depth, epsilon) = (self.visible.to_f64(), self.epsilon.to_f64());
+        writeln!(f, "\n2. indices: drawn if depth <= {depth} + epsilon {epsilon}")?;
+        for Centre { name, visible, kept } in &self.centres {
+            writeln!(f, "  {name:<24}  {visible}{}", if *kept { "  kept" } else { "" })?;
+        }
+        pass(f, "3. visibility splatting of the selected surfels without a flag", &self.fresh)?;
+        pass(
+            f,
+            &format!(
+                "4. EWA splatting of the selected surfels, nearest depth {}",
+                self.nearest.to_f64()
+            ),
+            &self.sums,
+        )
+    }
+}

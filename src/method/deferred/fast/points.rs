@@ -1,0 +1,109 @@
+//! Pass 2: every surfel as a point, against the depth of pass 1.
+//!
+//! The surfels are divided into as many shares as there are threads, in the order of their ids. Each
+//! share has a picture of its own, and the pictures are joined: the least depth of a pixel and, of equal
+//! ones, the lowest id is the same however the surfels are divided. Of most surfels the position says
+//! that they are not kept, and of many a box around them; the normals of the others alone are read and turned.
+
+use super::super::Settings;
+use super::super::indices::Kept;
+use super::super::part::{Range, Whole};
+use super::super::queries::{Limits, Queries};
+use super::super::visibility::NONE;
+use crate::composite::decide;
+use crate::method::algorithm::Job;
+use crate::method::projection::surfels::{PlacedPoint, PointProjector};
+use crate::number::lanes::{LANES, Lanes, vectorized};
+use crate::number::{Real, Vector3};
+use crate::splat::View;
+
+/// B(i), ascending.
+pub(super) fn selected(
+    job: &Job<'_>,
+    settings: &Settings,
+    whole: &Whole<'_>,
+    limits: &Limits,
+) -> Vec<u64> {
+    let points = PointProjector::new(View::new(job.camera), settings.splats.cull);
+    let queries = Queries::new(job.camera, limits);
+    let shares = whole.shares(job.exec.threads());
+    let pictures = job.exec.ordered(shares, |ranges| {
+        let mut kept = vec![Kept::EMPTY; limits.values.len()];
+        for range in &ranges {
+            for part in range.parts(&queries) {
+                draw(&points, &part, limits, &mut kept);
+            }
+        }
+        kept
+    });
+    let joined = pictures.into_iter().reduce(|mut all, later| {
+        for (kept, later) in all.iter_mut().zip(later) {
+            // Ids of a later share are higher.
+            if decide::before(later.depth, kept.depth) {
+                *kept = later;
+            }
+        }
+        all
+    });
+    let ids = joined.unwrap_or_default().into_iter().map(|kept| kept.id);
+    let mut ids: Vec<u64> = ids.filter(|&id| id != NONE).collect();
+    ids.sort_unstable();
+    ids
+}
+
+/// Draws neighbouring surfels of an object, in ascending order.
+fn draw(points: &PointProjector<f32>, range: &Range<'_>, limits: &Limits, kept: &mut [Kept<f32>]) {
+    let end = range.surfels.end;
+    let mut first = range.surfels.start;
+    while first < end {
+        let count = (end - first).min(LANES);
+        let lanes = place(points, range, first);
+        for lane in 0..count {
+            let (x, y, t) = (lanes.x[lane], lanes.y[lane], lanes.t[lane]);
+            let View { width, height, near, .. } = points.view;
+            let inside = x >= 0.0 && x < width && y >= 0.0 && y < height;
+            if !(inside && t > near && t.is_finite()) {
+                continue;
+            }
+            let pixel = (y.to_pixel() * limits.width + x.to_pixel()) as usize;
+            let t = t + 0.0;
+            let passes = decide::visible(t, limits.values[pixel]);
+            if passes && decide::before(t, kept[pixel].depth) && faces(points, range, first + lane)
+            {
+                kept[pixel] = Kept { depth: t, id: range.id(first + lane) };
+            }
+        }
+        first += count;
+    }
+}
+
+/// Where points are in the picture, and their depths.
+struct Places {
+    x: Lanes,
+    y: Lanes,
+    t: Lanes,
+}
+
+vectorized!(
+    /// The places of [`LANES`] surfels from the `first` on; beyond the last those of the last.
+    fn place(points: &PointProjector<f32>, range: &Range<'_>, first: usize) -> Places {
+        let positions = range.positions(first);
+        let world = range.moved(&positions);
+        let (mut x, mut y, mut t) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            let position = Vector3::new(world[0][i], world[1][i], world[2][i]);
+            let placed = points.place(points.view.point(position));
+            (x[i], y[i], t[i]) = (placed.center.x, placed.center.y, placed.t);
+        }
+        Places { x, y, t }
+    }
+);
+
+/// Whether a surfel that is in the picture is drawn: g is finite and, with culling, < 0.
+fn faces(points: &PointProjector<f32>, range: &Range<'_>, i: usize) -> bool {
+    let (position, normal) = range.surfel(i);
+    let placed: PlacedPoint<f32> = points.place(points.view.point(Vector3::from_glam(position)));
+    let n = points.view.direction(Vector3::from_glam(normal));
+    let g = points.facing(&placed, n);
+    g.is_finite() && !(points.cull && g >= 0.0)
+}

@@ -1,0 +1,143 @@
+//! Deferred splatting: the expensive passes on visible surfels only \[GBP04\].
+//!
+//! The passes of frame i \[GBP04, 4.1\], in which B(i) is the list of surfels that are selected. All of
+//! them run over surfels in ascending [id](crate::scene::objects::ids); the surfels of a scene without
+//! objects are one object, and their ids are their indices.
+//!
+//! 1. **Visibility splatting of B(i-1)**: the pass of [`super::ewa`] over every surfel whose flag is
+//!    set, with the places and the camera of this frame. A flag stands for m consecutive surfels of one
+//!    object \[GBP04, 4.3\], see [`crate::index::seen`]. In the first frame no flag is set, and the pass
+//!    draws nothing.
+//! 2. **Indices**: every surfel becomes one pixel, that of its centre, as in [`super::projection`]: with
+//!    the same fates, pixel and depth t. It is drawn if `t <= Z + epsilon`, with Z the depth that pass
+//!    1 left at the pixel, +inf if none; of those that are drawn into a pixel the one of the least t is
+//!    kept, ties: the lower id. B(i) are the surfels that are kept in some pixel.
+//! 3. **Visibility splatting of B(i) - B(i-1)**: the pass over those surfels of B(i) whose flag is not
+//!    set, into the depth that pass 1 left; of equally near fragments of both passes the lower id wins.
+//!    The setting `second` turns the pass off \[GBP04, Fig. 3 a\].
+//! 4. **EWA splatting of B(i)**: attribute splatting of [`super::ewa`] over B(i), against the depth that
+//!    pass 3 left.
+//! 5. **Normalization**, as in [`super::ewa`]; then deferred shading.
+//!
+//! The flags of B(i) are what frame i + 1 is given. A frame is a function of flags, scene, camera and
+//! settings alone.
+//!
+//! # Decided
+//!
+//! - Pass 2 tests depth with the epsilon of pass 4: a surfel is selected if its centre belongs to the
+//!   visible surface by the test that its fragments have to pass. \[GBP04\] does not say how the depth
+//!   test of pass 2 is biased. Without a bias, epsilon = 0, nearly every centre lies behind a splat of a
+//!   neighbour, and surfaces come and go; with too large a one the sheet behind is selected through
+//!   the gaps between the centres, and takes pixels from the sheet in front.
+//! - With culling on, a surfel that is seen from behind takes no pixel: no pass would draw it.
+//! - A disc whose centre is outside the picture is lost even where it reaches into the picture, as in
+//!   every method that draws a surfel as one pixel.
+//! - Pass 1 draws all surfels of a flagged group. \[GBP04, 4.2\] also reads as if the list of B(i-1)
+//!   itself were drawn; then a surfel of B(i) - B(i-1) in a flagged group would be drawn by neither pass.
+//! - The id of a pixel is that of the nearest fragment of passes 1 and 3, and may be of a surfel that is
+//!   flagged and not in B(i). A pixel without weight is empty, whatever depth passes 1 and 3 left. Where
+//!   these left no depth, as may be without pass 3, all fragments of B(i) are added up, and the pixel shows
+//!   depth and id of the nearest of them.
+//! - Opacity plays no part, as in [`super::ewa`].
+//!
+//! # What the papers' readers should expect
+//!
+//! One surfel a pixel is selected. Where a pixel holds many centres the others are lost, and with
+//! them their colours: pictures of dense surfels flicker as these change places \[GBP04, 4.4\].
+//!
+//! The definition is over any [`Exact`] number. What each stage leaves: [`mod@super::planes`].
+//!
+//! [`Exact`]: crate::number::Exact
+
+pub mod explain;
+mod fast;
+mod indices;
+mod part;
+mod picture;
+mod planes;
+pub mod queries;
+mod settings;
+#[cfg(test)]
+mod tests;
+mod visibility;
+
+pub use settings::Settings;
+
+use crate::error::{Error, Result};
+use crate::frame::{NamedPlane, Pool};
+use crate::method::algorithm::{Algorithm, Job};
+use crate::method::given::Given;
+use crate::method::{Picture, Stage};
+use crate::number::Exact;
+use crate::number::ball::Profile;
+use crate::scene::objects::Ids;
+use crate::scene::{Camera, Scene};
+use crate::splat::SplatSettings;
+use crate::verify::client::Client;
+use crate::verify::verdict::{Check, Verdict};
+use std::fmt::Display;
+
+impl Algorithm for Settings {
+    const NAME: &'static str = "deferred";
+    const SUMMARY: &'static str =
+        "EWA splatting of the surfels that the last frame and an index buffer select [GBP04]";
+    const STAGES: &'static [Stage] = planes::STAGES;
+    const DRAWS_OBJECTS: bool = true;
+    const FAST_BYTES_A_PIXEL: Option<u64> = Some(192);
+    type Memory = ();
+
+    fn splats(&self) -> Option<&SplatSettings> {
+        Some(&self.splats)
+    }
+
+    fn check(&self) -> Result<()> {
+        Self::check(self)
+    }
+
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+        picture::define(job, self, stages)
+    }
+
+    fn draw(&self, job: &Job<'_>, (): &mut (), pool: &mut Pool) -> Result<Picture<f32>> {
+        picture::draw(job, self, pool)
+    }
+
+    fn stage<R: Exact>(
+        &self,
+        job: &Job<'_>,
+        stage: &str,
+        given: &Given<'_, R>,
+    ) -> Result<Vec<NamedPlane<R>>> {
+        picture::stage(job, self, stage, given)
+    }
+
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {
+        explain::explain::<R>(job, self, pixel)
+    }
+
+    fn verify<P: Profile>(&self, _: &Job<'_>, _: &Client, _: f64) -> Result<Verdict> {
+        Err(unjudged())
+    }
+
+    fn checks<P: Profile>(&self, _: &Job<'_>, _: &Client, _: (u32, u32)) -> Result<Vec<Check>> {
+        Err(unjudged())
+    }
+
+    fn resolved(&self, scene: &Scene, _: &Camera) -> Vec<(&'static str, String)> {
+        let median = part::Whole::new(scene).median_radius();
+        vec![("epsilon_in_world_units", format!("{:?}", self.splats.epsilon.in_units(median)))]
+    }
+}
+
+/// The ids of the surfels of a scene.
+#[must_use]
+pub fn ids(scene: &Scene) -> Ids {
+    part::Whole::new(scene).ids().clone()
+}
+
+/// There are no rules yet by which a client of this method is judged.
+fn unjudged() -> Error {
+    let what = "pictures of the method deferred cannot be judged yet: verify the surfels that it \
+                selected by the method ewa";
+    Error::Invalid(what.into())
+}

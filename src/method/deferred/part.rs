@@ -1,0 +1,209 @@
+//! All surfels of a scene by their ids, and some of them as a scene that the passes of `ewa` draw.
+
+use super::queries::Queries;
+use crate::frame::Exec;
+use crate::method::algorithm::Job;
+use crate::number::lanes::{LANES, Lanes};
+use crate::scene::objects::{Ids, Split};
+use crate::scene::{Boxes, Scene, Similarity, Surfels};
+use glam::Vec3;
+use std::borrow::Cow;
+
+/// The surfels of a scene: those of its objects, or of a scene without objects its own, as one.
+pub(super) struct Whole<'a> {
+    scene: &'a Scene,
+    ids: Cow<'a, Ids>,
+    /// Of a scene without objects, if somebody made them.
+    boxes: Option<&'a Boxes>,
+}
+
+impl<'a> Whole<'a> {
+    pub(super) fn new(scene: &'a Scene) -> Self {
+        let alone = || {
+            let counts = [scene.surfels.len() as u32];
+            // Fewer than 2^32 - 1, which is what 32 bits hold.
+            Ids::of(Split::Single(32), &counts).unwrap_or_else(Ids::none)
+        };
+        let ids = match &scene.objects {
+            Some(objects) => Cow::Borrowed(objects.ids()),
+            None => Cow::Owned(alone()),
+        };
+        Self { scene, ids, boxes: None }
+    }
+
+    /// With what the session made of the scene.
+    pub(super) fn of(job: &Job<'a>) -> Self {
+        Self { boxes: job.index.boxes.as_ref(), ..Self::new(job.scene) }
+    }
+
+    pub(super) fn ids(&self) -> &Ids {
+        &self.ids
+    }
+
+    /// A surfel in words.
+    pub(super) fn name(&self, id: u64) -> String {
+        match (&self.scene.objects, self.ids.find(id)) {
+            (Some(objects), Some((object, surfel))) => {
+                format!("surfel {surfel} of {}", objects.objects()[object as usize].name)
+            }
+            _ => format!("surfel {id}"),
+        }
+    }
+
+    /// Whether surfels have colours.
+    pub(super) fn has_colors(&self) -> bool {
+        match &self.scene.objects {
+            Some(objects) => objects.have_colors(),
+            None => self.scene.surfels.color().is_some(),
+        }
+    }
+
+    /// All surfels in so many shares of about one size, in ascending ids.
+    pub(super) fn shares(&self, count: usize) -> Vec<Vec<Range<'_>>> {
+        let total = self.ids.total();
+        let ends: Vec<u64> = (1..=count as u64).map(|i| total * i / count as u64).collect();
+        let mut shares: Vec<Vec<Range<'_>>> = vec![Vec::new()];
+        let mut done = 0;
+        for &object in self.ids.order() {
+            let of_object = u64::from(self.ids.count(object));
+            let mut from = 0;
+            while from < of_object {
+                while shares.len() < count && done >= ends[shares.len() - 1] {
+                    shares.push(Vec::new());
+                }
+                let room = ends[shares.len() - 1] - done;
+                let to = of_object.min(from + room);
+                let last = shares.len() - 1;
+                shares[last].push(self.range(object, from as usize..to as usize));
+                done += to - from;
+                from = to;
+            }
+        }
+        shares
+    }
+
+    fn range(&self, object: u32, surfels: std::ops::Range<usize>) -> Range<'_> {
+        let first = self.ids.id(object, 0);
+        match &self.scene.objects {
+            Some(objects) => {
+                let place = &objects.places()[object as usize];
+                let place = (*place != Similarity::IDENTITY).then_some(place);
+                let boxes = Some(objects.boxes(object));
+                Range { of: &objects.geometry(object).surfels, place, boxes, first, surfels }
+            }
+            None => {
+                Range { of: &self.scene.surfels, place: None, boxes: self.boxes, first, surfels }
+            }
+        }
+    }
+
+    /// The unit of epsilon.
+    pub(super) fn median_radius(&self) -> f32 {
+        match &self.scene.objects {
+            Some(objects) => objects.median_radius(),
+            None => self.scene.surfels.median_radius(),
+        }
+    }
+
+    /// The surfels of ascending ids in their places.
+    pub(super) fn surfels(&self, ids: &[u64], exec: &Exec) -> Surfels {
+        match &self.scene.objects {
+            Some(objects) => objects.some(ids, exec),
+            None => self.scene.surfels.some(ids),
+        }
+    }
+
+    /// The surfels of ascending ids as a scene, unlit and before nothing.
+    pub(super) fn part(&self, ids: Vec<u64>, exec: &Exec) -> Part {
+        let scene = Scene::unlit(&self.scene.name, self.surfels(&ids, exec));
+        Part { scene, ids }
+    }
+}
+
+/// Neighbouring surfels of one object.
+pub(super) struct Range<'a> {
+    of: &'a Surfels,
+    /// Where the object is; none: the surfels are in their places.
+    place: Option<&'a Similarity>,
+    /// Around them, in their own coordinates.
+    boxes: Option<&'a Boxes>,
+    /// The id of the surfel 0.
+    first: u64,
+    pub(super) surfels: std::ops::Range<usize>,
+}
+
+impl<'a> Range<'a> {
+    /// The parts of which no query says that they are hidden.
+    pub(super) fn parts(&self, queries: &Queries<'_>) -> Vec<Self> {
+        let whole = || Self { surfels: self.surfels.clone(), ..*self };
+        let Some(boxes) = self.boxes else { return vec![whole()] };
+        if !queries.any(boxes.all(), self.place) {
+            return Vec::new();
+        }
+        let parts = boxes.parts(self.surfels.clone());
+        let open = parts.filter(|(_, corners)| queries.any(*corners, self.place));
+        open.map(|(surfels, _)| Self { surfels, ..*self }).collect()
+    }
+}
+
+impl Range<'_> {
+    pub(super) fn id(&self, surfel: usize) -> u64 {
+        self.first + surfel as u64
+    }
+
+    /// Position and normal of a surfel in its place.
+    pub(super) fn surfel(&self, i: usize) -> (Vec3, Vec3) {
+        let (position, normal) = (self.of.position()[i], self.of.normal()[i]);
+        self.place.map_or((position, normal), |place| place.surfel(position, normal))
+    }
+
+    /// The positions of [`LANES`] surfels from the `first` on; beyond the last those of the last.
+    #[inline(always)]
+    pub(super) fn positions(&self, first: usize) -> [Vec3; LANES] {
+        let all = &self.of.position()[..self.surfels.end];
+        match all[first..].first_chunk::<LANES>() {
+            Some(positions) => *positions,
+            None => std::array::from_fn(|i| all[(first + i).min(all.len() - 1)]),
+        }
+    }
+
+    /// Positions in their places, component by component.
+    #[inline(always)]
+    pub(super) fn moved(&self, positions: &[Vec3; LANES]) -> [Lanes; 3] {
+        let mut moved = [[0.0; LANES]; 3];
+        let Some(place) = self.place else {
+            for i in 0..LANES {
+                [moved[0][i], moved[1][i], moved[2][i]] = positions[i].to_array();
+            }
+            return moved;
+        };
+        let place = *place;
+        for i in 0..LANES {
+            [moved[0][i], moved[1][i], moved[2][i]] = place.point(positions[i]).to_array();
+        }
+        moved
+    }
+}
+
+/// Some surfels of a scene.
+pub(super) struct Part {
+    scene: Scene,
+    ids: Vec<u64>,
+}
+
+impl Part {
+    /// The job of drawing them alone.
+    pub(super) fn job<'j>(&'j self, whole: &Job<'j>) -> Job<'j> {
+        Job { scene: &self.scene, ..*whole }
+    }
+
+    /// Their ids, ascending.
+    pub(super) fn ids(&self) -> &[u64] {
+        &self.ids
+    }
+
+    /// The id of the surfel of an index; [`super::visibility::NONE`] of that of none.
+    pub(super) fn id(&self, index: u32) -> u64 {
+        self.ids.get(index as usize).copied().unwrap_or(super::visibility::NONE)
+    }
+}

@@ -1,0 +1,213 @@
+//! All passes in one call: from a scene and what the last frame saw to named planes; and one stage on
+//! somebody's planes.
+
+use super::indices::{indices, selected};
+use super::part::{Part, Whole};
+use super::visibility::{Nearest, both, nearest};
+use super::{Settings, fast, planes};
+use crate::error::Result;
+use crate::frame::{NamedPlane, Pool, Wanted};
+use crate::index::seen::Seen;
+use crate::memory;
+use crate::method::algorithm::Job;
+use crate::method::ewa::attributes::{Sums, attributes};
+use crate::method::ewa::normalization::resolve;
+use crate::method::ewa::planes as ewa;
+use crate::method::given::Given;
+use crate::method::picture::{Clock, Picture, finish, framebuffer};
+use crate::method::prepare::Prepared;
+use crate::method::resolved::{self, Resolved};
+use crate::method::stage::unknown;
+use crate::method::tiled::Tiled;
+use crate::number::Exact;
+use crate::splat::Tally;
+
+/// The definition, in any number; with `stages`, every stage leaves its planes.
+pub(super) fn define<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    stages: bool,
+) -> Result<Picture<R>> {
+    let mut clock = Clock::default();
+    let whole = Whole::new(job.scene);
+    let before = seen(job, settings, &whole)?;
+    let flagged = flagged(job, &whole, &before)?;
+    let visible = nearest::<R>(job, &settings.splats, &flagged);
+    clock.lap("visibility");
+
+    let kept = indices(job, &settings.splats, &whole, &visible);
+    let list = selected(&kept);
+    let now = Seen::of(whole.ids(), settings.flags, &list);
+    clock.lap("indices");
+
+    let part = whole.part(list, job.exec);
+    let depth = difference(job, settings, &whole, &before, &part, &visible);
+    clock.lap("difference");
+
+    let (sums, tally) = sums(job, settings, &part, &depth);
+    clock.lap("attributes");
+
+    let averages = normalization(job, settings, &part, &depth, &sums);
+    clock.lap("normalization");
+
+    let mut left = Vec::new();
+    if stages {
+        left.extend(planes::visibility(&visible, false));
+        left.extend(planes::indices(&kept));
+        left.extend(planes::visibility(&depth, true));
+        left.extend(ewa::attributes(&part.job(job), &sums));
+        left.extend(resolved::colors(&part.job(job), &averages));
+    }
+    let wanted = Wanted {
+        normal: stages || !job.scene.lights.is_empty(),
+        color: whole.has_colors(),
+        observed: false,
+    };
+    let target = resolved::framebuffer(job, &averages, wanted);
+    Ok(Picture { seen: Some(now), ..finish(target, left, tally, clock, job) })
+}
+
+/// The fast path for `f32`. Without pass 3 the definition: the paper shows that for what it spoils.
+pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
+    if !settings.second {
+        return define(job, settings, false);
+    }
+    let wanted = Wanted {
+        normal: !job.scene.lights.is_empty(),
+        color: Whole::new(job.scene).has_colors(),
+        observed: false,
+    };
+    let mut target = framebuffer(job.camera, wanted, pool);
+    let (now, tally, laps) = fast::render(job, settings, &mut target)?;
+    Ok(Picture { seen: Some(now), ..finish(target, Vec::new(), tally, Clock::of(laps), job) })
+}
+
+/// One stage on somebody's planes.
+pub(super) fn stage<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    stage: &str,
+    given: &Given<'_, R>,
+) -> Result<Vec<NamedPlane<R>>> {
+    let whole = Whole::new(job.scene);
+    let before = seen(job, settings, &whole)?;
+    let selected = || Ok(whole.part(planes::given_selected(job, given)?, job.exec));
+    let visible = || planes::given_visibility(job, given, false);
+    let depth = || planes::given_visibility(job, given, true);
+    match stage {
+        "visibility" => {
+            let flagged = flagged(job, &whole, &before)?;
+            let visible = nearest::<R>(job, &settings.splats, &flagged);
+            Ok(planes::visibility(&visible, false).into())
+        }
+        "indices" => {
+            Ok(planes::indices(&indices(job, &settings.splats, &whole, &visible()?)).into())
+        }
+        "difference" => {
+            let depth = difference(job, settings, &whole, &before, &selected()?, &visible()?);
+            Ok(planes::visibility(&depth, true).into())
+        }
+        "attributes" => {
+            let part = selected()?;
+            let (sums, _) = sums(job, settings, &part, &depth()?);
+            Ok(ewa::attributes(&part.job(job), &sums))
+        }
+        "normalization" => {
+            let (part, depth) = (selected()?, depth()?);
+            let sums = ewa::given_attributes(&part.job(job), given)?;
+            let averages = normalization(job, settings, &part, &depth, &sums);
+            Ok(resolved::planes(&part.job(job), &averages))
+        }
+        "shading" => resolved::shade(job, given),
+        _ => Err(unknown(stage)),
+    }
+}
+
+/// The surfels that pass 1 draws.
+///
+/// # Errors
+/// [`crate::Error::Invalid`] if the process may not hold them.
+pub(super) fn flagged(job: &Job<'_>, whole: &Whole<'_>, before: &Seen) -> Result<Part> {
+    let ids = before.surfels(whole.ids());
+    memory::ask(ids.len() as u64 * OF_A_FLAGGED, || format!("{} flagged surfels", ids.len()))?;
+    Ok(whole.part(ids, job.exec))
+}
+
+/// Bytes of a surfel that pass 1 draws: placed, twice while they are put together, and projected in
+/// f64 with its bins.
+const OF_A_FLAGGED: u64 = 512;
+
+/// What the frame before saw; nothing before the first.
+pub(super) fn seen(job: &Job<'_>, settings: &Settings, whole: &Whole<'_>) -> Result<Seen> {
+    match &job.index.seen {
+        None => Ok(Seen::nothing(whole.ids(), settings.flags)),
+        Some(seen) => {
+            seen.check(whole.ids(), settings.flags)?;
+            Ok(seen.clone())
+        }
+    }
+}
+
+/// Pass 3: the depth of pass 1, with the selected surfels whose flags are not set.
+fn difference<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    whole: &Whole<'_>,
+    before: &Seen,
+    selected: &Part,
+    visible: &Tiled<Nearest<R>>,
+) -> Tiled<Nearest<R>> {
+    if !settings.second {
+        return visible.map(|pixel| *pixel);
+    }
+    let unseen = selected.ids().iter().copied().filter(|&id| is_new(whole, before, id));
+    let fresh = whole.part(unseen.collect(), job.exec);
+    both(visible, &nearest(job, &settings.splats, &fresh))
+}
+
+/// Whether the flag of a surfel is not set.
+pub(super) fn is_new(whole: &Whole<'_>, before: &Seen, id: u64) -> bool {
+    whole.ids().find(id).is_some_and(|(object, surfel)| !before.has(object, surfel))
+}
+
+/// Pass 4: attribute splatting of B(i), and what became of its surfels.
+fn sums<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    selected: &Part,
+    depth: &Tiled<Nearest<R>>,
+) -> (Tiled<Sums<R>>, Tally) {
+    let job = selected.job(job);
+    let splats = Prepared::splats(&job, &settings.splats);
+    let sums = attributes(&job, &splats, &depth.map(Nearest::foremost));
+    (sums, splats.tally)
+}
+
+/// Pass 5.
+fn normalization<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    selected: &Part,
+    depth: &Tiled<Nearest<R>>,
+    sums: &Tiled<Sums<R>>,
+) -> Tiled<Resolved<R>> {
+    // With pass 3 every fragment of B(i) has a depth in front of itself, or its own.
+    let own = (!settings.second).then(|| nearest(job, &settings.splats, selected));
+    let shown = match &own {
+        None => depth.map(|pixel| *pixel),
+        Some(own) => {
+            depth.with(
+                own,
+                |pixel, own| {
+                    if pixel.id == super::visibility::NONE { *own } else { *pixel }
+                },
+            )
+        }
+    };
+    shown.with(sums, |nearest, sums| {
+        if !(sums.weight > R::ZERO) {
+            return Resolved::EMPTY;
+        }
+        Resolved { id: nearest.id as u32, ..resolve(&nearest.foremost(), sums) }
+    })
+}

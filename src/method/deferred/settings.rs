@@ -1,0 +1,54 @@
+//! What is computed.
+
+use crate::error::{Error, Result};
+use crate::setting::{Field, Fields, Slot, Visit};
+use crate::splat::SplatSettings;
+
+/// What is computed; everything here may change the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Footprints, epsilon and culling of all passes.
+    pub splats: SplatSettings,
+    /// m: how many consecutive surfels of an object share a flag \[GBP04, 4.3\]. In [1, 4096].
+    pub flags: u32,
+    /// Whether the surfels that the last frame did not see are drawn into the depth before EWA
+    /// splatting: pass 3.
+    pub second: bool,
+}
+
+/// The most surfels that share a flag.
+const MOST: u32 = 4096;
+
+impl Default for Settings {
+    /// Groups of 64, as in \[GBP04, 4.3\], and pass 3.
+    fn default() -> Self {
+        Self { splats: SplatSettings::default(), flags: 64, second: true }
+    }
+}
+
+impl Settings {
+    /// Whether the numbers are in range.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`SplatSettings::check`], or if m is out of range.
+    pub fn check(&self) -> Result<()> {
+        self.splats.check()?;
+        if (1..=MOST).contains(&self.flags) {
+            Ok(())
+        } else {
+            Err(Error::Invalid(format!("flags: {} surfels; give 1 to {MOST}", self.flags)))
+        }
+    }
+}
+
+impl Fields for Settings {
+    fn fields(&mut self, each: &mut Visit<'_>) {
+        let Self { splats, flags, second } = self;
+        splats.fields(each);
+        let help = "m, how many consecutive surfels of an object share a flag";
+        each(Field::new("flags", help, Slot::Count(flags)).unit("surfels").range("1 to 4096"));
+        let help = "whether visibility splatting is repeated with the surfels that the last frame \
+                    did not see";
+        each(Field::new("second", help, Slot::Switch(second)));
+    }
+}

@@ -1,0 +1,54 @@
+//! Passes 1 and 3: visibility splatting of the surfels that were seen, and of those that were not.
+
+use super::part::Part;
+use crate::composite::decide;
+use crate::frame::NO_ID;
+use crate::method::algorithm::Job;
+use crate::method::ewa::visibility::{Foremost, visibility};
+use crate::method::prepare::Prepared;
+use crate::method::tiled::Tiled;
+use crate::number::Exact;
+use crate::splat::SplatSettings;
+
+/// The id of no surfel; its lowest 32 bits are [`NO_ID`].
+pub(super) const NONE: u64 = u64::MAX;
+
+/// The nearest fragment of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Nearest<R> {
+    pub(super) nearness: R,
+    /// Depth in world units; +inf where there is none.
+    pub(super) depth: R,
+    /// [`NONE`] where there is none.
+    pub(super) id: u64,
+}
+
+impl<R: Exact> Nearest<R> {
+    /// As attribute splatting reads it; an index of a surfel has no meaning there.
+    pub(super) fn foremost(&self) -> Foremost<R> {
+        Foremost { nearness: self.nearness, depth: self.depth, id: NO_ID }
+    }
+}
+
+/// Visibility splatting of a part of the scene, the pass of `ewa`.
+pub(super) fn nearest<R: Exact>(
+    job: &Job<'_>,
+    settings: &SplatSettings,
+    part: &Part,
+) -> Tiled<Nearest<R>> {
+    let job = part.job(job);
+    let found = visibility::<R>(&job, &Prepared::splats(&job, settings));
+    found.map(|&Foremost { nearness, depth, id }| Nearest { nearness, depth, id: part.id(id) })
+}
+
+/// What two passes into one depth buffer leave: the nearer fragment, ties: the lower id.
+pub(super) fn both<R: Exact>(
+    first: &Tiled<Nearest<R>>,
+    second: &Tiled<Nearest<R>>,
+) -> Tiled<Nearest<R>> {
+    first.with(second, |first, second| {
+        let wins =
+            decide::nearer_or_lower((second.nearness, second.id), (first.nearness, first.id));
+        if wins { *second } else { *first }
+    })
+}

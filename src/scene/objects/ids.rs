@@ -1,0 +1,322 @@
+//! Ids of scenes of objects: an object's index and a surfel's index in one number \[GBP04, 4.2\].
+//!
+//! An id has 32 bits, of which the lowest n are the surfel's index in its object and the others the
+//! object's number, or 40 where 32 do not suffice. [`Split`] says how many are whose. Of the splits
+//! in this order the first that fits a scene is taken:
+//!
+//! ```text
+//!   Even      n = 20: at most 4096 objects of at most 2^20 surfels
+//!   Two       the highest bit is the scheme: 0, then 11 and 20 bits, for objects of more than 2^17
+//!             surfels, at most 2048; 1, then 14 and 17 bits, for the others, at most 16384
+//!   Single(n) the least n with which the largest object fits, for at most 2^(32 - n) objects
+//!   Stencil   n = 20 as in Even, and 8 bits more of the object's number, those of the stencil buffer,
+//!             above the 32; no object has a number whose lowest 12 bits all are 1: at most 2^20 - 2^8
+//!             objects of at most 2^20 surfels
+//! ```
+//!
+//! Objects are numbered from 0 in the order of the scene, in `Two` those of each scheme on their own.
+//! [`NO_ID`] is never a surfel, and never the lowest 32 bits of one: a split in which a surfel would
+//! have them does not fit. (`Decided:` \[GBP04\] calls it the most improbable indicator; a scene in which it does occur
+//! takes the next split.) Planes of ids hold the lowest 32 bits. Where surfels are counted, as in the text
+//! of an explanation or of a verdict by a method that draws all surfels one by one, they are counted in
+//! the order of their ids; and so are the ids of a scene that has primitives, which are counted on after
+//! the surfels.
+//!
+//! The order of every sum and of every tie in a scene of objects is that of
+//! the ids: `Even`, `Single` and `Stencil` keep the order of the scene, `Two` has the large objects
+//! first.
+
+use crate::error::{Error, Result};
+use crate::frame::NO_ID;
+
+/// How the bits of an id are divided, see the [module](self).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Split {
+    /// 12 bits of the object, 20 of the surfel.
+    Even,
+    /// 11 and 20 bits, or 14 and 17, after a bit that says which.
+    Two,
+    /// So many bits of the surfel, 0 to 32; the others are the object's.
+    Single(u32),
+    /// 20 bits of the object, 20 of the surfel: 40 in all.
+    Stencil,
+}
+
+/// Bits of a surfel's index in a large object, and in a small one of [`Split::Two`].
+const LARGE: u32 = 20;
+const SMALL: u32 = 17;
+/// Bits of the number of an object in [`Split::Two`], large and small, and in [`Split::Stencil`].
+const LARGE_OBJECTS: u32 = 11;
+const SMALL_OBJECTS: u32 = 14;
+const STENCIL_OBJECTS: u32 = 20;
+/// How many objects [`Split::Stencil`] has room for.
+const MOST_OBJECTS: usize = (1 << STENCIL_OBJECTS) - (1 << (STENCIL_OBJECTS - LAST));
+/// Bits of the object's number in the lowest 32.
+const LAST: u32 = 32 - LARGE;
+/// The scheme bit of [`Split::Two`].
+const SCHEME: u64 = 1 << 31;
+
+/// The ids of the surfels of some objects.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ids {
+    split: Split,
+    /// How many surfels each object has.
+    counts: Vec<u32>,
+    /// The id of the first surfel of each object.
+    first: Vec<u64>,
+    /// The objects in the order of their ids.
+    order: Vec<u32>,
+    /// How many surfels come before each of them, in that order.
+    before: Vec<u64>,
+}
+
+impl Ids {
+    /// The ids of objects of so many surfels each, by the first split that fits.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if none fits; with the limit, and `name` of the object that breaks it.
+    pub fn new(counts: Vec<u32>, name: impl Fn(usize) -> String) -> Result<Self> {
+        let most = counts.iter().copied().max().unwrap_or(0);
+        let single = Split::Single(bits_for(u64::from(most)));
+        let splits = [Split::Even, Split::Two, single, Split::Stencil];
+        let fits = splits.into_iter().find_map(|split| Self::of(split, &counts));
+        fits.ok_or_else(|| {
+            let large = counts.iter().position(|&count| u64::from(count) > 1 << LARGE);
+            let what = match large {
+                Some(object) => format!(
+                    "{} has {} surfels; ids of {} objects leave room for {} in each",
+                    name(object),
+                    counts[object],
+                    counts.len(),
+                    1_u64 << LARGE
+                ),
+                None => format!(
+                    "{} objects, from {} on more than the {MOST_OBJECTS} that ids have room for",
+                    counts.len(),
+                    name(MOST_OBJECTS),
+                ),
+            };
+            Error::Invalid(what)
+        })
+    }
+
+    /// The ids by a split of one's own; none if it does not fit.
+    #[must_use]
+    pub fn of(split: Split, counts: &[u32]) -> Option<Self> {
+        let numbers = |bits: u32| 0..1_u64 << bits;
+        let (mut objects, mut small) = match split {
+            Split::Even => (numbers(32 - LARGE), numbers(0)),
+            Split::Two => (numbers(LARGE_OBJECTS), numbers(SMALL_OBJECTS)),
+            Split::Single(bits) => (numbers(32_u32.checked_sub(bits)?), numbers(0)),
+            Split::Stencil => (numbers(STENCIL_OBJECTS), numbers(0)),
+        };
+        let mut first = Vec::with_capacity(counts.len());
+        for &count in counts {
+            let count = u64::from(count);
+            let (start, room) = match split {
+                Split::Two if count <= 1 << SMALL => {
+                    (SCHEME | small.next()? << SMALL, 1_u64 << SMALL)
+                }
+                Split::Even | Split::Two => (objects.next()? << LARGE, 1 << LARGE),
+                Split::Single(bits) => (objects.next()? << bits, 1 << bits),
+                Split::Stencil => {
+                    let number =
+                        objects.find(|number| number & ((1 << LAST) - 1) != (1 << LAST) - 1);
+                    (number? << LARGE, 1 << LARGE)
+                }
+            };
+            if count > room || (start..start + count).contains(&u64::from(NO_ID)) {
+                return None;
+            }
+            first.push(start);
+        }
+        let mut order: Vec<_> = (0..counts.len() as u32).collect();
+        order.sort_by_key(|&object| first[object as usize]);
+        let mut sum = 0;
+        let before = order.iter().map(|&object| {
+            sum += u64::from(counts[object as usize]);
+            sum - u64::from(counts[object as usize])
+        });
+        Some(Self { split, before: before.collect(), counts: counts.to_vec(), first, order })
+    }
+
+    /// The ids of no objects.
+    #[must_use]
+    pub fn none() -> Self {
+        Self {
+            split: Split::Even,
+            counts: Vec::new(),
+            first: Vec::new(),
+            order: Vec::new(),
+            before: Vec::new(),
+        }
+    }
+
+    /// How the bits are divided.
+    #[must_use]
+    pub fn split(&self) -> Split {
+        self.split
+    }
+
+    /// The objects in the order of their ids.
+    #[must_use]
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// Whether ids have more than 32 bits.
+    #[must_use]
+    pub fn is_wide(&self) -> bool {
+        self.split == Split::Stencil
+    }
+
+    /// How many surfels an object has.
+    #[must_use]
+    pub fn count(&self, object: u32) -> u32 {
+        self.counts[object as usize]
+    }
+
+    /// How many surfels there are.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.counts.iter().map(|&count| u64::from(count)).sum()
+    }
+
+    /// The id of a surfel of an object.
+    #[must_use]
+    pub fn id(&self, object: u32, surfel: u32) -> u64 {
+        self.first[object as usize] + u64::from(surfel)
+    }
+
+    /// The id of which so many others are less; none if there are no more.
+    #[must_use]
+    pub fn nth(&self, rank: u64) -> Option<u64> {
+        let after = self.before.partition_point(|&before| before <= rank);
+        // Of objects without surfels the last one has the rank of the one after.
+        let (&object, before) = (self.order.get(after.checked_sub(1)?)?, self.before[after - 1]);
+        let surfel = rank - before;
+        (surfel < u64::from(self.count(object))).then(|| self.first[object as usize] + surfel)
+    }
+
+    /// How many ids are less than an id; none if it is the id of no surfel.
+    #[must_use]
+    pub fn rank(&self, id: u64) -> Option<u64> {
+        let (object, surfel) = self.find(id)?;
+        let first = self.first[object as usize];
+        let place = self.order.partition_point(|&other| self.first[other as usize] < first);
+        Some(self.before[place] + u64::from(surfel))
+    }
+
+    /// The object and the surfel of an id; none if it is the id of none.
+    #[must_use]
+    pub fn find(&self, id: u64) -> Option<(u32, u32)> {
+        let after = self.order.partition_point(|&object| self.first[object as usize] <= id);
+        let object = self.order[after.checked_sub(1)?];
+        let surfel = id - self.first[object as usize];
+        (surfel < u64::from(self.count(object))).then_some((object, surfel as u32))
+    }
+}
+
+/// How many bits hold the numbers below a count.
+fn bits_for(count: u64) -> u32 {
+    count.saturating_sub(1).checked_ilog2().map_or(0, |bit| bit + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The split of the ids, not the ids: of a million objects nobody wants to read them.
+    fn split_of(counts: &[u32]) -> Result<Split> {
+        Ids::new(counts.to_vec(), |object| format!("o{object}")).map(|ids| ids.split())
+    }
+
+    #[test]
+    fn the_first_split_that_fits_is_taken() {
+        let split = |counts: &[u32]| split_of(counts).unwrap();
+        assert_eq!(split(&[1]), Split::Even);
+        assert_eq!(split(&[1 << 20; 4095]), Split::Even);
+        // The last surfel of the last object would be 0xFFFF_FFFF.
+        assert_eq!(split(&[1 << 20; 4096]), Split::Stencil);
+        let mut full = vec![1 << 20; 4096];
+        full[4095] -= 1;
+        assert_eq!(split(&full), Split::Even);
+        // The paper's forest: 2048 large objects, 16384 small ones.
+        let forest = |large: usize, small: usize| {
+            let mut counts = vec![(1 << 20) - 1; large];
+            counts.extend(vec![(1 << 17) - 1; small]);
+            counts
+        };
+        assert_eq!(split(&forest(2048, 16384)), Split::Two);
+        assert_eq!(split(&forest(2049, 16384)), Split::Stencil);
+        assert_eq!(split(&[300; 100_000]), Split::Single(9));
+        assert_eq!(split(&[u32::MAX - 1]), Split::Single(32));
+        assert_eq!(split(&[750_000; 6800]), Split::Stencil);
+    }
+
+    #[test]
+    fn what_fits_no_split_names_the_object_and_the_limit() {
+        let words = |counts: &[u32]| split_of(counts).unwrap_err().to_string();
+        let mut counts = vec![7; 5000];
+        counts[4321] = (1 << 20) + 1;
+        let what = "o4321 has 1048577 surfels; ids of 5000 objects leave room for 1048576 in each";
+        assert_eq!(words(&counts), what);
+        let many = vec![1 << 13; (1 << 20) - 255];
+        let what = "1048321 objects, from o1048320 on more than the 1048320 that ids have room for";
+        assert_eq!(words(&many), what);
+    }
+
+    #[test]
+    fn the_bits_are_those_of_the_paper() {
+        let large = (1 << 17) + 1;
+        let two = Ids::of(Split::Two, &[5, large, 7, large]).unwrap();
+        assert_eq!(two.order(), [1, 3, 0, 2], "large objects first");
+        assert_eq!(two.id(1, 9), 9);
+        assert_eq!(two.id(3, 9), 1 << 20 | 9);
+        assert_eq!(two.id(0, 4), 1 << 31 | 4);
+        assert_eq!(two.id(2, 6), 1 << 31 | 1 << 17 | 6);
+        let even = Ids::of(Split::Even, &[5, 6]).unwrap();
+        assert_eq!(even.id(1, 3), 1 << 20 | 3);
+        let stencil = Ids::of(Split::Stencil, &vec![1; 4098]).unwrap();
+        // No object has the number 4095.
+        assert_eq!(stencil.id(4094, 0), 4094 << 20);
+        assert_eq!(stencil.id(4095, 0), 1 << 32, "the stencil has the high bits");
+    }
+
+    proptest! {
+        #[test]
+        fn ids_go_there_and_back(
+            counts in prop::collection::vec(
+                prop_oneof![0..4_u32, 131_070..131_075_u32, 1_048_570..1_048_577_u32], 1..9),
+            at in any::<prop::sample::Index>(), which in any::<prop::sample::Index>(),
+        ) {
+            let most = *counts.iter().max().unwrap();
+            let single = Split::Single(bits_for(u64::from(most)));
+            for split in [Split::Even, Split::Two, single, Split::Stencil] {
+                let Some(ids) = Ids::of(split, &counts) else { continue };
+                let object = at.index(counts.len());
+                prop_assert_eq!(ids.total(), counts.iter().map(|&c| u64::from(c)).sum::<u64>());
+                if counts[object] > 0 {
+                    let surfel = which.index(counts[object] as usize) as u32;
+                    let id = ids.id(object as u32, surfel);
+                    prop_assert_eq!(ids.find(id), Some((object as u32, surfel)));
+                    prop_assert!(id as u32 != NO_ID, "{split:?}");
+                    prop_assert!(split == Split::Stencil || id < 1 << 32);
+                }
+                let total = ids.total();
+                let rank = (total > 0).then(|| which.index(total as usize) as u64);
+                if let Some(rank) = rank {
+                    let id = ids.nth(rank).unwrap();
+                    prop_assert_eq!(ids.rank(id), Some(rank));
+                    prop_assert!(rank == 0 || ids.nth(rank - 1).unwrap() < id);
+                }
+                prop_assert_eq!(ids.nth(total), None);
+                // The id after the last of an object is nobody's, or the first of the next.
+                let end = ids.id(object as u32, counts[object]);
+                prop_assert!(ids.find(end).is_none_or(|(_, surfel)| surfel == 0));
+                prop_assert_eq!(ids.find(u64::from(NO_ID)), None);
+            }
+        }
+    }
+}

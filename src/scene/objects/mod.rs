@@ -1,0 +1,227 @@
+//! Scenes of objects: geometries that are in memory once, and objects that use them, each in its
+//! place, which may change from frame to frame.
+//!
+//! - [`ids`]: an object and a surfel in one number.
+//! - [`motion`]: where an object is in a frame.
+//! - `place`: surfels of objects in their places.
+//!
+//! A surfel of an object is that of its geometry, placed by [`Similarity::apply`] with the object's
+//! place in the frame, and then checked as [`Surfels::new`] checks a surfel, which makes its normal a
+//! unit vector again. What only some of the objects have the others get: the colour
+//! [`Objects::fill`], the opacity 1, the half axes of [`super::cloud::half_axes`]. The colour of an object
+//! stands in the place of that of its geometry.
+//!
+//! `Decided:` the median radius, the unit of epsilon, is the lower median of the objects' median
+//! radii, each its geometry's times the object's scale (in f64, rounded to f32) and counted once for
+//! each of its surfels: neither what is seen of a scene nor how it is selected changes epsilon.
+
+pub mod ids;
+pub mod motion;
+mod place;
+
+use super::{Boxes, Primitives, Similarity, Surfels};
+use crate::error::{Error, Result};
+use glam::{DVec3, Vec3};
+pub use ids::{Ids, Split};
+pub use motion::Motion;
+use std::sync::Arc;
+
+/// What objects are copies of: surfels and primitives in coordinates of their own.
+#[derive(Clone, Debug)]
+pub struct Geometry {
+    /// What it is called.
+    pub name: String,
+    /// Its surfels.
+    pub surfels: Surfels,
+    /// What there is beside them.
+    pub primitives: Primitives,
+}
+
+/// A geometry in some place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// What it is called.
+    pub name: String,
+    /// The geometry, by its index.
+    pub geometry: usize,
+    /// Where it is.
+    pub motion: Motion,
+    /// Linear RGB for all of it, in place of the geometry's.
+    pub color: Option<Vec3>,
+}
+
+/// Objects, their geometries, and where they are in a frame.
+#[derive(Clone, Debug)]
+pub struct Objects {
+    geometries: Arc<[Geometry]>,
+    objects: Arc<[Object]>,
+    ids: Arc<Ids>,
+    /// Of each geometry.
+    boxes: Arc<[Boxes]>,
+    fill: Vec3,
+    frame: u32,
+    places: Vec<Similarity>,
+    median_radius: f32,
+}
+
+impl Objects {
+    /// Objects in frame 0. `fill` is the colour of those without one, if some have one.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there is no object, if one has a geometry that does not exist, if its
+    /// surfels leave the range of f32, or as [`Ids::new`].
+    pub fn new(geometries: Vec<Geometry>, objects: Vec<Object>, fill: Vec3) -> Result<Self> {
+        if objects.is_empty() {
+            return Err(Error::Invalid("the scene has no objects".into()));
+        }
+        let count = |object: &Object| match geometries.get(object.geometry) {
+            Some(geometry) => Ok(geometry.surfels.len() as u32),
+            None => Err(Error::Invalid(format!("{} has no geometry", object.name))),
+        };
+        let counts = objects.iter().map(count).collect::<Result<Vec<_>>>()?;
+        let ids = Ids::new(counts, |object| objects[object].name.clone())?;
+        let boxes = geometries.iter().map(|geometry| Boxes::new(&geometry.surfels)).collect();
+        let still = Self {
+            boxes,
+            geometries: geometries.into(),
+            objects: objects.into(),
+            ids: Arc::new(ids),
+            fill,
+            frame: 0,
+            places: Vec::new(),
+            median_radius: 0.0,
+        };
+        still.at(0)
+    }
+
+    /// The same objects in another frame.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if surfels of an object leave the range of f32 there.
+    pub fn at(&self, frame: u32) -> Result<Self> {
+        let places: Vec<_> = self.objects.iter().map(|object| object.motion.at(frame)).collect();
+        let mut moved = Self { frame, places, ..self.clone() };
+        for (object, place) in moved.objects.iter().zip(&moved.places) {
+            if !place::is_in_range(&moved.geometries[object.geometry], place) {
+                return Err(Error::Invalid(format!(
+                    "{} leaves the range of f32 in frame {frame}: its scale or its place is out of \
+                     bounds",
+                    object.name
+                )));
+            }
+        }
+        moved.median_radius = moved.median_of_medians();
+        Ok(moved)
+    }
+
+    /// The geometries.
+    #[must_use]
+    pub fn geometries(&self) -> &[Geometry] {
+        &self.geometries
+    }
+
+    /// The objects, in the order of the scene.
+    #[must_use]
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// Where each object is.
+    #[must_use]
+    pub fn places(&self) -> &[Similarity] {
+        &self.places
+    }
+
+    /// The ids of their surfels.
+    #[must_use]
+    pub fn ids(&self) -> &Ids {
+        &self.ids
+    }
+
+    /// The colour of objects without one, if some have one.
+    #[must_use]
+    pub fn fill(&self) -> Vec3 {
+        self.fill
+    }
+
+    /// The frame in which they are.
+    #[must_use]
+    pub fn frame(&self) -> u32 {
+        self.frame
+    }
+
+    /// Whether they are at the same places in every frame.
+    #[must_use]
+    pub fn are_still(&self) -> bool {
+        self.objects.iter().all(|object| object.motion.is_still())
+    }
+
+    /// The unit of epsilon, see the [module](self).
+    #[must_use]
+    pub fn median_radius(&self) -> f32 {
+        self.median_radius
+    }
+
+    /// The geometry of an object.
+    #[must_use]
+    pub fn geometry(&self, object: u32) -> &Geometry {
+        &self.geometries[self.objects[object as usize].geometry]
+    }
+
+    /// The boxes of the surfels of an object, in the coordinates of its geometry.
+    #[must_use]
+    pub fn boxes(&self, object: u32) -> &Boxes {
+        &self.boxes[self.objects[object as usize].geometry]
+    }
+
+    /// A sphere around all surfels and primitives of an object: middle and radius, in f64.
+    #[must_use]
+    pub fn sphere(&self, object: u32) -> (DVec3, f64) {
+        let place = &self.places[object as usize];
+        let (middle, radius) = self.geometry(object).sphere();
+        (place.rotation * (middle * place.scale) + place.translation, radius * place.scale)
+    }
+
+    /// A sphere around everything: the middle of the box around the objects' spheres, and the
+    /// farthest that one of them reaches from there; in f64.
+    #[must_use]
+    pub fn bounding_sphere(&self) -> (DVec3, f64) {
+        let spheres = (0..self.objects.len() as u32).map(|object| self.sphere(object));
+        let spheres: Vec<_> = spheres.collect();
+        let mut corners = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        for (middle, radius) in &spheres {
+            corners[0] = corners[0].min(*middle - *radius);
+            corners[1] = corners[1].max(*middle + *radius);
+        }
+        let center = (corners[0] + corners[1]) / 2.0;
+        let far = spheres.iter().map(|(middle, radius)| (*middle - center).length() + radius);
+        (center, far.fold(0.0, |most, far| if far > most { far } else { most }))
+    }
+
+    fn median_of_medians(&self) -> f32 {
+        let of = |(object, place): (&Object, &Similarity)| {
+            let surfels = &self.geometries[object.geometry].surfels;
+            let radius = (f64::from(surfels.median_radius()) * place.scale) as f32;
+            (radius, surfels.len() as u64)
+        };
+        let mut medians: Vec<_> = self.objects.iter().zip(&self.places).map(of).collect();
+        medians.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let middle = self.ids.total().saturating_sub(1) / 2;
+        let mut before = 0;
+        let median = medians.iter().find(|(_, count)| {
+            before += count;
+            before > middle
+        });
+        median.map_or(0.0, |&(radius, _)| radius)
+    }
+}
+
+impl Geometry {
+    /// As [`super::Scene::bounding_sphere`].
+    fn sphere(&self) -> (DVec3, f64) {
+        super::bounds::sphere(&self.surfels, &self.primitives)
+    }
+}
+
+#[cfg(test)]
+mod tests;

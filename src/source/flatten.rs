@@ -1,0 +1,33 @@
+//! Scenes of objects as scenes of surfels.
+
+use super::merge::join;
+use crate::error::{Error, Result};
+use crate::frame::Exec;
+use crate::memory;
+use crate::scene::Scene;
+
+/// The scene with all surfels and primitives of its objects in their places, for methods that draw
+/// surfels: the surfels in the order of their ids, the primitives in the order of the objects. A
+/// scene without objects is left as it is.
+///
+/// # Errors
+/// [`Error::Invalid`] if there are neither surfels nor primitives, if there are more than 2^32 - 2 of
+/// either, or if the process may not hold them.
+pub fn flatten(scene: &Scene, exec: &Exec) -> Result<Scene> {
+    let Some(objects) = &scene.objects else { return Ok(scene.clone()) };
+    let total = objects.ids().total();
+    if total >= u64::from(u32::MAX) {
+        let what = "surfels of all objects, too many to be drawn one by one: use --method deferred";
+        return Err(Error::Invalid(format!("{total} {what}")));
+    }
+    memory::ask(total * OF_A_SURFEL, || format!("{total} surfels of all objects"))?;
+    let (surfels, primitives) = objects.flattened(exec)?;
+    let primitives = join(primitives, objects.fill())?;
+    if surfels.is_empty() && primitives.is_empty() {
+        return Err(Error::Invalid("the scene is empty: its objects have no surfels".into()));
+    }
+    Ok(Scene { surfels, primitives, ..scene.clone() })
+}
+
+/// Bytes of a surfel with everything that it may have, twice while they are put together.
+const OF_A_SURFEL: u64 = 2 * 68;

@@ -1,0 +1,236 @@
+//! `splatref render --frames`, and scenes of objects.
+
+use super::*;
+use tempfile::TempDir;
+
+const WALK: &str = "\
+[[geometry]]
+name = \"tree\"
+shape = \"torus\"
+count = 300
+[[object]]
+of = \"tree\"
+keys = [{ frame = 0, translate = [-1, 0, 0] }, { frame = 2, translate = [1, 0, 0], scale = 0.5 }]
+[[model]]
+shape = \"sphere\"
+count = 100
+[sequence]
+frames = 3
+[camera]
+size = [32, 24]
+keys = [
+  { frame = 0, eye = [0, 1, 6], target = [0, 0, 0] },
+  { frame = 2, eye = [4, 1, 4], target = [0, 0, 0] },
+]
+";
+
+/// The scene in a directory of its own.
+fn walk() -> TempDir {
+    let at = TempDir::new().unwrap();
+    fs::write(at.path().join("walk.toml"), WALK).unwrap();
+    at
+}
+
+const ALL: [&str; 6] =
+    ["w.0000.exr", "w.0000.png", "w.0001.exr", "w.0001.png", "w.0002.exr", "w.0002.png"];
+
+#[test]
+fn a_sequence_is_a_file_a_frame() {
+    let at = walk();
+    let read = |name: &str| fs::read(at.path().join(name)).unwrap();
+    let said = succeeds(at.path(), &["render", "walk.toml", "--frames", "0..3", "-o", "w.exr"]);
+    for word in [
+        "walk: 400 surfels",
+        "2 of 2 geometries, ids of 12 bits",
+        "tree: 300 surfels, procedural; used by 1 objects",
+        "sums over 3 frames",
+        "visibility",
+        "w.0000.exr to w.0002.exr",
+    ] {
+        assert!(said.contains(word), "{word} in {said}");
+    }
+    assert_eq!(names(at.path()), [&ALL[..], &["walk.toml"]].concat());
+    let pictures = ALL.map(read);
+    assert!(pictures[0] != pictures[2] && pictures[2] != pictures[4]);
+
+    // One frame alone, and as a single picture.
+    succeeds(at.path(), &["render", "walk.toml", "--frames", "1..2", "-o", "one.exr"]);
+    assert_eq!(read("one.0001.exr"), pictures[2]);
+    succeeds(at.path(), &["render", "walk.toml", "--frame", "1", "-o", "f.exr", "--threads", "1"]);
+    assert_eq!(read("f.exr"), pictures[2]);
+    succeeds(at.path(), &["render", "walk.toml"]);
+    assert_eq!(read("out/walk.exr"), pictures[0], "frame 0 if nobody says");
+
+    // Other commands take a frame too.
+    succeeds(at.path(), &["verify", "walk.toml", "w.0002.exr", "--frame", "2"]);
+    let said = succeeds(at.path(), &["explain", "walk.toml", "16", "12", "--frame", "2"]);
+    assert!(said.contains("at (4, 1, 4)"), "{said}");
+    succeeds(at.path(), &["project", "walk.toml", "--frame", "2", "-o", "r.bin"]);
+    succeeds(at.path(), &["group", "walk.toml", "-o", "g.ply"]);
+    let said = succeeds(at.path(), &["info", "walk.toml"]);
+    assert!(said.contains("used by 1 objects") && said.contains("frames     3"), "{said}");
+}
+
+/// A camera that moves before what rests: one session draws all frames.
+#[test]
+fn what_rests_is_prepared_once() {
+    let at = walk();
+    let still = WALK.replace("[1, 0, 0], scale = 0.5", "[-1, 0, 0]");
+    fs::write(at.path().join("still.toml"), still).unwrap();
+    let method = ["--method", "single-pass", "--frames"];
+    let frames = |range: &str, name: &str| {
+        let more = [range, "-o", name];
+        succeeds(at.path(), &[&["render", "still.toml"], &method[..], &more].concat())
+    };
+    frames("0..3", "w.exr");
+    frames("2..3", "one.exr");
+    let read = |name: &str| fs::read(at.path().join(name)).unwrap();
+    assert_eq!(read("one.0002.exr"), read("w.0002.exr"));
+    assert_ne!(read("w.0001.exr"), read("w.0002.exr"));
+}
+
+/// An error in the middle: what is written is whole, and nothing else is there.
+#[test]
+fn what_was_written_stays_whole() {
+    let at = walk();
+    fs::create_dir(at.path().join("w.0001.png")).unwrap();
+    let line = fails(at.path(), &["render", "walk.toml", "--frames", "0..3", "-o", "w.exr"], 1);
+    assert!(line.contains("w.0001.png"), "{line}");
+    assert_eq!(names(at.path()), ["w.0000.exr", "w.0000.png", "w.0001.png", "walk.toml"]);
+    exr::read(&at.path().join("w.0000.exr")).unwrap();
+}
+
+#[test]
+fn frames_that_are_none_are_refused() {
+    let at = walk();
+    for (more, what) in [
+        (&["--frames", "5..5"] as &[&str], "no frame is in 5..5"),
+        (&["--frames", "2..1"], "no frame is in 2..1"),
+        (&["--frames", "0..4"], "frame 3 of walk: give 0 to 2"),
+        (&["--frames", "0"], "such as 0..60"),
+        (&["--frames", "0..2", "--repeat", "3"], "--repeat"),
+        (&["--frames", "0..2", "--frame", "1"], "--frame"),
+        (&["--frames", "0..2", "-o", "w.png"], "give a name in .exr"),
+        (&["--frame", "3"], "frame 3 of walk: give 0 to 2"),
+    ] {
+        let line = fails(at.path(), &[&["render", "walk.toml"], more].concat(), 2);
+        assert!(line.contains(what), "{line}");
+    }
+    let line = fails(at.path(), &["render", "sphere", "--frames", "0..2"], 2);
+    assert!(line.contains("no [sequence]"), "{line}");
+    // An output that is an input.
+    let sky = ["--environment", "sky.0001.exr", "-o", "sky.exr"];
+    succeeds(
+        at.path(),
+        &["render", "sphere", "--count", "9", "--size", "8x8", "-o", "sky.0001.exr"],
+    );
+    let line =
+        fails(at.path(), &[&["render", "walk.toml", "--frames", "0..3"], &sky[..]].concat(), 2);
+    assert!(line.contains("sky.0001.exr is what the scene is read from"), "{line}");
+    assert_eq!(names(at.path()), ["sky.0001.exr", "sky.0001.png", "walk.toml"]);
+}
+
+#[test]
+fn an_object_is_what_a_model_in_its_place_is() {
+    let at = TempDir::new().unwrap();
+    let place =
+        "scale = 0.75\nrotate = { axis = [1, 2, 0], degrees = 50 }\ntranslate = [0.5, 0, 0]\n";
+    let camera = "[camera]\nsize = [32, 24]\neye = [0, 1, 6]\ntarget = [0, 0, 0]\nfov = 40\n";
+    let shape = "shape = \"torus\"\ncount = 300\n";
+    fs::write(
+        at.path().join("model.toml"),
+        format!("[[model]]\n{shape}[model.transform]\n{place}{camera}"),
+    )
+    .unwrap();
+    fs::write(
+        at.path().join("object.toml"),
+        format!(
+            "[[geometry]]\nname = \"a\"\n{shape}[[object]]\nof = \"a\"\n[object.transform]\n{place}\
+             {camera}"
+        ),
+    )
+    .unwrap();
+    let planes = ["model", "object"].map(|name| {
+        let out = format!("{name}.exr");
+        succeeds(at.path(), &["render", &format!("{name}.toml"), "-o", &out, "--stages"]);
+        exr::read(&at.path().join(out)).unwrap().channels
+    });
+    assert!(planes[0] == planes[1]);
+}
+
+#[test]
+fn scenes_of_objects_that_cannot_be_are_refused() {
+    let at = TempDir::new().unwrap();
+    let tree = "[[geometry]]\nname = \"tree\"\nshape = \"torus\"\ncount = 300\n";
+    let many = |count: u64| {
+        format!(
+            "{tree}[[object]]\nof = \"tree\"\nscatter = {{ count = {count}, low = [0, 0, 0], \
+             high = [1, 1, 1] }}\n"
+        )
+    };
+    for (text, what) in [
+        (many(1 << 32), "4294967296 objects"),
+        (many((1 << 32) - 1), "--memory"),
+        (format!("{tree}[[object]]\nof = \"oak\"\n"), "the geometries are tree"),
+        (format!("{tree}[[object]]\nof = \"tree\"\ntable = \"none.csv\"\n"), "none.csv"),
+        (
+            format!("{tree}[[object]]\nof = \"tree\"\ntransform = {{ scale = 1e60 }}\n"),
+            "tree.0 leaves",
+        ),
+        (format!("{tree}[[object]]\nof = \"tree\"\n[camera]\nkeys = []\n"), "no keys"),
+    ] {
+        fs::write(at.path().join("s.toml"), text).unwrap();
+        for arguments in [
+            &["render", "s.toml"] as &[&str],
+            &["info", "s.toml"],
+            &["explain", "s.toml", "1", "1"],
+        ] {
+            let line = fails(at.path(), arguments, 1);
+            assert!(line.contains(what), "{line}");
+        }
+    }
+    assert_eq!(names(at.path()), ["s.toml"]);
+}
+
+/// A sequence of the method that carries something is the same in one go and from a state.
+#[test]
+fn a_frame_goes_on_from_the_state_of_the_one_before() {
+    let at = walk();
+    let read = |name: &str| fs::read(at.path().join(name)).unwrap();
+    let render = ["render", "walk.toml", "--method", "deferred"];
+    let with = |more: &[&'static str]| [&render[..], more].concat();
+    let said = succeeds(at.path(), &with(&["--frames", "0..3", "-o", "w.exr"]));
+    assert!(said.contains("indices") && said.contains("difference"), "{said}");
+    succeeds(at.path(), &with(&["--frames", "0..2", "-o", "a.exr", "--keep-state", "s.bin"]));
+    succeeds(at.path(), &with(&["--frames", "2..3", "-o", "b.exr", "--state", "s.bin"]));
+    assert_eq!(read("b.0002.exr"), read("w.0002.exr"));
+    let one = ["--frame", "2", "--state", "s.bin", "-o", "c.exr"];
+    let said = succeeds(at.path(), &[&with(&one)[..], &["--repeat", "3"]].concat());
+    assert!(said.contains(" of 400 surfels, "), "{said}");
+    assert_eq!(read("c.exr"), read("w.0002.exr"), "repeated from the same state");
+    succeeds(at.path(), &with(&["--frame", "2", "-o", "d.exr"]));
+    assert_ne!(read("d.exr"), read("w.0002.exr"), "from nothing");
+    let explain = ["explain", "walk.toml", "16", "12", "--method", "deferred", "--frame", "2"];
+    let said = succeeds(at.path(), &[&explain[..], &["--state", "s.bin"]].concat());
+    assert!(said.contains("flagged") && said.contains("surfel"), "{said}");
+
+    // What cannot be.
+    let refused = |more: &[&'static str], code| fails(at.path(), &with(more), code);
+    let line = refused(&["--frame", "1", "--state", "s.bin", "-o", "x.exr"], 1);
+    assert!(line.contains("what frame 1 saw is for frame 2, and this is frame 1"), "{line}");
+    let line = refused(&["--frame", "2", "--state", "s.bin", "--flags", "8", "-o", "x.exr"], 1);
+    assert!(line.contains("groups of 64 surfels, the method 8: set --flags 64"), "{line}");
+    let line = refused(&["--frame", "2", "--state", "walk.toml", "-o", "x.exr"], 1);
+    assert!(line.contains("no state of splatref"), "{line}");
+    let line = refused(&["-o", "x.exr", "--keep-state", "walk.toml"], 2);
+    assert!(line.contains("walk.toml"), "{line}");
+    let ewa = ["render", "walk.toml", "-o", "x.exr", "--keep-state", "t.bin"];
+    let line = fails(at.path(), &ewa, 2);
+    assert!(line.contains("the method ewa carries nothing from frame to frame"), "{line}");
+    let other = WALK.replace("count = 100", "count = 101");
+    fs::write(at.path().join("other.toml"), other).unwrap();
+    let other = ["render", "other.toml", "--method", "deferred", "--frame", "2", "-o", "x.exr"];
+    let line = fails(at.path(), &[&other[..], &["--state", "s.bin"]].concat(), 1);
+    assert!(line.contains("the state is of another scene"), "{line}");
+    assert!(!at.path().join("x.exr").exists() && !at.path().join("t.bin").exists());
+}

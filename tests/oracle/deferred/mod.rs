@@ -1,0 +1,12 @@
+//! Deferred splatting.
+
+mod cases;
+mod ids;
+mod known;
+mod laws;
+mod model;
+mod place;
+mod replay;
+mod schemes;
+mod stages;
+mod tolerance;
