@@ -21,9 +21,14 @@ pub fn plus<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
 #[inline(always)]
 pub fn average<R: Real>(sum: [R; 3], weight: R) -> [R; 3] {
     let some = weight.gt(R::ZERO);
-    let part = |sum: R| R::select(some, sum / weight + R::ZERO, R::ZERO);
     // Not by `map`, in which a loop over pixels does not vectorize.
-    [part(sum[0]), part(sum[1]), part(sum[2])]
+    [part(some, sum[0], weight), part(some, sum[1], weight), part(some, sum[2], weight)]
+}
+
+/// A component of an average. No closure, which would stay a function where numbers are balls.
+#[inline(always)]
+fn part<R: Real>(some: R::Truth, sum: R, weight: R) -> R {
+    R::select(some, sum / weight + R::ZERO, R::ZERO)
 }
 
 /// The direction of the average of normals: [`average`], divided by its length, plus 0.

@@ -98,9 +98,18 @@ impl<R: Real> Vector3<R> {
     pub fn normalized(self) -> Self {
         let length = self.length();
         let some = length.gt(R::ZERO) & length.is_finite();
-        let part = |component: R| R::select(some, component / length, R::ZERO);
-        Self::new(part(self.x), part(self.y), part(self.z))
+        Self::new(
+            part(some, self.x, length),
+            part(some, self.y, length),
+            part(some, self.z, length),
+        )
     }
+}
+
+/// A component of a unit vector. No closure, which would stay a function where numbers are balls.
+#[inline(always)]
+fn part<R: Real>(some: R::Truth, component: R, length: R) -> R {
+    R::select(some, component / length, R::ZERO)
 }
 
 impl<R: Real> Add for Vector3<R> {

@@ -159,7 +159,8 @@ vectorized!(
             for i in 0..LANES {
                 let position = Vector3::new(input[0][i], input[1][i], input[2][i]);
                 let normal = Vector3::new(input[3][i], input[4][i], input[5][i]);
-                let (f, b, back, reasons) = projector.affine_disc(position, normal, input[6][i]);
+                let (f, b, [back, _], reasons) =
+                    projector.affine_disc(position, normal, input[6][i]);
                 splats.put(i, &f, &b, back);
                 fates[i] = reasons.fate() as u32;
             }

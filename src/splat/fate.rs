@@ -38,6 +38,7 @@ pub struct Reasons<R: Real> {
 
 impl<R: Real> Reasons<R> {
     /// Whether there is any reason.
+    #[inline(always)]
     #[must_use]
     pub fn any(&self) -> R::Truth {
         self.behind | self.degenerate | self.back_facing | self.outside

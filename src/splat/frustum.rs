@@ -51,11 +51,20 @@ impl<R: Real> Frustum<R> {
     #[inline(always)]
     pub fn touches(&self, p: Vector3<R>, t: R, radius: R) -> R::Truth {
         let t = if self.perspective { t } else { R::ONE };
-        let inside = |side: &FrustumSide<R>| {
-            let distance = (side.along * p.x + side.across * p.y) + side.past * t;
-            distance.ge(-(radius * side.slope + self.skirt * t))
-        };
+        let (p, skirt) = ([p.x, p.y, t], self.skirt * t);
         let [left, right, top, bottom] = &self.sides;
-        inside(left) & inside(right) & inside(top) & inside(bottom)
+        left.holds(p, radius, skirt)
+            & right.holds(p, radius, skirt)
+            & top.holds(p, radius, skirt)
+            & bottom.holds(p, radius, skirt)
+    }
+}
+
+impl<R: Real> FrustumSide<R> {
+    /// Whether a sphere reaches over this side to the inside.
+    #[inline(always)]
+    fn holds(&self, [x, y, t]: [R; 3], radius: R, skirt: R) -> R::Truth {
+        let distance = (self.along * x + self.across * y) + self.past * t;
+        distance.ge(-(radius * self.slope + skirt))
     }
 }

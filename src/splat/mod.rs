@@ -19,6 +19,7 @@ pub mod clip;
 pub mod crossing;
 mod disc;
 pub mod ellipse;
+pub(crate) mod enclosed;
 mod fate;
 pub mod frustum;
 pub mod project;

@@ -214,6 +214,7 @@ impl<R: Real> Projector<R> {
     }
 
     /// See [`Projector::crosses`].
+    #[inline(always)]
     fn reaches_near_plane(&self, placed: &PlacedDisc<R>, shape: &Covariance<R>) -> R::Truth {
         R::Truth::from(self.view.perspective) & !(placed.t - shape.half).gt(self.view.near)
     }
@@ -265,19 +266,21 @@ impl<R: Real> Projector<R> {
     }
 
     /// An affine disc without a branch, so that a loop over it vectorizes: footprint, bounds,
-    /// whether its back is seen, and the reasons not to draw it.
+    /// whether its back is seen and whether it reaches the near plane, and the reasons not to draw
+    /// it.
     #[inline(always)]
     pub(super) fn affine_disc(
         &self,
         position: Vector3<R>,
         normal: Vector3<R>,
         radius: R,
-    ) -> (Footprint<R>, Rect, R::Truth, Reasons<R>) {
+    ) -> (Footprint<R>, Rect, [R::Truth; 2], Reasons<R>) {
         let placed = self.place(position, normal);
         let shape = self.disc(&placed, radius);
         let (footprint, bounds) = self.affine(&placed, &shape);
         let reasons = reasons(self.unseen(&placed, radius), &footprint, &bounds);
-        (footprint, bounds, placed.g.gt(R::ZERO), reasons)
+        let crosses = self.reaches_near_plane(&placed, &shape);
+        (footprint, bounds, [placed.g.gt(R::ZERO), crosses], reasons)
     }
 
     /// The projection linearized at the centre.

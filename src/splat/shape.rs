@@ -39,13 +39,12 @@ impl<R: Real> Projector<R> {
         let p = view.point(position);
         let n = view.direction(normal);
         let t = -p.z;
-        let (m, d, at) = if view.perspective {
-            let m = R::ONE / t;
-            let d = Vector2::new(p.x * m, p.y * m);
-            (m, d, d)
-        } else {
-            (R::ONE, Vector2::new(R::ZERO, R::ZERO), Vector2::new(p.x, p.y))
-        };
+        // Choices between numbers, not between ways: of them a loop over balls makes vectors.
+        let one_of =
+            |perspective: R, other: R| R::select(view.perspective.into(), perspective, other);
+        let m = one_of(R::ONE / t, R::ONE);
+        let d = Vector2::new(one_of(p.x * m, R::ZERO), one_of(p.y * m, R::ZERO));
+        let at = Vector2::new(one_of(d.x, p.x), one_of(d.y, p.y));
         PlacedDisc {
             p,
             n,

@@ -55,8 +55,8 @@ impl<R: Real> View<R> {
     /// A direction in view space: each component `(m0 x + m1 y) + m2 z`.
     #[inline(always)]
     pub fn direction(&self, world: Vector3<R>) -> Vector3<R> {
-        let row = |m: &[R; 4]| (m[0] * world.x + m[1] * world.y) + m[2] * world.z;
-        Vector3::new(row(&self.rows[0]), row(&self.rows[1]), row(&self.rows[2]))
+        let [x, y, z] = &self.rows;
+        Vector3::new(turned(x, world), turned(y, world), turned(z, world))
     }
 
     /// The world-space direction of the ray of pixel (x, y), of any length but 0.
@@ -85,8 +85,14 @@ impl<R: Real> View<R> {
     /// The nearness of a depth: 1/t, or -t under an orthographic camera.
     #[inline(always)]
     pub fn nearness(&self, depth: R) -> R {
-        if self.perspective { R::ONE / depth } else { -depth }
+        R::select(self.perspective.into(), R::ONE / depth, -depth)
     }
+}
+
+/// A component of a direction. No closure, which would stay a function where numbers are balls.
+#[inline(always)]
+fn turned<R: Real>(row: &[R; 4], world: Vector3<R>) -> R {
+    (row[0] * world.x + row[1] * world.y) + row[2] * world.z
 }
 
 #[cfg(test)]

@@ -76,16 +76,27 @@ impl<R: Real> Sums<R> {
         (surfel, back): (u32, R::Truth),
         weight: R,
     ) {
+        let opacity = surfels.opacity().map_or(R::ONE, |all| R::from_f32(all[surfel as usize]));
+        self.opacity = self.opacity + weight * opacity;
+        self.add_opaque(surfels, (surfel, back), weight);
+    }
+
+    /// The same without the opacity, which nobody reads of opaque splats.
+    #[inline(always)]
+    pub(in crate::method) fn add_opaque(
+        &mut self,
+        surfels: &Surfels,
+        (surfel, back): (u32, R::Truth),
+        weight: R,
+    ) {
         let i = surfel as usize;
         // Not by `map`, which is not inlined.
         let numbers = |v: Vec3| [R::from_f32(v.x), R::from_f32(v.y), R::from_f32(v.z)];
         let normal = facing(numbers(surfels.normal()[i]), back);
-        let opacity = surfels.opacity().map_or(R::ONE, |all| R::from_f32(all[i]));
         if let Some(colors) = surfels.color() {
             self.color = sum::add(self.color, weight, numbers(colors[i]));
         }
         self.normal = sum::add(self.normal, weight, normal);
-        self.opacity = self.opacity + weight * opacity;
         self.weight = self.weight + weight;
         self.count = Stencil::COUNT.update(self.count, Outcome::Pass);
     }

@@ -4,10 +4,13 @@ use super::Settings;
 use crate::frame::Rect;
 use crate::method::algorithm::Job;
 use crate::method::prepare::Prepared;
-use crate::number::ball::Profile;
+use crate::number::ball::{Common, Profile};
+use crate::number::lanes::LANES;
 use crate::number::{Ball, Truth};
+use crate::scene::Surfels;
 use crate::splat::project::project_each;
-use crate::splat::{Disc, Projector, Splat, Tally, batch};
+use crate::splat::{Disc, Outline, Projector, Splat, Tally, View, batch, enclosed};
+use std::ops::Range;
 
 /// A surfel that may be drawn.
 #[derive(Debug)]
@@ -37,24 +40,44 @@ pub(in crate::method) fn project_into<P: Profile, S: Send>(
 ) -> Prepared<Ball<P>, S> {
     let surfels = &job.scene.surfels;
     let picture = job.picture();
+    let common = Projector::new(View::new(job.camera), &settings.kernel, settings.cull);
     Prepared::new(
         job,
         settings,
         surfels.len(),
         |projector, range, splats| {
-            for i in range {
-                let disc = batch::disc(surfels, i);
-                each_possible(projector, &disc, i as u32, |mut splat, certain| {
-                    splat.bounds = splat.bounds.intersection(&picture);
-                    if !splat.bounds.is_empty() {
-                        splats.push(record(PossibleSplat { splat, certain }));
-                    }
-                });
-            }
+            each_of_range((projector, &common), surfels, range, |mut splat, certain| {
+                splat.bounds = splat.bounds.intersection(&picture);
+                if !splat.bounds.is_empty() {
+                    splats.push(record(PossibleSplat { splat, certain }));
+                }
+            });
             Tally::default()
         },
         bounds,
     )
+}
+
+/// [`each_possible`] of a range of surfels, in ascending order; affine discs in lanes, but for what these
+/// leave open.
+pub(in crate::method) fn each_of_range<P: Profile>(
+    (projector, common): (&Projector<Ball<P>>, &Projector<Ball<Common<P>>>),
+    surfels: &Surfels,
+    range: Range<usize>,
+    mut each: impl FnMut(Splat<Ball<P>>, bool),
+) {
+    let in_lanes = match (projector.outline, surfels.tangents()) {
+        (Outline::Affine, None) => range.len() - range.len() % LANES,
+        _ => 0,
+    };
+    let rest = range.start + in_lanes;
+    enclosed::affine_discs(common, surfels, range.start..rest, &mut |i, splat| match splat {
+        Some(splat) => each(splat, true),
+        None => each_possible(projector, &batch::disc(surfels, i), i as u32, &mut each),
+    });
+    for i in rest..range.end {
+        each_possible(projector, &batch::disc(surfels, i), i as u32, &mut each);
+    }
 }
 
 /// What a surfel may become: one splat, two if it is not certain whether it reaches the near plane,

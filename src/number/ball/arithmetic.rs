@@ -4,7 +4,7 @@
 //! the bound of the result is infinite, NaN, or beyond the largest `f32`, and with that one test
 //! the operator is left to its rare cases, out of line.
 
-use super::{Ball, Profile};
+use super::{Ball, Profile, common};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Whether an operation on exact operands has this result exactly.
@@ -20,6 +20,9 @@ impl<P: Profile> Add for Ball<P> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
+        if P::COMMON_ONLY {
+            return common::sum(self, other);
+        }
         let (middle, spread) = (self.middle + other.middle, self.radius + other.radius);
         if is_exact::<P>(middle, spread) {
             return Self::exact(middle);
@@ -60,6 +63,9 @@ impl<P: Profile> Mul for Ball<P> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
+        if P::COMMON_ONLY {
+            return common::product(self, other);
+        }
         let (m, n, r, s) = (self.middle, other.middle, self.radius, other.radius);
         let middle = m * n;
         if is_exact::<P>(middle, r + s) {
@@ -93,6 +99,9 @@ impl<P: Profile> Div for Ball<P> {
     type Output = Self;
     #[inline(always)]
     fn div(self, other: Self) -> Self {
+        if P::COMMON_ONLY {
+            return common::quotient(self, other);
+        }
         let (m, n, r, s) = (self.middle, other.middle, self.radius, other.radius);
         let middle = m / n;
         if is_exact::<P>(middle, r + s) {

@@ -60,12 +60,16 @@
 mod angle;
 mod arithmetic;
 mod bounds;
+mod common;
+mod lanes;
 mod powers;
 mod profile;
 #[cfg(test)]
 mod tests;
 mod three;
 
+pub(crate) use lanes::BallLanes;
+pub(crate) use profile::Common;
 pub use profile::{Gpu, Ieee, Profile, SumTerms};
 pub use three::{PixelRange, Three};
 
@@ -209,6 +213,12 @@ impl<P: Profile> Ball<P> {
     fn unbounded(middle: f64, may_be_nan: bool) -> Self {
         Self::new(middle, if may_be_nan { f64::NAN } else { f64::INFINITY })
     }
+
+    /// The same ball where operations round in another way.
+    #[inline(always)]
+    pub(crate) fn rounding_as<Q: Profile<Terms = P::Terms>>(self) -> Ball<Q> {
+        Ball { middle: self.middle, radius: self.radius, terms: self.terms }
+    }
 }
 
 impl<P: Profile> Real for Ball<P> {
@@ -262,6 +272,9 @@ impl<P: Profile> Real for Ball<P> {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
+        if P::COMMON_ONLY {
+            return common::root(self);
+        }
         let middle = self.middle.sqrt();
         if is_exact::<P>(middle, self.radius) | self.is_zero() {
             return Self::exact(middle);
@@ -278,6 +291,9 @@ impl<P: Profile> Real for Ball<P> {
 
     #[inline(always)]
     fn root_of_squares(self) -> Self {
+        if P::COMMON_ONLY {
+            return common::root_of_squares(self);
+        }
         // Comparisons that NaN fails.
         if self.low() < 0.0 && self.high().is_finite() {
             let middle = self.middle.sqrt();
@@ -352,6 +368,9 @@ impl<P: Profile> Real for Ball<P> {
 
     #[inline(always)]
     fn select(truth: Three, yes: Self, no: Self) -> Self {
+        if P::COMMON_ONLY {
+            return common::select(truth, yes, no);
+        }
         match truth.decided() {
             Some(true) => yes,
             Some(false) => no,
@@ -360,11 +379,14 @@ impl<P: Profile> Real for Ball<P> {
     }
     #[inline(always)]
     fn at_least(self, low: Self) -> Self {
+        if P::COMMON_ONLY {
+            return common::at_least(self, low);
+        }
         bounds::at_least(self, low)
     }
     #[inline(always)]
     fn at_most(self, high: Self) -> Self {
-        -bounds::at_least(-self, -high)
+        -(-self).at_least(-high)
     }
     #[inline(always)]
     fn clamped(self, low: Self, high: Self) -> Self {

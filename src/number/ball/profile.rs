@@ -2,6 +2,7 @@
 
 use super::Ball;
 use crate::number::{Real, elementary};
+use std::marker::PhantomData;
 
 /// What an implementation promises about its operations, in units of u = 2^-24 of the result.
 pub trait Profile: Copy + Send + Sync + 'static {
@@ -25,6 +26,8 @@ pub trait Profile: Copy + Send + Sync + 'static {
     const ROOT: f64;
     /// The most that an operation loses below the normal numbers.
     const TINY: f64;
+    /// Whether nothing is known of the results of rare operations, see [`Common`].
+    const COMMON_ONLY: bool = false;
 
     /// Rounding of the exponential of a number of at most this absolute value.
     fn exponential(argument: f64) -> f64;
@@ -32,6 +35,8 @@ pub trait Profile: Copy + Send + Sync + 'static {
     fn power(bases: [f64; 2], exponent: f64) -> f64;
     /// The sum of bounded terms, of midpoint `middle`; its radius counts if the sum is bounded too.
     fn sum(middle: f64, terms: [&Ball<Self>; 2]) -> Ball<Self>;
+    /// The terms of one of two sums: number by number, as a choice between wholes is no vector.
+    fn choose(truth: bool, yes: Self::Terms, no: Self::Terms) -> Self::Terms;
 }
 
 /// Each operation rounds once, to nearest, and a product may be fused with the sum it goes into:
@@ -64,6 +69,8 @@ impl Profile for Ieee {
         // A sum below the normal numbers is exact.
         Ball::new(middle, Ball::<Self>::reach(middle, a.radius + b.radius, 1.0, 0.0))
     }
+    #[inline(always)]
+    fn choose(_truth: bool, _yes: (), _no: ()) {}
 }
 
 /// What WGSL and Vulkan publish for `f32`; an ulp is at most 2 u of its number.
@@ -115,7 +122,7 @@ impl SumTerms {
     fn of(ball: &Ball<Gpu>) -> Self {
         let Ball { middle, radius, terms } = *ball;
         let one = Self { magnitude: middle.abs() + radius, additions: 0.0, radius };
-        if terms.additions == 0.0 { one } else { terms }
+        Gpu::choose(terms.additions == 0.0, one, terms)
     }
 }
 
@@ -165,5 +172,48 @@ impl Profile for Gpu {
             Ball::<Self>::reach(middle, terms.radius + lost, 0.0, terms.additions * Self::TINY)
         };
         Ball { middle, radius, terms }
+    }
+    #[inline(always)]
+    fn choose(truth: bool, yes: SumTerms, no: SumTerms) -> SumTerms {
+        SumTerms {
+            magnitude: if truth { yes.magnitude } else { no.magnitude },
+            additions: if truth { yes.additions } else { no.additions },
+            radius: if truth { yes.radius } else { no.radius },
+        }
+    }
+}
+
+/// Rounds as `P`, without a branch, so that a loop over balls becomes vectors: nothing is known of a result
+/// that is not bounded or whose case is rare (0 times a ball, 0 divided by one, a choice that is
+/// undecided). Its radius is NaN, which is sound; every other ball is that of `P`, bit for bit. What
+/// was decided is what `P` decides, as nothing decides of NaN.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Common<P>(PhantomData<P>);
+
+impl<P: Profile> Profile for Common<P> {
+    type Terms = P::Terms;
+    const NO_SUM: P::Terms = P::NO_SUM;
+    const ROUNDS_TO_NEAREST: bool = P::ROUNDS_TO_NEAREST;
+    const FLUSHES: bool = P::FLUSHES;
+    const PRODUCT: f64 = P::PRODUCT;
+    const QUOTIENT: f64 = P::QUOTIENT;
+    const LARGEST_DIVISOR: f64 = P::LARGEST_DIVISOR;
+    const ROOT: f64 = P::ROOT;
+    const TINY: f64 = P::TINY;
+    const COMMON_ONLY: bool = true;
+
+    fn exponential(argument: f64) -> f64 {
+        P::exponential(argument)
+    }
+    fn power(bases: [f64; 2], exponent: f64) -> f64 {
+        P::power(bases, exponent)
+    }
+    #[inline(always)]
+    fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {
+        P::sum(middle, [&a.rounding_as(), &b.rounding_as()]).rounding_as()
+    }
+    #[inline(always)]
+    fn choose(truth: bool, yes: P::Terms, no: P::Terms) -> P::Terms {
+        P::choose(truth, yes, no)
     }
 }

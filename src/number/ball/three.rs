@@ -17,7 +17,7 @@ pub struct Three {
 impl Three {
     /// Whether all values say yes, the midpoints do, and some do: each implies the next.
     #[inline(always)]
-    pub(super) fn new([certainly, middle, possibly]: [bool; 3]) -> Self {
+    pub(crate) fn new([certainly, middle, possibly]: [bool; 3]) -> Self {
         Self { certainly, middle, possibly }
     }
 

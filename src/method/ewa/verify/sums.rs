@@ -55,7 +55,7 @@ pub(super) fn continuations<P: Profile>(
     each_part(splats, (nearest, &limits), (tile, rect), |pixel, part, asked| {
         let (sums, undecided) = &mut sums[pixel];
         if part.open.is_none() {
-            sums.add(surfels, (part.surfel, part.back), part.weight);
+            sums.add_opaque(surfels, (part.surfel, part.back), part.weight);
         } else {
             *undecided += 1;
             asked.mark(&mut marks.at(pixel));
@@ -209,7 +209,7 @@ fn several<P: Profile>(
             let taken = part.open.is_none() || choice >> bit & 1 == 1;
             bit += u32::from(part.open.is_some());
             if taken {
-                sums.add(surfels, (part.surfel, part.back), part.weight);
+                sums.add_opaque(surfels, (part.surfel, part.back), part.weight);
             }
         }
         sums

@@ -59,13 +59,28 @@ fn compare_projections<P: Profile>(session: &Session<'_>, camera: &Camera, all: 
     let surfels = &session.scene().surfels;
     for cull in [false, true] {
         let projector = Projector::<Ball<P>>::new(View::new(camera), &settings.kernel, cull);
+        let common = Projector::new(View::new(camera), &settings.kernel, cull);
+        let mut in_lanes = Vec::new();
+        possible::each_of_range(
+            (&projector, &common),
+            surfels,
+            0..surfels.len(),
+            |splat, certain| {
+                in_lanes.push((splat.surfel, format!("{splat:?} {certain}")));
+            },
+        );
+        let mut in_lanes = in_lanes.into_iter().peekable();
         let mut counts = [0; 2];
         for i in 0..surfels.len() {
-            let (disc, mut found) = (batch::disc(surfels, i), Vec::new());
+            let (disc, mut found, mut lanes) = (batch::disc(surfels, i), Vec::new(), Vec::new());
             possible::each_possible(&projector, &disc, i as u32, |splat, certain| {
                 found.push(format!("{splat:?} {certain}"));
             });
             assert_eq!(found, plain(&projector, &disc, i as u32));
+            while let Some((_, lane)) = in_lanes.next_if(|(surfel, _)| *surfel == i as u32) {
+                lanes.push(lane);
+            }
+            assert_eq!(lanes, found);
             counts[usize::from(found.is_empty())] += 1;
         }
         for (all, some) in all.iter_mut().zip(counts) {

@@ -1,0 +1,154 @@
+//! Projection of affine discs in balls, in lanes.
+//!
+//! The lanes are balls of [`Common`]: what these decide of a surfel is decided, and a splat of which they
+//! know every number is that of the plain ball, bit for bit. Of any other surfel they say nothing.
+
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
+)]
+
+use super::{Footprint, Projector, Reasons, Splat};
+use crate::frame::Rect;
+use crate::number::ball::{BallLanes, Common, Profile, Three};
+use crate::number::lanes::{LANES, vectorized};
+use crate::number::{Ball, Real, Truth, Vector2, Vector3};
+use crate::scene::Surfels;
+use std::ops::Range;
+
+/// What is known of a surfel: it certainly is not drawn, or certainly is and as this splat, or neither.
+/// Numbers, so that a choice between them is a vector.
+const DROPPED: u32 = 0;
+const DRAWN: u32 = 1;
+const OPEN: u32 = 2;
+
+vectorized!(
+    /// Calls `draw` for the discs of a range, whose length is a multiple of [`LANES`], in ascending
+    /// order, but for those that certainly are not drawn: with the splat if that is certain, none if
+    /// nothing is known.
+    pub(crate) fn affine_discs<P: Profile>(
+        projector: &Projector<Ball<Common<P>>>,
+        surfels: &Surfels,
+        range: Range<usize>,
+        draw: &mut impl FnMut(usize, Option<Splat<Ball<P>>>),
+    ) {
+        let projector = *projector;
+        let picture = [projector.view.width, projector.view.height].map(|n| n.middle as u32);
+        for first in range.step_by(LANES) {
+            // -- The discs
+            let mut input = [[0.0_f32; LANES]; 7];
+            let (positions, normals) = (surfels.position(), surfels.normal());
+            for i in 0..LANES {
+                let (p, n) = (positions[first + i], normals[first + i]);
+                let values = [p.x, p.y, p.z, n.x, n.y, n.z, surfels.radius()[first + i]];
+                for (lanes, value) in input.iter_mut().zip(values) {
+                    lanes[i] = value;
+                }
+            }
+            // -- Their projections
+            let mut splats = SplatLanes::<Common<P>>::new();
+            for i in 0..LANES {
+                let number = |field: usize| Ball::from_f32(input[field][i]);
+                let position = Vector3::new(number(0), number(1), number(2));
+                let normal = Vector3::new(number(3), number(4), number(5));
+                let (f, b, truths, reasons) = projector.affine_disc(position, normal, number(6));
+                splats.known[i] = known(&f, &b, picture, truths[1], &reasons);
+                splats.put(i, &f, &b, truths[0]);
+            }
+            // -- Those that may be drawn
+            for i in 0..LANES {
+                match splats.known[i] {
+                    DROPPED => {}
+                    DRAWN => draw(first + i, Some(splats.get(i, (first + i) as u32))),
+                    _ => draw(first + i, None),
+                }
+            }
+        }
+    }
+);
+
+/// What is known of a surfel.
+#[inline(always)]
+fn known<P: Profile>(
+    footprint: &Footprint<Ball<P>>,
+    bounds: &Rect,
+    [width, height]: [u32; 2],
+    crosses: Three,
+    reasons: &Reasons<Ball<P>>,
+) -> u32 {
+    let Footprint { center, ux, uy, vy, w0, wx, wy, w_far, w_near, amplitude } = footprint;
+    let radii = (center.x.radius + center.y.radius + ux.radius + uy.radius + vy.radius)
+        + (w0.radius + wx.radius + wy.radius)
+        + (w_far.radius + w_near.radius + amplitude.radius);
+    // Bounds of which nothing is known reach beyond the picture.
+    let bounded = (bounds.x1 <= width) & (bounds.y1 <= height);
+    let dropped = reasons.any();
+    let certain = !dropped.possibly() & (crosses.certainly() == crosses.possibly());
+    let drawn = certain & bounded & radii.is_finite();
+    let known = if drawn { DRAWN } else { OPEN };
+    if dropped.certainly() { DROPPED } else { known }
+}
+
+/// [`LANES`] splats, each of their numbers a vector.
+struct SplatLanes<P: Profile> {
+    /// The footprint, in the order of its fields.
+    numbers: [BallLanes<P>; 11],
+    /// The bounds, in the order of their fields.
+    bounds: [[u32; LANES]; 4],
+    /// Whether the back is seen: certainly, by the midpoints, possibly.
+    back: [[u32; LANES]; 3],
+    known: [u32; LANES],
+}
+
+impl<P: Profile> SplatLanes<P> {
+    #[inline(always)]
+    fn new() -> Self {
+        let numbers = [BallLanes::ZERO; 11];
+        Self { numbers, bounds: [[0; LANES]; 4], back: [[0; LANES]; 3], known: [0; LANES] }
+    }
+
+    #[inline(always)]
+    fn put(&mut self, i: usize, f: &Footprint<Ball<P>>, b: &Rect, back: Three) {
+        let n = &mut self.numbers;
+        n[0].put(i, f.center.x);
+        n[1].put(i, f.center.y);
+        n[2].put(i, f.ux);
+        n[3].put(i, f.uy);
+        n[4].put(i, f.vy);
+        n[5].put(i, f.w0);
+        n[6].put(i, f.wx);
+        n[7].put(i, f.wy);
+        n[8].put(i, f.w_far);
+        n[9].put(i, f.w_near);
+        n[10].put(i, f.amplitude);
+        let pixels = &mut self.bounds;
+        (pixels[0][i], pixels[1][i], pixels[2][i], pixels[3][i]) = (b.x0, b.y0, b.x1, b.y1);
+        self.back[0][i] = u32::from(back.certainly());
+        self.back[1][i] = u32::from(back.middle());
+        self.back[2][i] = u32::from(back.possibly());
+    }
+
+    #[inline(always)]
+    fn get<Q: Profile<Terms = P::Terms>>(&self, i: usize, surfel: u32) -> Splat<Ball<Q>> {
+        let n = |field: usize| self.numbers[field].get(i).rounding_as();
+        let pixel = |field: usize| self.bounds[field][i];
+        let back = |field: usize| self.back[field][i] != 0;
+        Splat {
+            footprint: Footprint {
+                center: Vector2::new(n(0), n(1)),
+                ux: n(2),
+                uy: n(3),
+                vy: n(4),
+                w0: n(5),
+                wx: n(6),
+                wy: n(7),
+                w_far: n(8),
+                w_near: n(9),
+                amplitude: n(10),
+            },
+            bounds: Rect { x0: pixel(0), y0: pixel(1), x1: pixel(2), y1: pixel(3) },
+            surfel,
+            back: Three::new([back(0), back(1), back(2)]),
+        }
+    }
+}
