@@ -26,7 +26,7 @@ pub trait Profile: Copy + Send + Sync + 'static {
     const ROOT: f64;
     /// The most that an operation loses below the normal numbers.
     const TINY: f64;
-    /// Whether nothing is known of the results of rare operations, see [`Common`].
+    /// Whether nothing is known of the results of rare operations, see `common.rs`.
     const COMMON_ONLY: bool = false;
 
     /// Rounding of the exponential of a number of at most this absolute value.
