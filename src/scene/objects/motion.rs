@@ -81,6 +81,12 @@ impl Motion {
         Ok(Self { keys })
     }
 
+    /// The keys, in ascending frames.
+    #[must_use]
+    pub fn keys(&self) -> &[(u32, Similarity)] {
+        &self.keys
+    }
+
     /// Whether it is at the same place in every frame.
     #[must_use]
     pub fn is_still(&self) -> bool {

@@ -3,12 +3,16 @@
 use crate::deferred::place::{Thing, World, similarity};
 use crate::ewa::cases::{self as ewa, Kind};
 use crate::kit::dice::Dice;
+use crate::kit::goldens::Taken;
 use crate::kit::scene::{OUTLINES, change, lights, scene, straight, surfels};
 use glam::{DMat3, DVec3, Mat4, Vec3};
+use splatref::frame::Exec;
+use splatref::io::scene_file::SceneFile;
 use splatref::method::deferred::Settings;
-use splatref::scene::{Camera, Scene, Similarity, Surfels};
+use splatref::scene::{Camera, Object, Scene, Similarity, Surfels};
 use splatref::source::Shape;
 use splatref::splat::{Epsilon, Kernel, SplatSettings};
+use std::path::Path;
 
 /// A sequence of frames.
 pub(crate) struct Sequence {
@@ -178,4 +182,32 @@ pub(crate) fn sequence(number: u64) -> Sequence {
     let around = Scene { lights: lights(&mut dice), ..scene(surfels(Default::default())) };
     let name = format!("number {number}, {settings:?}");
     Sequence { name, world, around, settings, frames, exact }
+}
+
+/// The goldens of the method, each the last frame of a sequence.
+pub(crate) fn goldens() -> Vec<Sequence> {
+    let exec = Exec::sequential();
+    let golden = |name: &&str| {
+        let path = Path::new("golden").join(name).with_extension("toml");
+        let file = SceneFile::read(&path).expect("a scene file");
+        let ready = file.ready(&exec, &|_, _, _| ()).expect("loads");
+        let around = ready.loaded.scene.clone();
+        let objects = around.objects.clone().expect("a scene of objects");
+        let thing = |object: &Object| Thing {
+            geometry: object.geometry,
+            keys: object.motion.keys().to_vec(),
+            color: object.color,
+        };
+        let world = World {
+            geometries: objects.geometries().iter().map(|of| of.surfels.clone()).collect(),
+            objects: objects.objects().iter().map(thing).collect(),
+            fill: objects.fill(),
+        };
+        let camera = |frame| ready.camera_at(frame).expect("a camera");
+        let frames = (0..file.frames).map(|frame| (frame, camera(frame), frame > 0)).collect();
+        let settings = Settings::of(ready.method).expect("a golden of this method");
+        let name = path.display().to_string();
+        Sequence { name, world, around, settings, frames, exact: false }
+    };
+    Settings::NAMES.iter().map(golden).collect()
 }

@@ -5,7 +5,7 @@
 use crate::kit::case::Case;
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;
-use splatref::method::{Method, Session, ewa, peeling, pyramid, single_pass, template};
+use splatref::method::{Method, Session, deferred, ewa, peeling, pyramid, single_pass, template};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -51,6 +51,7 @@ taken! {
         "ewa_perspective_close",
         "ewa_raycast_sheets",
     ];
+    deferred::Settings, Deferred: ["gbp04_motion", "gbp04_without_second"];
     single_pass::Settings, SinglePass: [
         "zp06_identity_sphere",
         "zp06_ladder",
