@@ -67,7 +67,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let picture = place(args, &file, None)?;
     let preview = picture.with_extension("png");
     let ready = draw::ready(&file, &exec)?;
-    check_state(args, &ready, &file)?;
+    check_state(args, &ready, &file, std::slice::from_ref(&picture))?;
     let (mut session, made) = draw::session(&ready, &args.options, &exec)?;
     let loading = start.elapsed();
     let Ready { loaded, camera, method, .. } = &ready;
@@ -144,15 +144,29 @@ pub(super) fn keep(args: &Args, ready: &Ready, frame: u32, seen: Option<&Seen>) 
     state::pending(path, &state, &ready.identity()?)?.put()
 }
 
-/// Whether a state can be kept where it was asked for: before anything is drawn.
-pub(super) fn check_state(args: &Args, ready: &Ready, file: &SceneFile) -> Result<()> {
+/// Whether a state can be kept where it was asked for, beside these pictures: before anything is drawn.
+pub(super) fn check_state(
+    args: &Args,
+    ready: &Ready,
+    file: &SceneFile,
+    pictures: &[PathBuf],
+) -> Result<()> {
+    if let Some(read) = args.options.state() {
+        let kept = args.keep_state.iter().chain(pictures);
+        kept.into_iter().try_for_each(|path| output::check_other(path, read))?;
+    }
     let Some(path) = &args.keep_state else { return Ok(()) };
     if !ready.method.draws_objects() {
         let name = ready.method.name();
         let what = format!("--keep-state: the method {name} carries nothing from frame to frame");
         return Err(Error::Usage(what));
     }
-    output::check(path, &args.scene, file)
+    output::check(path, &args.scene, file)?;
+    for picture in pictures {
+        output::check_two(path, picture)?;
+        output::check_two(path, &picture.with_extension("png"))?;
+    }
+    Ok(())
 }
 
 /// Makes the folder of pictures, if nobody says where they go.

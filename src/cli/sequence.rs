@@ -32,7 +32,7 @@ pub(super) fn render(args: &Args, file: &SceneFile, frames: Range<u32>, exec: &E
     let place = |frame| place(args, file, Some(frame));
     let places = frames.clone().map(place).collect::<Result<Vec<_>>>()?;
     let mut ready = draw::ready(file, exec)?;
-    check_state(args, &ready, file)?;
+    check_state(args, &ready, file, &places)?;
     let mut seen = draw::seen(&ready, &args.options)?;
     let mut times = Times::default();
     times.add("loading", start.elapsed());

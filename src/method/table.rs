@@ -11,7 +11,7 @@ use crate::frame::{Frame, Pool};
 use crate::index::grouping::Grouping;
 use crate::number::Exact;
 use crate::number::ball::Profile;
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Objects, Scene};
 use crate::setting::{Fields, Visit};
 use crate::splat::SplatSettings;
 use crate::verify::client::Client;
@@ -241,7 +241,9 @@ impl Method {
                 self.name()
             )));
         }
-        if scene.primitives.is_empty() || self.draws_primitives() {
+        // Those of objects too, where nobody makes the scene flat.
+        let of_objects = scene.objects.as_ref().is_some_and(Objects::have_primitives);
+        if (scene.primitives.is_empty() && !of_objects) || self.draws_primitives() {
             return Ok(());
         }
         let able = Self::all().into_iter().filter(Self::draws_primitives);

@@ -224,6 +224,19 @@ fn a_frame_goes_on_from_the_state_of_the_one_before() {
     assert!(line.contains("no state of splatref"), "{line}");
     let line = refused(&["-o", "x.exr", "--keep-state", "walk.toml"], 2);
     assert!(line.contains("walk.toml"), "{line}");
+    for kept in ["x.exr", "./x.png"] {
+        let line = refused(&["-o", "x.exr", "--keep-state", kept], 2);
+        assert!(line.contains("are one file; give two names"), "{line}");
+    }
+    let frame = ["--frame", "2", "--state", "s.bin", "-o", "x.exr", "--keep-state", "./s.bin"];
+    let line = refused(&frame, 2);
+    assert!(line.contains("is what is read; give another name"), "{line}");
+    fs::write(at.path().join("tree.toml"), format!("{WALK}[[geometry]]\nname = \"real\"\nshape = \"tree\"\nleaves = 9\n[[object]]\nof = \"real\"\n")).unwrap();
+    let line = fails(at.path(), &["render", "tree.toml", "--method", "deferred", "-o", "x.exr"], 1);
+    assert!(
+        line.contains("has triangles or lines, which the method deferred does not draw"),
+        "{line}"
+    );
     let ewa = ["render", "walk.toml", "-o", "x.exr", "--keep-state", "t.bin"];
     let line = fails(at.path(), &ewa, 2);
     assert!(line.contains("the method ewa carries nothing from frame to frame"), "{line}");

@@ -3,7 +3,7 @@
 use super::Settings;
 use super::indices::{each_centre, indices, selected};
 use super::part::{Part, Whole};
-use super::picture::{flagged, is_new, seen};
+use super::picture::{flagged, seen, unseen};
 use super::visibility::{both, nearest};
 use crate::error::Result;
 use crate::method::algorithm::Job;
@@ -63,8 +63,8 @@ pub fn explain<R: Exact>(
     let visible = nearest::<R>(job, splats, &flagged);
     let kept = indices(job, splats, &whole, &visible);
     let part = whole.part(selected(&kept), job.exec);
-    let unseen = part.ids().iter().copied().filter(|&id| is_new(&whole, &before, id));
-    let fresh = whole.part(if settings.second { unseen.collect() } else { Vec::new() }, job.exec);
+    let third = if settings.second { part.ids() } else { &[] };
+    let fresh = whole.part(unseen(&whole, &before, third), job.exec);
     let depth = both(&visible, &nearest(job, splats, &fresh));
 
     let (x, y) = pixel;

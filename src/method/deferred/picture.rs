@@ -21,6 +21,7 @@ use crate::method::stage::unknown;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::Tally;
+use std::borrow::Cow;
 
 /// The definition, in any number; with `stages`, every stage leaves its planes.
 pub(super) fn define<R: Exact>(
@@ -138,12 +139,16 @@ pub(super) fn flagged(job: &Job<'_>, whole: &Whole<'_>, before: &Seen) -> Result
 const OF_A_FLAGGED: u64 = 512;
 
 /// What the frame before saw; nothing before the first.
-pub(super) fn seen(job: &Job<'_>, settings: &Settings, whole: &Whole<'_>) -> Result<Seen> {
+pub(super) fn seen<'a>(
+    job: &Job<'a>,
+    settings: &Settings,
+    whole: &Whole<'_>,
+) -> Result<Cow<'a, Seen>> {
     match &job.index.seen {
-        None => Ok(Seen::nothing(whole.ids(), settings.flags)),
+        None => Ok(Cow::Owned(Seen::nothing(whole.ids(), settings.flags))),
         Some(seen) => {
             seen.check(whole.ids(), settings.flags)?;
-            Ok(seen.clone())
+            Ok(Cow::Borrowed(seen))
         }
     }
 }
@@ -160,14 +165,16 @@ fn difference<R: Exact>(
     if !settings.second {
         return visible.map(|pixel| *pixel);
     }
-    let unseen = selected.ids().iter().copied().filter(|&id| is_new(whole, before, id));
-    let fresh = whole.part(unseen.collect(), job.exec);
+    let fresh = whole.part(unseen(whole, before, selected.ids()), job.exec);
     both(visible, &nearest(job, &settings.splats, &fresh))
 }
 
-/// Whether the flag of a surfel is not set.
-pub(super) fn is_new(whole: &Whole<'_>, before: &Seen, id: u64) -> bool {
-    whole.ids().find(id).is_some_and(|(object, surfel)| !before.has(object, surfel))
+/// Those of some surfels whose flag is not set.
+pub(super) fn unseen(whole: &Whole<'_>, before: &Seen, ids: &[u64]) -> Vec<u64> {
+    let is_new = |id: &u64| {
+        whole.ids().find(*id).is_some_and(|(object, surfel)| !before.has(object, surfel))
+    };
+    ids.iter().copied().filter(is_new).collect()
 }
 
 /// Pass 4: attribute splatting of B(i), and what became of its surfels.

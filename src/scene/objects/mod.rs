@@ -28,6 +28,7 @@ use crate::error::{Error, Result};
 use glam::{DVec3, Vec3};
 pub use ids::{Ids, Split};
 pub use motion::Motion;
+use place::Extent;
 use std::sync::Arc;
 
 /// What objects are copies of: surfels and primitives in coordinates of their own.
@@ -61,7 +62,7 @@ pub struct Objects {
     objects: Arc<[Object]>,
     ids: Arc<Ids>,
     /// Of each geometry.
-    boxes: Arc<[Boxes]>,
+    extents: Arc<[Extent]>,
     fill: Vec3,
     frame: u32,
     places: Vec<Similarity>,
@@ -85,9 +86,9 @@ impl Objects {
         };
         let counts = objects.iter().map(count).collect::<Result<Vec<_>>>()?;
         let ids = Ids::new(counts, |object| objects[object].name.clone())?;
-        let boxes = geometries.iter().map(|geometry| Boxes::new(&geometry.surfels)).collect();
+        let extents = geometries.iter().map(Extent::new).collect();
         let still = Self {
-            boxes,
+            extents,
             geometries: geometries.into(),
             objects: objects.into(),
             ids: Arc::new(ids),
@@ -108,7 +109,7 @@ impl Objects {
         let places: Vec<_> = self.objects.iter().map(|object| object.motion.at(frame)).collect();
         let mut moved = Self { frame, places, ..self.clone() };
         for (object, place) in moved.objects.iter().zip(&moved.places) {
-            if !place::is_in_range(&moved.geometries[object.geometry], place) {
+            if !moved.extents[object.geometry].is_in_range(place) {
                 return Err(Error::Invalid(format!(
                     "{} leaves the range of f32 in frame {frame}: its scale or its place is out of \
                      bounds",
@@ -178,15 +179,22 @@ impl Objects {
     /// The boxes of the surfels of an object, in the coordinates of its geometry.
     #[must_use]
     pub fn boxes(&self, object: u32) -> &Boxes {
-        &self.boxes[self.objects[object as usize].geometry]
+        &self.extents[self.objects[object as usize].geometry].boxes
     }
 
     /// A sphere around all surfels and primitives of an object: middle and radius, in f64.
     #[must_use]
     pub fn sphere(&self, object: u32) -> (DVec3, f64) {
         let place = &self.places[object as usize];
-        let (middle, radius) = self.geometry(object).sphere();
+        let (middle, radius) = self.extents[self.objects[object as usize].geometry].sphere;
         (place.rotation * (middle * place.scale) + place.translation, radius * place.scale)
+    }
+
+    /// Whether there are primitives in an object.
+    #[must_use]
+    pub fn have_primitives(&self) -> bool {
+        let has = |object: &Object| !self.geometries[object.geometry].primitives.is_empty();
+        self.objects.iter().any(has)
     }
 
     /// A sphere around everything: the middle of the box around the objects' spheres, and the
@@ -224,13 +232,6 @@ impl Objects {
             before > middle
         });
         median.map_or(0.0, |&(radius, _)| radius)
-    }
-}
-
-impl Geometry {
-    /// As [`super::Scene::bounding_sphere`].
-    fn sphere(&self) -> (DVec3, f64) {
-        super::bounds::sphere(&self.surfels, &self.primitives)
     }
 }
 

@@ -7,8 +7,8 @@ use crate::scene::cloud::half_axes;
 use crate::scene::degenerate::unit;
 use crate::scene::surfels::Arrays;
 use crate::scene::transform::Similarity;
-use crate::scene::{Primitives, Surfels};
-use glam::Vec3;
+use crate::scene::{Boxes, Primitives, Surfels, bounds};
+use glam::{DVec3, Vec3};
 use std::ops::Range;
 
 /// So many surfels are placed by one job.
@@ -18,19 +18,34 @@ const CHUNK: usize = 1 << 13;
 /// that no surfel that is one becomes none.
 const LEAST: f64 = 1.0 / 1_267_650_600_228_229_401_496_703_205_376.0;
 
-/// Whether the surfels of a geometry stay surfels in a place.
-pub(super) fn is_in_range(geometry: &Geometry, place: &Similarity) -> bool {
-    let (middle, radius) = geometry.sphere();
-    let far = (middle.length() + radius) * place.scale + place.translation.length();
-    let mut least = f64::INFINITY;
-    let surfels = &geometry.surfels;
-    let halves = surfels.tangents().unwrap_or_default().iter().flatten();
-    let halves = halves.map(|half| half.as_dvec3().length());
-    let radii = surfels.radius().iter().map(|&radius| f64::from(radius));
-    for size in radii.chain(halves) {
-        least = if size < least { size } else { least };
+/// What is asked of a geometry for each of its objects in each frame.
+#[derive(Clone, Debug)]
+pub(super) struct Extent {
+    pub(super) boxes: Boxes,
+    /// Around surfels and primitives: middle and radius.
+    pub(super) sphere: (DVec3, f64),
+    /// The least of all radii and half axes.
+    least: f64,
+}
+
+impl Extent {
+    pub(super) fn new(geometry: &Geometry) -> Self {
+        let surfels = &geometry.surfels;
+        let halves = surfels.tangents().unwrap_or_default().iter().flatten();
+        let halves = halves.map(|half| half.as_dvec3().length());
+        let radii = surfels.radius().iter().map(|&radius| f64::from(radius));
+        let less = |least, size| if size < least { size } else { least };
+        let least = radii.chain(halves).fold(f64::INFINITY, less);
+        let sphere = bounds::sphere(surfels, &geometry.primitives);
+        Self { boxes: Boxes::new(surfels), sphere, least }
     }
-    far <= 1.0 / LEAST && least * place.scale >= LEAST
+
+    /// Whether surfels stay surfels in a place.
+    pub(super) fn is_in_range(&self, place: &Similarity) -> bool {
+        let (middle, radius) = self.sphere;
+        let far = (middle.length() + radius) * place.scale + place.translation.length();
+        far <= 1.0 / LEAST && self.least * place.scale >= LEAST
+    }
 }
 
 /// Surfels of one object: all of a range, or those of some ids.

@@ -6,7 +6,7 @@
 mod points;
 
 use super::part::{Part, Whole};
-use super::picture::{flagged, is_new, seen};
+use super::picture::{flagged, seen, unseen};
 use super::queries::Limits;
 use super::{Settings, visibility};
 use crate::composite::decide;
@@ -41,8 +41,7 @@ pub(super) fn render(
     let now = Seen::of(whole.ids(), settings.flags, &list);
     clock.lap("indices");
 
-    let unseen = list.iter().copied().filter(|&id| is_new(&whole, &before, id));
-    let fresh = whole.part(unseen.collect(), job.exec);
+    let fresh = whole.part(unseen(&whole, &before, &list), job.exec);
     let selected = whole.part(list, job.exec);
     let [fresh_job, selected_job] = [&fresh, &selected].map(|part| part.job(job));
     let fresh_splats = prepare(&fresh_job, splats);

@@ -1,9 +1,10 @@
 //! Pass 2: every surfel as a point, against the depth of pass 1.
 //!
-//! The surfels are divided into as many shares as there are threads, up to [`SHARES`], in the order of their ids. Each
-//! share has a picture of its own, and the pictures are joined: the least depth of a pixel and, of equal
-//! ones, the lowest id is the same however the surfels are divided. Of most surfels the position says
-//! that they are not kept, and of many a box around them; the normals of the others alone are read and turned.
+//! The surfels are divided into as many shares as there are threads, up to [`SHARES`], in the order of
+//! their ids. Each share has a picture of its own, and the pictures are joined: the least depth of a
+//! pixel and, of equal ones, the lowest id is the same however the surfels are divided. Of most surfels
+//! the position says that they are not kept, and of many a box around them; the normals of the others
+//! alone are read and turned.
 
 use super::super::Settings;
 use super::super::indices::Kept;
