@@ -100,10 +100,16 @@
 //!
 //! # The list
 //!
-//! Descending `far`; of equal ones in the order of the tree, a node before its children, and these
-//! as above. As gaps are not scaled, no order is right for every s: [`Sequential::prefix`] takes
-//! the largest gap from a place to the end of the list for that of the place. It leaves out nothing
-//! that a test takes.
+//! In bands of `far`, descending: a band has all values of one exponent and one pair of highest bits of
+//! the mantissa, so that none is 5/4 of another or more; +inf is a band. Within a band in the order of
+//! the tree, a node before its children, and these as above. `Decided:` \[DVS03\] sorts by `far` itself,
+//! which puts neighbours of the surface anywhere in the list. In bands of the tree's order consecutive
+//! nodes are neighbours, so that boxes around them are small, as \[GBP04, 7.2\] asks for with its
+//! clusters by position, and a flag stands for a small piece of the surface \[GBP04, 4.3\].
+//!
+//! As gaps are not scaled and bands are not sorted, no order is right for every s:
+//! [`Sequential::prefix`] takes the largest `far` and the largest gap from a place to the end of the list
+//! for those of the place. It leaves out nothing that a test takes.
 
 mod build;
 mod node;
@@ -121,13 +127,15 @@ const SHORTER: f64 = 1.0 - 1.0 / 1_048_576.0;
 /// The parent of the root, and the surfel of an inner node.
 const NONE: u32 = u32::MAX;
 
-/// Surfels and the discs that stand for them from afar, as a list; see the [module](self).
+/// When each of a list of nodes is drawn, surfels and the discs that stand for them from afar; see the
+/// [module](self).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sequential {
-    nodes: Surfels,
     near: Vec<f32>,
     far: Vec<f32>,
     gap: Vec<f32>,
+    /// The largest `far` from here to the end of the list.
+    far_from: Vec<f32>,
     /// The largest gap from here to the end of the list.
     gap_from: Vec<f32>,
     parent: Vec<u32>,
@@ -135,7 +143,8 @@ pub struct Sequential {
 }
 
 impl Sequential {
-    /// Builds the list, without regard to colours. `exec` cannot change it.
+    /// Builds the list, without regard to colours: the discs of all nodes in its order, whose median radius
+    /// and bounding sphere are those of all nodes, and when each is drawn. `exec` cannot change it.
     ///
     /// Takes O(n log n) time, about a second of one core for a million surfels, and up to 420 bytes
     /// a surfel while it works, of which 70 to 160 stay. Groups of the surfels are dropped. Of no
@@ -144,7 +153,7 @@ impl Sequential {
     /// # Errors
     /// [`crate::Error::Invalid`] if a disc around surfels leaves the range of f32, if there are
     /// more than 2^31 surfels, or if they need more memory than there may be.
-    pub fn new(surfels: &Surfels, exec: &Exec) -> Result<Self> {
+    pub fn new(surfels: &Surfels, exec: &Exec) -> Result<(Surfels, Self)> {
         Self::with_color(surfels, f32::INFINITY, exec)
     }
 
@@ -154,14 +163,8 @@ impl Sequential {
     ///
     /// # Errors
     /// As [`Sequential::new`].
-    pub fn with_color(surfels: &Surfels, most: f32, exec: &Exec) -> Result<Self> {
+    pub fn with_color(surfels: &Surfels, most: f32, exec: &Exec) -> Result<(Surfels, Self)> {
         build::build(surfels, most, exec)
-    }
-
-    /// The discs of all nodes, in the order of the list. Their median radius is that of all nodes.
-    #[must_use]
-    pub fn nodes(&self) -> &Surfels {
-        &self.nodes
     }
 
     /// The error of each node: 0 for a surfel.
@@ -170,7 +173,7 @@ impl Sequential {
         &self.near
     }
 
-    /// The error of each node's parent, descending: +inf for the root.
+    /// The error of each node's parent: +inf for the root.
     #[must_use]
     pub fn far(&self) -> &[f32] {
         &self.far
@@ -198,8 +201,8 @@ impl Sequential {
     /// [`Sequential::cuts`] take none of the others at `least_distance` or farther.
     #[must_use]
     pub fn prefix(&self, least_distance: f64, scale: f64) -> usize {
-        let at = |i: usize| reaches(self.far[i], self.gap_from[i], least_distance, scale);
-        // `far` and the gaps fall along the list, and rounding keeps their order.
+        let at = |i: usize| reaches(self.far_from[i], self.gap_from[i], least_distance, scale);
+        // Both fall along the list, and rounding keeps their order.
         let (mut low, mut high) = (0, self.far.len());
         while low < high {
             let middle = low.midpoint(high);

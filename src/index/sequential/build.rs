@@ -14,6 +14,9 @@ use std::ops::Range;
 /// Subtrees of up to so many surfels are built by one job.
 const JOB: usize = 1 << 13;
 
+/// The bits of `far` that do not count in a band: all of the mantissa but two.
+const BAND: u32 = 21;
+
 /// An upper estimate of the memory that a surfel takes while the list is built.
 const BYTES_A_SURFEL: u64 = 420;
 
@@ -32,7 +35,7 @@ struct Node {
 /// A subtree that a job has built, and its root as a child.
 type Part = (Vec<Node>, Child);
 
-pub(super) fn build(surfels: &Surfels, most: f32, exec: &Exec) -> Result<Sequential> {
+pub(super) fn build(surfels: &Surfels, most: f32, exec: &Exec) -> Result<(Surfels, Sequential)> {
     let count = surfels.len();
     if count > 1 << 31 {
         return Err(Error::Invalid(format!(
@@ -162,9 +165,14 @@ fn grow(
 }
 
 /// Nodes in the order of the list.
-fn listed(surfels: &Surfels, ids: &[u32], nodes: Vec<Node>, exec: &Exec) -> Result<Sequential> {
+fn listed(
+    surfels: &Surfels,
+    ids: &[u32],
+    nodes: Vec<Node>,
+    exec: &Exec,
+) -> Result<(Surfels, Sequential)> {
     // Bits of floats that are not negative ascend as the floats do.
-    let key = |(node, i): (&Node, u64)| u64::from(!node.far.to_bits()) << 32 | i;
+    let key = |(node, i): (&Node, u64)| u64::from(!node.far.to_bits() >> BAND) << 32 | i;
     let mut keys: Vec<u64> = nodes.iter().zip(0..).map(key).collect();
     exec.sort(&mut keys);
     let order: Vec<u32> = keys.into_iter().map(|key| key as u32).collect();
@@ -192,13 +200,10 @@ fn listed(surfels: &Surfels, ids: &[u32], nodes: Vec<Node>, exec: &Exec) -> Resu
         tangents: surfels.tangents().map(tangents),
         ..Cloud::default()
     };
-    let gap: Vec<f32> = each().map(|node| node.gap).collect();
-    let mut gap_from = gap.clone();
-    for i in (1..gap.len()).rev() {
-        gap_from[i - 1] = larger(gap_from[i - 1], gap_from[i]);
-    }
     let near = each().map(|node| node.near).collect();
-    let far = each().map(|node| node.far).collect();
+    let far: Vec<f32> = each().map(|node| node.far).collect();
+    let gap: Vec<f32> = each().map(|node| node.gap).collect();
+    let (far_from, gap_from) = (largest_from(&far), largest_from(&gap));
     let parent = each().map(|node| place_of(node.parent)).collect();
     let (nodes, dropped) = Surfels::new_or_none(cloud, exec)?;
     if dropped.total() > 0 {
@@ -206,5 +211,14 @@ fn listed(surfels: &Surfels, ids: &[u32], nodes: Vec<Node>, exec: &Exec) -> Resu
             "the surfels are too far apart for a point tree: a disc leaves the range of f32".into(),
         ));
     }
-    Ok(Sequential { nodes, near, far, gap, gap_from, parent, surfel })
+    Ok((nodes, Sequential { near, far, gap, far_from, gap_from, parent, surfel }))
+}
+
+/// The largest value from each place to the end.
+fn largest_from(values: &[f32]) -> Vec<f32> {
+    let mut largest = values.to_vec();
+    for i in (1..values.len()).rev() {
+        largest[i - 1] = larger(largest[i - 1], largest[i]);
+    }
+    largest
 }

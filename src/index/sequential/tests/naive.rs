@@ -1,6 +1,6 @@
 //! The list by the page of the module alone: sorted sets, sums and maxima, nothing shared.
 
-use super::half_axes;
+use super::{exp2, half_axes};
 use crate::scene::{Cloud, Surfels};
 use glam::{DVec3, Vec3};
 
@@ -36,7 +36,16 @@ pub(super) fn list(surfels: &Surfels, most: f32) -> (List, Vec<Option<u32>>, Vec
     let mut nodes = Vec::new();
     tree(surfels, most, (0..surfels.len()).collect(), &mut nodes);
     let mut order: Vec<usize> = (0..nodes.len()).collect();
-    order.sort_by(|&a, &b| nodes[b].far.partial_cmp(&nodes[a].far).unwrap());
+    // All values of a band, from its lowest on, in powers of two and quarters of them.
+    let band = |far: f32| match far {
+        f32::INFINITY => (i32::MAX, 0),
+        _ => {
+            let power = |e: i32| exp2(f64::from(e));
+            let exponent = (-126..128).rev().find(|&e| f64::from(far) >= power(e)).unwrap_or(-126);
+            (exponent, (f64::from(far) / power(exponent) * 4.0).floor() as i32)
+        }
+    };
+    order.sort_by_cached_key(|&node| std::cmp::Reverse(band(nodes[node].far)));
     let place = |node: usize| order.iter().position(|&other| other == node).unwrap();
     let sorted: Vec<&Node> = order.iter().map(|&node| &nodes[node]).collect();
     fn of<T>(sorted: &[&Node], field: impl Fn(&Node) -> T) -> Vec<T> {
