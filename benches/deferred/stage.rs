@@ -42,6 +42,7 @@ impl Stage {
             name: name.into(),
             surfels: surfels.clone(),
             primitives: Primitives::default(),
+            detail: None,
         };
         let object = |name: &str, geometry, motion| Object {
             name: name.into(),

@@ -144,7 +144,7 @@ fn crowd(mesh: &Cloud, exec: &Exec) -> Result<Subject> {
     let surfels = along_a_curve(sampled(mesh, 2_250, exec)?)?;
     let (center, radius) = surfels.bounding_sphere();
     let primitives = Primitives::default();
-    let geometry = Geometry { name: "armadillo".into(), surfels, primitives };
+    let geometry = Geometry { name: "armadillo".into(), surfels, primitives, detail: None };
     let place = |i: u32, degrees: f64, way: f64| {
         let turn = rotation(DVec3::Y, degrees + 60.0 * f64::from(unit(1, u64::from(i))) - 30.0);
         let (column, rank) = (f64::from(i % 20) - 9.5, f64::from(i / 20) - 4.5);

@@ -46,6 +46,9 @@ fn objects_of(loaded: &Loaded, objects: &Objects) {
     let ids = objects.ids();
     let mut used = vec![0_usize; loaded.models.len()];
     objects.objects().iter().for_each(|object| used[object.geometry] += 1);
+    let surfels =
+        loaded.models.iter().zip(&used).map(|(model, &used)| (model.surfels * used) as u64);
+    let surfels: u64 = surfels.sum();
     let total = loaded.models.iter().zip(&used).fold(Counts::default(), |total, (model, used)| {
         let Counts { triangles, ribbons, tubes } = model.primitives;
         Counts {
@@ -54,19 +57,25 @@ fn objects_of(loaded: &Loaded, objects: &Objects) {
             tubes: total.tubes + used * tubes,
         }
     });
-    line("scene", format!("{}: {}", loaded.scene.name, content(ids.total(), total)));
+    line("scene", format!("{}: {}", loaded.scene.name, content(surfels, total)));
     let (count, geometries) = (objects.objects().len(), loaded.models.len());
     line("  objects", format!("{count} of {geometries} geometries, ids of {}", split(ids.split())));
-    for (model, used) in loaded.models.iter().zip(used) {
+    for ((model, used), geometry) in loaded.models.iter().zip(used).zip(objects.geometries()) {
         let all = content(model.surfels as u64, model.primitives);
         let of = origin(model);
-        line("  geometry", format!("{}: {all}, {of}; used by {used} objects", model.name));
+        let detail = geometry.detail.as_ref().map_or_else(String::new, |detail| {
+            format!(", {} nodes at {} px", geometry.surfels.len(), detail.threshold())
+        });
+        line("  geometry", format!("{}: {all}{detail}, {of}; used by {used} objects", model.name));
+    }
+    if objects.have_detail() {
+        line("  in view", format!("{} surfels and nodes", objects.drawn_total()));
     }
     line("  dropped", dropped(&loaded.dropped, loaded.dropped_primitives));
     let (middle, radius) = objects.bounding_sphere();
     let (middle, radius) = (point(middle.to_array()), short(radius));
     line("  bounds", format!("a sphere around {middle} of radius {radius}"));
-    if ids.total() > 0 {
+    if surfels > 0 {
         median(objects.median_radius());
     }
 }

@@ -25,8 +25,7 @@ impl Seen {
     /// Nothing, in groups of `group` surfels.
     #[must_use]
     pub fn nothing(ids: &Ids, group: u32) -> Self {
-        let counts: Vec<_> =
-            (0..ids.order().len() as u32).map(|object| ids.count(object)).collect();
+        let counts: Vec<_> = (0..ids.order().len() as u32).map(|object| ids.all(object)).collect();
         let mut starts = vec![0];
         for &count in &counts {
             let words = (count.div_ceil(group) as usize).div_ceil(64);
@@ -103,18 +102,19 @@ impl Seen {
         self.words[word] & bit != 0
     }
 
-    /// The surfels of all groups that were seen, in ascending ids.
+    /// The surfels of all groups that were seen, of those that have ids; ascending.
     #[must_use]
     pub fn surfels(&self, ids: &Ids) -> Vec<u64> {
         let mut all = Vec::new();
         for &object in ids.order() {
-            let (first, count) = (ids.id(object, 0), self.counts[object as usize]);
+            let (first, count) = (ids.id(object, 0), ids.count(object));
             let words = &self.words[self.starts[object as usize]..self.starts[object as usize + 1]];
             for (word, &bits) in (0_u32..).zip(words) {
                 let mut bits = bits;
                 while bits != 0 {
                     let from = (word * 64 + bits.trailing_zeros()) * self.group;
                     let to = count.min(from.saturating_add(self.group));
+                    // Nothing if the group begins beyond the last id.
                     all.extend((from..to).map(|surfel| first + u64::from(surfel)));
                     bits &= bits - 1;
                 }
@@ -135,7 +135,7 @@ impl Seen {
             )));
         }
         let same = self.counts.len() == ids.order().len()
-            && (0..).zip(&self.counts).all(|(object, &count)| ids.count(object) == count);
+            && (0..).zip(&self.counts).all(|(object, &count)| ids.all(object) == count);
         if same { Ok(()) } else { Err(Error::Invalid("the state is of another scene".into())) }
     }
 

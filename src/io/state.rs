@@ -75,7 +75,7 @@ fn parse(bytes: &[u8], scene: &str, ids: &Ids) -> std::result::Result<State, Str
     }
     let mut selected = Vec::new();
     for object in 0..ids.order().len() as u32 {
-        if rest.word()? != ids.count(object) {
+        if rest.word()? != ids.all(object) {
             return Err("the state is of another scene".into());
         }
         selected.push(rest.word()?);

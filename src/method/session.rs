@@ -15,7 +15,7 @@ use crate::index::order::BackToFront;
 use crate::index::seen::Seen;
 use crate::number::Exact;
 use crate::number::ball::{Gpu, Ieee};
-use crate::scene::objects::{Ids, Objects};
+use crate::scene::objects::Objects;
 use crate::scene::{Boxes, Camera, Groups, Scene};
 use crate::verify::client::{Client, Rounding};
 use crate::verify::verdict::{Check, Verdict};
@@ -194,26 +194,38 @@ impl<'a> Session<'a> {
     /// The ids of the surfels in planes of ids, where a method that draws surfels draws those of objects;
     /// none where it names them by their indices. Primitives are counted on after the surfels: a scene
     /// that has any keeps its indices.
-    fn names(&self) -> Option<&Ids> {
+    fn names(&self) -> Option<&Objects> {
         let objects = self.scene.objects.as_ref().filter(|_| !self.method.draws_objects());
-        objects.filter(|_| self.scene.primitives.is_empty()).map(Objects::ids)
+        objects.filter(|_| self.scene.primitives.is_empty())
     }
 
     /// Puts the ids of surfels in the place of their indices; the lowest 32 bits of each.
     fn name_surfels<R>(&self, frame: &mut Frame<R>) {
-        let Some(ids) = self.names() else { return };
-        each_id(frame, |index| ids.nth(index.into()).map(|id| id as u32));
+        let Some(objects) = self.names() else { return };
+        if objects.have_detail() {
+            let ids = objects.drawn_ids();
+            each_id(frame, |index| ids.get(index as usize).map(|&id| id as u32));
+        } else {
+            each_id(frame, |index| objects.ids().nth(index.into()).map(|id| id as u32));
+        }
     }
 
     /// Puts indices in the place of the ids of surfels.
     fn number_surfels<R>(&self, frame: &mut Frame<R>) -> Result<()> {
-        let Some(ids) = self.names() else { return Ok(()) };
-        if ids.is_wide() {
+        let Some(objects) = self.names() else { return Ok(()) };
+        if objects.ids().is_wide() {
             let what = "ids of 40 bits: planes of ids hold 32 of them, which do not say the surfel";
             return Err(Error::Invalid(what.into()));
         }
         // What is the id of none is the index of none.
-        each_id(frame, |id| Some(ids.rank(id.into()).map_or(NO_ID - 1, |rank| rank as u32)));
+        let number = |rank: Option<u64>| Some(rank.map_or(NO_ID - 1, |rank| rank as u32));
+        if objects.have_detail() {
+            let ids = objects.drawn_ids();
+            let rank = |id: u32| ids.binary_search(&id.into()).ok().map(|rank| rank as u64);
+            each_id(frame, |id| number(rank(id)));
+        } else {
+            each_id(frame, |id| number(objects.ids().rank(id.into())));
+        }
         Ok(())
     }
 

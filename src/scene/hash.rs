@@ -31,6 +31,7 @@ impl Scene {
     ///     the colour of objects without one (3 f32)
     ///     u64 count of objects, each: geometry (u64), colour (3 f32) after a byte 1, or a byte 0
     ///       alone; rotation row by row, scale and translation in the frame (13 f64)
+    ///     each geometry with levels of detail: a byte 5, its index (u64), its threshold (f64)
     /// ```
     ///
     /// A scene of objects has no surfels and no primitives but those of its geometries, whether it is
@@ -145,6 +146,13 @@ impl Hasher {
             let rows = place.rotation.transpose().to_cols_array();
             let place = rows.into_iter().chain([place.scale]).chain(place.translation.to_array());
             place.for_each(|value| self.0.update(value.to_le_bytes()));
+        }
+        for (index, geometry) in objects.geometries().iter().enumerate() {
+            if let Some(detail) = &geometry.detail {
+                self.0.update([5]);
+                self.count(index);
+                self.0.update(detail.threshold().to_le_bytes());
+            }
         }
     }
 

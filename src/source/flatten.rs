@@ -7,7 +7,7 @@ use crate::memory;
 use crate::scene::Scene;
 
 /// The scene with all surfels and primitives of its objects in their places, for methods that draw
-/// surfels: the surfels in the order of their ids, the primitives in the order of the objects. A
+/// surfels: those that are drawn in the order of their ids, the primitives in the order of the objects. A
 /// scene without objects is left as it is.
 ///
 /// # Errors
@@ -15,7 +15,7 @@ use crate::scene::Scene;
 /// either, or if the process may not hold them.
 pub fn flatten(scene: &Scene, exec: &Exec) -> Result<Scene> {
     let Some(objects) = &scene.objects else { return Ok(scene.clone()) };
-    let total = objects.ids().total();
+    let total = objects.drawn_total();
     if total >= u64::from(u32::MAX) {
         let what = "surfels of all objects, too many to be drawn one by one: use --method deferred";
         return Err(Error::Invalid(format!("{total} {what}")));

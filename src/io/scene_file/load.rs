@@ -105,15 +105,20 @@ impl SceneFile {
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<()> {
-        let own = self.models.iter().map(|model| (model.source.name(), model));
-        let named = self.geometries.iter().map(|geometry| (geometry.name.clone(), &geometry.model));
+        let own = self.models.iter().map(|model| (model.source.name(), model, None));
+        let named = self.geometries.iter();
+        let named = named.map(|one| (one.name.clone(), &one.model, one.detail));
         let mut geometries = Vec::new();
-        for (name, model) in own.chain(named) {
+        for (name, model, detail) in own.chain(named) {
             let (surfels, primitives) = loaded.read(model, name.clone(), exec, progress)?;
             let parts = if surfels.is_empty() { vec![] } else { vec![(model, surfels)] };
             let (surfels, lost) = self.join_surfels(parts, primitives.is_empty(), exec)?;
             loaded.dropped += lost;
-            geometries.push(Geometry { name, surfels, primitives });
+            let geometry = Geometry { name, surfels, primitives, detail: None };
+            geometries.push(match detail {
+                Some(threshold) => geometry.with_detail(threshold, exec)?,
+                None => geometry,
+            });
         }
         loaded.scene.objects = Some(Objects::new(geometries, objects, self.material.color)?);
         Ok(())

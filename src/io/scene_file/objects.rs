@@ -17,6 +17,9 @@ pub const MOST_FRAMES: u32 = 1_000_000;
 pub struct Geometry {
     /// What it is called.
     pub name: String,
+    /// The threshold of its [levels of detail](crate::scene::objects::detail) in pixels; if absent
+    /// all surfels are drawn.
+    pub detail: Option<f64>,
     /// Where it comes from.
     pub model: Model,
 }

@@ -8,7 +8,7 @@ use crate::index::seen::Seen;
 use crate::io::state::{self, State};
 use crate::method::session::Made;
 use crate::method::{Method, Session, deferred};
-use crate::scene::{Camera, CameraMotion, Lens, Primitives, Scene, Surfels};
+use crate::scene::{Camera, CameraMotion, Lens, Objects, Primitives, Scene, Surfels};
 use crate::source::flatten;
 use std::path::Path;
 
@@ -57,7 +57,7 @@ impl Ready {
     /// The same scene in another frame, in the memory of this one.
     ///
     /// # Errors
-    /// As [`Ready::camera_at`], [`crate::scene::Objects::at`] and [`flatten()`].
+    /// As [`Ready::camera_at`], [`Objects::at`], [`Objects::seen_from`] and [`flatten()`].
     pub fn at(mut self, frame: u32, exec: &Exec) -> Result<Self> {
         self.camera = self.camera_at(frame)?;
         self.frame = frame;
@@ -79,7 +79,9 @@ impl Ready {
     /// Whether the scene is the same in every frame, so that one session draws all of them.
     #[must_use]
     pub fn is_still(&self) -> bool {
-        self.loaded.scene.objects.as_ref().is_none_or(crate::scene::Objects::are_still)
+        let depends_on_camera = |objects: &Objects| objects.have_detail() && self.motion.is_some();
+        let is_still = |objects: &Objects| objects.are_still() && !depends_on_camera(objects);
+        self.loaded.scene.objects.as_ref().is_none_or(is_still)
     }
 
     /// The frame.
@@ -91,7 +93,7 @@ impl Ready {
     /// What names the scene in the files of states: its SHA-256, with objects as in frame 0.
     ///
     /// # Errors
-    /// As [`crate::scene::Objects::at`].
+    /// As [`Objects::at`].
     pub fn identity(&self) -> Result<String> {
         let scene = &self.loaded.scene;
         match &scene.objects {
@@ -131,12 +133,12 @@ impl Ready {
         Ok(seen)
     }
 
-    /// Puts the objects in their places of the frame. What a method is given of them is decided here:
+    /// Puts the objects in their places of the frame, as the camera sees them. What a method is given of them is decided here:
     /// the objects, or all their surfels.
     fn place(&mut self, exec: &Exec) -> Result<()> {
         let scene = &mut self.loaded.scene;
         if let Some(objects) = &scene.objects {
-            scene.objects = Some(objects.at(self.frame)?);
+            scene.objects = Some(objects.at(self.frame)?.seen_from(&self.camera, exec)?);
             // Those of the last frame make room.
             (scene.surfels, scene.primitives) = (Surfels::none(), Primitives::default());
             if !self.method.draws_objects() {

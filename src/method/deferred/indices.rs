@@ -26,7 +26,7 @@ impl<R: Real> Kept<R> {
 /// So many surfels are placed at a time.
 const CHUNK: u32 = 1 << 16;
 
-/// Draws every surfel into the picture of indices, tested against the depth of pass 1.
+/// Draws every surfel that the high level left into the picture of indices, tested against the depth of pass 1.
 pub(super) fn indices<R: Exact>(
     job: &Job<'_>,
     settings: &SplatSettings,
@@ -59,7 +59,8 @@ pub(super) fn each_centre<R: Exact>(
         let count = ids.count(object);
         for start in (0..count).step_by(CHUNK as usize) {
             let end = count.min(start.saturating_add(CHUNK));
-            let chunk: Vec<u64> = (start..end).map(|surfel| ids.id(object, surfel)).collect();
+            let drawn = (start..end).filter(|&surfel| whole.draws(object, surfel));
+            let chunk: Vec<u64> = drawn.map(|surfel| ids.id(object, surfel)).collect();
             let surfels = whole.surfels(&chunk, job.exec);
             for (i, &id) in chunk.iter().enumerate() {
                 if let Some((pixel, t)) = centre(&points, &surfels, i) {

@@ -1,12 +1,15 @@
 //! Deferred splatting: the expensive passes on visible surfels only \[GBP04\].
 //!
+//! Surfels are those that the high level leaves: of objects with [levels of
+//! detail](crate::scene::objects::detail) the nodes that this view draws, else all \[GBP04, 7.2\].
+//!
 //! The passes of frame i \[GBP04, 4.1\], in which B(i) is the list of surfels that are selected. All of
 //! them run over surfels in ascending [id](crate::scene::objects::ids); the surfels of a scene without
 //! objects are one object, and their ids are their indices.
 //!
 //! 1. **Visibility splatting of B(i-1)**: the pass of [`super::ewa`] over every surfel whose flag is
 //!    set, with the places and the camera of this frame. A flag stands for m consecutive surfels of one
-//!    object \[GBP04, 4.3\], see [`crate::index::seen`]. In the first frame no flag is set, and the pass
+//!    object \[GBP04, 4.3\], see [`crate::index::seen`]; of its surfels those are drawn that the high level leaves in this frame. In the first frame no flag is set, and the pass
 //!    draws nothing.
 //! 2. **Indices**: every surfel becomes one pixel, that of its centre, as in [`super::projection`]: with
 //!    the same fates, pixel and depth t. It is drawn if `t <= Z + epsilon`, with Z the depth that pass

@@ -4,6 +4,7 @@ use super::queries::Queries;
 use crate::frame::Exec;
 use crate::method::algorithm::Job;
 use crate::number::lanes::{LANES, Lanes};
+use crate::scene::objects::detail::Mask;
 use crate::scene::objects::{Ids, Split};
 use crate::scene::{Boxes, Scene, Similarity, Surfels};
 use glam::Vec3;
@@ -88,13 +89,21 @@ impl<'a> Whole<'a> {
             Some(objects) => {
                 let place = &objects.places()[object as usize];
                 let place = (*place != Similarity::IDENTITY).then_some(place);
-                let boxes = Some(objects.boxes(object));
-                Range { of: &objects.geometry(object).surfels, place, boxes, first, surfels }
+                let (boxes, drawn) = (Some(objects.boxes(object)), objects.drawn(object));
+                Range { of: &objects.geometry(object).surfels, place, drawn, boxes, first, surfels }
             }
             None => {
-                Range { of: &self.scene.surfels, place: None, boxes: self.boxes, first, surfels }
+                let (of, boxes) = (&self.scene.surfels, self.boxes);
+                Range { of, place: None, drawn: None, boxes, first, surfels }
             }
         }
+    }
+
+    /// Whether a surfel of an object is drawn.
+    pub(super) fn draws(&self, object: u32, surfel: u32) -> bool {
+        let objects = self.scene.objects.as_ref();
+        let drawn = objects.and_then(|objects| objects.drawn(object));
+        drawn.is_none_or(|drawn| drawn.has(surfel as usize))
     }
 
     /// The unit of epsilon.
@@ -125,6 +134,8 @@ pub(super) struct Range<'a> {
     of: &'a Surfels,
     /// Where the object is; none: the surfels are in their places.
     place: Option<&'a Similarity>,
+    /// Those that are drawn, if not all are.
+    drawn: Option<&'a Mask>,
     /// Around them, in their own coordinates.
     boxes: Option<&'a Boxes>,
     /// The id of the surfel 0.
@@ -149,6 +160,11 @@ impl<'a> Range<'a> {
 impl Range<'_> {
     pub(super) fn id(&self, surfel: usize) -> u64 {
         self.first + surfel as u64
+    }
+
+    /// Whether a surfel is drawn.
+    pub(super) fn draws(&self, surfel: usize) -> bool {
+        self.drawn.is_none_or(|drawn| drawn.has(surfel))
     }
 
     /// Position and normal of a surfel in its place.

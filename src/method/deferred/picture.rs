@@ -129,7 +129,8 @@ pub(super) fn stage<R: Exact>(
 /// # Errors
 /// [`crate::Error::Invalid`] if the process may not hold them.
 pub(super) fn flagged(job: &Job<'_>, whole: &Whole<'_>, before: &Seen) -> Result<Part> {
-    let ids = before.surfels(whole.ids());
+    let mut ids = before.surfels(whole.ids());
+    ids.retain(|&id| whole.ids().find(id).is_some_and(|(object, i)| whole.draws(object, i)));
     memory::ask(ids.len() as u64 * OF_A_FLAGGED, || format!("{} flagged surfels", ids.len()))?;
     Ok(whole.part(ids, job.exec))
 }

@@ -74,6 +74,7 @@ fn case() -> impl Strategy<Value = Case> {
                 name: name.into(),
                 surfels,
                 primitives: Primitives::default(),
+                detail: None,
             };
             let geometries = vec![
                 geometry("sphere", Shape::Sphere.surfels(400, seed).unwrap()),

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::frame::pyramid;
 use crate::memory;
 use crate::method::{Holds, PlaneRow, When, peeling};
-use crate::scene::Camera;
+use crate::scene::{Camera, Objects};
 
 /// How a picture is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +50,7 @@ impl Session<'_> {
     /// what it draws of an earlier frame it asks for when it knows.
     fn items(&self, pixels: u64) -> u64 {
         if self.method.draws_objects() {
-            let objects = self.scene.objects.as_ref().map(|objects| objects.ids().total());
+            let objects = self.scene.objects.as_ref().map(Objects::drawn_total);
             return objects.unwrap_or(self.scene.surfels.len() as u64).min(pixels);
         }
         let items = self.index.order.as_ref().map_or(self.scene.surfels.len(), |_| {

@@ -140,7 +140,7 @@ fn the_memory_of_an_earlier_picture_changes_no_bit() {
 /// Two spheres of one geometry in their places, and the same surfels without objects.
 fn two_spheres() -> [Scene; 2] {
     let (surfels, primitives) = (Shape::Sphere.surfels(300, 1).unwrap(), Primitives::default());
-    let geometry = Geometry { name: "sphere".into(), surfels, primitives };
+    let geometry = Geometry { name: "sphere".into(), surfels, primitives, detail: None };
     let object = |x: f64| {
         let translation = DVec3::new(x, 0.25 * x, x);
         let motion = Motion::still(Similarity { translation, ..Similarity::IDENTITY });

@@ -25,6 +25,10 @@
 //! the order of their ids; and so are the ids of a scene that has primitives, which are counted on after
 //! the surfels.
 //!
+//! Of an object with [levels of detail](super::detail) only those surfels have ids that a view looks
+//! at, so that the split may change from frame to frame: \[GBP04, 4.2\] has its two schemes for the
+//! forest because most trees are far away.
+//!
 //! The order of every sum and of every tie in a scene of objects is that of
 //! the ids: `Even`, `Single` and `Stencil` keep the order of the scene, `Two` has the large objects
 //! first.
@@ -63,8 +67,10 @@ const SCHEME: u64 = 1 << 31;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ids {
     split: Split,
-    /// How many surfels each object has.
+    /// How many surfels of each object have ids.
     counts: Vec<u32>,
+    /// How many surfels each object has.
+    all: Vec<u32>,
     /// The id of the first surfel of each object.
     first: Vec<u64>,
     /// The objects in the order of their ids.
@@ -79,11 +85,20 @@ impl Ids {
     /// # Errors
     /// [`Error::Invalid`] if none fits; with the limit, and `name` of the object that breaks it.
     pub fn new(counts: Vec<u32>, name: impl Fn(usize) -> String) -> Result<Self> {
+        Self::first(counts.clone(), counts, name)
+    }
+
+    /// The ids of the first so many surfels of objects that have `all` of them: of what a
+    /// [view](super::detail) looks at.
+    ///
+    /// # Errors
+    /// As [`Ids::new`].
+    pub fn first(counts: Vec<u32>, all: Vec<u32>, name: impl Fn(usize) -> String) -> Result<Self> {
         let most = counts.iter().copied().max().unwrap_or(0);
         let single = Split::Single(bits_for(u64::from(most)));
         let splits = [Split::Even, Split::Two, single, Split::Stencil];
         let fits = splits.into_iter().find_map(|split| Self::of(split, &counts));
-        fits.ok_or_else(|| {
+        fits.map(|fits| Self { all, ..fits }).ok_or_else(|| {
             let large = counts.iter().position(|&count| u64::from(count) > 1 << LARGE);
             let what = match large {
                 Some(object) => format!(
@@ -140,7 +155,8 @@ impl Ids {
             sum += u64::from(counts[object as usize]);
             sum - u64::from(counts[object as usize])
         });
-        Some(Self { split, before: before.collect(), counts: counts.to_vec(), first, order })
+        let (before, counts) = (before.collect(), counts.to_vec());
+        Some(Self { split, before, all: counts.clone(), counts, first, order })
     }
 
     /// The ids of no objects.
@@ -149,6 +165,7 @@ impl Ids {
         Self {
             split: Split::Even,
             counts: Vec::new(),
+            all: Vec::new(),
             first: Vec::new(),
             order: Vec::new(),
             before: Vec::new(),
@@ -173,13 +190,19 @@ impl Ids {
         self.split == Split::Stencil
     }
 
-    /// How many surfels an object has.
+    /// How many surfels an object has, with and without ids.
+    #[must_use]
+    pub fn all(&self, object: u32) -> u32 {
+        self.all[object as usize]
+    }
+
+    /// How many surfels of an object have ids: the first.
     #[must_use]
     pub fn count(&self, object: u32) -> u32 {
         self.counts[object as usize]
     }
 
-    /// How many surfels there are.
+    /// How many ids there are.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.counts.iter().map(|&count| u64::from(count)).sum()

@@ -3,6 +3,7 @@
 //!
 //! - [`ids`]: an object and a surfel in one number.
 //! - [`motion`]: where an object is in a frame.
+//! - [`detail`]: which surfels of an object a view draws, of a geometry with levels of detail.
 //! - `place`: surfels of objects in their places.
 //!
 //! A surfel of an object is that of its geometry, placed by [`Similarity::apply`] with the object's
@@ -17,16 +18,22 @@
 //! (n - 1) / 2 over all surfels of all objects in the frame, of the objects' median
 //! radii, each its geometry's times the object's scale (in f64, rounded to f32) and counted once for
 //! each of its surfels: neither what is seen of a scene nor how it is selected changes
-//! epsilon; where scales move, epsilon does from frame to frame.
+//! epsilon; where scales move, epsilon does from frame to frame. Of objects with levels of detail all
+//! radii that are drawn count, each once: epsilon has to be that of the discs that lie over each other,
+//! and those of a level far away are large.
 
+pub mod detail;
 pub mod ids;
 pub mod motion;
 mod place;
 
 use super::{Boxes, Primitives, Similarity, Surfels};
 use crate::error::{Error, Result};
+pub use detail::Detail;
+use detail::Mask;
 use glam::{DVec3, Vec3};
 pub use ids::{Ids, Split};
+
 pub use motion::Motion;
 use place::Extent;
 use std::sync::Arc;
@@ -36,10 +43,12 @@ use std::sync::Arc;
 pub struct Geometry {
     /// What it is called.
     pub name: String,
-    /// Its surfels.
+    /// Its surfels; with levels of detail all nodes.
     pub surfels: Surfels,
     /// What there is beside them.
     pub primitives: Primitives,
+    /// Which of its surfels are drawn, see [`Geometry::with_detail`]; none: all.
+    pub detail: Option<Detail>,
 }
 
 /// A geometry in some place.
@@ -66,6 +75,8 @@ pub struct Objects {
     fill: Vec3,
     frame: u32,
     places: Vec<Similarity>,
+    /// Of each object with levels of detail.
+    drawn: Arc<[Option<Arc<Mask>>]>,
     median_radius: f32,
     bounding_sphere: (DVec3, f64),
 }
@@ -80,34 +91,46 @@ impl Objects {
         if objects.is_empty() {
             return Err(Error::Invalid("the scene has no objects".into()));
         }
-        let count = |object: &Object| match geometries.get(object.geometry) {
-            Some(geometry) => Ok(geometry.surfels.len() as u32),
-            None => Err(Error::Invalid(format!("{} has no geometry", object.name))),
-        };
-        let counts = objects.iter().map(count).collect::<Result<Vec<_>>>()?;
-        let ids = Ids::new(counts, |object| objects[object].name.clone())?;
+        if let Some(object) = objects.iter().find(|object| object.geometry >= geometries.len()) {
+            return Err(Error::Invalid(format!("{} has no geometry", object.name)));
+        }
         let extents = geometries.iter().map(Extent::new).collect();
-        let still = Self {
+        let mut still = Self {
             extents,
             geometries: geometries.into(),
             objects: objects.into(),
-            ids: Arc::new(ids),
+            ids: Arc::new(Ids::none()),
             fill,
             frame: 0,
             places: Vec::new(),
+            drawn: Arc::new([]),
             median_radius: 0.0,
             bounding_sphere: (DVec3::ZERO, 0.0),
         };
+        still.ids = Arc::new(still.ids_of_all()?);
         still.at(0)
     }
 
-    /// The same objects in another frame.
+    /// Ids for all surfels of all objects.
+    fn ids_of_all(&self) -> Result<Ids> {
+        let count = |object: &Object| self.geometries[object.geometry].surfels.len() as u32;
+        let counts = self.objects.iter().map(count).collect();
+        Ids::new(counts, |object| self.objects[object].name.clone())
+    }
+
+    /// The same objects in another frame, with all their surfels: of those with levels of detail
+    /// the ones that they were made of.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if surfels of an object leave the range of f32 there.
+    /// [`Error::Invalid`] if surfels of an object leave the range of f32 there, and as [`Ids::new`].
     pub fn at(&self, frame: u32) -> Result<Self> {
         let places: Vec<_> = self.objects.iter().map(|object| object.motion.at(frame)).collect();
-        let mut moved = Self { frame, places, ..self.clone() };
+        let detail = |object: &Object| self.geometries[object.geometry].detail.as_ref();
+        let drawn = self.objects.iter().map(|object| detail(object).map(Detail::leaves)).collect();
+        let mut moved = Self { frame, places, drawn, ..self.clone() };
+        if self.have_detail() {
+            moved.ids = Arc::new(self.ids_of_all()?);
+        }
         for (object, place) in moved.objects.iter().zip(&moved.places) {
             if !moved.extents[object.geometry].is_in_range(place) {
                 return Err(Error::Invalid(format!(
@@ -219,13 +242,18 @@ impl Objects {
 
     fn median_of_medians(&self) -> f32 {
         let of = |(object, place): (&Object, &Similarity)| {
-            let surfels = &self.geometries[object.geometry].surfels;
-            let radius = (f64::from(surfels.median_radius()) * place.scale) as f32;
-            (radius, surfels.len() as u64)
+            let Geometry { surfels, detail, .. } = &self.geometries[object.geometry];
+            // The median of radii that are scaled is the median, scaled: rounding keeps their order.
+            let (median, count) = match detail {
+                Some(detail) => (detail.median_radius, detail.count),
+                None => (surfels.median_radius(), surfels.len() as u32),
+            };
+            ((f64::from(median) * place.scale) as f32, u64::from(count))
         };
         let mut medians: Vec<_> = self.objects.iter().zip(&self.places).map(of).collect();
         medians.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let middle = self.ids.total().saturating_sub(1) / 2;
+        let total: u64 = medians.iter().map(|(_, count)| count).sum();
+        let middle = total.saturating_sub(1) / 2;
         let mut before = 0;
         let median = medians.iter().find(|(_, count)| {
             before += count;

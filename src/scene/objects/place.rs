@@ -36,7 +36,11 @@ impl Extent {
         let radii = surfels.radius().iter().map(|&radius| f64::from(radius));
         let less = |least, size| if size < least { size } else { least };
         let least = radii.chain(halves).fold(f64::INFINITY, less);
-        let sphere = bounds::sphere(surfels, &geometry.primitives);
+        let sphere = match &geometry.detail {
+            // Discs of inner nodes reach farther, but not on the screen.
+            Some(detail) => detail.sphere,
+            None => bounds::sphere(surfels, &geometry.primitives),
+        };
         Self { boxes: Boxes::new(surfels), sphere, least }
     }
 
@@ -55,7 +59,7 @@ enum Part<'a> {
 }
 
 impl Objects {
-    /// The surfels of all objects in the order of their ids, and their primitives in the order of
+    /// All surfels that are drawn, in the order of their ids, and the primitives in the order of
     /// the scene.
     ///
     /// # Errors
@@ -95,7 +99,11 @@ impl Objects {
             let mut arrays = Arrays::new(has);
             match part {
                 Part::Range(object, range) => {
-                    range.for_each(|surfel| self.place(object, surfel, &mut arrays));
+                    let drawn = self.drawn(object);
+                    let is_drawn = |&i: &u32| drawn.is_none_or(|drawn| drawn.has(i as usize));
+                    range
+                        .filter(is_drawn)
+                        .for_each(|surfel| self.place(object, surfel, &mut arrays));
                 }
                 Part::Ids(ids) => {
                     // Ids ascend, so that neighbours mostly are of one object.

@@ -15,7 +15,7 @@ fn object(name: &str, geometry: usize, place: Similarity, color: Option<Vec3>) -
 }
 
 fn geometry(name: &str, surfels: Surfels) -> Geometry {
-    Geometry { name: name.into(), surfels, primitives: Primitives::default() }
+    Geometry { name: name.into(), surfels, primitives: Primitives::default(), detail: None }
 }
 
 /// Ellipses with opacities.

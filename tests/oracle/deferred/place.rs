@@ -170,6 +170,7 @@ impl World {
             name: format!("geometry {i}"),
             surfels: surfels.clone(),
             primitives: splatref::scene::Primitives::default(),
+            detail: None,
         };
         let object = |(i, thing): (usize, &Thing)| Object {
             name: format!("object {i}"),

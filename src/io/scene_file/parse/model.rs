@@ -5,6 +5,7 @@ use super::transform::RawTransform;
 use crate::io::scene_file::{DEFAULT_COUNT, Draw, Geometry, Model, Source, TREE};
 use crate::io::scene_file::{check_opacity, shapes};
 use crate::scene::light::{MAX_RADIANCE, is_color};
+use crate::scene::objects::detail::MOST_PIXELS;
 use crate::source::{Shape, plant};
 use glam::Vec3;
 use std::path::PathBuf;
@@ -14,6 +15,7 @@ use std::path::PathBuf;
 #[serde(deny_unknown_fields)]
 pub(super) struct RawModel {
     name: Option<String>,
+    detail: Option<f64>,
     file: Option<PathBuf>,
     radius: Option<f32>,
     draw: Option<String>,
@@ -35,7 +37,11 @@ pub(super) struct RawModel {
 impl RawModel {
     pub(super) fn geometry(mut self) -> Result<Geometry, String> {
         let name = self.name.take().ok_or("a geometry needs a `name`, for objects to be of it")?;
-        Ok(Geometry { name, model: self.model()? })
+        let detail = self.detail.take();
+        if let Some(pixels) = detail.filter(|pixels| !(0.0..=MOST_PIXELS).contains(pixels)) {
+            return Err(format!("detail is {pixels} pixels; give 0 to {MOST_PIXELS}"));
+        }
+        Ok(Geometry { name, detail, model: self.model()? })
     }
 
     pub(super) fn model(mut self) -> Result<Model, String> {
@@ -84,6 +90,7 @@ impl RawModel {
     fn left(&self) -> Option<&'static str> {
         let keys = [
             ("name", self.name.is_some()),
+            ("detail", self.detail.is_some()),
             ("radius", self.radius.is_some()),
             ("square", self.square.is_some()),
             ("gap", self.gap.is_some()),

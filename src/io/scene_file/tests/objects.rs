@@ -61,13 +61,15 @@ fn objects_are_where_the_file_says() {
     assert_eq!([3, 4].map(|i| objects.objects()[i].color), [Some(Vec3::X), Some(Vec3::Y)]);
     assert!(objects.places()[5..].iter().all(|place| place.translation.y == -1.0));
     assert_eq!(objects.geometries()[0].name, "sheets");
-    let counts = objects.geometries().iter().map(|geometry| geometry.surfels.len());
-    assert!(counts.eq(loaded.models.iter().map(|model| model.surfels)));
+    let counts: Vec<_> = loaded.models.iter().map(|model| model.surfels).collect();
+    assert_eq!((counts[0], counts[1]), (objects.geometries()[0].surfels.len(), 60));
+    assert_eq!(objects.geometries()[1].detail.as_ref().unwrap().threshold(), 1.0);
 
     let exec = Exec::sequential();
     file.frame = 15;
     let ready = file.ready(&exec, &|_, _, _| ()).unwrap();
     let there = loaded.scene.objects.as_ref().unwrap().at(15).unwrap();
+    let there = there.seen_from(&ready.camera, &exec).unwrap();
     assert_eq!(there.places()[2].translation, DVec3::ZERO);
     let flat = flatten(&Scene { objects: Some(there), ..loaded.scene.clone() }, &exec).unwrap();
     assert_eq!(ready.loaded.scene.surfels, flat.surfels);

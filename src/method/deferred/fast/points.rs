@@ -72,7 +72,10 @@ fn draw(points: &PointProjector<f32>, range: &Range<'_>, limits: &Limits, kept: 
             let pixel = (y.to_pixel() * limits.width + x.to_pixel()) as usize;
             let t = t + 0.0;
             let passes = decide::visible(t, limits.values[pixel]);
-            if passes && decide::before(t, kept[pixel].depth) && faces(points, range, first + lane)
+            if passes
+                && decide::before(t, kept[pixel].depth)
+                && range.draws(first + lane)
+                && faces(points, range, first + lane)
             {
                 kept[pixel] = Kept { depth: t, id: range.id(first + lane) };
             }
