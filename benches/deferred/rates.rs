@@ -5,20 +5,20 @@
 //! move moves. The first two frames do not count; every number is a median over the twelve after them.
 //! Time is that of the whole frame, from the scene to shaded planes, in the memory of a frame before.
 //! Without selection a frame is drawn by `ewa`, of scenes of objects from surfels in their places, and
-//! putting them there is not timed; `deferred` puts them there itself.
+//! putting them there is not timed; `deferred` puts them there itself. Choosing levels of detail is a part
+//! of a frame, and of pass 2.
 //!
 //! Primitives are what a pass draws: the flagged surfels, all, those of B(i) whose flag is not set,
 //! B(i). Those of the last frame are counted.
 
 use super::bars::{Bar, svg};
 use super::common::report::{Arguments, Table, machine};
-use super::subjects::{Subject, subjects};
+use super::subjects::{Subject, drawn, subjects};
 use splatref::Result;
 use splatref::frame::{Exec, NO_ID};
 use splatref::index::seen::Seen;
 use splatref::method::{Method, Session, deferred};
 use splatref::scene::Scene;
-use splatref::scene::objects::Ids;
 use splatref::source::flatten;
 use std::time::{Duration, Instant};
 
@@ -44,7 +44,9 @@ struct Measured {
     frame: f64,
     /// Milliseconds of [`PASSES`].
     passes: [f64; 6],
-    /// Per cent of the surfels.
+    /// Surfels that the high level leaves.
+    drawn: f64,
+    /// Per cent of these.
     culled: f64,
     /// What the last but one frame saw.
     before: Option<Seen>,
@@ -54,6 +56,7 @@ struct Measured {
 struct Taken {
     time: Duration,
     passes: [Duration; 6],
+    drawn: u64,
     seen: Option<Seen>,
 }
 
@@ -61,6 +64,7 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
     let mut rates = Table::new(&[
         "scene",
         "surfels",
+        "in view",
         "without, frames/s",
         "culled, %",
         "with, frames/s",
@@ -78,13 +82,18 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
         let with = measured(&subject, settings.into(), exec)?;
         let [a, b] = [&without, &with].map(|one| 1e3 / one.frame);
         let [p, culled, q] = subject.paper;
-        let number = |text: &str| text.parse::<f64>().unwrap_or(0.0);
+        // Of a range the middle.
+        let number = |text: &str| {
+            let ends: Vec<f64> = text.split('-').filter_map(|end| end.parse().ok()).collect();
+            ends.iter().sum::<f64>() / ends.len() as f64
+        };
         let paper =
             if p.is_empty() { String::new() } else { format!("{:.2}", number(q) / number(p)) };
         rates.row(&format!(
-            "{} | {} | {a:.1} | {:.1} | {b:.1} | {:.2} | {p} | {culled} | {q} | {paper}",
+            "{} | {} | {:.0} | {a:.1} | {:.1} | {b:.1} | {:.2} | {p} | {culled} | {q} | {paper}",
             subject.name,
-            subject.ids().total(),
+            subject.count(),
+            with.drawn,
             with.culled,
             b / a
         ));
@@ -143,13 +152,14 @@ fn measured(subject: &Subject, method: Method, exec: &Exec) -> Result<Measured> 
     let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
     let culled = |taken: &Taken| {
         let selected = taken.seen.as_ref().map(|seen| seen.selected().iter().sum::<u32>());
-        selected.map_or(0.0, |n| 1e2 * (1.0 - f64::from(n) / subject.ids().total() as f64))
+        selected.map_or(0.0, |n| 1e2 * (1.0 - f64::from(n) / taken.drawn as f64))
     };
     Ok(Measured {
         frame: median(counted.iter().map(|taken| milliseconds(taken.time))),
         passes: std::array::from_fn(|i| {
             median(counted.iter().map(|taken| milliseconds(taken.passes[i])))
         }),
+        drawn: median(counted.iter().map(|taken| taken.drawn as f64)),
         culled: median(counted.iter().map(culled)),
         before: taken[taken.len() - 2].seen.clone(),
     })
@@ -163,9 +173,9 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 
 /// One session for all frames.
 fn still(subject: &Subject, method: Method, exec: &Exec) -> Result<Vec<Taken>> {
-    let scene = prepared(subject, 0, &method, exec)?;
+    let (scene, _) = prepared(subject, 0, &method, exec)?;
     let mut session = Session::new(&scene, method, exec)?;
-    (0..BEFORE + FRAMES).map(|frame| take(&mut session, subject, frame)).collect()
+    (0..BEFORE + FRAMES).map(|frame| take(&mut session, subject, frame, Duration::ZERO)).collect()
 }
 
 /// A session a frame, which draws it twice from the same state: once to take its memory.
@@ -173,40 +183,53 @@ fn moving(subject: &Subject, method: Method, exec: &Exec) -> Result<Vec<Taken>> 
     let mut seen = None;
     let mut all = Vec::new();
     for frame in 0..BEFORE + FRAMES {
-        let scene = prepared(subject, frame, &method, exec)?;
+        let (scene, choosing) = prepared(subject, frame, &method, exec)?;
         let mut session = Session::new(&scene, method, exec)?;
         session.resume(seen.clone());
         session.render(&subject.camera(frame)?)?;
         session.resume(seen);
-        let taken = take(&mut session, subject, frame)?;
+        let taken = take(&mut session, subject, frame, choosing)?;
         seen = taken.seen.clone();
         all.push(taken);
     }
     Ok(all)
 }
 
-/// The scene of a frame, flattened for `ewa`.
-fn prepared(subject: &Subject, frame: u32, method: &Method, exec: &Exec) -> Result<Scene> {
-    let scene = subject.at(frame)?;
+/// The scene of a frame, flattened for `ewa`, and how long levels of detail took to choose.
+fn prepared(
+    subject: &Subject,
+    frame: u32,
+    method: &Method,
+    exec: &Exec,
+) -> Result<(Scene, Duration)> {
+    let (scene, choosing) = subject.at(frame, exec)?;
     match method {
-        Method::Ewa(_) => Ok(Scene { objects: None, ..flatten(&scene, exec)? }),
-        _ => Ok(scene),
+        Method::Ewa(_) => Ok((Scene { objects: None, ..flatten(&scene, exec)? }, choosing)),
+        _ => Ok((scene, choosing)),
     }
 }
 
-fn take(session: &mut Session<'_>, subject: &Subject, frame: u32) -> Result<Taken> {
+/// Draws a frame for which levels of detail have been chosen.
+fn take(
+    session: &mut Session<'_>,
+    subject: &Subject,
+    frame: u32,
+    choosing: Duration,
+) -> Result<Taken> {
     let camera = subject.camera(frame)?;
     let start = Instant::now();
     let picture = session.render(&camera)?;
-    let time = start.elapsed();
+    let time = start.elapsed() + choosing;
     let mut passes = [Duration::ZERO; 6];
+    passes[1] = choosing;
     for (name, time) in &picture.timings {
         let name = if *name == PREPARED { PASSES[0] } else { *name };
         if let Some(pass) = PASSES.iter().position(|pass| *pass == name) {
             passes[pass] += *time;
         }
     }
-    Ok(Taken { time, passes, seen: picture.seen.clone() })
+    let seen = picture.seen.clone();
+    Ok(Taken { time, passes, drawn: drawn(session.scene()), seen })
 }
 
 /// How many primitives the first four passes draw in the last frame.
@@ -216,21 +239,25 @@ fn primitives(
     before: Option<Seen>,
     exec: &Exec,
 ) -> Result<[u64; 4]> {
-    let (frame, ids) = (BEFORE + FRAMES - 1, subject.ids());
-    let scene = subject.at(frame)?;
+    let frame = BEFORE + FRAMES - 1;
+    let (scene, _) = subject.at(frame, exec)?;
+    let ids = deferred::ids(&scene);
     let mut session = Session::new(&scene, settings.into(), exec)?;
     session.resume(before.clone());
     let picture = session.define::<f32>(&subject.camera(frame)?, true)?.frame;
     let kept = picture.index("indices.id")?.values().iter().filter(|&&id| id != NO_ID);
     let selected: Vec<_> = kept.filter_map(|&id| ids.find(u64::from(id))).collect();
-    let flagged = before.as_ref().map_or(0, |seen| seen.surfels(&ids).len());
+    let is_drawn = |&id: &u64| match (&scene.objects, ids.find(id)) {
+        (Some(objects), Some((object, surfel))) => {
+            objects.drawn(object).is_none_or(|drawn| drawn.has(surfel as usize))
+        }
+        _ => true,
+    };
+    let of = |seen: &Seen| seen.surfels(&ids).into_iter().filter(is_drawn).count();
+    let flagged = before.as_ref().map_or(0, of);
     let is_new = |&&(object, surfel): &&(u32, u32)| {
         before.as_ref().is_none_or(|seen| !seen.has(object, surfel))
     };
     let fresh = selected.iter().filter(is_new).count();
-    Ok([flagged, total(&ids), fresh, selected.len()].map(|n| n as u64))
-}
-
-fn total(ids: &Ids) -> usize {
-    ids.total() as usize
+    Ok([flagged as u64, drawn(&scene), fresh as u64, selected.len() as u64])
 }

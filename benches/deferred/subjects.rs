@@ -8,13 +8,14 @@ use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::ply;
 use splatref::number::random::unit;
-use splatref::scene::objects::{Geometry, Ids, Motion, Object, Objects, Split};
+use splatref::scene::objects::{Geometry, Motion, Object, Objects};
 use splatref::scene::transform::rotation;
-use splatref::scene::{Camera, Cloud, Lens, Primitives, Scene, Similarity, Surfels};
+use splatref::scene::{Camera, Cloud, Lens, Pose, Primitives, Scene, Similarity, Surfels};
 use splatref::source::derive::{self, Derive};
 use splatref::source::plant::{LEAVES, apple_tree};
 use splatref::splat::SplatSettings;
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 const SIDE: u32 = 512;
 /// Turn of the camera about +y between two frames, in degrees.
@@ -27,33 +28,55 @@ pub(crate) struct Subject {
     pub(crate) scene: Scene,
     pub(crate) splats: SplatSettings,
     pub(crate) paper: [&'static str; 3],
-    around: (DVec3, f64),
-    from: DVec3,
+    view: View,
+}
+
+/// How a scene is looked at.
+enum View {
+    /// From all around a sphere: what is seen of it first, from this direction.
+    Around((DVec3, f64), DVec3),
+    /// From one place, in all directions; this one first.
+    From(DVec3, DVec3),
 }
 
 impl Subject {
     pub(crate) fn camera(&self, frame: u32) -> Result<Camera> {
-        let from = rotation(DVec3::Y, STEP * f64::from(frame)) * self.from;
-        Camera::framing(SIDE, SIDE, self.around, from, Lens::FieldOfView(34.0))
+        let (turn, lens) = (rotation(DVec3::Y, STEP * f64::from(frame)), Lens::FieldOfView(34.0));
+        match self.view {
+            View::Around(sphere, from) => Camera::framing(SIDE, SIDE, sphere, turn * from, lens),
+            View::From(eye, towards) => {
+                let pose = Pose { eye, target: eye + turn * towards, up: DVec3::Y };
+                Camera::new(SIDE, SIDE, pose, lens)
+            }
+        }
     }
 
-    /// The scene in a frame.
-    pub(crate) fn at(&self, frame: u32) -> Result<Scene> {
-        let objects = self.scene.objects.as_ref().map(|objects| objects.at(frame)).transpose()?;
-        Ok(Scene { objects, ..self.scene.clone() })
+    /// The scene in a frame, as its camera sees it; and how long levels of detail took to choose.
+    pub(crate) fn at(&self, frame: u32, exec: &Exec) -> Result<(Scene, Duration)> {
+        let Some(objects) = &self.scene.objects else {
+            return Ok((self.scene.clone(), Duration::ZERO));
+        };
+        let (objects, camera) = (objects.at(frame)?, self.camera(frame)?);
+        let start = Instant::now();
+        let objects = Some(objects.seen_from(&camera, exec)?);
+        Ok((Scene { objects, ..self.scene.clone() }, start.elapsed()))
     }
 
     /// Whether the scene is the same in every frame.
     pub(crate) fn is_still(&self) -> bool {
-        self.scene.objects.as_ref().is_none_or(Objects::are_still)
+        let is_still = |objects: &Objects| objects.are_still() && !objects.have_detail();
+        self.scene.objects.as_ref().is_none_or(is_still)
     }
 
-    /// The ids of the surfels, as the method has them.
-    pub(crate) fn ids(&self) -> Ids {
-        let alone = || Ids::of(Split::Single(32), &[self.scene.surfels.len() as u32]);
-        let objects = self.scene.objects.as_ref().map(|objects| objects.ids().clone());
-        objects.or_else(alone).unwrap_or_else(Ids::none)
+    /// All surfels: of geometries with levels of detail those that these were made of.
+    pub(crate) fn count(&self) -> u64 {
+        drawn(&self.scene)
     }
+}
+
+/// How many surfels of a scene are drawn.
+pub(crate) fn drawn(scene: &Scene) -> u64 {
+    scene.objects.as_ref().map_or(scene.surfels.len() as u64, Objects::drawn_total)
 }
 
 /// Something that makes a scene.
@@ -81,6 +104,9 @@ pub(crate) fn subjects<'a>(
     if wanted(TREE) {
         made.push(Box::new(tree));
     }
+    if wanted(FOREST) {
+        made.push(Box::new(move || forest(exec)));
+    }
     if wanted(CROWD)
         && let Some(path) = scan("armadillo")?
     {
@@ -92,16 +118,17 @@ pub(crate) fn subjects<'a>(
 const HEAD: &str = "head, 285 k";
 const SHUFFLED: &str = "the same, in random order";
 const TREE: &str = "tree, 750 k";
+const FOREST: &str = "forest, 6,800 trees of 750 k";
 const CROWD: &str = "200 objects, 450 k in all";
 
 /// Igea, a head, sampled evenly at random, with derived radii.
 fn head(name: &'static str, mesh: &Cloud, sorted: bool, exec: &Exec) -> Result<Subject> {
     let derived = sampled(mesh, 285_000, exec)?;
     let surfels = if sorted { along_a_curve(derived)? } else { derived };
-    let around = surfels.bounding_sphere();
+    let view = View::Around(surfels.bounding_sphere(), DVec3::Z);
     let paper = if sorted { ["34", "70", "39"] } else { [""; 3] };
     let (scene, splats) = (Scene::lit(name, surfels), SplatSettings::default());
-    Ok(Subject { name, scene, splats, paper, around, from: DVec3::Z })
+    Ok(Subject { name, scene, splats, paper, view })
 }
 
 fn sampled(mesh: &Cloud, count: usize, exec: &Exec) -> Result<Surfels> {
@@ -109,9 +136,47 @@ fn sampled(mesh: &Cloud, count: usize, exec: &Exec) -> Result<Surfels> {
     Ok(derive::surfels(points, &Derive::default(), exec, &|_, _, _| ())?.0)
 }
 
-/// Points on the triangles of all leaves and branches of a tree, evenly at random, with the spacing as
-/// radius, seen from both sides.
+/// The points of a tree, seen from both sides.
 fn tree() -> Result<Subject> {
+    let surfels = along_a_curve(points_of_tree()?)?;
+    Ok(Subject {
+        name: TREE,
+        view: View::Around(surfels.bounding_sphere(), DVec3::new(0.0, 0.25, 1.0)),
+        scene: Scene::lit(TREE, surfels),
+        splats: SplatSettings::BOTH_SIDES,
+        paper: ["8.6", "88", "32"],
+    })
+}
+
+/// The tree 6,800 times, once in memory, with levels of detail at one pixel: at random on a square of 250
+/// times the radius of the largest, turned and scaled. The camera stands at the edge and looks about.
+fn forest(exec: &Exec) -> Result<Subject> {
+    let surfels = points_of_tree()?;
+    let (center, radius) = surfels.bounding_sphere();
+    let (primitives, side) = (Primitives::default(), 250.0);
+    let geometry = Geometry { name: "tree".into(), surfels, primitives, detail: None };
+    let geometry = geometry.with_detail(1.0, exec)?;
+    let object = |i: u32| {
+        let [x, z, size, turn] = [0, 1, 2, 3].map(|c| f64::from(unit(3, u64::from(4 * i + c))));
+        let (scale, turn) = ((0.5 + 0.5 * size) / radius, rotation(DVec3::Y, 360.0 * turn));
+        let stand = DVec3::new((x - 0.5) * side, 0.0, -z * side);
+        let place =
+            Similarity { rotation: turn, scale, translation: stand - turn * (center * scale) };
+        Object { name: format!("tree {i}"), geometry: 0, motion: Motion::still(place), color: None }
+    };
+    let objects = Objects::new(vec![geometry], (0..6800).map(object).collect(), Vec3::splat(0.75))?;
+    Ok(Subject {
+        name: FOREST,
+        view: View::From(DVec3::new(0.0, 6.0, 4.0), DVec3::new(0.0, -0.1, -1.0)),
+        scene: Scene { objects: Some(objects), ..Scene::lit(FOREST, Surfels::none()) },
+        splats: SplatSettings::BOTH_SIDES,
+        paper: ["0.8-1.5", "90-98", "10-16"],
+    })
+}
+
+/// Points on the triangles of all leaves and branches of a tree, evenly at random, with the spacing as
+/// radius.
+fn points_of_tree() -> Result<Surfels> {
     let count = 750_000;
     let triangles = apple_tree(LEAVES, 0)?.polygons()?.triangles;
     let (vertices, triangles) = triangles.into_parts();
@@ -128,15 +193,7 @@ fn tree() -> Result<Subject> {
     let area = mesh.triangles.iter().map(double).sum::<f64>() / 2.0;
     let mut cloud = models::resample(&mesh, count, 1);
     cloud.radius = Some(vec![(area / count as f64).sqrt() as f32; count]);
-    let surfels = along_a_curve(Surfels::new(cloud)?.0)?;
-    Ok(Subject {
-        name: TREE,
-        around: surfels.bounding_sphere(),
-        scene: Scene::lit(TREE, surfels),
-        splats: SplatSettings::BOTH_SIDES,
-        paper: ["8.6", "88", "32"],
-        from: DVec3::new(0.0, 0.25, 1.0),
-    })
+    Ok(Surfels::new(cloud)?.0)
 }
 
 /// Armadillos of 2,250 surfels in ten ranks of twenty, which walk and turn.
@@ -164,10 +221,9 @@ fn crowd(mesh: &Cloud, exec: &Exec) -> Result<Subject> {
     let objects = Objects::new(vec![geometry], objects, Vec3::splat(0.75))?;
     Ok(Subject {
         name: CROWD,
-        around: (DVec3::ZERO, 9.0),
+        view: View::Around((DVec3::ZERO, 9.0), DVec3::new(0.0, 0.2, 1.0)),
         scene: Scene { objects: Some(objects), ..Scene::lit(CROWD, Surfels::none()) },
         splats: SplatSettings::default(),
         paper: ["11.5", "90", "33.5"],
-        from: DVec3::new(0.0, 0.2, 1.0),
     })
 }

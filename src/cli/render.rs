@@ -102,7 +102,7 @@ pub(super) fn run(args: &Args) -> Ended {
     report::method(method, scene, camera);
     report::groups(session.groups(), made.as_ref());
     report::tally(&tally);
-    report::selection(seen.as_ref());
+    report::selection(scene, seen.as_ref());
     print_times(&exec, loading, times, writing);
     report::time("total", vec![start.elapsed()]);
     report::line("files", picture.display());

@@ -245,11 +245,13 @@ pub(super) fn picture(camera: &Camera, output: OutputSettings) {
     line("picture", format!("{} x {} pixels, {number}{stages}", camera.width, camera.height));
 }
 
-/// What a method selected of the surfels, if it did.
-pub(super) fn selection(seen: Option<&Seen>) {
+/// What a method selected of the surfels that a view leaves, if it did.
+pub(super) fn selection(scene: &Scene, seen: Option<&Seen>) {
     let Some(seen) = seen else { return };
     let of = |counts: &[u32]| counts.iter().map(|&count| u64::from(count)).sum::<u64>();
-    let (all, selected) = (of(seen.counts()), of(seen.selected()));
+    let objects = scene.objects.as_ref();
+    let all = objects.map_or_else(|| of(seen.counts()), Objects::drawn_total);
+    let selected = of(seen.selected());
     let culled = 100.0 * (all - selected) as f64 / all.max(1) as f64;
     line("selected", format!("{selected} of {all} surfels, {culled:.1} % culled"));
 }
