@@ -39,8 +39,10 @@ impl Axis {
             })
             .filter_map(|step| step.parse().ok())
             .collect();
-        let first = steps.partition_point(|&step| step <= least).saturating_sub(1);
-        let last = steps.partition_point(|&step| step < greatest).min(steps.len() - 1);
+        // Of no values, as where a pattern leaves nothing, some axis.
+        let most = steps.len() - 1;
+        let first = steps.partition_point(|&step| step <= least).saturating_sub(1).min(most - 1);
+        let last = steps.partition_point(|&step| step < greatest).clamp(first + 1, most);
         Self { title, ticks: steps[first..=last].to_vec() }
     }
 
