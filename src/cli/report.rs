@@ -86,8 +86,9 @@ fn split(split: Split) -> String {
         Split::Even => "12 bits of the object and 20 of the surfel".into(),
         Split::Two => "1 bit, then 11 and 20 of object and surfel, or 14 and 17".into(),
         Split::Single(n) => format!("{} bits of the object and {n} of the surfel", 32 - n),
-        Split::Stencil => {
-            "20 bits of the object, 8 of them beside the 32, and 20 of the surfel".into()
+        Split::Stencil(n) => {
+            let object = 40 - n;
+            format!("{object} bits of the object, 8 of them beside the 32, and {n} of the surfel")
         }
     }
 }

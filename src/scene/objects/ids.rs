@@ -9,13 +9,13 @@
 //!   Two       the highest bit is the scheme: 0, then 11 and 20 bits, for objects of more than 2^17
 //!             surfels, at most 2048; 1, then 14 and 17 bits, for the others, at most 16384
 //!   Single(n) the least n with which the largest object fits, for at most 2^(32 - n) objects
-//!   Stencil   n = 20 as in Even, and 8 bits more of the object's number, those of the stencil buffer,
-//!             above the 32; no object has a number whose lowest 12 bits all are 1: at most 2^20 - 2^8
-//!             objects of at most 2^20 surfels
+//!   Stencil(n) 8 bits more, those of the stencil buffer, above the 32; n = 20 as in Even, else the least n
+//!             as in Single; for n < 32 no object has a number whose lowest 32 - n bits all are 1: at most
+//!             2^(40 - n) - 2^8 objects of at most 2^n surfels
 //! ```
 //!
 //! Objects are numbered from 0 in the order of the scene, in `Two` those of each scheme on their own; in
-//! `Stencil` object o has the number o + floor(o / 4095). `Single` takes the least n with which the
+//! `Stencil(n)` object o has the number o + floor(o / (2^(32 - n) - 1)), in `Stencil(32)` o. `Single` takes the least n with which the
 //! largest object fits, or does not fit.
 //! [`NO_ID`] is never a surfel, and never the lowest 32 bits of one: a split in which a surfel would
 //! have them does not fit. (`Decided:` \[GBP04\] calls it the most improbable indicator; a scene in which it does occur
@@ -45,21 +45,18 @@ pub enum Split {
     Two,
     /// So many bits of the surfel, 0 to 32; the others are the object's.
     Single(u32),
-    /// 20 bits of the object, 20 of the surfel: 40 in all.
-    Stencil,
+    /// So many bits of the surfel, 0 to 32, of 40 in all; the others are the object's.
+    Stencil(u32),
 }
 
 /// Bits of a surfel's index in a large object, and in a small one of [`Split::Two`].
 const LARGE: u32 = 20;
 const SMALL: u32 = 17;
-/// Bits of the number of an object in [`Split::Two`], large and small, and in [`Split::Stencil`].
+/// Bits of the number of an object in [`Split::Two`], large and small.
 const LARGE_OBJECTS: u32 = 11;
 const SMALL_OBJECTS: u32 = 14;
-const STENCIL_OBJECTS: u32 = 20;
-/// How many objects [`Split::Stencil`] has room for.
-const MOST_OBJECTS: usize = (1 << STENCIL_OBJECTS) - (1 << (STENCIL_OBJECTS - LAST));
-/// Bits of the object's number in the lowest 32.
-const LAST: u32 = 32 - LARGE;
+/// Bits of ids with those of the stencil buffer.
+const WIDE: u32 = 40;
 /// The scheme bit of [`Split::Two`].
 const SCHEME: u64 = 1 << 31;
 
@@ -95,24 +92,25 @@ impl Ids {
     /// As [`Ids::new`].
     pub fn first(counts: Vec<u32>, all: Vec<u32>, name: impl Fn(usize) -> String) -> Result<Self> {
         let most = counts.iter().copied().max().unwrap_or(0);
-        let single = Split::Single(bits_for(u64::from(most)));
-        let splits = [Split::Even, Split::Two, single, Split::Stencil];
+        let bits = bits_for(u64::from(most));
+        let [single, wide] = [Split::Single(bits), Split::Stencil(bits)];
+        let splits = [Split::Even, Split::Two, single, Split::Stencil(LARGE), wide];
         let fits = splits.into_iter().find_map(|split| Self::of(split, &counts));
         fits.map(|fits| Self { all, ..fits }).ok_or_else(|| {
-            let large = counts.iter().position(|&count| u64::from(count) > 1 << LARGE);
+            let objects = counts.len();
+            let large = counts.iter().position(|&count| count == most && count > 1 << LARGE);
             let what = match large {
                 Some(object) => format!(
-                    "{} has {} surfels; ids of {} objects leave room for {} in each",
+                    "{} has {most} surfels; ids of {objects} objects leave room for {} in each",
                     name(object),
-                    counts[object],
-                    counts.len(),
-                    1_u64 << LARGE
+                    1_u64 << (WIDE - bits_for(objects as u64 + (1 << 8)))
                 ),
-                None => format!(
-                    "{} objects, from {} on more than the {MOST_OBJECTS} that ids have room for",
-                    counts.len(),
-                    name(MOST_OBJECTS),
-                ),
+                None => {
+                    let room = (1_u64 << (WIDE - bits)) - (1 << 8);
+                    let first = name(room as usize);
+                    let than = format!("the {room} that ids have room for");
+                    format!("{objects} objects, from {first} on more than {than}")
+                }
             };
             Error::Invalid(what)
         })
@@ -126,7 +124,8 @@ impl Ids {
             Split::Even => (numbers(32 - LARGE), numbers(0)),
             Split::Two => (numbers(LARGE_OBJECTS), numbers(SMALL_OBJECTS)),
             Split::Single(bits) => (numbers(32_u32.checked_sub(bits)?), numbers(0)),
-            Split::Stencil => (numbers(STENCIL_OBJECTS), numbers(0)),
+            Split::Stencil(bits) if bits <= 32 => (numbers(WIDE - bits), numbers(0)),
+            Split::Stencil(_) => return None,
         };
         let mut first = Vec::with_capacity(counts.len());
         for &count in counts {
@@ -137,10 +136,10 @@ impl Ids {
                 }
                 Split::Even | Split::Two => (objects.next()? << LARGE, 1 << LARGE),
                 Split::Single(bits) => (objects.next()? << bits, 1 << bits),
-                Split::Stencil => {
-                    let number =
-                        objects.find(|number| number & ((1 << LAST) - 1) != (1 << LAST) - 1);
-                    (number? << LARGE, 1 << LARGE)
+                Split::Stencil(bits) => {
+                    let last = (1 << (32 - bits)) - 1;
+                    let number = objects.find(|number| bits == 32 || number & last != last);
+                    (number? << bits, 1 << bits)
                 }
             };
             if count > room || (start..start + count).contains(&u64::from(NO_ID)) {
@@ -187,7 +186,7 @@ impl Ids {
     /// Whether ids have more than 32 bits.
     #[must_use]
     pub fn is_wide(&self) -> bool {
-        self.split == Split::Stencil
+        matches!(self.split, Split::Stencil(_))
     }
 
     /// How many surfels an object has, with and without ids.
@@ -264,7 +263,7 @@ mod tests {
         assert_eq!(split(&[1]), Split::Even);
         assert_eq!(split(&[1 << 20; 4095]), Split::Even);
         // The last surfel of the last object would be 0xFFFF_FFFF.
-        assert_eq!(split(&[1 << 20; 4096]), Split::Stencil);
+        assert_eq!(split(&[1 << 20; 4096]), Split::Stencil(20));
         let mut full = vec![1 << 20; 4096];
         full[4095] -= 1;
         assert_eq!(split(&full), Split::Even);
@@ -275,20 +274,22 @@ mod tests {
             counts
         };
         assert_eq!(split(&forest(2048, 16384)), Split::Two);
-        assert_eq!(split(&forest(2049, 16384)), Split::Stencil);
+        assert_eq!(split(&forest(2049, 16384)), Split::Stencil(20));
         assert_eq!(split(&[300; 100_000]), Split::Single(9));
         assert_eq!(split(&[u32::MAX - 1]), Split::Single(32));
-        assert_eq!(split(&[750_000; 6800]), Split::Stencil);
+        assert_eq!(split(&[750_000; 6800]), Split::Stencil(20));
+        assert_eq!(split(&[1_100_000; 6800]), Split::Stencil(21));
     }
 
     #[test]
     fn what_fits_no_split_names_the_object_and_the_limit() {
         let words = |counts: &[u32]| split_of(counts).unwrap_err().to_string();
         let mut counts = vec![7; 5000];
-        counts[4321] = (1 << 20) + 1;
-        let what = "o4321 has 1048577 surfels; ids of 5000 objects leave room for 1048576 in each";
+        counts[4321] = (1 << 27) + 1;
+        let what =
+            "o4321 has 134217729 surfels; ids of 5000 objects leave room for 134217728 in each";
         assert_eq!(words(&counts), what);
-        let many = vec![1 << 13; (1 << 20) - 255];
+        let many = vec![1 << 20; (1 << 20) - 255];
         let what = "1048321 objects, from o1048320 on more than the 1048320 that ids have room for";
         assert_eq!(words(&many), what);
     }
@@ -304,7 +305,7 @@ mod tests {
         assert_eq!(two.id(2, 6), 1 << 31 | 1 << 17 | 6);
         let even = Ids::of(Split::Even, &[5, 6]).unwrap();
         assert_eq!(even.id(1, 3), 1 << 20 | 3);
-        let stencil = Ids::of(Split::Stencil, &vec![1; 4098]).unwrap();
+        let stencil = Ids::of(Split::Stencil(20), &vec![1; 4098]).unwrap();
         // No object has the number 4095.
         assert_eq!(stencil.id(4094, 0), 4094 << 20);
         assert_eq!(stencil.id(4095, 0), 1 << 32, "the stencil has the high bits");
@@ -319,7 +320,8 @@ mod tests {
         ) {
             let most = *counts.iter().max().unwrap();
             let single = Split::Single(bits_for(u64::from(most)));
-            for split in [Split::Even, Split::Two, single, Split::Stencil] {
+            let wide = Split::Stencil(bits_for(u64::from(most)));
+            for split in [Split::Even, Split::Two, single, Split::Stencil(20), wide] {
                 let Some(ids) = Ids::of(split, &counts) else { continue };
                 let object = at.index(counts.len());
                 prop_assert_eq!(ids.total(), counts.iter().map(|&c| u64::from(c)).sum::<u64>());
@@ -328,7 +330,7 @@ mod tests {
                     let id = ids.id(object as u32, surfel);
                     prop_assert_eq!(ids.find(id), Some((object as u32, surfel)));
                     prop_assert!(id as u32 != NO_ID, "{split:?}");
-                    prop_assert!(split == Split::Stencil || id < 1 << 32);
+                    prop_assert!(ids.is_wide() || id < 1 << 32);
                 }
                 let total = ids.total();
                 let rank = (total > 0).then(|| which.index(total as usize) as u64);

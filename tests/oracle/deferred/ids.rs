@@ -16,7 +16,8 @@ impl Numbers {
     pub(crate) fn new(counts: &[u32]) -> Option<Self> {
         let largest = counts.iter().copied().max().unwrap_or(0);
         let bits = (0..=32).find(|n| u64::from(largest) <= 1 << n)?;
-        let splits = [Split::Even, Split::Two, Split::Single(bits), Split::Stencil];
+        let wide = [Split::Stencil(20), Split::Stencil(bits)];
+        let splits = [Split::Even, Split::Two, Split::Single(bits), wide[0], wide[1]];
         splits.into_iter().find_map(|split| Self::of(split, counts))
     }
 
@@ -37,8 +38,11 @@ impl Numbers {
                     [small - 1, 16384, 17]
                 }
                 Split::Single(n) => [object, 1 << (32 - n), n.into()],
-                // The numbers whose lowest 12 bits are 1 are left out.
-                Split::Stencil => [object + object / 4095, 1 << 20, 20],
+                Split::Stencil(32) => [object, 1 << 8, 32],
+                // The numbers whose lowest 32 - n bits are 1 are left out.
+                Split::Stencil(n) => {
+                    [object + object / ((1 << (32 - n)) - 1), 1 << (40 - n), n.into()]
+                }
             };
             if number >= room || count > 1 << bits {
                 return None;
@@ -91,7 +95,7 @@ fn compare(dice: &mut Dice, model: &Numbers, ids: &Ids) {
     let counts = &model.counts;
     assert_eq!(ids.split(), model.split, "{counts:?}");
     assert_eq!(ids.total(), counts.iter().map(|&n| u64::from(n)).sum::<u64>());
-    assert_eq!(ids.is_wide(), model.split == Split::Stencil);
+    assert_eq!(ids.is_wide(), matches!(model.split, Split::Stencil(_)));
     let mut order: Vec<u32> = (0..counts.len() as u32).collect();
     order.sort_by_key(|&o| model.first[o as usize]);
     assert_eq!(ids.order(), order, "{:?}", model.split);
@@ -139,8 +143,9 @@ fn deferred_ids_are_those_of_the_table() {
         if let (Some(model), Ok(ids)) = (model, ids) {
             compare(&mut dice, &model, &ids);
         }
-        for split in [Split::Even, Split::Two, Split::Stencil, Split::Single(17), Split::Single(12)]
-        {
+        let wide = [Split::Stencil(20), Split::Stencil(14), Split::Stencil(31)];
+        let narrow = [Split::Even, Split::Two, Split::Single(17), Split::Single(12)];
+        for split in narrow.into_iter().chain(wide) {
             let (model, ids) = (Numbers::of(split, &counts), Ids::of(split, &counts));
             assert_eq!(model.is_some(), ids.is_some(), "{split:?}");
             if let (Some(model), Some(ids)) = (model, ids) {
@@ -149,7 +154,7 @@ fn deferred_ids_are_those_of_the_table() {
         }
     }
     println!("{used:?}");
-    for split in ["Even", "Two", "Stencil"] {
+    for split in ["Even", "Two", "Stencil(20)"] {
         assert!(used.get(split).is_some_and(|n| *n > 3), "{split}: {used:?}");
     }
     assert!(used.keys().filter(|s| s.starts_with("Single")).count() >= 2, "{used:?}");
@@ -166,14 +171,15 @@ fn deferred_the_id_of_none_takes_the_next_split() {
     // In `Two` the last of 16384 full small objects would have it.
     let small = |last| [vec![full, 1 << 17], vec![1; 16382], vec![last]].concat();
     assert_eq!(split(small((1 << 17) - 1)), Some(Split::Two));
-    assert_eq!(split(small(1 << 17)), Some(Split::Stencil));
+    assert_eq!(split(small(1 << 17)), Some(Split::Stencil(20)));
     // In `Single(19)` that of the last of 2^13, which are too large to be small and too many.
     let large = |last| [vec![1 << 19; 8191], vec![last]].concat();
     assert_eq!(split(large((1 << 19) - 1)), Some(Split::Single(19)));
-    assert_eq!(split(large(1 << 19)), Some(Split::Stencil));
+    assert_eq!(split(large(1 << 19)), Some(Split::Stencil(20)));
     // Beyond all of them.
     assert_eq!(split(vec![u32::MAX - 1]), Some(Split::Single(32)));
-    assert_eq!(split(vec![(1 << 31) + 1; 2]), None);
-    assert_eq!(split(vec![full; (1 << 20) - (1 << 8)]), Some(Split::Stencil));
+    assert_eq!(split(vec![(1 << 31) + 1; 2]), Some(Split::Stencil(32)));
+    assert_eq!(split(vec![(1 << 31) + 1; 257]), None);
+    assert_eq!(split(vec![full; (1 << 20) - (1 << 8)]), Some(Split::Stencil(20)));
     assert_eq!(split(vec![full; (1 << 20) - (1 << 8) + 1]), None);
 }

@@ -60,7 +60,7 @@ fn deferred_ids_of_more_than_32_bits_are_told_apart() {
     let green = Vec3::Y;
     world.objects[4095].color = Some(green);
     let objects = world.objects();
-    assert_eq!(objects.ids().split(), Split::Stencil);
+    assert_eq!(objects.ids().split(), Split::Stencil(20));
     assert_eq!(objects.ids().id(4095, 0), 1 << 32);
     let settings = settings(Outline::Affine, 0.5);
     let mut seen = None;
