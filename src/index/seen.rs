@@ -1,10 +1,12 @@
 //! What a frame saw: the state that deferred splatting carries from frame to frame \[GBP04, 4.3\].
 //!
 //! A flag stands for m consecutive surfels of one object, the last of an object for as many as are
-//! left. It is a bit: m = 64 and 2^12 objects of 2^20 surfels take 8 MiB.
+//! left. It is a bit: m = 64 and 2^12 objects of 2^20 surfels take 8 MiB. Of an object the flags beyond
+//! the last that is set take no memory: of what is far away or not seen they would be most.
 
 use crate::error::{Error, Result};
 use crate::scene::objects::Ids;
+use std::ops::Range;
 
 /// Which groups of m consecutive surfels of each object a frame has selected, and how many surfels.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,7 +17,7 @@ pub struct Seen {
     counts: Vec<u32>,
     /// The first word of each object, and the end of the last.
     starts: Vec<usize>,
-    /// A bit a group; the groups of an object begin with a word.
+    /// A bit a group; the groups of an object begin with a word, and its last word is not 0.
     words: Vec<u64>,
     /// How many surfels of each object were selected.
     selected: Vec<u32>,
@@ -26,49 +28,73 @@ impl Seen {
     #[must_use]
     pub fn nothing(ids: &Ids, group: u32) -> Self {
         let counts: Vec<_> = (0..ids.order().len() as u32).map(|object| ids.all(object)).collect();
-        let mut starts = vec![0];
-        for &count in &counts {
-            let words = (count.div_ceil(group) as usize).div_ceil(64);
-            starts.push(starts[starts.len() - 1] + words);
-        }
-        let words = vec![0; starts[starts.len() - 1]];
-        let selected = vec![0; counts.len()];
-        Self { group, counts, starts, words, selected }
+        let (starts, selected) = (vec![0; counts.len() + 1], vec![0; counts.len()]);
+        Self { group, counts, starts, words: Vec::new(), selected }
     }
 
-    /// The groups of these surfels, each of which is there once: what the frame that selected them
+    /// The groups of these surfels, ascending and each there once: what the frame that selected them
     /// saw.
     #[must_use]
     pub fn of(ids: &Ids, group: u32, selected: &[u64]) -> Self {
         let mut seen = Self::nothing(ids, group);
-        for (object, surfel) in selected.iter().filter_map(|&id| ids.find(id)) {
-            let (word, bit) = seen.place(object, surfel);
-            seen.words[word] |= bit;
-            seen.selected[object as usize] += 1;
+        let mut lengths = vec![0; seen.counts.len()];
+        for (object, run) in ids.runs(selected) {
+            let last = (run[run.len() - 1] - ids.id(object, 0)) as u32;
+            lengths[object as usize] = (last / group / 64) as usize + 1;
+            seen.selected[object as usize] = run.len() as u32;
+        }
+        seen.allocate(&lengths);
+        for (object, run) in ids.runs(selected) {
+            let (start, first) = (seen.starts[object as usize], ids.id(object, 0));
+            for id in run {
+                let flag = (id - first) as u32 / group;
+                seen.words[start + (flag / 64) as usize] |= 1 << (flag % 64);
+            }
         }
         seen
     }
 
-    /// What was seen, as it was told: how many surfels of each object were selected, and the words. None
-    /// if it cannot be so: as many words, no flag of a group that does not exist, no more surfels than
-    /// there are.
+    /// What was seen, as it was told: how many surfels of each object were selected, how many words of
+    /// flags there are of each, and the words. None if it cannot be so: no flag of a group that does not
+    /// exist, no word of 0 at the end, no more surfels than there are.
     #[must_use]
-    pub fn restored(ids: &Ids, group: u32, selected: Vec<u32>, words: Vec<u64>) -> Option<Self> {
+    pub fn restored(
+        ids: &Ids,
+        group: u32,
+        selected: Vec<u32>,
+        lengths: &[usize],
+        words: Vec<u64>,
+    ) -> Option<Self> {
         if group == 0 {
             return None;
         }
-        let empty = Self::nothing(ids, group);
+        let mut seen = Self::nothing(ids, group);
         let few = |(selected, count): (&u32, &u32)| selected <= count;
-        let fits = words.len() == empty.words.len()
-            && selected.len() == empty.counts.len()
-            && selected.iter().zip(&empty.counts).all(few);
+        if lengths.len() != seen.counts.len()
+            || selected.len() != seen.counts.len()
+            || !selected.iter().zip(&seen.counts).all(few)
+            || lengths.iter().try_fold(0_usize, |sum, &n| sum.checked_add(n)) != Some(words.len())
+        {
+            return None;
+        }
+        seen.allocate(lengths);
         let exist = |object: usize| {
-            let groups = empty.counts[object].div_ceil(group) as usize;
-            let words = &words[empty.starts[object]..empty.starts[object + 1]];
-            groups.is_multiple_of(64) || words.last().is_none_or(|last| last >> (groups % 64) == 0)
+            let groups = seen.counts[object].div_ceil(group) as usize;
+            let words = &words[seen.starts[object]..seen.starts[object + 1]];
+            let Some(last) = words.last() else { return true };
+            let used = words.len() * 64 - last.leading_zeros() as usize;
+            *last != 0 && used <= groups
         };
-        let sound = fits && (0..empty.counts.len()).all(exist);
-        sound.then_some(Self { words, selected, ..empty })
+        let sound = (0..seen.counts.len()).all(exist);
+        sound.then_some(Self { words, selected, ..seen })
+    }
+
+    /// Room for so many words of each object, none of whose flags is set.
+    fn allocate(&mut self, lengths: &[usize]) {
+        for (object, length) in lengths.iter().enumerate() {
+            self.starts[object + 1] = self.starts[object] + length;
+        }
+        self.words = vec![0; self.starts[lengths.len()]];
     }
 
     /// How many surfels each object has.
@@ -77,10 +103,10 @@ impl Seen {
         &self.counts
     }
 
-    /// The flags: of each object, from a word of its own on, a bit a group, the lowest first.
+    /// The flags of an object, a bit a group, the lowest first, up to the last word that is not 0.
     #[must_use]
-    pub fn words(&self) -> &[u64] {
-        &self.words
+    pub fn words(&self, object: u32) -> &[u64] {
+        &self.words[self.starts[object as usize]..self.starts[object as usize + 1]]
     }
 
     /// m.
@@ -98,29 +124,40 @@ impl Seen {
     /// Whether the group of a surfel was seen.
     #[must_use]
     pub fn has(&self, object: u32, surfel: u32) -> bool {
-        let (word, bit) = self.place(object, surfel);
-        self.words[word] & bit != 0
+        let flag = surfel / self.group;
+        let word = self.words(object).get((flag / 64) as usize);
+        word.is_some_and(|word| word >> (flag % 64) & 1 != 0)
     }
 
-    /// The surfels of all groups that were seen, of those that have ids; ascending.
+    /// The surfels of all groups that were seen, of those that have ids: in ascending ids, objects and
+    /// ranges of their surfels, none of which ends where the next begins.
     #[must_use]
-    pub fn surfels(&self, ids: &Ids) -> Vec<u64> {
-        let mut all = Vec::new();
+    pub fn ranges(&self, ids: &Ids) -> Vec<(u32, Range<u32>)> {
+        let mut all: Vec<(u32, Range<u32>)> = Vec::new();
         for &object in ids.order() {
-            let (first, count) = (ids.id(object, 0), ids.count(object));
-            let words = &self.words[self.starts[object as usize]..self.starts[object as usize + 1]];
-            for (word, &bits) in (0_u32..).zip(words) {
+            let (count, begin) = (ids.count(object), all.len());
+            for (word, &bits) in (0_u32..).zip(self.words(object)) {
                 let mut bits = bits;
                 while bits != 0 {
                     let from = (word * 64 + bits.trailing_zeros()) * self.group;
                     let to = count.min(from.saturating_add(self.group));
-                    // Nothing if the group begins beyond the last id.
-                    all.extend((from..to).map(|surfel| first + u64::from(surfel)));
                     bits &= bits - 1;
+                    match all[begin..].last_mut() {
+                        _ if from >= to => {}
+                        Some((_, last)) if last.end == from => last.end = to,
+                        _ => all.push((object, from..to)),
+                    }
                 }
             }
         }
         all
+    }
+
+    /// The ids of the surfels of all groups that were seen, ascending.
+    #[must_use]
+    pub fn surfels(&self, ids: &Ids) -> Vec<u64> {
+        let ranges = self.ranges(ids).into_iter();
+        ranges.flat_map(|(object, range)| range.map(move |i| ids.id(object, i))).collect()
     }
 
     /// Whether this can be what a frame of such objects saw, in such groups.
@@ -137,12 +174,6 @@ impl Seen {
         let same = self.counts.len() == ids.order().len()
             && (0..).zip(&self.counts).all(|(object, &count)| ids.all(object) == count);
         if same { Ok(()) } else { Err(Error::Invalid("the state is of another scene".into())) }
-    }
-
-    /// The word and the bit of a surfel's group.
-    fn place(&self, object: u32, surfel: u32) -> (usize, u64) {
-        let group = surfel / self.group;
-        (self.starts[object as usize] + (group / 64) as usize, 1 << (group % 64))
     }
 }
 
@@ -190,8 +221,14 @@ mod tests {
 
     #[test]
     fn flags_take_the_memory_of_the_paper() {
+        // The last surfel of each is selected.
         let ids = Ids::new(vec![(1 << 20) - 1; 1 << 12], |_| String::new()).unwrap();
-        let seen = Seen::nothing(&ids, 64);
+        let last: Vec<u64> = (0..1 << 12).map(|object| ids.id(object, (1 << 20) - 2)).collect();
+        let seen = Seen::of(&ids, 64, &last);
         assert_eq!(seen.words.len() * 8, 8 << 20);
+        // The first: a word each.
+        let first: Vec<u64> = (0..1 << 12).map(|object| ids.id(object, 0)).collect();
+        assert_eq!(Seen::of(&ids, 64, &first).words.len(), 1 << 12);
+        assert_eq!(Seen::nothing(&ids, 64).words.len(), 0);
     }
 }

@@ -3,13 +3,14 @@
 //! Little-endian, one after the other:
 //!
 //! ```text
-//!   "splatref state 1\n"
+//!   "splatref state 2\n"
 //!   64 hexadecimal digits: the SHA-256 of the scene, of objects in frame 0, see Scene::sha256
 //!   u32  the frame that saw
 //!   u32  m, how many surfels share a flag
-//!   u64  how many objects there are, each: u32 its surfels, u32 how many of them were selected
+//!   u64  how many objects there are, each: u32 its surfels, u32 how many of them were selected, u32 how
+//!     many u64 its flags take
 //!   the flags of each object, a bit a group, the lowest bit of a u64 first; each object begins with a
-//!     u64
+//!     u64, and its last u64 is not 0
 //! ```
 
 use super::input;
@@ -20,7 +21,7 @@ use crate::scene::objects::Ids;
 use std::io::Write;
 use std::path::Path;
 
-const MAGIC: &[u8] = b"splatref state 1\n";
+const MAGIC: &[u8] = b"splatref state 2\n";
 const DIGITS: usize = 64;
 
 /// What a frame saw, with its number.
@@ -44,11 +45,15 @@ pub fn pending(path: &Path, state: &State, scene: &str) -> Result<Pending> {
         to.write_all(&frame.to_le_bytes())?;
         to.write_all(&seen.group().to_le_bytes())?;
         to.write_all(&(seen.counts().len() as u64).to_le_bytes())?;
-        for (count, selected) in seen.counts().iter().zip(seen.selected()) {
-            to.write_all(&count.to_le_bytes())?;
-            to.write_all(&selected.to_le_bytes())?;
+        let objects = 0..seen.counts().len() as u32;
+        for object in objects.clone() {
+            let [count, selected] = [seen.counts(), seen.selected()].map(|of| of[object as usize]);
+            for number in [count, selected, seen.words(object).len() as u32] {
+                to.write_all(&number.to_le_bytes())?;
+            }
         }
-        seen.words().iter().try_for_each(|word| to.write_all(&word.to_le_bytes()))
+        let mut words = objects.flat_map(|object| seen.words(object));
+        words.try_for_each(|word| to.write_all(&word.to_le_bytes()))
     })
 }
 
@@ -73,18 +78,20 @@ fn parse(bytes: &[u8], scene: &str, ids: &Ids) -> std::result::Result<State, Str
     if group == 0 || objects != ids.order().len() as u64 {
         return Err("the state is of another scene".into());
     }
-    let mut selected = Vec::new();
+    let (mut selected, mut lengths) = (Vec::new(), Vec::new());
     for object in 0..ids.order().len() as u32 {
         if rest.word()? != ids.all(object) {
             return Err("the state is of another scene".into());
         }
         selected.push(rest.word()?);
+        lengths.push(rest.word()? as usize);
     }
     let mut words = Vec::with_capacity(rest.0.len() / 8);
     while !rest.0.is_empty() {
         words.push(u64::from_le_bytes(rest.take()?));
     }
-    let seen = Seen::restored(ids, group, selected, words).ok_or("the state is damaged")?;
+    let seen = Seen::restored(ids, group, selected, &lengths, words);
+    let seen = seen.ok_or("the state is damaged")?;
     Ok(State { frame, seen })
 }
 
@@ -138,7 +145,7 @@ mod tests {
         for counts in [&counts[..3], &[1000, 3, 1, 65], &[999, 3, 0, 65]] {
             assert_eq!(words(&bytes, SCENE, counts), "the state is of another scene");
         }
-        assert_eq!(words(b"splatref state 2\n", SCENE, &counts), "this is no state of splatref");
+        assert_eq!(words(b"splatref state 1\n", SCENE, &counts), "this is no state of splatref");
         for end in 0..bytes.len() {
             parse(&bytes[..end], SCENE, &ids(&counts)).unwrap_err();
         }
@@ -149,7 +156,7 @@ mod tests {
         assert_eq!(words(&high, SCENE, &counts), "the state is damaged");
         // More surfels selected than there are.
         let mut many = bytes;
-        many[MAGIC.len() + DIGITS + 16 + 8 + 4] = 200;
+        many[MAGIC.len() + DIGITS + 16 + 12 + 4] = 200;
         assert_eq!(words(&many, SCENE, &counts), "the state is damaged");
     }
 

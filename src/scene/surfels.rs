@@ -328,6 +328,16 @@ impl Arrays {
         }
     }
 
+    /// Room for so many more.
+    pub(super) fn reserve(&mut self, count: usize) {
+        self.position.reserve(count);
+        self.normal.reserve(count);
+        self.radius.reserve(count);
+        self.color.iter_mut().for_each(|color| color.reserve(count));
+        self.opacity.iter_mut().for_each(|opacity| opacity.reserve(count));
+        self.tangents.iter_mut().for_each(|tangents| tangents.reserve(count));
+    }
+
     /// Appends others, that have what these have.
     pub(super) fn append(&mut self, others: Self) {
         self.position.extend(others.position);

@@ -127,6 +127,20 @@ impl<'a> Whole<'a> {
         let scene = Scene::unlit(&self.scene.name, self.surfels(&ids, exec));
         Part { scene, ids }
     }
+
+    /// The surfels of ranges in ascending ids, as far as they are drawn, for depth alone.
+    pub(super) fn shapes(&self, ranges: Vec<(u32, std::ops::Range<u32>)>, exec: &Exec) -> Part {
+        let mut ids = Vec::new();
+        for (object, range) in &ranges {
+            let drawn = range.clone().filter(|&surfel| self.draws(*object, surfel));
+            ids.extend(drawn.map(|surfel| self.ids.id(*object, surfel)));
+        }
+        let surfels = match &self.scene.objects {
+            Some(objects) => objects.shapes(ranges, exec),
+            None => self.scene.surfels.some(&ids),
+        };
+        Part { scene: Scene::unlit(&self.scene.name, surfels), ids }
+    }
 }
 
 /// Neighbouring surfels of one object.

@@ -129,10 +129,10 @@ pub(super) fn stage<R: Exact>(
 /// # Errors
 /// [`crate::Error::Invalid`] if the process may not hold them.
 pub(super) fn flagged(job: &Job<'_>, whole: &Whole<'_>, before: &Seen) -> Result<Part> {
-    let mut ids = before.surfels(whole.ids());
-    ids.retain(|&id| whole.ids().find(id).is_some_and(|(object, i)| whole.draws(object, i)));
-    memory::ask(ids.len() as u64 * OF_A_FLAGGED, || format!("{} flagged surfels", ids.len()))?;
-    Ok(whole.part(ids, job.exec))
+    let ranges = before.ranges(whole.ids());
+    let count: u64 = ranges.iter().map(|(_, range)| range.len() as u64).sum();
+    memory::ask(count * OF_A_FLAGGED, || format!("{count} flagged surfels"))?;
+    Ok(whole.shapes(ranges, job.exec))
 }
 
 /// Bytes of a surfel that pass 1 draws: placed, twice while they are put together, and projected in
@@ -170,12 +170,14 @@ fn difference<R: Exact>(
     both(visible, &nearest(job, &settings.splats, &fresh))
 }
 
-/// Those of some surfels whose flag is not set.
+/// Those of some surfels, in ascending ids, whose flag is not set.
 pub(super) fn unseen(whole: &Whole<'_>, before: &Seen, ids: &[u64]) -> Vec<u64> {
-    let is_new = |id: &u64| {
-        whole.ids().find(*id).is_some_and(|(object, surfel)| !before.has(object, surfel))
-    };
-    ids.iter().copied().filter(is_new).collect()
+    let mut new = Vec::new();
+    for (object, run) in whole.ids().runs(ids) {
+        let first = whole.ids().id(object, 0);
+        new.extend(run.iter().filter(|&&id| !before.has(object, (id - first) as u32)));
+    }
+    new
 }
 
 /// Pass 4: attribute splatting of B(i), and what became of its surfels.

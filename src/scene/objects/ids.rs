@@ -240,6 +240,25 @@ impl Ids {
         let surfel = id - self.first[object as usize];
         (surfel < u64::from(self.count(object))).then_some((object, surfel as u32))
     }
+
+    /// Ascending ids object by object: each object with those of its surfels. What is the id of no surfel
+    /// is left out.
+    pub fn runs<'a>(&'a self, ids: &'a [u64]) -> impl Iterator<Item = (u32, &'a [u64])> {
+        let mut rest = ids;
+        std::iter::from_fn(move || {
+            loop {
+                let &id = rest.first()?;
+                let Some((object, _)) = self.find(id) else {
+                    rest = &rest[1..];
+                    continue;
+                };
+                let end = self.id(object, self.count(object));
+                let (run, others) = rest.split_at(rest.partition_point(|&id| id < end));
+                rest = others;
+                return Some((object, run));
+            }
+        })
+    }
 }
 
 /// How many bits hold the numbers below a count.
@@ -340,6 +359,13 @@ mod tests {
                     prop_assert!(rank == 0 || ids.nth(rank - 1).unwrap() < id);
                 }
                 prop_assert_eq!(ids.nth(total), None);
+                // As runs all ids are there once, object by object, and those of none are not.
+                let mut some: Vec<u64> = (0..total.min(9)).filter_map(|rank| ids.nth(rank)).collect();
+                some.extend([u64::MAX - 1, u64::MAX]);
+                let runs = ids.runs(&some);
+                let runs = runs.flat_map(|(object, run)| run.iter().map(move |&id| (object, id)));
+                let found = some.iter().filter_map(|&id| ids.find(id).map(|(object, _)| (object, id)));
+                prop_assert!(runs.eq(found));
                 // The id after the last of an object is nobody's, or the first of the next.
                 let end = ids.id(object as u32, counts[object]);
                 prop_assert!(ids.find(end).is_none_or(|(_, surfel)| surfel == 0));

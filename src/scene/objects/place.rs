@@ -52,11 +52,16 @@ impl Extent {
     }
 }
 
-/// Surfels of one object: all of a range, or those of some ids.
+/// Surfels that one job places.
 enum Part<'a> {
-    Range(u32, Range<u32>),
+    /// Those of ranges that are drawn, object by object.
+    Ranges(Vec<(u32, Range<u32>)>),
+    /// Those of some ids.
     Ids(&'a [u64]),
 }
+
+/// What surfels have beside positions, normals and radii: colours, opacities and half axes.
+type Has = [bool; 3];
 
 impl Objects {
     /// All surfels that are drawn, in the order of their ids, and the primitives in the order of
@@ -65,14 +70,8 @@ impl Objects {
     /// # Errors
     /// [`crate::Error::Invalid`] as [`crate::scene::indexed::Indexed::new`].
     pub fn flattened(&self, exec: &Exec) -> Result<(Surfels, Vec<Primitives>)> {
-        let parts = self.ids.order().iter().flat_map(|&object| {
-            let count = self.ids.count(object);
-            let starts = (0..count).step_by(CHUNK);
-            starts.map(move |start| {
-                Part::Range(object, start..count.min(start.saturating_add(CHUNK as u32)))
-            })
-        });
-        let surfels = self.gather(parts.collect(), exec);
+        let all = self.ids.order().iter().map(|&object| (object, 0..self.ids.count(object)));
+        let surfels = self.gather(jobs(all.collect()), self.has(), exec);
         let placed = (0..self.objects.len()).map(|object| {
             let primitives = self.geometry(object as u32).primitives.clone();
             let color = self.objects[object].color;
@@ -90,39 +89,38 @@ impl Objects {
     /// The surfels of some ids, which ascend; an id that is none is left out.
     #[must_use]
     pub fn some(&self, ids: &[u64], exec: &Exec) -> Surfels {
-        self.gather(ids.chunks(CHUNK).map(Part::Ids).collect(), exec)
+        self.gather(ids.chunks(CHUNK).map(Part::Ids).collect(), self.has(), exec)
     }
 
-    fn gather(&self, parts: Vec<Part<'_>>, exec: &Exec) -> Surfels {
-        let has = self.has();
+    /// The surfels of ranges that are drawn, without colours and opacities.
+    pub(crate) fn shapes(&self, ranges: Vec<(u32, Range<u32>)>, exec: &Exec) -> Surfels {
+        let [.., tangents] = self.has();
+        self.gather(jobs(ranges), [false, false, tangents], exec)
+    }
+
+    fn gather(&self, parts: Vec<Part<'_>>, has: Has, exec: &Exec) -> Surfels {
         let chunks = exec.ordered(parts, |part| {
             let mut arrays = Arrays::new(has);
             match part {
-                Part::Range(object, range) => {
-                    let drawn = self.drawn(object);
-                    let is_drawn = |&i: &u32| drawn.is_none_or(|drawn| drawn.has(i as usize));
-                    range
-                        .filter(is_drawn)
-                        .for_each(|surfel| self.place(object, surfel, &mut arrays));
+                Part::Ranges(ranges) => {
+                    for (object, range) in ranges {
+                        let drawn = self.drawn(object);
+                        let is_drawn = |&i: &u32| drawn.is_none_or(|drawn| drawn.has(i as usize));
+                        self.place(object, range.filter(is_drawn), &mut arrays);
+                    }
                 }
                 Part::Ids(ids) => {
-                    // Ids ascend, so that neighbours mostly are of one object.
-                    let mut of = 0..0;
-                    let mut object = 0;
-                    for &id in ids {
-                        if !of.contains(&id) {
-                            let Some(found) = self.ids.find(id) else { continue };
-                            object = found.0;
-                            let first = self.ids.id(object, 0);
-                            of = first..first + u64::from(self.ids.count(object));
-                        }
-                        self.place(object, (id - of.start) as u32, &mut arrays);
+                    for (object, run) in self.ids.runs(ids) {
+                        let first = self.ids.id(object, 0);
+                        let surfels = run.iter().map(|id| (id - first) as u32);
+                        self.place(object, surfels, &mut arrays);
                     }
                 }
             }
             arrays
         });
         let mut all = Arrays::new(has);
+        all.reserve(chunks.iter().map(|chunk| chunk.position.len()).sum());
         chunks.into_iter().for_each(|chunk| all.append(chunk));
         all.into_surfels(self.median_radius, self.bounding_sphere())
     }
@@ -133,7 +131,7 @@ impl Objects {
     }
 
     /// Whether some surfels have colours, opacities and half axes.
-    fn has(&self) -> [bool; 3] {
+    fn has(&self) -> Has {
         let of = |has: fn(&Surfels) -> bool| {
             self.objects.iter().any(|object| has(&self.geometries[object.geometry].surfels))
         };
@@ -145,37 +143,58 @@ impl Objects {
         ]
     }
 
-    /// Appends one surfel in its place.
-    fn place(&self, object: u32, surfel: u32, to: &mut Arrays) {
+    /// Appends surfels of an object in their places.
+    fn place(&self, object: u32, of: impl Iterator<Item = u32>, to: &mut Arrays) {
         let (place, surfels) = (&self.places[object as usize], &self.geometry(object).surfels);
-        let (moves, i) = (*place != Similarity::IDENTITY, surfel as usize);
-        let [mut position, mut normal] = [surfels.position()[i], surfels.normal()[i]];
-        let mut radius = surfels.radius()[i];
-        if moves {
-            place.place(&mut position);
-            place.turn(&mut normal);
-            place.enlarge(&mut radius);
+        let (moves, color) = (*place != Similarity::IDENTITY, self.objects[object as usize].color);
+        for i in of {
+            let i = i as usize;
+            let [mut position, mut normal] = [surfels.position()[i], surfels.normal()[i]];
+            let mut radius = surfels.radius()[i];
+            if moves {
+                place.place(&mut position);
+                place.turn(&mut normal);
+                place.enlarge(&mut radius);
+            }
+            if let Some(tangents) = &mut to.tangents {
+                tangents.push(match surfels.tangents() {
+                    Some(own) if moves => own[i].map(|half| place.stretch(half)),
+                    Some(own) => own[i],
+                    None => half_axes(normal, radius),
+                });
+            }
+            // It has a direction: it was a unit vector before it was turned.
+            unit(&mut normal);
+            if let Some(colors) = &mut to.color {
+                let own = || surfels.color().map(|colors| colors[i]);
+                // -0 becomes 0.
+                colors.push(color.or_else(own).unwrap_or(self.fill) + Vec3::ZERO);
+            }
+            if let Some(opacities) = &mut to.opacity {
+                opacities.push(surfels.opacity().map_or(1.0, |own| own[i]));
+            }
+            to.position.push(position);
+            to.normal.push(normal);
+            to.radius.push(radius);
         }
-        if let Some(tangents) = &mut to.tangents {
-            tangents.push(match surfels.tangents() {
-                Some(own) if moves => own[i].map(|half| place.stretch(half)),
-                Some(own) => own[i],
-                None => half_axes(normal, radius),
-            });
-        }
-        // It has a direction: it was a unit vector before it was turned.
-        unit(&mut normal);
-        if let Some(colors) = &mut to.color {
-            let own = || surfels.color().map(|colors| colors[i]);
-            let color = self.objects[object as usize].color.or_else(own).unwrap_or(self.fill);
-            // -0 becomes 0.
-            colors.push(color + Vec3::ZERO);
-        }
-        if let Some(opacities) = &mut to.opacity {
-            opacities.push(surfels.opacity().map_or(1.0, |own| own[i]));
-        }
-        to.position.push(position);
-        to.normal.push(normal);
-        to.radius.push(radius);
     }
+}
+
+/// Ranges in jobs of about [`CHUNK`] surfels.
+fn jobs(ranges: Vec<(u32, Range<u32>)>) -> Vec<Part<'static>> {
+    let (mut jobs, mut job, mut room) = (Vec::new(), Vec::new(), CHUNK);
+    for (object, mut range) in ranges {
+        while !range.is_empty() {
+            let some = range.start..range.end.min(range.start.saturating_add(room as u32));
+            range.start = some.end;
+            room -= some.len();
+            job.push((object, some));
+            if room == 0 {
+                jobs.push(Part::Ranges(std::mem::take(&mut job)));
+                room = CHUNK;
+            }
+        }
+    }
+    jobs.push(Part::Ranges(job));
+    jobs
 }

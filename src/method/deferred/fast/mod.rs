@@ -104,7 +104,7 @@ impl First {
     }
 
     /// Puts the pixels of a tile into its blocks.
-    fn load(&self, ranks: &Ranks, tile: &mut Tile) {
+    fn load(&self, ranks: &Ranks<'_>, tile: &mut Tile) {
         let rect = tile.grid.rect;
         for index in 0..tile.blocks.len() {
             let (x0, y0) = tile.grid.corner(index);
@@ -116,7 +116,7 @@ impl First {
                 }
                 let id = *self.target.id.at(x, y);
                 if id != NO_ID {
-                    block.id[lane as usize] = ranks.flagged[id as usize];
+                    block.id[lane as usize] = ranks.of_flagged(id);
                     block.nearest[lane as usize] = *self.target.depth.at(x, y);
                 }
             }
@@ -125,11 +125,11 @@ impl First {
 }
 
 /// Pass 3 in one tile, which has the number `index`; its splats are those of pass 4 again afterwards.
-fn more(tile: &mut Tile, fresh: &Prepared<f32, Record>, ranks: &Ranks, index: usize) {
+fn more(tile: &mut Tile, fresh: &Prepared<f32, Record>, ranks: &Ranks<'_>, index: usize) {
     let mut splats = Vec::new();
     fresh.gather_f32(index, &tile.grid.rect, &mut splats);
     for splat in &mut splats {
-        splat.surfel = ranks.fresh[splat.surfel as usize];
+        splat.surfel = ranks.of_fresh[splat.surfel as usize];
     }
     std::mem::swap(&mut tile.splats, &mut splats);
     tile.visibility_over(&fresh.shared);
@@ -148,44 +148,39 @@ fn empty(tile: &mut Tile) {
 }
 
 /// The ranks of surfels among all that passes 1 and 3 draw.
-struct Ranks {
-    flagged: Vec<u32>,
-    fresh: Vec<u32>,
-    /// The ids, ascending.
-    ids: Vec<u64>,
+struct Ranks<'a> {
+    /// Ascending ids of both passes, which have none in common.
+    flagged: &'a [u64],
+    fresh: &'a [u64],
+    /// The ranks of those of pass 3, ascending.
+    of_fresh: Vec<u32>,
 }
 
-impl Ranks {
-    /// Of two ascending lists that have no id in common.
-    fn new(flagged: &[u64], fresh: &[u64]) -> Self {
-        let mut all = Self {
-            flagged: Vec::with_capacity(flagged.len()),
-            fresh: Vec::with_capacity(fresh.len()),
-            ids: Vec::with_capacity(flagged.len() + fresh.len()),
-        };
-        let (mut flagged, mut fresh) = (flagged.iter().peekable(), fresh.iter().peekable());
-        loop {
-            let rank = all.ids.len() as u32;
-            match (flagged.peek(), fresh.peek()) {
-                (Some(&&id), other) if other.is_none_or(|&&other| id < other) => {
-                    all.flagged.push(rank);
-                    all.ids.push(id);
-                    flagged.next();
-                }
-                (_, Some(&&id)) => {
-                    all.fresh.push(rank);
-                    all.ids.push(id);
-                    fresh.next();
-                }
-                _ => return all,
-            }
-        }
+impl<'a> Ranks<'a> {
+    fn new(flagged: &'a [u64], fresh: &'a [u64]) -> Self {
+        let mut before = 0;
+        let of_fresh = (0..).zip(fresh).map(|(i, id)| {
+            before += flagged[before..].partition_point(|other| other < id);
+            before as u32 + i
+        });
+        Self { flagged, fresh, of_fresh: of_fresh.collect() }
+    }
+
+    /// The rank of a surfel of pass 1.
+    fn of_flagged(&self, index: u32) -> u32 {
+        let id = self.flagged[index as usize];
+        index + self.fresh.partition_point(|&other| other < id) as u32
     }
 
     /// Puts ids in the place of ranks.
     fn name(&self, ranks: &mut Plane<u32>) {
         for rank in ranks.values_mut().iter_mut().filter(|rank| **rank != NO_ID) {
-            *rank = self.ids.get(*rank as usize).map_or(visibility::NONE, |&id| id) as u32;
+            let before = self.of_fresh.partition_point(|other| other < rank);
+            let id = match self.of_fresh.get(before) {
+                Some(found) if found == rank => self.fresh.get(before),
+                _ => self.flagged.get(*rank as usize - before),
+            };
+            *rank = id.map_or(visibility::NONE, |&id| id) as u32;
         }
     }
 }

@@ -51,7 +51,7 @@ pub(super) fn selected(
     });
     let ids = joined.unwrap_or_default().into_iter().map(|kept| kept.id);
     let mut ids: Vec<u64> = ids.filter(|&id| id != NONE).collect();
-    ids.sort_unstable();
+    job.exec.sort(&mut ids);
     ids
 }
 
