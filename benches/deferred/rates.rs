@@ -69,6 +69,8 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
         "culled, %",
         "with, frames/s",
         "ratio",
+        "m = 1",
+        "ratio",
         "paper: without",
         "culled, %",
         "with",
@@ -80,7 +82,9 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
         let settings = deferred::Settings { splats: subject.splats, ..Default::default() };
         let without = measured(&subject, subject.splats.into(), exec)?;
         let with = measured(&subject, settings.into(), exec)?;
-        let [a, b] = [&without, &with].map(|one| 1e3 / one.frame);
+        let single = deferred::Settings { flags: 1, ..settings };
+        let single = measured(&subject, single.into(), exec)?;
+        let [a, b, c] = [&without, &with, &single].map(|one| 1e3 / one.frame);
         let [p, culled, q] = subject.paper;
         // Of a range the middle.
         let number = |text: &str| {
@@ -90,14 +94,16 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
         let paper =
             if p.is_empty() { String::new() } else { format!("{:.2}", number(q) / number(p)) };
         rates.row(&format!(
-            "{} | {} | {:.0} | {a:.1} | {:.1} | {b:.1} | {:.2} | {p} | {culled} | {q} | {paper}",
+            "{} | {} | {:.0} | {a:.1} | {:.1} | {b:.1} | {:.2} | {c:.1} | {:.2} | {p} | {culled} | {q} | \
+             {paper}",
             subject.name,
             subject.count(),
             with.drawn,
             with.culled,
-            b / a
+            b / a,
+            c / a
         ));
-        rows.extend(passes(&subject, &[&without, &with], settings, exec)?);
+        rows.extend(passes(&subject, &[&without, &with, &single], settings, exec)?);
         let name = subject.name;
         bars.push(Bar { name: format!("{name}, without"), parts: without.passes.to_vec() });
         bars.push(Bar { name: format!("{name}, with"), parts: with.passes.to_vec() });
@@ -116,12 +122,12 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
 /// The rows of a scene: without selection, with it, and how many primitives that is.
 fn passes(
     subject: &Subject,
-    found: &[&Measured; 2],
+    found: &[&Measured; 3],
     settings: deferred::Settings,
     exec: &Exec,
 ) -> Result<Vec<String>> {
     let mut rows = Vec::new();
-    for (one, how) in found.iter().zip(["without, ms", "with, ms"]) {
+    for (one, how) in found.iter().zip(["without, ms", "with, ms", "with m = 1, ms"]) {
         let cells = one.passes.map(|time| format!("{time:.2}")).join(" | ");
         rows.push(format!("{} | {how} | {:.1} | {cells}", subject.name, one.frame));
     }

@@ -119,7 +119,10 @@ mod tests;
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::Real;
+use crate::number::lanes::vectorized;
 use crate::scene::Surfels;
+use glam::{DVec3, Vec3};
+use std::ops::Range;
 
 /// What a distance is multiplied by in [`Sequential::holds`]: 1 - 2^-20.
 const SHORTER: f64 = 1.0 - 1.0 / 1_048_576.0;
@@ -223,6 +226,19 @@ impl Sequential {
             && reaches(self.far[node], self.gap[node], distance, scale)
     }
 
+    /// [`Sequential::holds`] of up to 64 consecutive nodes at some points, a bit each: with the distances of
+    /// these from an eye, `sqrt((dx dx + dy dy) + dz dz)`. The scale is finite and > 0.
+    pub(crate) fn holding(
+        &self,
+        nodes: Range<usize>,
+        points: &[Vec3],
+        eye: DVec3,
+        scale: f64,
+    ) -> u64 {
+        let errors = [&self.near, &self.far, &self.gap].map(|all| &all[nodes.clone()]);
+        holding(errors, &points[nodes], eye, scale)
+    }
+
     /// Whether a node is drawn, with one distance for all nodes; ranges as for
     /// [`Sequential::holds`].
     #[must_use]
@@ -230,6 +246,24 @@ impl Sequential {
         times(self.near[node], scale) <= distance && distance < times(self.far[node], scale)
     }
 }
+
+vectorized!(
+    /// See [`Sequential::holding`].
+    fn holding([near, far, gap]: [&[f32]; 3], points: &[Vec3], eye: DVec3, scale: f64) -> u64 {
+        let mut held = [0_u64; 64];
+        let count = near.len().min(64);
+        let (near, far, gap) = (&near[..count], &far[..count], &gap[..count]);
+        for (i, p) in points[..count].iter().enumerate() {
+            let d = DVec3::new(p.x.into(), p.y.into(), p.z.into()) - eye;
+            let distance = ((d.x * d.x + d.y * d.y) + d.z * d.z).sqrt();
+            // Neither 0 nor +inf times a scale that is finite and > 0 needs a case of its own.
+            let good = f64::from(near[i]) * scale <= distance;
+            let parent = SHORTER * distance < f64::from(far[i]) * scale + f64::from(gap[i]);
+            held[i] = u64::from(good & parent);
+        }
+        held.iter().rev().fold(0, |word, bit| word << 1 | bit)
+    }
+);
 
 /// Whether a distance is below that from which on the parent is drawn.
 fn reaches(far: f32, gap: f32, distance: f64, scale: f64) -> bool {

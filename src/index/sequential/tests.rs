@@ -148,6 +148,17 @@ proptest! {
         let taken: Vec<usize> =
             all.clone().filter(|&i| tree.holds(i, distances[i], scale)).collect();
         let prefix = tree.prefix(least, scale);
+        if scale > 0.0 && scale < f64::INFINITY {
+            for first in all.clone().step_by(64) {
+                let own = first..all.end.min(first + 64);
+                let word = tree.holding(own.clone(), nodes.position(), eye, scale);
+                let centres = nodes.position().iter().map(|p| (p.as_dvec3() - eye).length());
+                for (i, distance) in own.zip(centres.skip(first)) {
+                    let drawn = word >> (i - first) & 1 != 0;
+                    prop_assert_eq!(drawn, tree.holds(i, distance, scale));
+                }
+            }
+        }
         prop_assert!(taken.iter().all(|&i| i < prefix));
         for path in paths(&tree) {
             prop_assert!(path.iter().any(|i| taken.contains(i)));

@@ -7,7 +7,7 @@
 //! ```text
 //!   e    = transpose(R) (E - T) / k             the eye in the coordinates of the geometry
 //!   s    = f / tau                              f the greater of fx and fy; +inf where tau = 0
-//!   r(p) = |p - e|                              of a node at p
+//!   r(p) = |p - e|                              of a node at p, sqrt((dx dx + dy dy) + dz dz)
 //!   r    = 1 / k                                of every node, orthographic
 //! ```
 //!
@@ -301,9 +301,12 @@ impl Eye {
         let lost = (middle.length() + radius) / 1_048_576.0;
         let least = ((middle - eye).length() - radius - lost).at_least(0.0);
         let count = list.prefix(least, scale);
+        if scale == f64::INFINITY {
+            return (count as u32, (*detail.leaves).clone());
+        }
         let points = geometry.surfels.position();
-        let distance = |node: usize| (points[node].as_dvec3() - eye).length();
-        (count as u32, Mask::of(count, |node| list.holds(node, distance(node), scale)))
+        let word = |first| list.holding(first..count.min(first + 64), points, eye, scale);
+        (count as u32, Mask { words: (0..count).step_by(64).map(word).collect() })
     }
 
     /// Whether a sphere reaches into the picture, widened by so many pixels.
