@@ -4,14 +4,15 @@
 //! named by its rank among all that passes 1 and 3 draw, which are in the order of their ids.
 
 mod points;
+mod ranks;
 
+use super::Settings;
 use super::part::{Part, Whole};
 use super::picture::{flagged, seen, unseen};
 use super::queries::Limits;
-use super::{Settings, visibility};
 use crate::composite::decide;
 use crate::error::Result;
-use crate::frame::{Framebuffer, NO_ID, Plane, Wanted};
+use crate::frame::{Exec, Framebuffer, NO_ID, Wanted};
 use crate::index::seen::Seen;
 use crate::method::algorithm::Job;
 use crate::method::fast::tile::{Record, SIDE, Tile};
@@ -20,6 +21,7 @@ use crate::method::picture::{Clock, Laps};
 use crate::method::prepare::Prepared;
 use crate::number::lanes::LANES;
 use crate::splat::{Shared, SplatSettings, Tally};
+use ranks::Ranks;
 
 /// Draws a frame into a framebuffer, every pixel of it, with pass 3; and tells what it saw, what became
 /// of the selected surfels, and the wall times. The fused passes have shares of their common time.
@@ -36,7 +38,7 @@ pub(super) fn render(
     clock.lap("visibility");
 
     let epsilon = splats.epsilon.in_units(whole.median_radius());
-    let limits = first.limits(epsilon);
+    let limits = first.limits(epsilon, job.exec);
     let list = points::selected(job, settings, &whole, &limits);
     let now = Seen::of(whole.ids(), settings.flags, &list);
     clock.lap("indices");
@@ -60,9 +62,8 @@ pub(super) fn render(
         tile.attributes(shared);
         watch.lap(1);
         tile.normalize(shared);
-        empty(tile);
+        name(tile, &ranks);
     });
-    ranks.name(&mut target.id);
     let mut laps = clock.into_laps();
     let names = ["difference", "attributes", "normalization"];
     for (name, time) in names.into_iter().zip(passes) {
@@ -93,14 +94,15 @@ impl First {
     }
 
     /// The greatest depth of pass 2 at each pixel.
-    fn limits(&self, epsilon: f32) -> Limits {
-        let pixels = self.target.depth.values().iter().zip(self.target.id.values());
-        let depth = |(&nearness, &id): (&f32, &u32)| match id {
+    fn limits(&self, epsilon: f32, exec: &Exec) -> Limits {
+        let (nearness, ids) = (self.target.depth.values(), self.target.id.values());
+        let depth = |i: usize| match ids[i] {
             NO_ID => f32::INFINITY,
-            _ => self.shared.depth(nearness),
+            _ => self.shared.depth(nearness[i]),
         };
-        let limits = pixels.map(|pixel| decide::limit(depth(pixel), epsilon));
-        Limits { width: self.target.width, values: limits.collect() }
+        let mut values = Vec::with_capacity(ids.len());
+        exec.extend(&mut values, ids.len(), |i| decide::limit(depth(i), epsilon));
+        Limits { width: self.target.width, values }
     }
 
     /// Puts the pixels of a tile into its blocks.
@@ -129,58 +131,22 @@ fn more(tile: &mut Tile, fresh: &Prepared<f32, Record>, ranks: &Ranks<'_>, index
     let mut splats = Vec::new();
     fresh.gather_f32(index, &tile.grid.rect, &mut splats);
     for splat in &mut splats {
-        splat.surfel = ranks.of_fresh[splat.surfel as usize];
+        splat.surfel = ranks.of_fresh(splat.surfel);
     }
     std::mem::swap(&mut tile.splats, &mut splats);
     tile.visibility_over(&fresh.shared);
     tile.splats = splats;
 }
 
-/// Pixels without weight are empty, whatever depth passes 1 and 3 left.
-fn empty(tile: &mut Tile) {
+/// Puts ids in the place of ranks; pixels without weight are empty, whatever depth passes 1 and 3 left.
+fn name(tile: &mut Tile, ranks: &Ranks<'_>) {
     for block in &mut tile.blocks {
         for lane in 0..LANES {
             if !(block.weight[lane] > 0.0) {
                 (block.nearest[lane], block.id[lane]) = (f32::INFINITY, NO_ID);
+            } else if block.id[lane] != NO_ID {
+                block.id[lane] = ranks.id(block.id[lane]) as u32;
             }
-        }
-    }
-}
-
-/// The ranks of surfels among all that passes 1 and 3 draw.
-struct Ranks<'a> {
-    /// Ascending ids of both passes, which have none in common.
-    flagged: &'a [u64],
-    fresh: &'a [u64],
-    /// The ranks of those of pass 3, ascending.
-    of_fresh: Vec<u32>,
-}
-
-impl<'a> Ranks<'a> {
-    fn new(flagged: &'a [u64], fresh: &'a [u64]) -> Self {
-        let mut before = 0;
-        let of_fresh = (0..).zip(fresh).map(|(i, id)| {
-            before += flagged[before..].partition_point(|other| other < id);
-            before as u32 + i
-        });
-        Self { flagged, fresh, of_fresh: of_fresh.collect() }
-    }
-
-    /// The rank of a surfel of pass 1.
-    fn of_flagged(&self, index: u32) -> u32 {
-        let id = self.flagged[index as usize];
-        index + self.fresh.partition_point(|&other| other < id) as u32
-    }
-
-    /// Puts ids in the place of ranks.
-    fn name(&self, ranks: &mut Plane<u32>) {
-        for rank in ranks.values_mut().iter_mut().filter(|rank| **rank != NO_ID) {
-            let before = self.of_fresh.partition_point(|other| other < rank);
-            let id = match self.of_fresh.get(before) {
-                Some(found) if found == rank => self.fresh.get(before),
-                _ => self.flagged.get(*rank as usize - before),
-            };
-            *rank = id.map_or(visibility::NONE, |&id| id) as u32;
         }
     }
 }

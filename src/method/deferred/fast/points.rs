@@ -40,20 +40,26 @@ pub(super) fn selected(
         }
         kept
     });
-    let joined = pictures.into_iter().reduce(|mut all, later| {
-        for (kept, later) in all.iter_mut().zip(later) {
+    let starts = (0..limits.values.len()).step_by(PIXELS).collect();
+    let parts = job.exec.ordered(starts, |start: usize| {
+        let pixels = start..limits.values.len().min(start + PIXELS);
+        let nearest = pixels.map(|pixel| {
+            let kept = pictures.iter().map(|picture| picture[pixel]);
             // Ids of a later share are higher.
-            if decide::before(later.depth, kept.depth) {
-                *kept = later;
-            }
-        }
-        all
+            let nearer = |kept: Kept<f32>, later: Kept<f32>| {
+                if decide::before(later.depth, kept.depth) { later } else { kept }
+            };
+            kept.reduce(nearer).map_or(NONE, |kept| kept.id)
+        });
+        nearest.filter(|&id| id != NONE).collect::<Vec<_>>()
     });
-    let ids = joined.unwrap_or_default().into_iter().map(|kept| kept.id);
-    let mut ids: Vec<u64> = ids.filter(|&id| id != NONE).collect();
+    let mut ids = parts.concat();
     job.exec.sort(&mut ids);
     ids
 }
+
+/// So many pixels are joined by one job.
+const PIXELS: usize = 1 << 14;
 
 /// Draws neighbouring surfels of an object, in ascending order.
 fn draw(points: &PointProjector<f32>, range: &Range<'_>, limits: &Limits, kept: &mut [Kept<f32>]) {
