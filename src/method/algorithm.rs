@@ -59,6 +59,8 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     const STAGES: &'static [Stage];
     /// Whether triangles, ribbons and tubes are drawn beside surfels.
     const DRAWS_PRIMITIVES: bool = false;
+    /// Whether triangles are drawn beside surfels, by a method that draws no other primitives.
+    const DRAWS_POLYGONS: bool = false;
     /// Whether the objects of a scene are drawn as they are; else the scene must be made flat.
     const DRAWS_OBJECTS: bool = false;
     /// How surfels are divided into groups if nobody says; none: the method draws no groups.

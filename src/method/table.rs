@@ -11,7 +11,7 @@ use crate::frame::{Frame, Pool};
 use crate::index::grouping::Grouping;
 use crate::number::Exact;
 use crate::number::ball::Profile;
-use crate::scene::{Camera, Objects, Scene};
+use crate::scene::{Camera, Primitives, Scene};
 use crate::setting::{Fields, Visit};
 use crate::splat::SplatSettings;
 use crate::verify::client::Client;
@@ -74,6 +74,13 @@ macro_rules! methods {
             #[must_use]
             pub fn draws_primitives(&self) -> bool {
                 match self { $(Self::$method(_) => <$settings>::DRAWS_PRIMITIVES,)* }
+            }
+
+            /// Whether triangles are drawn beside surfels, with other primitives or without.
+            #[must_use]
+            pub fn draws_polygons(&self) -> bool {
+                let alone = match self { $(Self::$method(_) => <$settings>::DRAWS_POLYGONS,)* };
+                alone || self.draws_primitives()
             }
 
             /// Whether the objects of a scene are drawn as they are; else the scene must be made flat.
@@ -242,11 +249,19 @@ impl Method {
             )));
         }
         // Those of objects too, where nobody makes the scene flat.
-        let of_objects = scene.objects.as_ref().is_some_and(Objects::have_primitives);
-        if (scene.primitives.is_empty() && !of_objects) || self.draws_primitives() {
+        let objects = scene.objects.iter().flat_map(|objects| {
+            objects.objects().iter().map(|object| &objects.geometries()[object.geometry].primitives)
+        });
+        let all = || objects.clone().chain([&scene.primitives]);
+        let lines = all().any(|one| !one.ribbons.is_empty() || !one.tubes.is_empty());
+        let draws = |method: &Self| match (lines, all().all(Primitives::is_empty)) {
+            (true, _) => method.draws_primitives(),
+            (false, nothing) => nothing || method.draws_polygons(),
+        };
+        if draws(self) {
             return Ok(());
         }
-        let able = Self::all().into_iter().filter(Self::draws_primitives);
+        let able = Self::all().into_iter().filter(draws);
         let able: Vec<_> = able.map(|method| format!("--method {}", method.name())).collect();
         Err(Error::Invalid(format!(
             "{} has triangles or lines, which the method {} does not draw; use {}",

@@ -170,6 +170,13 @@ impl Surfels {
         arrays.into_surfels(self.median_radius, self.bounding_sphere)
     }
 
+    /// With a colour for all, if they have none.
+    pub(crate) fn colored(mut self, color: Vec3) -> Self {
+        let count = self.len();
+        self.color.get_or_insert_with(|| vec![color + Vec3::ZERO; count]);
+        self
+    }
+
     /// Whether two indices are those of surfels of the same place and shape, by all bits: what is drawn
     /// of one is drawn of the other.
     pub(crate) fn are_equal(&self, a: u32, b: u32) -> bool {

@@ -3,7 +3,8 @@
 use super::Settings;
 use super::indices::{each_centre, indices, selected};
 use super::part::{Part, Whole};
-use super::picture::{flagged, seen, unseen};
+use super::picture::{first, flagged, seen, unseen};
+use super::polygons::Polygons;
 use super::visibility::{both, nearest};
 use crate::error::Result;
 use crate::method::algorithm::Job;
@@ -20,6 +21,8 @@ pub struct DeferredReplay<R> {
     pub pixel: (u32, u32),
     /// How many surfels there are, how many have a flag that is set, and how many were selected.
     pub counts: [u64; 3],
+    /// The depth of the nearest polygon, if there is one.
+    pub polygon: Option<R>,
     /// Pass 1: the splats that reach the pixel, by name, in the order of ids.
     pub before: Vec<(String, Touch<R>)>,
     /// The depth that pass 1 leaves.
@@ -60,7 +63,8 @@ pub fn explain<R: Exact>(
     let (whole, splats) = (Whole::new(job.scene), &settings.splats);
     let before = seen(job, settings, &whole)?;
     let flagged = flagged(job, &whole, &before)?;
-    let visible = nearest::<R>(job, splats, &flagged);
+    let polygons = Polygons::draw(job, settings, &whole)?;
+    let visible = first::<R>(job, settings, &flagged, polygons.as_ref());
     let kept = indices(job, splats, &whole, &visible);
     let part = whole.part(selected(&kept), job.exec);
     let third = if settings.second { part.ids() } else { &[] };
@@ -92,6 +96,9 @@ pub fn explain<R: Exact>(
     Ok(DeferredReplay {
         pixel,
         counts: [all, flagged.ids().len() as u64, part.ids().len() as u64],
+        polygon: polygons
+            .map(|polygons| polygons.nearest(x, y).depth)
+            .filter(|depth| *depth < R::INFINITY),
         before: pass(&flagged, &nothing),
         visible: at.depth,
         epsilon,
@@ -129,6 +136,9 @@ impl<R: Exact> fmt::Display for DeferredReplay<R> {
             f,
             "pixel ({x}, {y}); of {all} surfels {flagged} are flagged, {selected} selected"
         )?;
+        if let Some(depth) = self.polygon {
+            writeln!(f, "the nearest polygon has the depth {}", depth.to_f64())?;
+        }
         let pass = |f: &mut fmt::Formatter<'_>, what: &str, touches: &[(String, Touch<R>)]| {
             writeln!(f, "\n{what}: {} splats reach the pixel", touches.len())?;
             for (name, touch) in touches {

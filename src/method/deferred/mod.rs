@@ -25,6 +25,8 @@
 //! The stage `difference` run alone turns depths into nearness again: under a perspective camera its depths
 //! may be one rounding off those of the whole picture.
 //!
+//! Triangles beside the surfels are drawn before pass 1, see [`polygons`].
+//!
 //! The flags of B(i) are what frame i + 1 is given; no flags, and none set, give the same frame. A frame is a function of flags, scene, camera and
 //! settings alone.
 //!
@@ -69,6 +71,7 @@ mod indices;
 mod part;
 mod picture;
 mod planes;
+pub mod polygons;
 pub mod queries;
 mod settings;
 #[cfg(test)]
@@ -97,6 +100,7 @@ impl Algorithm for Settings {
         "EWA splatting of the surfels that the last frame and an index buffer select [GBP04]";
     const STAGES: &'static [Stage] = planes::STAGES;
     const DRAWS_OBJECTS: bool = true;
+    const DRAWS_POLYGONS: bool = true;
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(256);
     type Memory = ();
 

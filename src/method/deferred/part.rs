@@ -1,12 +1,14 @@
 //! All surfels of a scene by their ids, and some of them as a scene that the passes of `ewa` draw.
 
 use super::queries::Queries;
+use crate::error::Result;
 use crate::frame::Exec;
 use crate::method::algorithm::Job;
 use crate::number::lanes::{LANES, Lanes};
 use crate::scene::objects::detail::Mask;
 use crate::scene::objects::{Ids, Split};
-use crate::scene::{Boxes, Scene, Similarity, Surfels};
+use crate::scene::{Boxes, Primitives, Scene, Similarity, Surfels};
+use crate::source::merge::join;
 use glam::Vec3;
 use std::borrow::Cow;
 
@@ -51,11 +53,23 @@ impl<'a> Whole<'a> {
         }
     }
 
-    /// Whether surfels have colours.
+    /// Whether surfels or polygons have colours.
     pub(super) fn has_colors(&self) -> bool {
         match &self.scene.objects {
             Some(objects) => objects.have_colors(),
-            None => self.scene.surfels.color().is_some(),
+            None => self.scene.surfels.color().is_some() || self.scene.primitives.colored(),
+        }
+    }
+
+    /// The polygons in their places.
+    ///
+    /// # Errors
+    /// As [`Objects::primitives`](crate::scene::Objects::primitives) and [`join`].
+    pub(super) fn polygons(&self) -> Result<Cow<'_, Primitives>> {
+        match &self.scene.objects {
+            Some(objects) if !objects.have_primitives() => Ok(Cow::Owned(Primitives::default())),
+            Some(objects) => Ok(Cow::Owned(join(objects.primitives()?, objects.fill())?)),
+            None => Ok(Cow::Borrowed(&self.scene.primitives)),
         }
     }
 
@@ -118,6 +132,9 @@ impl<'a> Whole<'a> {
     pub(super) fn surfels(&self, ids: &[u64], exec: &Exec) -> Surfels {
         match &self.scene.objects {
             Some(objects) => objects.some(ids, exec),
+            None if self.has_colors() => {
+                self.scene.surfels.some(ids).colored(self.scene.material.color)
+            }
             None => self.scene.surfels.some(ids),
         }
     }

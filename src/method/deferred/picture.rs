@@ -3,7 +3,8 @@
 
 use super::indices::{indices, selected};
 use super::part::{Part, Whole};
-use super::visibility::{Nearest, both, nearest};
+use super::polygons::Polygons;
+use super::visibility::{NONE, Nearest, POLYGON, both, nearest};
 use super::{Settings, fast, planes};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool, Wanted};
@@ -18,7 +19,7 @@ use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::prepare::Prepared;
 use crate::method::resolved::{self, Resolved};
 use crate::method::stage::unknown;
-use crate::method::tiled::Tiled;
+use crate::method::tiled::{Tiled, pixels};
 use crate::number::Exact;
 use crate::splat::Tally;
 use std::borrow::Cow;
@@ -32,8 +33,9 @@ pub(super) fn define<R: Exact>(
     let mut clock = Clock::default();
     let whole = Whole::new(job.scene);
     let before = seen(job, settings, &whole)?;
+    let polygons = Polygons::draw(job, settings, &whole)?;
     let flagged = flagged(job, &whole, &before)?;
-    let visible = nearest::<R>(job, &settings.splats, &flagged);
+    let visible = first::<R>(job, settings, &flagged, polygons.as_ref());
     clock.lap("visibility");
 
     let kept = indices(job, &settings.splats, &whole, &visible);
@@ -48,7 +50,7 @@ pub(super) fn define<R: Exact>(
     let (sums, tally) = sums(job, settings, &part, &depth);
     clock.lap("attributes");
 
-    let averages = normalization(job, settings, &part, &depth, &sums);
+    let averages = normalization(job, settings, &part, (&depth, polygons.as_ref()), &sums);
     clock.lap("normalization");
 
     let mut left = Vec::new();
@@ -98,7 +100,8 @@ pub(super) fn stage<R: Exact>(
     match stage {
         "visibility" => {
             let flagged = flagged(job, &whole, &before)?;
-            let visible = nearest::<R>(job, &settings.splats, &flagged);
+            let polygons = Polygons::draw(job, settings, &whole)?;
+            let visible = first::<R>(job, settings, &flagged, polygons.as_ref());
             Ok(planes::visibility(&visible, false).into())
         }
         "indices" => {
@@ -116,7 +119,8 @@ pub(super) fn stage<R: Exact>(
         "normalization" => {
             let (part, depth) = (selected()?, depth()?);
             let sums = ewa::given_attributes(&part.job(job), given)?;
-            let averages = normalization(job, settings, &part, &depth, &sums);
+            let polygons = Polygons::draw(job, settings, &whole)?;
+            let averages = normalization(job, settings, &part, (&depth, polygons.as_ref()), &sums);
             Ok(resolved::planes(&part.job(job), &averages))
         }
         "shading" => resolved::shade(job, given, whole.has_colors()),
@@ -152,6 +156,20 @@ pub(super) fn seen<'a>(
             Ok(Cow::Borrowed(seen))
         }
     }
+}
+
+/// Pass 1: the depth of polygons, with the flagged surfels.
+pub(super) fn first<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    flagged: &Part,
+    polygons: Option<&Polygons<R>>,
+) -> Tiled<Nearest<R>> {
+    let surfels = nearest(job, &settings.splats, flagged);
+    let Some(polygons) = polygons else { return surfels };
+    let below =
+        Tiled::new(job, |_, rect| pixels(rect).map(|(x, y)| polygons.nearest(x, y)).collect());
+    both(&below, &surfels)
 }
 
 /// Pass 3: the depth of pass 1, with the selected surfels whose flags are not set.
@@ -193,31 +211,31 @@ fn sums<R: Exact>(
     (sums, splats.tally)
 }
 
-/// Pass 5.
+/// Pass 5, and the polygons where no splats are shown.
 fn normalization<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     selected: &Part,
-    depth: &Tiled<Nearest<R>>,
+    (depth, polygons): (&Tiled<Nearest<R>>, Option<&Polygons<R>>),
     sums: &Tiled<Sums<R>>,
 ) -> Tiled<Resolved<R>> {
     // With pass 3 every fragment of B(i) has a depth in front of itself, or its own.
-    let own = (!settings.second).then(|| nearest(job, &settings.splats, selected));
+    let own = (!settings.second).then(|| nearest::<R>(job, &settings.splats, selected));
     let shown = match &own {
         None => depth.map(|pixel| *pixel),
-        Some(own) => {
-            depth.with(
-                own,
-                |pixel, own| {
-                    if pixel.id == super::visibility::NONE { *own } else { *pixel }
-                },
-            )
-        }
+        Some(own) => depth.with(own, |pixel, own| {
+            let takes = pixel.id == NONE || pixel.id == POLYGON && own.nearness > pixel.nearness;
+            if takes { *own } else { *pixel }
+        }),
     };
-    shown.with(sums, |nearest, sums| {
-        if !(sums.weight > R::ZERO) {
+    let splats = shown.with(sums, |nearest, sums| {
+        if !(sums.weight > R::ZERO) || nearest.id == POLYGON {
             return Resolved::EMPTY;
         }
         Resolved { id: nearest.id as u32, ..resolve(&nearest.foremost(), sums) }
-    })
+    });
+    let Some(polygons) = polygons else { return splats };
+    let below =
+        Tiled::new(job, |_, rect| pixels(rect).map(|(x, y)| polygons.resolved(x, y)).collect());
+    splats.with(&below, |splats, below| if splats.weight > R::ZERO { *splats } else { *below })
 }

@@ -1,9 +1,9 @@
 //! The planes of the stages: where they leave, and where they come in.
 //!
-//! Planes of ids hold the lowest 32 bits of each.
+//! Planes of ids hold the lowest 32 bits of each, and of a polygon, which has none, 0xFFFF_FFFF with a depth.
 
 use super::indices::Kept;
-use super::visibility::{NONE, Nearest};
+use super::visibility::{NONE, Nearest, POLYGON};
 use crate::error::{Error, Result};
 use crate::frame::{NO_ID, NamedPlane, Plane};
 use crate::method::algorithm::Job;
@@ -19,7 +19,8 @@ const BEFORE: PlaneRow = PlaneRow::new(
     "visibility.Z",
     Holds::Scalar,
     "world units",
-    "depth of the nearest fragment of the surfels whose flags are set; +inf where there is none",
+    "depth of the nearest fragment of polygons and of the surfels whose flags are set; +inf where there \
+     is none",
     When::Stages,
 );
 const BEFORE_ID: PlaneRow = PlaneRow::new(
@@ -107,7 +108,11 @@ pub(super) fn given_visibility<R: Exact>(
     let view = View::new(job.camera);
     Ok(given.tiled(|x, y| {
         let depth = *depth.at(x, y);
-        Nearest { nearness: view.nearness(depth), depth, id: widened(*id.at(x, y)) }
+        let id = match widened(*id.at(x, y)) {
+            NONE if depth < R::INFINITY => POLYGON,
+            id => id,
+        };
+        Nearest { nearness: view.nearness(depth), depth, id }
     }))
 }
 

@@ -13,14 +13,23 @@ use crate::splat::SplatSettings;
 /// The id of no surfel; its lowest 32 bits are [`NO_ID`].
 pub(super) const NONE: u64 = u64::MAX;
 
+/// The id of a polygon, higher than that of a surfel; its lowest 32 bits are [`NO_ID`].
+pub(super) const POLYGON: u64 = NONE - (1 << 32);
+
 /// The nearest fragment of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Nearest<R> {
     pub(super) nearness: R,
     /// Depth in world units; +inf where there is none.
     pub(super) depth: R,
-    /// [`NONE`] where there is none.
+    /// [`NONE`] where there is none, [`POLYGON`] of a polygon.
     pub(super) id: u64,
+}
+
+/// No fragment.
+pub(super) fn empty<R: Exact>(perspective: bool) -> Nearest<R> {
+    let nearness = if perspective { R::ZERO } else { -R::INFINITY };
+    Nearest { nearness, depth: R::INFINITY, id: NONE }
 }
 
 impl<R: Exact> Nearest<R> {

@@ -29,13 +29,14 @@ fn primitives_are_refused_by_methods_that_draw_surfels_alone() {
     let exec = Exec::sequential();
     for method in Method::all() {
         let found = Session::new(&scene, method, &exec);
-        if method.draws_primitives() {
+        if method.draws_polygons() {
             assert!(found.is_ok());
             continue;
         }
         let line = found.unwrap_err().to_string();
         assert!(line.starts_with("sphere has triangles or lines, which the method "), "{line}");
-        assert!(line.ends_with(" does not draw; use --method pyramid"), "{line}");
+        let able = " does not draw; use --method deferred or --method pyramid";
+        assert!(line.ends_with(able), "{line}");
     }
 }
 

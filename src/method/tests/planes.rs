@@ -61,8 +61,8 @@ fn listed(method: &Method) -> Vec<(&'static str, &'static str)> {
 fn is_there(when: &str, session: &Session<'_>, stages: bool) -> bool {
     let (scene, method) = (session.scene(), session.method());
     let tubes = !scene.primitives.tubes.is_empty();
-    let colors = scene.surfels.color().is_some()
-        || (method.draws_primitives() && scene.primitives.colored());
+    let colors =
+        scene.surfels.color().is_some() || (method.draws_polygons() && scene.primitives.colored());
     let plain = matches!(
         method,
         Method::SinglePass(single_pass::Settings { depth: single_pass::DepthTest::Plain, .. })

@@ -8,8 +8,8 @@
 //!
 //! A surfel of an object is that of its geometry, placed by [`Similarity::apply`] with the object's
 //! place in the frame, and then checked as [`Surfels::new`] checks a surfel, which makes its normal a
-//! unit vector again. A scene has colours, opacities or half axes if an object, or a geometry that an
-//! object uses, has; if none has a colour, that of the material holds. What only some of the objects have the others get: the colour
+//! unit vector again. A scene has colours, opacities or half axes if an object, or the surfels of a geometry that an
+//! object uses, has, and colours also if the primitives of one have; if none has a colour, that of the material holds. What only some of the objects have the others get: the colour
 //! [`Objects::fill`], the opacity 1, the half axes of [`super::cloud::half_axes`], of
 //! the placed normal and radius, before the normal is made a unit vector again. The colour of an object
 //! stands in the place of that of its geometry.

@@ -71,7 +71,14 @@ impl Objects {
     /// [`crate::Error::Invalid`] as [`crate::scene::indexed::Indexed::new`].
     pub fn flattened(&self, exec: &Exec) -> Result<(Surfels, Vec<Primitives>)> {
         let all = self.ids.order().iter().map(|&object| (object, 0..self.ids.count(object)));
-        let surfels = self.gather(jobs(all.collect()), self.has(), exec);
+        Ok((self.gather(jobs(all.collect()), self.has(), exec), self.primitives()?))
+    }
+
+    /// The primitives of all objects in their places, in the order of the scene.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] as [`crate::scene::indexed::Indexed::new`].
+    pub fn primitives(&self) -> Result<Vec<Primitives>> {
         let placed = (0..self.objects.len()).map(|object| {
             let primitives = self.geometry(object as u32).primitives.clone();
             let color = self.objects[object].color;
@@ -83,7 +90,7 @@ impl Objects {
             });
             placed.map(|(placed, _)| placed)
         });
-        Ok((surfels, placed.collect::<Result<_>>()?))
+        placed.collect()
     }
 
     /// The surfels of some ids, which ascend; an id that is none is left out.
@@ -125,7 +132,12 @@ impl Objects {
         all.into_surfels(self.median_radius, self.bounding_sphere())
     }
 
-    /// Whether some surfels have colours, which all have then.
+    /// Whether an object has primitives with colours.
+    fn have_colored_primitives(&self) -> bool {
+        self.objects.iter().any(|object| self.geometries[object.geometry].primitives.colored())
+    }
+
+    /// Whether some surfels or primitives have colours, which all surfels have then.
     pub(crate) fn have_colors(&self) -> bool {
         self.has()[0]
     }
@@ -137,7 +149,7 @@ impl Objects {
         };
         let colored = self.objects.iter().any(|object| object.color.is_some());
         [
-            colored || of(|surfels| surfels.color().is_some()),
+            colored || of(|surfels| surfels.color().is_some()) || self.have_colored_primitives(),
             of(|surfels| surfels.opacity().is_some()),
             of(|surfels| surfels.tangents().is_some()),
         ]

@@ -9,7 +9,9 @@ mod ranks;
 use super::Settings;
 use super::part::{Part, Whole};
 use super::picture::{flagged, seen, unseen};
+use super::polygons::Polygons;
 use super::queries::Limits;
+use super::visibility::POLYGON;
 use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::{Exec, Framebuffer, NO_ID, Wanted};
@@ -33,8 +35,12 @@ pub(super) fn render(
     let (whole, splats) = (Whole::of(job), &settings.splats);
     let before = seen(job, settings, &whole)?;
     let mut clock = Clock::default();
+    let polygons = Polygons::draw(job, settings, &whole)?;
     let flagged = flagged(job, &whole, &before)?;
-    let first = First::draw(job, splats, &flagged);
+    let mut first = First::draw(job, splats, &flagged);
+    if let Some(polygons) = &polygons {
+        first.add(polygons, job.exec);
+    }
     clock.lap("visibility");
 
     let epsilon = splats.epsilon.in_units(whole.median_radius());
@@ -64,6 +70,9 @@ pub(super) fn render(
         tile.normalize(shared);
         name(tile, &ranks);
     });
+    if let Some(polygons) = &polygons {
+        polygons.fill(target, job.exec);
+    }
     let mut laps = clock.into_laps();
     let names = ["difference", "attributes", "normalization"];
     for (name, time) in names.into_iter().zip(passes) {
@@ -93,6 +102,20 @@ impl First {
         Self { shared, target }
     }
 
+    /// Puts polygons where no surfel is as near.
+    fn add(&mut self, polygons: &Polygons<f32>, exec: &Exec) {
+        let Framebuffer { depth, id, .. } = &mut self.target;
+        let rows = (0..).zip(depth.rows_mut().zip(id.rows_mut()));
+        exec.ordered(rows.collect(), |(y, (depth, ids)): (u32, (&mut [f32], &mut [u32]))| {
+            for (x, (nearest, id)) in (0..).zip(depth.iter_mut().zip(ids)) {
+                let polygon = polygons.nearest(x, y);
+                if polygon.id == POLYGON && (*id == NO_ID || polygon.nearness > *nearest) {
+                    (*nearest, *id) = (polygon.nearness, ranks::POLYGON);
+                }
+            }
+        });
+    }
+
     /// The greatest depth of pass 2 at each pixel.
     fn limits(&self, epsilon: f32, exec: &Exec) -> Limits {
         let (nearness, ids) = (self.target.depth.values(), self.target.id.values());
@@ -118,7 +141,8 @@ impl First {
                 }
                 let id = *self.target.id.at(x, y);
                 if id != NO_ID {
-                    block.id[lane as usize] = ranks.of_flagged(id);
+                    block.id[lane as usize] =
+                        if id == ranks::POLYGON { id } else { ranks.of_flagged(id) };
                     block.nearest[lane as usize] = *self.target.depth.at(x, y);
                 }
             }
@@ -138,12 +162,14 @@ fn more(tile: &mut Tile, fresh: &Prepared<f32, Record>, ranks: &Ranks<'_>, index
     tile.splats = splats;
 }
 
-/// Puts ids in the place of ranks; pixels without weight are empty, whatever depth passes 1 and 3 left.
+/// Puts ids in the place of ranks. Pixels without weight are empty, whatever depth passes 1 and 3 left, and
+/// so are those where a polygon is nearest.
 fn name(tile: &mut Tile, ranks: &Ranks<'_>) {
     for block in &mut tile.blocks {
         for lane in 0..LANES {
-            if !(block.weight[lane] > 0.0) {
+            if !(block.weight[lane] > 0.0) || block.id[lane] == ranks::POLYGON {
                 (block.nearest[lane], block.id[lane]) = (f32::INFINITY, NO_ID);
+                block.weight[lane] = 0.0;
             } else if block.id[lane] != NO_ID {
                 block.id[lane] = ranks.id(block.id[lane]) as u32;
             }

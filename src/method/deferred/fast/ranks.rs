@@ -2,6 +2,9 @@
 
 use super::super::visibility::NONE;
 
+/// In the place of the rank of a polygon: higher than that of a surfel.
+pub(super) const POLYGON: u32 = crate::frame::NO_ID - 1;
+
 /// Two ascending lists of ids that have none in common, as one.
 pub(super) struct Ranks<'a> {
     flagged: &'a [u64],

@@ -1,0 +1,115 @@
+//! Polygons beside the surfels \[GBP04, Fig. 7\]: into the depth before pass 1, and into the colour after
+//! pass 5.
+//!
+//! Triangles are drawn as by [`crate::method::projection`], with the corners snapped to 1/256 px and the
+//! culling of the surfels; of objects they are in their places, in the order of the scene. A pixel keeps the
+//! nearest. Its nearness is that of its depth, and the depth of the passes and of the picture is again that of
+//! its nearness, as of a splat.
+//!
+//! - Pass 1 draws into this depth; of equally near fragments that of a surfel wins. A polygon has no id.
+//! - Passes 2, 3 and 4 test against the depth of both.
+//! - `Decided:` a pixel shows the splats where they have weight and the nearest fragment is a surfel's, else
+//!   the polygon, with the weight 1. Where additive splats were just drawn over polygons, those within epsilon
+//!   behind a polygon would shine through. Without pass 3 the splats' nearest fragment is that
+//!   of B(i), if it is nearer than the depth of pass 1.
+//!
+//! Where only surfels or only polygons have colours the others get that of the material.
+
+use super::part::Whole;
+use super::visibility::{Nearest, POLYGON};
+use super::{Settings, visibility};
+use crate::error::Result;
+use crate::frame::raster::Snap;
+use crate::frame::{Exec, Framebuffer, NO_ID, Plane};
+use crate::method::algorithm::Job;
+use crate::method::projection::{self, PixelSample, SampleKind};
+use crate::method::resolved::Resolved;
+use crate::number::Exact;
+use crate::scene::{Scene, Surfels};
+use crate::splat::View;
+
+/// The nearest polygon of each pixel.
+pub(super) struct Polygons<R> {
+    samples: Plane<PixelSample<R>>,
+    view: View<R>,
+    /// The colour of polygons without one, where surfels have some.
+    paint: Option<[R; 3]>,
+}
+
+impl<R: Exact> Polygons<R> {
+    /// Those of a scene; none if it has none.
+    ///
+    /// # Errors
+    /// As [`projection::project`] and [`Whole::polygons`].
+    pub(super) fn draw(
+        job: &Job<'_>,
+        settings: &Settings,
+        whole: &Whole<'_>,
+    ) -> Result<Option<Self>> {
+        let primitives = whole.polygons()?;
+        if primitives.is_empty() {
+            return Ok(None);
+        }
+        let paint = (!primitives.colored()).then(|| job.scene.material.color.to_array());
+        let primitives = primitives.into_owned();
+        let scene = Scene { primitives, ..Scene::unlit(&job.scene.name, Surfels::none()) };
+        let (cull, snap) = (settings.splats.cull, Snap::default());
+        let drawn = projection::project::<R>(&scene, job.camera, cull, snap, job.exec)?;
+        let paint = paint.map(|color| color.map(R::from_f32));
+        Ok(Some(Self { samples: drawn.samples, view: View::new(job.camera), paint }))
+    }
+
+    /// The fragment of a pixel.
+    pub(super) fn nearest(&self, x: u32, y: u32) -> Nearest<R> {
+        let sample = self.samples.at(x, y);
+        if sample.kind == SampleKind::Empty {
+            return visibility::empty(self.view.perspective);
+        }
+        let nearness = self.view.nearness(sample.depth);
+        let depth = if self.view.perspective { R::ONE / nearness } else { -nearness };
+        Nearest { nearness, depth, id: POLYGON }
+    }
+
+    /// What a pixel shows.
+    pub(super) fn resolved(&self, x: u32, y: u32) -> Resolved<R> {
+        let sample = self.samples.at(x, y);
+        if sample.kind == SampleKind::Empty {
+            return Resolved::EMPTY;
+        }
+        Resolved {
+            depth: self.nearest(x, y).depth,
+            id: NO_ID,
+            weight: R::ONE,
+            normal: projection::world(&self.view, sample.normal),
+            color: self.paint.unwrap_or(sample.color),
+        }
+    }
+}
+
+impl Polygons<f32> {
+    /// Puts polygons into the pixels without weight.
+    pub(super) fn fill(&self, target: &mut Framebuffer<f32>, exec: &Exec) {
+        let Framebuffer { depth, weight, normal, color, .. } = target;
+        let mut rows: Vec<_> = (0..)
+            .zip(depth.rows_mut().zip(weight.rows_mut()))
+            .map(|(y, (depth, weight))| (y, depth, weight, None, None))
+            .collect();
+        for (row, normal) in rows.iter_mut().zip(normal.iter_mut().flat_map(Plane::rows_mut)) {
+            row.3 = Some(normal);
+        }
+        for (row, color) in rows.iter_mut().zip(color.iter_mut().flat_map(Plane::rows_mut)) {
+            row.4 = Some(color);
+        }
+        exec.ordered(rows, |(y, depth, weight, mut normal, mut color)| {
+            for x in 0..weight.len() {
+                if weight[x] > 0.0 {
+                    continue;
+                }
+                let shown = self.resolved(x as u32, y);
+                (depth[x], weight[x]) = (shown.depth, shown.weight);
+                normal.iter_mut().for_each(|row| row[x] = shown.normal);
+                color.iter_mut().for_each(|row| row[x] = shown.color);
+            }
+        });
+    }
+}
