@@ -8,12 +8,13 @@
 
 #![cfg(target_os = "linux")]
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use splatref::frame::{Exec, Samples};
 use splatref::method::session::Making;
 use splatref::method::single_pass::{self, DepthTest};
 use splatref::method::{Method, Session};
-use splatref::scene::{Camera, Groups, Lens, Pose, Scene};
+use splatref::scene::{Camera, Geometry, Groups, Lens, Motion, Object, Objects, Pose};
+use splatref::scene::{Primitives, Scene, Similarity, Surfels};
 use splatref::source::Shape;
 use splatref::splat::SplatSettings;
 use splatref::verify::client::Client;
@@ -122,6 +123,80 @@ fn taken_by_a_verdict(session: &mut Session<'_>, camera: &Camera) -> u64 {
     status("VmHWM").expect("a peak") - before
 }
 
+/// Two numbers that a test prints in a process of its own, in which a variable is set.
+fn in_a_process(test: &str, (name, value): (&str, &str)) -> [u64; 2] {
+    let this = std::env::current_exe().expect("this program");
+    let output = std::process::Command::new(this)
+        .args(["--exact", test, "--nocapture"])
+        .env(name, value)
+        .output()
+        .expect("this program");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let line = said.lines().find_map(|line| line.strip_prefix("memory "));
+    let numbers = line.unwrap_or_else(|| panic!("{said}")).split_once(' ').expect("two");
+    [numbers.0, numbers.1].map(|n| n.parse::<u64>().expect("a number"))
+}
+
+/// The forest of [GBP04]: 6,800 objects of a geometry of 750,000 surfels with levels of detail. What the
+/// scene takes, and what three frames take beyond it.
+fn forest() -> [u64; 2] {
+    let exec = Exec::new(2, 32).expect("threads");
+    let before = status("VmRSS").expect("a size");
+    let surfels = Shape::Torus.surfels(750_000, 0).expect("a torus");
+    let primitives = Primitives::default();
+    let geometry = Geometry { name: "tree".into(), surfels, primitives, detail: None };
+    let geometry = geometry.with_detail(1.0, &exec).expect("levels of detail");
+    let object = |i: u32| {
+        let translation =
+            DVec3::new(f64::from(i % 80) * 3.0 - 120.0, 0.0, f64::from(i / 80) * -3.0);
+        let place = Similarity { translation, ..Similarity::IDENTITY };
+        Object { name: format!("{i}"), geometry: 0, motion: Motion::still(place), color: None }
+    };
+    let objects = Objects::new(vec![geometry], (0..6800).map(object).collect(), Vec3::ONE);
+    let objects = objects.expect("objects");
+    let scene = status("VmRSS").expect("a size") - before;
+    if std::fs::write("/proc/self/clear_refs", "5").is_err() {
+        println!("skipped: this kernel does not let the peak be reset");
+        return [scene, 0];
+    }
+    let before = status("VmRSS").expect("a size");
+    let mut seen = None;
+    for frame in 0..3_u32 {
+        let eye = DVec3::new(0.0, 5.0, 8.0);
+        let target = eye + DVec3::new(0.1 * f64::from(frame), -0.1, -1.0);
+        let pose = Pose { eye, target, up: DVec3::Y };
+        let camera = Camera::new(512, 512, pose, Lens::FieldOfView(34.0)).expect("a camera");
+        let objects = Some(objects.seen_from(&camera, &exec).expect("a view"));
+        let scene = Scene { objects, ..Scene::lit("forest", Surfels::none()) };
+        let method = Method::by_name("deferred").expect("a method");
+        let mut session = Session::new(&scene, method, &exec).expect("a session");
+        session.resume(seen);
+        let picture = session.render(&camera).expect("renders");
+        assert!(picture.tally.visible > 10_000);
+        seen = picture.seen.clone();
+    }
+    [scene, status("VmHWM").expect("a peak") - before]
+}
+
+/// A geometry is there once: 100 bytes a node, and 1 KiB an object. A frame takes what it draws.
+#[test]
+fn a_forest_has_one_tree() {
+    const FOREST: &str = "SPLATREF_MEMORY_FOREST";
+    if std::env::var(FOREST).is_ok() {
+        let [scene, frames] = forest();
+        println!("\nmemory {scene} {frames}");
+        return;
+    }
+    let [scene, frames] = in_a_process("a_forest_has_one_tree", (FOREST, "1"));
+    println!("a forest: {scene} bytes, and {frames} for its frames");
+    // 4/3 nodes a surfel and some.
+    let budget = 100 * 1_100_000 + 1024 * 6800;
+    assert!(scene < budget, "{scene} bytes of {budget}");
+    // Placed one by one its surfels would take 6800 times as much: 28 bytes each.
+    assert!(scene > 28 * 750_000, "{scene} bytes");
+    assert!(frames < 200 << 20, "{frames} bytes");
+}
+
 /// What a picture is said to take is about what it takes: not less, and not six times as much.
 #[test]
 fn a_picture_takes_what_it_is_said_to() {
@@ -144,16 +219,8 @@ fn a_picture_takes_what_it_is_said_to() {
         return;
     }
     for (case, (method, making, ..)) in cases.enumerate() {
-        let this = std::env::current_exe().expect("this program");
-        let output = std::process::Command::new(this)
-            .args(["--exact", "a_picture_takes_what_it_is_said_to", "--nocapture"])
-            .env(CASE, case.to_string())
-            .output()
-            .expect("this program");
-        let said = String::from_utf8_lossy(&output.stdout).into_owned();
-        let line = said.lines().find_map(|line| line.strip_prefix("memory "));
-        let numbers = line.unwrap_or_else(|| panic!("{said}")).split_once(' ').expect("two");
-        let [said, taken] = [numbers.0, numbers.1].map(|n| n.parse::<u64>().expect("a number"));
+        let test = "a_picture_takes_what_it_is_said_to";
+        let [said, taken] = in_a_process(test, (CASE, &case.to_string()));
         let ratio = said as f64 / taken as f64;
         println!("{}, {making:?}: {said} for {taken}, {ratio:.2}", method.name());
         assert!((1.0..6.0).contains(&ratio), "{}, {making:?}: {said} for {taken}", method.name());
