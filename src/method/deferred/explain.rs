@@ -3,7 +3,7 @@
 use super::Settings;
 use super::indices::{each_centre, indices, selected};
 use super::part::{Part, Whole};
-use super::picture::{first, flagged, seen, unseen};
+use super::picture::{first, flagged, unseen, whole};
 use super::polygons::Polygons;
 use super::visibility::{both, nearest};
 use crate::error::Result;
@@ -60,8 +60,8 @@ pub fn explain<R: Exact>(
     pixel: (u32, u32),
 ) -> Result<DeferredReplay<R>> {
     let place = Place::new(job, pixel)?;
-    let (whole, splats) = (Whole::new(job.scene), &settings.splats);
-    let before = seen(job, settings, &whole)?;
+    let splats = &settings.splats;
+    let (whole, before) = whole(job, settings)?;
     let flagged = flagged(job, &whole, &before)?;
     let polygons = Polygons::draw(job, settings, &whole)?;
     let visible = first::<R>(job, settings, &flagged, polygons.as_ref());

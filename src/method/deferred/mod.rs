@@ -25,6 +25,11 @@
 //! The stage `difference` run alone turns depths into nearness again: under a perspective camera its depths
 //! may be one rounding off those of the whole picture.
 //!
+//! Objects of which the last frame saw little may be left out of all passes, see [`Settings::share`].
+//! `Decided:` an object of which it selected nothing is not: \[GBP04, 7\] leaves out what has no higher share
+//! than the threshold, and what is left out once would never be seen again. So an object of a small share is
+//! there every other frame.
+//!
 //! Triangles beside the surfels are drawn before pass 1, see [`polygons`].
 //!
 //! The flags of B(i) are what frame i + 1 is given; no flags, and none set, give the same frame. A frame is a function of flags, scene, camera and

@@ -1,8 +1,10 @@
 //! All surfels of a scene by their ids, and some of them as a scene that the passes of `ewa` draw.
 
+use super::Settings;
 use super::queries::Queries;
 use crate::error::Result;
 use crate::frame::Exec;
+use crate::index::seen::Seen;
 use crate::method::algorithm::Job;
 use crate::number::lanes::{LANES, Lanes};
 use crate::scene::objects::detail::Mask;
@@ -18,6 +20,8 @@ pub(super) struct Whole<'a> {
     ids: Cow<'a, Ids>,
     /// Of a scene without objects, if somebody made them.
     boxes: Option<&'a Boxes>,
+    /// Whether each object is left out of the frame; empty: none is.
+    left_out: Vec<bool>,
 }
 
 impl<'a> Whole<'a> {
@@ -31,12 +35,31 @@ impl<'a> Whole<'a> {
             Some(objects) => Cow::Borrowed(objects.ids()),
             None => Cow::Owned(alone()),
         };
-        Self { scene, ids, boxes: None }
+        Self { scene, ids, boxes: None, left_out: Vec::new() }
     }
 
     /// With what the session made of the scene.
     pub(super) fn of(job: &Job<'a>) -> Self {
         Self { boxes: job.index.boxes.as_ref(), ..Self::new(job.scene) }
+    }
+
+    /// Without the objects of which the frame before selected few surfels, see [`Settings::share`].
+    pub(super) fn after(mut self, before: &Seen, settings: &Settings) -> Self {
+        let share = f64::from(settings.share);
+        if share > 0.0 {
+            let few = |(object, &selected): (u32, &u32)| {
+                let drawn = self.scene.objects.as_ref().and_then(|objects| objects.drawn(object));
+                let all = drawn.map_or(self.ids.count(object).into(), Mask::count);
+                selected > 0 && f64::from(selected) <= share * all as f64
+            };
+            self.left_out = (0..).zip(before.selected()).map(few).collect();
+        }
+        self
+    }
+
+    /// Whether an object is left out of the frame.
+    pub(super) fn leaves_out(&self, object: u32) -> bool {
+        self.left_out.get(object as usize).is_some_and(|&left_out| left_out)
     }
 
     pub(super) fn ids(&self) -> &Ids {
@@ -81,6 +104,10 @@ impl<'a> Whole<'a> {
         let mut done = 0;
         for &object in self.ids.order() {
             let of_object = u64::from(self.ids.count(object));
+            if self.leaves_out(object) {
+                done += of_object;
+                continue;
+            }
             let mut from = 0;
             while from < of_object {
                 while shares.len() < count && done >= ends[shares.len() - 1] {
@@ -117,7 +144,7 @@ impl<'a> Whole<'a> {
     pub(super) fn draws(&self, object: u32, surfel: u32) -> bool {
         let objects = self.scene.objects.as_ref();
         let drawn = objects.and_then(|objects| objects.drawn(object));
-        drawn.is_none_or(|drawn| drawn.has(surfel as usize))
+        !self.leaves_out(object) && drawn.is_none_or(|drawn| drawn.has(surfel as usize))
     }
 
     /// The unit of epsilon.
@@ -146,7 +173,8 @@ impl<'a> Whole<'a> {
     }
 
     /// The surfels of ranges in ascending ids, as far as they are drawn, for depth alone.
-    pub(super) fn shapes(&self, ranges: Vec<(u32, std::ops::Range<u32>)>, exec: &Exec) -> Part {
+    pub(super) fn shapes(&self, mut ranges: Vec<(u32, std::ops::Range<u32>)>, exec: &Exec) -> Part {
+        ranges.retain(|(object, _)| !self.leaves_out(*object));
         let mut ids = Vec::new();
         for (object, range) in &ranges {
             let drawn = range.clone().filter(|&surfel| self.draws(*object, surfel));

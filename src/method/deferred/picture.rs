@@ -31,8 +31,7 @@ pub(super) fn define<R: Exact>(
     stages: bool,
 ) -> Result<Picture<R>> {
     let mut clock = Clock::default();
-    let whole = Whole::new(job.scene);
-    let before = seen(job, settings, &whole)?;
+    let (whole, before) = whole(job, settings)?;
     let polygons = Polygons::draw(job, settings, &whole)?;
     let flagged = flagged(job, &whole, &before)?;
     let visible = first::<R>(job, settings, &flagged, polygons.as_ref());
@@ -92,8 +91,7 @@ pub(super) fn stage<R: Exact>(
     stage: &str,
     given: &Given<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
-    let whole = Whole::new(job.scene);
-    let before = seen(job, settings, &whole)?;
+    let (whole, before) = whole(job, settings)?;
     let selected = || Ok(whole.part(planes::given_selected(job, given)?, job.exec));
     let visible = || planes::given_visibility(job, given, false);
     let depth = || planes::given_visibility(job, given, true);
@@ -143,12 +141,15 @@ pub(super) fn flagged(job: &Job<'_>, whole: &Whole<'_>, before: &Seen) -> Result
 /// f64 with its bins.
 const OF_A_FLAGGED: u64 = 512;
 
+/// The surfels of a frame, and what the frame before saw.
+pub(super) fn whole<'a>(job: &Job<'a>, settings: &Settings) -> Result<(Whole<'a>, Cow<'a, Seen>)> {
+    let whole = Whole::of(job);
+    let before = seen(job, settings, &whole)?;
+    Ok((whole.after(&before, settings), before))
+}
+
 /// What the frame before saw; nothing before the first.
-pub(super) fn seen<'a>(
-    job: &Job<'a>,
-    settings: &Settings,
-    whole: &Whole<'_>,
-) -> Result<Cow<'a, Seen>> {
+fn seen<'a>(job: &Job<'a>, settings: &Settings, whole: &Whole<'_>) -> Result<Cow<'a, Seen>> {
     match &job.index.seen {
         None => Ok(Cow::Owned(Seen::nothing(whole.ids(), settings.flags))),
         Some(seen) => {

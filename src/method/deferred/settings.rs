@@ -14,6 +14,9 @@ pub struct Settings {
     /// Whether the surfels that the last frame did not see are drawn into the depth before EWA
     /// splatting: pass 3.
     pub second: bool,
+    /// An object of which the last frame selected some surfels, but at most this share of those that the
+    /// high level leaves now, is left out of the frame \[GBP04, 7\]. In [0, 1]; 0 leaves none out.
+    pub share: f32,
 }
 
 /// The most surfels that share a flag.
@@ -22,7 +25,7 @@ const MOST: u32 = 4096;
 impl Default for Settings {
     /// Groups of 64, as in \[GBP04, 4.3\], and pass 3.
     fn default() -> Self {
-        Self { splats: SplatSettings::default(), flags: 64, second: true }
+        Self { splats: SplatSettings::default(), flags: 64, second: true, share: 0.0 }
     }
 }
 
@@ -30,25 +33,30 @@ impl Settings {
     /// Whether the numbers are in range.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`SplatSettings::check`], or if m is out of range.
+    /// [`Error::Invalid`] as [`SplatSettings::check`], or if m or the share is out of range.
     pub fn check(&self) -> Result<()> {
         self.splats.check()?;
-        if (1..=MOST).contains(&self.flags) {
-            Ok(())
-        } else {
-            Err(Error::Invalid(format!("flags: {} surfels; give 1 to {MOST}", self.flags)))
+        if !(1..=MOST).contains(&self.flags) {
+            return Err(Error::Invalid(format!("flags: {} surfels; give 1 to {MOST}", self.flags)));
         }
+        if !(0.0..=1.0).contains(&self.share) {
+            return Err(Error::Invalid(format!("share: {}; give 0 to 1", self.share)));
+        }
+        Ok(())
     }
 }
 
 impl Fields for Settings {
     fn fields(&mut self, each: &mut Visit<'_>) {
-        let Self { splats, flags, second } = self;
+        let Self { splats, flags, second, share } = self;
         splats.fields(each);
         let help = "m, how many consecutive surfels of an object share a flag";
         each(Field::new("flags", help, Slot::Count(flags)).unit("surfels").range("1 to 4096"));
         let help = "whether visibility splatting is repeated with the surfels that the last frame \
                     did not see";
         each(Field::new("second", help, Slot::Switch(second)));
+        let help = "objects of which the last frame selected no greater share of their surfels are left \
+                    out, but for those of which it selected none";
+        each(Field::new("share", help, Slot::Number(share)).range("0 to 1"));
     }
 }

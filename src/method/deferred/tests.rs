@@ -114,7 +114,13 @@ fn case() -> impl Strategy<Value = Case> {
             });
             let objects = Objects::new(geometries, objects.collect(), Vec3::splat(0.5)).unwrap();
             let scene = Scene { objects: Some(objects), ..Scene::lit("case", Surfels::none()) };
-            Case { scene, settings: Settings { splats, flags, second }, turn, size: [w, h], ortho }
+            Case {
+                scene,
+                settings: Settings { splats, flags, second, share: 0.0 },
+                turn,
+                size: [w, h],
+                ortho,
+            }
         },
     )
 }
@@ -252,6 +258,39 @@ proptest! {
             if let Some((_, next)) = whole.get(at + 1) {
                 prop_assert_eq!(session.seen(), next.as_ref());
             }
+        }
+    }
+
+    /// With a share the frame is that of the scene without the objects that it leaves out.
+    #[test]
+    fn what_was_hardly_seen_is_left_out(case in case(), share in 0.0..=1.0_f32) {
+        let exec = Exec::sequential();
+        let without = case.frames::<f32>(2, None, &exec);
+        let before = without[1].1.clone().unwrap();
+        let objects = case.objects(1);
+        let few = |object: u32| {
+            let all = objects.drawn(object).map_or(objects.ids().count(object).into(), |m| m.count());
+            let selected = before.selected()[object as usize];
+            selected > 0 && f64::from(selected) <= f64::from(share) * all as f64
+        };
+        let scene = case.scene(1);
+        let settings = Settings { share, ..case.settings };
+        let mut session = Session::new(&scene, settings.into(), &exec).unwrap();
+        session.resume(Some(before.clone()));
+        let frame = session.define::<f32>(&case.camera(1), true).unwrap().frame;
+        let drawn = session.render(&case.camera(1)).unwrap();
+        for plane in &drawn.frame.planes {
+            prop_assert_eq!(Some(&plane.samples), frame.plane(&plane.name), "{}", &plane.name);
+        }
+        let left: Vec<bool> = (0..before.selected().len() as u32).map(few).collect();
+        for name in ["visibility.id", "indices.id", "difference.id"] {
+            let found = listed(&frame, name).into_iter().filter_map(|id| objects.ids().find(id));
+            for (object, _) in found {
+                prop_assert!(!left[object as usize], "{name}");
+            }
+        }
+        if !left.contains(&true) {
+            prop_assert_eq!(&frame.planes, &without[1].0.planes);
         }
     }
 

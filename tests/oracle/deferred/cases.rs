@@ -148,7 +148,7 @@ fn settings(dice: &mut Dice) -> Settings {
     let kernel = Kernel { outline: OUTLINES[dice.below(3)], ..kernel };
     let splats = SplatSettings { kernel, epsilon, cull: dice.below(2) == 0 };
     let flags = [1, 2, 3, 5, 7, 16, 64, 4096][dice.below(8)];
-    Settings { splats, flags, second: dice.below(3) > 0 }
+    Settings { splats, flags, second: dice.below(3) > 0, share: 0.0 }
 }
 
 const SIZES: [[u32; 2]; 8] =

@@ -24,7 +24,7 @@ const SECOND: u32 = 1 << 20;
 pub(super) fn settings(outline: Outline, epsilon: f32) -> Settings {
     let kernel = Kernel { outline, cutoff: 2.0, low_pass: 0.0 };
     let splats = SplatSettings { kernel, epsilon: Epsilon::World(epsilon), cull: true };
-    Settings { splats, flags: 64, second: true }
+    Settings { splats, flags: 64, second: true, share: 0.0 }
 }
 
 /// Displaced to a place in the picture and a depth, where a [`Dot`] at (0, 0, 0) then is.

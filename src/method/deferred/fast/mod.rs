@@ -7,8 +7,8 @@ mod points;
 mod ranks;
 
 use super::Settings;
-use super::part::{Part, Whole};
-use super::picture::{flagged, seen, unseen};
+use super::part::Part;
+use super::picture::{flagged, unseen, whole};
 use super::polygons::Polygons;
 use super::queries::Limits;
 use super::visibility::POLYGON;
@@ -32,8 +32,8 @@ pub(super) fn render(
     settings: &Settings,
     target: &mut Framebuffer<f32>,
 ) -> Result<(Seen, Tally, Laps)> {
-    let (whole, splats) = (Whole::of(job), &settings.splats);
-    let before = seen(job, settings, &whole)?;
+    let splats = &settings.splats;
+    let (whole, before) = whole(job, settings)?;
     let mut clock = Clock::default();
     let polygons = Polygons::draw(job, settings, &whole)?;
     let flagged = flagged(job, &whole, &before)?;

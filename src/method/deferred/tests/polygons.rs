@@ -126,18 +126,20 @@ fn shows_the_nearer(
                 prop_assert!(weight == 0.0 || id(frame, "id").values()[pixel] != NO_ID);
                 continue;
             }
-            prop_assert!(before <= t * (1.0 + 1e-4) + 1e-4, "{before} {t}");
+            // Corners are snapped to 1/256 px, which tilts the square a little.
+            let snapped = 4e-3 * (1.0 + t);
+            prop_assert!(before <= t + snapped, "{before} {t}");
             prop_assert!(weight > 0.0);
             if id(frame, "id").values()[pixel] == NO_ID {
                 prop_assert_eq!(weight, 1.0);
-                prop_assert!((f64::from(depth) - t).abs() < 1e-4 * (1.0 + t), "{depth} {t}");
+                prop_assert!((f64::from(depth) - t).abs() < snapped, "{depth} {t}");
                 let sign = if to.z < 0.0 { 1.0 } else { -1.0 };
                 let normal = at(frame, NORMAL.name, pixel);
                 prop_assert!((f64::from(normal[2]) - sign).abs() < 1e-5, "{normal:?}");
                 let shown = Vec3::from_array(at(frame, COLOR.name, pixel));
                 prop_assert!(shown.abs_diff_eq(color, 1e-6), "{shown}");
             } else {
-                prop_assert!(f64::from(depth) <= t * (1.0 + 1e-4) + 1e-4);
+                prop_assert!(f64::from(depth) <= t + snapped);
             }
         }
     }
