@@ -195,8 +195,19 @@ impl<'a> Session<'a> {
     /// none where it names them by their indices. Primitives are counted on after the surfels: a scene
     /// that has any keeps its indices.
     fn names(&self) -> Option<&Ids> {
-        let objects = self.scene.objects.as_ref().filter(|_| !self.method.draws_objects());
+        self.ids().filter(|_| !self.method.draws_objects())
+    }
+
+    /// The ids of the surfels of objects, which a verdict numbers by their order whatever the method.
+    fn ids(&self) -> Option<&Ids> {
+        let objects = self.scene.objects.as_ref();
         objects.filter(|_| self.scene.primitives.is_empty()).map(Objects::ids)
+    }
+
+    /// The id of a surfel that a verdict has numbered; what is the number of none stays.
+    fn name_of(&self, index: u32) -> u32 {
+        let id = self.ids().and_then(|ids| ids.nth(index.into()));
+        id.map_or(index, |id| id as u32)
     }
 
     /// Puts the ids of surfels in the place of their indices; the lowest 32 bits of each.
@@ -207,7 +218,7 @@ impl<'a> Session<'a> {
 
     /// Puts indices in the place of the ids of surfels.
     fn number_surfels<R>(&self, frame: &mut Frame<R>) -> Result<()> {
-        let Some(ids) = self.names() else { return Ok(()) };
+        let Some(ids) = self.ids() else { return Ok(()) };
         if ids.is_wide() {
             let what = "ids of 40 bits: planes of ids hold 32 of them, which do not say the surfel";
             return Err(Error::Invalid(what.into()));
@@ -273,10 +284,11 @@ impl<'a> Session<'a> {
         self.check_client(camera, client)?;
         self.ask(camera, Making::Verdict)?;
         let client = &*self.numbered(client)?;
-        match client.rounding {
+        let verdict = match client.rounding {
             Rounding::Gpu => method.verify::<Gpu>(&job, client, budget),
             Rounding::Ieee => method.verify::<Ieee>(&job, client, budget),
-        }
+        }?;
+        Ok(verdict.renumbered(|index| self.name_of(index)))
     }
 
     /// Every value of a client at one pixel that is judged, against what it may be.
@@ -293,15 +305,17 @@ impl<'a> Session<'a> {
         self.check_client(camera, client)?;
         self.ask(camera, Making::Verdict)?;
         let client = &*self.numbered(client)?;
-        match client.rounding {
+        let mut checks = match client.rounding {
             Rounding::Gpu => self.method.checks::<Gpu>(&job, client, pixel),
             Rounding::Ieee => self.method.checks::<Ieee>(&job, client, pixel),
-        }
+        }?;
+        checks.iter_mut().for_each(|check| check.fault.renumber(|index| self.name_of(index)));
+        Ok(checks)
     }
 
     /// A client with indices of surfels in the place of their ids.
     fn numbered<'c>(&self, client: &'c Client) -> Result<Cow<'c, Client>> {
-        if self.names().is_none() {
+        if self.ids().is_none() {
             return Ok(Cow::Borrowed(client));
         }
         let mut numbered = client.clone();

@@ -213,6 +213,17 @@ fn a_frame_goes_on_from_the_state_of_the_one_before() {
     let explain = ["explain", "walk.toml", "16", "12", "--method", "deferred", "--frame", "2"];
     let said = succeeds(at.path(), &[&explain[..], &["--state", "s.bin"]].concat());
     assert!(said.contains("flagged") && said.contains("surfel"), "{said}");
+    // Judged from the same state too; without it pass 1 draws nothing.
+    let client = [&one[..4], &["--stages", "-o", "e.exr"]].concat();
+    succeeds(at.path(), &with(&client));
+    let verify = ["verify", "walk.toml", "e.exr", "--method", "deferred", "--frame", "2"];
+    let said = succeeds(at.path(), &[&verify[..], &["--state", "s.bin"]].concat());
+    assert!(said.contains("indices        right") && said.contains("right: of "), "{said}");
+    let line = fails(at.path(), &verify, 1);
+    assert!(line.is_empty() || !line.contains("indices        WRONG"), "{line}");
+    let said =
+        succeeds(at.path(), &[&explain[..], &["--state", "s.bin", "--client", "e.exr"]].concat());
+    assert!(said.contains("indices        right"), "{said}");
 
     // What cannot be.
     let refused = |more: &[&'static str], code| fails(at.path(), &with(more), code);

@@ -197,6 +197,10 @@ impl Part {
         Job { scene: &self.scene, ..*whole }
     }
 
+    pub(super) fn surfels(&self) -> &Surfels {
+        &self.scene.surfels
+    }
+
     /// Their ids, ascending.
     pub(super) fn ids(&self) -> &[u64] {
         &self.ids

@@ -1,0 +1,570 @@
+use super::super::indices::each_centre;
+use super::super::part::Whole;
+use super::super::visibility::NONE;
+use crate::composite::decide;
+use crate::frame::{Exec, Frame, NO_ID, NamedPlane, Samples};
+use crate::index::seen::Seen;
+use crate::method::deferred::Settings;
+use crate::method::tests::verdicts::{Slip, verdict};
+use crate::method::tests::verdicts::{assert_found, assert_right, assert_right_in_doubles};
+use crate::method::tests::{id, scalar};
+use crate::method::{Method, Session};
+use crate::number::Exact;
+use crate::number::random::unit;
+use crate::scene::objects::{Geometry, Motion, Object, Objects};
+use crate::scene::transform::rotation;
+use crate::scene::{Camera, Cloud, Lens, Pose, Primitives, Scene, Similarity, Surfels};
+use crate::source::Shape;
+use crate::splat::{Epsilon, Kernel, Outline};
+use crate::verify::client::{Client, Rounding, Ties};
+use crate::verify::verdict::{Fault, Outcome, Verdict};
+use glam::{DVec3, Vec3};
+
+const ROUNDINGS: [Rounding; 2] = [Rounding::Ieee, Rounding::Gpu];
+
+/// Objects that move before a camera that turns, and settings.
+struct Sequence {
+    scene: Scene,
+    settings: Settings,
+    lens: Lens,
+}
+
+/// A frame of a sequence: its scene and camera, what the frame before saw, the planes of all stages.
+struct Shown {
+    scene: Scene,
+    camera: Camera,
+    before: Option<Seen>,
+    frame: Frame<f32>,
+}
+
+fn sequence(settings: Settings, lens: Lens) -> Sequence {
+    let geometry = |name: &str, surfels| Geometry {
+        name: name.into(),
+        surfels,
+        primitives: Primitives::default(),
+    };
+    let geometries = vec![
+        geometry("ring", Shape::Torus.surfels(700, 1).unwrap()),
+        geometry("ball", Shape::Sphere.surfels(400, 2).unwrap()),
+    ];
+    let place = |at: [f64; 3], turn, scale| Similarity {
+        rotation: rotation(DVec3::new(1.0, 0.5, 0.25), turn),
+        scale,
+        translation: DVec3::from_array(at),
+    };
+    let object = |name: &str, geometry, keys, color| Object {
+        name: name.into(),
+        geometry,
+        motion: Motion::new(keys).unwrap(),
+        color,
+    };
+    let left =
+        vec![(0, place([-0.5, 0.0, 0.0], 0.0, 1.0)), (2, place([0.25, 0.25, 0.0], 60.0, 1.25))];
+    let right =
+        vec![(0, place([0.5, 0.0, -0.5], 90.0, 1.0)), (2, place([0.25, 0.0, 0.5], 20.0, 1.0))];
+    let ball =
+        vec![(0, place([0.1, -0.4, -1.0], 10.0, 1.0)), (2, place([-0.6, -0.2, -1.0], 30.0, 0.75))];
+    let objects = vec![
+        object("left", 0, left, Some(Vec3::new(0.75, 0.25, 0.125))),
+        object("right", 0, right, Some(Vec3::new(0.125, 0.5, 0.75))),
+        object("ball", 1, ball, None),
+    ];
+    let objects = Objects::new(geometries, objects, Vec3::splat(0.5)).unwrap();
+    let scene = Scene { objects: Some(objects), ..Scene::lit("moving", Surfels::none()) };
+    Sequence { scene, settings, lens }
+}
+
+/// Sequences of several settings and cameras.
+fn sequences() -> Vec<Sequence> {
+    let mut raycast = Settings { flags: 8, ..Settings::default() };
+    raycast.splats.kernel = Kernel { outline: Outline::RayCast, ..Kernel::DEFAULT };
+    let mut both_sides = Settings { flags: 64, ..Settings::default() };
+    both_sides.splats.cull = false;
+    both_sides.splats.epsilon = Epsilon::World(0.05);
+    vec![
+        sequence(Settings { flags: 16, ..Settings::default() }, Lens::FieldOfView(40.0)),
+        sequence(raycast, Lens::FieldOfView(30.0)),
+        sequence(both_sides, Lens::Orthographic(3.0)),
+        sequence(
+            Settings { flags: 4, second: false, ..Settings::default() },
+            Lens::FieldOfView(40.0),
+        ),
+    ]
+}
+
+impl Sequence {
+    fn frames<R: Exact>(&self, exec: &Exec) -> Vec<Shown> {
+        let mut before: Option<Seen> = None;
+        let of_frame = |frame: u32| {
+            let objects = self.scene.objects.as_ref().map(|all| all.at(frame).unwrap());
+            let scene = Scene { objects, ..self.scene.clone() };
+            let eye = rotation(DVec3::Y, 8.0 * f64::from(frame)) * DVec3::new(0.5, 0.75, 4.0);
+            let pose = Pose { eye, target: DVec3::ZERO, up: DVec3::Y };
+            let camera = Camera::new(51, 39, pose, self.lens).unwrap();
+            let mut session = Session::new(&scene, self.method(), exec).unwrap();
+            session.resume(before.clone());
+            let picture = session.define::<R>(&camera, true).unwrap();
+            let given = std::mem::replace(&mut before, picture.seen);
+            drop(session);
+            Shown { scene, camera, before: given, frame: picture.frame.to_f32() }
+        };
+        (0..3).map(of_frame).collect()
+    }
+
+    fn method(&self) -> Method {
+        self.settings.into()
+    }
+}
+
+impl Shown {
+    fn session<'a>(&'a self, method: Method, exec: &'a Exec) -> Session<'a> {
+        let mut session = Session::new(&self.scene, method, exec).unwrap();
+        session.resume(self.before.clone());
+        session
+    }
+
+    fn judge(&self, method: Method, frame: &Frame<f32>, rounding: Rounding) -> Verdict {
+        let exec = Exec::new(1, 16).unwrap();
+        verdict(&self.session(method, &exec), &self.camera, frame, rounding)
+    }
+
+    /// A client that computes each stage in `f64` and keeps every plane in `f32`.
+    fn in_doubles(&self, method: Method) -> Frame<f32> {
+        let exec = Exec::new(1, 16).unwrap();
+        let session = self.session(method, &exec);
+        let mut frame = session.define::<f64>(&self.camera, true).unwrap().frame;
+        for stage in method.stages() {
+            let left = session.stage(&self.camera, stage.name, &frame).unwrap();
+            for mut plane in left.planes {
+                match &mut plane.samples {
+                    Samples::Scalar(p) => {
+                        p.values_mut().iter_mut().for_each(|v| *v = f64::from(*v as f32));
+                    }
+                    Samples::Color(p) | Samples::Vector(p) => {
+                        let values = p.values_mut().iter_mut().flatten();
+                        values.for_each(|v| *v = f64::from(*v as f32));
+                    }
+                    Samples::Index(_) | Samples::Count(_) => {}
+                }
+                if let Some(own) = frame.planes.iter_mut().find(|own| own.name == plane.name) {
+                    *own = plane;
+                }
+            }
+        }
+        frame.to_f32()
+    }
+
+    /// The frame with the planes of some stage, and of those that follow as they are made of these.
+    fn from(&self, method: Method, planes: &[NamedPlane<f32>], stage: &str) -> Frame<f32> {
+        let exec = Exec::new(1, 16).unwrap();
+        let session = self.session(method, &exec);
+        let mut frame = with(&self.frame, planes);
+        let stages = method.stages().iter().map(|stage| stage.name);
+        for next in stages.skip_while(|name| *name != stage).skip(1) {
+            let left = session.stage(&self.camera, next, &frame).unwrap();
+            frame = with(&frame, &left.planes);
+        }
+        frame
+    }
+}
+
+/// A frame with some of its planes replaced; what it has not stays away.
+fn with(frame: &Frame<f32>, planes: &[NamedPlane<f32>]) -> Frame<f32> {
+    let mut frame = frame.clone();
+    for own in &mut frame.planes {
+        if let Some(other) = planes.iter().find(|plane| plane.name == own.name) {
+            *own = other.clone();
+        }
+    }
+    frame
+}
+
+/// The planes of a picture alone.
+fn plain(frame: &Frame<f32>) -> Frame<f32> {
+    let own = |plane: &&NamedPlane<f32>| !plane.name.contains('.') && plane.name != "resolved";
+    Frame { planes: frame.planes.iter().filter(own).cloned().collect(), ..*frame }
+}
+
+fn wrong(verdict: &Verdict) -> Option<String> {
+    let stage = verdict.first_wrong()?;
+    Some(format!("{}: {:?}", stage.stage, stage.worst))
+}
+
+#[test]
+fn what_the_crate_draws_of_a_sequence_is_right() {
+    let exec = Exec::new(1, 16).unwrap();
+    for (i, sequence) in sequences().iter().enumerate() {
+        let method = sequence.method();
+        for (j, shown) in sequence.frames::<f32>(&exec).iter().enumerate() {
+            let doubles = shown.in_doubles(method);
+            assert_ne!(doubles.planes, shown.frame.planes);
+            for (frame, rounding) in [&shown.frame, &doubles]
+                .into_iter()
+                .flat_map(|frame| ROUNDINGS.map(|rounding| (frame, rounding)))
+            {
+                let what = format!("sequence {i}, frame {j}, {rounding:?}");
+                let found = shown.judge(method, frame, rounding);
+                assert_eq!(wrong(&found), None, "{what}");
+                assert_eq!(found.outcome(), Outcome::Right, "{what}");
+                assert!(found.stages.iter().all(|stage| !stage.planes.is_empty()));
+                let all = found.undecided;
+                let found = shown.judge(method, &plain(frame), rounding);
+                assert_eq!(wrong(&found), None, "{what}, plain");
+                let Verdict { undecided, unbounded, covered, .. } = found;
+                println!("{what}: {all}; plain {undecided} + {unbounded} of {covered}");
+                assert!(undecided * 50 < covered, "{what}, plain");
+            }
+        }
+    }
+}
+
+#[test]
+fn each_plane_alone_is_right() {
+    let exec = Exec::new(1, 16).unwrap();
+    for sequence in sequences() {
+        let shown = sequence.frames::<f32>(&exec).pop().unwrap();
+        for plane in &shown.frame.planes {
+            let frame = Frame { planes: vec![plane.clone()], ..shown.frame };
+            let found = shown.judge(sequence.method(), &frame, Rounding::Ieee);
+            assert_eq!(wrong(&found), None, "{}", plane.name);
+        }
+    }
+}
+
+#[test]
+fn a_scene_without_objects_is_judged() {
+    for (shape, lens) in [
+        (Shape::Sphere, None),
+        (Shape::Cluster, None),
+        (Shape::Torus, Some(Lens::Orthographic(3.0))),
+    ] {
+        let scene = Scene::lit("flat", shape.surfels(700, 5).unwrap());
+        let camera = crate::method::tests::verdicts::camera(shape, [47, 35], lens);
+        let method = Settings::default().into();
+        assert_right(&scene, &camera, method);
+        assert_right_in_doubles(&scene, &camera, method);
+        assert_found(
+            &scene,
+            &camera,
+            method,
+            &[
+                ("indices.Z", Slip::Off(0.001), "indices"),
+                ("indices.Z", Slip::NotANumber, "indices"),
+                ("indices.id", Slip::More, "indices"),
+                ("indices.id", Slip::Dropped, "indices"),
+                ("difference.Z", Slip::Off(0.001), "difference"),
+                ("difference.id", Slip::More, "difference"),
+                ("attributes.weight", Slip::Off(0.001), "attributes"),
+                ("attributes.count", Slip::More, "attributes"),
+                ("Z", Slip::Next, "normalization"),
+                ("id", Slip::More, "normalization"),
+                ("normal", Slip::Off(0.001), "normalization"),
+                ("A", Slip::Off(-1.0), "shading"),
+            ],
+        );
+    }
+}
+
+/// A plane of ids and one of depths of a stage.
+fn planes(stage: &str, like: &Frame<f32>, pixels: &[(u32, f32)]) -> Vec<NamedPlane<f32>> {
+    let (mut ids, mut depths) = (id(like, "id").clone(), scalar(like, "Z").clone());
+    for (i, &(id, depth)) in pixels.iter().enumerate() {
+        (ids.values_mut()[i], depths.values_mut()[i]) = (id, depth);
+    }
+    vec![
+        NamedPlane { name: format!("{stage}.Z"), samples: Samples::Scalar(depths) },
+        NamedPlane { name: format!("{stage}.id"), samples: Samples::Index(ids) },
+    ]
+}
+
+/// What a frame has of a stage.
+fn kept(frame: &Frame<f32>, stage: &str) -> Vec<(u32, f32)> {
+    let depths = scalar(frame, &format!("{stage}.Z")).values();
+    id(frame, &format!("{stage}.id")).values().iter().copied().zip(depths.iter().copied()).collect()
+}
+
+/// Pass 2 of a client that keeps of what passes in a pixel what it likes better; `limit` of the depth of
+/// pass 1.
+fn other_indices(
+    shown: &Shown,
+    settings: &Settings,
+    limit: impl Fn(f32) -> f32,
+    better: impl Fn(f32, f32) -> bool,
+) -> Vec<NamedPlane<f32>> {
+    let exec = Exec::new(1, 16).unwrap();
+    let session = shown.session((*settings).into(), &exec);
+    let visible = scalar(&shown.frame, "visibility.Z");
+    let mut found = vec![(NO_ID, f32::INFINITY); visible.values().len()];
+    session.with_job(&shown.camera, |job| {
+        each_centre::<f32>(job, &settings.splats, &Whole::new(job.scene), |id, [x, y], t| {
+            assert_ne!(id, NONE);
+            let pixel = &mut found[(y * shown.frame.width + x) as usize];
+            if t <= limit(*visible.at(x, y)) && (pixel.0 == NO_ID || better(t, pixel.1)) {
+                *pixel = (id as u32, t);
+            }
+        });
+    });
+    planes("indices", &shown.frame, &found)
+}
+
+/// That a client's planes are wrong, and first of a stage.
+fn assert_first_wrong(shown: &Shown, method: Method, frame: &Frame<f32>, stage: &str, what: &str) {
+    for rounding in ROUNDINGS {
+        let found = shown.judge(method, frame, rounding);
+        assert_eq!(
+            found.first_wrong().map(|wrong| wrong.stage),
+            Some(stage),
+            "{what} {rounding:?}"
+        );
+        // Replayed at its pixel, the fault is there.
+        let exec = Exec::new(1, 16).unwrap();
+        let mut client = Client::from(frame);
+        client.rounding = rounding;
+        let worst = found.first_wrong().and_then(|stage| stage.worst.clone()).unwrap();
+        let checks = shown.session(method, &exec).checks(&shown.camera, &client, worst.pixel);
+        let fault = format!("{:?}", worst.fault);
+        let there = |check: &crate::verify::verdict::Check| {
+            check.stage == stage && check.error > 1.0 && format!("{:?}", check.fault) == fault
+        };
+        assert!(checks.unwrap().iter().any(there), "{what} {rounding:?}: {worst:?}");
+    }
+}
+
+#[test]
+fn faults_of_the_selection_are_found() {
+    let exec = Exec::new(1, 16).unwrap();
+    let sequence = &sequences()[0];
+    let (settings, method) = (&sequence.settings, sequence.method());
+    let frames = sequence.frames::<f32>(&exec);
+    let shown = &frames[2];
+    let median = shown.scene.objects.as_ref().unwrap().median_radius();
+    let epsilon = settings.splats.epsilon.in_units(median);
+    let assert_wrong = |planes: &[NamedPlane<f32>], what: &str| {
+        let frame = shown.from(method, planes, "indices");
+        assert_first_wrong(shown, method, &frame, "indices", what);
+    };
+    // As a check of the check: the rule itself.
+    let own = other_indices(shown, settings, |z| decide::limit(z, epsilon), |t, than| t < than);
+    assert_eq!(with(&shown.frame, &own).planes, shown.frame.planes);
+    let without = other_indices(shown, settings, |z| z, |t, than| t < than);
+    assert_wrong(&without, "without epsilon");
+    let farthest =
+        other_indices(shown, settings, |z| decide::limit(z, epsilon), |t, than| t > than);
+    assert_wrong(&farthest, "the farthest");
+    let right = kept(&shown.frame, "indices");
+    let some: Vec<usize> = (0..right.len() - 1).filter(|&i| right[i].0 != NO_ID).collect();
+    for at in some.iter().step_by(some.len() / 5).copied() {
+        let mut dropped = right.clone();
+        dropped[at] = (NO_ID, f32::INFINITY);
+        assert_wrong(&planes("indices", &shown.frame, &dropped), "dropped");
+        let mut moved = right.clone();
+        moved[at].0 = some.iter().map(|&i| right[i].0).find(|id| *id != right[at].0).unwrap();
+        assert_wrong(&planes("indices", &shown.frame, &moved), "the id of another pixel");
+    }
+}
+
+#[test]
+fn faults_of_the_visibility_are_found() {
+    let exec = Exec::new(1, 16).unwrap();
+    let sequence = &sequences()[0];
+    let (settings, method) = (&sequence.settings, sequence.method());
+    let frames = sequence.frames::<f32>(&exec);
+    let (last, shown) = (&frames[1], &frames[2]);
+    // The places of the last frame.
+    let stale = Shown {
+        scene: last.scene.clone(),
+        before: shown.before.clone(),
+        frame: shown.frame.clone(),
+        camera: shown.camera,
+    };
+    let left =
+        stale.session(method, &exec).stage(&shown.camera, "visibility", &shown.frame).unwrap();
+    let frame = shown.from(method, &left.planes, "visibility");
+    assert_first_wrong(shown, method, &frame, "visibility", "last frame's places");
+    // Flags off by one group.
+    let ids = shown.scene.objects.as_ref().unwrap().ids();
+    let seen = shown.before.as_ref().unwrap();
+    let moved: Vec<u64> = seen
+        .surfels(ids)
+        .into_iter()
+        .filter_map(|id| {
+            ids.find(id + u64::from(settings.flags)).map(|_| id + u64::from(settings.flags))
+        })
+        .collect();
+    let mut session = shown.session(method, &exec);
+    session.resume(Some(Seen::of(ids, settings.flags, &moved)));
+    let frame = session.define::<f32>(&shown.camera, true).unwrap().frame;
+    assert_first_wrong(shown, method, &frame, "visibility", "flags of the next group");
+    // No flags at all, which no plane but those of pass 1 need show.
+    session.resume(None);
+    let frame = session.define::<f32>(&shown.camera, true).unwrap().frame;
+    assert_first_wrong(shown, method, &frame, "visibility", "no flags");
+    // Pass 3 left out.
+    let before = kept(&shown.frame, "visibility");
+    let skipped = shown.from(method, &planes("difference", &shown.frame, &before), "difference");
+    assert_first_wrong(shown, method, &skipped, "difference", "without pass 3");
+    let all = plain(&skipped);
+    let found = shown.judge(method, &all, Rounding::Ieee);
+    assert!(found.first_wrong().is_some(), "without pass 3, of which the picture alone is there");
+}
+
+#[test]
+fn faults_of_the_sums_are_found() {
+    let exec = Exec::new(1, 16).unwrap();
+    let sequence = &sequences()[0];
+    let method = sequence.method();
+    let frames = sequence.frames::<f32>(&exec);
+    let (last, shown) = (&frames[1], &frames[2]);
+    let session = shown.session(method, &exec);
+    let assert_wrong = |list: &[(u32, f32)], what: &str| {
+        let other = with(&shown.frame, &planes("indices", &shown.frame, list));
+        let left = session.stage(&shown.camera, "attributes", &other).unwrap();
+        let frame = shown.from(method, &left.planes, "attributes");
+        assert_first_wrong(shown, method, &frame, "attributes", what);
+    };
+    assert_wrong(&kept(&last.frame, "indices"), "B(i-1)");
+    let right = kept(&shown.frame, "indices");
+    // One that is the nearest of some pixel.
+    let front = id(&shown.frame, "difference.id").values();
+    let some: Vec<usize> =
+        (0..right.len()).filter(|&i| right[i].0 != NO_ID && front.contains(&right[i].0)).collect();
+    for &at in some.iter().step_by(some.len() / 5) {
+        let mut without = right.clone();
+        without[at] = (NO_ID, f32::INFINITY);
+        assert_wrong(&without, "a splat without weight");
+    }
+}
+
+#[test]
+fn faults_are_named_by_ids() {
+    let exec = Exec::new(1, 16).unwrap();
+    let sequence = &sequences()[0];
+    let shown = &sequence.frames::<f32>(&exec)[2];
+    let mut right = kept(&shown.frame, "indices");
+    let ids = shown.scene.objects.as_ref().unwrap().ids();
+    // One whose id is not its number, and that is not near to others.
+    let at =
+        right.iter().rposition(|(id, _)| ids.rank((*id).into()).is_some_and(|i| i as u32 != *id));
+    let dropped = std::mem::replace(&mut right[at.unwrap()], (NO_ID, f32::INFINITY)).0;
+    let frame = with(&shown.frame, &planes("indices", &shown.frame, &right));
+    let found = shown.judge(sequence.method(), &frame, Rounding::Ieee);
+    let worst = found.first_wrong().unwrap();
+    let named =
+        |fault: &Fault| matches!(fault, Fault::LeftOut { surfel, .. } if *surfel == dropped);
+    assert!(named(&worst.worst.as_ref().unwrap().fault), "{dropped} {:?}", worst.worst);
+    assert!(worst.causes.left_out.contains_key(&dropped));
+}
+
+/// Discs in a plane across the view, at depths that only rounding tells apart.
+fn across() -> (Scene, Camera) {
+    let eye = DVec3::new(1.0, 2.0, 3.0);
+    let camera = Camera::new(
+        16,
+        16,
+        Pose { eye, target: DVec3::ZERO, up: DVec3::Y },
+        Lens::Orthographic(2.0),
+    );
+    let towards = eye.normalize();
+    let (a, b) = towards.any_orthonormal_pair();
+    let at = |i: u64| 2.0 * f64::from(unit(3, i)) - 1.0;
+    let place = |i: u64| at(2 * i) * a + at(2 * i + 1) * b;
+    let cloud = Cloud {
+        position: (0..600).map(|i| place(i).as_vec3()).collect(),
+        normal: Some(vec![towards.as_vec3(); 600]),
+        radius: Some(vec![0.1; 600]),
+        ..Cloud::default()
+    };
+    (Scene::lit("across", Surfels::new(cloud).unwrap().0), camera.unwrap())
+}
+
+#[test]
+fn of_near_ties_either_may_be_selected() {
+    let (scene, camera) = across();
+    let (settings, exec) = (Settings::default(), Exec::new(1, 16).unwrap());
+    let method = Method::from(settings);
+    let frame =
+        Session::new(&scene, method, &exec).unwrap().define::<f32>(&camera, true).unwrap().frame;
+    let shown = Shown { scene, camera, before: None, frame };
+    // Of each pixel the last.
+    let last = other_indices(&shown, &settings, |_| f32::INFINITY, |t, than| t >= than);
+    let differ = kept(&shown.frame, "indices");
+    let other = with(&shown.frame, &last);
+    let differ = kept(&other, "indices").iter().zip(&differ).filter(|(a, b)| a.0 != b.0).count();
+    let some = kept(&shown.frame, "indices").iter().filter(|pixel| pixel.0 != NO_ID).count();
+    assert!(differ > 50, "{differ} of {some}");
+    let frame = shown.from(method, &last, "indices");
+    for rounding in ROUNDINGS {
+        let found = shown.judge(method, &frame, rounding);
+        assert_eq!(wrong(&found), None);
+        assert_eq!(found.outcome(), Outcome::Right);
+    }
+    // A little behind the plane it is not.
+    let mut cloud = shown.scene.surfels.clone().into_cloud();
+    let towards = cloud.normal.as_ref().unwrap()[0];
+    cloud.position.iter_mut().step_by(2).for_each(|p| *p -= 1e-4 * towards);
+    let scene = Scene { surfels: Surfels::new(cloud).unwrap().0, ..shown.scene };
+    let frame =
+        Session::new(&scene, method, &exec).unwrap().define::<f32>(&camera, true).unwrap().frame;
+    let shown = Shown { scene, frame, ..shown };
+    let farthest = other_indices(&shown, &settings, |_| f32::INFINITY, |t, than| t > than);
+    let frame = shown.from(method, &farthest, "indices");
+    assert_first_wrong(&shown, method, &frame, "indices", "the farthest");
+}
+
+#[test]
+fn equal_surfels_are_told_apart_by_the_rule_of_ties() {
+    let mut cloud = Shape::Sphere.surfels(300, 1).unwrap().into_cloud();
+    let all = cloud.position.len();
+    cloud.position.extend_from_within(..);
+    for values in [&mut cloud.normal, &mut cloud.color].into_iter().flatten() {
+        values.extend_from_within(..);
+    }
+    cloud.radius.iter_mut().for_each(|radius| radius.extend_from_within(..));
+    let scene = Scene::lit("twice", Surfels::new(cloud).unwrap().0);
+    let camera = crate::method::tests::verdicts::camera(Shape::Sphere, [40, 30], None);
+    let (settings, exec) = (Settings::default(), Exec::new(1, 16).unwrap());
+    let method = Method::from(settings);
+    let frame =
+        Session::new(&scene, method, &exec).unwrap().define::<f32>(&camera, true).unwrap().frame;
+    let shown = Shown { scene, camera, before: None, frame };
+    let last = other_indices(&shown, &settings, |_| f32::INFINITY, |t, than| t <= than);
+    let frame = shown.from(method, &last, "indices");
+    assert!(id(&frame, "indices.id").values().iter().any(|&id| id != NO_ID && id as usize >= all));
+    for rounding in ROUNDINGS {
+        for (ties, right) in [(Ties::Lowest, false), (Ties::Last, true), (Ties::Any, true)] {
+            let mut client = Client::from(&frame);
+            (client.rounding, client.ties) = (rounding, ties);
+            let session = shown.session(method, &exec);
+            let found = session.verify(&camera, &client, Verdict::BUDGET).unwrap();
+            assert_eq!(wrong(&found).is_none(), right, "{ties:?} {:?}", wrong(&found));
+        }
+    }
+}
+
+#[test]
+fn what_has_no_plane_of_a_stage_is_judged_by_the_others() {
+    let exec = Exec::new(1, 16).unwrap();
+    for sequence in sequences() {
+        let frames = sequence.frames::<f32>(&exec);
+        let shown = &frames[2];
+        for stage in ["visibility", "indices", "difference", "attributes"] {
+            let left = |plane: &&NamedPlane<f32>| !plane.name.starts_with(stage);
+            let planes: Vec<_> = shown.frame.planes.iter().filter(left).cloned().collect();
+            for rounding in ROUNDINGS {
+                let frame = Frame { planes: planes.clone(), ..shown.frame };
+                let found = shown.judge(sequence.method(), &frame, rounding);
+                assert_eq!(wrong(&found), None, "without {stage}");
+                assert!(found.undecided * 50 < found.covered, "without {stage}");
+            }
+            // Ids without depths, and depths without ids.
+            for other in ["Z", "id"] {
+                let name = format!("{stage}.{other}");
+                let left = |plane: &&NamedPlane<f32>| plane.name != name;
+                let planes = shown.frame.planes.iter().filter(left).cloned().collect();
+                let frame = Frame { planes, ..shown.frame };
+                let found = shown.judge(sequence.method(), &frame, Rounding::Gpu);
+                assert_eq!(wrong(&found), None, "without {name}");
+            }
+        }
+    }
+}
