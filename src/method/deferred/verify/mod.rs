@@ -65,7 +65,7 @@ use crate::method::ewa::verify::handed::Handed;
 use crate::method::ewa::verify::pixel::PixelJudge;
 use crate::method::ewa::verify::sums::{self, Continuations};
 use crate::method::ewa::verify::swift::{self, SwiftSplats};
-use crate::method::judged::{Counts, Found, Marks, Watch, counted};
+use crate::method::judged::{Counts, Found, Marks, StageMarks, Watch, counted};
 use crate::method::projection::verify::{AllPossible, SamplePlanes};
 use crate::method::tiled::Tiled;
 use crate::number::ball::Profile;
@@ -110,33 +110,21 @@ fn judge<P: Profile>(
     let whole = Whole::new(job.scene);
     let before = seen(job, settings, &whole)?;
     let total = whole.ids().total();
-    memory::ask(total * OF_A_SURFEL, || format!("{total} surfels that are judged"))?;
     let flat = whole.part(ids(&whole, 0..total), job.exec);
     let scene = Scenery { job, settings, whole: &whole, flat: &flat };
-    let flagged: Vec<(u32, bool)> = before
-        .surfels(whole.ids())
-        .into_iter()
-        .filter_map(|id| Some((scene.rank(id)?, true)))
-        .collect();
+    let flagged = before.surfels(whole.ids());
+    memory::ask(flagged.len() as u64 * OF_A_FLAGGED, || {
+        format!("{} flagged surfels that are judged", flagged.len())
+    })?;
+    let flagged: Vec<_> =
+        flagged.into_iter().filter_map(|id| Some((scene.rank(id)?, true))).collect();
 
     let first = handed::visibility(client);
     let (visible, visibility) = scene.visible::<P>(&flagged, &first, watch);
     let epsilon = scene.epsilon::<P>();
     let limits = visible.map(|nearest| decide::limit(nearest.depth, epsilon));
 
-    let flat_job = flat.job(job);
-    let planes = SamplePlanes::of_nearest(client, flat_job.scene, [&CENTRE, &CENTRE_ID]);
-    let cull = settings.splats.cull;
-    let points = AllPossible::<P>::new(&flat_job, cull, Snap::default(), Some(&limits));
-    let indices = match planes.names().is_empty() {
-        true => watch.picture(job),
-        false => points.judge_all(job, &planes, watch),
-    };
-    let selected = match client.index(&CENTRE_ID) {
-        Some(stored) => selected::listed(stored.plane, total),
-        None => selected::possible(job, &points, &planes, total),
-    };
-    drop(points);
+    let (indices, selected) = scene.indices(client, &limits, watch);
 
     let unseen = |&(rank, _): &(u32, bool)| {
         let found = whole.ids().nth(rank.into()).and_then(|id| whole.ids().find(id));
@@ -158,17 +146,15 @@ fn judge<P: Profile>(
         visible: &visible,
     };
     let (tiles, counts) = judge.tiles(job.exec, watch.parts(&job.grid()), watch);
-    let levels = vec![
-        ("visibility", first.stages()[0].1.clone(), visibility),
-        ("indices", planes.names(), indices),
-    ];
+    let [(_, names), ..] = first.stages();
+    let levels = vec![("visibility", names, visibility), indices];
     let [nearest, sums, averages, shading] = handed.stages();
     let stages = [("difference", nearest.1), sums, averages, shading];
     Ok((Found { levels, stages, tiles }, counts))
 }
 
-/// Bytes of a surfel in its place, twice while they are put together, and placed in balls.
-const OF_A_SURFEL: u64 = 512;
+/// Bytes of a surfel that pass 1 draws, in its place and projected in balls; once more in pass 3.
+const OF_A_FLAGGED: u64 = 1536;
 
 /// The ids of so many ranks.
 fn ids(whole: &Whole<'_>, ranks: std::ops::Range<u64>) -> Vec<u64> {
@@ -231,6 +217,29 @@ impl<'a> Scenery<'a> {
             }
         }
         (Tiled::from_tiles(grid, tiles), marks)
+    }
+
+    /// What is wrong of pass 2, given the greatest depth that passes at each pixel; and B(i).
+    fn indices<P: Profile>(
+        &self,
+        client: &Client,
+        limits: &Tiled<Ball<P>>,
+        watch: Watch,
+    ) -> (StageMarks, Vec<(u32, bool)>) {
+        let (job, cull) = (self.flat.job(self.job), self.settings.splats.cull);
+        let planes = SamplePlanes::of_nearest(client, job.scene, [&CENTRE, &CENTRE_ID]);
+        let points = AllPossible::<P>::new(&job, cull, Snap::default(), Some(limits));
+        let names = planes.names();
+        let marks = match names.is_empty() {
+            true => watch.picture(&job),
+            false => points.judge_all(&job, &planes, watch),
+        };
+        let total = self.whole.ids().total();
+        let selected = match client.index(&CENTRE_ID) {
+            Some(stored) => selected::listed(stored.plane, total),
+            None => selected::possible(&job, &points, &planes, total),
+        };
+        (("indices", names, marks), selected)
     }
 }
 
