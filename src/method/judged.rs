@@ -301,6 +301,15 @@ pub(super) struct Counts {
     pub(super) told: Told,
 }
 
+impl Counts {
+    /// With those of another tile.
+    pub(super) fn add(&mut self, tile: Self) {
+        self.covered += tile.covered;
+        self.undecided += tile.undecided;
+        self.told.add(tile.told);
+    }
+}
+
 /// The verdict of a method whose stages are judged tile by tile: `judge` marks what is wrong at the
 /// pixels of a rectangle in a tile.
 pub(super) fn verdict<const N: usize>(
@@ -318,9 +327,7 @@ pub(super) fn verdict<const N: usize>(
     let mut all = Counts::default();
     let mut tiles = Vec::new();
     for (marks, counts) in found {
-        all.covered += counts.covered;
-        all.undecided += counts.undecided;
-        all.told.add(counts.told);
+        all.add(counts);
         tiles.push(marks);
     }
     let Counts { covered, undecided, told } = all;

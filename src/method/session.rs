@@ -1,21 +1,22 @@
 //! A scene that is drawn by one method from as many cameras as one likes.
 
+mod names;
 mod needs;
 
+use names::Names;
 pub use needs::Making;
 
 use super::algorithm::Job;
 use super::table::Memory;
 use super::{Method, Picture};
 use crate::error::{Error, Result};
-use crate::frame::{Exec, Frame, NO_ID, Pool, Samples};
+use crate::frame::{Exec, Frame, Pool};
 use crate::index::Index;
 use crate::index::grouping::{Extended, Grouping, GroupingReport};
 use crate::index::order::BackToFront;
 use crate::index::seen::Seen;
 use crate::number::Exact;
 use crate::number::ball::{Gpu, Ieee};
-use crate::scene::objects::Objects;
 use crate::scene::{Boxes, Camera, Groups, Scene};
 use crate::verify::client::{Client, Rounding};
 use crate::verify::verdict::{Check, Verdict};
@@ -174,7 +175,9 @@ impl<'a> Session<'a> {
         self.pool.clear();
         self.index.seen.clone_from(&picture.seen);
         let mut picture = picture;
-        self.name_surfels(&mut picture.frame);
+        if let Some(names) = self.names() {
+            names.name(&mut picture.frame);
+        }
         Ok(self.picture.insert(picture))
     }
 
@@ -187,46 +190,23 @@ impl<'a> Session<'a> {
         let job = self.job(camera)?;
         self.ask(camera, Making::Define { number: size_of::<R>() as u64, stages })?;
         let mut picture = self.method.define(&job, stages)?;
-        self.name_surfels(&mut picture.frame);
+        if let Some(names) = self.names() {
+            names.name(&mut picture.frame);
+        }
         Ok(picture)
     }
 
     /// The ids of the surfels in planes of ids, where a method that draws surfels draws those of objects;
     /// none where it names them by their indices. Primitives are counted on after the surfels: a scene
     /// that has any keeps its indices.
-    fn names(&self) -> Option<&Objects> {
-        let objects = self.scene.objects.as_ref().filter(|_| !self.method.draws_objects());
-        objects.filter(|_| self.scene.primitives.is_empty())
+    fn names(&self) -> Option<Names<'_>> {
+        if self.method.draws_objects() { None } else { self.numbers() }
     }
 
-    /// Puts the ids of surfels in the place of their indices; the lowest 32 bits of each.
-    fn name_surfels<R>(&self, frame: &mut Frame<R>) {
-        let Some(objects) = self.names() else { return };
-        if objects.have_detail() {
-            let ids = objects.drawn_ids();
-            each_id(frame, |index| ids.get(index as usize).map(|&id| id as u32));
-        } else {
-            each_id(frame, |index| objects.ids().nth(index.into()).map(|id| id as u32));
-        }
-    }
-
-    /// Puts indices in the place of the ids of surfels.
-    fn number_surfels<R>(&self, frame: &mut Frame<R>) -> Result<()> {
-        let Some(objects) = self.names() else { return Ok(()) };
-        if objects.ids().is_wide() {
-            let what = "ids of 40 bits: planes of ids hold 32 of them, which do not say the surfel";
-            return Err(Error::Invalid(what.into()));
-        }
-        // What is the id of none is the index of none.
-        let number = |rank: Option<u64>| Some(rank.map_or(NO_ID - 1, |rank| rank as u32));
-        if objects.have_detail() {
-            let ids = objects.drawn_ids();
-            let rank = |id: u32| ids.binary_search(&id.into()).ok().map(|rank| rank as u64);
-            each_id(frame, |id| number(rank(id)));
-        } else {
-            each_id(frame, |id| number(objects.ids().rank(id.into())));
-        }
-        Ok(())
+    /// The ids of the surfels, which a verdict numbers by their order whatever the method.
+    fn numbers(&self) -> Option<Names<'_>> {
+        let objects = self.scene.objects.as_ref().filter(|_| self.scene.primitives.is_empty());
+        objects.map(Names::new)
     }
 
     /// Runs one stage of the method on somebody's planes of the stages that it reads, and gives
@@ -242,13 +222,11 @@ impl<'a> Session<'a> {
         from: &Frame<R>,
     ) -> Result<Frame<R>> {
         let job = self.job(camera)?;
-        if self.names().is_none() {
-            return self.method.stage(&job, stage, from);
-        }
+        let Some(names) = self.names() else { return self.method.stage(&job, stage, from) };
         let mut numbered = from.clone();
-        self.number_surfels(&mut numbered)?;
+        names.number(&mut numbered)?;
         let mut left = self.method.stage(&job, stage, &numbered)?;
-        self.name_surfels(&mut left);
+        names.name(&mut left);
         Ok(left)
     }
 
@@ -284,11 +262,13 @@ impl<'a> Session<'a> {
         let job = self.job(camera)?;
         self.check_client(camera, client)?;
         self.ask(camera, Making::Verdict)?;
-        let client = &*self.numbered(client)?;
-        match client.rounding {
+        let names = self.numbers();
+        let client = &*numbered(names.as_ref(), client)?;
+        let verdict = match client.rounding {
             Rounding::Gpu => method.verify::<Gpu>(&job, client, budget),
             Rounding::Ieee => method.verify::<Ieee>(&job, client, budget),
-        }
+        }?;
+        Ok(verdict.renumbered(|index| named(names.as_ref(), index)))
     }
 
     /// Every value of a client at one pixel that is judged, against what it may be.
@@ -304,21 +284,15 @@ impl<'a> Session<'a> {
         let job = self.job(camera)?;
         self.check_client(camera, client)?;
         self.ask(camera, Making::Verdict)?;
-        let client = &*self.numbered(client)?;
-        match client.rounding {
+        let names = self.numbers();
+        let client = &*numbered(names.as_ref(), client)?;
+        let mut checks = match client.rounding {
             Rounding::Gpu => self.method.checks::<Gpu>(&job, client, pixel),
             Rounding::Ieee => self.method.checks::<Ieee>(&job, client, pixel),
-        }
-    }
-
-    /// A client with indices of surfels in the place of their ids.
-    fn numbered<'c>(&self, client: &'c Client) -> Result<Cow<'c, Client>> {
-        if self.names().is_none() {
-            return Ok(Cow::Borrowed(client));
-        }
-        let mut numbered = client.clone();
-        self.number_surfels(numbered.frame_mut())?;
-        Ok(Cow::Owned(numbered))
+        }?;
+        let name = |index| named(names.as_ref(), index);
+        checks.iter_mut().for_each(|check| check.fault.renumber(name));
+        Ok(checks)
     }
 
     /// Whether there is something to judge, and nothing that is not.
@@ -369,14 +343,17 @@ impl<'a> Session<'a> {
     }
 }
 
-/// Changes every id of a frame that is that of something.
-fn each_id<R>(frame: &mut Frame<R>, of: impl Fn(u32) -> Option<u32>) {
-    for plane in &mut frame.planes {
-        if let Samples::Index(ids) = &mut plane.samples {
-            let some = ids.values_mut().iter_mut().filter(|id| **id != NO_ID);
-            some.for_each(|id| *id = of(*id).unwrap_or(*id));
-        }
-    }
+/// A client with indices of surfels in the place of their ids.
+fn numbered<'c>(names: Option<&Names<'_>>, client: &'c Client) -> Result<Cow<'c, Client>> {
+    let Some(names) = names else { return Ok(Cow::Borrowed(client)) };
+    let mut numbered = client.clone();
+    names.number(numbered.frame_mut())?;
+    Ok(Cow::Owned(numbered))
+}
+
+/// The id of a surfel that a verdict has numbered; what is the number of none stays.
+fn named(names: Option<&Names<'_>>, index: u32) -> u32 {
+    names.and_then(|names| names.id(index)).unwrap_or(index)
 }
 
 #[cfg(test)]

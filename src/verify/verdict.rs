@@ -234,6 +234,18 @@ impl Verdict {
         Self { unbounded: unbounded(&self.stages), ..self }
     }
 
+    /// The same with other numbers of surfels.
+    pub(crate) fn renumbered(mut self, of: impl Fn(u32) -> u32) -> Self {
+        for stage in &mut self.stages {
+            let lacking = std::mem::take(&mut stage.causes.left_out);
+            stage.causes.left_out = lacking.into_iter().map(|(i, count)| (of(i), count)).collect();
+            if let Some(worst) = &mut stage.worst {
+                worst.fault.renumber(&of);
+            }
+        }
+        self
+    }
+
     /// In a word. What is wrong is wrong, however much is undecided.
     #[must_use]
     pub fn outcome(&self) -> Outcome {

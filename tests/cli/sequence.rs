@@ -247,3 +247,25 @@ fn a_frame_goes_on_from_the_state_of_the_one_before() {
     assert!(line.contains("the state is of another scene"), "{line}");
     assert!(!at.path().join("x.exr").exists() && !at.path().join("t.bin").exists());
 }
+
+/// A frame is judged from the state that it was drawn from.
+#[test]
+fn a_frame_is_judged_from_the_state_of_the_one_before() {
+    let at = walk();
+    let of = |words: &[&'static str]| {
+        [words, &["--method", "deferred", "--frame", "2"], &["--state", "s.bin"]].concat()
+    };
+    let before = ["render", "walk.toml", "--method", "deferred", "--frames", "0..2"];
+    succeeds(at.path(), &[&before[..], &["-o", "a.exr", "--keep-state", "s.bin"]].concat());
+    succeeds(at.path(), &of(&["render", "walk.toml", "--stages", "-o", "c.exr"]));
+    let verify = of(&["verify", "walk.toml", "c.exr"]);
+    let said = succeeds(at.path(), &verify);
+    assert!(said.contains("indices        right") && said.contains("right: of "), "{said}");
+    let said = succeeds(at.path(), &of(&["explain", "walk.toml", "16", "12", "--client", "c.exr"]));
+    assert!(said.contains("indices        right"), "{said}");
+    // From nothing pass 1 draws nothing.
+    let output = splatref(at.path(), &verify[..verify.len() - 2]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("visibility     WRONG"), "{said}");
+}

@@ -81,11 +81,12 @@ pub mod queries;
 mod settings;
 #[cfg(test)]
 mod tests;
+pub mod verify;
 mod visibility;
 
 pub use settings::Settings;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
@@ -138,12 +139,17 @@ impl Algorithm for Settings {
         explain::explain::<R>(job, self, pixel)
     }
 
-    fn verify<P: Profile>(&self, _: &Job<'_>, _: &Client, _: f64) -> Result<Verdict> {
-        Err(unjudged())
+    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
+        verify::verify::<P>(job, self, client, budget)
     }
 
-    fn checks<P: Profile>(&self, _: &Job<'_>, _: &Client, _: (u32, u32)) -> Result<Vec<Check>> {
-        Err(unjudged())
+    fn checks<P: Profile>(
+        &self,
+        job: &Job<'_>,
+        client: &Client,
+        pixel: (u32, u32),
+    ) -> Result<Vec<Check>> {
+        verify::checks::<P>(job, self, client, pixel)
     }
 
     fn resolved(&self, scene: &Scene, _: &Camera) -> Vec<(&'static str, String)> {
@@ -156,11 +162,4 @@ impl Algorithm for Settings {
 #[must_use]
 pub fn ids(scene: &Scene) -> Ids {
     part::Whole::new(scene).ids().clone()
-}
-
-/// There are no rules yet by which a client of this method is judged.
-fn unjudged() -> Error {
-    let what = "pictures of the method deferred cannot be judged yet: verify the surfels that it \
-                selected by the method ewa";
-    Error::Invalid(what.into())
 }

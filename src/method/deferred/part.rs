@@ -66,6 +66,14 @@ impl<'a> Whole<'a> {
         &self.ids
     }
 
+    /// The ids of all surfels that the high level leaves, ascending.
+    pub(super) fn drawn_ids(&self) -> Vec<u64> {
+        match &self.scene.objects {
+            Some(objects) => objects.drawn_ids(),
+            None => (0..self.ids.total()).collect(),
+        }
+    }
+
     /// A surfel in words.
     pub(super) fn name(&self, id: u64) -> String {
         match (&self.scene.objects, self.ids.find(id)) {
@@ -270,6 +278,10 @@ impl Part {
     /// The job of drawing them alone.
     pub(super) fn job<'j>(&'j self, whole: &Job<'j>) -> Job<'j> {
         Job { scene: &self.scene, ..*whole }
+    }
+
+    pub(super) fn surfels(&self) -> &Surfels {
+        &self.scene.surfels
     }
 
     /// Their ids, ascending.

@@ -15,7 +15,7 @@ use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::View;
 
-const BEFORE: PlaneRow = PlaneRow::new(
+pub(super) const BEFORE: PlaneRow = PlaneRow::new(
     "visibility.Z",
     Holds::Scalar,
     "world units",
@@ -23,28 +23,28 @@ const BEFORE: PlaneRow = PlaneRow::new(
      is none",
     When::Stages,
 );
-const BEFORE_ID: PlaneRow = PlaneRow::new(
+pub(super) const BEFORE_ID: PlaneRow = PlaneRow::new(
     "visibility.id",
     Holds::Index,
     "surfel",
     "surfel of that fragment; 0xFFFF_FFFF where there is none",
     When::Stages,
 );
-const CENTRE: PlaneRow = PlaneRow::new(
+pub(super) const CENTRE: PlaneRow = PlaneRow::new(
     "indices.Z",
     Holds::Scalar,
     "world units",
     "depth of the nearest centre in the pixel that passes the test of depth; +inf where there is none",
     When::Stages,
 );
-const CENTRE_ID: PlaneRow = PlaneRow::new(
+pub(super) const CENTRE_ID: PlaneRow = PlaneRow::new(
     "indices.id",
     Holds::Index,
     "surfel",
     "surfel of that centre, which is selected; 0xFFFF_FFFF where there is none",
     When::Stages,
 );
-const NEAREST: PlaneRow = PlaneRow::new(
+pub(super) const NEAREST: PlaneRow = PlaneRow::new(
     "difference.Z",
     Holds::Scalar,
     "world units",
@@ -52,7 +52,7 @@ const NEAREST: PlaneRow = PlaneRow::new(
      +inf where there is none",
     When::Stages,
 );
-const NEAREST_ID: PlaneRow = PlaneRow::new(
+pub(super) const NEAREST_ID: PlaneRow = PlaneRow::new(
     "difference.id",
     Holds::Index,
     "surfel",

@@ -31,7 +31,12 @@ impl Session<'_> {
         if making == Making::Verdict {
             let cells = if self.has_levels() { OF_JUDGED_CELLS } else { 0 };
             let a_pixel = OF_A_JUDGED_PIXEL + cells + self.planes(camera, 8);
-            return pixels * a_pixel + self.items(pixels) * OF_A_JUDGED_SPLAT;
+            let judged = pixels * a_pixel + self.items(pixels) * OF_A_JUDGED_SPLAT;
+            if !self.method.draws_objects() {
+                return judged;
+            }
+            // Before it is known which surfels are drawn, all are placed.
+            return judged + pixels * OF_JUDGED_PASSES + self.surfels() * OF_A_JUDGED_CENTRE;
         }
         let fast = self.method.fast_bytes_a_pixel().filter(|_| making == Making::Render);
         let number = if let Making::Define { number, .. } = making { number } else { 4 };
@@ -50,14 +55,19 @@ impl Session<'_> {
     /// what it draws of an earlier frame it asks for when it knows.
     fn items(&self, pixels: u64) -> u64 {
         if self.method.draws_objects() {
-            let objects = self.scene.objects.as_ref().map(Objects::drawn_total);
-            return objects.unwrap_or(self.scene.surfels.len() as u64).min(pixels);
+            return self.surfels().min(pixels);
         }
         let items = self.index.order.as_ref().map_or(self.scene.surfels.len(), |_| {
             // A surfel is drawn once in each of its groups.
             self.index.groups.as_ref().map_or(0, |groups| groups.own().len() + groups.added().len())
         });
         items as u64
+    }
+
+    /// How many surfels a method that draws objects may draw.
+    fn surfels(&self) -> u64 {
+        let objects = self.scene.objects.as_ref().map(Objects::drawn_total);
+        objects.unwrap_or(self.scene.surfels.len() as u64)
     }
 
     /// Whether there are planes of levels.
@@ -121,6 +131,10 @@ const OF_A_SPLAT: u64 = 64;
 /// Bytes of a splat that is judged, and of a pixel beside the planes of a client.
 const OF_A_JUDGED_SPLAT: u64 = 704;
 const OF_A_JUDGED_PIXEL: u64 = 128;
+/// Bytes of a pixel that passes before the sums leave in balls, and of a surfel in its place whose centre is
+/// placed in balls.
+const OF_JUDGED_PASSES: u64 = 256;
+const OF_A_JUDGED_CENTRE: u64 = 640;
 /// Bytes of the cells of all levels in balls, a pixel.
 const OF_JUDGED_CELLS: u64 = 1536;
 /// Bytes of a splat in balls, with the bins that list it: what a margin is computed from.

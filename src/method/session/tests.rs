@@ -1,8 +1,10 @@
 //! A session refuses what it cannot draw, and its memory shows nothing of earlier pictures.
 
 use super::*;
+use crate::frame::{NO_ID, Samples};
 use crate::index::grouping::{Extension, Rules};
 use crate::method::tests::{cameras, scene, surfels};
+use crate::scene::Objects;
 use crate::scene::{
     Geometry, Light, Motion, Object, Primitives, Similarity, Surfels, Triangles, Vertices,
 };

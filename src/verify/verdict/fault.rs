@@ -80,6 +80,26 @@ pub enum Fault {
     },
 }
 
+impl Fault {
+    /// Other numbers of surfels. A channel that says a number of one of a record keeps it.
+    pub(crate) fn renumber(&mut self, of: impl Fn(u32) -> u32) {
+        let numbers: [Option<&mut u32>; 2] = match self {
+            Self::Whole { channel, found, truth } if channel.rsplit('.').next() == Some("id") => {
+                [Some(found), Some(truth)]
+            }
+            Self::Tie { surfel, found } => [Some(surfel), Some(found)],
+            Self::NotProjected { surfel }
+            | Self::Projected { surfel }
+            | Self::Copied { surfel }
+            | Self::Absent { surfel }
+            | Self::Outside { surfel, .. }
+            | Self::LeftOut { surfel, .. } => [Some(surfel), None],
+            Self::Value { .. } | Self::Whole { .. } | Self::NoSuchDepth { .. } => [None, None],
+        };
+        numbers.into_iter().flatten().for_each(|number| *number = of(*number));
+    }
+}
+
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -35,12 +35,14 @@ struct Claim<P: Profile> {
     closest: Ball<P>,
     /// Its q divided by the limit, if it certainly is outside.
     outside: Option<f64>,
-    /// If the client says nothing: the least depth that may be the nearest, and the greatest.
+    /// Whether the client says nothing.
+    open: bool,
+    /// If so: the least depth that may be the nearest, and the greatest.
     range: [f64; 2],
 }
 
 /// Judges the nearest fragments of a tile, and says what later passes work with.
-pub(super) fn judge<P: Profile>(
+pub(in crate::method) fn judge<P: Profile>(
     splats: &SwiftSplats<P>,
     (handed, surfels): (&Handed<'_>, &Surfels),
     (tile, rect): (usize, &Rect),
@@ -50,7 +52,7 @@ pub(super) fn judge<P: Profile>(
     // What certainly is farther than the client's fragment is no question.
     let least: Vec<f64> = claims
         .iter()
-        .map(|claim| match handed.nothing() {
+        .map(|claim| match claim.open {
             true => f64::NAN,
             false => least_nearness(&splats.shared, claim.nearest.depth),
         })
@@ -62,7 +64,7 @@ pub(super) fn judge<P: Profile>(
         |possible, pixel, q, w| {
             let claim = &mut claims[pixel];
             let fragment = Against::new(&splats.shared, possible, q, w);
-            if handed.nothing() {
+            if claim.open {
                 fragment.bound(&mut claim.range);
             } else if claim.nearest.id != Some(possible.splat.surfel) {
                 fragment.judge(claim, &mut marks.at(pixel));
@@ -71,7 +73,7 @@ pub(super) fn judge<P: Profile>(
         },
     );
     for (pixel, claim) in claims.iter_mut().enumerate() {
-        if handed.nothing() {
+        if claim.open {
             claim.nearest.depth = between(claim.range);
         } else {
             claim.judge(handed, &mut marks.at(pixel));
@@ -98,6 +100,7 @@ fn claims<P: Profile>(
                 error,
                 closest: Ball::INFINITY,
                 outside: None,
+                open: handed.says_nothing(at),
                 range,
             }
         })

@@ -32,6 +32,11 @@ pub(in crate::method) struct Handed<'a> {
     /// Copies in the picture of what an earlier pass has left, if both are there.
     pub(in crate::method) depth_copy: Option<Stored<'a, f64>>,
     pub(in crate::method) id_copy: Option<Stored<'a, u32>>,
+    /// Whether a pixel of the picture that has no weight is empty, whatever fragment is nearest: the copies
+    /// are judged so.
+    pub(in crate::method) weightless: bool,
+    /// Whether a pixel that is empty says nothing of the nearest fragment: one of such a picture.
+    pub(in crate::method) empty_is_open: bool,
     pub(in crate::method) weight_copy: Option<Stored<'a, f64>>,
     /// The picture.
     pub(in crate::method) shaded: Option<Stored<'a, [f64; 3]>>,
@@ -90,6 +95,8 @@ impl<'a> Handed<'a> {
             mask: None,
             depth_copy,
             id_copy: own.and(other),
+            weightless: false,
+            empty_is_open: false,
             weight_copy,
             shaded: client.triple(&resolved::SHADED),
             alpha: client.scalar(&resolved::ALPHA),
@@ -99,6 +106,13 @@ impl<'a> Handed<'a> {
     /// Whether nothing is said of the nearest fragments.
     pub(in crate::method) fn nothing(&self) -> bool {
         self.depth.is_none() && self.id.is_none()
+    }
+
+    /// Whether nothing is said of the nearest fragment of a pixel.
+    pub(super) fn says_nothing(&self, (x, y): (u32, u32)) -> bool {
+        let far = || self.depth.is_none_or(|plane| *plane.plane.at(x, y) == f64::INFINITY);
+        let none = || self.id.is_none_or(|plane| *plane.plane.at(x, y) == NO_ID);
+        self.nothing() || (self.empty_is_open && far() && none())
     }
 
     /// Whether every plane that is there says that nothing is at a pixel, and is black.

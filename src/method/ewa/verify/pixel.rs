@@ -5,6 +5,7 @@ use super::certificate::Nearest;
 use super::handed::Handed;
 use super::sums::Continuations;
 use crate::composite::sum;
+use crate::frame::NO_ID;
 use crate::method::Holds;
 use crate::method::algorithm::Job;
 use crate::method::checks::{
@@ -15,6 +16,7 @@ use crate::method::ewa::attributes::Sums;
 use crate::method::judged::Marks;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
+use crate::scene::Surfels;
 use crate::verify::client::Storage;
 
 /// The stages after visibility, by their place among the marks.
@@ -42,13 +44,21 @@ struct Averages<P: Profile> {
 
 impl<'a, P: Profile> PixelJudge<'a, P> {
     pub(in crate::method) fn new(job: &Job<'a>, handed: &'a Handed<'a>) -> Self {
-        let scene = job.scene;
-        let colors = scene.surfels.color().unwrap_or_default();
+        Self::of_surfels(job, &job.scene.surfels, handed)
+    }
+
+    /// The same of the surfels of objects in their places.
+    pub(in crate::method) fn of_surfels(
+        job: &Job<'a>,
+        surfels: &Surfels,
+        handed: &'a Handed<'a>,
+    ) -> Self {
+        let colors = surfels.color().unwrap_or_default();
         let brightest = colors.iter().fold(1.0_f64, |brightest, color| {
             let [r, g, b] = color.to_array().map(f64::from);
             brightest.at_least(r).at_least(g).at_least(b)
         });
-        let colored = scene.surfels.color().is_some();
+        let colored = surfels.color().is_some();
         let shading = Shading::new(job, colored);
         let nowhere = sum::direction([Ball::ZERO; 3], Ball::ZERO);
         Self { handed, shading, colored, brightest, nowhere }
@@ -120,6 +130,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
         let averages = self.averages(at, sums);
         self.check_averages(at, (&averages, sums), report);
+        self.check_copies(at, nearest, sums, report);
         let handed = self.handed;
         if let Some(plane) = &handed.shaded {
             let color = self.color(at, self.depth(at, nearest, sums), &averages);
@@ -205,7 +216,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         opacity.at_most(Ball::ONE)
     }
 
-    /// Averages, and copies of what earlier passes left.
+    /// Averages.
     fn check_averages(
         &self,
         at: (u32, u32),
@@ -222,21 +233,68 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         if let Some(plane) = &handed.opacity {
             number(NORMALIZATION, plane, at, self.opacity(at, sums), report);
         }
-        let copies = [(handed.depth, handed.depth_copy), (handed.weight, handed.weight_copy)];
-        for (first, copy) in copies {
-            if let (Some(first), Some(copy)) = (first, copy) {
-                number(NORMALIZATION, &copy, at, first.ball::<P>(at), report);
-            }
+    }
+
+    /// Copies of what earlier passes left.
+    fn check_copies(
+        &self,
+        at: (u32, u32),
+        nearest: &Nearest<P>,
+        sums: Option<&Sums<Ball<P>>>,
+        report: &mut Report<'_>,
+    ) {
+        let handed = self.handed;
+        if let (Some(first), Some(copy)) = (handed.weight, handed.weight_copy) {
+            number(NORMALIZATION, &copy, at, first.ball::<P>(at), report);
+        }
+        if handed.weightless {
+            return self.check_shown(at, nearest, sums, report);
+        }
+        if let (Some(first), Some(copy)) = (handed.depth, handed.depth_copy) {
+            number(NORMALIZATION, &copy, at, first.ball::<P>(at), report);
         }
         if let (Some(first), Some(copy)) = (handed.id, handed.id_copy) {
             whole(NORMALIZATION, &copy, at, *first.plane.at(at.0, at.1), report);
         }
     }
 
+    /// Depth and id of a picture that shows them where it has weight.
+    fn check_shown(
+        &self,
+        at: (u32, u32),
+        nearest: &Nearest<P>,
+        sums: Option<&Sums<Ball<P>>>,
+        report: &mut Report<'_>,
+    ) {
+        let some = self.weight(at, sums).gt(Ball::ZERO);
+        if let Some(copy) = &self.handed.depth_copy {
+            let empty = *copy.plane.at(at.0, at.1) == f64::INFINITY;
+            let shown = some.decided().unwrap_or(!empty);
+            let truth = if shown { nearest.depth } else { Ball::INFINITY };
+            number(NORMALIZATION, copy, at, truth, report);
+        }
+        if let Some(copy) = &self.handed.id_copy {
+            let empty = *copy.plane.at(at.0, at.1) == NO_ID;
+            match (some.decided().unwrap_or(!empty), nearest.id) {
+                (false, _) => whole(NORMALIZATION, copy, at, NO_ID, report),
+                (true, Some(id)) => whole(NORMALIZATION, copy, at, id, report),
+                (true, None) => {}
+            }
+        }
+    }
+
     /// The depth that is shaded.
     fn depth(&self, at: (u32, u32), nearest: &Nearest<P>, sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
-        let nothing = self.handed.nothing() && sums.is_some_and(|sums| sums.count == 0);
-        let own = if nothing { Ball::INFINITY } else { nearest.depth };
+        let own = if self.handed.weightless {
+            match self.weight(at, sums).gt(Ball::ZERO).decided() {
+                Some(true) => nearest.depth,
+                Some(false) => Ball::INFINITY,
+                None => anything(),
+            }
+        } else {
+            let nothing = self.handed.nothing() && sums.is_some_and(|sums| sums.count == 0);
+            if nothing { Ball::INFINITY } else { nearest.depth }
+        };
         self.handed.depth_copy.map_or(own, |plane| plane.ball(at))
     }
 

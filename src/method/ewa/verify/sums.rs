@@ -43,7 +43,7 @@ struct Part<P: Profile> {
 }
 
 /// The sums of each pixel of a tile, given the nearest fragments.
-pub(super) fn continuations<P: Profile>(
+pub(in crate::method) fn continuations<P: Profile>(
     splats: &SwiftSplats<P>,
     surfels: &Surfels,
     nearest: &[Nearest<P>],

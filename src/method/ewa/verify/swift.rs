@@ -19,11 +19,11 @@ use crate::splat::{Footprint, Shared, Splat, fragment};
 const ROUNDINGS: f64 = 16.0 / 16_777_216.0;
 
 /// The splats of a picture, each with the bounds of its fragments, if it has any.
-pub(super) type SwiftSplats<P> = Prepared<Ball<P>, SwiftSplat<P>>;
+pub(in crate::method) type SwiftSplats<P> = Prepared<Ball<P>, SwiftSplat<P>>;
 
 /// A surfel that may be drawn, and bounds of its fragments.
 #[derive(Debug)]
-pub(super) struct SwiftSplat<P: Profile> {
+pub(in crate::method) struct SwiftSplat<P: Profile> {
     pub(super) possible: PossibleSplat<P>,
     swift: Option<Swift>,
 }
@@ -56,6 +56,21 @@ impl<P: Profile> SwiftSplat<P> {
 /// Projects the surfels that may be drawn.
 pub(super) fn project<P: Profile>(job: &Job<'_>, settings: &Settings) -> SwiftSplats<P> {
     possible::project_into(job, settings, SwiftSplat::new, SwiftSplat::bounds)
+}
+
+/// The same of a part of a scene: of each of its surfels the number in the whole, and whether it certainly is
+/// one of those that are drawn.
+pub(in crate::method) fn project_part<P: Profile>(
+    part: &Job<'_>,
+    settings: &Settings,
+    whole: &[(u32, bool)],
+) -> SwiftSplats<P> {
+    let record = |PossibleSplat { mut splat, certain }| {
+        let (surfel, sure) = whole[splat.surfel as usize];
+        splat.surfel = surfel;
+        SwiftSplat::new(PossibleSplat { splat, certain: certain && sure })
+    };
+    possible::project_into(part, settings, record, SwiftSplat::bounds)
 }
 
 /// Runs `visit` for the fragments of the pixels of a rectangle in a tile that are not certainly

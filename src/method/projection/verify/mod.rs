@@ -17,10 +17,14 @@
 //!
 //! Without ids the sample is the one that errs least, of those that nothing certainly hides.
 //!
+//! Where a pass tests depths against limits, what may lie in a pixel is what possibly passes there, and lies
+//! there only if it certainly passes.
+//!
 //! **Not judged**: a primitive that is cut by the near plane or the guard band, or may be, and one with
 //! more ways to snap. Pixels of its id are judged by rule 3 and by their kind alone; without ids all
 //! pixels but empty ones and surfels are.
 
+mod claim;
 mod planes;
 mod primitives;
 
@@ -33,12 +37,13 @@ use crate::composite::decide;
 use crate::frame::raster::Snap;
 use crate::frame::{Bins, Grid, Rect};
 use crate::method::algorithm::Job;
-use crate::method::judged::{Marks, PixelMarks, StageMarks, Watch, counted};
+use crate::method::judged::{Marks, StageMarks, Watch, counted};
+use crate::method::tiled::Tiled;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Pixel, Real, Truth, Vector3};
 use crate::scene::Surfels;
-use crate::verify::client::Ties;
-use crate::verify::verdict::{Doubt, Fault};
+use crate::verify::verdict::Doubt;
+use claim::Claim;
 use planes::Says;
 use primitives::{Pieces, PossiblePiece};
 
@@ -55,8 +60,10 @@ struct Possible<P: Profile> {
 }
 
 /// All that may be drawn, and where.
-struct AllPossible<'a, P: Profile> {
+pub(in crate::method) struct AllPossible<'a, P: Profile> {
     projector: SceneProjector<'a, Ball<P>>,
+    /// The greatest depth of a surfel that is drawn into each pixel, if there is one.
+    limits: Option<&'a Tiled<Ball<P>>>,
     /// The surfels, batch by batch.
     surfels: Vec<(Vec<Possible<P>>, Bins)>,
     pieces: Pieces<P>,
@@ -65,19 +72,9 @@ struct AllPossible<'a, P: Profile> {
 
 /// What may lie in a pixel.
 enum Candidate<'a, P: Profile> {
-    Surfel(&'a Possible<P>),
+    /// With whether it passes the test of its depth there.
+    Surfel(&'a Possible<P>, Three),
     Piece(&'a PossiblePiece<P>, PiecePixel<Ball<P>>),
-}
-
-/// What is known of a pixel.
-struct Claim<P: Profile> {
-    says: Says,
-    /// The client's depth, if it was handed in.
-    depth: Option<Ball<P>>,
-    /// Of what lies in the pixel that whose greatest depth is least.
-    front: Option<(u32, Ball<P>)>,
-    /// Of the samples that may be meant the one that errs least, and by how much.
-    best: Option<(f64, PixelSample<Ball<P>>)>,
 }
 
 /// Judges the planes of the projection; `snap` is for triangles and lines.
@@ -88,20 +85,22 @@ pub(in crate::method) fn judge<P: Profile>(
     planes: &SamplePlanes<'_>,
     watch: Watch,
 ) -> StageMarks {
-    let mut marks = watch.picture(job);
-    let names = planes.names();
-    if !names.is_empty() {
-        let possible = AllPossible::<P>::new(job, cull, snap);
-        let found = job.exec.ordered(watch.parts(&job.grid()), |(tile, rect)| {
-            possible.judge(planes, (tile, rect), watch.marks(rect))
-        });
-        found.into_iter().for_each(|part| marks.put(part));
+    match planes.names() {
+        names if names.is_empty() => ("projection", names, watch.picture(job)),
+        names => {
+            let possible = AllPossible::<P>::new(job, cull, snap, None);
+            ("projection", names, possible.judge_all(job, planes, watch))
+        }
     }
-    ("projection", names, marks)
 }
 
 impl<'a, P: Profile> AllPossible<'a, P> {
-    fn new(job: &Job<'a>, cull: bool, snap: Snap) -> Self {
+    pub(in crate::method) fn new(
+        job: &Job<'a>,
+        cull: bool,
+        snap: Snap,
+        limits: Option<&'a Tiled<Ball<P>>>,
+    ) -> Self {
         let (scene, grid) = (job.scene, job.grid());
         let of = &scene.surfels;
         let projector = SceneProjector::new(scene, job.camera, cull, snap);
@@ -115,7 +114,43 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         });
         let pieces = Pieces::new(&projector);
         let bins = Bins::new(&grid, pieces.all.len(), |i| pieces.all[i].piece.bounds);
-        Self { projector, surfels, pieces, bins }
+        Self { projector, limits, surfels, pieces, bins }
+    }
+
+    /// Marks what is wrong of planes.
+    pub(in crate::method) fn judge_all(
+        &self,
+        job: &Job<'_>,
+        planes: &SamplePlanes<'_>,
+        watch: Watch,
+    ) -> Marks {
+        let mut marks = watch.picture(job);
+        let found = job.exec.ordered(watch.parts(&job.grid()), |(tile, rect)| {
+            self.judge(planes, (tile, rect), watch.marks(rect))
+        });
+        found.into_iter().for_each(|part| marks.put(part));
+        marks
+    }
+
+    /// What a client that gives no ids may have at the pixels of a tile: which surfel or primitive, and
+    /// whether it certainly has it, as it says that there is something that nothing else may be, or
+    /// as this lies there and certainly is in front.
+    pub(in crate::method) fn kept(
+        &self,
+        planes: &SamplePlanes<'_>,
+        (tile, rect): (usize, Rect),
+    ) -> Vec<(u32, bool)> {
+        let claims = self.claims(planes, (tile, rect));
+        let (mut found, mut counts) = (Vec::new(), vec![0_u32; claims.len()]);
+        self.each((tile, &rect), |pixel, one| {
+            let claim = &claims[pixel];
+            if claim.may_have(&one) {
+                counts[pixel] += 1;
+                let sure = matches!(claim.says, Says::Some(_)) || one.lies();
+                found.push((pixel, one.id(), sure));
+            }
+        });
+        found.into_iter().map(|(pixel, id, sure)| (id, sure && counts[pixel] == 1)).collect()
     }
 
     /// Calls `visit` for all that may lie in a pixel of a tile, with the count of the pixel in the
@@ -128,7 +163,10 @@ impl<'a, P: Profile> AllPossible<'a, P> {
                 let one = &possible[i as usize];
                 let Rect { x0, y0, x1, y1 } = one.bounds.intersection(rect);
                 for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
-                    visit(count(x, y), Candidate::Surfel(one));
+                    let passes = self.passes(one, (x, y));
+                    if passes.possibly() {
+                        visit(count(x, y), Candidate::Surfel(one, passes));
+                    }
                 }
             });
         }
@@ -136,6 +174,11 @@ impl<'a, P: Profile> AllPossible<'a, P> {
             let one = &self.pieces.all[i as usize];
             one.piece.for_each(rect, |at| visit(count(at.x, at.y), Candidate::Piece(one, at)));
         });
+    }
+
+    /// Whether a surfel passes the test of its depth at a pixel.
+    fn passes(&self, one: &Possible<P>, (x, y): (u32, u32)) -> Three {
+        self.limits.map_or_else(|| true.into(), |all| decide::visible(one.placed.t, *all.at(x, y)))
     }
 
     /// The sample of a surfel, seen from its back or not.
@@ -152,7 +195,7 @@ impl<'a, P: Profile> AllPossible<'a, P> {
     /// Calls `visit` for each sample that a candidate may have.
     fn each_sample(&self, of: &Candidate<'_, P>, mut visit: impl FnMut(PixelSample<Ball<P>>)) {
         match of {
-            Candidate::Surfel(one) => {
+            Candidate::Surfel(one, _) => {
                 if !one.back.certainly() {
                     visit(self.surfel(one, false));
                 }
@@ -164,12 +207,8 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         }
     }
 
-    fn judge(
-        &self,
-        planes: &SamplePlanes<'_>,
-        (tile, rect): (usize, Rect),
-        mut marks: Marks,
-    ) -> Marks {
+    /// What the client says of each pixel, and what lies there.
+    fn claims(&self, planes: &SamplePlanes<'_>, (tile, rect): (usize, Rect)) -> Vec<Claim<P>> {
         let claim = |(_, at)| Claim::new(planes, at, &self.pieces.unclear);
         let mut claims: Vec<Claim<P>> = counted(rect).map(claim).collect();
         self.each((tile, &rect), |pixel, one| {
@@ -177,12 +216,22 @@ impl<'a, P: Profile> AllPossible<'a, P> {
                 claims[pixel].meet(one.id(), one.depth());
             }
         });
+        claims
+    }
+
+    fn judge(
+        &self,
+        planes: &SamplePlanes<'_>,
+        (tile, rect): (usize, Rect),
+        mut marks: Marks,
+    ) -> Marks {
+        let mut claims = self.claims(planes, (tile, rect));
         let columns = rect.columns();
         self.each((tile, &rect), |pixel, one| {
             let at = (rect.x0 + (pixel % columns) as u32, rect.y0 + (pixel / columns) as u32);
             if claims[pixel].may_mean(&one) {
                 self.each_sample(&one, |sample| claims[pixel].consider(planes, at, sample));
-                let side = matches!(one, Candidate::Surfel(of) if of.back.decided().is_none());
+                let side = matches!(one, Candidate::Surfel(of, _) if of.back.decided().is_none());
                 marks.at(pixel).doubt(Doubt::Side, side);
             }
         });
@@ -205,21 +254,21 @@ impl<'a, P: Profile> AllPossible<'a, P> {
 impl<P: Profile> Candidate<'_, P> {
     fn id(&self) -> u32 {
         match self {
-            Self::Surfel(one) => one.surfel,
+            Self::Surfel(one, _) => one.surfel,
             Self::Piece(one, _) => one.piece.id,
         }
     }
 
     fn kind(&self) -> SampleKind {
         match self {
-            Self::Surfel(_) => SampleKind::Surface,
+            Self::Surfel(..) => SampleKind::Surface,
             Self::Piece(one, _) => one.piece.kind,
         }
     }
 
     fn depth(&self) -> Ball<P> {
         match self {
-            Self::Surfel(one) => one.placed.t,
+            Self::Surfel(one, _) => one.placed.t,
             Self::Piece(_, at) => -at.p.z,
         }
     }
@@ -227,16 +276,29 @@ impl<P: Profile> Candidate<'_, P> {
     /// Whether it certainly is drawn, somewhere.
     fn drawn(&self) -> bool {
         match self {
-            Self::Surfel(one) => one.drawn,
+            Self::Surfel(one, _) => one.drawn,
             Self::Piece(one, _) => one.drawn,
         }
     }
 
     /// Whether it certainly lies in the pixel.
     fn lies(&self) -> bool {
+        self.drawn() && self.is_alone() && self.passes().certainly()
+    }
+
+    /// Whether there is no other pixel that it may be drawn into instead.
+    fn is_alone(&self) -> bool {
         match self {
-            Self::Surfel(one) => one.drawn && one.bounds.pixels() == 1,
+            Self::Surfel(one, _) => one.bounds.pixels() == 1,
             Self::Piece(one, _) => one.drawn,
+        }
+    }
+
+    /// Whether it passes the test of its depth.
+    fn passes(&self) -> Three {
+        match self {
+            Self::Surfel(_, passes) => *passes,
+            Self::Piece(..) => true.into(),
         }
     }
 }
@@ -271,127 +333,4 @@ impl<P: Profile> Possible<P> {
         let drawn = !dropped.possibly();
         (!bounds.is_empty()).then_some(Self { surfel, bounds, drawn, placed, normal, back })
     }
-}
-
-impl<P: Profile> Claim<P> {
-    fn new(planes: &SamplePlanes<'_>, at: (u32, u32), unclear: &[u32]) -> Self {
-        let depth = planes.depth.map(|plane| plane.ball(at));
-        Self { says: planes.says(at, unclear), depth, front: None, best: None }
-    }
-
-    /// What lies in the pixel.
-    fn meet(&mut self, id: u32, t: Ball<P>) {
-        let most = |t: Ball<P>| t.middle + t.radius;
-        if self.front.is_none_or(|(_, front)| most(t) < most(front)) {
-            self.front = Some((id, t));
-        }
-    }
-
-    /// Whether the client may mean this.
-    fn may_mean(&self, one: &Candidate<'_, P>) -> bool {
-        let hidden = || self.front.is_some_and(|(_, t)| decide::before(t, one.depth()).certainly());
-        match self.says {
-            Says::Id(id) => id == one.id(),
-            Says::Some(kind) => {
-                let fits = kind.is_none_or(|kind| kind == one.kind());
-                fits && (self.depth.is_some() || !hidden())
-            }
-            Says::Nothing => !hidden(),
-            Says::Empty | Says::Unjudged(_) => false,
-        }
-    }
-
-    /// A sample that may be meant.
-    fn consider(
-        &mut self,
-        planes: &SamplePlanes<'_>,
-        at: (u32, u32),
-        sample: PixelSample<Ball<P>>,
-    ) {
-        let mut worst = 0.0_f64;
-        planes.check(at, &sample, &mut |_, error, _| worst = worst.at_least(error));
-        if self.best.is_none_or(|(least, _)| worst < least) {
-            self.best = Some((worst, sample));
-        }
-    }
-
-    /// Whether the claim itself can be, and what certainly is in front of it.
-    fn judge(&self, planes: &SamplePlanes<'_>, at: (u32, u32), pixel: &mut PixelMarks<'_>) {
-        let mut report = |_: usize, error: f64, fault: &dyn Fn() -> Fault| {
-            pixel.found(error, fault);
-        };
-        match (&self.best, self.says) {
-            (_, Says::Unjudged(kind)) => planes.check_kind(at, kind, &mut report),
-            (Some((_, sample)), _) => planes.check(at, sample, &mut report),
-            (None, Says::Id(surfel)) => {
-                report(0, f64::INFINITY, &|| Fault::Absent { surfel });
-            }
-            // Something lies here: rule 3. But other planes may say what they do not of nothing.
-            (None, _) if self.depth().middle == f64::INFINITY => {
-                planes.check(at, &PixelSample::<Ball<P>>::empty(), &mut report);
-            }
-            (None, _) => {
-                let (found, closest) = (self.depth().middle, f64::INFINITY);
-                report(0, f64::INFINITY, &|| Fault::NoSuchDepth { found, closest });
-            }
-        }
-        if let (Some((surfel, t)), true) = (self.front, self.says != Says::Nothing) {
-            let depth = self.depth();
-            if self.says != Says::Id(surfel) && decide::before(t, depth).certainly() {
-                let (error, depth, found) = (t.distance(depth), t.middle, depth.middle);
-                // A sample has no rim.
-                pixel.found(error, || Fault::LeftOut { surfel, rim: 0.0, depth, found });
-            }
-        }
-    }
-
-    /// The depth that others are compared with.
-    fn depth(&self) -> Ball<P> {
-        let of_sample = || self.best.map_or(anywhere(), |(_, sample)| sample.depth);
-        match self.says {
-            Says::Empty => Ball::INFINITY,
-            _ => self.depth.unwrap_or_else(of_sample),
-        }
-    }
-
-    /// Whether a surfel is exactly as near as that of the client, and comes before it.
-    fn judge_tie(
-        &self,
-        one: &Candidate<'_, P>,
-        (ties, surfels): (Ties, &Surfels),
-        pixel: &mut PixelMarks<'_>,
-    ) {
-        let (Says::Id(found), Some((_, sample)), Candidate::Surfel(surfel)) =
-            (self.says, &self.best, one)
-        else {
-            return;
-        };
-        let (surfel, t) = (surfel.surfel, one.depth());
-        let first = match ties {
-            Ties::Lowest => surfel < found,
-            Ties::Last => surfel > found,
-            Ties::Any => false,
-        };
-        let equal = t.middle == sample.depth.middle;
-        let exact = equal && t.radius + sample.depth.radius == 0.0 && one.lies();
-        if first && (exact || surfels.are_equal(surfel, found)) {
-            pixel.found(f64::INFINITY, || Fault::Tie { surfel, found });
-        }
-    }
-
-    /// Marks what may be in front.
-    fn doubt(&self, one: &Candidate<'_, P>, pixel: &mut PixelMarks<'_>) {
-        let nearer = decide::before(one.depth(), self.depth());
-        let own = self.best.is_some_and(|(_, sample)| sample.id == one.id());
-        if !own && nearer.possibly() {
-            pixel.doubt(Doubt::Nearer, !nearer.certainly());
-            pixel.doubt(Doubt::CutOff, !one.lies() && one.drawn());
-            pixel.doubt(Doubt::Fate, !one.drawn());
-        }
-    }
-}
-
-/// Any depth.
-fn anywhere<P: Profile>() -> Ball<P> {
-    Ball::new(0.0, f64::INFINITY)
 }

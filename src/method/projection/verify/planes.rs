@@ -1,10 +1,10 @@
 //! The planes of the projection that a client has handed in.
 
 use crate::frame::{NO_ID, Plane};
-use crate::method::Holds;
 use crate::method::checks::{Report, input, inputs, number, triple, whole};
 use crate::method::projection::planes::{PLANES, components, vector};
 use crate::method::projection::{Has, PixelSample, SampleKind};
+use crate::method::{Holds, PlaneRow};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector2};
 use crate::scene::Scene;
@@ -60,8 +60,30 @@ impl<'a> SamplePlanes<'a> {
         }
     }
 
+    /// Of a pass that leaves depths and ids alone.
+    pub(in crate::method) fn of_nearest(
+        client: &'a Client,
+        scene: &'a Scene,
+        [depth, id]: [&PlaneRow; 2],
+    ) -> Self {
+        Self {
+            scene,
+            ties: client.ties,
+            depth: client.scalar(depth),
+            id: client.index(id),
+            kind: None,
+            normal: None,
+            extent: None,
+            radius: None,
+            left: None,
+            upper: None,
+            color: None,
+            tangent: None,
+        }
+    }
+
     /// The names of the planes that are there.
-    pub(super) fn names(&self) -> Vec<&'static str> {
+    pub(in crate::method) fn names(&self) -> Vec<&'static str> {
         let there = [
             self.id.map(|plane| plane.name),
             self.kind.map(|plane| plane.name),

@@ -1,0 +1,337 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Each stage is judged from what the client has of the stage before, as it is stored; what the client has
+//! not is taken from [`Ball`]s of a [`Profile`]. The flags that the last frame left are given, and not
+//! judged: a client that has others draws another frame.
+//!
+//! **Visibility**: the certificate of [`ewa`](crate::method::ewa::verify) over the flagged surfels. What may be
+//! nearest where the client gives neither Z nor id is an interval.
+//!
+//! **Indices**, a certificate for each pixel, that of
+//! [`projection`](crate::method::projection::verify) with a test of depth. A surfel *may lie* in a pixel if it
+//! is not certainly dropped, its centre may fall into the pixel, and `t <= Z + epsilon` possibly holds; it
+//! *lies* there if all that is certain. Z is that of the client's pass 1, else the interval.
+//!
+//! 1. The surfel of the id may lie in the pixel, and Z is in the ball of its t.
+//! 2. Nothing else lies there whose t certainly is less.
+//! 3. Nothing that comes before, as the client says of ties, lies there at a t that is equal and exact in
+//!    balls, or has all numbers of the id's surfel.
+//! 4. Of an empty pixel Z is +inf, and nothing lies there.
+//!
+//! **B(i)** is what the client's plane of ids lists. Without that plane a surfel *may be selected* if it may
+//! lie in a pixel where nothing that lies there certainly is before it, and its t is the client's Z, if there
+//! is one; it *is selected* if nothing else may be in this pixel and it lies there, or the client's Z says
+//! that something does.
+//!
+//! **Difference**: the certificate over the flagged surfels and those of B(i) whose flag is not set; what
+//! only may be selected is not certainly drawn. With `second` off over the flagged ones alone. Z and id are
+//! those of `difference`; if neither is there those of the picture, whose empty pixels say nothing of what is
+//! nearest.
+//!
+//! **Attributes** as in `ewa`, over B(i), against the client's depth of pass 3. What only may be selected is an
+//! undecided fragment wherever it is visible, of which both continuations are kept.
+//!
+//! **Normalization and shading** as in `ewa`, but that Z and id of the picture are those of pass 3 where the
+//! client's weight is > 0, and those of nothing where it is 0; either, if that is not certain. With `second`
+//! off, where pass 1 certainly left nothing, they are those of the certificate over B(i); where it may
+//! have left nothing they are not judged.
+//!
+//! # Decided
+//!
+//! - Pass 3 is judged from the surfels of both passes, not from the depth that the client has of pass 1: both
+//!   are one depth buffer. A client that stores the two in different formats declares the coarser one.
+//! - Of a surfel that only may be selected the choice is free at every pixel, though it is one choice: more is
+//!   allowed than a right implementation leaves, never less.
+//! - Ids of more than 32 bits are not judged: a plane of ids holds 32 of them.
+
+mod handed;
+mod selected;
+#[cfg(test)]
+mod tests;
+
+use super::Settings;
+use super::part::{Part, Whole};
+use super::picture::whole;
+use super::planes::{CENTRE, CENTRE_ID};
+use crate::composite::decide;
+use crate::error::{Error, Result};
+use crate::frame::raster::Snap;
+use crate::frame::{Exec, Rect};
+use crate::memory;
+use crate::method::algorithm::Job;
+use crate::method::checks::anything;
+use crate::method::ewa::verify::certificate::{self, Nearest};
+use crate::method::ewa::verify::handed::Handed;
+use crate::method::ewa::verify::pixel::PixelJudge;
+use crate::method::ewa::verify::sums::{self, Continuations};
+use crate::method::ewa::verify::swift::{self, SwiftSplats};
+use crate::method::judged::{Counts, Found, Marks, StageMarks, Watch, counted};
+use crate::method::projection::verify::{AllPossible, SamplePlanes};
+use crate::method::tiled::Tiled;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real};
+use crate::scene::Surfels;
+use crate::verify::client::Client;
+use crate::verify::shift::Told;
+use crate::verify::verdict::{Check, Doubt, Verdict};
+
+/// Judges the planes of a client, whose ids are ranks: how many ids are less.
+///
+/// # Errors
+/// [`crate::Error::Invalid`] if the flags are of another scene, or if the process may not hold the surfels.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Result<Verdict> {
+    let (found, counts) = judge::<P>(job, settings, client, Watch::All)?;
+    let Counts { covered, undecided, told } = counts;
+    Ok(Verdict::new(found.judged(job), [covered, undecided], budget, told.shifts()))
+}
+
+/// Everything that is judged at one pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    Ok(judge::<P>(job, settings, client, Watch::one(job, pixel)?)?.0.checks())
+}
+
+/// What is found of all stages.
+fn judge<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    watch: Watch,
+) -> Result<(Found<4>, Counts)> {
+    let (whole, before) = whole(job, settings)?;
+    check(settings, &whole)?;
+    let flat = whole.part(whole.drawn_ids(), job.exec);
+    let scene = Scenery { job, settings, whole: &whole, flat: &flat };
+    let flagged = before.surfels(whole.ids());
+    memory::ask(flagged.len() as u64 * OF_A_FLAGGED, || {
+        format!("{} flagged surfels that are judged", flagged.len())
+    })?;
+    let flagged: Vec<_> =
+        flagged.into_iter().filter_map(|id| Some((scene.rank(id)?, true))).collect();
+
+    let first = handed::visibility(client);
+    let (visible, visibility) = scene.visible::<P>(&flagged, &first, watch);
+    let epsilon = scene.epsilon::<P>();
+    let limits = visible.map(|nearest| decide::limit(nearest.depth, epsilon));
+
+    let (indices, selected) = scene.indices(client, &limits, watch);
+
+    let unseen = |&(rank, _): &(u32, bool)| {
+        let found = whole.ids().find(flat.id(rank));
+        found.is_some_and(|(object, surfel)| !before.has(object, surfel))
+    };
+    let mut drawn = flagged;
+    if settings.second {
+        drawn.extend(selected.iter().filter(|one| unseen(one)));
+        drawn.sort_unstable();
+    }
+    let handed = handed::rest(client, settings);
+    let judge = Rest {
+        drawn: scene.splats(&drawn),
+        chosen: scene.splats(&selected),
+        pixels: PixelJudge::of_surfels(job, scene.surfels(), &handed),
+        handed: &handed,
+        picture: (!settings.second).then(|| handed::picture(client)),
+        surfels: scene.surfels(),
+        visible: &visible,
+    };
+    let (tiles, counts) = judge.tiles(job.exec, watch.parts(&job.grid()), watch);
+    let [(_, names), ..] = first.stages();
+    let levels = vec![("visibility", names, visibility), indices];
+    let [nearest, sums, averages, shading] = handed.stages();
+    let stages = [("difference", nearest.1), sums, averages, shading];
+    Ok((Found { levels, stages, tiles }, counts))
+}
+
+/// Bytes of a surfel that pass 1 draws, in its place and projected in balls; once more in pass 3.
+const OF_A_FLAGGED: u64 = 1536;
+
+/// What there are no rules for.
+fn check(settings: &Settings, whole: &Whole<'_>) -> Result<()> {
+    let what = if settings.share > 0.0 {
+        "frames that leave out objects: set --share 0"
+    } else if whole.polygons()?.is_empty() {
+        return Ok(());
+    } else {
+        "polygons beside surfels"
+    };
+    Err(Error::Invalid(format!("the method deferred cannot judge {what}")))
+}
+
+/// What passes draw from: all surfels that the high level leaves, in their places, each numbered by its rank.
+struct Scenery<'a> {
+    job: &'a Job<'a>,
+    settings: &'a Settings,
+    whole: &'a Whole<'a>,
+    flat: &'a Part,
+}
+
+impl<'a> Scenery<'a> {
+    fn surfels(&self) -> &'a Surfels {
+        self.flat.surfels()
+    }
+
+    fn rank(&self, id: u64) -> Option<u32> {
+        self.flat.ids().binary_search(&id).ok().map(|rank| rank as u32)
+    }
+
+    fn epsilon<P: Profile>(&self) -> Ball<P> {
+        let epsilon = self.settings.splats.epsilon.in_units(self.whole.median_radius());
+        Ball::from_f32(epsilon)
+    }
+
+    /// Some surfels, ascending, each with whether it certainly is one of those that a pass draws.
+    fn splats<P: Profile>(&self, some: &[(u32, bool)]) -> SwiftSplats<P> {
+        let ids = some.iter().map(|&(rank, _)| self.flat.id(rank)).collect();
+        let part = self.whole.part(ids, self.job.exec);
+        swift::project_part(&part.job(self.job), &self.settings.splats, some)
+    }
+
+    /// The nearest fragments of pass 1, and what is wrong of them.
+    fn visible<P: Profile>(
+        &self,
+        flagged: &[(u32, bool)],
+        handed: &Handed<'_>,
+        watch: Watch,
+    ) -> (Tiled<Nearest<P>>, Marks) {
+        let (job, splats) = (self.job, self.splats::<P>(flagged));
+        let judge = |(tile, rect): (usize, Rect), mut marks: Marks| {
+            let given = (handed, self.surfels());
+            (certificate::judge(&splats, given, (tile, &rect), &mut marks), marks)
+        };
+        let grid = job.grid();
+        let found = job
+            .exec
+            .ordered(Watch::All.parts(&grid), |(tile, rect)| judge((tile, rect), Marks::new(rect)));
+        let (tiles, all): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        let mut marks = watch.picture(job);
+        match watch {
+            Watch::All => all.into_iter().for_each(|part| marks.put(part)),
+            Watch::One(_) => {
+                for (tile, rect) in watch.parts(&grid) {
+                    marks.put(judge((tile, rect), watch.marks(rect)).1);
+                }
+            }
+        }
+        (Tiled::from_tiles(grid, tiles), marks)
+    }
+
+    /// What is wrong of pass 2, given the greatest depth that passes at each pixel; and B(i).
+    fn indices<P: Profile>(
+        &self,
+        client: &Client,
+        limits: &Tiled<Ball<P>>,
+        watch: Watch,
+    ) -> (StageMarks, Vec<(u32, bool)>) {
+        let (job, cull) = (self.flat.job(self.job), self.settings.splats.cull);
+        let planes = SamplePlanes::of_nearest(client, job.scene, [&CENTRE, &CENTRE_ID]);
+        let points = AllPossible::<P>::new(&job, cull, Snap::default(), Some(limits));
+        let names = planes.names();
+        let marks = match names.is_empty() {
+            true => watch.picture(&job),
+            false => points.judge_all(&job, &planes, watch),
+        };
+        let total = self.flat.ids().len() as u64;
+        let selected = match client.index(&CENTRE_ID) {
+            Some(stored) => selected::listed(stored.plane, total),
+            None => selected::possible(&job, &points, &planes, total),
+        };
+        (("indices", names, marks), selected)
+    }
+}
+
+/// What the tiles of the passes after the selection share.
+struct Rest<'a, P: Profile> {
+    /// The surfels of passes 1 and 3.
+    drawn: SwiftSplats<P>,
+    /// B(i).
+    chosen: SwiftSplats<P>,
+    handed: &'a Handed<'a>,
+    /// Depth and id of the picture, if these may be those of pass 4: with `second` off.
+    picture: Option<Handed<'a>>,
+    surfels: &'a Surfels,
+    pixels: PixelJudge<'a, P>,
+    /// What pass 1 has left.
+    visible: &'a Tiled<Nearest<P>>,
+}
+
+impl<P: Profile> Rest<'_, P> {
+    fn tiles(
+        &self,
+        exec: &Exec,
+        parts: Vec<(usize, Rect)>,
+        watch: Watch,
+    ) -> (Vec<[Marks; 4]>, Counts) {
+        let found = exec.ordered(parts, |(tile, rect)| {
+            let mut marks = [(); 4].map(|()| watch.marks(rect));
+            let counts = self.judge((tile, rect), &mut marks);
+            (marks, counts)
+        });
+        let (mut tiles, mut all) = (Vec::new(), Counts::default());
+        for (marks, counts) in found {
+            tiles.push(marks);
+            all.add(counts);
+        }
+        (tiles, all)
+    }
+
+    /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
+        let [first, rest @ ..] = marks;
+        let nearest = self.nearest((tile, &rect), first);
+        let sums =
+            sums::continuations(&self.chosen, self.surfels, &nearest, (tile, &rect), &mut rest[0]);
+        let (mut covered, mut told) = (0, Told::default());
+        for (pixel, at) in counted(rect) {
+            let shown = self.shown((tile, at), nearest[pixel], &mut rest[1]);
+            let taken = self.pixels.judge((pixel, at), &shown, &sums[pixel], rest);
+            if let (Continuations::Several(_, open), Some(taken)) = (&sums[pixel], taken) {
+                told.take_all(open, taken);
+            }
+            let certain = matches!(sums[pixel], Continuations::One(_));
+            covered += u64::from(shown.depth.middle.is_finite() || !certain);
+        }
+        Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS), told }
+    }
+
+    /// The nearest fragments that pass 3 has left.
+    fn nearest(&self, (tile, rect): (usize, &Rect), marks: &mut Marks) -> Vec<Nearest<P>> {
+        if self.picture.is_some() && self.handed.nothing() {
+            return counted(*rect).map(|(_, (x, y))| *self.visible.at(x, y)).collect();
+        }
+        certificate::judge(&self.drawn, (self.handed, self.surfels), (tile, rect), marks)
+    }
+
+    /// What the picture shows where it has weight: where no pass before has left anything the nearest of
+    /// B(i).
+    fn shown(
+        &self,
+        (tile, at): (usize, (u32, u32)),
+        nearest: Nearest<P>,
+        marks: &mut Marks,
+    ) -> Nearest<P> {
+        let Some(picture) = &self.picture else { return nearest };
+        let Ball { middle, radius, .. } = nearest.depth;
+        if middle == f64::INFINITY && radius == 0.0 {
+            let pixel = Rect::pixel(at);
+            let mut own = marks.beside(pixel);
+            let given = (picture, self.surfels);
+            let found = certificate::judge(&self.chosen, given, (tile, &pixel), &mut own);
+            marks.put(own);
+            found.into_iter().next().unwrap_or(nearest)
+        } else if (middle + radius).is_finite() {
+            nearest
+        } else {
+            Nearest { depth: anything(), id: None }
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Surfels of objects by their ids, and by their order among those that are drawn.
+
+use crate::error::{Error, Result};
+use crate::frame::{Frame, NO_ID, Samples};
+use crate::scene::objects::{Ids, Objects};
+
+/// The ids of the surfels that are drawn, ascending: by these a method that draws surfels one by one, and
+/// every verdict, counts them.
+pub(super) struct Names<'a> {
+    ids: &'a Ids,
+    /// Of objects with levels of detail; else all ids are drawn.
+    drawn: Option<Vec<u64>>,
+}
+
+impl<'a> Names<'a> {
+    pub(super) fn new(objects: &'a Objects) -> Self {
+        let drawn = objects.have_detail().then(|| objects.drawn_ids());
+        Self { ids: objects.ids(), drawn }
+    }
+
+    /// The lowest 32 bits of the id of a surfel that has been counted.
+    pub(super) fn id(&self, index: u32) -> Option<u32> {
+        let id = match &self.drawn {
+            Some(drawn) => drawn.get(index as usize).copied(),
+            None => self.ids.nth(index.into()),
+        };
+        id.map(|id| id as u32)
+    }
+
+    /// How many surfels are drawn whose ids are less.
+    fn index(&self, id: u32) -> Option<u32> {
+        match &self.drawn {
+            Some(drawn) => drawn.binary_search(&id.into()).ok().map(|index| index as u32),
+            None => self.ids.rank(id.into()).map(|rank| rank as u32),
+        }
+    }
+
+    /// Puts ids in the place of indices.
+    pub(super) fn name<R>(&self, frame: &mut Frame<R>) {
+        each_id(frame, |index| self.id(index).unwrap_or(index));
+    }
+
+    /// Puts indices in the place of ids. What is the id of none is the index of none.
+    pub(super) fn number<R>(&self, frame: &mut Frame<R>) -> Result<()> {
+        if self.ids.is_wide() {
+            let what = "ids of 40 bits: planes of ids hold 32 of them, which do not say the surfel";
+            return Err(Error::Invalid(what.into()));
+        }
+        each_id(frame, |id| self.index(id).unwrap_or(NO_ID - 1));
+        Ok(())
+    }
+}
+
+/// Changes every id of a frame that is that of something.
+fn each_id<R>(frame: &mut Frame<R>, of: impl Fn(u32) -> u32) {
+    for plane in &mut frame.planes {
+        if let Samples::Index(ids) = &mut plane.samples {
+            let some = ids.values_mut().iter_mut().filter(|id| **id != NO_ID);
+            some.for_each(|id| *id = of(*id));
+        }
+    }
+}
