@@ -13,13 +13,15 @@
 
 use super::bars::{Bar, svg};
 use super::common::report::{Arguments, Table, machine};
-use super::subjects::{Subject, drawn, subjects};
-use splatref::Result;
+use super::subjects::{FOREST, Subject, drawn, landscape, subjects};
 use splatref::frame::{Exec, NO_ID};
 use splatref::index::seen::Seen;
+use splatref::io::png;
 use splatref::method::{Method, Session, deferred};
 use splatref::scene::Scene;
 use splatref::source::flatten;
+use splatref::{Error, Result};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Frames before the first that counts.
@@ -105,6 +107,9 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
         ));
         rows.extend(passes(&subject, &[&without, &with, &single], settings, exec)?);
         let name = subject.name;
+        if let (FOREST, Some(folder)) = (name, &arguments.pictures) {
+            picture(&subject, folder, exec)?;
+        }
         bars.push(Bar { name: format!("{name}, without"), parts: without.passes.to_vec() });
         bars.push(Bar { name: format!("{name}, with"), parts: with.passes.to_vec() });
     }
@@ -117,6 +122,17 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
     table.publish_times(arguments, "gbp04.md", "passes")?;
     let title = format!("Time of each pass, 512 x 512; {}", machine());
     arguments.write("gbp04-passes.svg", &svg(&title, "ms", &PASSES, &bars))
+}
+
+/// The forest on its ground, as the second frame shows it.
+fn picture(forest: &Subject, folder: &Path, exec: &Exec) -> Result<()> {
+    let (scene, camera) = landscape(forest, exec)?;
+    let settings = deferred::Settings { splats: forest.splats, ..Default::default() };
+    let mut session = Session::new(&scene, settings.into(), exec)?;
+    session.render(&camera)?;
+    let frame = &session.render(&camera)?.frame;
+    std::fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+    png::write(&folder.join("gbp04-forest.png"), frame.color("")?, None)
 }
 
 /// The rows of a scene: without selection, with it, and how many primitives that is.

@@ -10,7 +10,8 @@ use splatref::io::ply;
 use splatref::number::random::unit;
 use splatref::scene::objects::{Geometry, Motion, Object, Objects};
 use splatref::scene::transform::rotation;
-use splatref::scene::{Camera, Cloud, Lens, Pose, Primitives, Scene, Similarity, Surfels};
+use splatref::scene::{Camera, Cloud, Environment, Lens, Pose, Primitives, Scene, Similarity};
+use splatref::scene::{Surfels, Triangles, Vertices};
 use splatref::source::derive::{self, Derive};
 use splatref::source::plant::{LEAVES, apple_tree};
 use splatref::splat::SplatSettings;
@@ -118,7 +119,7 @@ pub(crate) fn subjects<'a>(
 const HEAD: &str = "head, 285 k";
 const SHUFFLED: &str = "the same, in random order";
 const TREE: &str = "tree, 750 k";
-const FOREST: &str = "forest, 6,800 trees of 750 k";
+pub(crate) const FOREST: &str = "forest, 6,800 trees of 750 k";
 const CROWD: &str = "200 objects, 450 k in all";
 
 /// Igea, a head, sampled evenly at random, with derived radii.
@@ -148,14 +149,14 @@ fn tree() -> Result<Subject> {
     })
 }
 
-/// The tree 6,800 times, once in memory, with levels of detail at one pixel: at random on a square of 250
+/// The tree 6,800 times, once in memory, with levels of detail at two pixels: at random on a square of 250
 /// times the radius of the largest, turned and scaled. The camera stands at the edge and looks about.
-fn forest(exec: &Exec) -> Result<Subject> {
+pub(crate) fn forest(exec: &Exec) -> Result<Subject> {
     let surfels = points_of_tree()?;
     let (center, radius) = surfels.bounding_sphere();
     let (primitives, side) = (Primitives::default(), 250.0);
     let geometry = Geometry { name: "tree".into(), surfels, primitives, detail: None };
-    let geometry = geometry.with_detail(1.0, exec)?;
+    let geometry = geometry.with_detail(2.0, exec)?;
     let object = |i: u32| {
         let [x, z, size, turn] = [0, 1, 2, 3].map(|c| f64::from(unit(3, u64::from(4 * i + c))));
         let (scale, turn) = ((0.5 + 0.5 * size) / radius, rotation(DVec3::Y, 360.0 * turn));
@@ -172,6 +173,34 @@ fn forest(exec: &Exec) -> Result<Subject> {
         splats: SplatSettings::BOTH_SIDES,
         paper: ["0.8-1.5", "90-98", "10-16"],
     })
+}
+
+/// The forest on a ground of two triangles, and its camera in the first frame \[GBP04, Fig. 7\].
+pub(crate) fn landscape(forest: &Subject, exec: &Exec) -> Result<(Scene, Camera)> {
+    let camera = forest.camera(0)?;
+    let far = 400.0;
+    let corner = |x: f32, z: f32| Vec3::new(x * far, -0.9, z * far);
+    let vertices = Vertices {
+        position: vec![corner(-1.0, 0.1), corner(1.0, 0.1), corner(1.0, -1.0), corner(-1.0, -1.0)],
+        direction: vec![Vec3::Y; 4],
+        radius: vec![0.0; 4],
+        color: Some(vec![Vec3::new(0.1, 0.16, 0.05); 4]),
+    };
+    let triangles = Triangles::new(vertices, vec![[0, 1, 2], [0, 2, 3]])?.0;
+    let primitives = Primitives { triangles, ..Primitives::default() };
+    let (name, surfels) = ("ground", Surfels::none());
+    let ground = Geometry { name: name.into(), surfels, primitives, detail: None };
+    let forest = &forest.scene;
+    let (mut geometries, mut all) = match &forest.objects {
+        Some(objects) => (objects.geometries().to_vec(), objects.objects().to_vec()),
+        None => (Vec::new(), Vec::new()),
+    };
+    let motion = Motion::still(Similarity::IDENTITY);
+    all.push(Object { name: name.into(), geometry: geometries.len(), motion, color: None });
+    geometries.push(ground);
+    let objects = Objects::new(geometries, all, Vec3::splat(0.75))?.seen_from(&camera, exec)?;
+    let environment = Some(Environment::Sky);
+    Ok((Scene { objects: Some(objects), environment, ..forest.clone() }, camera))
 }
 
 /// Points on the triangles of all leaves and branches of a tree, evenly at random, with the spacing as
