@@ -1,5 +1,6 @@
 //! All surfels of a scene by their ids, and some of them as a scene that the passes of `ewa` draw.
 
+use super::filter::filtered;
 use super::queries::Queries;
 use crate::frame::Exec;
 use crate::method::algorithm::Job;
@@ -111,6 +112,12 @@ impl<'a> Whole<'a> {
             Some(objects) => objects.some(ids, exec),
             None => self.scene.surfels.some(ids),
         }
+    }
+
+    /// The surfels of ascending ids as pass 4 draws them, see [`mod@super::filter`].
+    pub(super) fn drawn(&self, ids: Vec<u64>, job: &Job<'_>) -> Part {
+        let surfels = filtered(self.surfels(&ids, job.exec), job.camera, job.exec);
+        Part { scene: Scene::unlit(&self.scene.name, surfels), ids }
     }
 
     /// The surfels of ascending ids as a scene, unlit and before nothing.

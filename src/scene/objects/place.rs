@@ -7,7 +7,7 @@ use crate::scene::cloud::half_axes;
 use crate::scene::degenerate::unit;
 use crate::scene::surfels::Arrays;
 use crate::scene::transform::Similarity;
-use crate::scene::{Boxes, Primitives, Surfels, bounds};
+use crate::scene::{Boxes, Mipmap, Primitives, Surfels, bounds};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
@@ -83,16 +83,16 @@ impl Objects {
         Ok((surfels, placed.collect::<Result<_>>()?))
     }
 
-    /// The surfels of some ids, which ascend; an id that is none is left out.
+    /// The surfels of some ids, which ascend, with their prefiltered colours; an id that is none is left out.
     #[must_use]
     pub fn some(&self, ids: &[u64], exec: &Exec) -> Surfels {
         self.gather(ids.chunks(CHUNK).map(Part::Ids).collect(), exec)
     }
 
     fn gather(&self, parts: Vec<Part<'_>>, exec: &Exec) -> Surfels {
-        let has = self.has();
+        let (has, levels) = (self.has(), self.levels());
         let chunks = exec.ordered(parts, |part| {
-            let mut arrays = Arrays::new(has);
+            let mut arrays = Arrays::new(has, levels);
             match part {
                 Part::Range(object, range) => {
                     range.for_each(|surfel| self.place(object, surfel, &mut arrays));
@@ -114,7 +114,7 @@ impl Objects {
             }
             arrays
         });
-        let mut all = Arrays::new(has);
+        let mut all = Arrays::new(has, levels);
         chunks.into_iter().for_each(|chunk| all.append(chunk));
         all.into_surfels(self.median_radius, self.bounding_sphere())
     }
@@ -135,6 +135,14 @@ impl Objects {
             of(|surfels| surfels.opacity().is_some()),
             of(|surfels| surfels.tangents().is_some()),
         ]
+    }
+
+    /// The levels of prefiltered colours of the geometry that has the most; 0 if none has any.
+    /// `Decided:` a geometry with fewer has its last one, or its colour, in the place of the others.
+    fn levels(&self) -> usize {
+        let geometries = self.objects.iter().map(|object| &self.geometries[object.geometry]);
+        let levels = geometries.filter_map(|geometry| geometry.surfels.mipmap());
+        levels.map(Mipmap::levels).max().unwrap_or(0)
     }
 
     /// Appends one surfel in its place.
@@ -158,10 +166,15 @@ impl Objects {
         // It has a direction: it was a unit vector before it was turned.
         unit(&mut normal);
         if let Some(colors) = &mut to.color {
+            let painted = self.objects[object as usize].color;
             let own = || surfels.color().map(|colors| colors[i]);
-            let color = self.objects[object as usize].color.or_else(own).unwrap_or(self.fill);
             // -0 becomes 0.
-            colors.push(color + Vec3::ZERO);
+            let color = painted.or_else(own).unwrap_or(self.fill) + Vec3::ZERO;
+            colors.push(color);
+            if let Some(mipmap) = &mut to.mipmap {
+                let own = surfels.mipmap().filter(|_| painted.is_none());
+                mipmap.push(own.map(|own| own.of(i)), color);
+            }
         }
         if let Some(opacities) = &mut to.opacity {
             opacities.push(surfels.opacity().map_or(1.0, |own| own[i]));
