@@ -35,7 +35,7 @@
 //! # Decided
 //!
 //! - \[GBP04\] says that samples are prefiltered and not how; \[PZvG00\] does it with Gaussians, on the
-//!   texture that the surfels were sampled from. (1 - q)^2 is near a Gaussian of variance R R / 6, ends
+//!   texture that the surfels were sampled from. (1 - q)^2 is near a Gaussian of variance R R / 8 along each axis, ends
 //!   at R, and is arithmetic.
 //! - Neighbours count by their area: where surfels are dense they are small.
 //! - Of two sheets back to back only the one that faces the same way counts. Sheets that face the same
@@ -177,7 +177,8 @@ impl<'a> Samples<'a> {
         let cells: Vec<&[Key]> = keys.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).collect();
         let mut all = Vec::with_capacity(cells.len());
         exec.extend(&mut all, cells.len(), |i| Sample::new(surfels, colors, cells[i]));
-        let points: Vec<Vec3> = all.iter().map(|sample: &Sample| sample.position.as_vec3()).collect();
+        let points: Vec<Vec3> =
+            all.iter().map(|sample: &Sample| sample.position.as_vec3()).collect();
         Self { surfels, tree: PointTree::new(&points, LEAF, exec), all }
     }
 

@@ -96,7 +96,8 @@ impl Surfels {
     /// [`Error::Invalid`] as [`Surfels::new`], but for that.
     pub fn new_or_none(cloud: Cloud, exec: &Exec) -> Result<(Self, Dropped)> {
         let n = cloud.position.len();
-        let Cloud { position, normal, radius, color, opacity, tangents, mipmap, groups, .. } = cloud;
+        let Cloud { position, normal, radius, color, opacity, tangents, mipmap, groups, .. } =
+            cloud;
         let mut normal =
             normal.ok_or_else(|| Error::Invalid("the points have no normals".into()))?;
         let radius = radius.ok_or_else(|| Error::Invalid("the points have no radii".into()))?;

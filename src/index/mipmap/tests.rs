@@ -22,9 +22,9 @@ fn naive(surfels: &Surfels, levels: usize) -> Vec<Vec3> {
     };
     let side = |i: usize| {
         let n = surfels.normal()[i].to_array();
-        let longest = (0..3).rev().fold(2, |best, axis| {
-            if n[axis].abs() >= n[best].abs() { axis } else { best }
-        });
+        let longest = (0..3)
+            .rev()
+            .fold(2, |best, axis| if n[axis].abs() >= n[best].abs() { axis } else { best });
         2 * longest + usize::from(n[longest] < 0.0)
     };
     let mut made = Vec::new();
@@ -89,7 +89,8 @@ fn naive(surfels: &Surfels, levels: usize) -> Vec<Vec3> {
 fn any_surfels() -> impl Strategy<Value = Surfels> {
     (1..80_u64, any::<u64>(), any::<bool>(), 1..60_u32).prop_map(|(n, seed, ellipses, spread)| {
         let unit = |i: u64, c: u64| unit(seed, 16 * i + c);
-        let vector = |i: u64, from: u64| Vec3::new(unit(i, from), unit(i, from + 1), unit(i, from + 2));
+        let vector =
+            |i: u64, from: u64| Vec3::new(unit(i, from), unit(i, from + 1), unit(i, from + 2));
         let each = || 0..n;
         let radius = |i: u64| {
             // Of sizes that differ by up to 2^16.
@@ -103,7 +104,8 @@ fn any_surfels() -> impl Strategy<Value = Surfels> {
             radius: Some(each().map(radius).collect()),
             color: Some(each().map(|i| vector(i, 8)).collect()),
             tangents: ellipses.then(|| {
-                let axes = |i: u64| [Vec3::X, Vec3::new(0.25, 1.0, unit(i, 12))].map(|v| v * radius(i));
+                let axes =
+                    |i: u64| [Vec3::X, Vec3::new(0.25, 1.0, unit(i, 12))].map(|v| v * radius(i));
                 each().map(axes).collect()
             }),
             ..Cloud::default()
@@ -162,7 +164,7 @@ fn an_edge_becomes_a_slope_of_the_width_of_the_level() {
     for i in 0..64 * 64 {
         let x = surfels.position()[i].x;
         for (k, color) in (1..).zip(made.of(i)) {
-            let reach = 2.0_f32.powi(k) / 64.0;
+            let reach = (1_u32 << k) as f32 / 64.0;
             assert!(color.x == color.y && color.y == color.z, "the other sheet: {color}");
             // A sample may lie a cell's diagonal away from its surfels.
             let far = 1.25 * reach;

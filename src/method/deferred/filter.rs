@@ -57,9 +57,7 @@ pub(super) fn filtered(surfels: Surfels, camera: &Camera, exec: &Exec) -> Surfel
     }
     let view = View::new(camera);
     let mut colors = Vec::with_capacity(surfels.len());
-    exec.extend(&mut colors, surfels.len(), |i| {
-        color(&surfels, i, Level::of(&view, &surfels, i))
-    });
+    exec.extend(&mut colors, surfels.len(), |i| color(&surfels, i, Level::of(&view, &surfels, i)));
     surfels.recolored(colors)
 }
 
@@ -126,10 +124,10 @@ pub fn color(surfels: &Surfels, i: usize, level: Level) -> Vec3 {
     let Some(mipmap) = surfels.mipmap() else { return own };
     let of = |k: usize| if k == 0 { own } else { mipmap.of(i)[k - 1] }.as_dvec3();
     let from = of(level.below);
-    let mixed = if level.part > 0.0 {
-        from + (of(level.below + 1) - from) * level.part
-    } else {
-        from
-    };
+    let mixed =
+        if level.part > 0.0 { from + (of(level.below + 1) - from) * level.part } else { from };
     mixed.as_vec3() + Vec3::ZERO
 }
+
+#[cfg(test)]
+mod tests;
