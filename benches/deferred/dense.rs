@@ -18,9 +18,9 @@ pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
         "change, deferred",
         "change, ewa",
         "flicker",
-        "with mipmaps",
+        "flicker with mipmaps",
         "error",
-        "with mipmaps",
+        "error with mipmaps",
     ]);
     let (mut series, mut filtered) = (Vec::new(), Vec::new());
     for (name, surface) in SURFACES.into_iter().filter(|s| s.0.contains(&arguments.pattern)) {

@@ -41,7 +41,7 @@ fn naive(surfels: &Surfels, levels: usize) -> Vec<Vec3> {
             while power * 2.0 <= reach {
                 power *= 2.0;
             }
-            let cell = power / 8.0;
+            let cell = power / 4.0;
             let mut samples = BTreeMap::<([i64; 3], usize), Vec<usize>>::new();
             for j in 0..n {
                 let at = vector(surfels.position()[j]).map(|x| (x / cell).floor() as i64);
@@ -167,7 +167,7 @@ fn an_edge_becomes_a_slope_of_the_width_of_the_level() {
             let reach = (1_u32 << k) as f32 / 64.0;
             assert!(color.x == color.y && color.y == color.z, "the other sheet: {color}");
             // A sample may lie a cell's diagonal away from its surfels.
-            let far = 1.25 * reach;
+            let far = 1.4 * reach;
             assert!(x.abs() < far || color.x == if x < 0.0 { 0.0 } else { 1.0 }, "{x} {k} {color}");
             let inside = x.abs() < 0.3 * reach;
             assert!(!inside || (color.x - 0.5).abs() < 0.4, "{x} {k} {color}");

@@ -1,6 +1,7 @@
 use super::*;
 use crate::method::deferred::Settings;
 use crate::method::{Method, Session};
+use crate::scene::transform::rotation;
 use crate::scene::{Cloud, Lens, Mipmap, Pose, Scene};
 use crate::source::Shape;
 use glam::DVec3;
@@ -30,26 +31,29 @@ fn view(eye: DVec3, lens: Lens) -> View<f64> {
 #[test]
 fn a_level_is_twice_the_size() {
     let surfels = one(Vec3::Z, None, 4);
-    // A pixel of the side h/64 is that of x = h/16 radii.
+    // A pixel has the side of h/16 radii.
     for (height, level) in
         [(1.0, 0.0), (16.0, 0.0), (24.0, 0.5), (32.0, 1.0), (40.0, 1.25), (64.0, 2.0), (1e6, 4.0)]
     {
-        let view = view(DVec3::Z * 3.0, Lens::Orthographic(height));
+        let view = view(DVec3::Z * 3.0, Lens::Orthographic(height / 2.0_f64.sqrt()));
         let found = Level::of(&view, &surfels, 0);
-        // The scale of the camera is an f32.
+        // The scale of the camera is an f32. x is sqrt(2) times the side.
         assert!((found.number() - level).abs() < 1e-6, "{height}: {}", found.number());
         let expected = Vec3::splat(found.number() as f32);
         assert_eq!(color(&surfels, 0, found), expected, "the colour of level k is k");
     }
-    // Turned by 60 degrees it covers half as many pixels.
-    let turned = one(Vec3::new(0.75_f32.sqrt(), 0.0, 0.5), None, 4);
-    let found = Level::of(&view(DVec3::Z * 3.0, Lens::Orthographic(16.0)), &turned, 0).number();
-    assert!((found - (2.0_f64.sqrt() - 1.0)).abs() < 1e-6, "{found}");
+    // Turned by 60 degrees it covers half as much, about any axis.
+    let seen = view(DVec3::Z * 3.0, Lens::Orthographic(16.0));
+    for about in [DVec3::X, DVec3::Y, DVec3::new(3.0, 4.0, 0.0)] {
+        let turned = rotation(about, 60.0) * DVec3::Z;
+        let found = Level::of(&seen, &one(turned.as_vec3(), None, 4), 0).number();
+        assert!((found - 1.0).abs() < 1e-6, "{about}: {found}");
+    }
     // An ellipse is as large as the disc of its area, whatever its half axes.
     let halves = [Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.25, 0.125, 0.0)];
-    let ellipse = one(Vec3::Z, Some(halves), 4);
-    let view = view(DVec3::Z * 3.0, Lens::Orthographic(40.0));
-    assert_eq!(Level::of(&view, &ellipse, 0), Level::of(&view, &surfels, 0));
+    let [ellipse, disc] = [Some(halves), None].map(|halves| one(Vec3::Z, halves, 4));
+    let [ellipse, disc] = [ellipse, disc].map(|one| Level::of(&seen, &one, 0).number());
+    assert!((ellipse - disc).abs() < 1e-9, "{ellipse} {disc}");
 }
 
 #[test]
