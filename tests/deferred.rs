@@ -108,9 +108,10 @@ fn more_than_one_surfel_a_pixel_flickers() {
     assert!(few.flicker[0] < 0.035, "{}", few.flicker[0]);
     assert!(one.flicker[0] > 0.06, "{}", one.flicker[0]);
     assert!(four.flicker[0] > 0.18, "{}", four.flicker[0]);
-    // [GBP04, 4.4]: prefiltered colours halve it, and the error too: 0.114 of 0.239, 0.090 of 0.224.
+    // [GBP04, 4.4]: of flicker and error prefiltered colours leave a third. Measured, over eight
+    // frames: 0.084 of 0.236, 0.068 of 0.220.
     let (flicker, error) = (four.flicker[1] / four.flicker[0], four.error[1] / four.error[0]);
-    assert!(flicker < 0.6 && error < 0.55, "{flicker} {error}");
+    assert!(flicker < 0.45 && error < 0.4, "{flicker} {error}");
     // Where a pixel has fewer surfels than one they change next to nothing.
     let change = few.flicker[1] / few.flicker[0] - 1.0;
     assert!(change.abs() < 0.05, "{change}");

@@ -34,7 +34,7 @@
 //!
 //! # Decided
 //!
-//! - \[GBP04\] says that samples are prefiltered and not how; \[PZvG00\] does it with Gaussians, on the
+//! - \[GBP04\] says that samples are prefiltered and not how; Pfister et al. 2000 (*Surfels*) do it with Gaussians, on the
 //!   texture that the surfels were sampled from. (1 - q)^2 is near a Gaussian of variance R R / 8 along each axis, ends
 //!   at R, and is arithmetic.
 //! - Neighbours count by their area: where surfels are dense they are small.

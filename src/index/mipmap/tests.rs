@@ -7,19 +7,19 @@ use std::collections::BTreeMap;
 
 fn none(_: &str, _: u64, _: u64) {}
 
-/// The page, as it is written: every sample of the grid for every surfel.
-fn naive(surfels: &Surfels, levels: usize) -> Vec<Vec3> {
-    let n = surfels.len();
-    let vector = |v: Vec3| v.to_array().map(f64::from);
-    let s = |i: usize| match surfels.tangents() {
-        None => f64::from(surfels.radius()[i]),
-        Some(tangents) => {
-            let [u, v] = tangents[i].map(vector);
-            let c =
-                [u[1] * v[2] - v[1] * u[2], u[2] * v[0] - v[2] * u[0], u[0] * v[1] - v[0] * u[1]];
-            ((c[0] * c[0] + c[1] * c[1]) + c[2] * c[2]).sqrt().sqrt()
-        }
-    };
+fn vector(v: Vec3) -> [f64; 3] {
+    v.to_array().map(f64::from)
+}
+
+fn sized(surfels: &Surfels, i: usize) -> f64 {
+    let Some(tangents) = surfels.tangents() else { return surfels.radius()[i].into() };
+    let [u, v] = tangents[i].map(vector);
+    let c = [u[1] * v[2] - v[1] * u[2], u[2] * v[0] - v[2] * u[0], u[0] * v[1] - v[0] * u[1]];
+    ((c[0] * c[0] + c[1] * c[1]) + c[2] * c[2]).sqrt().sqrt()
+}
+
+/// The sums of the samples of a grid: P A, N and C A, and A.
+fn samples(surfels: &Surfels, cell: f64) -> Vec<([f64; 9], f64)> {
     let side = |i: usize| {
         let n = surfels.normal()[i].to_array();
         let longest = (0..3)
@@ -27,59 +27,57 @@ fn naive(surfels: &Surfels, levels: usize) -> Vec<Vec3> {
             .fold(2, |best, axis| if n[axis].abs() >= n[best].abs() { axis } else { best });
         2 * longest + usize::from(n[longest] < 0.0)
     };
+    let mut samples = BTreeMap::<([i64; 3], usize), ([f64; 9], f64)>::new();
+    for j in 0..surfels.len() {
+        let at = vector(surfels.position()[j]).map(|x| (x / cell).floor() as i64);
+        let (sum, area) = samples.entry((at, side(j))).or_default();
+        let a = sized(surfels, j) * sized(surfels, j);
+        let color = surfels.color().unwrap()[j];
+        let numbers = [surfels.position()[j], surfels.normal()[j], color].map(vector);
+        for (to, from) in sum.iter_mut().zip(numbers.concat()) {
+            *to += from * a;
+        }
+        *area += a;
+    }
+    samples.into_values().collect()
+}
+
+/// The mean of all samples around a surfel.
+fn around(surfels: &Surfels, i: usize, reach: f64) -> Option<Vec3> {
+    // The greatest power of two that is not greater, by search.
+    let mut power = 1.0;
+    while power > reach {
+        power /= 2.0;
+    }
+    while power * 2.0 <= reach {
+        power *= 2.0;
+    }
+    let (center, own) = (vector(surfels.position()[i]), vector(surfels.normal()[i]));
+    let mut sums = [0.0; 4];
+    for (sum, area) in samples(surfels, power / 4.0) {
+        let d = [0, 1, 2].map(|c| f64::from((sum[c] / area) as f32) - center[c]);
+        let dd = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
+        let facing = (sum[3] * own[0] + sum[4] * own[1]) + sum[5] * own[2];
+        if dd < reach * reach && facing > 0.0 {
+            let rest = 1.0 - dd / (reach * reach);
+            let w = area * (rest * rest);
+            (0..3).for_each(|c| sums[c] += sum[6 + c] / area * w);
+            sums[3] += w;
+        }
+    }
+    (sums[3] > 0.0).then(|| [0, 1, 2].map(|c| (sums[c] / sums[3]) as f32 + 0.0).into())
+}
+
+/// The page, as it is written: every sample of the grid for every surfel.
+fn naive(surfels: &Surfels, levels: usize) -> Vec<Vec3> {
     let mut made = Vec::new();
-    for i in 0..n {
-        let mut before = surfels.color().unwrap()[i];
-        let mut reach = s(i);
+    for i in 0..surfels.len() {
+        let mut color = surfels.color().unwrap()[i];
+        let mut reach = sized(surfels, i);
         for _ in 1..=levels {
             reach *= 2.0;
-            // The greatest power of two that is not greater, by search.
-            let mut power = 1.0;
-            while power > reach {
-                power /= 2.0;
-            }
-            while power * 2.0 <= reach {
-                power *= 2.0;
-            }
-            let cell = power / 4.0;
-            let mut samples = BTreeMap::<([i64; 3], usize), Vec<usize>>::new();
-            for j in 0..n {
-                let at = vector(surfels.position()[j]).map(|x| (x / cell).floor() as i64);
-                samples.entry((at, side(j))).or_default().push(j);
-            }
-            let mut sums = [0.0; 4];
-            for members in samples.values() {
-                let (mut area, mut sum) = (0.0, [0.0; 9]);
-                for &j in members {
-                    let a = s(j) * s(j);
-                    let numbers = [
-                        vector(surfels.position()[j]),
-                        vector(surfels.normal()[j]),
-                        vector(surfels.color().unwrap()[j]),
-                    ];
-                    for (to, from) in sum.iter_mut().zip(numbers.concat()) {
-                        *to += from * a;
-                    }
-                    area += a;
-                }
-                let d = [0, 1, 2].map(|c| {
-                    f64::from((sum[c] / area) as f32) - f64::from(surfels.position()[i][c])
-                });
-                let dd = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
-                let own = vector(surfels.normal()[i]);
-                let facing = (sum[3] * own[0] + sum[4] * own[1]) + sum[5] * own[2];
-                if dd < reach * reach && facing > 0.0 {
-                    let rest = 1.0 - dd / (reach * reach);
-                    let w = area * (rest * rest);
-                    (0..3).for_each(|c| sums[c] += sum[6 + c] / area * w);
-                    sums[3] += w;
-                }
-            }
-            if sums[3] > 0.0 {
-                let color = [0, 1, 2].map(|c| (sums[c] / sums[3]) as f32 + 0.0);
-                before = Vec3::from_array(color);
-            }
-            made.push(before);
+            color = around(surfels, i, reach).unwrap_or(color);
+            made.push(color);
         }
     }
     made

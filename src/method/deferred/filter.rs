@@ -20,7 +20,8 @@
 //! square there. Where x < 1 the level is 0, and where it is L or more, L; where area is 0 it is L. Where
 //! area is NaN, or t = -p.z is not > 0, it is 0: no pass draws that.
 //!
-//! **Colour.** With c_0 the surfel's own colour, c_1 to c_L the prefiltered ones and j < L, per component
+//! **Colour.** With `c_0` the surfel's own colour, `c_1` to `c_L` the prefiltered ones and j < L, per
+//! component
 //!
 //! ```text
 //!   c = c_j + (c_(j+1) - c_j) (level - j)        c_L at the level L
@@ -53,7 +54,7 @@
 //!   differs by less than 0.087: so there is no function here whose bits depend on a library.
 //! - An object with a colour of its own has that colour, and so has what belongs to it.
 //!
-//! Source: \[GBP04, 4.4\], after \[PZvG00\].
+//! Source: \[GBP04, 4.4\], after Pfister et al. 2000 (*Surfels*).
 
 use crate::frame::Exec;
 use crate::scene::{Camera, Surfels};
