@@ -1,68 +1,13 @@
-//! Flicker with more than one surfel a pixel \[GBP04, 4.4, Fig. 4\].
-//!
-//! Surfaces with checks of the side of one pixel, unlit, in 256 x 256 pixels, in more and more surfels.
-//! The camera goes towards the middle by 1/400 of its distance a frame, by which what is seen at the edge
-//! of the picture moves by a third of a pixel. With D(i) a frame of `deferred` and E(i) the same frame of
-//! `ewa` of all surfels, over the pixels that lie inside of what E(i) and E(i + 1) cover, the mean over
-//! the frames:
-//!
-//! ```text
-//!   change     RMSE of D(i + 1) and D(i), and of E(i + 1) and E(i)
-//!   flicker    RMSE of D(i + 1) - D(i) and E(i + 1) - E(i)       change that is no motion
-//!   error      RMSE of D(i) and E(i)
-//! ```
-//!
-//! Flicker is the measure of the bench `reconstruction`. The difference of the two changes is not taken
-//! for it: a picture that changes as much as the reference and elsewhere would have none.
+//! Flicker with more than one surfel a pixel \[GBP04, 4.4, Fig. 4\], measured as [`super::flicker`] says.
 
 use super::common::chart::{Axis, Series, svg};
 use super::common::report::{Arguments, Table};
-use super::stage::{along_a_curve, board, check};
-use glam::{DVec3, Vec3};
+use super::flicker::{Found, SIDE, SURFACES, dense, measured};
 use splatref::Result;
 use splatref::frame::Exec;
-use splatref::method::{Method, Session, deferred, ewa};
-use splatref::scene::transform::rotation;
-use splatref::scene::{Camera, Cloud, Lens, Pose, Scene, Similarity, Surfels};
-use splatref::source::Shape;
-use splatref::verify::metrics::{Region, regions, rmse};
 
-const SIDE: u32 = 256;
 const DENSITIES: [f64; 7] = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
 const FRAMES: u32 = 8;
-/// Frames before the first that counts.
-const BEFORE: u32 = 2;
-const DISTANCE: f64 = 4.0;
-const FIELD_OF_VIEW: f64 = 34.0;
-/// The world size of a pixel in the middle of the first frame.
-const PIXEL: f64 = 2.0 * DISTANCE * 0.305_730_681_458_660_4 / SIDE as f64;
-/// How many surfels are drawn to find out how many a pixel has.
-const TRIAL: usize = 20_000;
-
-/// A surface in about so many surfels.
-type Surface = fn(usize) -> Result<Surfels>;
-
-const SURFACES: [(&str, Surface); 3] = [
-    ("plane", |count| {
-        let side = (count as f64).sqrt().round() as u32;
-        let mut cloud = board(side.max(1), 1.0, PIXEL)?.into_cloud();
-        // Far end up, by 60 degrees from facing the camera.
-        let tilt = Similarity { rotation: rotation(DVec3::X, -60.0), ..Similarity::IDENTITY };
-        tilt.apply(&mut cloud);
-        Ok(Surfels::new(cloud)?.0)
-    }),
-    ("sphere", |count| checked(&Shape::Sphere, count, 0.0)),
-    ("torus", |count| checked(&Shape::Torus, count, 60.0)),
-];
-
-/// A shape with checks, in the order of a curve.
-fn checked(shape: &Shape, count: usize, lean: f64) -> Result<Surfels> {
-    let mut cloud = along_a_curve(shape.surfels(count, 0)?)?.into_cloud();
-    let lean = Similarity { rotation: rotation(DVec3::X, lean), ..Similarity::IDENTITY };
-    lean.apply(&mut cloud);
-    let colors: Vec<Vec3> = cloud.position.iter().map(|p| check(p.as_dvec3(), PIXEL)).collect();
-    Ok(Surfels::new(Cloud { color: Some(colors), ..cloud })?.0)
-}
 
 pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
     let mut table = Table::new(&[
@@ -73,113 +18,33 @@ pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
         "change, deferred",
         "change, ewa",
         "flicker",
+        "flicker with mipmaps",
         "error",
+        "error with mipmaps",
     ]);
-    let mut series = Vec::new();
+    let (mut series, mut filtered) = (Vec::new(), Vec::new());
     for (name, surface) in SURFACES.into_iter().filter(|s| s.0.contains(&arguments.pattern)) {
-        let trial = density(&surface(TRIAL)?, exec)?;
-        let mut points = Vec::new();
+        let [mut points, mut below] = [Vec::new(), Vec::new()];
         for wanted in DENSITIES {
-            let surfels = surface((TRIAL as f64 * wanted / trial).round() as usize)?;
-            let (count, found) = (surfels.len(), measured(surfels, exec)?);
+            let surfels = dense(surface, wanted, exec)?;
+            let (count, found) = (surfels.len(), measured(surfels, FRAMES, exec)?);
             let Found { culled, deferred, ewa, flicker, error } = found;
+            let ([flicker, less], [error, other]) = (flicker, error);
             table.row(&format!(
                 "{name} | {wanted} | {count} | {culled:.1} | {deferred:.4} | {ewa:.4} | \
-                 {flicker:.4} | {error:.4}"
+                 {flicker:.4} | {less:.4} | {error:.4} | {other:.4}"
             ));
             points.push([wanted, flicker]);
+            below.push([wanted, less]);
         }
         series.push(Series { name: name.to_owned(), points });
+        filtered.push(Series { name: format!("{name}, mipmaps"), points: below });
     }
+    series.append(&mut filtered);
     table.publish(arguments, "gbp04.md", "dense")?;
     let x = Axis { title: "surfels a pixel", ticks: DENSITIES.to_vec() };
     let flickers = series.iter().flat_map(|series| &series.points).map(|point| point[1]);
     let y = Axis::around("flicker, RMSE of linear RGB", flickers);
     let title = format!("Checks of one pixel over a slow dolly, {SIDE} x {SIDE}");
     arguments.write("gbp04-dense.svg", &svg(&title, [&x, &y], &series, ("", &[])))
-}
-
-fn camera(frame: u32) -> Result<Camera> {
-    let distance = DISTANCE * (1.0 - f64::from(frame) / 400.0);
-    let pose = Pose { eye: DVec3::Z * distance, target: DVec3::ZERO, up: DVec3::Y };
-    Camera::new(SIDE, SIDE, pose, Lens::FieldOfView(FIELD_OF_VIEW))
-}
-
-/// Surfels that face the camera, by covered pixels.
-fn density(surfels: &Surfels, exec: &Exec) -> Result<f64> {
-    let camera = camera(0)?;
-    let eye = camera.eye();
-    let faces = |(p, n): (&Vec3, &Vec3)| (eye - p.as_dvec3()).dot(n.as_dvec3()) > 0.0;
-    let facing = surfels.position().iter().zip(surfels.normal()).filter(|&s| faces(s)).count();
-    let scene = Scene::unlit("trial", surfels.clone());
-    let mut session = Session::new(&scene, ewa::Settings::default().into(), exec)?;
-    let alpha = session.render(&camera)?.frame.scalar("A")?;
-    let covered = alpha.values().iter().filter(|a| **a > 0.0).count();
-    Ok(facing as f64 / covered.max(1) as f64)
-}
-
-struct Found {
-    /// Surfels that are not selected, per cent.
-    culled: f64,
-    deferred: f64,
-    ewa: f64,
-    flicker: f64,
-    error: f64,
-}
-
-/// A frame of both methods: colours, and what `ewa` covers.
-struct Shot {
-    deferred: Vec<[f32; 3]>,
-    ewa: Vec<[f32; 3]>,
-    inside: Vec<bool>,
-    selected: u32,
-}
-
-fn measured(surfels: Surfels, exec: &Exec) -> Result<Found> {
-    let count = surfels.len() as f64;
-    let scene = Scene::unlit("dense", surfels);
-    let methods: [Method; 2] =
-        [deferred::Settings::default().into(), ewa::Settings::default().into()];
-    let [mut deferred, mut ewa] =
-        [Session::new(&scene, methods[0], exec)?, Session::new(&scene, methods[1], exec)?];
-    let mut shots = Vec::new();
-    for frame in 0..BEFORE + FRAMES + 1 {
-        let camera = camera(frame)?;
-        let drawn = deferred.render(&camera)?;
-        if frame < BEFORE {
-            continue;
-        }
-        let selected = drawn.seen.as_ref().map_or(0, |seen| seen.selected().iter().sum());
-        let colors = drawn.frame.color("")?.values().to_vec();
-        let full = &ewa.render(&camera)?.frame;
-        let inside = regions(full.scalar("A")?.values(), SIDE as usize);
-        shots.push(Shot {
-            deferred: colors,
-            ewa: full.color("")?.values().to_vec(),
-            inside: inside.iter().map(|region| *region == Region::Interior).collect(),
-            selected,
-        });
-    }
-    Ok(found(&shots, count))
-}
-
-fn found(shots: &[Shot], count: f64) -> Found {
-    let mut sums = [0.0; 5];
-    for pair in shots.windows(2) {
-        let [a, b] = [&pair[0], &pair[1]];
-        let pixels: Vec<usize> =
-            (0..a.inside.len()).filter(|&i| a.inside[i] && b.inside[i]).collect();
-        let of =
-            |colors: &[[f32; 3]]| -> Vec<f32> { pixels.iter().flat_map(|&i| colors[i]).collect() };
-        let [d0, d1, e0, e1] = [&a.deferred, &b.deferred, &a.ewa, &b.ewa].map(|c| of(c));
-        let change = |from: &[f32], to: &[f32]| -> Vec<f32> {
-            from.iter().zip(to).map(|(from, to)| to - from).collect()
-        };
-        let flicker = rmse(&change(&d0, &d1), &change(&e0, &e1));
-        let culled = 1e2 * (1.0 - f64::from(a.selected) / count);
-        let all = [culled, rmse(&d0, &d1), rmse(&e0, &e1), flicker, rmse(&d0, &e0)];
-        (0..5).for_each(|i| sums[i] += all[i] / (shots.len() - 1) as f64);
-    }
-    let [culled, deferred, ewa, flicker, error] = sums;
-    Found { culled, deferred, ewa, flicker, error }
 }

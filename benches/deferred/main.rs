@@ -9,6 +9,7 @@ mod bars;
 #[path = "../common/mod.rs"]
 mod common;
 mod dense;
+mod flicker;
 mod rates;
 mod stage;
 mod subjects;

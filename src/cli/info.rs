@@ -45,6 +45,7 @@ fn points(path: &Path) -> Result<()> {
         ("opacities", cloud.opacity.is_some()),
         ("half axes", cloud.tangents.is_some()),
         ("tangents", cloud.tangent.is_some()),
+        ("mipmaps", cloud.mipmap.is_some()),
         ("groups", cloud.groups.is_some()),
     ];
     let there: Vec<&str> = arrays.iter().filter(|(_, is)| *is).map(|(name, _)| *name).collect();

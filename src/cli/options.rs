@@ -3,7 +3,8 @@
 use super::rows::{OfGroups, OfMethods, OfNumber, RowOptions};
 use glam::DVec3;
 use splatref::frame::Exec;
-use splatref::io::scene_file::{EnvironmentChoice, SceneFile, Source, check_opacity};
+use splatref::io::scene_file::{EnvironmentChoice, SceneFile, Source};
+use splatref::io::scene_file::{check_mipmaps, check_opacity};
 use splatref::method::Method;
 use splatref::scene::{Camera, Lens};
 use splatref::{Error, Result};
@@ -97,6 +98,9 @@ pub(super) struct SceneOptions {
     /// Opacity of all surfels, 0 to 1
     #[arg(long, value_name = "A", allow_hyphen_values = true, help_heading = "Shapes and models")]
     opacity: Option<f32>,
+    /// Levels of prefiltered colours a surfel, which deferred draws; 0 drops those of a file
+    #[arg(long, value_name = "LEVELS", help_heading = "Shapes and models")]
+    mipmaps: Option<usize>,
     /// Surfels of a procedural shape, leaves of the tree [default: 200000, 50124]
     #[arg(long, value_name = "N", help_heading = "Shapes and models")]
     count: Option<usize>,
@@ -128,6 +132,10 @@ impl SceneOptions {
         if let Some(opacity) = self.opacity {
             check_opacity(opacity)?;
             file.all_models_mut().for_each(|model| model.opacity = Some(opacity));
+        }
+        if let Some(levels) = self.mipmaps {
+            check_mipmaps(levels)?;
+            file.all_models_mut().for_each(|model| model.mipmaps = Some(levels));
         }
         self.choose_method(&mut file)?;
         file.output = self.number.chosen.on(file.output, "the output")?;

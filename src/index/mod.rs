@@ -1,11 +1,13 @@
 //! What is built once from a scene and asked for every view.
 //!
 //! - [`grouping`]: groups of surfels that do not overlap, so that a group shares one depth-image.
+//! - [`mipmap`]: prefiltered colours of surfels.
 //! - [`order`]: surfels from back to front.
 //! - [`seen`]: which surfels the frame before saw.
 //! - [`sequential`]: levels of detail as a list.
 
 pub mod grouping;
+pub mod mipmap;
 pub mod order;
 pub(crate) mod point_tree;
 pub mod seen;

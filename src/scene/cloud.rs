@@ -1,6 +1,7 @@
 //! Points as a file holds them: nothing derived, nothing checked but the lengths of the arrays.
 
 use super::Groups;
+use super::Mipmap;
 use glam::{DVec3, Vec3};
 
 /// Points, with whatever else their file gave.
@@ -21,6 +22,8 @@ pub struct Cloud {
     pub opacity: Option<Vec<f32>>,
     /// Half axes of elliptical surfels, in world units.
     pub tangents: Option<Vec<[Vec3; 2]>>,
+    /// Prefiltered linear RGB; of use only where there are colours.
+    pub mipmap: Option<Mipmap>,
     /// Tangents of tubes, of any length.
     pub tangent: Option<Vec<Vec3>>,
     /// Groups of the points.
@@ -51,6 +54,7 @@ impl Cloud {
         marked(&mut self.opacity, keep);
         marked(&mut self.tangents, keep);
         marked(&mut self.tangent, keep);
+        self.mipmap = self.mipmap.take().map(|mipmap| mipmap.retain(keep));
         self.groups = self.groups.take().map(|groups| groups.retain(keep));
         corners(&mut self.triangles, &index);
         corners(&mut self.edges, &index);

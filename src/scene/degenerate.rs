@@ -2,6 +2,7 @@
 
 use super::surfels::Dropped;
 use crate::frame::Exec;
+use crate::scene::Mipmap;
 use crate::scene::light::is_color;
 use glam::Vec3;
 
@@ -15,6 +16,7 @@ pub(super) struct Points<'a> {
     pub(super) color: Option<&'a [Vec3]>,
     pub(super) opacity: Option<&'a [f32]>,
     pub(super) tangents: Option<&'a [[Vec3; 2]]>,
+    pub(super) mipmap: Option<&'a Mipmap>,
 }
 
 impl Points<'_> {
@@ -54,6 +56,7 @@ impl Points<'_> {
         } else if !self.color.is_none_or(|c| is_color(c[i]))
             || !self.opacity.is_none_or(|o| (0.0..=1.0).contains(&o[i]))
             || !self.tangents.is_none_or(|t| spans_a_plane(t[i]))
+            || !self.mipmap.is_none_or(|m| m.of(i).iter().all(|c| is_color(*c)))
         {
             Some(&mut dropped.attribute)
         } else {

@@ -1,7 +1,7 @@
 //! The identity of a scene: one hash over everything a picture depends on but camera and settings.
 
 use super::indexed::Indexed;
-use super::{Environment, Light, Objects, Phong, Primitives, Scene, Surfels};
+use super::{Environment, Light, Mipmap, Objects, Phong, Primitives, Scene, Surfels};
 use crate::scene::Groups;
 use glam::Vec3;
 use sha2::{Digest, Sha256};
@@ -31,7 +31,9 @@ impl Scene {
     ///     the colour of objects without one (3 f32)
     ///     u64 count of objects, each: geometry (u64), colour (3 f32) after a byte 1, or a byte 0
     ///       alone; rotation row by row, scale and translation in the frame (13 f64)
-    ///     each geometry with levels of detail: a byte 5, its index (u64), its threshold (f64)
+    ///     each geometry with levels of detail: a byte 6, its index (u64), its threshold (f64)
+    ///   prefiltered colours: nothing if no surfel has any; else a byte 5, then for the surfels, or for
+    ///     those of each geometry, u64 count of levels, and the colours surfel by surfel (3 f32 each)
     /// ```
     ///
     /// A scene of objects has no surfels and no primitives but those of its geometries, whether it is
@@ -76,6 +78,14 @@ impl Scene {
         if let Some(objects) = &self.objects {
             hash.0.update([4]);
             hash.objects(objects);
+        }
+        let all: Vec<&Surfels> = match &self.objects {
+            None => vec![surfels],
+            Some(objects) => objects.geometries().iter().map(|g| &g.surfels).collect(),
+        };
+        if all.iter().any(|surfels| surfels.mipmap().is_some()) {
+            hash.0.update([5]);
+            all.iter().for_each(|surfels| hash.mipmap(surfels));
         }
         hash.finish()
     }
@@ -126,6 +136,12 @@ impl Hasher {
         self.optional(surfels.tangents(), |[u, v]| [u.x, u.y, u.z, v.x, v.y, v.z]);
     }
 
+    fn mipmap(&mut self, surfels: &Surfels) {
+        self.count(surfels.mipmap().map_or(0, Mipmap::levels));
+        let colors = surfels.mipmap().map(Mipmap::colors).unwrap_or_default();
+        self.floats(colors.iter().flat_map(Vec3::to_array));
+    }
+
     fn primitives(&mut self, primitives: &Primitives) {
         self.indexed(&primitives.triangles);
         self.indexed(&primitives.ribbons);
@@ -149,7 +165,7 @@ impl Hasher {
         }
         for (index, geometry) in objects.geometries().iter().enumerate() {
             if let Some(detail) = &geometry.detail {
-                self.0.update([5]);
+                self.0.update([6]);
                 self.count(index);
                 self.0.update(detail.threshold().to_le_bytes());
             }
@@ -288,6 +304,26 @@ mod tests {
         assert_eq!(ribbon, hash(&bytes));
     }
 
+    fn leveled(cloud: &mut Cloud, levels: usize, color: Vec3) {
+        cloud.color = Some(vec![Vec3::ZERO]);
+        cloud.mipmap = Some(Mipmap::new(levels, vec![color; levels]).unwrap());
+    }
+
+    #[test]
+    fn the_bytes_of_prefiltered_colours_are_those_documented() {
+        let mut cloud = cloud();
+        leveled(&mut cloud, 2, Vec3::X);
+        let mut bytes = documented();
+        // The colour, in the place of its absence.
+        let at = 17 + 8 + 7 * 4;
+        bytes.splice(at..=at, [1].into_iter().chain([0; 12]));
+        bytes.push(5);
+        bytes.extend(2_u64.to_le_bytes());
+        let colors = [1.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0];
+        bytes.extend(colors.into_iter().flat_map(f32::to_le_bytes));
+        assert_eq!(scene(cloud).sha256(), hash(&bytes));
+    }
+
     #[test]
     fn every_part_counts_and_the_name_does_not() {
         let of = |change: fn(&mut Cloud)| {
@@ -307,6 +343,9 @@ mod tests {
             of(|c| c.color = Some(vec![Vec3::ZERO])),
             of(|c| c.opacity = Some(vec![0.0])),
             of(|c| c.tangents = Some(vec![[Vec3::X, Vec3::Y]])),
+            of(|c| leveled(c, 1, Vec3::ZERO)),
+            of(|c| leveled(c, 2, Vec3::ZERO)),
+            of(|c| leveled(c, 2, Vec3::X)),
             lit.sha256(),
             dull.sha256(),
         ];

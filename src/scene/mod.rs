@@ -12,6 +12,7 @@
 //! - [`hash`]: the identity of a scene.
 //! - [`indexed`]: triangles, ribbons and tubes.
 //! - [`light`]: lights and the Phong material.
+//! - [`mipmap`]: prefiltered colours of surfels.
 //! - [`transform`]: moving, turning and scaling a model.
 
 pub mod bounds;
@@ -24,6 +25,7 @@ pub mod groups;
 pub mod hash;
 pub mod indexed;
 pub mod light;
+pub mod mipmap;
 pub mod objects;
 pub mod surfels;
 pub mod transform;
@@ -35,6 +37,7 @@ pub use environment::Environment;
 pub use groups::Groups;
 pub use indexed::{Counts, Polylines, Primitives, Triangles, Vertices};
 pub use light::{Light, Phong};
+pub use mipmap::Mipmap;
 pub use objects::{Geometry, Motion, Object, Objects};
 pub use surfels::{Dropped, Surfels};
 pub use transform::Similarity;

@@ -2,9 +2,11 @@
 
 use super::Cloud;
 use super::Groups;
+use super::Mipmap;
 use super::degenerate::{CHUNK, Points};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::scene::light::is_color;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
@@ -12,8 +14,8 @@ use std::ops::Range;
 ///
 /// Guarantees, kept by construction: at least one surfel, but for [`Surfels::none`]; positions
 /// finite; normals of length 1 within 2^-20; radii finite and > 0; colours in
-/// [0, [`crate::scene::light::MAX_RADIANCE`]] and opacities in [0, 1], none of them -0; tangents
-/// finite and not parallel. (Whether they are perpendicular to each other and to the normal is the
+/// [0, [`crate::scene::light::MAX_RADIANCE`]], prefiltered ones too, and opacities in [0, 1], none of
+/// them -0; prefiltered colours only where there are colours; tangents finite and not parallel. (Whether they are perpendicular to each other and to the normal is the
 /// business of whoever gives them.) An array that the scene does not need is not allocated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surfels {
@@ -23,6 +25,7 @@ pub struct Surfels {
     color: Option<Vec<Vec3>>,
     opacity: Option<Vec<f32>>,
     tangents: Option<Vec<[Vec3; 2]>>,
+    mipmap: Option<Mipmap>,
     groups: Option<Groups>,
     median_radius: f32,
     bounding_sphere: (DVec3, f64),
@@ -37,7 +40,7 @@ pub struct Dropped {
     pub normal: u64,
     /// A radius that is not finite or not > 0.
     pub radius: u64,
-    /// Colour outside [0, [`crate::scene::light::MAX_RADIANCE`]], opacity outside [0, 1], tangents not finite or parallel.
+    /// Colour, prefiltered or not, outside [0, [`crate::scene::light::MAX_RADIANCE`]], opacity outside [0, 1], tangents not finite or parallel.
     pub attribute: u64,
 }
 
@@ -65,8 +68,8 @@ impl Surfels {
     /// length, sqrt((x x + y y) + z z), in f64, component by component, and rounded once. Triangles, edges and the tangents of tubes are ignored.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if normals or radii are missing, if an array has the wrong length, if
-    /// nothing is left, or if there are more than 2^32 - 2 surfels.
+    /// [`Error::Invalid`] if normals or radii are missing, if an array has the wrong length, if there
+    /// are prefiltered colours without colours, if nothing is left, or if there are more than 2^32 - 2 surfels.
     pub fn new(cloud: Cloud) -> Result<(Self, Dropped)> {
         Self::new_with(cloud, &Exec::sequential())
     }
@@ -93,11 +96,13 @@ impl Surfels {
     /// [`Error::Invalid`] as [`Surfels::new`], but for that.
     pub fn new_or_none(cloud: Cloud, exec: &Exec) -> Result<(Self, Dropped)> {
         let n = cloud.position.len();
-        let Cloud { position, normal, radius, color, opacity, tangents, groups, .. } = cloud;
+        let Cloud { position, normal, radius, color, opacity, tangents, mipmap, groups, .. } =
+            cloud;
         let mut normal =
             normal.ok_or_else(|| Error::Invalid("the points have no normals".into()))?;
         let radius = radius.ok_or_else(|| Error::Invalid("the points have no radii".into()))?;
         check_lengths(n, normal.len(), radius.len(), &color, &opacity, &tangents, &groups)?;
+        check_mipmap(n, color.is_some(), &mipmap)?;
         if n as u64 >= u64::from(u32::MAX) {
             return Err(Error::Invalid(format!(
                 "{n} surfels, but ids have 32 bits: split the scene"
@@ -110,6 +115,7 @@ impl Surfels {
             color: color.as_deref(),
             opacity: opacity.as_deref(),
             tangents: tangents.as_deref(),
+            mipmap: mipmap.as_ref(),
         };
         let (keep, dropped) = points.keep(&mut normal, exec);
         if dropped.total() == n as u64 {
@@ -126,6 +132,11 @@ impl Surfels {
             color: color.map(|c| retain(c, &keep).into_iter().map(|c| c + Vec3::ZERO).collect()),
             opacity: opacity.map(|o| retain(o, &keep).into_iter().map(|o| o + 0.0).collect()),
             tangents: tangents.map(|t| retain(t, &keep)),
+            mipmap: mipmap.map(|mipmap| {
+                let mut kept = mipmap.retain(&keep);
+                kept.colors_mut().iter_mut().for_each(|color| *color += Vec3::ZERO);
+                kept
+            }),
             groups: groups.map(|g| g.retain(&keep)),
         };
         (surfels.median_radius, surfels.bounding_sphere) =
@@ -144,6 +155,7 @@ impl Surfels {
             color: None,
             opacity: None,
             tangents: None,
+            mipmap: None,
             groups: None,
             median_radius: 0.0,
             bounding_sphere: (DVec3::ZERO, 0.0),
@@ -166,6 +178,7 @@ impl Surfels {
             color: self.color.as_ref().map(|color| of(color, &indices)),
             opacity: self.opacity.as_ref().map(|opacity| of(opacity, &indices)),
             tangents: self.tangents.as_ref().map(|tangents| of(tangents, &indices)),
+            mipmap: self.mipmap.as_ref().map(|mipmap| mipmap.some(&indices)),
         };
         arrays.into_surfels(self.median_radius, self.bounding_sphere)
     }
@@ -238,6 +251,35 @@ impl Surfels {
         self.tangents.as_deref()
     }
 
+    /// Prefiltered colours.
+    #[must_use]
+    pub fn mipmap(&self) -> Option<&Mipmap> {
+        self.mipmap.as_ref()
+    }
+
+    /// The same surfels with other prefiltered colours, or without.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there are more or fewer than surfels, if surfels have no colours, or if a
+    /// colour is not in [0, [`crate::scene::light::MAX_RADIANCE`]].
+    pub fn with_mipmap(self, mipmap: Option<Mipmap>) -> Result<Self> {
+        check_mipmap(self.len(), self.color.is_some(), &mipmap)?;
+        let mut mipmap = mipmap;
+        let colors = mipmap.iter_mut().flat_map(|mipmap| mipmap.colors_mut());
+        for color in colors {
+            if !is_color(*color) {
+                return Err(Error::Invalid(format!("a prefiltered colour of {color}")));
+            }
+            *color += Vec3::ZERO;
+        }
+        Ok(Self { mipmap, ..self })
+    }
+
+    /// The same surfels in these colours, one for each, without prefiltered ones.
+    pub(crate) fn recolored(self, colors: Vec<Vec3>) -> Self {
+        Self { color: Some(colors), mipmap: None, ..self }
+    }
+
     /// Groups, if the scene brought them along.
     #[must_use]
     pub fn groups(&self) -> Option<&Groups> {
@@ -306,6 +348,7 @@ impl Surfels {
             color: self.color,
             opacity: self.opacity,
             tangents: self.tangents,
+            mipmap: self.mipmap,
             groups: self.groups,
             ..Cloud::default()
         }
@@ -320,11 +363,13 @@ pub(super) struct Arrays {
     pub(super) color: Option<Vec<Vec3>>,
     pub(super) opacity: Option<Vec<f32>>,
     pub(super) tangents: Option<Vec<[Vec3; 2]>>,
+    pub(super) mipmap: Option<Mipmap>,
 }
 
 impl Arrays {
-    /// None yet; with colours, opacities and half axes or not.
-    pub(super) fn new([color, opacity, tangents]: [bool; 3]) -> Self {
+    /// None yet; with colours, opacities and half axes or not, and with so many levels of prefiltered
+    /// colours, if not 0.
+    pub(super) fn new([color, opacity, tangents]: [bool; 3], levels: usize) -> Self {
         Self {
             position: Vec::new(),
             normal: Vec::new(),
@@ -332,6 +377,7 @@ impl Arrays {
             color: color.then(Vec::new),
             opacity: opacity.then(Vec::new),
             tangents: tangents.then(Vec::new),
+            mipmap: (levels > 0).then(|| Mipmap::empty(levels)),
         }
     }
 
@@ -354,11 +400,13 @@ impl Arrays {
         color.zip(others.color).for_each(|(to, from)| to.extend(from));
         opacity.zip(others.opacity).for_each(|(to, from)| to.extend(from));
         self.tangents.iter_mut().zip(others.tangents).for_each(|(to, from)| to.extend(from));
+        let mipmaps = self.mipmap.iter_mut().zip(others.mipmap);
+        mipmaps.for_each(|(to, from)| to.colors_mut().extend(from.colors()));
     }
 
     /// The surfels; the median radius and the sphere may be those of a whole of which these are a part.
     pub(super) fn into_surfels(self, median_radius: f32, sphere: (DVec3, f64)) -> Surfels {
-        let Self { position, normal, radius, color, opacity, tangents } = self;
+        let Self { position, normal, radius, color, opacity, tangents, mipmap } = self;
         let (groups, bounding_sphere) = (None, sphere);
         Surfels {
             position,
@@ -367,6 +415,7 @@ impl Arrays {
             color,
             opacity,
             tangents,
+            mipmap,
             groups,
             median_radius,
             bounding_sphere,
@@ -404,6 +453,19 @@ fn check_lengths(
         }
     }
     Ok(())
+}
+
+/// Prefiltered colours of every surfel, if there are any, and colours too.
+pub(crate) fn check_mipmap(n: usize, colored: bool, mipmap: &Option<Mipmap>) -> Result<()> {
+    let Some(mipmap) = mipmap else { return Ok(()) };
+    if mipmap.len() != n {
+        let of = mipmap.len();
+        return Err(Error::Invalid(format!("{n} positions, but prefiltered colours of {of}")));
+    }
+    if colored {
+        return Ok(());
+    }
+    Err(Error::Invalid("the points have prefiltered colours, but no colours of their own".into()))
 }
 
 /// The elements marked in `keep`, in order; without a copy if all are.

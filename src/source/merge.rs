@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::scene::cloud::half_axes;
 use crate::scene::indexed::Indexed;
-use crate::scene::{Cloud, Primitives, Vertices};
+use crate::scene::{Cloud, Mipmap, Primitives, Vertices};
 use glam::Vec3;
 
 /// Joins complete clouds, with normals and radii, in their order; triangles, edges and the
@@ -11,12 +11,14 @@ use glam::Vec3;
 /// other.
 ///
 /// What only some of them have is filled in for the others: colour by `color`, opacity by 1, the
-/// half axes of a disc by [`half_axes`]. A single cloud is left as it is: nothing is filled in.
+/// half axes of a disc by [`half_axes`], prefiltered colours by the last that there is, or by the colour. A
+/// single cloud is left as it is: nothing is filled in.
 #[must_use]
 pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
     let colored = clouds.iter().any(|c| c.color.is_some());
     let veiled = clouds.iter().any(|c| c.opacity.is_some());
     let elliptic = clouds.iter().any(|c| c.tangents.is_some());
+    let levels = clouds.iter().filter_map(|c| c.mipmap.as_ref()).map(Mipmap::levels).max();
     if clouds.len() == 1 {
         // The usual case, without a copy.
         let one = clouds.remove(0);
@@ -28,6 +30,7 @@ pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
         color: colored.then(Vec::new),
         opacity: veiled.then(Vec::new),
         tangents: elliptic.then(Vec::new),
+        mipmap: levels.map(Mipmap::empty),
         ..Cloud::default()
     };
     for cloud in clouds {
@@ -37,6 +40,12 @@ pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
         if let Some(to) = &mut all.tangents {
             let discs = || normal.iter().zip(&radius).map(|(&n, &r)| half_axes(n, r)).collect();
             to.extend(cloud.tangents.unwrap_or_else(discs));
+        }
+        if let Some(to) = &mut all.mipmap {
+            for i in 0..n {
+                let own = cloud.color.as_ref().map_or(color, |own| own[i]);
+                to.push(cloud.mipmap.as_ref().map(|mipmap| mipmap.of(i)), own);
+            }
         }
         append(&mut all.color, cloud.color, n, color);
         append(&mut all.opacity, cloud.opacity, n, 1.0);

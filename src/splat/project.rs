@@ -213,6 +213,11 @@ impl<R: Real> Projector<R> {
         self.reaches_near_plane(&placed, &shape)
     }
 
+    /// The area of V0.
+    pub(crate) fn area(&self, disc: &Disc<R>) -> R {
+        self.shape(disc).1.area
+    }
+
     /// See [`Projector::crosses`].
     #[inline(always)]
     fn reaches_near_plane(&self, placed: &PlacedDisc<R>, shape: &Covariance<R>) -> R::Truth {

@@ -12,6 +12,7 @@
 //! | | | `float`, `double` | linear, kept |
 //! | | `opacity` or `alpha` | `uchar`, `ushort` | divided by 255 or 65535 |
 //! | | | `float`, `double` | kept |
+//! | | `mip1_red mip1_green mip1_blue`, `mip2_red` ... | as `red` | [prefiltered colours](crate::scene::Mipmap), level by level from 1 on, 16 levels at most, beside `red green blue` |
 //! | | `tux tuy tuz tvx tvy tvz` | any | half axes of an ellipse, world units |
 //! | | `tx ty tz` | any | tangent of a tube, of any length |
 //! | | `group` | an integer | the surfel's own [group](crate::index::grouping), 0 to 63 |
@@ -143,7 +144,10 @@ fn ask(header: &PlyHeader, length: u64, more: u64) -> Reason<()> {
     let vertices = vertex(header)?.count;
     let faces = header.elements.iter().filter(|element| element.name != "vertex");
     let faces: u64 = faces.map(|element| element.count.min(length)).sum();
-    let needed = vertices.min(length) * BYTES_A_VERTEX + faces * BYTES_A_FACE;
+    let vertex = vertex(header)?.properties.iter();
+    let prefiltered = vertex.filter(|property| property.name.starts_with("mip")).count() as u64;
+    let a_vertex = BYTES_A_VERTEX + 8 * prefiltered.min(48);
+    let needed = vertices.min(length) * a_vertex + faces * BYTES_A_FACE;
     memory::try_ask(needed.saturating_add(more), || format!("a cloud of {vertices} points"))
 }
 

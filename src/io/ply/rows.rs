@@ -5,7 +5,8 @@
 
 use super::header::{Element, Format, PropertyKind, Scalar};
 use super::vertices::{
-    COLOR, Decode, Layout, NORMAL, OPACITY, POSITION, PropertyUse, RADIUS, TANGENT, TANGENTS,
+    COLOR, Decode, Layout, MIPMAP, NORMAL, OPACITY, POSITION, PropertyUse, RADIUS, TANGENT,
+    TANGENTS,
 };
 use crate::frame::Exec;
 use crate::scene::Cloud;
@@ -16,7 +17,7 @@ use std::ops::Range;
 pub(super) struct Rows {
     /// Bytes of a row.
     stride: usize,
-    /// By the place of a number in [`super::vertices::NAMES`].
+    /// By the place of a number in [`super::vertices::NAMES`], and then of the levels.
     numbers: Vec<Option<Number>>,
 }
 
@@ -35,7 +36,7 @@ impl Rows {
         if format != Format::Little {
             return None;
         }
-        let mut rows = Self { stride: 0, numbers: vec![None; TANGENT.end] };
+        let mut rows = Self { stride: 0, numbers: vec![None; layout.width()] };
         for (property, slot) in element.properties.iter().zip(&layout.slots) {
             let PropertyKind::One(scalar) = property.kind else { return None };
             match *slot {
@@ -67,6 +68,10 @@ impl Rows {
             .flatten()
             .for_each(|numbers| numbers.reserve_exact(count));
         cloud.tangents.iter_mut().for_each(|pairs| pairs.reserve_exact(count));
+        if let Some(mipmap) = &mut cloud.mipmap {
+            let levels = mipmap.levels();
+            mipmap.colors_mut().reserve_exact(count * levels);
+        }
     }
 
     /// Appends the rows of `bytes` to the arrays that `cloud` has.
@@ -83,6 +88,7 @@ impl Rows {
         }
         let pair = |[a, b, c, d, e, f]: [f32; 6]| [Vec3::new(a, b, c), Vec3::new(d, e, f)];
         cloud.tangents.iter_mut().for_each(|to| table.put(to, TANGENTS, pair));
+        cloud.mipmap.iter_mut().for_each(|mipmap| table.levels(mipmap.colors_mut()));
     }
 }
 
@@ -96,6 +102,19 @@ struct Table<'a> {
 impl Table<'_> {
     fn vectors(&self, to: &mut Vec<Vec3>, places: Range<usize>) {
         self.put(to, places, Vec3::from_array);
+    }
+
+    /// Appends the prefiltered colours of each row, level by level.
+    fn levels(&self, to: &mut Vec<Vec3>) {
+        let stride = self.rows.stride;
+        let numbers: Vec<Number> = self.rows.numbers[MIPMAP..].iter().flatten().copied().collect();
+        let levels = numbers.len() / 3;
+        let count = self.bytes.len() / stride;
+        self.exec.extend(to, count * levels, |i| {
+            let row = &self.bytes[i / levels * stride..][..stride];
+            let [red, green, blue] = [0, 1, 2].map(|c| numbers[i % levels * 3 + c].value(row));
+            Vec3::new(red, green, blue)
+        });
     }
 
     /// Appends a value a row, made of the numbers at `places`, of which there are `N`.

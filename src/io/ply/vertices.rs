@@ -6,7 +6,8 @@ use super::rows::Rows;
 use super::values::{BodyValues, Event};
 use crate::frame::Exec;
 use crate::io::srgb;
-use crate::scene::Cloud;
+use crate::scene::mipmap::MOST_LEVELS;
+use crate::scene::{Cloud, Mipmap};
 use glam::Vec3;
 use std::ops::Range;
 use std::sync::LazyLock;
@@ -23,6 +24,8 @@ pub(super) const COLOR: Range<usize> = 7..10;
 pub(super) const OPACITY: Range<usize> = 10..11;
 pub(super) const TANGENTS: Range<usize> = 11..17;
 pub(super) const TANGENT: Range<usize> = 17..20;
+/// The first place of prefiltered colours, three for each level.
+pub(super) const MIPMAP: usize = 20;
 
 static SRGB_8: LazyLock<Vec<f32>> = LazyLock::new(|| srgb::table(u8::MAX.into()));
 static SRGB_16: LazyLock<Vec<f32>> = LazyLock::new(|| srgb::table(u16::MAX));
@@ -61,19 +64,21 @@ pub(super) enum PropertyUse {
 pub(super) struct Layout {
     /// What becomes of each property.
     pub(super) slots: Vec<PropertyUse>,
-    /// Whether each number of [`NAMES`] is there.
-    given: [bool; NAMES.len()],
+    /// Whether each number of [`NAMES`] is there, and then of the levels up to the last.
+    given: Vec<bool>,
 }
 
 impl Layout {
     pub(super) fn new(element: &Element, groups: &groups::Reader) -> Result<Self, String> {
         let slots = element.properties.iter().map(|p| slot(&p.name, p.kind, groups));
         let slots: Vec<PropertyUse> = slots.collect::<Result<_, _>>()?;
-        let mut given = [false; NAMES.len()];
         let numbers = slots.iter().filter_map(|slot| match slot {
             PropertyUse::Number(place, _) => Some(*place),
             PropertyUse::Skip | PropertyUse::Group(_) => None,
         });
+        let last = numbers.clone().fold(NAMES.len() - 1, |last, place| last.max(place));
+        let levels = (last + 1 - NAMES.len()).div_ceil(3);
+        let mut given = vec![false; NAMES.len() + 3 * levels];
         for place in numbers {
             if std::mem::replace(&mut given[place], true) {
                 return Err("element vertex has both opacity and alpha; keep one".into());
@@ -82,7 +87,24 @@ impl Layout {
         if !has(&given, POSITION)? {
             return Err("element vertex has no properties x, y, z; declare them".into());
         }
+        let colored = has(&given, COLOR)?;
+        for level in 1..=levels {
+            if !colored || !has(&given, level_places(level))? {
+                let before = if level == 1 || !colored { COLOR } else { level_places(level - 1) };
+                return Err(missing_level(&given, level, before.start));
+            }
+        }
         Ok(Self { slots, given })
+    }
+
+    /// Numbers of a vertex.
+    pub(super) fn width(&self) -> usize {
+        self.given.len()
+    }
+
+    /// Levels of prefiltered colours.
+    fn levels(&self) -> usize {
+        (self.given.len() - NAMES.len()) / 3
     }
 
     /// Gives `cloud` the arrays of what is there, empty.
@@ -93,6 +115,8 @@ impl Layout {
         cloud.opacity = has(&self.given, OPACITY)?.then(Vec::new);
         cloud.tangents = has(&self.given, TANGENTS)?.then(Vec::new);
         cloud.tangent = has(&self.given, TANGENT)?.then(Vec::new);
+        let levels = self.levels();
+        cloud.mipmap = (levels > 0).then(|| Mipmap::empty(levels));
         Ok(())
     }
 }
@@ -112,7 +136,7 @@ pub(super) fn read(
         rows.append(bytes, cloud, exec);
         return Ok(());
     }
-    let mut row = [0.0; NAMES.len()];
+    let mut row = vec![0.0; layout.width()];
     values.walk(element, |event| {
         match event {
             Event::Value(property, value) => match layout.slots[property] {
@@ -139,9 +163,56 @@ fn has(given: &[bool], group: Range<usize>) -> Result<bool, String> {
         (Some(missing), Some(present)) => Err(format!(
             "element vertex has property {} but no {}; declare all of the vector or rename what \
              is there",
-            NAMES[present], NAMES[missing]
+            name(present),
+            name(missing)
         )),
     }
+}
+
+/// The places of a level, from 1 on.
+fn level_places(level: usize) -> Range<usize> {
+    MIPMAP + 3 * (level - 1)..MIPMAP + 3 * level
+}
+
+/// The name of the property of a place.
+fn name(place: usize) -> String {
+    match place.checked_sub(MIPMAP) {
+        None => NAMES[place].into(),
+        Some(beyond) => format!("mip{}_{}", beyond / 3 + 1, NAMES[COLOR.start + beyond % 3]),
+    }
+}
+
+/// The place of a prefiltered colour, if a property is named like one: `mip3_green`.
+fn prefiltered(name: &str) -> Result<Option<usize>, String> {
+    let Some((level, color)) = name.strip_prefix("mip").and_then(|rest| rest.split_once('_'))
+    else {
+        return Ok(None);
+    };
+    let channel = NAMES[COLOR].iter().position(|&known| known == color);
+    let digits = !level.is_empty() && level.bytes().all(|b| b.is_ascii_digit());
+    let Some(channel) = channel.filter(|_| digits && !level.starts_with('0')) else {
+        return Ok(None);
+    };
+    match level.parse() {
+        Ok(level @ 1..=MOST_LEVELS) => Ok(Some(level_places(level).start + channel)),
+        _ => Err(format!(
+            "element vertex has property {}, but prefiltered colours have {MOST_LEVELS} levels at \
+             most; remove those above",
+            quote(name)
+        )),
+    }
+}
+
+/// A level is there, or one above it, and what comes before it is not.
+fn missing_level(given: &[bool], level: usize, before: usize) -> String {
+    let first = (level_places(level).start..given.len()).find(|&place| given[place]);
+    let there = name(first.unwrap_or(MIPMAP));
+    let missing = if given[before] { level_places(level).start } else { before };
+    format!(
+        "element vertex has property {there} but no {}; levels are declared from 1 on, beside red, \
+         green, blue",
+        name(missing)
+    )
 }
 
 /// What becomes of a property of this name and kind.
@@ -150,17 +221,18 @@ fn slot(name: &str, kind: PropertyKind, groups: &groups::Reader) -> Result<Prope
         return Ok(PropertyUse::Group(part));
     }
     let name = if name == "alpha" { "opacity" } else { name };
-    let Some(place) = NAMES.iter().position(|&known| known == name) else {
+    let known = NAMES.iter().position(|&known| known == name);
+    let Some(place) = known.map_or_else(|| prefiltered(name), |place| Ok(Some(place)))? else {
         return Ok(PropertyUse::Skip);
     };
     let PropertyKind::One(scalar) = kind else {
         let what = format!("property {} is a list, but must be one number", quote(name));
         return Err(format!("element vertex: {what}"));
     };
-    if !COLOR.contains(&place) && !OPACITY.contains(&place) {
+    let color = COLOR.contains(&place) || place >= MIPMAP;
+    if !color && !OPACITY.contains(&place) {
         return Ok(PropertyUse::Number(place, Decode::Keep));
     }
-    let color = COLOR.contains(&place);
     let decode = match scalar {
         Scalar::F32 | Scalar::F64 => Decode::Keep,
         Scalar::U8 if color => Decode::Srgb(&SRGB_8),
@@ -180,7 +252,7 @@ fn slot(name: &str, kind: PropertyKind, groups: &groups::Reader) -> Result<Prope
 }
 
 /// Adds one vertex.
-fn push(cloud: &mut Cloud, row: &[f32; NAMES.len()]) {
+fn push(cloud: &mut Cloud, row: &[f32]) {
     let vector = |group: Range<usize>| Vec3::from_slice(&row[group]);
     cloud.position.push(vector(POSITION));
     if let Some(normals) = &mut cloud.normal {
@@ -201,5 +273,8 @@ fn push(cloud: &mut Cloud, row: &[f32; NAMES.len()]) {
     }
     if let Some(tangents) = &mut cloud.tangent {
         tangents.push(vector(TANGENT));
+    }
+    if let Some(mipmap) = &mut cloud.mipmap {
+        mipmap.colors_mut().extend(row[MIPMAP..].chunks_exact(3).map(Vec3::from_slice));
     }
 }

@@ -3,14 +3,15 @@
 use crate::error::Result;
 use crate::io::replace::write_atomically;
 use crate::scene::Cloud;
-use crate::scene::Groups;
+use crate::scene::{Groups, Mipmap};
 use std::io::{self, Write};
 use std::path::Path;
 
 /// Writes a cloud as binary little-endian PLY, whole or not at all.
 ///
 /// Vertices are floats: `x y z`, then what there is of `nx ny nz`, `radius`, `red green blue`
-/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`, `tx ty tz`; then, if there are groups,
+/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`, `tx ty tz`, `mip1_red mip1_green mip1_blue` and so
+/// for each level (linear); then, if there are groups,
 /// `uchar group` and, if surfels were added to some, `list uchar uchar also`. Triangles follow as
 /// `face` with `list uchar uint vertex_indices`, edges as `edge` with `uint vertex1 vertex2`, and
 /// last, if they do not tell by themselves how many groups there are or if radii are scaled, the
@@ -43,6 +44,8 @@ pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
             put(&tangents[i][1].to_array())?;
         }
         cloud.tangent.as_ref().map_or(Ok(()), |tangent| put(&tangent[i].to_array()))?;
+        let levels = cloud.mipmap.iter().flat_map(|mipmap| mipmap.of(i));
+        levels.into_iter().try_for_each(|color| put(&color.to_array()))?;
         if let Some(groups) = groups {
             out.write_all(&groups.own()[i..=i])?;
         }
@@ -77,6 +80,11 @@ fn header(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "element vertex {}", cloud.position.len())?;
     for name in names.iter().filter(|n| n.0).flat_map(|n| n.1.split(' ')) {
         writeln!(out, "property float {name}")?;
+    }
+    for level in 1..=cloud.mipmap.as_ref().map_or(0, Mipmap::levels) {
+        for channel in ["red", "green", "blue"] {
+            writeln!(out, "property float mip{level}_{channel}")?;
+        }
     }
     if cloud.groups.is_some() {
         writeln!(out, "property uchar group")?;

@@ -3,6 +3,7 @@
 use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, stem};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::index::mipmap;
 use crate::io::{environment, ply};
 use crate::scene::{Cloud, Counts, Dropped, Environment, Geometry, Object, Objects};
 use crate::scene::{Primitives, Scene, Similarity, Surfels};
@@ -50,7 +51,8 @@ impl SceneFile {
     /// [`plant::apple_tree`], and of [`derive::surfels`] and its like for polygons and lines, the
     /// file named; of [tables](super::places) and [`Objects::new`]; [`Error::Invalid`] if neither a
     /// surfel nor a primitive is left or there are too many, if a model cannot be drawn as it says, or
-    /// if one that is not drawn as points was given an opacity.
+    /// if one that is not drawn as points was given an opacity, or mipmaps; as [`mipmap::build`], and if
+    /// mipmaps are asked for of a model in one colour.
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
         self.all_models().try_for_each(check_draw)?;
         // What is wrong with objects is said before large files are read.
@@ -151,6 +153,7 @@ impl Loaded {
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<(Surfels, Primitives)> {
         let ModelParts { surfels, primitives, derived } = read(model, exec, progress)?;
+        let surfels = prefiltered(surfels, model, exec, progress)?;
         let counts = primitives.counts();
         self.models.push(ModelReport { name, surfels: surfels.len(), primitives: counts, derived });
         // What a transform took out of the range of f32 is dropped here, or of surfels later.
@@ -185,6 +188,16 @@ impl ModelParts {
 /// Whether a model can be drawn as it says, and may have its opacity.
 fn check_draw(model: &Model) -> Result<()> {
     model.draw.check(&model.source).map_err(Error::Invalid)?;
+    let surfels = !matches!(model.draw, Draw::Polygons | Draw::Ribbons | Draw::Tubes | Draw::Lines);
+    if model.mipmaps.is_some_and(|levels| levels > 0) && (!surfels || model.color.is_some()) {
+        let name = model.source.name();
+        let what = if surfels {
+            "a model in one colour has the same at every level".to_owned()
+        } else {
+            format!("what is drawn as {} has no surfels", model.draw.word())
+        };
+        return Err(Error::Invalid(format!("{name}: {what}; remove the mipmaps")));
+    }
     if model.opacity.is_some() && !matches!(model.draw, Draw::Surfels | Draw::Points | Draw::Facets)
     {
         let (name, word) = (model.source.name(), model.draw.word());
@@ -261,6 +274,31 @@ fn of_file(
     })
 }
 
+/// The surfels of a model with the mipmaps that it asks for.
+fn prefiltered(
+    surfels: Surfels,
+    model: &Model,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<Surfels> {
+    let made = match model.mipmaps {
+        None => return Ok(surfels),
+        Some(0) => None,
+        Some(_) if surfels.is_empty() => return Ok(surfels),
+        Some(levels) => {
+            let made = mipmap::build(&surfels, levels, exec, progress);
+            Some(made.map_err(|error| match (error, &model.source) {
+                (Error::Invalid(what), Source::File { path, .. }) => Error::format(path, what),
+                (Error::Invalid(what), other) => {
+                    Error::Invalid(format!("{}: {what}", other.name()))
+                }
+                (other, _) => other,
+            })?)
+        }
+    };
+    surfels.with_mipmap(made)
+}
+
 /// Whether the surfels of a model are what its source gives.
 fn is_as_read(model: &Model) -> bool {
     let Model { color, opacity, transform, .. } = model;
@@ -272,6 +310,7 @@ fn placed(model: &Model, surfels: Surfels) -> Cloud {
     let mut cloud = surfels.into_cloud();
     if let Some(color) = model.color {
         cloud.color = Some(vec![color; cloud.position.len()]);
+        cloud.mipmap = None;
     }
     if let Some(opacity) = model.opacity {
         cloud.opacity = Some(vec![opacity; cloud.position.len()]);

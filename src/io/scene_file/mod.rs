@@ -62,6 +62,7 @@ use crate::error::{Error, Result};
 use crate::index::grouping::Grouping;
 use crate::io::input;
 use crate::method::Method;
+use crate::scene::mipmap::MOST_LEVELS;
 use crate::scene::{Camera, CameraMotion, Lens, Light, Phong, Pose, Scene, Similarity};
 use crate::source::Shape;
 use glam::{DVec3, Vec3};
@@ -120,6 +121,9 @@ pub struct Model {
     pub color: Option<Vec3>,
     /// Opacity in [0, 1] for all of them, in place of their own; for points alone.
     pub opacity: Option<f32>,
+    /// Levels of prefiltered colours that are [made](crate::index::mipmap) on loading, of surfels as
+    /// they are read, before any transform; 0 drops those of the file, which are kept if absent.
+    pub mipmaps: Option<usize>,
 }
 
 /// Where a model comes from.
@@ -215,7 +219,14 @@ impl SceneFile {
         let draw = Draw::of(&source);
         Self {
             name: source.name(),
-            models: vec![Model { source, draw, transform, color: None, opacity: None }],
+            models: vec![Model {
+                source,
+                draw,
+                transform,
+                color: None,
+                opacity: None,
+                mipmaps: None,
+            }],
             geometries: Vec::new(),
             objects: Vec::new(),
             frames: 1,
@@ -356,6 +367,17 @@ pub fn check_opacity(opacity: f32) -> Result<()> {
     } else {
         Err(Error::Invalid(format!("an opacity of {opacity}; give 0 to 1")))
     }
+}
+
+/// Whether so many levels of prefiltered colours can be made for a model, or none.
+///
+/// # Errors
+/// [`Error::Invalid`] if they cannot.
+pub fn check_mipmaps(levels: usize) -> Result<()> {
+    if levels <= MOST_LEVELS {
+        return Ok(());
+    }
+    Err(Error::Invalid(format!("mipmaps of {levels} levels; give 0 to {MOST_LEVELS}")))
 }
 
 /// The name of a file without its extension.

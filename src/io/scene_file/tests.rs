@@ -8,6 +8,7 @@ use crate::io::exr::{self, Compression};
 use crate::method::Method;
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::{transparent, transparent_hq};
+use crate::scene::Cloud;
 use crate::scene::environment::{Environment, Map};
 use crate::setting::Fields;
 use crate::shade::optics::{BendingLayers, Refraction};
@@ -90,8 +91,68 @@ fn the_example_says_what_it_says() {
     assert_eq!(grouping.rules.coplanar.unwrap().cosine, 0.99);
     assert_eq!(grouping.extension, Extension::Add { most: 0.5 });
     assert_eq!(bunny.opacity, Some(0.5));
+    assert_eq!((bunny.mipmaps, sheets.mipmaps), (None, Some(5)));
     let compression = Compression::Zip;
     assert_eq!(file.output, OutputSettings { number: Number::F32, stages: true, compression });
+}
+
+#[test]
+fn mipmaps_are_made_on_loading_dropped_or_kept() {
+    let board = "[[model]]\nshape = \"checkerboard\"\ncount = 2000\n";
+    let of = |text: &str| load(&parse(text)).scene.surfels;
+    let plain = of(board);
+    assert_eq!(plain.mipmap(), None);
+    let made = of(&format!("{board}mipmaps = 3\n"));
+    let exec = Exec::sequential();
+    let expected = crate::index::mipmap::build(&plain, 3, &exec, &|_, _, _| ()).unwrap();
+    assert_eq!(made.mipmap(), Some(&expected));
+    // They go with the surfels into a place, and into a file and out of it.
+    let moved = of(&format!("{board}mipmaps = 3\n[model.transform]\nscale = 2\n"));
+    assert_eq!(moved.mipmap(), Some(&expected));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("board.ply");
+    crate::io::ply::write(&path, &made.into_cloud()).unwrap();
+    let read = |more: &str| {
+        let text = format!("[[model]]\nfile = \"board.ply\"\n{more}");
+        load(&SceneFile::parse(&text, &folder.path().join("a.toml")).unwrap()).scene.surfels
+    };
+    assert_eq!(read("").mipmap(), Some(&expected));
+    assert_eq!(read("mipmaps = 0").mipmap(), None);
+    assert_eq!(read("mipmaps = 2").mipmap().unwrap().of(7), &expected.of(7)[..2]);
+    assert_eq!(read("color = [1, 0, 0]").mipmap(), None, "one colour for all");
+    // A geometry of objects has them too.
+    let object = format!(
+        "{}name = \"a\"\nmipmaps = 3\n[[object]]\nof = \"a\"\n",
+        board.replace("model", "geometry")
+    );
+    let objects = load(&parse(&object)).scene.objects.unwrap();
+    assert_eq!(objects.geometries()[0].surfels.mipmap(), Some(&expected));
+}
+
+#[test]
+fn mipmaps_of_what_has_none_are_refused() {
+    let sphere = |more: &str| parse(&format!("[[model]]\nshape = \"sphere\"\n{more}"));
+    let error =
+        |file: &SceneFile| file.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err().to_string();
+    let one = "sphere: a model in one colour has the same at every level; remove the mipmaps";
+    assert_eq!(error(&sphere("color = [1, 1, 1]\nmipmaps = 2")), one);
+    let tree = parse("[[model]]\nshape = \"tree\"\nmipmaps = 2");
+    assert!(error(&tree).contains("has no surfels; remove the mipmaps"), "{}", error(&tree));
+    let line = refused("[[model]]\nshape = \"sphere\"\nmipmaps = 17");
+    assert!(line.contains("mipmaps of 17 levels; give 0 to 16"), "{line}");
+    assert!(refused("[[model]]\nshape = \"sphere\"\nmipmaps = -1").contains("line 3"));
+    let folder = tempfile::tempdir().unwrap();
+    let points = Cloud {
+        position: vec![Vec3::ZERO],
+        normal: Some(vec![Vec3::Z]),
+        radius: Some(vec![1.0]),
+        ..Cloud::default()
+    };
+    crate::io::ply::write(&folder.path().join("a.ply"), &points).unwrap();
+    let text = "[[model]]\nfile = \"a.ply\"\nmipmaps = 1";
+    let file = SceneFile::parse(text, &folder.path().join("a.toml")).unwrap();
+    let expected = "a.ply: the points have no colours, of which mipmaps could be made";
+    assert!(error(&file).ends_with(expected), "{}", error(&file));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Every decision of every pass at one pixel, with its operands.
 
 use super::Settings;
+use super::filter::{Level, color};
 use super::indices::{each_centre, indices, selected};
 use super::part::{Part, Whole};
 use super::picture::{first, flagged, unseen, whole};
@@ -11,7 +12,8 @@ use crate::method::algorithm::Job;
 use crate::method::prepare::Prepared;
 use crate::method::replay::{Decision, Place, Touch, touch};
 use crate::number::Exact;
-use crate::splat::{Splat, SplatSettings};
+use crate::splat::{Splat, SplatSettings, View};
+use glam::Vec3;
 use std::fmt;
 
 /// What happened at one pixel.
@@ -37,6 +39,21 @@ pub struct DeferredReplay<R> {
     pub nearest: R,
     /// Pass 4: the splats of B(i) that reach the pixel; each gives its weight, if it is visible.
     pub sums: Vec<(String, Touch<R>)>,
+    /// The colours of these, if surfels have prefiltered ones.
+    pub colors: Vec<Filtered>,
+}
+
+/// What a surfel of pass 4 is drawn in.
+#[derive(Clone, Debug)]
+pub struct Filtered {
+    /// Which.
+    pub name: String,
+    /// Its level, see [`mod@super::filter`], and the last one.
+    pub level: [f64; 2],
+    /// The colours of the levels below and above, once if they are one.
+    pub between: Vec<Vec3>,
+    /// What it is drawn in.
+    pub color: Vec3,
 }
 
 /// A surfel whose centre is in the pixel.
@@ -66,7 +83,7 @@ pub fn explain<R: Exact>(
     let polygons = Polygons::draw(job, settings, &whole)?;
     let visible = first::<R>(job, settings, &flagged, polygons.as_ref());
     let kept = indices(job, splats, &whole, &visible);
-    let part = whole.part(selected(&kept), job.exec);
+    let part = whole.drawn(selected(&kept), job);
     let third = if settings.second { part.ids() } else { &[] };
     let fresh = whole.part(unseen(&whole, &before, third), job.exec);
     let depth = both(&visible, &nearest(job, splats, &fresh));
@@ -93,6 +110,9 @@ pub fn explain<R: Exact>(
         touch.gives = touch.passes().then(|| ("weight", splat.footprint.weight(touch.q)));
     };
     let all = whole.ids().total();
+    let sums = pass(&part, &weigh);
+    let names: Vec<&String> = sums.iter().map(|(name, _)| name).collect();
+    let colors = colors(job, &whole, &part, &names);
     Ok(DeferredReplay {
         pixel,
         counts: [all, flagged.ids().len() as u64, part.ids().len() as u64],
@@ -105,8 +125,27 @@ pub fn explain<R: Exact>(
         centres,
         fresh: pass(&fresh, &nothing),
         nearest: end,
-        sums: pass(&part, &weigh),
+        sums,
+        colors,
     })
+}
+
+/// The colours of surfels of a part, by name; none without prefiltered ones.
+fn colors(job: &Job<'_>, whole: &Whole<'_>, part: &Part, names: &[&String]) -> Vec<Filtered> {
+    let surfels = whole.surfels(part.ids(), job.exec);
+    let Some(mipmap) = surfels.mipmap() else { return Vec::new() };
+    let view = View::new(job.camera);
+    let wanted = (0..surfels.len()).map(|i| (i, whole.name(part.ids()[i])));
+    let filtered = wanted.filter(|(_, name)| names.contains(&name)).map(|(i, name)| {
+        let level = Level::of(&view, &surfels, i);
+        let ends = [level.below, level.below + usize::from(level.part > 0.0)];
+        let mut between: Vec<Vec3> = Vec::new();
+        let whole = |k: usize| color(&surfels, i, Level { below: k, part: 0.0 });
+        between.extend(ends.iter().take(1 + ends[1] - ends[0]).map(|&k| whole(k)));
+        let level_of = [level.number(), mipmap.levels() as f64];
+        Filtered { name, level: level_of, between, color: color(&surfels, i, level) }
+    });
+    filtered.collect()
 }
 
 /// The splats of a part at the pixel.
@@ -162,6 +201,12 @@ impl<R: Exact> fmt::Display for DeferredReplay<R> {
                 self.nearest.to_f64()
             ),
             &self.sums,
-        )
+        )?;
+        for Filtered { name, level: [level, last], between, color } in &self.colors {
+            let between: Vec<String> = between.iter().map(Vec3::to_string).collect();
+            let between = between.join(" and ");
+            writeln!(f, "  {name:<24}  level {level:.4} of {last}, {between}: colour {color}")?;
+        }
+        Ok(())
     }
 }

@@ -65,6 +65,8 @@
 //!
 //! One surfel a pixel is selected. Where a pixel holds many centres the others are lost, and with
 //! them their colours: pictures of dense surfels flicker as these change places \[GBP04, 4.4\].
+//! Surfels that bring prefiltered colours are drawn in those that fit the picture's pixels: see
+//! [`mod@filter`].
 //!
 //! The definition is over any [`Exact`] number. What each stage leaves: [`mod@super::planes`].
 //!
@@ -72,6 +74,7 @@
 
 pub mod explain;
 mod fast;
+pub mod filter;
 mod indices;
 mod part;
 mod picture;

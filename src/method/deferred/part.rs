@@ -1,6 +1,7 @@
 //! All surfels of a scene by their ids, and some of them as a scene that the passes of `ewa` draw.
 
 use super::Settings;
+use super::filter::filtered;
 use super::queries::Queries;
 use crate::error::Result;
 use crate::frame::Exec;
@@ -172,6 +173,12 @@ impl<'a> Whole<'a> {
             }
             None => self.scene.surfels.some(ids),
         }
+    }
+
+    /// The surfels of ascending ids as pass 4 draws them, see [`mod@super::filter`].
+    pub(super) fn drawn(&self, ids: Vec<u64>, job: &Job<'_>) -> Part {
+        let surfels = filtered(self.surfels(&ids, job.exec), job.camera, job.exec);
+        Part { scene: Scene::unlit(&self.scene.name, surfels), ids }
     }
 
     /// The surfels of ascending ids as a scene, unlit and before nothing.

@@ -42,7 +42,7 @@ pub(super) fn define<R: Exact>(
     let now = Seen::of(whole.ids(), settings.flags, &list);
     clock.lap("indices");
 
-    let part = whole.part(list, job.exec);
+    let part = whole.drawn(list, job);
     let depth = difference(job, settings, &whole, &before, &part, &visible);
     clock.lap("difference");
 
@@ -92,7 +92,7 @@ pub(super) fn stage<R: Exact>(
     given: &Given<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     let (whole, before) = whole(job, settings)?;
-    let selected = || Ok(whole.part(planes::given_selected(job, given)?, job.exec));
+    let selected = || Ok(whole.drawn(planes::given_selected(job, given)?, job));
     let visible = || planes::given_visibility(job, given, false);
     let depth = || planes::given_visibility(job, given, true);
     match stage {

@@ -3,9 +3,10 @@ use crate::frame::{Exec, Frame, NO_ID, Samples};
 use crate::index::seen::Seen;
 use crate::method::tests::{id, scalar};
 use crate::method::{Method, Session, ewa};
+use crate::number::random::unit;
 use crate::scene::objects::{Geometry, Motion, Object, Objects};
 use crate::scene::transform::rotation;
-use crate::scene::{Lens, Pose, Primitives, Similarity, Surfels};
+use crate::scene::{Lens, Mipmap, Pose, Primitives, Similarity, Surfels};
 use crate::source::{Shape, flatten};
 use crate::splat::Epsilon;
 use glam::{DVec3, Vec3};
@@ -86,7 +87,8 @@ fn case() -> impl Strategy<Value = Case> {
                 detail: None,
             };
             // Of half the cases the sphere has levels of detail.
-            let sphere = geometry("sphere", Shape::Sphere.surfels(400, seed).unwrap());
+            let sphere = leveled(Shape::Sphere.surfels(400, seed).unwrap(), 3, seed);
+            let sphere = geometry("sphere", sphere);
             let sphere = match seed % 4 {
                 0 => sphere.with_detail(0.0, &Exec::sequential()).unwrap(),
                 1 => sphere.with_detail(f64::from(eps), &Exec::sequential()).unwrap(),
@@ -94,7 +96,7 @@ fn case() -> impl Strategy<Value = Case> {
             };
             let geometries = vec![
                 sphere,
-                geometry("torus", Shape::Torus.surfels(300, seed).unwrap()),
+                geometry("torus", leveled(Shape::Torus.surfels(300, seed).unwrap(), 1, seed)),
                 geometry(
                     "discs",
                     crate::method::tests::surfels(60, 0.2, seed.is_multiple_of(2), seed),
@@ -125,10 +127,21 @@ fn case() -> impl Strategy<Value = Case> {
     )
 }
 
-/// Plain `ewa` over surfels of some ids, with the planes of its stages.
+/// Surfels with prefiltered colours of any kind, or without.
+fn leveled(surfels: Surfels, levels: u64, seed: u64) -> Surfels {
+    if seed.is_multiple_of(3) {
+        return surfels;
+    }
+    let of = |i: u64| Vec3::new(unit(seed, i), unit(seed + 1, i), 0.0);
+    let colors = (0..surfels.len() as u64 * levels).map(of).collect();
+    let mipmap = Mipmap::new(levels as usize, colors).unwrap();
+    surfels.with_mipmap(Some(mipmap)).unwrap()
+}
+
+/// Plain `ewa` over surfels of some ids in the colours that pass 4 gives them, with the planes of its stages.
 fn plain<R: Exact>(case: &Case, frame: u32, ids: &[u64], exec: &Exec) -> Option<Frame<R>> {
     let objects = case.objects(frame);
-    let surfels = objects.some(ids, exec);
+    let surfels = filter::filtered(objects.some(ids, exec), &case.camera(frame), exec);
     let scene = Scene { surfels, objects: None, ..case.scene.clone() };
     if scene.surfels.is_empty() {
         return None;

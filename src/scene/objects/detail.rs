@@ -81,7 +81,7 @@ impl Detail {
 
 impl Geometry {
     /// The geometry with levels of detail, whose nodes are its surfels from here on. `threshold` is tau,
-    /// in [0, [`MOST_PIXELS`]].
+    /// in [0, [`MOST_PIXELS`]]. Prefiltered colours are left out: those of inner nodes are averages.
     ///
     /// # Errors
     /// [`Error::Invalid`] if the threshold is out of range, if there are no surfels, or levels of detail

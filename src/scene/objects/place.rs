@@ -7,7 +7,7 @@ use crate::scene::cloud::half_axes;
 use crate::scene::degenerate::unit;
 use crate::scene::surfels::Arrays;
 use crate::scene::transform::Similarity;
-use crate::scene::{Boxes, Primitives, Surfels, bounds};
+use crate::scene::{Boxes, Mipmap, Primitives, Surfels, bounds};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
@@ -71,7 +71,7 @@ impl Objects {
     /// [`crate::Error::Invalid`] as [`crate::scene::indexed::Indexed::new`].
     pub fn flattened(&self, exec: &Exec) -> Result<(Surfels, Vec<Primitives>)> {
         let all = self.ids.order().iter().map(|&object| (object, 0..self.ids.count(object)));
-        Ok((self.gather(jobs(all.collect()), self.has(), exec), self.primitives()?))
+        Ok((self.gather(jobs(all.collect()), exec), self.primitives()?))
     }
 
     /// The primitives of all objects in their places, in the order of the scene.
@@ -93,21 +93,31 @@ impl Objects {
         placed.collect()
     }
 
-    /// The surfels of some ids, which ascend; an id that is none is left out.
+    /// The surfels of some ids, which ascend, with their prefiltered colours; an id that is none is left out.
     #[must_use]
     pub fn some(&self, ids: &[u64], exec: &Exec) -> Surfels {
-        self.gather(ids.chunks(CHUNK).map(Part::Ids).collect(), self.has(), exec)
+        self.gather(ids.chunks(CHUNK).map(Part::Ids).collect(), exec)
     }
 
     /// The surfels of ranges that are drawn, without colours and opacities.
     pub(crate) fn shapes(&self, ranges: Vec<(u32, Range<u32>)>, exec: &Exec) -> Surfels {
         let [.., tangents] = self.has();
-        self.gather(jobs(ranges), [false, false, tangents], exec)
+        self.gather_with(jobs(ranges), ([false, false, tangents], 0), exec)
     }
 
-    fn gather(&self, parts: Vec<Part<'_>>, has: Has, exec: &Exec) -> Surfels {
+    /// Surfels with all that some have.
+    fn gather(&self, parts: Vec<Part<'_>>, exec: &Exec) -> Surfels {
+        self.gather_with(parts, (self.has(), self.levels()), exec)
+    }
+
+    fn gather_with(
+        &self,
+        parts: Vec<Part<'_>>,
+        (has, levels): (Has, usize),
+        exec: &Exec,
+    ) -> Surfels {
         let chunks = exec.ordered(parts, |part| {
-            let mut arrays = Arrays::new(has);
+            let mut arrays = Arrays::new(has, levels);
             match part {
                 Part::Ranges(ranges) => {
                     for (object, range) in ranges {
@@ -126,7 +136,7 @@ impl Objects {
             }
             arrays
         });
-        let mut all = Arrays::new(has);
+        let mut all = Arrays::new(has, levels);
         all.reserve(chunks.iter().map(|chunk| chunk.position.len()).sum());
         chunks.into_iter().for_each(|chunk| all.append(chunk));
         all.into_surfels(self.median_radius, self.bounding_sphere())
@@ -155,6 +165,14 @@ impl Objects {
         ]
     }
 
+    /// The levels of prefiltered colours of the geometry that has the most; 0 if none has any.
+    /// `Decided:` a geometry with fewer has its last one, or its colour, in the place of the others.
+    fn levels(&self) -> usize {
+        let geometries = self.objects.iter().map(|object| &self.geometries[object.geometry]);
+        let levels = geometries.filter_map(|geometry| geometry.surfels.mipmap());
+        levels.map(Mipmap::levels).max().unwrap_or(0)
+    }
+
     /// Appends surfels of an object in their places.
     fn place(&self, object: u32, of: impl Iterator<Item = u32>, to: &mut Arrays) {
         let (place, surfels) = (&self.places[object as usize], &self.geometry(object).surfels);
@@ -180,7 +198,12 @@ impl Objects {
             if let Some(colors) = &mut to.color {
                 let own = || surfels.color().map(|colors| colors[i]);
                 // -0 becomes 0.
-                colors.push(color.or_else(own).unwrap_or(self.fill) + Vec3::ZERO);
+                let shown = color.or_else(own).unwrap_or(self.fill) + Vec3::ZERO;
+                colors.push(shown);
+                if let Some(mipmap) = &mut to.mipmap {
+                    let own = surfels.mipmap().filter(|_| color.is_none());
+                    mipmap.push(own.map(|own| own.of(i)), shown);
+                }
             }
             if let Some(opacities) = &mut to.opacity {
                 opacities.push(surfels.opacity().map_or(1.0, |own| own[i]));

@@ -1,7 +1,7 @@
 use super::*;
 use crate::frame::Exec;
 use crate::scene::transform::rotation;
-use crate::scene::{Cloud, Scene};
+use crate::scene::{Cloud, Mipmap, Scene};
 use crate::source::merge::merge;
 use crate::source::{Shape, flatten};
 
@@ -24,20 +24,33 @@ fn ellipses() -> Surfels {
     let n = cloud.position.len();
     let halves = |i: usize| [Vec3::new(0.1, 0.0, 0.01 * i as f32), Vec3::new(0.0, 0.2, 0.05)];
     let tangents = (0..n).map(halves).collect();
-    Surfels::new(Cloud { tangents: Some(tangents), opacity: Some(vec![0.5; n]), ..cloud })
-        .unwrap()
-        .0
+    let opacity = Some(vec![0.5; n]);
+    let mipmap = Some(levels(n, 2));
+    Surfels::new(Cloud { tangents: Some(tangents), opacity, mipmap, ..cloud }).unwrap().0
 }
 
-/// Two geometries, of which only one has opacities and half axes, and three objects.
+/// So many prefiltered colours a surfel.
+fn levels(surfels: usize, levels: usize) -> Mipmap {
+    let colors = (0..surfels * levels).map(|i| Vec3::new(0.25, 0.0, i as f32 / 1e5));
+    Mipmap::new(levels, colors.collect()).unwrap()
+}
+
+/// Two geometries, of which only one has opacities and half axes and one has more prefiltered colours,
+/// and four objects.
 fn objects() -> Objects {
     let sphere = Shape::Sphere.surfels(20_000, 3).unwrap();
+    let mipmap = levels(sphere.len(), 3);
+    let sphere = sphere.with_mipmap(Some(mipmap)).unwrap();
+    let plain = Shape::Torus.surfels(60, 3).unwrap();
     let all = vec![
         object("still", 0, Similarity::IDENTITY, None),
         object("red", 1, place(33.0, 0.7, 2.0), Some(Vec3::X)),
         object("turned", 0, place(-71.0, 2.5, -3.0), None),
+        object("plain", 2, place(-7.0, 1.5, 3.0), None),
+        object("ellipses", 1, place(9.0, 1.5, 1.0), None),
     ];
-    let geometries = vec![geometry("sphere", sphere), geometry("torus", ellipses())];
+    let geometries =
+        vec![geometry("sphere", sphere), geometry("torus", ellipses()), geometry("plain", plain)];
     Objects::new(geometries, all, Vec3::Y).unwrap()
 }
 
@@ -48,6 +61,7 @@ fn objects_have_the_bits_of_models_in_their_places() {
         let mut cloud = objects.geometries()[object.geometry].surfels.clone().into_cloud();
         if let Some(color) = object.color {
             cloud.color = Some(vec![color; cloud.position.len()]);
+            cloud.mipmap = None;
         }
         place.apply(&mut cloud);
         cloud
@@ -61,6 +75,8 @@ fn objects_have_the_bits_of_models_in_their_places() {
     assert_eq!(placed.color(), models.color());
     assert_eq!(placed.opacity(), models.opacity());
     assert_eq!(placed.tangents(), models.tangents());
+    assert_eq!(placed.mipmap(), models.mipmap());
+    assert_eq!(placed.mipmap().unwrap().levels(), 3);
 
     // Some of them are those of all.
     let ids = objects.ids();
@@ -76,6 +92,7 @@ fn objects_have_the_bits_of_models_in_their_places() {
     assert_eq!(few.position(), of(placed.position()));
     assert_eq!(few.normal(), of(placed.normal()));
     assert_eq!(few.color().unwrap(), of(placed.color().unwrap()));
+    assert_eq!(few.mipmap().unwrap(), &placed.mipmap().unwrap().some(&chosen));
     assert_eq!(few.median_radius(), placed.median_radius());
 }
 

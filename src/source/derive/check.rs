@@ -2,9 +2,11 @@
 
 use crate::error::{Error, Result};
 use crate::scene::Cloud;
+use crate::scene::surfels::check_mipmap;
 
 impl Cloud {
-    /// Checks what [`Cloud`] promises: one length for all arrays, triangles and edges of existing
+    /// Checks what [`Cloud`] promises: one length for all arrays, prefiltered colours only beside
+    /// colours, triangles and edges of existing
     /// points, and fewer than 2^32 - 1 points.
     ///
     /// # Errors
@@ -29,6 +31,7 @@ impl Cloud {
                 return Err(Error::Invalid(format!("{n} positions, but {length} {what}")));
             }
         }
+        check_mipmap(n, self.color.is_some(), &self.mipmap)?;
         let outside = |triangle: &[u32; 3]| triangle.iter().any(|&i| i as usize >= n);
         if let Some(at) = self.triangles.iter().position(outside) {
             let what = format!("triangle {at} has a corner that is none of the {n} points");

@@ -28,7 +28,7 @@ use std::ops::{Add, Div};
 /// opacity are the means of the corners', ((a + b) + c) / 3 in `f32`; a triangle with a corner whose
 /// colour or opacity cannot be is dropped and counted, as the corner would be. `Decided:` the
 /// corners' normals say which side is the front, since files wind their triangles either way. Radii
-/// and tangents of the file are not looked at. A triangle without area becomes a surfel without a
+/// and tangents of the file are not looked at, and prefiltered colours are left out: they are of radii. A triangle without area becomes a surfel without a
 /// normal, which is dropped and counted.
 ///
 /// # Errors

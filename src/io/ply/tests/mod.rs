@@ -4,7 +4,7 @@ mod refused;
 mod rows;
 
 use super::*;
-use crate::scene::Groups;
+use crate::scene::{Groups, Mipmap};
 use glam::Vec3;
 
 /// An ascii file: header lines, then body lines.
@@ -122,6 +122,24 @@ fn stored_colours_are_decoded_and_float_ones_kept() {
 }
 
 #[test]
+fn prefiltered_colours_are_read_as_colours_are() {
+    let text = |names: [&str; 7], kind: &str, value: &str| {
+        let properties = names.map(|name| format!("property {kind} {name}"));
+        let body = format!("0 0 0 {}", [value; 7].join(" "));
+        parse(&vertices("1", &properties.each_ref().map(String::as_str), &body)).unwrap()
+    };
+    let names = ["red", "green", "blue", "mip1_red", "mip1_green", "mip1_blue", "mip01_red"];
+    for (kind, value) in [("uchar", "127"), ("ushort", "32639"), ("float", "0.25")] {
+        let cloud = text(names, kind, value);
+        let mipmap = cloud.mipmap.unwrap();
+        assert_eq!((mipmap.levels(), mipmap.of(0)), (1, &cloud.color.unwrap()[..]), "{kind}");
+    }
+    // What is named otherwise is skipped, as by readers that know nothing of all this.
+    let others = ["red", "green", "blue", "mip_red", "mip1_alpha", "mip0_red", "mipa_red"];
+    assert_eq!(text(others, "float", "0.25").mipmap, None);
+}
+
+#[test]
 fn polygons_are_fans_and_short_ones_nothing() {
     let polygon = |face: &str| parse(&faces(&[INDICES], face)).unwrap().triangles;
     assert_eq!(polygon("5 0 1 2 1 0"), [[0, 1, 2], [0, 2, 1], [0, 1, 0]]);
@@ -214,6 +232,8 @@ fn what_is_written_is_read_back_bit_for_bit() {
         edges: (1..n as u32).map(|i| [i, i / 2]).collect(),
         ..plain.clone()
     };
+    let leveled =
+        |levels| Some(Mipmap::new(levels, (0..n * levels).map(vector).collect()).unwrap());
     let groups = |added: Vec<(u32, u8)>, scale: &[f32]| {
         let own = (0..n).map(|i| (i % 3) as u8).collect();
         Some(Groups::new(own, added, scale.to_vec()).unwrap())
@@ -225,6 +245,9 @@ fn what_is_written_is_read_back_bit_for_bit() {
         grouped(groups(vec![(7, 2), (7, 3), (299, 1)], &[1.0; 4])),
         Cloud { groups: groups(vec![(0, 63)], &[1.5; 64]), ..full.clone() },
         Cloud { edges: vec![[299, 0]], ..plain.clone() },
+        Cloud { mipmap: leveled(1), color: Some(vectors(2000)), ..plain.clone() },
+        Cloud { mipmap: leveled(16), ..full.clone() },
+        Cloud { mipmap: leveled(3), groups: groups(vec![(0, 63)], &[1.5; 64]), ..full.clone() },
         plain.clone(),
         full,
     ];
@@ -304,7 +327,10 @@ fn no_mutation_of_a_file_panics_or_is_read_wrongly() {
     let grouped = vertices("2", &grouped, "0 0 0 1 1 0\n0 0 0 0 0\n1\n2\n");
     let faces = faces(&[INDICES], "3 0 1 2");
     let lines = edges(&[ENDS[0], ENDS[1]], "0 1\n2 1");
-    let seeds = [binary(false), binary(true), text(), faces, grouped, lines];
+    let leveled = ["red", "green", "blue", "mip1_red", "mip1_green", "mip1_blue"];
+    let leveled = leveled.map(|name| format!("property uchar {name}"));
+    let leveled = vertices("1", &leveled.each_ref().map(String::as_str), "0 0 0 1 2 3 4 5 6\n");
+    let seeds = [binary(false), binary(true), text(), faces, grouped, lines, leveled];
     let words: [&[u8]; 10] = [
         b"-1",
         b"4294967295",

@@ -51,6 +51,23 @@ fn elements_and_properties() {
         &["property uchar alpha", "property float opacity"],
         "element vertex has both opacity and alpha; keep one",
     );
+    let colors = ["property float red", "property float green", "property float blue"];
+    let leveled = |more: &[&str], expected: &str| {
+        let all = colors.iter().chain(more).copied().collect::<Vec<_>>();
+        refused(vertices("1", &all, "0 0 0"), expected);
+    };
+    let first =
+        ["property float mip1_red", "property float mip1_green", "property float mip1_blue"];
+    more(&first, "element vertex has property mip1_red but no red; levels are declared from 1 on");
+    leveled(&first[1..], "element vertex has property mip1_green but no mip1_red; declare all");
+    leveled(&["property float mip2_green"], "has property mip2_green but no mip1_red; levels are");
+    let above = first.map(|name| name.replace("mip1", "mip3"));
+    let above: Vec<&str> = first.into_iter().chain(above.iter().map(String::as_str)).collect();
+    leveled(&above, "has property mip3_red but no mip2_red; levels are declared from 1 on");
+    leveled(&["property float mip17_red"], "`mip17_red`, but prefiltered colours have 16 levels");
+    leveled(&["property float mip99999999999999999999_blue"], "have 16 levels at most");
+    leveled(&["property int mip1_red"], "property `mip1_red` has type int, but its range is known");
+    leveled(&["property list uchar float mip1_red"], "property `mip1_red` is a list");
     more(&["property int red"], "property `red` has type int, but its range is known for uchar");
     let header = |lines: &[&str], expected: &str| refused(ascii(lines, ""), expected);
     header(&[], "there is no element vertex: the file holds no points");

@@ -28,6 +28,12 @@ fn file(count: u32, big: bool) -> Vec<u8> {
         ("float", "tx"),
         ("float", "ty"),
         ("char", "tz"),
+        ("float", "mip2_blue"),
+        ("uchar", "mip1_red"),
+        ("ushort", "mip1_green"),
+        ("float", "mip1_blue"),
+        ("float", "mip2_red"),
+        ("uchar", "mip2_green"),
     ];
     for (kind, name) in properties {
         bytes += &format!("property {kind} {name}\n");

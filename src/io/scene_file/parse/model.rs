@@ -3,7 +3,7 @@
 use super::exactly::Exactly;
 use super::transform::RawTransform;
 use crate::io::scene_file::{DEFAULT_COUNT, Draw, Geometry, Model, Source, TREE};
-use crate::io::scene_file::{check_opacity, shapes};
+use crate::io::scene_file::{check_mipmaps, check_opacity, shapes};
 use crate::scene::light::{MAX_RADIANCE, is_color};
 use crate::scene::objects::detail::MOST_PIXELS;
 use crate::source::{Shape, plant};
@@ -30,6 +30,7 @@ pub(super) struct RawModel {
     seed: Option<u64>,
     color: Option<Exactly<f32, 3>>,
     opacity: Option<f32>,
+    mipmaps: Option<usize>,
     #[serde(default)]
     transform: RawTransform,
 }
@@ -63,8 +64,12 @@ impl RawModel {
         if let Some(opacity) = self.opacity {
             check_opacity(opacity).map_err(|error| error.to_string())?;
         }
-        let (transform, opacity) = (self.transform.similarity()?, self.opacity);
-        Ok(Model { source, draw, transform, color, opacity })
+        if let Some(levels) = self.mipmaps {
+            check_mipmaps(levels).map_err(|error| error.to_string())?;
+        }
+        let (transform, opacity, mipmaps) =
+            (self.transform.similarity()?, self.opacity, self.mipmaps);
+        Ok(Model { source, draw, transform, color, opacity, mipmaps })
     }
 
     /// The source; takes every key that it uses.

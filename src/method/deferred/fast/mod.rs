@@ -50,7 +50,7 @@ pub(super) fn render(
     clock.lap("indices");
 
     let fresh = whole.part(unseen(&whole, &before, &list), job.exec);
-    let selected = whole.part(list, job.exec);
+    let selected = whole.drawn(list, job);
     let [fresh_job, selected_job] = [&fresh, &selected].map(|part| part.job(job));
     let fresh_splats = prepare(&fresh_job, splats);
     let ranks = Ranks::new(flagged.ids(), fresh.ids());

@@ -1,0 +1,149 @@
+//! Prefiltered colours of surfels: surfel mipmaps \[GBP04, 4.4\].
+
+use crate::error::{Error, Result};
+use glam::Vec3;
+
+/// The most levels beside the surfels' own colours: the last is of 2^16 radii.
+pub const MOST_LEVELS: usize = 16;
+
+/// Further colours of every surfel: that of level k, from 1 to L, is what the surface has on the
+/// average within 2^k of the surfel's radii. Level 0 is the surfel's own colour and is not here.
+///
+/// Linear RGB. [`crate::index::mipmap`] makes them, and files may give them; the method `deferred`
+/// draws them, and no other looks at them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mipmap {
+    levels: usize,
+    /// Surfel by surfel, of each the levels from 1 on.
+    colors: Vec<Vec3>,
+}
+
+impl Mipmap {
+    /// Colours surfel by surfel, of each the levels from 1 to `levels`. They are not judged: surfels
+    /// with colours that cannot be are dropped by [`super::Surfels::new`].
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there are not 1 to [`MOST_LEVELS`] levels, or if the last surfel does
+    /// not have them all.
+    pub fn new(levels: usize, colors: Vec<Vec3>) -> Result<Self> {
+        check_levels(levels)?;
+        if !colors.len().is_multiple_of(levels) {
+            let count = colors.len();
+            let what = format!("{count} prefiltered colours are not {levels} for each surfel");
+            return Err(Error::Invalid(what));
+        }
+        Ok(Self { levels, colors })
+    }
+
+    /// Of no surfel yet.
+    pub(crate) fn empty(levels: usize) -> Self {
+        Self { levels, colors: Vec::new() }
+    }
+
+    /// L: 1 to [`MOST_LEVELS`].
+    #[must_use]
+    pub fn levels(&self) -> usize {
+        self.levels
+    }
+
+    /// How many surfels have them.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.colors.len() / self.levels
+    }
+
+    /// Whether there is no surfel.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.colors.is_empty()
+    }
+
+    /// All colours, surfel by surfel, of each the levels from 1 on.
+    #[must_use]
+    pub fn colors(&self) -> &[Vec3] {
+        &self.colors
+    }
+
+    /// The colours, to be changed; their number stays a multiple of the levels.
+    pub(crate) fn colors_mut(&mut self) -> &mut Vec<Vec3> {
+        &mut self.colors
+    }
+
+    /// The levels of a surfel, from 1 on.
+    #[must_use]
+    pub fn of(&self, surfel: usize) -> &[Vec3] {
+        &self.colors[surfel * self.levels..][..self.levels]
+    }
+
+    /// Appends a surfel. If it has fewer levels its last one stands for the others, and if it has
+    /// none its colour does: it is drawn as it would be without them.
+    pub(crate) fn push(&mut self, own: Option<&[Vec3]>, color: Vec3) {
+        let own = own.unwrap_or_default();
+        let last = own.last().copied().unwrap_or(color);
+        self.colors.extend((0..self.levels).map(|k| own.get(k).copied().unwrap_or(last)));
+    }
+
+    /// Those of some surfels, in the order of the indices.
+    pub(crate) fn some(&self, indices: &[usize]) -> Self {
+        let colors = indices.iter().flat_map(|&i| self.of(i)).copied().collect();
+        Self { levels: self.levels, colors }
+    }
+
+    /// Those of the surfels that are marked, in order.
+    pub(crate) fn retain(self, keep: &[bool]) -> Self {
+        if keep.iter().all(|&keep| keep) {
+            return self;
+        }
+        let kept = self.colors.chunks_exact(self.levels).zip(keep).filter(|pair| *pair.1);
+        let colors = kept.flat_map(|pair| pair.0).copied().collect();
+        Self { levels: self.levels, colors }
+    }
+}
+
+/// Whether there can be so many levels.
+///
+/// # Errors
+/// [`Error::Invalid`] if there cannot.
+pub fn check_levels(levels: usize) -> Result<()> {
+    if (1..=MOST_LEVELS).contains(&levels) {
+        return Ok(());
+    }
+    Err(Error::Invalid(format!("{levels} levels of a mipmap; give 1 to {MOST_LEVELS}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbered(levels: usize, surfels: usize) -> Mipmap {
+        let colors = (0..levels * surfels).map(|i| Vec3::splat(i as f32)).collect();
+        Mipmap::new(levels, colors).unwrap()
+    }
+
+    #[test]
+    fn surfels_keep_their_own_levels() {
+        let all = numbered(3, 4);
+        assert_eq!((all.levels(), all.len(), all.of(2)[1]), (3, 4, Vec3::splat(7.0)));
+        let some = all.some(&[3, 1]);
+        assert_eq!([some.of(0), some.of(1)], [all.of(3), all.of(1)]);
+        let kept = all.clone().retain(&[false, true, false, true]);
+        assert_eq!([kept.of(0), kept.of(1), kept.colors()], [all.of(1), all.of(3), &kept.colors]);
+        assert_eq!(all.clone().retain(&[true; 4]), all);
+    }
+
+    #[test]
+    fn what_a_surfel_lacks_is_filled_in() {
+        let mut all = Mipmap::empty(3);
+        all.push(None, Vec3::X);
+        all.push(Some(&[Vec3::Y, Vec3::Z]), Vec3::X);
+        assert_eq!(all.of(0), [Vec3::X; 3]);
+        assert_eq!(all.of(1), [Vec3::Y, Vec3::Z, Vec3::Z]);
+    }
+
+    #[test]
+    fn uneven_ones_are_refused() {
+        assert!(Mipmap::new(0, vec![]).is_err() && Mipmap::new(17, vec![]).is_err());
+        let error = Mipmap::new(3, vec![Vec3::ZERO; 7]).unwrap_err().to_string();
+        assert_eq!(error, "7 prefiltered colours are not 3 for each surfel");
+    }
+}
