@@ -318,7 +318,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// The surfels that weigh most at a pixel, in `f64`, the heaviest first; none if the method does
+    /// The surfels that weigh most at a pixel, by the ids of its planes, in `f64`, the heaviest first; none if the method does
     /// not say.
     ///
     /// # Errors
@@ -327,6 +327,8 @@ impl<'a> Session<'a> {
         let job = self.job(camera)?;
         camera.check_pixel(pixel.0, pixel.1)?;
         let mut weights = self.method.weights(&job, pixel)?;
+        let names = self.names();
+        weights.iter_mut().for_each(|(surfel, _)| *surfel = named(names.as_ref(), *surfel));
         weights.sort_by(|a, b| b.1.total_cmp(&a.1));
         Ok(weights)
     }
