@@ -1,5 +1,9 @@
 //! Surfels: the checked structure of arrays that every method takes.
 
+mod arrays;
+
+pub(super) use arrays::Arrays;
+
 use super::Cloud;
 use super::Groups;
 use super::Mipmap;
@@ -15,8 +19,9 @@ use std::ops::Range;
 /// Guarantees, kept by construction: at least one surfel, but for [`Surfels::none`]; positions
 /// finite; normals of length 1 within 2^-20; radii finite and > 0; colours in
 /// [0, [`crate::scene::light::MAX_RADIANCE`]], prefiltered ones too, and opacities in [0, 1], none of
-/// them -0; prefiltered colours only where there are colours; tangents finite and not parallel. (Whether they are perpendicular to each other and to the normal is the
-/// business of whoever gives them.) An array that the scene does not need is not allocated.
+/// them -0; prefiltered colours only where there are colours; tangents finite and not parallel.
+/// (Whether they are perpendicular to each other and to the normal is the business of whoever gives
+/// them.) An array that the scene does not need is not allocated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surfels {
     position: Vec<Vec3>,
@@ -165,19 +170,21 @@ impl Surfels {
     /// The surfels of ascending indices; one that is none is left out. Median radius and bounding sphere
     /// stay those of all.
     #[must_use]
-    pub fn some(&self, indices: &[u64]) -> Self {
+    pub fn some(&self, indices: &[u64], exec: &Exec) -> Self {
         let indices = indices.iter().map(|&i| i as usize).filter(|&i| i < self.len());
         let indices: Vec<usize> = indices.collect();
-        fn of<T: Copy>(values: &[T], indices: &[usize]) -> Vec<T> {
-            indices.iter().map(|&i| values[i]).collect()
+        fn of<T: Copy + Send + Sync>(values: &[T], indices: &[usize], exec: &Exec) -> Vec<T> {
+            let mut some = Vec::with_capacity(indices.len());
+            exec.extend(&mut some, indices.len(), |i| values[indices[i]]);
+            some
         }
         let arrays = Arrays {
-            position: of(&self.position, &indices),
-            normal: of(&self.normal, &indices),
-            radius: of(&self.radius, &indices),
-            color: self.color.as_ref().map(|color| of(color, &indices)),
-            opacity: self.opacity.as_ref().map(|opacity| of(opacity, &indices)),
-            tangents: self.tangents.as_ref().map(|tangents| of(tangents, &indices)),
+            position: of(&self.position, &indices, exec),
+            normal: of(&self.normal, &indices, exec),
+            radius: of(&self.radius, &indices, exec),
+            color: self.color.as_ref().map(|color| of(color, &indices, exec)),
+            opacity: self.opacity.as_ref().map(|opacity| of(opacity, &indices, exec)),
+            tangents: self.tangents.as_ref().map(|tangents| of(tangents, &indices, exec)),
             mipmap: self.mipmap.as_ref().map(|mipmap| mipmap.some(&indices)),
         };
         arrays.into_surfels(self.median_radius, self.bounding_sphere)
@@ -355,74 +362,6 @@ impl Surfels {
     }
 }
 
-/// Surfels that need no check, while they are put together.
-pub(super) struct Arrays {
-    pub(super) position: Vec<Vec3>,
-    pub(super) normal: Vec<Vec3>,
-    pub(super) radius: Vec<f32>,
-    pub(super) color: Option<Vec<Vec3>>,
-    pub(super) opacity: Option<Vec<f32>>,
-    pub(super) tangents: Option<Vec<[Vec3; 2]>>,
-    pub(super) mipmap: Option<Mipmap>,
-}
-
-impl Arrays {
-    /// None yet; with colours, opacities and half axes or not, and with so many levels of prefiltered
-    /// colours, if not 0.
-    pub(super) fn new([color, opacity, tangents]: [bool; 3], levels: usize) -> Self {
-        Self {
-            position: Vec::new(),
-            normal: Vec::new(),
-            radius: Vec::new(),
-            color: color.then(Vec::new),
-            opacity: opacity.then(Vec::new),
-            tangents: tangents.then(Vec::new),
-            mipmap: (levels > 0).then(|| Mipmap::empty(levels)),
-        }
-    }
-
-    /// Room for so many more.
-    pub(super) fn reserve(&mut self, count: usize) {
-        self.position.reserve(count);
-        self.normal.reserve(count);
-        self.radius.reserve(count);
-        self.color.iter_mut().for_each(|color| color.reserve(count));
-        self.opacity.iter_mut().for_each(|opacity| opacity.reserve(count));
-        self.tangents.iter_mut().for_each(|tangents| tangents.reserve(count));
-    }
-
-    /// Appends others, that have what these have.
-    pub(super) fn append(&mut self, others: Self) {
-        self.position.extend(others.position);
-        self.normal.extend(others.normal);
-        self.radius.extend(others.radius);
-        let (color, opacity) = (self.color.iter_mut(), self.opacity.iter_mut());
-        color.zip(others.color).for_each(|(to, from)| to.extend(from));
-        opacity.zip(others.opacity).for_each(|(to, from)| to.extend(from));
-        self.tangents.iter_mut().zip(others.tangents).for_each(|(to, from)| to.extend(from));
-        let mipmaps = self.mipmap.iter_mut().zip(others.mipmap);
-        mipmaps.for_each(|(to, from)| to.colors_mut().extend(from.colors()));
-    }
-
-    /// The surfels; the median radius and the sphere may be those of a whole of which these are a part.
-    pub(super) fn into_surfels(self, median_radius: f32, sphere: (DVec3, f64)) -> Surfels {
-        let Self { position, normal, radius, color, opacity, tangents, mipmap } = self;
-        let (groups, bounding_sphere) = (None, sphere);
-        Surfels {
-            position,
-            normal,
-            radius,
-            color,
-            opacity,
-            tangents,
-            mipmap,
-            groups,
-            median_radius,
-            bounding_sphere,
-        }
-    }
-}
-
 /// The element of rank (n - 1) / 2; there is at least one.
 fn lower_median(mut values: Vec<f32>) -> f32 {
     let middle = (values.len() - 1) / 2;
@@ -477,86 +416,4 @@ fn retain<T>(values: Vec<T>, keep: &[bool]) -> Vec<T> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn cloud(position: Vec<Vec3>, normal: Vec<Vec3>, radius: Vec<f32>) -> Cloud {
-        Cloud { position, normal: Some(normal), radius: Some(radius), ..Cloud::default() }
-    }
-
-    #[test]
-    fn degenerate_surfels_are_dropped_and_counted_once() {
-        let p = [Vec3::NAN, Vec3::ZERO, Vec3::ZERO, Vec3::X, Vec3::Y];
-        let n = [Vec3::ZERO, Vec3::ZERO, Vec3::Z, 3.0 * Vec3::Z, Vec3::Z];
-        let r = [-1.0, -1.0, -1.0, 0.5, f32::INFINITY];
-        let (surfels, dropped) = Surfels::new(cloud(p.into(), n.into(), r.into())).unwrap();
-        assert_eq!(dropped, Dropped { position: 1, normal: 1, radius: 2, attribute: 0 });
-        assert_eq!(surfels.position(), [Vec3::X]);
-        assert_eq!(surfels.normal(), [Vec3::Z], "made a unit vector");
-    }
-
-    #[test]
-    fn threads_change_nothing() {
-        let number = |i: usize, salt: u32| (i as u32 ^ salt).wrapping_mul(0x9E37_79B9);
-        // Any bits: of every kind of degenerate surfel there are some, in every chunk.
-        let any = |i, salt| f32::from_bits(number(i, salt));
-        let vector = |i, salt| Vec3::new(any(i, salt), any(i, salt + 1), any(i, salt + 2));
-        let unit = |i, salt| number(i, salt) as f32 / u32::MAX as f32;
-        let indices = 0..5 * CHUNK + 7;
-        let mut p: Vec<_> = indices.clone().map(|i| Vec3::splat(unit(i, 1))).collect();
-        indices.clone().step_by(9).for_each(|i| p[i] = vector(i, 11));
-        let n = indices.clone().map(|i| vector(i, 21)).collect();
-        let r = indices.clone().map(|i| any(i, 31)).collect();
-        let color = indices.map(|i| Vec3::splat(unit(i, 41) - 0.125)).collect();
-        let all = Cloud { color: Some(color), ..cloud(p, n, r) };
-        let alone = Surfels::new(all.clone()).unwrap();
-        let Dropped { position, normal, radius, attribute } = alone.1;
-        assert!([position, normal, radius, attribute].iter().all(|&count| count > 50));
-        assert!(alone.0.len() > 1000);
-        assert!(Surfels::new_with(all, &Exec::new(3, 32).unwrap()).unwrap() == alone);
-    }
-
-    #[test]
-    fn groups_lose_the_surfels_that_are_dropped() {
-        let p = vec![Vec3::ZERO, Vec3::NAN, Vec3::X, Vec3::Y];
-        let added = vec![(0, 2), (1, 0), (3, 1), (3, 4)];
-        let groups = Groups::new(vec![0, 1, 2, 3], added, vec![1.0, 2.0, 3.0, 4.0, 5.0]).unwrap();
-        let all = Cloud { groups: Some(groups), ..cloud(p, vec![Vec3::Z; 4], vec![1.0; 4]) };
-        let (surfels, _) = Surfels::new(all.clone()).unwrap();
-        let kept = vec![(0, 2), (2, 1), (2, 4)];
-        let kept = Groups::new(vec![0, 2, 3], kept, vec![1.0, 2.0, 3.0, 4.0, 5.0]).unwrap();
-        assert_eq!(surfels.groups(), Some(&kept));
-        assert_eq!(surfels.into_cloud().groups, Some(kept));
-        let few = Groups::new(vec![0; 3], vec![], vec![1.0]).unwrap();
-        let error = Surfels::new(Cloud { groups: Some(few), ..all }).unwrap_err();
-        assert_eq!(error.to_string(), "4 positions, but 3 groups");
-    }
-
-    #[test]
-    fn an_empty_scene_is_an_error() {
-        let error = Surfels::new(cloud(vec![], vec![], vec![])).unwrap_err();
-        assert!(error.to_string().contains("empty"), "{error}");
-    }
-
-    #[test]
-    fn the_median_radius_is_the_lower_one() {
-        let r = vec![4.0, 1.0, 3.0, 2.0];
-        let (surfels, _) = Surfels::new(cloud(vec![Vec3::ZERO; 4], vec![Vec3::Z; 4], r)).unwrap();
-        assert_eq!(surfels.median_radius(), 2.0);
-    }
-
-    #[test]
-    fn the_bounding_sphere_holds_every_disc() {
-        let p = vec![Vec3::new(-1.0, 0.0, 0.0), Vec3::new(3.0, 0.0, 0.0), Vec3::X];
-        let r = vec![0.5, 0.25, 4.0];
-        let (surfels, _) = Surfels::new(cloud(p, vec![Vec3::Z; 3], r)).unwrap();
-        assert_eq!(surfels.bounding_sphere(), (DVec3::X, 4.0));
-    }
-
-    #[test]
-    fn a_nearly_unit_normal_keeps_its_bits() {
-        let n = Vec3::new(0.6, 0.0, 0.800_000_1);
-        let (surfels, _) = Surfels::new(cloud(vec![Vec3::ZERO], vec![n], vec![1.0])).unwrap();
-        assert_eq!(surfels.normal(), [n]);
-    }
-}
+mod tests;

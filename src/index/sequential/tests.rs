@@ -217,8 +217,8 @@ proptest! {
         prop_assert!(tree.far().is_sorted_by(|a, b| band(a) >= band(b)));
         for i in 0..nodes.len() {
             if let Some(surfel) = tree.surfel(i) {
-                let own = surfels.some(&[u64::from(surfel)]);
-                let kept = nodes.some(&[i as u64]);
+                let own = surfels.some(&[u64::from(surfel)], &Exec::sequential());
+                let kept = nodes.some(&[i as u64], &Exec::sequential());
                 prop_assert!(own.are_equal(0, 0) && tree.near()[i] == 0.0);
                 prop_assert_eq!((own.position(), own.normal()), (kept.position(), kept.normal()));
                 prop_assert_eq!((own.radius(), own.tangents()), (kept.radius(), kept.tangents()));

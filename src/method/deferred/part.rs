@@ -169,9 +169,9 @@ impl<'a> Whole<'a> {
         match &self.scene.objects {
             Some(objects) => objects.some(ids, exec),
             None if self.has_colors() => {
-                self.scene.surfels.some(ids).colored(self.scene.material.color)
+                self.scene.surfels.some(ids, exec).colored(self.scene.material.color)
             }
-            None => self.scene.surfels.some(ids),
+            None => self.scene.surfels.some(ids, exec),
         }
     }
 
@@ -197,7 +197,7 @@ impl<'a> Whole<'a> {
         }
         let surfels = match &self.scene.objects {
             Some(objects) => objects.shapes(ranges, exec),
-            None => self.scene.surfels.some(&ids),
+            None => self.scene.surfels.some(&ids, exec),
         };
         Part { scene: Scene::unlit(&self.scene.name, surfels), ids }
     }

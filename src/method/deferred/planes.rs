@@ -1,6 +1,6 @@
 //! The planes of the stages: where they leave, and where they come in.
 //!
-//! Planes of ids hold the lowest 32 bits of each, and of a polygon, which has none, 0xFFFF_FFFF with a depth.
+//! Planes of ids hold the lowest 32 bits of each; a polygon has none, and is `0xFFFF_FFFF` with a depth.
 
 use super::indices::Kept;
 use super::visibility::{NONE, Nearest, POLYGON};

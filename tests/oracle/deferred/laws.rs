@@ -235,7 +235,7 @@ proptest! {
         let own = drawn::<f32>((&scene, sequence.settings), camera, Some(seen), &exec).frame;
         let (flat, _) = objects.flattened(&exec).expect("few");
         let draw = |indices: &[u64], epsilon: f32| {
-            let scene = Scene { surfels: flat.some(indices), ..sequence.around.clone() };
+            let scene = Scene { surfels: flat.some(indices, &Exec::sequential()), ..sequence.around.clone() };
             let splats =
                 SplatSettings { epsilon: Epsilon::World(epsilon), ..sequence.settings.splats };
             Drawing::new(&scene, camera, splats).frame::<f32>()

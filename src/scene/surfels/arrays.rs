@@ -1,0 +1,77 @@
+//! Surfels that need no check, while they are put together.
+
+use super::Surfels;
+use crate::scene::Mipmap;
+use glam::{DVec3, Vec3};
+
+/// Surfels that need no check, while they are put together.
+pub(in crate::scene) struct Arrays {
+    pub(in crate::scene) position: Vec<Vec3>,
+    pub(in crate::scene) normal: Vec<Vec3>,
+    pub(in crate::scene) radius: Vec<f32>,
+    pub(in crate::scene) color: Option<Vec<Vec3>>,
+    pub(in crate::scene) opacity: Option<Vec<f32>>,
+    pub(in crate::scene) tangents: Option<Vec<[Vec3; 2]>>,
+    pub(in crate::scene) mipmap: Option<Mipmap>,
+}
+
+impl Arrays {
+    /// None yet; with colours, opacities and half axes or not, and with so many levels of prefiltered
+    /// colours, if not 0.
+    pub(in crate::scene) fn new([color, opacity, tangents]: [bool; 3], levels: usize) -> Self {
+        Self {
+            position: Vec::new(),
+            normal: Vec::new(),
+            radius: Vec::new(),
+            color: color.then(Vec::new),
+            opacity: opacity.then(Vec::new),
+            tangents: tangents.then(Vec::new),
+            mipmap: (levels > 0).then(|| Mipmap::empty(levels)),
+        }
+    }
+
+    /// Room for so many more.
+    pub(in crate::scene) fn reserve(&mut self, count: usize) {
+        self.position.reserve(count);
+        self.normal.reserve(count);
+        self.radius.reserve(count);
+        self.color.iter_mut().for_each(|color| color.reserve(count));
+        self.opacity.iter_mut().for_each(|opacity| opacity.reserve(count));
+        self.tangents.iter_mut().for_each(|tangents| tangents.reserve(count));
+    }
+
+    /// Appends others, that have what these have.
+    pub(in crate::scene) fn append(&mut self, others: Self) {
+        self.position.extend(others.position);
+        self.normal.extend(others.normal);
+        self.radius.extend(others.radius);
+        let (color, opacity) = (self.color.iter_mut(), self.opacity.iter_mut());
+        color.zip(others.color).for_each(|(to, from)| to.extend(from));
+        opacity.zip(others.opacity).for_each(|(to, from)| to.extend(from));
+        self.tangents.iter_mut().zip(others.tangents).for_each(|(to, from)| to.extend(from));
+        let mipmaps = self.mipmap.iter_mut().zip(others.mipmap);
+        mipmaps.for_each(|(to, from)| to.colors_mut().extend(from.colors()));
+    }
+
+    /// The surfels; the median radius and the sphere may be those of a whole of which these are a part.
+    pub(in crate::scene) fn into_surfels(
+        self,
+        median_radius: f32,
+        sphere: (DVec3, f64),
+    ) -> Surfels {
+        let Self { position, normal, radius, color, opacity, tangents, mipmap } = self;
+        let (groups, bounding_sphere) = (None, sphere);
+        Surfels {
+            position,
+            normal,
+            radius,
+            color,
+            opacity,
+            tangents,
+            mipmap,
+            groups,
+            median_radius,
+            bounding_sphere,
+        }
+    }
+}
