@@ -40,7 +40,7 @@ const EXACT: [Kind; 3] = [Kind::Axes, Kind::Ellipses, Kind::Layers];
 const ROUNDED: [Kind; 5] = [Kind::Discs, Kind::Tilted, Kind::Sizes, Kind::Degenerate, Kind::Discs];
 
 /// Surfels about (0, 0, -4), some with opacities, some without colours.
-fn geometry(dice: &mut Dice, exact: bool, flat: bool) -> Surfels {
+pub(crate) fn geometry(dice: &mut Dice, exact: bool, flat: bool) -> Surfels {
     let splats = SplatSettings::default();
     let seed = dice.bits();
     let shape = !exact && dice.below(2) == 0;
@@ -134,10 +134,10 @@ fn world(dice: &mut Dice, exact: bool, flat: bool) -> World {
     if dice.below(4) == 0 {
         objects.push(Thing { color: Some(Vec3::X), ..objects[0].clone() });
     }
-    World { geometries, objects, fill: dice.vector(Vec3::ZERO, Vec3::ONE) }
+    World { geometries, whole: Vec::new(), objects, fill: dice.vector(Vec3::ZERO, Vec3::ONE) }
 }
 
-fn settings(dice: &mut Dice) -> Settings {
+pub(crate) fn settings(dice: &mut Dice) -> Settings {
     let kernel = [Kernel::DEFAULT, Kernel::ZPVBG01][dice.below(2)];
     let epsilon = match dice.below(6) {
         0 => Epsilon::World(0.0),
@@ -200,6 +200,7 @@ pub(crate) fn goldens() -> Vec<Sequence> {
         };
         let world = World {
             geometries: objects.geometries().iter().map(|of| of.surfels.clone()).collect(),
+            whole: Vec::new(),
             objects: objects.objects().iter().map(thing).collect(),
             fill: objects.fill(),
         };

@@ -48,7 +48,7 @@ pub(super) fn thing(geometry: usize, keys: Keys<'_>, color: Vec3) -> Thing {
 fn world(all: &[(f32, Keys<'_>, Vec3)]) -> World {
     let geometries = all.iter().map(|(radius, ..)| disc(*radius)).collect();
     let objects = all.iter().enumerate().map(|(i, (_, keys, color))| thing(i, keys, *color));
-    World { geometries, objects: objects.collect(), fill: Vec3::ONE }
+    World { geometries, whole: Vec::new(), objects: objects.collect(), fill: Vec3::ONE }
 }
 
 /// A frame, given what another saw.
@@ -243,7 +243,7 @@ fn deferred_the_nearest_of_a_pixel_may_not_be_selected() {
     let geometries = vec![exact_scene(&pair).surfels, disc(1.0)];
     let blue = thing(1, &[(0, to(0.5, 2.5, 2.5))], BLUE);
     let objects = vec![thing(0, &[(0, Similarity::IDENTITY)], RED), blue];
-    let world = World { geometries, objects, fill: Vec3::ONE };
+    let world = World { geometries, whole: Vec::new(), objects, fill: Vec3::ONE };
     for outline in OUTLINES {
         for epsilon in [1.0, 0.5, 0.25] {
             let settings = Settings { flags: 2, ..settings(outline, epsilon) };
@@ -272,7 +272,7 @@ fn deferred_what_is_seen_from_behind_takes_no_pixel_if_it_is_culled() {
     let geometries = vec![exact_scene(&[back]).surfels, disc(1.0)];
     let objects =
         vec![thing(0, &[(0, to(1.5, 1.5, 2.0))], RED), thing(1, &[(0, to(1.5, 1.5, 4.0))], BLUE)];
-    let world = World { geometries, objects, fill: Vec3::ONE };
+    let world = World { geometries, whole: Vec::new(), objects, fill: Vec3::ONE };
     for (cull, id, color, depth) in [(true, SECOND, BLUE, 4.0), (false, 0, RED, 2.0)] {
         let mut settings = settings(Outline::Affine, 1.0);
         settings.splats.cull = cull;

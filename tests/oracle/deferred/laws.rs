@@ -297,8 +297,12 @@ fn deferred_surfels_without_objects_are_one_object() {
         let (surfels, _) =
             sequence.scene(*frame).objects.expect("objects").flattened(&exec).expect("few");
         let thing = Thing { geometry: 0, keys: vec![(0, Similarity::IDENTITY)], color: None };
-        let world =
-            World { geometries: vec![surfels.clone()], objects: vec![thing], fill: Vec3::ONE };
+        let world = World {
+            geometries: vec![surfels.clone()],
+            whole: Vec::new(),
+            objects: vec![thing],
+            fill: Vec3::ONE,
+        };
         let one = Scene { objects: Some(world.objects()), ..sequence.around.clone() };
         let plain = Scene { surfels, ..sequence.around.clone() };
         let [mut seen, mut plain_seen] = [None, None];

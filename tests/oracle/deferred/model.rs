@@ -3,22 +3,33 @@
 //! The splats and their fragments are those of the oracle of `ewa`; which of them a pass draws, what
 //! it leaves, and where rounding may decide is said here.
 
-use crate::deferred::ids::Numbers;
+use crate::deferred::view::View;
 use crate::ewa::model::{Entry, Oracle, Seen};
 use crate::kit::number::Num;
 use crate::kit::projection::Candidate;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// The flags of a frame: object and group.
+/// What a frame saw: the flags, object and group, and how many surfels of each object.
 #[derive(Clone, Default)]
 pub(crate) struct Flags {
     m: u32,
     set: BTreeSet<(usize, u32)>,
+    counts: BTreeMap<usize, u32>,
 }
 
 impl Flags {
     pub(crate) fn of(m: u32, selected: impl IntoIterator<Item = (usize, u32)>) -> Self {
-        Self { m, set: selected.into_iter().map(|(o, s)| (o, s / m)).collect() }
+        let mut flags = Self { m, ..Self::default() };
+        for (o, s) in selected {
+            flags.set.insert((o, s / m));
+            *flags.counts.entry(o).or_default() += 1;
+        }
+        flags
+    }
+
+    /// How many surfels of an object were selected.
+    pub(crate) fn selected(&self, object: usize) -> u32 {
+        self.counts.get(&object).copied().unwrap_or(0)
     }
 
     pub(crate) fn has(&self, (object, surfel): (usize, u32)) -> bool {
@@ -38,12 +49,11 @@ pub(crate) struct Sets {
 
 impl Sets {
     pub(crate) fn new(
-        numbers: &Numbers,
+        View { numbers, every, .. }: &View,
         flags: &Flags,
         selected: &BTreeSet<u64>,
         second: bool,
     ) -> Self {
-        let every = numbers.every();
         let flagged: Vec<_> = every.iter().map(|&of| flags.has(of)).collect();
         let selected: Vec<_> =
             every.iter().map(|&(o, s)| selected.contains(&numbers.id(o, s))).collect();

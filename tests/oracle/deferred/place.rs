@@ -1,7 +1,7 @@
 //! Where surfels of objects are, by the pages of motion and transform: f64, rounded once.
 
 use glam::{DMat3, DVec3, Vec3};
-use splatref::scene::objects::{Motion, Object, Objects};
+use splatref::scene::objects::{Geometry, Motion, Object, Objects};
 use splatref::scene::{Cloud, Similarity, Surfels};
 
 type Rows = [[f64; 3]; 3];
@@ -64,7 +64,7 @@ impl Place {
         Vec3::from(self.turned(n.to_array().map(f64::from)).map(|v| v as f32))
     }
 
-    fn radius(&self, r: f32) -> f32 {
+    pub(crate) fn radius(&self, r: f32) -> f32 {
         (f64::from(r) * self.scale) as f32
     }
 }
@@ -152,6 +152,8 @@ fn unit(n: Vec3) -> Vec3 {
 #[derive(Clone)]
 pub(crate) struct World {
     pub(crate) geometries: Vec<Surfels>,
+    /// The geometries with all that they have beside surfels; none if that is nothing.
+    pub(crate) whole: Vec<Geometry>,
     pub(crate) objects: Vec<Thing>,
     pub(crate) fill: Vec3,
 }
@@ -166,7 +168,7 @@ pub(crate) struct Thing {
 impl World {
     /// As the crate has it.
     pub(crate) fn objects(&self) -> Objects {
-        let geometry = |(i, surfels): (usize, &Surfels)| splatref::scene::Geometry {
+        let geometry = |(i, surfels): (usize, &Surfels)| Geometry {
             name: format!("geometry {i}"),
             surfels: surfels.clone(),
             primitives: splatref::scene::Primitives::default(),
@@ -178,13 +180,23 @@ impl World {
             motion: Motion::new(thing.keys.clone()).expect("a motion"),
             color: thing.color,
         };
-        let geometries = self.geometries.iter().enumerate().map(geometry).collect();
+        let geometries = if self.whole.is_empty() {
+            self.geometries.iter().enumerate().map(geometry).collect()
+        } else {
+            self.whole.clone()
+        };
         let objects = self.objects.iter().enumerate().map(object).collect();
         Objects::new(geometries, objects, self.fill).expect("objects")
     }
 
     pub(crate) fn counts(&self) -> Vec<u32> {
         self.objects.iter().map(|o| self.geometries[o.geometry].len() as u32).collect()
+    }
+
+    /// Whether anything has a colour.
+    pub(crate) fn colored(&self) -> bool {
+        let own = |o: &Thing| self.geometries[o.geometry].color().is_some();
+        self.objects.iter().any(|o| o.color.is_some() || own(o))
     }
 
     /// The lower median of the objects' median radii, once for each surfel.
@@ -206,13 +218,12 @@ impl World {
     pub(crate) fn placed(&self, frame: u32, which: &[(usize, u32)]) -> Cloud {
         let own = |o: &Thing| &self.geometries[o.geometry];
         let any = |has: &dyn Fn(&Thing) -> bool| self.objects.iter().any(has);
-        let colored = any(&|o| o.color.is_some() || own(o).color().is_some());
         let [opaque, round] =
             [!any(&|o| own(o).opacity().is_some()), !any(&|o| own(o).tangents().is_some())];
         let mut cloud = Cloud {
             normal: Some(Vec::new()),
             radius: Some(Vec::new()),
-            color: colored.then(Vec::new),
+            color: self.colored().then(Vec::new),
             opacity: (!opaque).then(Vec::new),
             tangents: (!round).then(Vec::new),
             ..Cloud::default()

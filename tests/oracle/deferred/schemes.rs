@@ -24,7 +24,7 @@ fn crowd(count: usize, some: &[(usize, Keys<'_>)], last: Keys<'_>) -> World {
         objects[*i] = thing(0, keys, RED);
     }
     objects.push(thing(1, last, BLUE));
-    World { geometries, objects, fill: Vec3::ONE }
+    World { geometries, whole: Vec::new(), objects, fill: Vec3::ONE }
 }
 
 #[test]

@@ -5,8 +5,10 @@
 
 use crate::deferred::cases::{Sequence, goldens, sequence};
 use crate::deferred::ids::Numbers;
+use crate::deferred::levels::leveled;
 use crate::deferred::model::{self, Flags, Nearest, Sets, Sums};
 use crate::deferred::tolerance::DEFERRED;
+use crate::deferred::view::View;
 use crate::ewa::model::Oracle;
 use crate::ewa::stages::{GUARD, measure};
 use crate::kit::number::BITS;
@@ -17,6 +19,7 @@ use splatref::frame::{Exec, Frame, NO_ID};
 use splatref::index::seen::Seen;
 use splatref::method::{Picture, Session};
 use splatref::number::Exact;
+use splatref::scene::objects::Ids;
 use splatref::scene::{Camera, Scene};
 use splatref::splat::{Epsilon, SplatSettings};
 use std::collections::BTreeSet;
@@ -146,53 +149,54 @@ fn selected<R: Exact>(frame: &Frame<R>) -> BTreeSet<u64> {
 }
 
 /// What the frame says that it saw, against what it selected.
-fn state(seen: &Seen, flags: &Flags, selected: &BTreeSet<u64>, sequence: &Sequence) {
+fn state(
+    seen: &Seen,
+    flags: &Flags,
+    (selected, numbers, ids): (&BTreeSet<u64>, &Numbers, &Ids),
+    sequence: &Sequence,
+) {
     let name = &sequence.name;
     let counts = sequence.world.counts();
-    let numbers = Numbers::new(&counts).expect("ids");
-    let ids = sequence.world.objects().ids().clone();
     let every = numbers.every();
     let flagged = every.iter().filter(|of| flags.has(**of));
     let flagged: Vec<_> = flagged.map(|&(o, s)| numbers.id(o, s)).collect();
-    assert_eq!(seen.surfels(&ids), flagged, "{name}: flags");
-    assert!(every.iter().all(|&(o, s)| seen.has(o as u32, s) == flags.has((o, s))), "{name}");
+    assert_eq!(seen.surfels(ids), flagged, "{name}: flags");
+    let all = |(o, n): (usize, &u32)| (0..*n).all(|s| seen.has(o as u32, s) == flags.has((o, s)));
+    assert!(counts.iter().enumerate().all(all), "{name}");
+    assert_eq!(seen.counts(), counts, "{name}: all surfels, with and without ids");
     let mut each = vec![0; counts.len()];
     for id in selected {
         each[numbers.find(*id).expect("a surfel").0] += 1;
     }
     assert_eq!(seen.selected(), each, "{name}: how many were selected");
     assert_eq!(seen.group(), sequence.settings.flags);
-    let again = Seen::of(&ids, seen.group(), &selected.iter().copied().collect::<Vec<_>>());
+    let again = Seen::of(ids, seen.group(), &selected.iter().copied().collect::<Vec<_>>());
     assert_eq!(*seen, again, "{name}: the state is that of the selection");
 }
 
 /// The number of a frame that a picture of all passes is compared with.
 fn compare_frame<R: Exact, const P: u32>(
     sequence: &Sequence,
-    (frame, camera): (u32, &Camera),
+    (view, camera): (&View, &Camera),
     (picture, flags): (&Picture<R>, &Flags),
     (arithmetic, measured, counts): (Arithmetic, &mut Measured, &mut Counts),
 ) {
-    let Sequence { world, settings, .. } = sequence;
-    let numbers = Numbers::new(&world.counts()).expect("ids");
-    let every = numbers.every();
-    let objects = world.objects().at(frame).expect("in range");
-    let (surfels, _) = objects.flattened(&Exec::sequential()).expect("few surfels");
-    let flat = Scene { surfels, ..sequence.around.clone() };
+    let Sequence { settings, .. } = sequence;
+    let flat = Scene { surfels: view.surfels.clone(), ..sequence.around.clone() };
     let epsilon = match settings.splats.epsilon {
         Epsilon::World(epsilon) => epsilon,
-        Epsilon::MedianRadii(radii) => radii * world.median(frame),
+        Epsilon::MedianRadii(radii) => radii * view.median,
     };
     let splats = SplatSettings { epsilon: Epsilon::World(epsilon), ..settings.splats };
     let (step, part) = arithmetic.step();
     let oracle = Oracle::new(&flat, camera, &splats, [step, GUARD * part]);
     let projected = Projected::<P>::new(&flat, camera, splats.cull, 0);
     let chosen = selected(&picture.frame);
-    let sets = Sets::new(&numbers, flags, &chosen, settings.second);
-    let colored = flat.surfels.color().is_some();
+    let sets = Sets::new(view, flags, &chosen, settings.second);
+    let colored = view.colored;
     let found = picture.frame.plane("attributes").is_some();
     assert!(found == colored, "colours of {}", sequence.name);
-    let (frame, numbers, every) = (&picture.frame, &numbers, &every[..]);
+    let (frame, numbers, every) = (&picture.frame, &view.numbers, &view.every[..]);
     let name = &sequence.name;
     let mut shown = Shown { name, frame, numbers, every, arithmetic, measured, counts };
     shown.counts.frames += 1;
@@ -229,7 +233,6 @@ fn compare<R: Exact, const P: u32>(
     counts: &mut Counts,
 ) {
     let (exec, mut seen, mut flags) = (Exec::sequential(), None, Flags::default());
-    let numbers = Numbers::new(&sequence.world.counts()).expect("ids");
     for (frame, camera, given) in &sequence.frames {
         let scene = sequence.scene(*frame);
         let mut session = Session::new(&scene, sequence.settings.into(), &exec).expect("a session");
@@ -238,17 +241,21 @@ fn compare<R: Exact, const P: u32>(
         }
         session.resume(seen);
         let picture: Picture<R> = session.define(camera, true).expect("renders");
+        let share = sequence.settings.share;
+        let view = View::new(&sequence.world, *frame, camera, (&flags, share));
         let subject = (&picture, &flags);
         let rest = (arithmetic, &mut *measured, &mut *counts);
-        compare_frame::<R, P>(sequence, (*frame, camera), subject, rest);
+        compare_frame::<R, P>(sequence, (&view, camera), subject, rest);
         let chosen = selected(&picture.frame);
         let tally = picture.tally;
         let all = tally.visible + tally.behind + tally.degenerate + tally.back_facing;
         assert_eq!(all + tally.outside, chosen.len() as u64, "{tally:?} in {}", sequence.name);
-        let found = chosen.iter().map(|id| numbers.find(*id).expect("a surfel"));
+        let found = chosen.iter().map(|id| view.numbers.find(*id).expect("a surfel"));
         flags = Flags::of(sequence.settings.flags, found);
         let state_of = picture.seen.expect("what the frame saw");
-        state(&state_of, &flags, &chosen, sequence);
+        let objects = scene.objects.as_ref().expect("objects");
+        let objects = objects.seen_from(camera, &exec).expect("ids");
+        state(&state_of, &flags, (&chosen, &view.numbers, objects.ids()), sequence);
         seen = Some(state_of);
     }
 }
@@ -271,4 +278,22 @@ fn deferred_every_pass_equals_the_oracle() {
     }
     assert_eq!(narrow.open[1], 0, "pass 2 in f32 is compared bit by bit");
     measured.check(DEFERRED);
+}
+
+#[test]
+fn deferred_every_pass_of_levels_of_detail_equals_the_oracle() {
+    let mut measured = Measured::default();
+    let [mut narrow, mut wide] = <[Counts; 2]>::default();
+    for sequence in (0..48).map(leveled) {
+        compare::<f32, BITS>(&sequence, Arithmetic::F32, &mut measured, &mut narrow);
+        compare::<f64, 53>(&sequence, Arithmetic::F64Rounded, &mut measured, &mut wide);
+    }
+    println!("f32 {narrow:?}\nf64 {wide:?}");
+    for counts in [&narrow, &wide] {
+        let Counts { pixels, open, full, rare, .. } = counts;
+        assert!(open.iter().all(|open| open * 100 <= *pixels), "too much is open: {counts:?}");
+        assert!(full.iter().all(|full| *full > 1000), "the scenes are too easy: {counts:?}");
+        assert!(rare.iter().all(|rare| *rare > 10), "the scenes are too easy: {counts:?}");
+    }
+    measured.within(DEFERRED);
 }

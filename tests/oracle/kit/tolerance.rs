@@ -76,6 +76,15 @@ impl Measured {
         assert!(complaints.is_empty(), "{}", complaints.join("\n"));
     }
 
+    /// As [`Self::check`], of scenes that need not reach all that the table has.
+    pub(crate) fn within(&self, table: &[Row]) {
+        for (&(plane, arithmetic), (worst, place)) in &self.0 {
+            let row = table.iter().find(|r| r.plane == plane && r.arithmetic == arithmetic);
+            let bound = row.map_or(0.0, |r| r.bound);
+            assert!(*worst <= bound, "plane '{plane}', {arithmetic:?}: {worst:.3} at {place}");
+        }
+    }
+
     /// Every complaint: a plane beyond its bound or without a row, a row too loose or unused.
     fn complaints(&self, table: &[Row]) -> Vec<String> {
         let mut all = Vec::new();

@@ -1,0 +1,107 @@
+//! Polygons beside the surfels: the nearest of each pixel, and what it shows.
+
+use crate::kit::number::{N3, Num};
+use crate::kit::planes::{index, number, value};
+use crate::kit::projection::{Projected, Sight};
+use crate::kit::shade::{Surface, shaded};
+use splatref::frame::{Frame, NO_ID};
+use splatref::number::Exact;
+use splatref::scene::indexed::Indexed;
+use splatref::scene::{Camera, Primitives, Scene, Surfels, Triangles, Vertices};
+
+/// The triangles of all objects as one list.
+fn joined(all: Vec<Primitives>) -> Triangles {
+    let (mut vertices, mut corners) = (Vertices::default(), Vec::new());
+    for one in all {
+        let (own, its) = one.triangles.into_parts();
+        let first = vertices.position.len() as u32;
+        corners.extend(its.iter().map(|c| c.map(|v| v + first)));
+        if let Some(colors) = own.color {
+            vertices.color.get_or_insert_default().extend(colors);
+        }
+        vertices.position.extend(own.position);
+        vertices.direction.extend(own.direction);
+        vertices.radius.extend(own.radius);
+    }
+    Indexed::new(vertices, corners).expect("good triangles").0
+}
+
+/// The nearest polygon of a pixel.
+#[derive(Clone, Copy)]
+pub(crate) struct Wall<const P: u32> {
+    /// Its depth, and that of its nearness.
+    pub(crate) own: Num<P>,
+    pub(crate) depth: Num<P>,
+    normal: N3<P>,
+    color: N3<P>,
+}
+
+/// The polygons before a camera.
+pub(crate) struct Walls<const P: u32> {
+    scene: Scene,
+    sight: Sight<P>,
+    all: Projected<P>,
+}
+
+impl<const P: u32> Walls<P> {
+    /// `colored`: whether surfels have colours.
+    pub(crate) fn new(around: &Scene, all: Vec<Primitives>, camera: &Camera, cull: bool) -> Self {
+        let primitives = Primitives { triangles: joined(all), ..Primitives::default() };
+        let scene = Scene { surfels: Surfels::none(), primitives, ..around.clone() };
+        let all = Projected::new(&scene, camera, cull, 8);
+        assert!(all.loose.is_empty(), "triangles too far away");
+        Self { scene, sight: Sight::new(camera), all }
+    }
+
+    /// The nearest at a pixel, if any; none if rounding decides that.
+    pub(crate) fn at(&self, i: usize) -> Option<Option<Wall<P>>> {
+        let all = &self.all.pixels[i];
+        let may: Vec<_> = all.iter().filter(|c| !c.is_hidden(all)).collect();
+        let [c] = may[..] else { return may.is_empty().then_some(None) };
+        let depth = if self.sight.perspective {
+            let one = Num::exact(1.0);
+            one / (one / c.t)
+        } else {
+            c.t
+        };
+        let color = if self.scene.primitives.colored() {
+            c.color
+        } else {
+            self.scene.material.color.to_array().map(|v| Num::exact(v.into()))
+        };
+        let normal = self.sight.outwards(c.normal);
+        c.certain.then_some(Some(Wall { own: c.t, depth, normal, color }))
+    }
+
+    /// A pixel that shows a polygon.
+    pub(crate) fn check<R: Exact>(
+        &self,
+        wall: &Wall<P>,
+        frame: &Frame<R>,
+        (i, place): (usize, &str),
+    ) {
+        assert_eq!(index(frame, "id", i), NO_ID, "{place}: a polygon has no id");
+        assert_eq!(number(frame, "weight", i), 1.0, "{place}: the weight of a polygon");
+        assert_eq!(number(frame, "A", i), 1.0, "{place}: A of a polygon");
+        let near = |truth: Num<P>, found: f64, what: &str| {
+            let off = truth.deviation(found);
+            assert!(off <= 1.0, "{place}: {what} of a polygon {found:?} for {truth:?}");
+        };
+        let three = |truth: N3<P>, found: [f64; 3], what: &str| {
+            (0..3).for_each(|k| near(truth[k], found[k], what));
+        };
+        near(wall.depth, number(frame, "Z", i), "Z");
+        let normal = value(frame, "normal", i);
+        three(wall.normal, normal, "the normal");
+        if frame.plane("resolved").is_some() {
+            three(wall.color, value(frame, "resolved", i), "the colour");
+        }
+        let pixel = (i as u32 % frame.width, i as u32 / frame.width);
+        let depth = number(frame, "Z", i);
+        let surface = Surface { depth, normal, tangent: [0.0; 3], color: wall.color };
+        let found = value(frame, "", i);
+        let fits = |c: &N3<P>| (0..3).all(|k| c[k].deviation(found[k]) <= 1.0);
+        let may = shaded(&self.scene, &self.sight, pixel, &surface);
+        assert!(may.iter().any(fits), "{place}: {found:?} of a polygon, not of {may:?}");
+    }
+}
