@@ -21,7 +21,7 @@ use std::fmt;
 pub struct DeferredReplay<R> {
     /// Column and row.
     pub pixel: (u32, u32),
-    /// How many surfels there are, how many have a flag that is set, and how many were selected.
+    /// How many surfels the high level leaves, how many of them have a flag that is set, and how many were selected.
     pub counts: [u64; 3],
     /// The depth of the nearest polygon, if there is one.
     pub polygon: Option<R>,
@@ -109,7 +109,7 @@ pub fn explain<R: Exact>(
         touch.decide(|| Decision::visible(t, end, epsilon));
         touch.gives = touch.passes().then(|| ("weight", splat.footprint.weight(touch.q)));
     };
-    let all = whole.ids().total();
+    let all = whole.drawn_ids().len() as u64;
     let sums = pass(&part, &weigh);
     let names: Vec<&String> = sums.iter().map(|(name, _)| name).collect();
     let colors = colors(job, &whole, &part, &names);

@@ -9,8 +9,8 @@
 //!
 //! 1. **Visibility splatting of B(i-1)**: the pass of [`super::ewa`] over every surfel whose flag is
 //!    set, with the places and the camera of this frame. A flag stands for m consecutive surfels of one
-//!    object \[GBP04, 4.3\], see [`crate::index::seen`]; of its surfels those are drawn that the high level leaves in this frame. In the first frame no flag is set, and the pass
-//!    draws nothing.
+//!    object \[GBP04, 4.3\], see [`crate::index::seen`]; of its surfels those are drawn that the high level
+//!    leaves in this frame. In the first frame no flag is set, and the pass draws nothing.
 //! 2. **Indices**: every surfel becomes one pixel, that of its centre, as in [`super::projection`]: with
 //!    the same fates, pixel and depth t. It is drawn if `t <= Z + epsilon`, with Z the depth that pass
 //!    1 left at the pixel, +inf if none; of those that are drawn into a pixel the one of the least t is
@@ -19,7 +19,7 @@
 //!    set, into the depth that pass 1 left; of equally near fragments of both passes the lower id wins.
 //!    The setting `second` turns the pass off \[GBP04, Fig. 3 a\].
 //! 4. **EWA splatting of B(i)**: attribute splatting of [`super::ewa`] over B(i), against the depth that
-//!    pass 3 left.
+//!    pass 3 left; in prefiltered colours where surfels have some, see [`filter`].
 //! 5. **Normalization**, as in [`super::ewa`]; then deferred shading.
 //!
 //! The stage `difference` run alone turns depths into nearness again: under a perspective camera its depths
@@ -32,8 +32,8 @@
 //!
 //! Triangles beside the surfels are drawn before pass 1, see [`polygons`].
 //!
-//! The flags of B(i) are what frame i + 1 is given; no flags, and none set, give the same frame. A frame is a function of flags, scene, camera and
-//! settings alone.
+//! The flags of B(i), and how many surfels of each object B(i) has, are what frame i + 1 is given; no flags,
+//! and none set, give the same frame. A frame is a function of these, scene, camera and settings alone.
 //!
 //! # Decided
 //!

@@ -42,7 +42,13 @@
 //!   are one depth buffer. A client that stores the two in different formats declares the coarser one.
 //! - Of a surfel that only may be selected the choice is free at every pixel, though it is one choice: more is
 //!   allowed than a right implementation leaves, never less.
-//! - Ids of more than 32 bits are not judged: a plane of ids holds 32 of them.
+//! - Surfels are those that the high level leaves. A node of [levels of
+//!   detail](crate::scene::objects::detail) that a client chooses otherwise is a wrong surfel: which nodes a
+//!   view draws is computed in f64 and given, as the flags are.
+//! - Ids of more than 32 bits are not judged: a plane of ids holds 32 of them. Nor are polygons beside the
+//!   surfels, and frames from which objects are left out.
+//! - A client that goes on from other numbers than it stores, as a picture in f64 that is rounded once in the
+//!   end, may not promise `ieee`: what its planes say of one stage is not what the next was given.
 
 mod handed;
 mod selected;
