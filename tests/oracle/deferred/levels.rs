@@ -2,6 +2,7 @@
 
 use crate::deferred::cases::{Sequence, geometry, settings};
 use crate::deferred::ids::Numbers;
+use crate::deferred::laws::all as all_numbers;
 use crate::deferred::place::{Thing, World, similarity};
 use crate::deferred::view::{self, View};
 use crate::kit::dice::Dice;
@@ -135,6 +136,10 @@ fn deferred_views_take_the_nodes_of_the_page() {
             let ids: Vec<_> = view.every.iter().map(|&(o, s)| view.numbers.id(o, s)).collect();
             assert_eq!(found.drawn_ids(), ids, "{name}");
             assert_eq!(found.drawn_total(), ids.len() as u64, "{name}");
+            let (placed, _) = found.flattened(&exec).expect("few");
+            assert_eq!(placed.len(), view.surfels.len(), "{name}");
+            let (placed, own) = (all_numbers(&placed), all_numbers(&view.surfels));
+            assert!(ids.is_empty() || placed == own, "surfels in their places of {name}");
             for o in 0..world.objects.len() {
                 let own = view::taken(&objects, o, camera);
                 assert_eq!(own.is_some(), found.drawn(o as u32).is_some(), "{name}");

@@ -12,7 +12,7 @@ use crate::deferred::view::View;
 use crate::ewa::model::Oracle;
 use crate::ewa::stages::{GUARD, measure};
 use crate::kit::number::BITS;
-use crate::kit::planes::{at, index, number, plane};
+use crate::kit::planes::{at, bits, index, number, plane};
 use crate::kit::projection::Projected;
 use crate::kit::tolerance::{Arithmetic, Measured};
 use splatref::frame::{Exec, Frame, NO_ID};
@@ -225,6 +225,15 @@ fn compare_frame<R: Exact, const P: u32>(
     }
 }
 
+/// The fast path leaves the planes of the definition.
+fn same_fast<R: Exact>(slow: &Picture<R>, fast: &Picture<f32>, name: &str) {
+    for plane in &fast.frame.planes {
+        let own = slow.frame.plane(&plane.name).map(bits);
+        assert!(own == Some(bits(&plane.samples)), "'{}' of {name}", plane.name);
+    }
+    assert_eq!((slow.tally, &slow.seen), (fast.tally, &fast.seen), "{name}");
+}
+
 /// Draws a sequence in an arithmetic, and compares every frame.
 fn compare<R: Exact, const P: u32>(
     sequence: &Sequence,
@@ -234,7 +243,9 @@ fn compare<R: Exact, const P: u32>(
 ) {
     let (exec, mut seen, mut flags) = (Exec::sequential(), None, Flags::default());
     for (frame, camera, given) in &sequence.frames {
-        let scene = sequence.scene(*frame);
+        let mut scene = sequence.scene(*frame);
+        let objects = scene.objects.take().expect("objects");
+        scene.objects = Some(objects.seen_from(camera, &exec).expect("ids"));
         let mut session = Session::new(&scene, sequence.settings.into(), &exec).expect("a session");
         if !given {
             (seen, flags) = (None, Flags::default());
@@ -253,8 +264,10 @@ fn compare<R: Exact, const P: u32>(
         let found = chosen.iter().map(|id| view.numbers.find(*id).expect("a surfel"));
         flags = Flags::of(sequence.settings.flags, found);
         let state_of = picture.seen.expect("what the frame saw");
+        if arithmetic == Arithmetic::F32 {
+            same_fast(&picture, session.render(camera).expect("renders"), &sequence.name);
+        }
         let objects = scene.objects.as_ref().expect("objects");
-        let objects = objects.seen_from(camera, &exec).expect("ids");
         state(&state_of, &flags, (&chosen, &view.numbers, objects.ids()), sequence);
         seen = Some(state_of);
     }
