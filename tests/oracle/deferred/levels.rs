@@ -9,12 +9,41 @@ use crate::kit::dice::Dice;
 use crate::kit::scene::{lights, scene, straight, surfels};
 use glam::{Mat4, Vec3};
 use splatref::frame::Exec;
+use splatref::scene::indexed::Indexed;
 use splatref::scene::objects::Ids;
-use splatref::scene::{Camera, Geometry, Primitives, Scene, Similarity};
+use splatref::scene::{
+    Camera, Geometry, Primitives, Scene, Similarity, Surfels, Triangles, Vertices,
+};
 use splatref::source::Shape;
 
+/// A few triangles through surfels, with colours or without.
+fn triangles(dice: &mut Dice, of: &Surfels, colored: bool) -> Triangles {
+    let any = |dice: &mut Dice| of.position()[dice.below(of.len())];
+    let mut vertices = Vertices::default();
+    let corners: Vec<_> = (0..3 * (1 + dice.below(4)) as u32).collect();
+    for _ in &corners {
+        let near = dice.vector(Vec3::splat(-0.25), Vec3::splat(0.25));
+        vertices.position.push(any(dice) + near);
+        vertices.direction.push(dice.direction());
+        vertices.radius.push(0.0);
+        if colored {
+            let color = dice.vector(Vec3::ZERO, Vec3::ONE);
+            vertices.color.get_or_insert_default().push(color);
+        }
+    }
+    let corners = corners.chunks(3).map(|c| [c[0], c[1], c[2]]).collect();
+    Indexed::new(vertices, corners).expect("good triangles").0
+}
+
+/// What geometries have beside surfels.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Beside {
+    Nothing,
+    Triangles { colored: bool },
+}
+
 /// A geometry, of which every third has no levels of detail.
-fn whole(dice: &mut Dice, number: usize) -> Geometry {
+fn whole(dice: &mut Dice, number: usize, beside: Beside) -> Geometry {
     let surfels = if dice.below(2) == 0 {
         geometry(dice, false, false)
     } else {
@@ -22,7 +51,10 @@ fn whole(dice: &mut Dice, number: usize) -> Geometry {
         Shape::Sphere.surfels(60 + dice.below(240), seed).expect("surfels")
     };
     let name = format!("geometry {number}");
-    let primitives = Primitives::default();
+    let mut primitives = Primitives::default();
+    if let Beside::Triangles { colored } = beside {
+        primitives.triangles = triangles(dice, &surfels, colored);
+    }
     let geometry = Geometry { name, surfels, primitives, detail: None };
     if dice.below(3) == 0 {
         return geometry;
@@ -81,10 +113,27 @@ const SIZES: [[u32; 2]; 6] = [[1, 9], [17, 12], [23, 17], [32, 16], [41, 30], [6
 
 /// The sequence of a number.
 pub(crate) fn leveled(number: u64) -> Sequence {
+    by_lot(number, Beside::Nothing)
+}
+
+/// The sequence of a number, with triangles.
+pub(crate) fn walled(number: u64) -> Sequence {
+    by_lot(number, Beside::Triangles { colored: !number.is_multiple_of(3) })
+}
+
+/// The sequence of a number, in which objects may be left out.
+pub(crate) fn shared(number: u64) -> Sequence {
+    let mut sequence = by_lot(number + 1000, Beside::Nothing);
+    sequence.settings.share = [0.03125, 0.125, 0.5, 1.0][number as usize % 4];
+    sequence.name += " with a share";
+    sequence
+}
+
+fn by_lot(number: u64, beside: Beside) -> Sequence {
     let mut dice = Dice(number.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x51A7_1E7E);
     dice.bits();
     let settings = settings(&mut dice);
-    let whole: Vec<_> = (0..1 + dice.below(3)).map(|i| whole(&mut dice, i)).collect();
+    let whole: Vec<_> = (0..1 + dice.below(3)).map(|i| whole(&mut dice, i, beside)).collect();
     let thing = |dice: &mut Dice| {
         let geometry = dice.below(whole.len());
         let color = (dice.below(3) == 0).then(|| dice.vector(Vec3::ZERO, Vec3::ONE));
