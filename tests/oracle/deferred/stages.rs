@@ -219,7 +219,7 @@ fn compare_frame<R: Exact, const P: u32>(
     let (step, part) = arithmetic.step();
     let oracle = Oracle::new(&flat, camera, &splats, [step, GUARD * part]);
     let projected = Projected::<P>::new(&flat, camera, splats.cull, 0);
-    let all = view.primitives.clone();
+    let all = (view.primitives.clone(), sequence.world.fill);
     let walls = Walls::<P>::new(&sequence.around, all, camera, splats.cull);
     let chosen = selected(&picture.frame);
     let sets = Sets::new(view, flags, &chosen, settings.second);
