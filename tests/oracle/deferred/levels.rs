@@ -6,7 +6,7 @@ use crate::deferred::laws::all as all_numbers;
 use crate::deferred::place::{Thing, World, similarity};
 use crate::deferred::view::{self, View};
 use crate::kit::dice::Dice;
-use crate::kit::scene::{lights, scene, straight, surfels};
+use crate::kit::scene::{change, lights, scene, straight, surfels};
 use glam::{Mat4, Vec3};
 use splatref::frame::Exec;
 use splatref::scene::indexed::Indexed;
@@ -39,12 +39,18 @@ fn triangles(dice: &mut Dice, of: &Surfels, colored: bool) -> Triangles {
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Beside {
     Nothing,
-    Triangles { colored: bool },
+    Triangles {
+        colored: bool,
+    },
+    /// Colours of the triangles alone, or of the surfels alone.
+    Alone {
+        colored: bool,
+    },
 }
 
 /// A geometry, of which every third has no levels of detail.
 fn whole(dice: &mut Dice, number: usize, beside: Beside) -> Geometry {
-    let surfels = if dice.below(2) == 0 {
+    let mut surfels = if dice.below(2) == 0 {
         geometry(dice, false, false)
     } else {
         let seed = dice.bits();
@@ -52,8 +58,14 @@ fn whole(dice: &mut Dice, number: usize, beside: Beside) -> Geometry {
     };
     let name = format!("geometry {number}");
     let mut primitives = Primitives::default();
-    if let Beside::Triangles { colored } = beside {
+    if let Beside::Triangles { colored } | Beside::Alone { colored } = beside {
         primitives.triangles = triangles(dice, &surfels, colored);
+    }
+    if let Beside::Alone { colored } = beside {
+        let color = vec![dice.vector(Vec3::ZERO, Vec3::ONE); surfels.len()];
+        let mut one = scene(surfels);
+        change(&mut one, |cloud| cloud.color = (!colored).then_some(color));
+        surfels = one.surfels;
     }
     let geometry = Geometry { name, surfels, primitives, detail: None };
     if dice.below(3) == 0 {
@@ -118,7 +130,9 @@ pub(crate) fn leveled(number: u64) -> Sequence {
 
 /// The sequence of a number, with triangles.
 pub(crate) fn walled(number: u64) -> Sequence {
-    by_lot(number, Beside::Triangles { colored: !number.is_multiple_of(3) })
+    let colored = number.is_multiple_of(2);
+    let lot = number.is_multiple_of(3);
+    by_lot(number, if lot { Beside::Alone { colored } } else { Beside::Triangles { colored } })
 }
 
 /// The sequence of a number, in which objects may be left out.
@@ -136,7 +150,9 @@ fn by_lot(number: u64, beside: Beside) -> Sequence {
     let whole: Vec<_> = (0..1 + dice.below(3)).map(|i| whole(&mut dice, i, beside)).collect();
     let thing = |dice: &mut Dice| {
         let geometry = dice.below(whole.len());
-        let color = (dice.below(3) == 0).then(|| dice.vector(Vec3::ZERO, Vec3::ONE));
+        let alone = matches!(beside, Beside::Alone { .. });
+        let color = dice.vector(Vec3::ZERO, Vec3::ONE);
+        let color = (dice.below(3) == 0 && !alone).then_some(color);
         Thing { geometry, keys: keys(dice, middle(&whole[geometry])), color }
     };
     let objects = (0..1 + dice.below(5)).map(|_| thing(&mut dice)).collect();
