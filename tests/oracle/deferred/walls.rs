@@ -32,8 +32,7 @@ fn joined(all: Vec<Primitives>, fill: Vec3) -> Triangles {
 /// The nearest polygon of a pixel.
 #[derive(Clone, Copy)]
 pub(crate) struct Wall<const P: u32> {
-    /// Its depth, and that of its nearness.
-    pub(crate) own: Num<P>,
+    /// That of its nearness.
     pub(crate) depth: Num<P>,
     normal: N3<P>,
     color: N3<P>,
@@ -77,7 +76,7 @@ impl<const P: u32> Walls<P> {
             self.scene.material.color.to_array().map(|v| Num::exact(v.into()))
         };
         let normal = self.sight.outwards(c.normal);
-        c.certain.then_some(Some(Wall { own: c.t, depth, normal, color }))
+        c.certain.then_some(Some(Wall { depth, normal, color }))
     }
 
     /// A pixel that shows a polygon.
