@@ -137,7 +137,9 @@ pub(crate) fn walled(number: u64) -> Sequence {
 
 /// The sequence of a number, in which objects may be left out.
 pub(crate) fn shared(number: u64) -> Sequence {
-    let mut sequence = by_lot(number + 1000, Beside::Nothing);
+    let beside =
+        [Beside::Nothing, Beside::Triangles { colored: true }][usize::from(number % 8 < 4)];
+    let mut sequence = by_lot(number + 1000, beside);
     sequence.settings.share = [0.03125, 0.125, 0.5, 1.0][number as usize % 4];
     sequence.name += " with a share";
     sequence

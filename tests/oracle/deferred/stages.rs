@@ -9,7 +9,7 @@ use crate::deferred::levels::{leveled, shared, walled};
 use crate::deferred::model::{self, Flags, Nearest, Sets, Sums};
 use crate::deferred::tolerance::DEFERRED;
 use crate::deferred::view::View;
-use crate::deferred::walls::{Wall, Walls};
+use crate::deferred::walls::{self, Wall, Walls};
 use crate::ewa::model::{Entry, Oracle};
 use crate::ewa::stages::{GUARD, measure};
 use crate::kit::number::BITS;
@@ -220,7 +220,7 @@ fn compare_frame<R: Exact, const P: u32>(
     let oracle = Oracle::new(&flat, camera, &splats, [step, GUARD * part]);
     let projected = Projected::<P>::new(&flat, camera, splats.cull, 0);
     let all = (view.primitives.clone(), sequence.world.fill);
-    let walls = Walls::<P>::new(&sequence.around, all, camera, splats.cull);
+    let beside = Walls::<P>::new(&sequence.around, all, camera, splats.cull);
     let chosen = selected(&picture.frame);
     let sets = Sets::new(view, flags, &chosen, settings.second);
     let colored = view.colored;
@@ -242,14 +242,11 @@ fn compare_frame<R: Exact, const P: u32>(
             sets.flagged.iter().zip(&sets.fresh).map(|(a, b)| *a || *b).collect();
         let drawn = model::of(&all, &drawn);
         let own = model::of(&all, &sets.selected);
-        let Some(wall) = walls.at(i) else {
+        let Some(wall) = beside.at(i) else {
             shown.counts.open[0] += 1;
             continue;
         };
-        let behind = wall.map_or(model::NOTHING, |w| {
-            let error = oracle.guard * (oracle.step * w.depth.v + w.depth.e);
-            (w.depth.v, error)
-        });
+        let behind = walls::behind(&oracle, wall);
         let first = model::nearest(&oracle, &before, behind, "visibility.Z");
         shown.visibility(["visibility.Z", "visibility.id"], &first, i, &place);
         shown.indices(&projected, epsilon, i, &place);
@@ -259,7 +256,7 @@ fn compare_frame<R: Exact, const P: u32>(
         let lost = !both.open && sums.count > 0 && !drawn.is_empty();
         let other = both.who.iter().all(|w| !sets.selected[*w as usize]);
         shown.counts.rare[2] += u64::from(lost && other && both.depth.is_some());
-        shown.sums(&sums, (&walls, wall), (i, &place));
+        shown.sums(&sums, (&beside, wall), (i, &place));
         shown.counts.pixels += 1;
     }
 }

@@ -1,5 +1,7 @@
 //! Polygons beside the surfels: the nearest of each pixel, and what it shows.
 
+use crate::deferred::model::{Behind, NOTHING};
+use crate::ewa::model::Oracle;
 use crate::kit::number::{N3, Num};
 use crate::kit::planes::{index, number, value};
 use crate::kit::projection::{Projected, Sight};
@@ -36,6 +38,12 @@ pub(crate) struct Wall<const P: u32> {
     pub(crate) depth: Num<P>,
     normal: N3<P>,
     color: N3<P>,
+}
+
+/// As the passes see it.
+pub(crate) fn behind<const P: u32>(oracle: &Oracle<'_>, wall: Option<Wall<P>>) -> Behind {
+    let error = |w: Wall<P>| oracle.guard * (oracle.step * w.depth.v + w.depth.e);
+    wall.map_or(NOTHING, |w| (w.depth.v, error(w)))
 }
 
 /// The polygons before a camera.
