@@ -26,7 +26,7 @@ fn ulps(a: &[f32], b: &[f32]) -> f64 {
 }
 
 /// All numbers of surfels, a list a surfel and attribute.
-fn all(surfels: &Surfels) -> Vec<Vec<f32>> {
+pub(crate) fn all(surfels: &Surfels) -> Vec<Vec<f32>> {
     let mut all: Vec<Vec<f32>> = Vec::new();
     let mut add = |of: &[Vec3]| all.extend(of.iter().map(|v| v.to_array().to_vec()));
     add(surfels.position());

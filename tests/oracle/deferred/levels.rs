@@ -2,26 +2,71 @@
 
 use crate::deferred::cases::{Sequence, geometry, settings};
 use crate::deferred::ids::Numbers;
+use crate::deferred::laws::all as all_numbers;
 use crate::deferred::place::{Thing, World, similarity};
 use crate::deferred::view::{self, View};
 use crate::kit::dice::Dice;
-use crate::kit::scene::{lights, scene, straight, surfels};
+use crate::kit::scene::{change, lights, scene, straight, surfels};
 use glam::{Mat4, Vec3};
 use splatref::frame::Exec;
+use splatref::scene::indexed::Indexed;
 use splatref::scene::objects::Ids;
-use splatref::scene::{Camera, Geometry, Primitives, Scene, Similarity};
+use splatref::scene::{
+    Camera, Geometry, Primitives, Scene, Similarity, Surfels, Triangles, Vertices,
+};
 use splatref::source::Shape;
 
+/// A few triangles through surfels, with colours or without.
+fn triangles(dice: &mut Dice, of: &Surfels, colored: bool) -> Triangles {
+    let any = |dice: &mut Dice| of.position()[dice.below(of.len())];
+    let mut vertices = Vertices::default();
+    let corners: Vec<_> = (0..3 * (1 + dice.below(4)) as u32).collect();
+    for _ in &corners {
+        let near = dice.vector(Vec3::splat(-0.25), Vec3::splat(0.25));
+        vertices.position.push(any(dice) + near);
+        vertices.direction.push(dice.direction());
+        vertices.radius.push(0.0);
+        if colored {
+            let color = dice.vector(Vec3::ZERO, Vec3::ONE);
+            vertices.color.get_or_insert_default().push(color);
+        }
+    }
+    let corners = corners.chunks(3).map(|c| [c[0], c[1], c[2]]).collect();
+    Indexed::new(vertices, corners).expect("good triangles").0
+}
+
+/// What geometries have beside surfels.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Beside {
+    Nothing,
+    Triangles {
+        colored: bool,
+    },
+    /// Colours of the triangles alone, or of the surfels alone.
+    Alone {
+        colored: bool,
+    },
+}
+
 /// A geometry, of which every third has no levels of detail.
-fn whole(dice: &mut Dice, number: usize) -> Geometry {
-    let surfels = if dice.below(2) == 0 {
+fn whole(dice: &mut Dice, number: usize, beside: Beside) -> Geometry {
+    let mut surfels = if dice.below(2) == 0 {
         geometry(dice, false, false)
     } else {
         let seed = dice.bits();
         Shape::Sphere.surfels(60 + dice.below(240), seed).expect("surfels")
     };
     let name = format!("geometry {number}");
-    let primitives = Primitives::default();
+    let mut primitives = Primitives::default();
+    if let Beside::Triangles { colored } | Beside::Alone { colored } = beside {
+        primitives.triangles = triangles(dice, &surfels, colored);
+    }
+    if let Beside::Alone { colored } = beside {
+        let color = vec![dice.vector(Vec3::ZERO, Vec3::ONE); surfels.len()];
+        let mut one = scene(surfels);
+        change(&mut one, |cloud| cloud.color = (!colored).then_some(color));
+        surfels = one.surfels;
+    }
     let geometry = Geometry { name, surfels, primitives, detail: None };
     if dice.below(3) == 0 {
         return geometry;
@@ -80,13 +125,36 @@ const SIZES: [[u32; 2]; 6] = [[1, 9], [17, 12], [23, 17], [32, 16], [41, 30], [6
 
 /// The sequence of a number.
 pub(crate) fn leveled(number: u64) -> Sequence {
+    by_lot(number, Beside::Nothing)
+}
+
+/// The sequence of a number, with triangles.
+pub(crate) fn walled(number: u64) -> Sequence {
+    let colored = number.is_multiple_of(2);
+    let lot = number.is_multiple_of(3);
+    by_lot(number, if lot { Beside::Alone { colored } } else { Beside::Triangles { colored } })
+}
+
+/// The sequence of a number, in which objects may be left out.
+pub(crate) fn shared(number: u64) -> Sequence {
+    let beside =
+        [Beside::Nothing, Beside::Triangles { colored: true }][usize::from(number % 8 < 4)];
+    let mut sequence = by_lot(number + 1000, beside);
+    sequence.settings.share = [0.03125, 0.125, 0.5, 1.0][number as usize % 4];
+    sequence.name += " with a share";
+    sequence
+}
+
+fn by_lot(number: u64, beside: Beside) -> Sequence {
     let mut dice = Dice(number.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x51A7_1E7E);
     dice.bits();
     let settings = settings(&mut dice);
-    let whole: Vec<_> = (0..1 + dice.below(3)).map(|i| whole(&mut dice, i)).collect();
+    let whole: Vec<_> = (0..1 + dice.below(3)).map(|i| whole(&mut dice, i, beside)).collect();
     let thing = |dice: &mut Dice| {
         let geometry = dice.below(whole.len());
-        let color = (dice.below(3) == 0).then(|| dice.vector(Vec3::ZERO, Vec3::ONE));
+        let alone = matches!(beside, Beside::Alone { .. });
+        let color = dice.vector(Vec3::ZERO, Vec3::ONE);
+        let color = (dice.below(3) == 0 && !alone).then_some(color);
         Thing { geometry, keys: keys(dice, middle(&whole[geometry])), color }
     };
     let objects = (0..1 + dice.below(5)).map(|_| thing(&mut dice)).collect();
@@ -135,6 +203,10 @@ fn deferred_views_take_the_nodes_of_the_page() {
             let ids: Vec<_> = view.every.iter().map(|&(o, s)| view.numbers.id(o, s)).collect();
             assert_eq!(found.drawn_ids(), ids, "{name}");
             assert_eq!(found.drawn_total(), ids.len() as u64, "{name}");
+            let (placed, _) = found.flattened(&exec).expect("few");
+            assert_eq!(placed.len(), view.surfels.len(), "{name}");
+            let (placed, own) = (all_numbers(&placed), all_numbers(&view.surfels));
+            assert!(ids.is_empty() || placed == own, "surfels in their places of {name}");
             for o in 0..world.objects.len() {
                 let own = view::taken(&objects, o, camera);
                 assert_eq!(own.is_some(), found.drawn(o as u32).is_some(), "{name}");

@@ -12,3 +12,4 @@ mod schemes;
 mod stages;
 mod tolerance;
 mod view;
+mod walls;

@@ -79,6 +79,8 @@ pub(crate) struct Sums {
     pub(crate) who: Vec<u32>,
     pub(crate) entries: Vec<Entry>,
     pub(crate) open: bool,
+    /// Whether the pixel shows a polygon.
+    pub(crate) covered: bool,
 }
 
 fn inside<'a>(oracle: &Oracle<'_>, all: &[Seen<'a>]) -> Vec<Seen<'a>> {
@@ -110,17 +112,39 @@ fn without_twins(oracle: &Oracle<'_>, who: &[u32]) -> Vec<u32> {
     who.iter().copied().filter(first).collect()
 }
 
-/// Visibility splatting of some fragments at a pixel.
-pub(crate) fn nearest(oracle: &Oracle<'_>, all: &[Seen<'_>], plane: &'static str) -> Nearest {
+/// Depth and rounding error of the nearest polygon; +inf where there is none.
+pub(crate) type Behind = (f64, f64);
+
+pub(crate) const NOTHING: Behind = (f64::INFINITY, 0.0);
+
+/// Whether rounding decides which of two is nearer.
+fn even(first: (f64, f64), wall: Behind) -> bool {
+    wall.0.is_finite() && (first.0 - wall.0).abs() <= first.1 + wall.1
+}
+
+/// Visibility splatting of some fragments at a pixel, before a polygon.
+pub(crate) fn nearest(
+    oracle: &Oracle<'_>,
+    all: &[Seen<'_>],
+    wall: Behind,
+    plane: &'static str,
+) -> Nearest {
     let inside = inside(oracle, all);
     let (first, slack) = oracle.first(&inside);
+    let even = even((first, slack), wall);
+    if wall.0 < first {
+        let condition = [wall.1 / oracle.guard; 3];
+        let depth = Some(Entry { plane, value: [wall.0; 3], condition });
+        let open = even || unsure(oracle, all, wall.0 + wall.1);
+        return Nearest { depth, who: Vec::new(), open };
+    }
     let who = oracle.nearest(&inside);
     let close = inside.iter().filter(|(s, _)| who.contains(&(s.index as u32)));
     let spread = close.map(|(_, f)| f.spread.t).fold(0.0, f64::max);
     let condition = [spread + oracle.step * first.abs(); 3];
     let who = without_twins(oracle, &who);
     let depth = first.is_finite().then_some(Entry { plane, value: [first; 3], condition });
-    Nearest { depth, who, open: unsure(oracle, all, first + slack) }
+    Nearest { depth, who, open: even || unsure(oracle, all, first + slack) }
 }
 
 /// Attribute splatting of the `selected` among the fragments, against the nearest of the `drawn`,
@@ -128,11 +152,16 @@ pub(crate) fn nearest(oracle: &Oracle<'_>, all: &[Seen<'_>], plane: &'static str
 pub(crate) fn sums(
     oracle: &Oracle<'_>,
     at: [f64; 2],
-    drawn: &[Seen<'_>],
-    selected: &[Seen<'_>],
+    [drawn, selected]: [&[Seen<'_>]; 2],
+    wall: Behind,
 ) -> Sums {
     let (depths, own) = (inside(oracle, drawn), inside(oracle, selected));
-    let (first, slack) = oracle.first(&depths);
+    let splat = oracle.first(&depths);
+    let (first, slack) = if wall.0 < splat.0 { wall } else { splat };
+    // Without pass 3 splats may be in front of all depths.
+    let foremost = if wall.0 < splat.0 { oracle.first(&own) } else { splat };
+    let covered = wall.0 < foremost.0;
+    let undecided = even(splat, wall) || even(foremost, wall);
     // +inf where no pass left a depth: then all are in the sums.
     let limit = first + oracle.epsilon;
     let band = oracle.band();
@@ -147,15 +176,17 @@ pub(crate) fn sums(
             let room = oracle.slack(k) + slack + band;
             k.value.t != first && (k.value.t + oracle.epsilon) - first <= room
         });
-    let open = grazes
+    let open = undecided
+        || grazes
         || rival
         || unsure(oracle, drawn, first + slack)
         || unsure(oracle, selected, limit + slack + band);
-    let shown = if depths.is_empty() { &own } else { &depths };
+    let shown = if depths.is_empty() || wall.0 < splat.0 { &own } else { &depths };
     let who = if seen.is_empty() { Vec::new() } else { oracle.nearest(shown) };
     let who = without_twins(oracle, &who);
     let entries = oracle.entries(at, shown, &seen);
-    Sums { count: seen.len(), who, entries, open }
+    let covered = wall.0.is_finite() && (covered || seen.is_empty());
+    Sums { count: seen.len(), who, entries, open, covered }
 }
 
 /// The places of those that pass 2 may keep in a pixel, and whether it may keep none.

@@ -196,7 +196,8 @@ impl World {
     /// Whether anything has a colour.
     pub(crate) fn colored(&self) -> bool {
         let own = |o: &Thing| self.geometries[o.geometry].color().is_some();
-        self.objects.iter().any(|o| o.color.is_some() || own(o))
+        let beside = |o: &Thing| self.whole.get(o.geometry).is_some_and(|g| g.primitives.colored());
+        self.objects.iter().any(|o| o.color.is_some() || own(o) || beside(o))
     }
 
     /// The lower median of the objects' median radii, once for each surfel.

@@ -10,7 +10,7 @@ use crate::kit::eye::V3;
 use crate::kit::scene::surfels;
 use splatref::frame::Exec;
 use splatref::index::sequential::Sequential;
-use splatref::scene::{Camera, Objects, Projection, Surfels};
+use splatref::scene::{Camera, Objects, Primitives, Projection, Surfels};
 
 /// A similarity, backwards.
 fn into_geometry(objects: &Objects, object: usize, p: V3) -> V3 {
@@ -150,6 +150,8 @@ pub(crate) struct View {
     pub(crate) surfels: Surfels,
     /// The unit of epsilon.
     pub(crate) median: f32,
+    /// What is beside the surfels, placed, of each object.
+    pub(crate) primitives: Vec<Primitives>,
     /// Objects that are left out.
     pub(crate) left: Vec<bool>,
     pub(crate) colored: bool,
@@ -179,13 +181,14 @@ impl View {
             .collect();
         let median = median(world, frame, &all);
         every.retain(|(o, _)| !left[*o]);
+        let primitives = objects.primitives().expect("few");
         let whole = all.iter().all(Option::is_none) && !left.contains(&true);
         let placed = if whole {
             objects.flattened(&Exec::sequential()).expect("few surfels").0
         } else {
             surfels(world.placed(frame, &every))
         };
-        Self { numbers, every, surfels: placed, median, left, colored: world.colored() }
+        Self { numbers, every, surfels: placed, median, primitives, left, colored: world.colored() }
     }
 }
 

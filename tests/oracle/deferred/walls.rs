@@ -1,23 +1,28 @@
 //! Polygons beside the surfels: the nearest of each pixel, and what it shows.
 
+use crate::deferred::model::{Behind, NOTHING};
+use crate::ewa::model::Oracle;
 use crate::kit::number::{N3, Num};
 use crate::kit::planes::{index, number, value};
 use crate::kit::projection::{Projected, Sight};
 use crate::kit::shade::{Surface, shaded};
+use glam::Vec3;
 use splatref::frame::{Frame, NO_ID};
 use splatref::number::Exact;
 use splatref::scene::indexed::Indexed;
 use splatref::scene::{Camera, Primitives, Scene, Surfels, Triangles, Vertices};
 
-/// The triangles of all objects as one list.
-fn joined(all: Vec<Primitives>) -> Triangles {
+/// The triangles of all objects as one list; where some have colours the others get `fill`.
+fn joined(all: Vec<Primitives>, fill: Vec3) -> Triangles {
     let (mut vertices, mut corners) = (Vertices::default(), Vec::new());
+    let colored = all.iter().any(Primitives::colored);
     for one in all {
         let (own, its) = one.triangles.into_parts();
         let first = vertices.position.len() as u32;
         corners.extend(its.iter().map(|c| c.map(|v| v + first)));
-        if let Some(colors) = own.color {
-            vertices.color.get_or_insert_default().extend(colors);
+        if colored {
+            let own = own.color.unwrap_or_else(|| vec![fill; own.position.len()]);
+            vertices.color.get_or_insert_default().extend(own);
         }
         vertices.position.extend(own.position);
         vertices.direction.extend(own.direction);
@@ -29,11 +34,16 @@ fn joined(all: Vec<Primitives>) -> Triangles {
 /// The nearest polygon of a pixel.
 #[derive(Clone, Copy)]
 pub(crate) struct Wall<const P: u32> {
-    /// Its depth, and that of its nearness.
-    pub(crate) own: Num<P>,
+    /// That of its nearness.
     pub(crate) depth: Num<P>,
     normal: N3<P>,
     color: N3<P>,
+}
+
+/// As the passes see it.
+pub(crate) fn behind<const P: u32>(oracle: &Oracle<'_>, wall: Option<Wall<P>>) -> Behind {
+    let error = |w: Wall<P>| oracle.guard * (oracle.step * w.depth.v + w.depth.e);
+    wall.map_or(NOTHING, |w| (w.depth.v, error(w)))
 }
 
 /// The polygons before a camera.
@@ -44,9 +54,13 @@ pub(crate) struct Walls<const P: u32> {
 }
 
 impl<const P: u32> Walls<P> {
-    /// `colored`: whether surfels have colours.
-    pub(crate) fn new(around: &Scene, all: Vec<Primitives>, camera: &Camera, cull: bool) -> Self {
-        let primitives = Primitives { triangles: joined(all), ..Primitives::default() };
+    pub(crate) fn new(
+        around: &Scene,
+        (all, fill): (Vec<Primitives>, Vec3),
+        camera: &Camera,
+        cull: bool,
+    ) -> Self {
+        let primitives = Primitives { triangles: joined(all, fill), ..Primitives::default() };
         let scene = Scene { surfels: Surfels::none(), primitives, ..around.clone() };
         let all = Projected::new(&scene, camera, cull, 8);
         assert!(all.loose.is_empty(), "triangles too far away");
@@ -70,7 +84,7 @@ impl<const P: u32> Walls<P> {
             self.scene.material.color.to_array().map(|v| Num::exact(v.into()))
         };
         let normal = self.sight.outwards(c.normal);
-        c.certain.then_some(Some(Wall { own: c.t, depth, normal, color }))
+        c.certain.then_some(Some(Wall { depth, normal, color }))
     }
 
     /// A pixel that shows a polygon.
