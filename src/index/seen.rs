@@ -97,7 +97,7 @@ impl Seen {
         self.words = vec![0; self.starts[lengths.len()]];
     }
 
-    /// How many surfels each object has.
+    /// How many surfels each object has, with and without ids: flags go by the place of a surfel among all.
     #[must_use]
     pub fn counts(&self) -> &[u32] {
         &self.counts

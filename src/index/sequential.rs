@@ -109,7 +109,8 @@
 //!
 //! As gaps are not scaled and bands are not sorted, no order is right for every s:
 //! [`Sequential::prefix`] takes the largest `far` and the largest gap from a place to the end of the list
-//! for those of the place. It leaves out nothing that a test takes.
+//! for those of the place, F and G: it has the nodes before the first place where
+//! `(1 - 2^-20) r < F s + G` fails, whichever test is asked. It leaves out nothing that a test takes.
 
 mod build;
 mod node;

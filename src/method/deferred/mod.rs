@@ -1,7 +1,10 @@
 //! Deferred splatting: the expensive passes on visible surfels only \[GBP04\].
 //!
 //! Surfels are those that the high level leaves: of objects with [levels of
-//! detail](crate::scene::objects::detail) the nodes that this view draws, else all \[GBP04, 7.2\].
+//! detail](crate::scene::objects::detail) the nodes that this view draws, else all \[GBP04, 7.2\]. A
+//! [`Session`](super::Session) does not choose them: the scene of a frame has them from
+//! [`Objects::seen_from`](crate::scene::Objects::seen_from), of the same camera, and otherwise the surfels
+//! that its geometries were made of.
 //!
 //! The passes of frame i \[GBP04, 4.1\], in which B(i) is the list of surfels that are selected. All of
 //! them run over surfels in ascending [id](crate::scene::objects::ids); the surfels of a scene without
@@ -28,7 +31,9 @@
 //! Objects of which the last frame saw little may be left out of all passes, see [`Settings::share`].
 //! `Decided:` an object of which it selected nothing is not: \[GBP04, 7\] leaves out what has no higher share
 //! than the threshold, and what is left out once would never be seen again. So an object of a small share is
-//! there every other frame.
+//! there every other frame. The comparison is `selected > 0 and selected <= share n`, in f64, with n the
+//! number of the object's surfels that the high level leaves now. What is left out keeps its ids, its part in
+//! epsilon and its polygons; its flags are not set after the frame.
 //!
 //! Triangles beside the surfels are drawn before pass 1, see [`polygons`].
 //!
@@ -56,7 +61,8 @@
 //!   without weight is empty, whatever depth passes 1 and 3 left. Where
 //!   these left no depth, as may be without pass 3, all fragments of B(i) are added up, and the pixel shows
 //!   depth and id of the nearest of them. Where they did leave one, fragments of B(i) in front of that
-//!   depth are in the sums, and the pixel shows the depth of pass 1.
+//!   depth are in the sums, and the pixel shows the depth of pass 1; but where that is a polygon's and a
+//!   fragment of B(i) is nearer, depth and id of that fragment.
 //! - Opacity plays no part, as in [`super::ewa`].
 //!
 //! # What the papers' readers should expect

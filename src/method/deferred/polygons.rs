@@ -13,7 +13,13 @@
 //!   behind a polygon would shine through. Without pass 3 the splats' nearest fragment is that
 //!   of B(i), if it is nearer than the depth of pass 1.
 //!
-//! Where only surfels or only polygons have colours the others get that of the material.
+//! A pixel that shows a polygon has its depth, its normal in world space and its colour, and no id; the planes
+//! of `attributes` keep the sums of splats that are not shown.
+//!
+//! Polygons without colours get that of the material if no polygon has one, else
+//! [`Objects::fill`](crate::scene::Objects::fill). Where polygons alone have colours, surfels of objects get
+//! `fill`, those of a scene without objects that of the material. The colour of an object is also that of its
+//! polygons.
 
 use super::part::Whole;
 use super::visibility::{Nearest, POLYGON};

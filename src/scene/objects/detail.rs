@@ -17,10 +17,12 @@
 //!
 //! Only the first so many nodes of the list are looked at, and have [ids](super::ids) in that view:
 //! [`Sequential::prefix`] of s and the least distance, `|c - e| - R - (|c| + R) / 2^20`, at least 0,
-//! with c and R of the sphere around surfels and primitives; r of an orthographic camera.
+//! with c and R of the sphere around the surfels that the geometry was made of, and its primitives, in its
+//! own coordinates; r of an orthographic camera.
 //!
-//! An object whose sphere is not in the view frustum draws nothing and has no ids. With the sphere in view
-//! space, its depth t and radius R, it is outside if `t + R <= near`, or on one of the four sides, if it is
+//! An object with levels of detail whose sphere is not in the view frustum draws nothing and has no ids; of
+//! other objects all surfels are drawn. With the sphere in its place and in view
+//! space, its depth t and radius R, in f64, it is outside if `t + R <= near`, or on one of the four sides, if it is
 //! beyond the border of the picture widened by 16 pixels and tau: for the left one
 //!
 //! ```text
@@ -28,7 +30,8 @@
 //!   fx x + (cx + m)   < -R fx                                      orthographic
 //! ```
 //!
-//! and so on with `width - cx`, -y and y; view space is `((m0 x + m1 y) + m2 z) + m3` of the camera's matrix.
+//! for the right one with -x and `width - cx`, for the upper one with fy, -y and cy, for the lower one with
+//! fy, y and `height - cy`. View space is `((m0 x + m1 y) + m2 z) + m3` of the camera's matrix.
 //! `Decided:` 16 pixels, more than the filter of a splat adds to it.
 //! Discs of inner nodes reach beyond the surfels by tau at most.
 

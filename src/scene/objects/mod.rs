@@ -20,7 +20,7 @@
 //! each of its surfels: neither what is seen of a scene nor how it is selected changes
 //! epsilon; where scales move, epsilon does from frame to frame. Of objects with levels of detail all
 //! radii that are drawn count, each once: epsilon has to be that of the discs that lie over each other,
-//! and those of a level far away are large.
+//! and those of a level far away are large. Where nothing is drawn it is 0.
 
 pub mod detail;
 pub mod ids;
