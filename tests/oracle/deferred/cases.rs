@@ -200,7 +200,7 @@ pub(crate) fn goldens() -> Vec<Sequence> {
         };
         let world = World {
             geometries: objects.geometries().iter().map(|of| of.surfels.clone()).collect(),
-            whole: Vec::new(),
+            whole: objects.geometries().to_vec(),
             objects: objects.objects().iter().map(thing).collect(),
             fill: objects.fill(),
         };
