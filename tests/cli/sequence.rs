@@ -269,3 +269,44 @@ fn a_frame_is_judged_from_the_state_of_the_one_before() {
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("visibility     WRONG"), "{said}");
 }
+
+/// Levels of detail: a still scene is chosen anew for each frame of a camera that moves; a restarted sequence
+/// has the same bits; planes of ids of a method that draws surfels are judged, and what cannot be is refused.
+#[test]
+fn levels_of_detail_follow_the_camera() {
+    let at = TempDir::new().unwrap();
+    let scene = WALK.replace("count = 300", "count = 900\ndetail = 1.5");
+    let still = "transform = { translate = [0, 0, -20] }";
+    let keys = "keys = [{ frame = 0, translate = [-1, 0, 0] }, { frame = 2, translate = [1, 0, 0], scale = 0.5 }]";
+    assert!(scene.contains(keys));
+    fs::write(at.path().join("walk.toml"), scene.replace(keys, still)).unwrap();
+    let read = |name: &str| fs::read(at.path().join(name)).unwrap();
+    let frames = |range: &'static str, more: &[&'static str]| {
+        let words = ["render", "walk.toml", "--method", "deferred", "--frames", range];
+        succeeds(at.path(), &[&words[..], more].concat())
+    };
+    let said = frames("0..3", &["-o", "w.exr"]);
+    assert!(said.contains("tree: 900 surfels, ") && said.contains(" nodes at 1.5 px"), "{said}");
+    assert!(said.contains("  in view  ") && said.contains("placing"), "{said}");
+    frames("0..2", &["-o", "v.exr", "--keep-state", "s.bin"]);
+    frames("2..3", &["-o", "v.exr", "--state", "s.bin"]);
+    for frame in ["0000", "0001", "0002"] {
+        assert_eq!(read(&format!("w.{frame}.exr")), read(&format!("v.{frame}.exr")), "{frame}");
+    }
+    let ewa = ["walk.toml", "--method", "ewa", "--frame", "2"];
+    succeeds(at.path(), &[&["render"], &ewa[..], &["-o", "e.exr", "--stages"]].concat());
+    let judged = [&["verify", "walk.toml", "e.exr"], &ewa[1..]].concat();
+    assert!(succeeds(at.path(), &judged).contains("right: of "));
+
+    for (detail, why) in [
+        ("detail = -1", "detail is -1 pixels; give 0 to 4096"),
+        ("detail = nan", "detail is NaN pixels; give 0 to 4096"),
+    ] {
+        fs::write(at.path().join("bad.toml"), scene.replace("detail = 1.5", detail)).unwrap();
+        let line = fails(at.path(), &["render", "bad.toml", "-o", "x.exr"], 1);
+        assert!(line.contains(why), "{line}");
+    }
+    fs::write(at.path().join("bad.toml"), "[[model]]\nshape = \"torus\"\ndetail = 1\n").unwrap();
+    let line = fails(at.path(), &["render", "bad.toml", "-o", "x.exr"], 1);
+    assert!(line.contains("`detail` means nothing to torus: remove it"), "{line}");
+}

@@ -177,3 +177,41 @@ fn a_wall_hides_and_a_backdrop_does_not() {
         }
     }
 }
+
+/// Known answers: of a disc and a square at one depth the disc is seen, in the colour of the material where
+/// the square alone has one; a disc that is behind by less than epsilon is selected, and not seen.
+#[test]
+fn at_one_depth_a_surfel_wins() {
+    let exec = Exec::sequential();
+    let pose = Pose { eye: DVec3::new(0.0, 0.0, 4.0), target: DVec3::ZERO, up: DVec3::Y };
+    let camera = Camera::new(8, 8, pose, Lens::Orthographic(4.0)).unwrap();
+    let blue = Vec3::new(0.0, 0.0, 1.0);
+    for (behind, seen) in [(0.0, true), (0.125, false)] {
+        let cloud = crate::scene::Cloud {
+            position: vec![Vec3::new(0.25, 0.25, -behind)],
+            normal: Some(vec![Vec3::Z]),
+            radius: Some(vec![1.0]),
+            ..Default::default()
+        };
+        let surfels = Surfels::new(cloud).unwrap().0;
+        let scene = Scene { primitives: square(0.0, Some(blue)), ..Scene::unlit("disc", surfels) };
+        let settings = Settings {
+            splats: SplatSettings { epsilon: Epsilon::World(0.5), ..SplatSettings::default() },
+            ..Settings::default()
+        };
+        let mut session = Session::new(&scene, settings.into(), &exec).unwrap();
+        let defined = session.define::<f32>(&camera, true).unwrap().frame;
+        let selected = id(&defined, "indices.id").values().iter().filter(|&&id| id == 0).count();
+        assert_eq!(selected, 1);
+        let drawn = session.render(&camera).unwrap().frame.clone();
+        // The pixel (4, 3), whose centre is that of the disc, and a corner of the picture.
+        for frame in [&defined, &drawn] {
+            let expected = if seen { 0 } else { NO_ID };
+            assert_eq!(id(frame, "id").values()[3 * 8 + 4], expected, "{behind}");
+            let color = if seen { scene.material.color } else { blue };
+            assert_eq!(at(frame, "", 3 * 8 + 4), color.to_array());
+            assert_eq!(at(frame, "", 0), blue.to_array());
+            assert_eq!(at(frame, "Z", 3 * 8 + 4), [4.0; 3]);
+        }
+    }
+}
