@@ -83,8 +83,8 @@
 //!   visible surface is a band of depth; its width epsilon is a setting, in world units or in median
 //!   radii.
 //! - [`method::deferred`]: the passes of EWA on the surfels that an index buffer keeps, in scenes of
-//!   moving objects \[GBP04\]. *To know:* what a frame saw is given to the next; one surfel a pixel is
-//!   kept, so that dense surfels flicker.
+//!   moving objects, with levels of detail and polygons \[GBP04\]. *To know:* what a frame saw is given to
+//!   the next; one surfel a pixel is kept, so that dense surfels flicker, less with prefiltered colours.
 //! - [`method::single_pass`]: one geometry pass into a depth-image a group \[ZP06, Algorithm 1\].
 //!   *To know:* surfels of one group must not overlap, or little; [`index::grouping`] makes the
 //!   groups, and c says how little.
