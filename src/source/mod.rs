@@ -1,6 +1,7 @@
 //! What makes a scene: derived attributes, procedural shapes, plants, several models as one,
 //! and places of many objects.
 //!
+//! - [`mod@candidates`]: what of a mesh is seen from outside, as points.
 //! - [`mod@derive`]: from what a file gives to complete surfels.
 //! - [`mod@flatten`]: a scene of objects as a scene of surfels.
 //! - [`hybrid`]: a mesh as polygons here and surfels there.
@@ -9,6 +10,7 @@
 //! - [`procedural`]: shapes whose true picture is known.
 //! - [`scatter`]: places of many objects.
 
+pub mod candidates;
 pub mod derive;
 pub mod flatten;
 pub mod hybrid;

@@ -41,7 +41,7 @@ pub mod surfels;
 pub(in crate::method) mod tests;
 pub mod verify;
 
-pub(in crate::method) use project::project;
+pub(crate) use project::project;
 
 use crate::frame::raster::Snap;
 use crate::frame::{NO_ID, Plane};

@@ -32,7 +32,7 @@ impl<R: Exact> DrawnItem<R> {
 ///
 /// # Errors
 /// [`Error::Invalid`] if there are more primitives than ids.
-pub(in crate::method) fn project<R: Exact>(
+pub(crate) fn project<R: Exact>(
     scene: &Scene,
     camera: &Camera,
     cull: bool,

@@ -1,0 +1,255 @@
+//! Candidates: what of a mesh is seen from outside, as points \[BJFM19, 3.1\].
+//!
+//! The triangles are drawn into one picture for each of some directions, "orthographic \[...\] directed to the
+//! center of the node", and every covered pixel becomes a candidate: position, normal and colour of what is
+//! nearest there. The samplers choose among the candidates. What no direction sees has none.
+//!
+//! **Camera** of a direction d, all in f64. With low and high the corners of the box around the triangles'
+//! vertices ([`Scene::bounds`]) and n the side of the picture in pixels:
+//!
+//! ```text
+//!   center = (low + high) / 2      R = |high - low| / 2, or 1 if that is 0
+//!   camera = Camera::framing(n, n, (center, R), d, Lens::Orthographic(2 R))
+//! ```
+//!
+//! so that the sphere around the box touches the borders, and a pixel has the side 2 R / n in every picture.
+//!
+//! **Picture**: [`crate::method::projection`] in `f32`, without culling, corners snapped to 1/256 px. A normal
+//! is that of the side that is seen.
+//!
+//! **Candidate** of a covered pixel (x, y) with depth t and normal m, in f64 from the `f32` numbers of sample and
+//! camera, V(i,j) the element of row i and column j of the view matrix, each component rounded to `f32` once:
+//!
+//! ```text
+//!   a = ((x + 1/2) - cx) / fx - V03      b = -(((y + 1/2) - cy) / fy) - V13      c = -t - V23
+//!   position(j) = ((V0j a + V1j b) + V2j c) + 0
+//!   normal(j)   = ((V0j m.x + V1j m.y) + V2j m.z) + 0
+//! ```
+//!
+//! The colour is that of the sample, if the triangles have colours.
+//!
+//! **Order**: by direction, row, column. A candidate whose normal is null, where opposite normals of corners
+//! cancel, is dropped and counted.
+//!
+//! # Decided
+//!
+//! - [`Directions::Cube`] unless somebody asks for [`Directions::Box`], which is the paper's. From the corners
+//!   of a box, a flat mesh is seen edge-on and has no candidates. Of a bar ten times as long as wide and high
+//!   its ends have ten times as many candidates an area as its sides; with the cube they have as many.
+//! - Both sides of a triangle are seen: meshes of leaves and of sheet metal are not closed.
+//! - Lines have no area and give no candidates; a scene that has nothing else is refused.
+
+use crate::error::{Error, Result};
+use crate::frame::Exec;
+use crate::frame::raster::Snap;
+use crate::memory;
+use crate::method::projection::{PixelSample, SampleKind, project};
+use crate::scene::{Camera, Cloud, Lens, Primitives, Scene, Surfels};
+use crate::source::merge::join;
+use glam::{DMat4, DVec3, Vec3};
+use std::borrow::Cow;
+
+/// The side of a picture in pixels, unless somebody asks for another one: the paper's.
+pub const SIDE: u32 = 1024;
+
+/// From where a mesh is looked at: vectors from its middle, of any length.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Directions {
+    /// (-1, -1, -1), (1, -1, -1), (-1, 1, -1), (1, 1, -1), then the same with z = 1.
+    Cube,
+    /// The same with the half extents of the box around the mesh in the place of 1: its eight corners.
+    Box,
+    /// Those given.
+    These(Vec<DVec3>),
+}
+
+/// The candidates of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidates {
+    /// Positions and normals, colours if the mesh has some.
+    pub cloud: Cloud,
+    /// How many each direction gave.
+    pub counts: Vec<u32>,
+    /// The side of a pixel in world units.
+    pub pixel: f64,
+    /// How many were dropped.
+    pub dropped: u64,
+}
+
+/// The candidates of the triangles of a scene, or of its objects in their places. `progress` is told the
+/// name of the step, how many directions are done, and of how many.
+///
+/// # Errors
+/// [`Error::Invalid`] if the scene has no triangles or none of them covers a pixel's centre, if there is no
+/// direction or one is null or not finite, as [`Camera::new`], if there are 2^32 - 1 candidates or more, or if
+/// the process may not hold them.
+pub fn candidates(
+    scene: &Scene,
+    directions: &Directions,
+    side: u32,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<Candidates> {
+    let mesh = mesh(scene)?;
+    let (low, high) = mesh.bounds();
+    let (low, high) = (low.as_dvec3(), high.as_dvec3());
+    let half = (high - low) / 2.0;
+    let radius = if half == DVec3::ZERO { 1.0 } else { half.length() };
+    let sphere = ((low + high) / 2.0, radius);
+    let directions = directions.around(half)?;
+    let colored = mesh.primitives.colored();
+    let mut found = Candidates {
+        cloud: Cloud {
+            normal: Some(Vec::new()),
+            color: colored.then(Vec::new),
+            ..Cloud::default()
+        },
+        counts: Vec::new(),
+        pixel: 2.0 * radius / f64::from(side),
+        dropped: 0,
+    };
+    for (done, &direction) in (0..).zip(&directions) {
+        progress("candidates", done, directions.len() as u64);
+        let camera =
+            Camera::framing(side, side, sphere, direction, Lens::Orthographic(2.0 * radius))?;
+        found.add(&mesh, &camera, exec)?;
+    }
+    progress("candidates", directions.len() as u64, directions.len() as u64);
+    if found.cloud.position.is_empty() {
+        let what = "no triangle covers the centre of a pixel from any direction: all of them are too small, \
+                    or seen edge-on";
+        return Err(Error::Invalid(what.into()));
+    }
+    Ok(found)
+}
+
+/// The triangles of a scene alone.
+fn mesh(scene: &Scene) -> Result<Cow<'_, Scene>> {
+    let triangles = match &scene.objects {
+        Some(objects) => join(objects.primitives()?, objects.fill())?.triangles,
+        None if scene.surfels.is_empty()
+            && scene.primitives.len() == scene.primitives.triangles.len() =>
+        {
+            return some(Cow::Borrowed(scene));
+        }
+        None => scene.primitives.triangles.clone(),
+    };
+    let primitives = Primitives { triangles, ..Primitives::default() };
+    some(Cow::Owned(Scene { primitives, ..Scene::unlit(&scene.name, Surfels::none()) }))
+}
+
+/// A mesh that has triangles.
+fn some(mesh: Cow<'_, Scene>) -> Result<Cow<'_, Scene>> {
+    match mesh.primitives.triangles.is_empty() {
+        true => Err(Error::Invalid("there are no triangles to take candidates from".into())),
+        false => Ok(mesh),
+    }
+}
+
+impl Directions {
+    /// The vectors, for a box with these half extents.
+    fn around(&self, half: DVec3) -> Result<Vec<DVec3>> {
+        let corners = |half: DVec3| {
+            let sign = |i: u32, axis: u32| if i >> axis & 1 == 0 { -1.0 } else { 1.0 };
+            (0..8).map(|i| DVec3::new(sign(i, 0), sign(i, 1), sign(i, 2)) * half).collect()
+        };
+        let all: Vec<DVec3> = match self {
+            Self::Cube => corners(DVec3::ONE),
+            Self::Box => corners(half),
+            Self::These(all) => all.clone(),
+        };
+        if all.is_empty() {
+            return Err(Error::Invalid("there are no directions to look from".into()));
+        }
+        match all.iter().find(|d| !(d.is_finite() && d.length_squared() > 0.0)) {
+            None => Ok(all),
+            Some(d) => {
+                Err(Error::Invalid(format!("the direction {}, {}, {} is none", d.x, d.y, d.z)))
+            }
+        }
+    }
+}
+
+/// Bytes of a pixel of the picture of one direction, and of a candidate while its array grows.
+const OF_A_PIXEL: u64 = size_of::<PixelSample<f32>>() as u64;
+const OF_A_CANDIDATE: u64 = 2 * 36;
+/// Bytes of a triangle that is drawn, at most.
+const OF_A_TRIANGLE: u64 = 320;
+
+impl Candidates {
+    /// Adds what a camera sees of a mesh.
+    fn add(&mut self, mesh: &Scene, camera: &Camera, exec: &Exec) -> Result<()> {
+        let pixels = u64::from(camera.width) * u64::from(camera.height);
+        let triangles = mesh.primitives.triangles.len() as u64;
+        // Every pixel may be covered, and every triangle may be in the picture.
+        memory::ask(pixels * (OF_A_PIXEL + OF_A_CANDIDATE) + triangles * OF_A_TRIANGLE, || {
+            format!("a picture of {triangles} triangles for candidates")
+        })?;
+        let picture = project::<f32>(mesh, camera, false, Snap::default(), exec)?;
+        let world = World::new(camera);
+        let before = self.cloud.position.len();
+        let colored = self.cloud.color.is_some();
+        for (y, row) in (0..).zip(picture.samples.values().chunks(camera.width as usize)) {
+            let covered = (0..).zip(row).filter(|(_, sample)| sample.kind != SampleKind::Empty);
+            for (x, sample) in covered {
+                let normal = world.normal(sample);
+                if normal == Vec3::ZERO {
+                    self.dropped += 1;
+                    continue;
+                }
+                self.cloud.position.push(world.position(x, y, sample));
+                self.cloud.normal.iter_mut().for_each(|all| all.push(normal));
+                if colored {
+                    let color = Vec3::from_array(sample.color);
+                    self.cloud.color.iter_mut().for_each(|all| all.push(color));
+                }
+            }
+        }
+        let after = self.cloud.position.len();
+        if after as u64 >= u64::from(u32::MAX) {
+            return Err(Error::Invalid(format!("{after} candidates, but ids have 32 bits")));
+        }
+        self.counts.push((after - before) as u32);
+        Ok(())
+    }
+}
+
+/// From a camera back to the world.
+struct World<'a> {
+    camera: &'a Camera,
+    view: DMat4,
+}
+
+impl<'a> World<'a> {
+    fn new(camera: &'a Camera) -> Self {
+        Self { camera, view: camera.view_from_world.as_dmat4() }
+    }
+
+    fn position(&self, x: u32, y: u32, sample: &PixelSample<f32>) -> Vec3 {
+        let Camera { fx, fy, cx, cy, .. } = *self.camera;
+        let from = |pixel: u32, middle: f32, scale: f32| {
+            ((f64::from(pixel) + 0.5) - f64::from(middle)) / f64::from(scale)
+        };
+        let moved = self.view.w_axis;
+        self.turned(DVec3::new(
+            from(x, cx, fx) - moved.x,
+            -from(y, cy, fy) - moved.y,
+            -f64::from(sample.depth) - moved.z,
+        ))
+    }
+
+    fn normal(&self, sample: &PixelSample<f32>) -> Vec3 {
+        let normal = sample.normal.map(f64::from);
+        self.turned(DVec3::new(normal.x, normal.y, normal.z))
+    }
+
+    /// A direction of view space in world space.
+    fn turned(&self, v: DVec3) -> Vec3 {
+        let column = |c: glam::DVec4| (((c.x * v.x + c.y * v.y) + c.z * v.z) + 0.0) as f32;
+        let [x, y, z] = [self.view.x_axis, self.view.y_axis, self.view.z_axis].map(column);
+        Vec3::new(x, y, z)
+    }
+}
+
+#[cfg(test)]
+mod tests;
