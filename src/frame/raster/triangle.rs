@@ -80,12 +80,18 @@ impl Triangle {
         }
         let sense = cross.signum();
         let edges = [[b, c], [c, a], [a, b]].map(|[q, r]| Edge::new(snap, q, r, sense));
+        let bounds = Self::around(snap, [a, b, c]);
+        Some(Self { edges, area: 2 * cross.abs(), front: cross < 0, bounds })
+    }
+
+    /// The pixels whose centres are in the rectangle around three corners in fixed point, in a picture
+    /// without an end.
+    pub(crate) fn around(snap: &Snap, [a, b, c]: [[i64; 2]; 3]) -> Rect {
         // A centre on the right or the lower border is on no left and no top edge: the ends are
         // exclusive.
         let low = [0, 1].map(|i| snap.first_center_from(2 * a[i].min(b[i]).min(c[i])));
         let high = [0, 1].map(|i| snap.first_center_from(2 * a[i].max(b[i]).max(c[i])));
-        let bounds = not_negative(low, high);
-        Some(Self { edges, area: 2 * cross.abs(), front: cross < 0, bounds })
+        not_negative(low, high)
     }
 
     /// Whether the corners run counter-clockwise as one sees them on the screen, with Y up.

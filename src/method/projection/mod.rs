@@ -40,6 +40,7 @@ pub mod surfels;
 #[cfg(test)]
 pub(in crate::method) mod tests;
 pub mod verify;
+mod vertices;
 
 pub(crate) use project::project;
 

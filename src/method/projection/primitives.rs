@@ -103,7 +103,7 @@ pub(super) fn corners<R: Real, const N: usize>(
 }
 
 /// A corner of a piece: its place in fixed point, and m.
-fn placed<R: Exact>(projector: &SceneProjector<'_, R>, p: Vector3<R>) -> ([i64; 2], R) {
+pub(super) fn placed<R: Exact>(projector: &SceneProjector<'_, R>, p: Vector3<R>) -> ([i64; 2], R) {
     let PlacedPoint { m, center, .. } = projector.points.place(p);
     ([projector.snap.fixed(center.x), projector.snap.fixed(center.y)], m)
 }
