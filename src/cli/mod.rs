@@ -21,6 +21,7 @@ mod report;
 mod rows;
 mod sequence;
 mod suite;
+mod surfels;
 mod verify;
 mod words;
 
@@ -69,6 +70,8 @@ enum Command {
     Explain(explain::Args),
     /// Divide a scene into groups that do not overlap, into a PLY
     Group(group::Args),
+    /// Put points in an order of which every prefix is spread over all of them, into a PLY
+    Surfels(surfels::Args),
     /// Write the visible splats as records, for a backend to upload
     Project(project::Args),
     /// Describe a PLY, a scene file or an EXR
@@ -91,6 +94,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Suite(args) => suite::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Group(args) => group::run(&args),
+        Command::Surfels(args) => surfels::run(&args),
         Command::Project(args) => project::run(&args),
         Command::Info(args) => info::run(&args),
     };

@@ -12,7 +12,8 @@ pub(super) fn check(path: &Path, scene: &Path, file: &SceneFile) -> Result<()> {
     check_unread(path, scene, file)
 }
 
-fn check_folder(path: &Path) -> Result<()> {
+/// Whether the directory of a file that is to be written is there.
+pub(super) fn check_folder(path: &Path) -> Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     match folder.map(fs::metadata) {
         Some(Ok(found)) if !found.is_dir() => {

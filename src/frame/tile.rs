@@ -97,6 +97,14 @@ impl Exec {
         }
     }
 
+    /// Does work that runs jobs many times: between them no thread falls asleep.
+    pub(crate) fn within<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match &self.pool {
+            None => work(),
+            Some(pool) => pool.install(work),
+        }
+    }
+
     /// Appends `of(i)` for each `i` below `count`, in parallel.
     pub(crate) fn extend<T: Send>(
         &self,

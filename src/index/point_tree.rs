@@ -95,7 +95,7 @@ pub(super) fn divide(entries: &mut [Entry]) -> (usize, usize) {
 }
 
 /// The axis of the largest extent of some points, the first of equal ones.
-fn widest(points: impl Iterator<Item = Vec3>) -> usize {
+pub(crate) fn widest(points: impl Iterator<Item = Vec3>) -> usize {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for point in points {
         low = low.min(point);

@@ -35,6 +35,29 @@ pub struct Cloud {
 }
 
 impl Cloud {
+    /// The points of these indices, in this order, without triangles and edges.
+    ///
+    /// # Panics
+    /// If there is no point of an index, or an array is shorter than `position`.
+    #[must_use]
+    pub fn some(&self, indices: &[u32]) -> Self {
+        Self {
+            position: at(&self.position, indices),
+            normal: self.normal.as_ref().map(|all| at(all, indices)),
+            radius: self.radius.as_ref().map(|all| at(all, indices)),
+            color: self.color.as_ref().map(|all| at(all, indices)),
+            opacity: self.opacity.as_ref().map(|all| at(all, indices)),
+            tangents: self.tangents.as_ref().map(|all| at(all, indices)),
+            mipmap: self.mipmap.as_ref().map(|mipmap| {
+                mipmap.some(&indices.iter().map(|&i| i as usize).collect::<Vec<_>>())
+            }),
+            tangent: self.tangent.as_ref().map(|all| at(all, indices)),
+            groups: self.groups.as_ref().map(|groups| groups.some(indices)),
+            triangles: Vec::new(),
+            edges: Vec::new(),
+        }
+    }
+
     /// Keeps the points marked in `keep`, one for each, in their order, with the triangles and
     /// edges all of whose corners are kept.
     pub(crate) fn retain(&mut self, keep: &[bool]) {
@@ -59,6 +82,11 @@ impl Cloud {
         corners(&mut self.triangles, &index);
         corners(&mut self.edges, &index);
     }
+}
+
+/// The values at some indices.
+fn at<T: Copy>(values: &[T], indices: &[u32]) -> Vec<T> {
+    indices.iter().map(|&i| values[i as usize]).collect()
 }
 
 /// Keeps the values marked in `keep`, if there are values.

@@ -108,6 +108,15 @@ impl Groups {
         Self { own: own.collect(), added: added.collect(), scale: self.scale }
     }
 
+    /// The groups of some surfels, in the order of the indices; a group may be left without any.
+    pub(crate) fn some(&self, indices: &[u32]) -> Self {
+        let own = indices.iter().map(|&i| self.own[i as usize]).collect();
+        let added = (0..)
+            .zip(indices)
+            .flat_map(|(new, &old)| self.of(old).skip(1).map(move |group| (new, group)));
+        Self { own, added: added.collect(), scale: self.scale.clone() }
+    }
+
     /// Whether they can be groups of these surfels: there must be as many.
     ///
     /// # Errors

@@ -8,6 +8,7 @@
 //! - [`merge`]: several models as one.
 //! - [`plant`]: a tree of triangles, and the ribbons and tubes that stand for the tree.
 //! - [`procedural`]: shapes whose true picture is known.
+//! - [`sampler`]: points in an order of which every prefix is spread over all of them.
 //! - [`scatter`]: places of many objects.
 
 pub mod candidates;
@@ -17,6 +18,7 @@ pub mod hybrid;
 pub mod merge;
 pub mod plant;
 pub mod procedural;
+pub mod sampler;
 pub mod scatter;
 
 pub use flatten::flatten;

@@ -14,6 +14,7 @@ mod project;
 mod refusals;
 mod reports;
 mod sequence;
+mod surfels;
 mod verify;
 
 use splatref::frame::image::{Image, Values};

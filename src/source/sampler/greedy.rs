@@ -1,0 +1,198 @@
+//! The greedy permutation: each point is the one that is farthest from all before it \[BJFM19, 3.2\].
+//!
+//! It is known as farthest-point sampling, too. \[BJFM19\] takes it as the ideal that its random
+//! method comes near to, and calls it too slow to compute; here it is computed.
+//!
+//! # Definition
+//!
+//! Given are n finite points `p_0` to `p_(n-1)`, a start s below n, and a count k. All arithmetic is
+//! `f32`, each operation rounded. The squared distance of two points is
+//!
+//! ```text
+//!   d(a, b) = (dx dx + dy dy) + dz dz        (dx, dy, dz) = b - a
+//! ```
+//!
+//! Every point has a squared distance `m_i` to the nearest point that was picked, at first +inf.
+//!
+//! 1. The first pick is s, at the squared distance +inf.
+//! 2. After a pick q, each `m_i` becomes `d(p_q, p_i)` if that is less.
+//! 3. The next pick is the point of the largest `m_i`, of equal ones that of the lowest index, at
+//!    the squared distance `m_i`; unless all `m_i` are 0.
+//! 4. If all are 0, what has not been picked follows in ascending index, at the squared distance 0.
+//! 5. The order ends after k picks, or after n if there are fewer points: no index comes twice.
+//!
+//! `Decided:` the paper leaves the start to chance and says nothing of ties and of equal points. A
+//! start that is not given is `floor(b n / 2^64)`, b the [`random::bits`] of the seed and 0.
+//!
+//! Distances are those of `f32`: points whose squared distance rounds to 0 are equal (below about
+//! 2.6e-23), and where it exceeds the range all are +inf, a tie. So points should be neither that
+//! close nor beyond about 1e19.
+//!
+//! # Laws
+//!
+//! With `r_j` the squared distance of pick j, and d as it is rounded:
+//!
+//! - `r_j` never increases.
+//! - Packing: two of the first j picks are at least `r_(j-1)` apart.
+//! - Covering: every point is at most `r_j` away from one of the first j picks. So every prefix is a
+//!   net of its own radius, and no other j points cover all with less than half of that radius.
+//! - The first j of k picks are the j picks.
+//! - Another order of the given points changes the result only where distances tie.
+//!
+//! # How
+//!
+//! [`Greedy::define`] is the definition, n distances a pick. [`Greedy::order`] has the same bits and
+//! is faster by orders of magnitude. It looks at few distances and takes picks out of their turn:
+//!
+//! - Points lie in buckets with boxes, and buckets in groups. A box that a new pick cannot reach is
+//!   left alone: it is at least as far as its largest m. That is exact without a margin. As
+//!   rounding is monotone, the rounded distance to a box is not above that to a point in it.
+//! - The *key* of a point is (m, lower index first). Keys only fall, and the next pick has the largest.
+//!   So the order is that of the falling keys which points had when they were picked.
+//! - A point c may be picked before its turn if no point q of a larger key has d(q, c) below its own
+//!   m: then neither changes the other, nor the key at which the other is picked. Where no box
+//!   within reach of c holds a larger key, that is so.
+//! - A round picks all whose m is not below a floor. First each region of the points is treated by
+//!   a thread of its own, without those that another region could reach; then what is left by one
+//!   thread. The keys above a floor are a function of the points, so that threads, regions and
+//!   floors change nothing.
+//!
+//! [`random::bits`]: crate::number::random::bits
+
+mod build;
+mod rounds;
+#[cfg(test)]
+mod tests;
+mod tree;
+
+use crate::error::{Error, Result};
+use crate::frame::Exec;
+use crate::memory;
+use crate::number::random;
+use glam::Vec3;
+
+/// What the tree and the picks take for a point, at most.
+const BYTES_A_POINT: u64 = 72;
+
+/// The sampler, see the [module](self).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Greedy {
+    /// The first pick.
+    pub start: Start,
+}
+
+/// Which point is the first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// The point of this index.
+    Index(u32),
+    /// A point by chance, a function of this seed and of how many points there are.
+    Seed(u64),
+}
+
+/// Points in their order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Order {
+    /// The index of each pick; none comes twice.
+    pub index: Vec<u32>,
+    /// For each pick, the squared distance to the nearest pick before it; +inf for the first.
+    pub distance: Vec<f32>,
+}
+
+impl Greedy {
+    /// The first `count` picks, or all points if there are fewer; see the [module](self).
+    ///
+    /// `progress` is told the name of a step, how many picks there are, and how many there will be.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if a point is not finite (the first such index is named), if the start is
+    /// not the index of a point, if there is no point, or if there are 2^32 or more.
+    pub fn order(
+        &self,
+        points: &[Vec3],
+        count: usize,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Order> {
+        let start = self.check(points)?;
+        let bytes = points.len() as u64 * BYTES_A_POINT;
+        memory::ask(bytes, || format!("the order of {} points", points.len()))?;
+        let count = count.min(points.len());
+        Ok(rounds::order(points, start, count, &rounds::How::of(exec), exec, progress))
+    }
+
+    /// The definition: [`Greedy::order`] as the module says it, by n distances a pick.
+    ///
+    /// # Errors
+    /// As [`Greedy::order`].
+    pub fn define(&self, points: &[Vec3], count: usize) -> Result<Order> {
+        let mut next = self.check(points)?;
+        let mut least = vec![f32::INFINITY; points.len()];
+        let mut order = Order::default();
+        while order.index.len() < count.min(points.len()) {
+            if least[next as usize] == 0.0 {
+                order.finish(points.len(), count);
+                break;
+            }
+            order.index.push(next);
+            order.distance.push(least[next as usize]);
+            let from = points[next as usize];
+            next = 0;
+            for (i, to) in (0..).zip(points) {
+                let distance = squared_distance(from, *to);
+                if distance < least[i as usize] {
+                    least[i as usize] = distance;
+                }
+                if least[i as usize] > least[next as usize] {
+                    next = i;
+                }
+            }
+        }
+        Ok(order)
+    }
+
+    /// The index of the first pick, if there can be an order.
+    fn check(&self, points: &[Vec3]) -> Result<u32> {
+        let invalid = |what| Err(Error::Invalid(what));
+        let n = points.len();
+        let Ok(count) = u32::try_from(n) else {
+            return invalid(format!("{n} points, but indices are of 32 bits: split the model"));
+        };
+        if n == 0 {
+            return invalid("there are no points to put in order".into());
+        }
+        if let Some(at) = points.iter().position(|point| !point.is_finite()) {
+            let what = format!("point {at} is not finite and has no distance to others");
+            return invalid(what);
+        }
+        match self.start {
+            Start::Seed(seed) => {
+                let product = u128::from(random::bits(seed, 0)) * u128::from(count);
+                Ok((product >> 64) as u32)
+            }
+            Start::Index(start) if start < count => Ok(start),
+            Start::Index(start) => {
+                let last = count - 1;
+                invalid(format!("start {start}, but the points are 0 to {last}; give one of them"))
+            }
+        }
+    }
+}
+
+impl Order {
+    /// Once all distances are 0: the other points in ascending index.
+    fn finish(&mut self, points: usize, count: usize) {
+        let mut picked = vec![false; points];
+        self.index.iter().for_each(|&i| picked[i as usize] = true);
+        let rest = (0..).zip(&picked).filter(|(_, picked)| !**picked).map(|(i, _)| i);
+        self.index.extend(rest.take(count.saturating_sub(self.index.len())));
+        self.distance.resize(self.index.len(), 0.0);
+    }
+}
+
+/// The squared distance, in the order of the definition.
+#[inline(always)]
+pub(super) fn squared_distance(from: Vec3, to: Vec3) -> f32 {
+    let (dx, dy, dz) = (to.x - from.x, to.y - from.y, to.z - from.z);
+    (dx * dx + dy * dy) + dz * dz
+}

@@ -1,0 +1,227 @@
+//! From points to regions of buckets.
+//!
+//! 1. A sample of the points is halved by its medians, widest axis first, to as many leaves as
+//!    there are to be.
+//! 2. Each chunk of the points is sorted by leaf, one chunk a job.
+//! 3. Each region takes neighbouring leaves, and halves the points of each down to buckets.
+//!
+//! Nothing of the result depends on the tree, only the time.
+
+use super::rounds::How;
+use super::tree::{BUCKET, Bucket, Group, Region};
+use crate::frame::Exec;
+use crate::index::point_tree::{Entry, widest};
+use crate::number::lanes::LANES;
+use crate::number::random;
+use glam::Vec3;
+use std::ops::Range;
+
+/// One point in so many is in the sample.
+const SAMPLE: usize = 8;
+/// The most leaves: each chunk of the points is scattered to all of them.
+const MOST_LEAVES: usize = 4096;
+/// The most points of a group.
+const GROUP: usize = BUCKET * LANES;
+
+/// The tree, without distances; there is at least one point.
+pub(super) fn regions(points: &[Vec3], how: &How, exec: &Exec) -> Vec<Region> {
+    let leaves = points.len().div_ceil(how.leaf).min(MOST_LEAVES);
+    let cuts = Cuts::new(points, leaves, exec);
+    let chunk = points.len().div_ceil(2 * exec.threads());
+    let chunks = points.chunks(chunk).enumerate().map(|(i, part)| (i * chunk, part));
+    let sorted = exec.ordered(chunks.collect(), |(first, part)| Sorted::new(&cuts, first, part));
+    let regions = how.regions.min(leaves);
+    let ranges = (0..regions).map(|i| leaves * i / regions..leaves * (i + 1) / regions);
+    exec.ordered(ranges.collect(), |range: Range<usize>| {
+        let mut growing = Growing::default();
+        let mut entries = Vec::new();
+        for leaf in range {
+            entries.clear();
+            sorted.iter().for_each(|sorted| entries.extend_from_slice(sorted.of(leaf)));
+            growing.leaf(&mut entries);
+        }
+        // A sample may leave a region without points.
+        if growing.groups.is_empty() {
+            growing.groups.push(Group::new(0));
+        }
+        Region::new(growing.buckets, growing.groups)
+    })
+}
+
+/// Where space is cut: a tree of planes, whose node i has the children 2 i + 1 and 2 i + 2. All
+/// paths are of one length, and lead to a leaf each.
+struct Cuts {
+    planes: Vec<(f32, u8)>,
+    depth: u32,
+    /// The leaf of each path.
+    leaf: Vec<u16>,
+}
+
+/// Some of the sample, the node that cuts it, and the leaves that it is to be cut into.
+struct Part<'a> {
+    sample: &'a mut [Vec3],
+    node: usize,
+    leaves: Range<usize>,
+}
+
+impl Cuts {
+    fn new(points: &[Vec3], leaves: usize, exec: &Exec) -> Self {
+        let depth = leaves.next_power_of_two().ilog2();
+        // One of every few, by chance: the points of a grid in rows would all be of few rows.
+        let mut sample: Vec<Vec3> = points
+            .chunks_exact(SAMPLE)
+            .zip(0..)
+            .map(|(few, i)| few[random::bits(0, i) as usize % SAMPLE])
+            .collect();
+        let inner = (1 << depth) - 1;
+        let mut cuts = Self {
+            // Everything is below such a plane.
+            planes: vec![(f32::INFINITY, 0); inner],
+            depth,
+            leaf: vec![0; 1 << depth],
+        };
+        let mut parts = vec![Part { sample: &mut sample, node: 0, leaves: 0..leaves }];
+        for _ in 0..depth {
+            let cut = exec.ordered(parts, |part| part.cut());
+            parts = Vec::with_capacity(2 * cut.len());
+            for (node, plane, halves) in cut {
+                cuts.planes[node] = plane;
+                parts.extend(halves);
+            }
+        }
+        for part in parts {
+            cuts.leaf[part.node - inner] = part.leaves.start as u16;
+        }
+        cuts
+    }
+
+    /// The leaf that a point is in.
+    #[inline(always)]
+    fn leaf(&self, point: Vec3) -> u16 {
+        let point = point.to_array();
+        let mut node = 0;
+        for _ in 0..self.depth {
+            let (plane, axis) = self.planes[node];
+            node = 2 * node + 1 + usize::from(point[usize::from(axis)] >= plane);
+        }
+        self.leaf[node - self.planes.len()]
+    }
+}
+
+impl<'a> Part<'a> {
+    /// The plane, and the parts on both sides of it.
+    fn cut(self) -> (usize, (f32, u8), Vec<Self>) {
+        let Self { sample, node, leaves } = self;
+        if leaves.len() < 2 {
+            // All on the lower side.
+            return (node, (f32::INFINITY, 0), vec![Part { sample, node: 2 * node + 1, leaves }]);
+        }
+        let half = leaves.len() / 2;
+        let middle = leaves.start + half;
+        let axis = widest(sample.iter().copied());
+        let rank = sample.len() * half / leaves.len();
+        let mut plane = f32::INFINITY;
+        if rank < sample.len() {
+            let by = |a: &Vec3, b: &Vec3| a[axis].total_cmp(&b[axis]);
+            plane = sample.select_nth_unstable_by(rank, by).1[axis];
+        }
+        let (low, high) = sample.split_at_mut(rank);
+        let low = Part { sample: low, node: 2 * node + 1, leaves: leaves.start..middle };
+        let high = Part { sample: high, node: 2 * node + 2, leaves: middle..leaves.end };
+        (node, (plane, axis as u8), vec![low, high])
+    }
+}
+
+/// Some of the points, leaf by leaf.
+struct Sorted {
+    entries: Vec<Entry>,
+    /// Where each leaf ends.
+    ends: Vec<u32>,
+}
+
+impl Sorted {
+    /// Points from an index on.
+    fn new(cuts: &Cuts, first: usize, points: &[Vec3]) -> Self {
+        let mut ends = vec![0; cuts.leaf.len()];
+        let leaf: Vec<u16> = points.iter().map(|&point| cuts.leaf(point)).collect();
+        leaf.iter().for_each(|&leaf| ends[usize::from(leaf)] += 1);
+        let mut sum = 0;
+        for end in &mut ends {
+            (*end, sum) = (sum, sum + *end);
+        }
+        let mut entries = vec![Entry { point: Vec3::ZERO, id: 0 }; points.len()];
+        for ((&point, leaf), id) in points.iter().zip(leaf).zip(first as u32..) {
+            let end = &mut ends[usize::from(leaf)];
+            entries[*end as usize] = Entry { point, id };
+            *end += 1;
+        }
+        Self { entries, ends }
+    }
+
+    fn of(&self, leaf: usize) -> &[Entry] {
+        let start = leaf.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.entries[start as usize..self.ends[leaf] as usize]
+    }
+}
+
+/// A region while it is built.
+#[derive(Default)]
+struct Growing {
+    buckets: Vec<Bucket>,
+    groups: Vec<Group>,
+}
+
+impl Growing {
+    /// The groups of a leaf, each as full as the others.
+    fn leaf(&mut self, entries: &mut [Entry]) {
+        let groups = entries.len().div_ceil(GROUP);
+        if groups > 1 {
+            let (low, high) = halves(entries, entries.len() * (groups / 2) / groups);
+            self.leaf(low);
+            self.leaf(high);
+        } else if groups == 1 {
+            let first = self.buckets.len();
+            let mut group = Group::new(first);
+            self.bucket(entries, &mut group, first);
+            self.groups.push(group);
+        }
+    }
+
+    /// The buckets of a group, all but the last full.
+    fn bucket(&mut self, entries: &mut [Entry], group: &mut Group, first: usize) {
+        let buckets = entries.len().div_ceil(BUCKET);
+        if buckets > 1 {
+            let (low, high) = halves(entries, buckets / 2 * BUCKET);
+            self.bucket(low, group, first);
+            self.bucket(high, group, first);
+            return;
+        }
+        let mut bucket = Bucket::EMPTY;
+        for (lane, entry) in entries.iter().enumerate() {
+            bucket.put(lane, entry.point.to_array(), entry.id);
+        }
+        group.put(self.buckets.len() - first, bounds(entries), bucket.lowest());
+        self.buckets.push(bucket);
+    }
+}
+
+/// The lower points along the widest axis, so many, and the others.
+fn halves(entries: &mut [Entry], low: usize) -> (&mut [Entry], &mut [Entry]) {
+    // A comparison of a known axis is a good part faster.
+    match widest(entries.iter().map(|entry| entry.point)) {
+        0 => entries.select_nth_unstable_by(low, |a, b| a.point.x.total_cmp(&b.point.x)),
+        1 => entries.select_nth_unstable_by(low, |a, b| a.point.y.total_cmp(&b.point.y)),
+        _ => entries.select_nth_unstable_by(low, |a, b| a.point.z.total_cmp(&b.point.z)),
+    };
+    entries.split_at_mut(low)
+}
+
+/// The least and the largest coordinates.
+fn bounds(entries: &[Entry]) -> [[f32; 3]; 2] {
+    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for entry in entries {
+        low = low.min(entry.point);
+        high = high.max(entry.point);
+    }
+    [low.to_array(), high.to_array()]
+}

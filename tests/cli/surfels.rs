@@ -1,0 +1,114 @@
+//! `splatref surfels`: points in order, with all that a file has of them.
+
+use super::*;
+use glam::Vec3;
+use splatref::io::ply;
+use splatref::scene::{Cloud, Groups, Mipmap};
+use splatref::source::sampler::{Greedy, Start};
+use tempfile::TempDir;
+
+/// Points of which each property tells which one it is of.
+fn points(n: usize) -> Cloud {
+    let number = |i: usize| i as f32;
+    let vector = |i: usize| Vec3::new(number(i), 1.0, 2.0);
+    let place = |i: usize| Vec3::new(number(i * i % 17), number(i * 5 % 23), number(i));
+    let own = (0..n).map(|i| (i % 3) as u8).collect();
+    Cloud {
+        position: (0..n).map(place).collect(),
+        normal: Some((0..n).map(vector).collect()),
+        radius: Some((0..n).map(number).collect()),
+        color: Some((0..n).map(vector).collect()),
+        opacity: Some((0..n).map(number).collect()),
+        tangents: Some((0..n).map(|i| [vector(i), vector(i + 1)]).collect()),
+        mipmap: Some(Mipmap::new(2, (0..2 * n).map(vector).collect()).unwrap()),
+        tangent: Some((0..n).map(vector).collect()),
+        groups: Some(Groups::new(own, vec![(4, 2), (5, 0), (5, 1)], vec![1.0, 2.0, 1.0]).unwrap()),
+        ..Cloud::default()
+    }
+}
+
+#[test]
+fn points_are_written_in_the_order_with_all_properties() {
+    let at = TempDir::new().unwrap();
+    let given = points(60);
+    ply::write(&at.path().join("in.ply"), &given).unwrap();
+    let options = ["surfels", "in.ply", "-o", "out.ply", "--sampler", "greedy"];
+    let start = ["--start", "3", "--count", "40"];
+    let said = succeeds(at.path(), &[&options[..], &start].concat());
+    for word in ["points     60\n", "greedy, 40 of them, from point 3", "apart", "out.ply"] {
+        assert!(said.contains(word), "{word} in {said}");
+    }
+    let order = Greedy { start: Start::Index(3) }.define(&given.position, 40).unwrap().index;
+    assert!(order.contains(&5) && order.contains(&4), "with further groups");
+    let found = ply::read(&at.path().join("out.ply")).unwrap();
+    let groups = found.groups.clone().unwrap();
+    assert_eq!((found.position.len(), groups.scale()), (40, &[1.0, 2.0, 1.0][..]));
+    for (new, &old) in order.iter().enumerate() {
+        let i = old as usize;
+        assert_eq!(found.position[new], given.position[i]);
+        assert_eq!(found.radius.as_ref().unwrap()[new], old as f32);
+        assert_eq!(found.opacity.as_ref().unwrap()[new], old as f32);
+        assert_eq!(found.tangents.as_ref().unwrap()[new][1].x, old as f32 + 1.0);
+        for vectors in [&found.normal, &found.color, &found.tangent] {
+            assert_eq!(vectors.as_ref().unwrap()[new].x, old as f32);
+        }
+        assert_eq!(found.mipmap.as_ref().unwrap().of(new), given.mipmap.as_ref().unwrap().of(i));
+        assert!(groups.of(new as u32).eq(given.groups.as_ref().unwrap().of(old)));
+    }
+}
+
+#[test]
+fn the_start_is_chosen_by_a_seed_and_threads_change_nothing() {
+    let at = TempDir::new().unwrap();
+    let position = points(500).position;
+    ply::write(&at.path().join("in.ply"), &Cloud { position, ..Cloud::default() }).unwrap();
+    let order = |more: &[&str]| {
+        succeeds(at.path(), &[&["surfels", "in.ply", "-o", "out.ply"], more].concat());
+        fs::read(at.path().join("out.ply")).unwrap()
+    };
+    let all = order(&[]);
+    assert_eq!(order(&["--seed", "0", "--threads", "1"]), all);
+    assert_eq!(order(&["--count", "501", "--threads", "3"]), all, "as many as there are");
+    assert_ne!(order(&["--seed", "1"]), all);
+    let cloud = ply::read(&at.path().join("out.ply")).unwrap();
+    assert_eq!((cloud.position.len(), cloud.normal, cloud.radius), (500, None, None));
+}
+
+#[test]
+fn what_cannot_be_put_in_order_is_refused() {
+    let at = TempDir::new().unwrap();
+    let write = |name: &str, cloud: &Cloud| ply::write(&at.path().join(name), cloud).unwrap();
+    write("in.ply", &points(9));
+    let mut nowhere = points(9);
+    nowhere.position[6].y = f32::NAN;
+    write("nan.ply", &nowhere);
+    let position = points(9).position;
+    let mesh = Cloud { position, triangles: vec![[0, 1, 2]], ..Cloud::default() };
+    write("mesh.ply", &mesh);
+    write("lines.ply", &Cloud { triangles: Vec::new(), edges: vec![[0, 1]], ..mesh });
+    let header = "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n";
+    let empty = format!("{header}property float z\nend_header\n");
+    fs::write(at.path().join("empty.ply"), empty).unwrap();
+    let before = names(at.path());
+    for (arguments, code, what) in [
+        (&["in.ply", "-o", "out.ply", "--count", "0"] as &[&str], 2, "give at least 1"),
+        (&["in.ply", "-o", "out.ply", "--start", "1", "--seed", "1"], 2, "cannot be used with"),
+        (&["in.ply", "-o", "out.ply", "--sampler", "best"], 2, "greedy"),
+        (&["in.ply", "-o", "in.ply"], 2, "in.ply is what is read"),
+        (&["in.ply", "-o", "out.exr"], 2, "out.exr: points"),
+        (&["sphere", "-o", "out.ply"], 2, "sphere: points"),
+        (&["in.ply"], 2, "--output"),
+        (&["in.ply", "-o", "missing/out.ply"], 1, "missing/out.ply"),
+        (&["in.ply", "-o", "out.ply", "--start", "9"], 1, "start 9, but the points are 0 to 8"),
+        (&["nan.ply", "-o", "out.ply"], 1, "nan.ply: point 6 is not finite"),
+        (&["mesh.ply", "-o", "out.ply"], 1, "mesh.ply: the file has 1 triangles, but only points"),
+        (&["lines.ply", "-o", "out.ply"], 1, "1 edges"),
+        (&["empty.ply", "-o", "out.ply"], 1, "the file holds no points"),
+        (&["missing.ply", "-o", "out.ply"], 1, "missing.ply"),
+        (&["in.ply", "-o", "out.ply", "--memory", "1M"], 1, "--memory"),
+    ] {
+        let line = fails(at.path(), &[&["surfels"], arguments].concat(), code);
+        assert!(line.contains(what), "{what} in {line}");
+    }
+    assert_eq!(names(at.path()), before, "nothing is written");
+}
