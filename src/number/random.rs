@@ -33,6 +33,15 @@ pub fn unit(seed: u64, index: u64) -> f32 {
     (bits(seed, index) >> 40) as f32 * (1.0 / 16_777_216.0)
 }
 
+/// A random number below `count`: floor([`bits`] count / 2^64), 0 if `count` is 0.
+#[inline]
+#[must_use]
+pub fn below(seed: u64, index: u64, count: u64) -> u64 {
+    let product = u128::from(bits(seed, index)) * u128::from(count);
+    // Less than 2^64.
+    (product >> 64) as u64
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

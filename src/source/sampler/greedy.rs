@@ -114,7 +114,7 @@ impl Greedy {
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Order> {
-        let start = self.check(points)?;
+        let start = self.start.of(points)?;
         let bytes = points.len() as u64 * BYTES_A_POINT;
         memory::ask(bytes, || format!("the order of {} points", points.len()))?;
         let count = count.min(points.len());
@@ -126,7 +126,7 @@ impl Greedy {
     /// # Errors
     /// As [`Greedy::order`].
     pub fn define(&self, points: &[Vec3], count: usize) -> Result<Order> {
-        let mut next = self.check(points)?;
+        let mut next = self.start.of(points)?;
         let mut least = vec![f32::INFINITY; points.len()];
         let mut order = Order::default();
         while order.index.len() < count.min(points.len()) {
@@ -150,9 +150,11 @@ impl Greedy {
         }
         Ok(order)
     }
+}
 
+impl Start {
     /// The index of the first pick, if there can be an order.
-    fn check(&self, points: &[Vec3]) -> Result<u32> {
+    pub(super) fn of(&self, points: &[Vec3]) -> Result<u32> {
         let invalid = |what| Err(Error::Invalid(what));
         let n = points.len();
         let Ok(count) = u32::try_from(n) else {
@@ -165,11 +167,8 @@ impl Greedy {
             let what = format!("point {at} is not finite and has no distance to others");
             return invalid(what);
         }
-        match self.start {
-            Start::Seed(seed) => {
-                let product = u128::from(random::bits(seed, 0)) * u128::from(count);
-                Ok((product >> 64) as u32)
-            }
+        match *self {
+            Start::Seed(seed) => Ok(random::below(seed, 0, u64::from(count)) as u32),
             Start::Index(start) if start < count => Ok(start),
             Start::Index(start) => {
                 let last = count - 1;

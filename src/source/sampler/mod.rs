@@ -1,7 +1,11 @@
 //! Samplers: points in an order of which every prefix is spread over all of them \[BJFM19, 3.2\].
 //!
 //! - [`greedy`]: the exact farthest-point order.
+//! - [`progressive`]: the paper's, of some points by chance the farthest; and points by chance alone.
 
 pub mod greedy;
+mod nearest;
+pub mod progressive;
 
 pub use greedy::{Greedy, Order, Start};
+pub use progressive::{Progressive, Schedule, shuffled};
