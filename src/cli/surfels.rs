@@ -1,25 +1,33 @@
-//! `splatref surfels`: points in a progressive order, into a PLY.
+//! `splatref surfels`: points, or what is seen of a mesh, in a progressive order, into a PLY.
 
 use super::{Ended, Ending, output, progress, report};
+use clap::ValueEnum;
 use splatref::frame::Exec;
 use splatref::io::ply;
 use splatref::io::scene_file::FileKind;
-use splatref::scene::Cloud;
-use splatref::source::sampler::{Greedy, Start};
+use splatref::scene::{Camera, Cloud, Primitives, Scene, Surfels};
+use splatref::source::candidates::{self, Directions, candidates};
+use splatref::source::derive;
+use splatref::source::sampler::{Greedy, Order, Progressive, Schedule, Start, shuffled};
 use splatref::{Error, Result};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-Every prefix of the points that are written is spread over all of them. The samplers:
-  greedy  each point is the one farthest from all before it, ties to the lower index; exact
+Every prefix of the points that are written is spread over all of them. Of a mesh the points
+are what is seen from outside, a pixel each. The samplers:
+  greedy                  each point is the one farthest from all before it, ties to the lower
+                          index; exact
+  progressive             each point is the farthest of some by chance, as the paper has it
+  progressive-as-shipped  the same by the schedule of the authors' program
+  random                  by chance alone
 
 Examples:
-  splatref surfels scan.ply -o blue.ply
+  splatref surfels bunny.ply -o blue.ply --count 100000
   splatref surfels scan.ply -o blue.ply --sampler greedy --start 3 --count 10000")]
 pub(super) struct Args {
-    /// A .ply of points
+    /// A .ply of points or of a mesh
     points: PathBuf,
     /// Where the points go in their order, with all that the file has of them
     #[arg(short, long, value_name = "FILE.ply")]
@@ -28,50 +36,82 @@ pub(super) struct Args {
     #[arg(long, value_enum, default_value = "greedy")]
     sampler: Sampler,
     /// The index of the first point; else --seed chooses it
-    #[arg(long, value_name = "N", conflicts_with = "seed")]
-    start: Option<u32>,
-    /// What the first point is chosen by [default: 0]
     #[arg(long, value_name = "N")]
-    seed: Option<u64>,
-    /// How many points at most [default: all]
+    start: Option<u32>,
+    /// What chance is
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+    /// How many points at most [default: all; of a mesh 100000]
     #[arg(long, value_name = "N")]
     count: Option<usize>,
+    /// Of a mesh: the side of the picture of each direction, in pixels [default: 1024]
+    #[arg(long, value_name = "N")]
+    side: Option<u32>,
+    /// Of a mesh: from which corners it is looked at [default: cube]
+    #[arg(long, value_enum)]
+    directions: Option<Corners>,
     /// Threads; 0 takes every core
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Sampler {
     Greedy,
+    Progressive,
+    ProgressiveAsShipped,
+    Random,
 }
+
+impl Sampler {
+    fn name(self) -> String {
+        self.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Corners {
+    /// Of a cube around the mesh
+    Cube,
+    /// Of the box around the mesh
+    Box,
+}
+
+/// Points that a mesh becomes, unless somebody asks for another number.
+const OF_A_MESH: usize = 100_000;
 
 pub(super) fn run(args: &Args) -> Ended {
     args.check()?;
     let exec = Exec::new(args.threads, 32)?;
     let steps = progress::Steps::new("loading");
-    let cloud = ply::read_with(&args.points, &exec)?;
-    points_alone(&cloud, &args.points)?;
-    let all = cloud.position.len();
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let start = Instant::now();
-    let first = args.start.map_or(Start::Seed(args.seed.unwrap_or(0)), Start::Index);
-    let order = match args.sampler {
-        Sampler::Greedy => {
-            Greedy { start: first }.order(&cloud.position, args.count.unwrap_or(all), &exec, &show)
-        }
+    let cloud = ply::read_with(&args.points, &exec)?;
+    let mesh = !cloud.triangles.is_empty();
+    let of_file = |error: Error| match error {
+        Error::Invalid(what) => Error::format(&args.points, what),
+        other => other,
     };
-    let order = order.map_err(|error| Error::format(&args.points, error.to_string()))?;
+    let cloud = if mesh {
+        args.candidates(cloud, &exec, &show).map_err(of_file)?
+    } else {
+        args.points_alone(&cloud)?;
+        cloud
+    };
+    let all = cloud.position.len();
+    let start = Instant::now();
+    let count = args.count.unwrap_or(if mesh { OF_A_MESH } else { all });
+    let order = args.order(&cloud, count, &exec, &show).map_err(of_file)?;
     let time = start.elapsed();
     let cloud = cloud.some(&order.index);
     drop(steps);
 
-    report::line("points", all);
-    report::line(
-        "order",
-        format!("greedy, {} of them, from point {}", order.index.len(), order.index[0]),
-    );
-    if let [_, .., last] = order.distance[..] {
+    report::line(if mesh { "candidates" } else { "points" }, all);
+    let (name, picked) = (args.sampler.name(), order.index.len());
+    let first = order.index.first().map_or(String::new(), |first| format!(", from point {first}"));
+    report::line("order", format!("{name}, {picked} of them{first}"));
+    if let [_, .., last] = order.distance[..]
+        && args.sampler == Sampler::Greedy
+    {
         let apart = report::short(f64::from(last).sqrt());
         report::line("apart", format!("{apart} at least, in world units"));
     }
@@ -87,6 +127,13 @@ impl Args {
         if self.count == Some(0) {
             return Err(Error::Usage("--count 0 leaves no point; give at least 1".into()));
         }
+        if let Some(side) = self.side {
+            Camera::check_size(side, side)
+                .map_err(|error| Error::Usage(format!("--side {side}: {error}")))?;
+        }
+        if self.sampler == Sampler::Random && self.start.is_some() {
+            return Err(Error::Usage("--sampler random has no --start: remove one of them".into()));
+        }
         for path in [&self.points, &self.output] {
             if !matches!(FileKind::of(path), Ok(FileKind::Ply)) {
                 let path = path.display();
@@ -99,15 +146,55 @@ impl Args {
         output::check_folder(&self.output)?;
         output::check_other(&self.output, &self.points)
     }
-}
 
-/// Whether a file has no more than points.
-fn points_alone(cloud: &Cloud, path: &Path) -> Result<()> {
-    let has = match (cloud.triangles.len(), cloud.edges.len()) {
-        (0, 0) => return Ok(()),
-        (0, edges) => format!("{edges} edges"),
-        (triangles, _) => format!("{triangles} triangles"),
-    };
-    let what = format!("the file has {has}, but only points are put in order yet");
-    Err(Error::format(path, what))
+    /// Whether a file without triangles has no more than points, and no option is for a mesh.
+    fn points_alone(&self, cloud: &Cloud) -> Result<()> {
+        let invalid = |what: String| Err(Error::format(&self.points, what));
+        if !cloud.edges.is_empty() {
+            let edges = cloud.edges.len();
+            return invalid(format!("the file has {edges} edges, but lines are not put in order"));
+        }
+        match (self.side, self.directions) {
+            (None, None) => Ok(()),
+            (Some(_), _) => invalid("--side is for a mesh, but the file has no triangles".into()),
+            (_, Some(_)) => {
+                invalid("--directions is for a mesh, but the file has no triangles".into())
+            }
+        }
+    }
+
+    /// What is seen of a mesh.
+    fn candidates(&self, mesh: Cloud, exec: &Exec, show: &dyn Fn(&str, u64, u64)) -> Result<Cloud> {
+        let (triangles, derived) = derive::polygons(mesh, exec, show)?;
+        if derived.dropped_primitives > 0 {
+            report::line("dropped", format!("{} triangles", derived.dropped_primitives));
+        }
+        let primitives = Primitives { triangles, ..Primitives::default() };
+        let scene = Scene { primitives, ..Scene::unlit("mesh", Surfels::none()) };
+        let directions = match self.directions {
+            None | Some(Corners::Cube) => Directions::Cube,
+            Some(Corners::Box) => Directions::Box,
+        };
+        let side = self.side.unwrap_or(candidates::SIDE);
+        Ok(candidates(&scene, &directions, side, exec, show)?.cloud)
+    }
+
+    fn order(
+        &self,
+        cloud: &Cloud,
+        count: usize,
+        exec: &Exec,
+        show: &dyn Fn(&str, u64, u64),
+    ) -> Result<Order> {
+        let points = &cloud.position;
+        let start = self.start.map_or(Start::Seed(self.seed), Start::Index);
+        let progressive =
+            |schedule| Progressive { start, seed: self.seed, schedule }.order(points, count, show);
+        match self.sampler {
+            Sampler::Greedy => Greedy { start }.order(points, count, exec, show),
+            Sampler::Progressive => progressive(Schedule::Paper),
+            Sampler::ProgressiveAsShipped => progressive(Schedule::AsShipped),
+            Sampler::Random => shuffled(points, self.seed, count),
+        }
+    }
 }

@@ -57,6 +57,48 @@ fn points_are_written_in_the_order_with_all_properties() {
     }
 }
 
+/// The octahedron |x| + |y| + |z| = 1, with a part inside that nobody sees.
+fn octahedron() -> Cloud {
+    let mut mesh = Cloud::default();
+    for scale in [1.0, 0.25] {
+        let first = mesh.position.len() as u32;
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+            mesh.position.extend([axis * scale, -axis * scale]);
+        }
+        for i in 0..8_u32 {
+            let [x, y, z] = [0, 1, 2].map(|axis| first + 2 * axis + (i >> axis & 1));
+            let corners = if i.count_ones() % 2 == 0 { [x, y, z] } else { [x, z, y] };
+            mesh.triangles.push(corners);
+        }
+    }
+    mesh.color = Some(mesh.position.iter().map(|p| p.abs()).collect());
+    mesh
+}
+
+#[test]
+fn a_mesh_becomes_points_on_what_is_seen_of_it() {
+    let at = TempDir::new().unwrap();
+    ply::write(&at.path().join("mesh.ply"), &octahedron()).unwrap();
+    for sampler in ["greedy", "progressive", "progressive-as-shipped", "random"] {
+        let options = ["surfels", "mesh.ply", "-o", "out.ply", "--side", "100", "--count", "700"];
+        let said = succeeds(at.path(), &[&options[..], &["--sampler", sampler]].concat());
+        assert!(said.contains(&format!("{sampler}, 700 of them")), "{said}");
+        let cloud = ply::read(&at.path().join("out.ply")).unwrap();
+        assert_eq!((cloud.position.len(), cloud.triangles.len(), cloud.radius), (700, 0, None));
+        let normal = cloud.normal.unwrap();
+        for (i, p) in cloud.position.iter().enumerate() {
+            let size = p.abs();
+            assert!((size.element_sum() - 1.0).abs() < 1e-5, "{p} is on the outer one");
+            assert!(normal[i].dot(*p) > 0.0, "and faces outward");
+            let color = cloud.color.as_ref().unwrap()[i];
+            assert!((color - size).abs().max_element() < 0.02, "{color} at {p}");
+        }
+        // Every method draws it.
+        let image = ["render", "out.ply", "-o", "out.exr", "--size", "32x32"];
+        succeeds(at.path(), &image);
+    }
+}
+
 #[test]
 fn the_start_is_chosen_by_a_seed_and_threads_change_nothing() {
     let at = TempDir::new().unwrap();
@@ -82,7 +124,8 @@ fn what_cannot_be_put_in_order_is_refused() {
     let mut nowhere = points(9);
     nowhere.position[6].y = f32::NAN;
     write("nan.ply", &nowhere);
-    let position = points(9).position;
+    // Flat, so that its box is too.
+    let position: Vec<Vec3> = points(9).position.iter().map(|p| p.with_y(0.0)).collect();
     let mesh = Cloud { position, triangles: vec![[0, 1, 2]], ..Cloud::default() };
     write("mesh.ply", &mesh);
     write("lines.ply", &Cloud { triangles: Vec::new(), edges: vec![[0, 1]], ..mesh });
@@ -92,7 +135,10 @@ fn what_cannot_be_put_in_order_is_refused() {
     let before = names(at.path());
     for (arguments, code, what) in [
         (&["in.ply", "-o", "out.ply", "--count", "0"] as &[&str], 2, "give at least 1"),
-        (&["in.ply", "-o", "out.ply", "--start", "1", "--seed", "1"], 2, "cannot be used with"),
+        (&["in.ply", "-o", "out.ply", "--start", "1", "--sampler", "random"], 2, "no --start"),
+        (&["mesh.ply", "-o", "out.ply", "--side", "0"], 2, "--side 0: camera: a picture of 0 x 0"),
+        (&["in.ply", "-o", "out.ply", "--side", "9"], 1, "in.ply: --side is for a mesh"),
+        (&["in.ply", "-o", "out.ply", "--directions", "box"], 1, "--directions is for a mesh"),
         (&["in.ply", "-o", "out.ply", "--sampler", "best"], 2, "greedy"),
         (&["in.ply", "-o", "in.ply"], 2, "in.ply is what is read"),
         (&["in.ply", "-o", "out.exr"], 2, "out.exr: points"),
@@ -101,7 +147,7 @@ fn what_cannot_be_put_in_order_is_refused() {
         (&["in.ply", "-o", "missing/out.ply"], 1, "missing/out.ply"),
         (&["in.ply", "-o", "out.ply", "--start", "9"], 1, "start 9, but the points are 0 to 8"),
         (&["nan.ply", "-o", "out.ply"], 1, "nan.ply: point 6 is not finite"),
-        (&["mesh.ply", "-o", "out.ply"], 1, "mesh.ply: the file has 1 triangles, but only points"),
+        (&["mesh.ply", "-o", "out.ply", "--directions", "box"], 1, "mesh.ply: no triangle covers"),
         (&["lines.ply", "-o", "out.ply"], 1, "1 edges"),
         (&["empty.ply", "-o", "out.ply"], 1, "the file holds no points"),
         (&["missing.ply", "-o", "out.ply"], 1, "missing.ply"),

@@ -17,13 +17,14 @@
 //! **Picture**: [`crate::method::projection`] in `f32`, without culling, corners snapped to 1/256 px. A normal
 //! is that of the side that is seen.
 //!
-//! **Candidate** of a covered pixel (x, y) with depth t and normal m, in f64 from the `f32` numbers of sample and
-//! camera, V(i,j) the element of row i and column j of the view matrix, each component rounded to `f32` once:
+//! **Candidate** of a covered pixel, with the sample's triangle, whose corners have the positions p, and its
+//! normal m. The weights c of the corners at the pixel are those of [`crate::method::projection::primitives`], and the
+//! position is interpolated as every attribute there, in `f32`. V(i,j) is the element of row i and
+//! column j of the view matrix; the normal is computed in f64 and each component rounded to `f32` once:
 //!
 //! ```text
-//!   a = ((x + 1/2) - cx) / fx - V03      b = -(((y + 1/2) - cy) / fy) - V13      c = -t - V23
-//!   position(j) = ((V0j a + V1j b) + V2j c) + 0
-//!   normal(j)   = ((V0j m.x + V1j m.y) + V2j m.z) + 0
+//!   position  = ((c_0 p_0 + c_1 p_1) + c_2 p_2) + 0
+//!   normal(j) = ((V0j m.x + V1j m.y) + V2j m.z) + 0
 //! ```
 //!
 //! The colour is that of the sample, if the triangles have colours.
@@ -33,6 +34,8 @@
 //!
 //! # Decided
 //!
+//! - The position is that on the triangle, as the position buffer of \[BJFM19\] has it, and not the point of the
+//!   pixel's centre at the sample's depth: corners are snapped, so that this lies beside a steep triangle.
 //! - [`Directions::Cube`] unless somebody asks for [`Directions::Box`], which is the paper's. From the corners
 //!   of a box, a flat mesh is seen edge-on and has no candidates. Of a bar ten times as long as wide and high
 //!   its ends have ten times as many candidates an area as its sides; with the cube they have as many.
@@ -40,13 +43,14 @@
 //! - Lines have no area and give no candidates; a scene that has nothing else is refused.
 
 use crate::error::{Error, Result};
-use crate::frame::Exec;
 use crate::frame::raster::Snap;
+use crate::frame::{Exec, Plane};
 use crate::memory;
-use crate::method::projection::{PixelSample, SampleKind, project};
+use crate::method::projection::{PixelSample, SampleKind, corner_weights, project};
+use crate::number::Vector3;
 use crate::scene::{Camera, Cloud, Lens, Primitives, Scene, Surfels};
 use crate::source::merge::join;
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat4, DVec3, DVec4, Vec3};
 use std::borrow::Cow;
 
 /// The side of a picture in pixels, unless somebody asks for another one: the paper's.
@@ -186,24 +190,15 @@ impl Candidates {
             format!("a picture of {triangles} triangles for candidates")
         })?;
         let picture = project::<f32>(mesh, camera, false, Snap::default(), exec)?;
-        let world = World::new(camera);
         let before = self.cloud.position.len();
-        let colored = self.cloud.color.is_some();
-        for (y, row) in (0..).zip(picture.samples.values().chunks(camera.width as usize)) {
-            let covered = (0..).zip(row).filter(|(_, sample)| sample.kind != SampleKind::Empty);
-            for (x, sample) in covered {
-                let normal = world.normal(sample);
-                if normal == Vec3::ZERO {
-                    self.dropped += 1;
-                    continue;
-                }
-                self.cloud.position.push(world.position(x, y, sample));
-                self.cloud.normal.iter_mut().for_each(|all| all.push(normal));
-                if colored {
-                    let color = Vec3::from_array(sample.color);
-                    self.cloud.color.iter_mut().for_each(|all| all.push(color));
-                }
+        for (normal, position, color) in seen(mesh, camera, &picture.samples, exec) {
+            if normal == Vec3::ZERO {
+                self.dropped += 1;
+                continue;
             }
+            self.cloud.position.push(position);
+            self.cloud.normal.iter_mut().for_each(|all| all.push(normal));
+            self.cloud.color.iter_mut().for_each(|all| all.push(color));
         }
         let after = self.cloud.position.len();
         if after as u64 >= u64::from(u32::MAX) {
@@ -214,41 +209,41 @@ impl Candidates {
     }
 }
 
-/// From a camera back to the world.
-struct World<'a> {
-    camera: &'a Camera,
-    view: DMat4,
+/// Normal, position and colour at each covered pixel, in the order of the pixels.
+fn seen(
+    mesh: &Scene,
+    camera: &Camera,
+    samples: &Plane<PixelSample<f32>>,
+    exec: &Exec,
+) -> Vec<(Vec3, Vec3, Vec3)> {
+    let columns = camera.width as usize;
+    let covered: Vec<usize> = (0..samples.values().len())
+        .filter(|&i| samples.values()[i].kind != SampleKind::Empty)
+        .collect();
+    let weights = corner_weights::<f32>(mesh, camera, Snap::default());
+    let triangles = &mesh.primitives.triangles;
+    let view = camera.view_from_world.as_dmat4();
+    let mut all = Vec::with_capacity(covered.len());
+    exec.extend(&mut all, covered.len(), |at| {
+        let i = covered[at];
+        let sample = &samples.values()[i];
+        let corners = triangles.corners()[sample.id as usize];
+        let [a, b, c] = corners.map(|corner| triangles.vertices().position[corner as usize]);
+        // A sample is of a triangle that covers its pixel.
+        let pixel = ((i % columns) as u32, (i / columns) as u32);
+        let w = weights(sample.id, pixel).unwrap_or_default();
+        let position = ((a * w[0] + b * w[1]) + c * w[2]) + Vec3::ZERO;
+        (turned(&view, sample.normal), position, Vec3::from_array(sample.color))
+    });
+    all
 }
 
-impl<'a> World<'a> {
-    fn new(camera: &'a Camera) -> Self {
-        Self { camera, view: camera.view_from_world.as_dmat4() }
-    }
-
-    fn position(&self, x: u32, y: u32, sample: &PixelSample<f32>) -> Vec3 {
-        let Camera { fx, fy, cx, cy, .. } = *self.camera;
-        let from = |pixel: u32, middle: f32, scale: f32| {
-            ((f64::from(pixel) + 0.5) - f64::from(middle)) / f64::from(scale)
-        };
-        let moved = self.view.w_axis;
-        self.turned(DVec3::new(
-            from(x, cx, fx) - moved.x,
-            -from(y, cy, fy) - moved.y,
-            -f64::from(sample.depth) - moved.z,
-        ))
-    }
-
-    fn normal(&self, sample: &PixelSample<f32>) -> Vec3 {
-        let normal = sample.normal.map(f64::from);
-        self.turned(DVec3::new(normal.x, normal.y, normal.z))
-    }
-
-    /// A direction of view space in world space.
-    fn turned(&self, v: DVec3) -> Vec3 {
-        let column = |c: glam::DVec4| (((c.x * v.x + c.y * v.y) + c.z * v.z) + 0.0) as f32;
-        let [x, y, z] = [self.view.x_axis, self.view.y_axis, self.view.z_axis].map(column);
-        Vec3::new(x, y, z)
-    }
+/// A direction of view space in world space.
+fn turned(view: &DMat4, v: Vector3<f32>) -> Vec3 {
+    let v = v.map(f64::from);
+    let column = |c: DVec4| (((c.x * v.x + c.y * v.y) + c.z * v.z) + 0.0) as f32;
+    let [x, y, z] = [view.x_axis, view.y_axis, view.z_axis].map(column);
+    Vec3::new(x, y, z)
 }
 
 #[cfg(test)]

@@ -139,6 +139,8 @@ proptest! {
                     let steep = normal.dot(back).abs();
                     let near = (own - (from - back * t)).length();
                     prop_assert!(near < pixel * (0.02 / steep + 0.02) + 1e-5 * radius, "{near}");
+                    let off = (own - (from - back * t)).dot(normal).abs();
+                    prop_assert!(off < 1e-5 * radius, "{off} from the triangle");
                     let facing = normal * normal.dot(back).signum();
                     let given = found.cloud.normal.as_ref().unwrap()[next].as_dvec3();
                     prop_assert!((facing - given).length() < 1e-5);
