@@ -4,7 +4,7 @@ use super::rows::{OfGroups, OfMethods, OfNumber, RowOptions};
 use glam::DVec3;
 use splatref::frame::Exec;
 use splatref::io::scene_file::{EnvironmentChoice, SceneFile, Source};
-use splatref::io::scene_file::{check_mipmaps, check_opacity};
+use splatref::io::scene_file::{check_mipmaps, check_opacity, check_prefix};
 use splatref::method::Method;
 use splatref::scene::{Camera, Lens};
 use splatref::{Error, Result};
@@ -98,6 +98,9 @@ pub(super) struct SceneOptions {
     /// Opacity of all surfels, 0 to 1
     #[arg(long, value_name = "A", allow_hyphen_values = true, help_heading = "Shapes and models")]
     opacity: Option<f32>,
+    /// The first so many points of a file alone: a level of what `splatref surfels` writes
+    #[arg(long, value_name = "N", help_heading = "Shapes and models")]
+    prefix: Option<usize>,
     /// Levels of prefiltered colours a surfel, which deferred draws; 0 drops those of a file
     #[arg(long, value_name = "LEVELS", help_heading = "Shapes and models")]
     mipmaps: Option<usize>,
@@ -137,9 +140,27 @@ impl SceneOptions {
             check_mipmaps(levels)?;
             file.all_models_mut().for_each(|model| model.mipmaps = Some(levels));
         }
+        self.choose_prefix(&mut file)?;
         self.choose_method(&mut file)?;
         file.output = self.number.chosen.on(file.output, "the output")?;
         Ok(file)
+    }
+
+    /// Of every model that is a file.
+    fn choose_prefix(&self, file: &mut SceneFile) -> Result<()> {
+        let Some(points) = self.prefix else { return Ok(()) };
+        check_prefix(points)?;
+        for model in file.all_models_mut() {
+            match &mut model.source {
+                Source::File { prefix, .. } => *prefix = Some(points),
+                other => {
+                    let what =
+                        format!("--prefix is of points of a file, and {} is none", other.name());
+                    return Err(Error::Usage(what));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The file that says what the frame before saw.

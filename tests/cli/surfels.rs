@@ -93,9 +93,43 @@ fn a_mesh_becomes_points_on_what_is_seen_of_it() {
             let color = cloud.color.as_ref().unwrap()[i];
             assert!((color - size).abs().max_element() < 0.02, "{color} at {p}");
         }
-        // Every method draws it.
-        let image = ["render", "out.ply", "-o", "out.exr", "--size", "32x32"];
-        succeeds(at.path(), &image);
+    }
+}
+
+/// Every method draws a prefix as the file of so many points.
+#[test]
+fn a_prefix_is_the_file_of_its_points() {
+    let at = TempDir::new().unwrap();
+    ply::write(&at.path().join("mesh.ply"), &octahedron()).unwrap();
+    let surfels = ["surfels", "mesh.ply", "--side", "100", "--count"];
+    succeeds(at.path(), &[&surfels[..], &["2000", "-o", "all.ply"]].concat());
+    succeeds(at.path(), &[&surfels[..], &["500", "-o", "few.ply"]].concat());
+    let scene = "[[model]]\nfile = \"all.ply\"\nprefix = 500\n";
+    fs::write(at.path().join("scene.toml"), scene).unwrap();
+    for method in ["ewa", "single-pass", "pyramid", "template", "deferred"] {
+        let exr = |arguments: &[&str]| {
+            let options = ["-o", "out.exr", "--size", "48x40", "--method", method];
+            succeeds(at.path(), &[&["render"], arguments, &options].concat());
+            let named = at.path().join(arguments[0]).with_extension("exr");
+            fs::rename(at.path().join("out.exr"), named).unwrap();
+        };
+        exr(&["few.ply"]);
+        exr(&["all.ply", "--prefix", "500"]);
+        exr(&["scene.toml"]);
+        let same = |other: &str| succeeds(at.path(), &["compare", "few.exr", other]);
+        same("all.exr");
+        same("scene.exr");
+        exr(&["all.ply"]);
+        let all = splatref(at.path(), &["compare", "few.exr", "all.exr"]);
+        assert_eq!(all.status.code(), Some(1), "{method}");
+    }
+    for (arguments, code, what) in [
+        (["all.ply", "--prefix", "0"], 1, "a prefix of 0 points"),
+        (["sphere", "--prefix", "9"], 2, "sphere is none"),
+        (["mesh.ply", "--prefix", "9"], 1, "mesh.ply: a prefix is of points"),
+    ] {
+        let line = fails(at.path(), &[&["render", "-o", "out.exr"], &arguments[..]].concat(), code);
+        assert!(line.contains(what), "{what} in {line}");
     }
 }
 

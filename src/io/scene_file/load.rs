@@ -209,10 +209,12 @@ fn check_draw(model: &Model) -> Result<()> {
 
 fn read(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<ModelParts> {
     match &model.source {
-        Source::File { path, radius } => {
+        Source::File { path, radius, prefix } => {
             let cloud = ply::read_with(path, exec)?;
             let options = Derive { radius: *radius };
-            of_file(cloud, &model.draw, &options, exec, progress).map_err(|error| match error {
+            let parts = first(cloud, *prefix)
+                .and_then(|cloud| of_file(cloud, &model.draw, &options, exec, progress));
+            parts.map_err(|error| match error {
                 Error::Invalid(what) => Error::format(path, what),
                 other => other,
             })
@@ -229,6 +231,18 @@ fn read(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result
             Ok(ModelParts { surfels: Surfels::none(), primitives, derived: None })
         }
     }
+}
+
+/// The first so many points of a file, or all.
+fn first(cloud: Cloud, prefix: Option<usize>) -> Result<Cloud> {
+    let Some(count) = prefix else { return Ok(cloud) };
+    if !(cloud.triangles.is_empty() && cloud.edges.is_empty()) {
+        let what = "a prefix is of points, but the file has triangles or edges; \"splatref surfels\" puts what \
+                    is seen of triangles in order";
+        return Err(Error::Invalid(what.into()));
+    }
+    let count = count.min(cloud.position.len());
+    Ok(cloud.some(&(0..count as u32).collect::<Vec<_>>()))
 }
 
 fn of_file(
@@ -321,7 +335,8 @@ fn placed(model: &Model, surfels: Surfels) -> Cloud {
 
 impl Source {
     /// The name of the file without its extension, or of the shape.
-    pub(super) fn name(&self) -> String {
+    #[must_use]
+    pub fn name(&self) -> String {
         match self {
             Self::File { path, .. } => stem(path),
             Self::Shape { shape, .. } => shape.name().to_owned(),

@@ -135,6 +135,10 @@ pub enum Source {
         path: PathBuf,
         /// The radius of points without one, in the file's units; derived if absent.
         radius: Option<f32>,
+        /// How many of its points, the first ones; all if absent, or if there are fewer. Of an order of
+        /// which every prefix is spread over the whole ([`crate::source::sampler`]), a level of detail: what is
+        /// derived is derived of these points alone.
+        prefix: Option<usize>,
     },
     /// A procedural shape.
     Shape {
@@ -378,6 +382,17 @@ pub fn check_mipmaps(levels: usize) -> Result<()> {
         return Ok(());
     }
     Err(Error::Invalid(format!("mipmaps of {levels} levels; give 0 to {MOST_LEVELS}")))
+}
+
+/// Whether so many points of a file can be drawn.
+///
+/// # Errors
+/// [`Error::Invalid`] if they cannot.
+pub fn check_prefix(points: usize) -> Result<()> {
+    if points > 0 {
+        return Ok(());
+    }
+    Err(Error::Invalid("a prefix of 0 points; give at least 1".into()))
 }
 
 /// The name of a file without its extension.

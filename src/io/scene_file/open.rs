@@ -92,9 +92,11 @@ impl SceneFile {
             return Ok(Self::of_model(source));
         }
         match FileKind::of(path)? {
-            FileKind::Ply => {
-                Ok(Self::of_model(Source::File { path: path.to_owned(), radius: None }))
-            }
+            FileKind::Ply => Ok(Self::of_model(Source::File {
+                path: path.to_owned(),
+                radius: None,
+                prefix: None,
+            })),
             FileKind::Toml => Self::read(path),
             FileKind::Exr => Err(Error::Usage(format!(
                 "{}: an EXR is a picture, not a scene; `splatref info` describes it",

@@ -3,7 +3,7 @@
 use super::exactly::Exactly;
 use super::transform::RawTransform;
 use crate::io::scene_file::{DEFAULT_COUNT, Draw, Geometry, Model, Source, TREE};
-use crate::io::scene_file::{check_mipmaps, check_opacity, shapes};
+use crate::io::scene_file::{check_mipmaps, check_opacity, check_prefix, shapes};
 use crate::scene::light::{MAX_RADIANCE, is_color};
 use crate::scene::objects::detail::MOST_PIXELS;
 use crate::source::{Shape, plant};
@@ -18,6 +18,7 @@ pub(super) struct RawModel {
     detail: Option<f64>,
     file: Option<PathBuf>,
     radius: Option<f32>,
+    prefix: Option<usize>,
     draw: Option<String>,
     split: Option<Exactly<f64, 4>>,
     shape: Option<String>,
@@ -75,7 +76,13 @@ impl RawModel {
     /// The source; takes every key that it uses.
     fn source(&mut self) -> Result<Source, String> {
         match (self.file.take(), self.shape.take()) {
-            (Some(path), None) => Ok(Source::File { path, radius: self.radius.take() }),
+            (Some(path), None) => {
+                let (radius, prefix) = (self.radius.take(), self.prefix.take());
+                if let Some(points) = prefix {
+                    check_prefix(points).map_err(|error| error.to_string())?;
+                }
+                Ok(Source::File { path, radius, prefix })
+            }
             (None, Some(name)) if name == TREE => {
                 let leaves = self.leaves.take().unwrap_or(plant::LEAVES);
                 Ok(Source::Tree { leaves, seed: self.seed.take().unwrap_or(0) })
@@ -97,6 +104,7 @@ impl RawModel {
             ("name", self.name.is_some()),
             ("detail", self.detail.is_some()),
             ("radius", self.radius.is_some()),
+            ("prefix", self.prefix.is_some()),
             ("square", self.square.is_some()),
             ("gap", self.gap.is_some()),
             ("step", self.step.is_some()),
