@@ -33,7 +33,10 @@ pub(super) fn regions(points: &[Vec3], how: &How, exec: &Exec) -> Vec<Region> {
     let regions = how.regions.min(leaves);
     let ranges = (0..regions).map(|i| leaves * i / regions..leaves * (i + 1) / regions);
     exec.ordered(ranges.collect(), |range: Range<usize>| {
-        let mut growing = Growing::default();
+        let points = |leaf| sorted.iter().map(|sorted| sorted.of(leaf).len()).sum::<usize>();
+        let buckets = |points: usize| points.div_ceil(BUCKET) + points.div_ceil(GROUP);
+        let most = range.clone().map(|leaf| buckets(points(leaf))).sum();
+        let mut growing = Growing { buckets: Vec::with_capacity(most), groups: Vec::new() };
         let mut entries = Vec::new();
         for leaf in range {
             entries.clear();
@@ -167,7 +170,6 @@ impl Sorted {
 }
 
 /// A region while it is built.
-#[derive(Default)]
 struct Growing {
     buckets: Vec<Bucket>,
     groups: Vec<Group>,
