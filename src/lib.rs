@@ -149,6 +149,8 @@
 //!
 //! - \[BHZK05\] Botsch, Hornung, Zwicker, Kobbelt: High-Quality Surface Splatting on Today's GPUs,
 //!   PBG 2005.
+//! - \[BJFM19\] Brandt, Jähn, Fischer, Meyer auf der Heide: Rendering of Complex Heterogenous Scenes
+//!   using Progressive Blue Surfels, 2019.
 //! - \[Eve02\] Everitt: Interactive Order-Independent Transparency, 2002.
 //! - \[GBP04\] Guennebaud, Barthe, Paulin: Deferred Splatting, Eurographics 2004.
 //! - \[GP03\] Guennebaud, Paulin: Efficient screen space approach for hardware accelerated surfel

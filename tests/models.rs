@@ -6,6 +6,7 @@ use splatref::frame::Exec;
 use splatref::io::ply;
 use splatref::scene::{Cloud, Dropped};
 use splatref::source::derive::{Derive, Origin, surfels};
+use splatref::source::sampler::{Greedy, Start};
 use std::path::PathBuf;
 
 /// The clouds of the models, with the counts of vertices and triangles that their source states.
@@ -73,5 +74,17 @@ fn derived_normals_agree_with_those_of_the_scans() {
             println!("{name}: {:?} {part}", derived.normals);
             assert!(part > share, "{name}: {:?} {part}", derived.normals);
         }
+    }
+}
+
+#[test]
+fn the_greedy_order_of_a_scan_is_that_of_the_definition() {
+    for (name, vertices, _, cloud) in models() {
+        // Every pick of the definition looks at all points.
+        let count = if vertices < 7000 { vertices } else { 300 };
+        let greedy = Greedy { start: Start::Seed(1) };
+        let exec = Exec::new(2, 32).unwrap();
+        let order = greedy.order(&cloud.position, count, &exec, &|_, _, _| ()).unwrap();
+        assert_eq!(order, greedy.define(&cloud.position, count).unwrap(), "{name}");
     }
 }

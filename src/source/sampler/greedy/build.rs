@@ -33,7 +33,10 @@ pub(super) fn regions(points: &[Vec3], how: &How, exec: &Exec) -> Vec<Region> {
     let regions = how.regions.min(leaves);
     let ranges = (0..regions).map(|i| leaves * i / regions..leaves * (i + 1) / regions);
     exec.ordered(ranges.collect(), |range: Range<usize>| {
-        let mut growing = Growing::default();
+        let points = |leaf| sorted.iter().map(|sorted| sorted.of(leaf).len()).sum::<usize>();
+        let buckets = |points: usize| points.div_ceil(BUCKET) + points.div_ceil(GROUP);
+        let most = range.clone().map(|leaf| buckets(points(leaf))).sum();
+        let mut growing = Growing { buckets: Vec::with_capacity(most), groups: Vec::new() };
         let mut entries = Vec::new();
         for leaf in range {
             entries.clear();
@@ -48,8 +51,8 @@ pub(super) fn regions(points: &[Vec3], how: &How, exec: &Exec) -> Vec<Region> {
     })
 }
 
-/// Where space is cut: a tree of planes, whose node i has the children 2 i + 1 and 2 i + 2. All
-/// paths are of one length, and lead to a leaf each.
+/// Where space is cut: a tree of planes, whose root is 1, and whose node i has the children 2 i and
+/// 2 i + 1. All paths are of one length, and lead to a leaf each.
 struct Cuts {
     planes: Vec<(f32, u8)>,
     depth: u32,
@@ -73,14 +76,14 @@ impl Cuts {
             .zip(0..)
             .map(|(few, i)| few[random::bits(0, i) as usize % SAMPLE])
             .collect();
-        let inner = (1 << depth) - 1;
+        let paths = 1 << depth;
         let mut cuts = Self {
             // Everything is below such a plane.
-            planes: vec![(f32::INFINITY, 0); inner],
+            planes: vec![(f32::INFINITY, 0); paths],
             depth,
-            leaf: vec![0; 1 << depth],
+            leaf: vec![0; paths],
         };
-        let mut parts = vec![Part { sample: &mut sample, node: 0, leaves: 0..leaves }];
+        let mut parts = vec![Part { sample: &mut sample, node: 1, leaves: 0..leaves }];
         for _ in 0..depth {
             let cut = exec.ordered(parts, |part| part.cut());
             parts = Vec::with_capacity(2 * cut.len());
@@ -90,7 +93,7 @@ impl Cuts {
             }
         }
         for part in parts {
-            cuts.leaf[part.node - inner] = part.leaves.start as u16;
+            cuts.leaf[part.node - paths] = part.leaves.start as u16;
         }
         cuts
     }
@@ -98,13 +101,15 @@ impl Cuts {
     /// The leaf that a point is in.
     #[inline(always)]
     fn leaf(&self, point: Vec3) -> u16 {
-        let point = point.to_array();
-        let mut node = 0;
+        // The masks change nothing, and spare the checks of indices.
+        let point = [point.x, point.y, point.z, 0.0];
+        let last = self.planes.len() - 1;
+        let mut node = 1;
         for _ in 0..self.depth {
-            let (plane, axis) = self.planes[node];
-            node = 2 * node + 1 + usize::from(point[usize::from(axis)] >= plane);
+            let (plane, axis) = self.planes[node & last];
+            node = 2 * node + usize::from(point[usize::from(axis & 3)] >= plane);
         }
-        self.leaf[node - self.planes.len()]
+        self.leaf[node & last]
     }
 }
 
@@ -114,7 +119,7 @@ impl<'a> Part<'a> {
         let Self { sample, node, leaves } = self;
         if leaves.len() < 2 {
             // All on the lower side.
-            return (node, (f32::INFINITY, 0), vec![Part { sample, node: 2 * node + 1, leaves }]);
+            return (node, (f32::INFINITY, 0), vec![Part { sample, node: 2 * node, leaves }]);
         }
         let half = leaves.len() / 2;
         let middle = leaves.start + half;
@@ -126,8 +131,8 @@ impl<'a> Part<'a> {
             plane = sample.select_nth_unstable_by(rank, by).1[axis];
         }
         let (low, high) = sample.split_at_mut(rank);
-        let low = Part { sample: low, node: 2 * node + 1, leaves: leaves.start..middle };
-        let high = Part { sample: high, node: 2 * node + 2, leaves: middle..leaves.end };
+        let low = Part { sample: low, node: 2 * node, leaves: leaves.start..middle };
+        let high = Part { sample: high, node: 2 * node + 1, leaves: middle..leaves.end };
         (node, (plane, axis as u8), vec![low, high])
     }
 }
@@ -165,7 +170,6 @@ impl Sorted {
 }
 
 /// A region while it is built.
-#[derive(Default)]
 struct Growing {
     buckets: Vec<Bucket>,
     groups: Vec<Group>,
@@ -196,12 +200,13 @@ impl Growing {
             self.bucket(high, group, first);
             return;
         }
-        let mut bucket = Bucket::EMPTY;
+        group.put(self.buckets.len() - first, bounds(entries), lowest(entries));
+        // In its place at once: it is large.
+        self.buckets.push(Bucket::EMPTY);
+        let Some(bucket) = self.buckets.last_mut() else { return };
         for (lane, entry) in entries.iter().enumerate() {
             bucket.put(lane, entry.point.to_array(), entry.id);
         }
-        group.put(self.buckets.len() - first, bounds(entries), bucket.lowest());
-        self.buckets.push(bucket);
     }
 }
 
@@ -214,6 +219,11 @@ fn halves(entries: &mut [Entry], low: usize) -> (&mut [Entry], &mut [Entry]) {
         _ => entries.select_nth_unstable_by(low, |a, b| a.point.z.total_cmp(&b.point.z)),
     };
     entries.split_at_mut(low)
+}
+
+/// The lowest index.
+fn lowest(entries: &[Entry]) -> u32 {
+    entries.iter().fold(u32::MAX, |lowest, entry| lowest.min(entry.id))
 }
 
 /// The least and the largest coordinates.

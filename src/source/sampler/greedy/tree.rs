@@ -38,11 +38,6 @@ impl Bucket {
         self.id[lane] = id;
     }
 
-    /// The index of the first point in the order of indices.
-    pub(super) fn lowest(&self) -> u32 {
-        self.id.iter().fold(u32::MAX, |lowest, &id| lowest.min(id))
-    }
-
     /// Lowers m to the distances from `p`; the largest m, and the lowest index that has it.
     #[inline(always)]
     fn relax(&mut self, p: [f32; 3]) -> (u32, u32) {

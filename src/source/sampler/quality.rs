@@ -1,0 +1,171 @@
+//! How evenly a prefix of an order is spread \[BJFM19, 3.3\].
+//!
+//! Squared distances are those of [`super::greedy`], in `f32`; of the prefix Q of points P
+//!
+//! ```text
+//!   nearest_q = the least d(q, q') of another member q' of Q, +inf if there is none
+//!   packing   = the least of them
+//!   covering  = the largest, over all p of P, of the least d(p, q) of a member q of Q
+//! ```
+//!
+//! `Decided:` another member is one at another place of the prefix, so that equal points are 0 apart.
+//! The paper draws the square roots of `nearest`, divided by one common length, as violins.
+
+use super::greedy::squared_distance;
+use crate::error::{Error, Result};
+use crate::frame::Exec;
+use crate::index::point_tree::PointTree;
+use crate::memory;
+use glam::Vec3;
+use std::ops::Range;
+
+/// How a prefix is spread: all are squared distances.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quality {
+    /// For each of the prefix, that to the nearest other.
+    pub nearest: Vec<f32>,
+    /// The least of `nearest`.
+    pub packing: f32,
+    /// The largest from any point to the nearest of the prefix.
+    pub covering: f32,
+}
+
+/// Ranges of the tree of at most so many points are searched one by one.
+const LEAF: usize = 8;
+/// Points of one job.
+const JOB: usize = 4096;
+/// What the tree and the distances take for a point of the prefix, at most.
+const BYTES_A_POINT: u64 = 48;
+
+/// The quality of the points of some indices, such as those of a [prefix](super::Order).
+///
+/// # Errors
+/// [`Error::Invalid`] if there is no index, if one is of no point, if a point is not finite, or if
+/// there are 2^32 indices or more.
+pub fn quality(points: &[Vec3], prefix: &[u32], exec: &Exec) -> Result<Quality> {
+    let invalid = |what| Err(Error::Invalid(what));
+    if prefix.is_empty() || u32::try_from(prefix.len()).is_err() {
+        return invalid(format!("a prefix of {}; give 1 to 2^32 - 1 indices", prefix.len()));
+    }
+    if let Some(at) = points.iter().position(|point| !point.is_finite()) {
+        return invalid(format!("point {at} is not finite and has no distance to others"));
+    }
+    if let Some(index) = prefix.iter().find(|index| **index as usize >= points.len()) {
+        return invalid(format!("index {index} of {} points", points.len()));
+    }
+    let bytes = prefix.len() as u64 * BYTES_A_POINT;
+    memory::ask(bytes, || format!("distances among {} points", prefix.len()))?;
+    let members: Vec<Vec3> = prefix.iter().map(|&index| points[index as usize]).collect();
+    let tree = PointTree::new(&members, LEAF, exec);
+    let jobs: Vec<_> = members.chunks(JOB).enumerate().collect();
+    let nearest = exec.ordered(jobs, |(job, some)| {
+        let ids = (job * JOB) as u32..;
+        let all = some.iter().zip(ids);
+        all.map(|(&point, own)| Search { tree: &tree, point, own }.least()).collect::<Vec<_>>()
+    });
+    let nearest = nearest.concat();
+    let covering = exec.ordered(points.chunks(JOB).collect(), |some| {
+        let search = |&point| Search { tree: &tree, point, own: u32::MAX }.least();
+        some.iter().map(search).fold(0.0, |most, d| if d > most { d } else { most })
+    });
+    let packing = nearest.iter().fold(f32::INFINITY, |least, &d| if d < least { d } else { least });
+    let covering = covering.into_iter().fold(0.0, |most, d| if d > most { d } else { most });
+    Ok(Quality { nearest, packing, covering })
+}
+
+/// The search of the member that is nearest to a point.
+struct Search<'a> {
+    tree: &'a PointTree,
+    point: Vec3,
+    /// The member that does not count.
+    own: u32,
+}
+
+impl Search<'_> {
+    fn least(&self) -> f32 {
+        let mut least = f32::INFINITY;
+        self.within(0..self.tree.entries().len(), &mut least);
+        least
+    }
+
+    /// Lowers the least distance to that of a range of the tree.
+    fn within(&self, range: Range<usize>, least: &mut f32) {
+        if range.len() <= LEAF {
+            range.for_each(|rank| self.member(rank, least));
+            return;
+        }
+        let (middle, axis) = self.tree.node(&range);
+        self.member(middle, least);
+        let out = self.point[axis] - self.tree.entries()[middle].point[axis];
+        let (low, high) = (range.start..middle, middle + 1..range.end);
+        let (near, far) = if out < 0.0 { (low, high) } else { (high, low) };
+        self.within(near, least);
+        // Rounded, too, no point behind the plane is nearer than the plane: rounding is monotone.
+        if out * out < *least {
+            self.within(far, least);
+        }
+    }
+
+    #[inline(always)]
+    fn member(&self, rank: usize, least: &mut f32) {
+        let entry = self.tree.entries()[rank];
+        let distance = squared_distance(self.point, entry.point);
+        if distance < *least && entry.id != self.own {
+            *least = distance;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::index::point_tree::given;
+    use crate::source::sampler::{Greedy, Start};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Every pair of points, and for a greedy prefix what its laws say.
+        #[test]
+        fn quality_is_that_of_all_pairs(points in given::points(), count in 1_usize..60) {
+            let greedy = Greedy { start: Start::Index(0) };
+            let order = greedy.define(&points, count + 1).unwrap();
+            let prefix = &order.index[..count.min(points.len())];
+            let found = quality(&points, prefix, &Exec::sequential()).unwrap();
+            let least = |all: &mut dyn Iterator<Item = f32>| {
+                all.fold(f32::INFINITY, |a, b| if b < a { b } else { a })
+            };
+            let d = |a: u32, b: u32| squared_distance(points[a as usize], points[b as usize]);
+            for (&q, &nearest) in prefix.iter().zip(&found.nearest) {
+                let others = prefix.iter().filter(|other| **other != q);
+                prop_assert_eq!(least(&mut others.map(|&other| d(other, q))), nearest);
+            }
+            let mut covering = 0.0;
+            for p in 0..points.len() as u32 {
+                let reach = least(&mut prefix.iter().map(|&q| d(q, p)));
+                covering = if reach > covering { reach } else { covering };
+            }
+            prop_assert_eq!(covering, found.covering);
+            prop_assert_eq!(found.packing, least(&mut found.nearest.iter().copied()));
+            let next = order.distance.get(prefix.len()).copied().unwrap_or(0.0);
+            prop_assert_eq!(covering, next, "the next pick is what is covered worst");
+            prop_assert_eq!(found.packing, order.distance[prefix.len() - 1]);
+        }
+    }
+
+    #[test]
+    fn three_on_a_line_by_hand_and_what_is_refused() {
+        let points = [0.0, 1.0, 3.0, 10.0].map(|x| Vec3::new(x, 5.0, 5.0));
+        let exec = Exec::new(2, 32).unwrap();
+        let found = quality(&points, &[2, 0, 1], &exec).unwrap();
+        let by_hand = Quality { nearest: vec![4.0, 1.0, 1.0], packing: 1.0, covering: 49.0 };
+        assert_eq!(found, by_hand);
+        let alone = quality(&points, &[3], &exec).unwrap();
+        assert_eq!((alone.packing, alone.covering), (f32::INFINITY, 100.0));
+        assert_eq!(quality(&points, &[1, 1], &exec).unwrap().packing, 0.0);
+        for (points, prefix) in
+            [(&points[..], &[] as &[u32]), (&points, &[4]), (&[Vec3::NAN], &[0]), (&[], &[0])]
+        {
+            assert!(quality(points, prefix, &exec).is_err(), "{points:?} {prefix:?}");
+        }
+    }
+}
