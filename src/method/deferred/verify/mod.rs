@@ -36,8 +36,8 @@
 //! off, where pass 1 certainly left nothing, they are those of the certificate over B(i); where it may
 //! have left nothing they are not judged.
 //!
-//! **[Polygons](super::polygons)**: what [`AllPolygons`](crate::method::projection::verify::AllPolygons) says
-//! that may lie in a pixel, at the depth of its nearness. In the certificates of passes 1 and 3 a finite Z
+//! **[Polygons](super::polygons)**: what [may lie](crate::method::projection::verify) in a pixel of the triangles
+//! beside splats, at the depth of its nearness. In the certificates of passes 1 and 3 a finite Z
 //! without an id is that of a polygon that may lie there; no polygon certainly lies there whose depth
 //! certainly is less than Z. A pixel of the picture may show
 //!
@@ -63,7 +63,7 @@
 //! - Surfels are those that the high level leaves. A node of [levels of
 //!   detail](crate::scene::objects::detail) that a client chooses otherwise is a wrong surfel: which nodes a
 //!   view draws is computed in f64 and given, as the flags are.
-//! - Ids of more than 32 bits are not judged: a plane of ids holds 32 of them.
+//! - Of ids of more than 32 bits a plane is judged together with that of the highest 8; alone it is not.
 //! - Which objects are [left out](Settings::share) is given, as the flags are: a surfel of one certainly is not
 //!   drawn. Their polygons are there.
 //! - A client that goes on from other numbers than it stores, as a picture in f64 that is rounded once in the

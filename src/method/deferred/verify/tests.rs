@@ -1,6 +1,7 @@
 mod faults;
 mod polygons;
 mod shares;
+mod wide;
 
 use super::super::indices::each_centre;
 use super::super::part::Whole;

@@ -20,6 +20,11 @@
 //! Where a pass tests depths against limits, what may lie in a pixel is what possibly passes there, and lies
 //! there only if it certainly passes.
 //!
+//! **Triangles beside splats**, of [`deferred`](crate::method::deferred), have no such limit. The corners of
+//! a triangle, of one that certainly is cut those of its pieces, are intervals on the grid of fixed point.
+//! Where each is one place, coverage is exact. Else a piece may lie in a pixel if no edge function certainly
+//! is negative, over all places of its corners; it lies there if all certainly are positive.
+//!
 //! **Not judged**: a primitive that is cut by the near plane or the guard band, or may be, and one with
 //! more ways to snap. Pixels of its id are judged by rule 3 and by their kind alone; without ids all
 //! pixels but empty ones and surfels are.
