@@ -99,7 +99,8 @@ impl<'a, R: Exact> Given<'a, R> {
         let count = scene.surfels.len() + scene.primitives.len();
         let objects = scene.objects.as_ref().filter(|_| count == 0);
         let known = |id: u32| match objects {
-            Some(objects) => objects.ids().find(id.into()).is_some(),
+            // What 32 bits of a wider id say alone is for those to judge that have the others.
+            Some(objects) => objects.ids().is_wide() || objects.ids().find(id.into()).is_some(),
             None => (id as usize) < count,
         };
         if let Some(id) = plane.values().iter().find(|&&id| id != NO_ID && !known(id)) {

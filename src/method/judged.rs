@@ -145,6 +145,11 @@ impl PixelMarks<'_> {
         }
     }
 
+    /// Nothing depends on the decisions that may be either way.
+    pub(super) fn settle(&mut self) {
+        self.marks.found[self.pixel].doubts = 0;
+    }
+
     /// Decisions that may be either way, as bits.
     pub(super) fn doubts(&mut self, doubts: u8) {
         self.marks.found[self.pixel].doubts |= doubts;

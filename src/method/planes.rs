@@ -10,6 +10,7 @@
 //! | stages | with the planes of the stages |
 //! | stages, colours | the same, if the scene has colours |
 //! | stages, tubes | the same, if the scene has tubes |
+//! | stages, wide ids | the same, if ids have [more than 32 bits](crate::scene::objects::ids) |
 //! | stages, setting | the same, under the setting that the last column names |
 //! | stages, whole | with the planes of the stages of a whole picture; not where the stage runs alone |
 //! | alone | where the stage runs alone: what the next stage reads, and no picture keeps |

@@ -349,13 +349,14 @@ impl<'a> Session<'a> {
 fn numbered<'c>(names: Option<&Names<'_>>, client: &'c Client) -> Result<Cow<'c, Client>> {
     let Some(names) = names else { return Ok(Cow::Borrowed(client)) };
     let mut numbered = client.clone();
-    names.number(numbered.frame_mut())?;
+    names.number_given(numbered.frame_mut())?;
     Ok(Cow::Owned(numbered))
 }
 
-/// The id of a surfel that a verdict has numbered; what is the number of none stays.
+/// The id of a surfel that a verdict has numbered; what is the number of none stays, and so does that of
+/// an id of 40 bits.
 fn named(names: Option<&Names<'_>>, index: u32) -> u32 {
-    names.and_then(|names| names.id(index)).unwrap_or(index)
+    names.and_then(|names| names.told(index)).unwrap_or(index)
 }
 
 #[cfg(test)]

@@ -64,6 +64,8 @@ pub enum When {
     Colored,
     /// With the planes of the stages, if the scene has tubes.
     StagesOfTubes,
+    /// With the planes of the stages, if ids have more than 32 bits.
+    Wide,
     /// With the planes of the stages, if the settings ask for the quantity.
     Settings,
     /// With the planes of the stages of a whole picture; not where the stage runs on somebody's
@@ -108,6 +110,7 @@ impl When {
             Self::Stages => "stages",
             Self::Colored => "stages, colours",
             Self::StagesOfTubes => "stages, tubes",
+            Self::Wide => "stages, wide ids",
             Self::Settings => "stages, setting",
             Self::Whole => "stages, whole",
             Self::Alone => "alone",

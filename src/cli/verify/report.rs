@@ -283,7 +283,9 @@ impl JsonFinding {
             Fault::Whole { found, truth, .. } => {
                 (Some(found.into()), Some([truth.into(), truth.into()]), None)
             }
-            Fault::NoSuchDepth { found, .. } => (Some(found), None, None),
+            Fault::NoSuchDepth { found, .. } | Fault::Hidden { found, .. } => {
+                (Some(found), None, None)
+            }
             Fault::LeftOut { surfel, found, .. } => (Some(found), None, Some(surfel)),
             Fault::NotProjected { surfel }
             | Fault::Projected { surfel }

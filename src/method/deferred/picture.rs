@@ -7,7 +7,7 @@ use super::polygons::Polygons;
 use super::visibility::{NONE, Nearest, POLYGON, both, nearest};
 use super::{Settings, fast, planes};
 use crate::error::Result;
-use crate::frame::{NamedPlane, Pool, Wanted};
+use crate::frame::{NO_ID, NamedPlane, Pool, Wanted};
 use crate::index::seen::Seen;
 use crate::memory;
 use crate::method::algorithm::Job;
@@ -49,16 +49,18 @@ pub(super) fn define<R: Exact>(
     let (sums, tally) = sums(job, settings, &part, &depth);
     clock.lap("attributes");
 
-    let averages = normalization(job, settings, &part, (&depth, polygons.as_ref()), &sums);
+    let shown = shown(job, settings, &part, &depth);
+    let averages = normalization(job, (&shown, polygons.as_ref()), &sums);
     clock.lap("normalization");
 
     let mut left = Vec::new();
     if stages {
-        left.extend(planes::visibility(&visible, false));
-        left.extend(planes::indices(&kept));
-        left.extend(planes::visibility(&depth, true));
+        left.extend(planes::visibility(job, &visible, false));
+        left.extend(planes::indices(job, &kept));
+        left.extend(planes::visibility(job, &depth, true));
         left.extend(ewa::attributes(&part.job(job), &sums));
         left.extend(resolved::colors(&part.job(job), &averages));
+        left.extend(planes::shown(job, &ids(&shown, &averages)));
     }
     let wanted = Wanted {
         normal: stages || !job.scene.lights.is_empty(),
@@ -100,14 +102,12 @@ pub(super) fn stage<R: Exact>(
             let flagged = flagged(job, &whole, &before)?;
             let polygons = Polygons::draw(job, settings, &whole)?;
             let visible = first::<R>(job, settings, &flagged, polygons.as_ref());
-            Ok(planes::visibility(&visible, false).into())
+            Ok(planes::visibility(job, &visible, false))
         }
-        "indices" => {
-            Ok(planes::indices(&indices(job, &settings.splats, &whole, &visible()?)).into())
-        }
+        "indices" => Ok(planes::indices(job, &indices(job, &settings.splats, &whole, &visible()?))),
         "difference" => {
             let depth = difference(job, settings, &whole, &before, &selected()?, &visible()?);
-            Ok(planes::visibility(&depth, true).into())
+            Ok(planes::visibility(job, &depth, true))
         }
         "attributes" => {
             let part = selected()?;
@@ -118,8 +118,11 @@ pub(super) fn stage<R: Exact>(
             let (part, depth) = (selected()?, depth()?);
             let sums = ewa::given_attributes(&part.job(job), given)?;
             let polygons = Polygons::draw(job, settings, &whole)?;
-            let averages = normalization(job, settings, &part, (&depth, polygons.as_ref()), &sums);
-            Ok(resolved::planes(&part.job(job), &averages))
+            let shown = shown(job, settings, &part, &depth);
+            let averages = normalization(job, (&shown, polygons.as_ref()), &sums);
+            let mut left = resolved::planes(&part.job(job), &averages);
+            left.extend(planes::shown(job, &ids(&shown, &averages)));
+            Ok(left)
         }
         "shading" => resolved::shade(job, given, whole.has_colors()),
         _ => Err(unknown(stage)),
@@ -212,23 +215,34 @@ fn sums<R: Exact>(
     (sums, splats.tally)
 }
 
-/// Pass 5, and the polygons where no splats are shown.
-fn normalization<R: Exact>(
+/// The fragments whose depth and id a picture shows where splats are seen.
+fn shown<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     selected: &Part,
-    (depth, polygons): (&Tiled<Nearest<R>>, Option<&Polygons<R>>),
+    depth: &Tiled<Nearest<R>>,
+) -> Tiled<Nearest<R>> {
+    // With pass 3 every fragment of B(i) has a depth in front of itself, or its own.
+    if settings.second {
+        return depth.map(|pixel| *pixel);
+    }
+    depth.with(&nearest::<R>(job, &settings.splats, selected), |pixel, own| {
+        let takes = pixel.id == NONE || pixel.id == POLYGON && own.nearness > pixel.nearness;
+        if takes { *own } else { *pixel }
+    })
+}
+
+/// All bits of the ids of a picture.
+fn ids<R: Exact>(shown: &Tiled<Nearest<R>>, averages: &Tiled<Resolved<R>>) -> Tiled<u64> {
+    shown.with(averages, |nearest, shown| if shown.id == NO_ID { NONE } else { nearest.id })
+}
+
+/// Pass 5, and the polygons where no splats are shown.
+fn normalization<R: Exact>(
+    job: &Job<'_>,
+    (shown, polygons): (&Tiled<Nearest<R>>, Option<&Polygons<R>>),
     sums: &Tiled<Sums<R>>,
 ) -> Tiled<Resolved<R>> {
-    // With pass 3 every fragment of B(i) has a depth in front of itself, or its own.
-    let own = (!settings.second).then(|| nearest::<R>(job, &settings.splats, selected));
-    let shown = match &own {
-        None => depth.map(|pixel| *pixel),
-        Some(own) => depth.with(own, |pixel, own| {
-            let takes = pixel.id == NONE || pixel.id == POLYGON && own.nearness > pixel.nearness;
-            if takes { *own } else { *pixel }
-        }),
-    };
     let splats = shown.with(sums, |nearest, sums| {
         if !(sums.weight > R::ZERO) || nearest.id == POLYGON {
             return Resolved::EMPTY;

@@ -34,6 +34,21 @@ use crate::number::Exact;
 use crate::scene::{Scene, Surfels};
 use crate::splat::View;
 
+/// The polygons as a scene of their own, with the colour of those without one where surfels have some; none
+/// if there are none.
+///
+/// # Errors
+/// As [`Whole::polygons`].
+pub(super) fn alone(job: &Job<'_>, whole: &Whole<'_>) -> Result<Option<(Scene, Option<[f32; 3]>)>> {
+    let primitives = whole.polygons()?;
+    if primitives.is_empty() {
+        return Ok(None);
+    }
+    let paint = (!primitives.colored()).then(|| job.scene.material.color.to_array());
+    let primitives = primitives.into_owned();
+    Ok(Some((Scene { primitives, ..Scene::unlit(&job.scene.name, Surfels::none()) }, paint)))
+}
+
 /// The nearest polygon of each pixel.
 pub(super) struct Polygons<R> {
     samples: Plane<PixelSample<R>>,
@@ -52,13 +67,7 @@ impl<R: Exact> Polygons<R> {
         settings: &Settings,
         whole: &Whole<'_>,
     ) -> Result<Option<Self>> {
-        let primitives = whole.polygons()?;
-        if primitives.is_empty() {
-            return Ok(None);
-        }
-        let paint = (!primitives.colored()).then(|| job.scene.material.color.to_array());
-        let primitives = primitives.into_owned();
-        let scene = Scene { primitives, ..Scene::unlit(&job.scene.name, Surfels::none()) };
+        let Some((scene, paint)) = alone(job, whole)? else { return Ok(None) };
         let (cull, snap) = (settings.splats.cull, Snap::default());
         let drawn = projection::project::<R>(&scene, job.camera, cull, snap, job.exec)?;
         let paint = paint.map(|color| color.map(R::from_f32));

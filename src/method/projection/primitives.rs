@@ -135,7 +135,20 @@ pub(super) fn triangle_piece<R: Real>(
 ) -> Option<Piece<R>> {
     let raster = Triangle::new(&projector.snap, ends.map(|(place, _)| place))?;
     let [width, height] = projector.size;
-    let (bounds, back) = (raster.bounds(width, height), !raster.front());
+    let bounds = raster.bounds(width, height);
+    triangle_within(projector, (id, index), (raster, bounds), ends, weights, p)
+}
+
+/// The same as it is drawn in some pixels.
+pub(super) fn triangle_within<R: Real>(
+    projector: &SceneProjector<'_, R>,
+    (id, index): (u32, usize),
+    (raster, bounds): (Triangle, Rect),
+    ends: [([i64; 2], R); 3],
+    weights: [[R; 3]; 3],
+    p: [Vector3<R>; 3],
+) -> Option<Piece<R>> {
+    let back = !raster.front();
     if bounds.is_empty() || (projector.points.cull && back) {
         return None;
     }
@@ -209,6 +222,11 @@ impl<R: Real> Piece<R> {
         let b = q.map(|q| q / whole);
         let of = &self.weights;
         let c = [0, 1, 2].map(|k| (b[0] * of[0][k] + b[1] * of[1][k]) + b[2] * of[2][k]);
+        self.with(x, y, c)
+    }
+
+    /// A pixel with these weights of the corners of the primitive.
+    pub(super) fn with(&self, x: u32, y: u32, c: [R; 3]) -> PiecePixel<R> {
         let p = (self.p[0] * c[0] + self.p[1] * c[1]) + self.p[2] * c[2];
         PiecePixel { x, y, c, p }
     }

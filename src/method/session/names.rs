@@ -1,7 +1,7 @@
 //! Surfels of objects by their ids, and by their order among those that are drawn.
 
 use crate::error::{Error, Result};
-use crate::frame::{Frame, NO_ID, Samples};
+use crate::frame::{Frame, NO_ID, Plane, Samples};
 use crate::scene::objects::{Ids, Objects};
 
 /// The ids of the surfels that are drawn, ascending: by these a method that draws surfels one by one, and
@@ -28,11 +28,16 @@ impl<'a> Names<'a> {
     }
 
     /// How many surfels are drawn whose ids are less.
-    fn index(&self, id: u32) -> Option<u32> {
+    fn index(&self, id: u64) -> Option<u32> {
         match &self.drawn {
-            Some(drawn) => drawn.binary_search(&id.into()).ok().map(|index| index as u32),
-            None => self.ids.rank(id.into()).map(|rank| rank as u32),
+            Some(drawn) => drawn.binary_search(&id).ok().map(|index| index as u32),
+            None => self.ids.rank(id).map(|rank| rank as u32),
         }
+    }
+
+    /// What a verdict calls a surfel that has been counted: by its id, if 32 bits say all of it.
+    pub(super) fn told(&self, index: u32) -> Option<u32> {
+        if self.ids.is_wide() { None } else { self.id(index) }
     }
 
     /// Puts ids in the place of indices.
@@ -46,7 +51,38 @@ impl<'a> Names<'a> {
             let what = "ids of 40 bits: planes of ids hold 32 of them, which do not say the surfel";
             return Err(Error::Invalid(what.into()));
         }
-        each_id(frame, |id| self.index(id).unwrap_or(NO_ID - 1));
+        each_id(frame, |id| self.index(id.into()).unwrap_or(NO_ID - 1));
+        Ok(())
+    }
+
+    /// The same of what somebody hands in. Planes of ids of 40 bits that come without their highest 8 do not
+    /// say the surfel, and are left out.
+    pub(super) fn number_given<R>(&self, frame: &mut Frame<R>) -> Result<()> {
+        if !self.ids.is_wide() {
+            return self.number(frame);
+        }
+        let high: Vec<(String, Plane<u8>)> = frame
+            .planes
+            .iter()
+            .filter_map(|plane| match &plane.samples {
+                Samples::Count(values) => Some((plane.name.clone(), values.clone())),
+                _ => None,
+            })
+            .collect();
+        frame.planes.retain_mut(|plane| {
+            let Samples::Index(ids) = &mut plane.samples else { return true };
+            let Some(of) = plane.name.strip_suffix("id") else { return true };
+            let stencil = format!("{of}stencil");
+            let Some((_, high)) = high.iter().find(|(name, _)| *name == stencil) else {
+                return false;
+            };
+            let some = ids.values_mut().iter_mut().zip(high.values());
+            some.filter(|(id, _)| **id != NO_ID).for_each(|(id, &high)| {
+                let wide = u64::from(high) << 32 | u64::from(*id);
+                *id = self.index(wide).unwrap_or(NO_ID - 1);
+            });
+            true
+        });
         Ok(())
     }
 }

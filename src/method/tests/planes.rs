@@ -75,7 +75,8 @@ fn is_there(when: &str, session: &Session<'_>, stages: bool) -> bool {
         "stages, colours" => stages && colors,
         "stages, tubes" => stages && tubes,
         "stages, setting" => stages && !plain,
-        "alone" => false,
+        // Ids of scenes without objects have 32 bits.
+        "stages, wide ids" | "alone" => false,
         other => panic!("{other}"),
     }
 }

@@ -79,7 +79,8 @@ fn is_there(when: When, scene: &Scene, stages: bool) -> Option<bool> {
         When::Colored => Some(stages && scene.surfels.color().is_some()),
         When::StagesOfTubes => Some(stages && tubes),
         When::Settings => (!stages).then_some(false),
-        When::Alone => Some(false),
+        // Ids of scenes without objects have 32 bits.
+        When::Wide | When::Alone => Some(false),
     }
 }
 

@@ -19,11 +19,12 @@
 //! largest object fits, or does not fit.
 //! [`NO_ID`] is never a surfel, and never the lowest 32 bits of one: a split in which a surfel would
 //! have them does not fit. (`Decided:` \[GBP04\] calls it the most improbable indicator; a scene in which it does occur
-//! takes the next split.) Planes of ids hold the lowest 32 bits; of
-//! wider ids two surfels of one picture may show the same number, but selection and ties know all bits. Where surfels are counted, as in the text
-//! of an explanation or of a verdict by a method that draws all surfels one by one, they are counted in
-//! the order of their ids; and so are the ids of a scene that has primitives, which are counted on after
-//! the surfels.
+//! takes the next split.) Planes of ids hold the lowest 32 bits; the
+//! stages of [`deferred`](crate::method::deferred) leave the highest 8 of wider ones in planes beside them.
+//! A plane of wide ids without them is not judged: two surfels of one picture may show the same number there.
+//! Where surfels are counted, as in the text of an explanation or of a verdict by a method that draws all
+//! surfels one by one, they are counted in the order of their ids; so are those of a verdict on wide ids, and
+//! the ids of a scene that has primitives, which are counted on after the surfels.
 //!
 //! Of an object with [levels of detail](super::detail) only those surfels have ids that a view looks
 //! at, so that the split may change from frame to frame: \[GBP04, 4.2\] has its two schemes for the
@@ -156,6 +157,12 @@ impl Ids {
         });
         let (before, counts) = (before.collect(), counts.to_vec());
         Some(Self { split, before, all: counts.clone(), counts, first, order })
+    }
+
+    /// The same surfels by another split; none if they do not fit.
+    #[must_use]
+    pub fn split_as(&self, split: Split) -> Option<Self> {
+        Some(Self { all: self.all.clone(), ..Self::of(split, &self.counts)? })
     }
 
     /// The ids of no objects.

@@ -163,6 +163,12 @@ impl Objects {
         &self.places
     }
 
+    /// The same objects with ids by another split, which stands until the next frame; none if it does not fit.
+    #[must_use]
+    pub fn split_as(&self, split: Split) -> Option<Self> {
+        Some(Self { ids: Arc::new(self.ids.split_as(split)?), ..self.clone() })
+    }
+
     /// The ids of their surfels.
     #[must_use]
     pub fn ids(&self) -> &Ids {

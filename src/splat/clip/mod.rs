@@ -51,7 +51,7 @@ mod tests;
 
 use super::View;
 use crate::frame::raster::GUARD_BAND;
-use crate::number::{Exact, Real, Vector3};
+use crate::number::{Exact, Real, Truth, Vector3};
 
 /// What a view keeps of a triangle or a segment.
 #[derive(Clone, Debug)]
@@ -145,6 +145,61 @@ impl<R: Real> Clip<R> {
         };
         self.planes.iter().fold(R::Truth::from(false), |any, plane| any | beyond(plane))
     }
+
+    /// What is left of a triangle, as [`Clip::triangle`] has it; none if that is not certain.
+    pub(crate) fn certain(&self, corners: [Vector3<R>; 3]) -> Option<Vec<Clipped<R, 3>>> {
+        if !corners.iter().all(|p| is_finite(p).certainly()) {
+            return None;
+        }
+        if self.drops(&corners).certainly() {
+            return Some(Vec::new());
+        }
+        let polygon = whole(corners).to_vec();
+        if self.keeps(&corners).certainly() { Some(polygon) } else { self.polygon(polygon) }
+    }
+
+    /// What the planes leave of a polygon; `None` also if a distance overflows, or if it is not certain
+    /// on which side of a plane a corner is.
+    fn polygon(&self, mut polygon: Vec<Clipped<R, 3>>) -> Option<Vec<Clipped<R, 3>>> {
+        for plane in &self.planes {
+            let measured = |v: &Clipped<R, 3>| (*v, plane.distance(&v.position));
+            let certain = |(_, distance): &(_, R)| {
+                let inside = distance.ge(R::ZERO);
+                (inside.certainly() == inside.possibly()).then_some(inside.certainly())
+            };
+            let mut before = measured(polygon.last()?);
+            let mut kept = Vec::with_capacity(polygon.len() + 1);
+            for here in polygon.iter().map(measured) {
+                match [certain(&before)?, certain(&here)?] {
+                    [true, true] => kept.push(here.0),
+                    [true, false] => kept.push(self.cut(plane, before, here)?),
+                    [false, true] => kept.extend([self.cut(plane, here, before)?, here.0]),
+                    [false, false] => {}
+                }
+                before = here;
+            }
+            polygon = kept;
+        }
+        Some(polygon)
+    }
+
+    /// Where a plane cuts between a vertex inside and one outside, each with its distance; `None`
+    /// if that is not finite.
+    fn cut<const N: usize>(
+        &self,
+        plane: &ClipPlane<R>,
+        (inside, d): (Clipped<R, N>, R),
+        (outside, e): (Clipped<R, N>, R),
+    ) -> Option<Clipped<R, N>> {
+        let (f, g) = (-e / (d - e), d / (d - e));
+        let mut position = inside.position * f + outside.position * g;
+        position.z = position.z.at_most(-self.near);
+        plane.put(&mut position);
+        let weights = std::array::from_fn(|i| inside.weights[i] * f + outside.weights[i] * g);
+        ((d - e).is_finite() & is_finite(&position))
+            .certainly()
+            .then_some(Clipped { position, weights })
+    }
 }
 
 impl<R: Exact> Clip<R> {
@@ -184,42 +239,6 @@ impl<R: Exact> Clip<R> {
         }
         Some(ends)
     }
-
-    /// What the planes leave of a polygon; `None` also if a distance overflows.
-    fn polygon(&self, mut polygon: Vec<Clipped<R, 3>>) -> Option<Vec<Clipped<R, 3>>> {
-        for plane in &self.planes {
-            let measured = |v: &Clipped<R, 3>| (*v, plane.distance(&v.position));
-            let mut before = measured(polygon.last()?);
-            let mut kept = Vec::with_capacity(polygon.len() + 1);
-            for here in polygon.iter().map(measured) {
-                match [before, here].map(|(_, distance)| distance >= R::ZERO) {
-                    [true, true] => kept.push(here.0),
-                    [true, false] => kept.push(self.cut(plane, before, here)?),
-                    [false, true] => kept.extend([self.cut(plane, here, before)?, here.0]),
-                    [false, false] => {}
-                }
-                before = here;
-            }
-            polygon = kept;
-        }
-        Some(polygon)
-    }
-
-    /// Where a plane cuts between a vertex inside and one outside, each with its distance; `None`
-    /// if that is not finite.
-    fn cut<const N: usize>(
-        &self,
-        plane: &ClipPlane<R>,
-        (inside, d): (Clipped<R, N>, R),
-        (outside, e): (Clipped<R, N>, R),
-    ) -> Option<Clipped<R, N>> {
-        let (f, g) = (-e / (d - e), d / (d - e));
-        let mut position = inside.position * f + outside.position * g;
-        position.z = position.z.at_most(-self.near);
-        plane.put(&mut position);
-        let weights = std::array::from_fn(|i| inside.weights[i] * f + outside.weights[i] * g);
-        ((d - e).is_finite() && is_finite(&position)).then_some(Clipped { position, weights })
-    }
 }
 
 /// The corners as they are, each with its own weight.
@@ -230,6 +249,6 @@ pub(crate) fn whole<R: Real, const N: usize>(corners: [Vector3<R>; N]) -> [Clipp
     })
 }
 
-fn is_finite<R: Exact>(p: &Vector3<R>) -> bool {
-    p.x.is_finite() && p.y.is_finite() && p.z.is_finite()
+fn is_finite<R: Real>(p: &Vector3<R>) -> R::Truth {
+    p.x.is_finite() & p.y.is_finite() & p.z.is_finite()
 }

@@ -78,6 +78,13 @@ pub enum Fault {
         /// The client's; +inf if the pixel is empty.
         found: f64,
     },
+    /// A polygon without an id that certainly is in front was left out.
+    Hidden {
+        /// Its depth.
+        depth: f64,
+        /// The client's; +inf if the pixel is empty.
+        found: f64,
+    },
 }
 
 impl Fault {
@@ -94,7 +101,10 @@ impl Fault {
             | Self::Absent { surfel }
             | Self::Outside { surfel, .. }
             | Self::LeftOut { surfel, .. } => [Some(surfel), None],
-            Self::Value { .. } | Self::Whole { .. } | Self::NoSuchDepth { .. } => [None, None],
+            Self::Value { .. }
+            | Self::Whole { .. }
+            | Self::NoSuchDepth { .. }
+            | Self::Hidden { .. } => [None, None],
         };
         numbers.into_iter().flatten().for_each(|number| *number = of(*number));
     }
@@ -144,6 +154,10 @@ impl fmt::Display for Fault {
             Self::LeftOut { surfel, depth, found, .. } => {
                 let [depth, found] = [*depth, *found].map(Plain);
                 write!(f, "surfel {surfel} at depth {depth} is left out; the client has {found}")
+            }
+            Self::Hidden { depth, found } => {
+                let [depth, found] = [*depth, *found].map(Plain);
+                write!(f, "a polygon at depth {depth} is left out; the client has {found}")
             }
         }
     }

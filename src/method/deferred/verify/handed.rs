@@ -30,6 +30,12 @@ pub(super) fn picture(client: &Client) -> Handed<'_> {
     Handed { depth: all.depth_copy, id: all.id_copy, empty_is_open: true, ..all }
 }
 
+/// The same as [`rest`] where the picture's weight is that of a polygon.
+pub(super) fn of_polygons<'a>(client: &'a Client, rest: &Handed<'a>) -> Handed<'a> {
+    let (weight, weight_copy) = (client.scalar(&WEIGHT_SUM), client.scalar(&resolved::WEIGHT));
+    Handed { weight, weight_copy, ..*rest }
+}
+
 /// All but what is nearest, of which there are copies.
 fn of(client: &Client) -> Handed<'_> {
     let rows = SumRows {

@@ -36,8 +36,26 @@
 //! off, where pass 1 certainly left nothing, they are those of the certificate over B(i); where it may
 //! have left nothing they are not judged.
 //!
+//! **[Polygons](super::polygons)**: what [may lie](crate::method::projection::verify) in a pixel of the triangles
+//! beside splats, at the depth of its nearness. In the certificates of passes 1 and 3 a finite Z
+//! without an id is that of a polygon that may lie there; no polygon certainly lies there whose depth
+//! certainly is less than Z. A pixel of the picture may show
+//!
+//! 1. the splats, as above, if the nearest fragment of pass 3 may be a surfel's or none, and weight may be > 0
+//!    or no polygon certainly lies there;
+//! 2. a polygon that no other certainly hides, if the nearest fragment may be a polygon's or weight may be 0:
+//!    its depth or that of the client's pass 3, its normal and its colour, no id, the weight 1.
+//!
+//! Of these that counts which the client errs least against. Where the picture alone says what is nearest, a
+//! pixel in which polygons may lie and that has no id says nothing of it: a fragment without weight may be
+//! before the polygon.
+//!
 //! # Decided
 //!
+//! - A polygon of which it is not certain how it is cut, or which way its corners run, may be at any depth of
+//!   its corners, and of any normal and colour. It hides nothing.
+//! - A pixel that shows a polygon and is right is not undecided, whatever its sums are, if the client has no
+//!   plane of them.
 //! - Pass 3 is judged from the surfels of both passes, not from the depth that the client has of pass 1: both
 //!   are one depth buffer. A client that stores the two in different formats declares the coarser one.
 //! - Of a surfel that only may be selected the choice is free at every pixel, though it is one choice: more is
@@ -45,12 +63,14 @@
 //! - Surfels are those that the high level leaves. A node of [levels of
 //!   detail](crate::scene::objects::detail) that a client chooses otherwise is a wrong surfel: which nodes a
 //!   view draws is computed in f64 and given, as the flags are.
-//! - Ids of more than 32 bits are not judged: a plane of ids holds 32 of them. Nor are polygons beside the
-//!   surfels, and frames from which objects are left out.
+//! - Of ids of more than 32 bits a plane is judged together with that of the highest 8; alone it is not.
+//! - Which objects are [left out](Settings::share) is given, as the flags are: a surfel of one certainly is not
+//!   drawn. Their polygons are there.
 //! - A client that goes on from other numbers than it stores, as a picture in f64 that is rounded once in the
 //!   end, may not promise `ieee`: what its planes say of one stage is not what the next was given.
 
 mod handed;
+mod polygons;
 mod selected;
 #[cfg(test)]
 mod tests;
@@ -60,13 +80,13 @@ use super::part::{Part, Whole};
 use super::picture::whole;
 use super::planes::{CENTRE, CENTRE_ID};
 use crate::composite::decide;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::frame::raster::Snap;
-use crate::frame::{Exec, Rect};
+use crate::frame::{Exec, NO_ID, Rect};
 use crate::memory;
 use crate::method::algorithm::Job;
 use crate::method::checks::anything;
-use crate::method::ewa::verify::certificate::{self, Nearest};
+use crate::method::ewa::verify::certificate::{self, Nearest, Other};
 use crate::method::ewa::verify::handed::Handed;
 use crate::method::ewa::verify::pixel::PixelJudge;
 use crate::method::ewa::verify::sums::{self, Continuations};
@@ -80,6 +100,7 @@ use crate::scene::Surfels;
 use crate::verify::client::Client;
 use crate::verify::shift::Told;
 use crate::verify::verdict::{Check, Doubt, Verdict};
+use polygons::{Beside, Ground, Polygons, front};
 
 /// Judges the planes of a client, whose ids are ranks: how many ids are less.
 ///
@@ -114,19 +135,21 @@ fn judge<P: Profile>(
     watch: Watch,
 ) -> Result<(Found<4>, Counts)> {
     let (whole, before) = whole(job, settings)?;
-    check(settings, &whole)?;
+    let ground = Ground::new(job, &whole)?;
+    let cull = settings.splats.cull;
+    let ground = ground.as_ref().map(|ground| Polygons::<P>::new(job, ground, cull));
     let flat = whole.part(whole.drawn_ids(), job.exec);
-    let scene = Scenery { job, settings, whole: &whole, flat: &flat };
+    let scene = Scenery { job, settings, whole: &whole, flat: &flat, ground: ground.as_ref() };
     let flagged = before.surfels(whole.ids());
     memory::ask(flagged.len() as u64 * OF_A_FLAGGED, || {
         format!("{} flagged surfels that are judged", flagged.len())
     })?;
-    let flagged: Vec<_> =
-        flagged.into_iter().filter_map(|id| Some((scene.rank(id)?, true))).collect();
+    let flagged = flagged.into_iter().filter(|&id| scene.draws(id));
+    let flagged: Vec<_> = flagged.filter_map(|id| Some((scene.rank(id)?, true))).collect();
 
     let first = handed::visibility(client);
-    let (visible, visibility) = scene.visible::<P>(&flagged, &first, watch);
-    let epsilon = scene.epsilon::<P>();
+    let (visible, visibility) = scene.visible(&flagged, &first, watch);
+    let epsilon = scene.epsilon();
     let limits = visible.map(|nearest| decide::limit(nearest.depth, epsilon));
 
     let (indices, selected) = scene.indices(client, &limits, watch);
@@ -141,10 +164,14 @@ fn judge<P: Profile>(
         drawn.sort_unstable();
     }
     let handed = handed::rest(client, settings);
+    let of_polygons = handed::of_polygons(client, &handed);
     let judge = Rest {
         drawn: scene.splats(&drawn),
         chosen: scene.splats(&selected),
         pixels: PixelJudge::of_surfels(job, scene.surfels(), &handed),
+        without_sums: of_polygons.no_sums(),
+        polygons: PixelJudge::of_surfels(job, scene.surfels(), &of_polygons),
+        ground: scene.ground,
         handed: &handed,
         picture: (!settings.second).then(|| handed::picture(client)),
         surfels: scene.surfels(),
@@ -161,58 +188,56 @@ fn judge<P: Profile>(
 /// Bytes of a surfel that pass 1 draws, in its place and projected in balls; once more in pass 3.
 const OF_A_FLAGGED: u64 = 1536;
 
-/// What there are no rules for.
-fn check(settings: &Settings, whole: &Whole<'_>) -> Result<()> {
-    let what = if settings.share > 0.0 {
-        "frames that leave out objects: set --share 0"
-    } else if whole.polygons()?.is_empty() {
-        return Ok(());
-    } else {
-        "polygons beside surfels"
-    };
-    Err(Error::Invalid(format!("the method deferred cannot judge {what}")))
-}
-
 /// What passes draw from: all surfels that the high level leaves, in their places, each numbered by its rank.
-struct Scenery<'a> {
+struct Scenery<'a, P: Profile> {
     job: &'a Job<'a>,
     settings: &'a Settings,
     whole: &'a Whole<'a>,
     flat: &'a Part,
+    ground: Option<&'a Polygons<'a, P>>,
 }
 
-impl<'a> Scenery<'a> {
+impl<'a, P: Profile> Scenery<'a, P> {
     fn surfels(&self) -> &'a Surfels {
         self.flat.surfels()
+    }
+
+    /// Whether a surfel is of an object that the frame does not leave out.
+    fn draws(&self, id: u64) -> bool {
+        let found = self.whole.ids().find(id);
+        found.is_some_and(|(object, _)| !self.whole.leaves_out(object))
     }
 
     fn rank(&self, id: u64) -> Option<u32> {
         self.flat.ids().binary_search(&id).ok().map(|rank| rank as u32)
     }
 
-    fn epsilon<P: Profile>(&self) -> Ball<P> {
+    fn epsilon(&self) -> Ball<P> {
         let epsilon = self.settings.splats.epsilon.in_units(self.whole.median_radius());
         Ball::from_f32(epsilon)
     }
 
     /// Some surfels, ascending, each with whether it certainly is one of those that a pass draws.
-    fn splats<P: Profile>(&self, some: &[(u32, bool)]) -> SwiftSplats<P> {
+    fn splats(&self, some: &[(u32, bool)]) -> SwiftSplats<P> {
         let ids = some.iter().map(|&(rank, _)| self.flat.id(rank)).collect();
         let part = self.whole.part(ids, self.job.exec);
         swift::project_part(&part.job(self.job), &self.settings.splats, some)
     }
 
     /// The nearest fragments of pass 1, and what is wrong of them.
-    fn visible<P: Profile>(
+    fn visible(
         &self,
         flagged: &[(u32, bool)],
         handed: &Handed<'_>,
         watch: Watch,
     ) -> (Tiled<Nearest<P>>, Marks) {
-        let (job, splats) = (self.job, self.splats::<P>(flagged));
+        let (job, splats) = (self.job, self.splats(flagged));
         let judge = |(tile, rect): (usize, Rect), mut marks: Marks| {
             let given = (handed, self.surfels());
-            (certificate::judge(&splats, given, (tile, &rect), &mut marks), marks)
+            let others = beside(self.ground, (tile, &rect)).others;
+            let found =
+                certificate::judge_among(&splats, &others, given, (tile, &rect), &mut marks);
+            (found, marks)
         };
         let grid = job.grid();
         let found = job
@@ -232,7 +257,7 @@ impl<'a> Scenery<'a> {
     }
 
     /// What is wrong of pass 2, given the greatest depth that passes at each pixel; and B(i).
-    fn indices<P: Profile>(
+    fn indices(
         &self,
         client: &Client,
         limits: &Tiled<Ball<P>>,
@@ -240,7 +265,8 @@ impl<'a> Scenery<'a> {
     ) -> (StageMarks, Vec<(u32, bool)>) {
         let (job, cull) = (self.flat.job(self.job), self.settings.splats.cull);
         let planes = SamplePlanes::of_nearest(client, job.scene, [&CENTRE, &CENTRE_ID]);
-        let points = AllPossible::<P>::new(&job, cull, Snap::default(), Some(limits));
+        let draws = |rank: usize| self.draws(self.flat.id(rank as u32));
+        let points = AllPossible::<P>::of(&job, (cull, Snap::default()), Some(limits), draws);
         let names = planes.names();
         let marks = match names.is_empty() {
             true => watch.picture(&job),
@@ -255,6 +281,11 @@ impl<'a> Scenery<'a> {
     }
 }
 
+/// What polygons may leave in a tile.
+fn beside<P: Profile>(ground: Option<&Polygons<'_, P>>, tile: (usize, &Rect)) -> Beside<P> {
+    ground.map_or(Beside::NOTHING, |ground| ground.beside(tile))
+}
+
 /// What the tiles of the passes after the selection share.
 struct Rest<'a, P: Profile> {
     /// The surfels of passes 1 and 3.
@@ -266,6 +297,11 @@ struct Rest<'a, P: Profile> {
     picture: Option<Handed<'a>>,
     surfels: &'a Surfels,
     pixels: PixelJudge<'a, P>,
+    /// Whether the client has no plane of the sums.
+    without_sums: bool,
+    /// The same of pixels that show a polygon.
+    polygons: PixelJudge<'a, P>,
+    ground: Option<&'a Polygons<'a, P>>,
     /// What pass 1 has left.
     visible: &'a Tiled<Nearest<P>>,
 }
@@ -293,51 +329,71 @@ impl<P: Profile> Rest<'_, P> {
     /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
         let [first, rest @ ..] = marks;
-        let nearest = self.nearest((tile, &rect), first);
+        let beside = beside(self.ground, (tile, &rect));
+        let nearest = self.nearest((tile, &rect), &beside, first);
         let sums =
             sums::continuations(&self.chosen, self.surfels, &nearest, (tile, &rect), &mut rest[0]);
         let (mut covered, mut told) = (0, Told::default());
         for (pixel, at) in counted(rect) {
-            let shown = self.shown((tile, at), nearest[pixel], &mut rest[1]);
+            let others = beside.others(pixel);
+            let shown = self.shown((tile, at), nearest[pixel], others, &mut rest[1]);
+            let certain = matches!(sums[pixel], Continuations::One(_));
+            covered += u64::from(shown.depth.middle.is_finite() || !certain);
+            if !others.is_empty() {
+                self.judge_beside((pixel, at), &beside, &shown, &sums[pixel], rest);
+                continue;
+            }
             let taken = self.pixels.judge((pixel, at), &shown, &sums[pixel], rest);
             if let (Continuations::Several(_, open), Some(taken)) = (&sums[pixel], taken) {
                 told.take_all(open, taken);
             }
-            let certain = matches!(sums[pixel], Continuations::One(_));
-            covered += u64::from(shown.depth.middle.is_finite() || !certain);
         }
         Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS), told }
     }
 
     /// The nearest fragments that pass 3 has left.
-    fn nearest(&self, (tile, rect): (usize, &Rect), marks: &mut Marks) -> Vec<Nearest<P>> {
+    fn nearest(
+        &self,
+        (tile, rect): (usize, &Rect),
+        beside: &Beside<P>,
+        marks: &mut Marks,
+    ) -> Vec<Nearest<P>> {
         if self.picture.is_some() && self.handed.nothing() {
             return counted(*rect).map(|(_, (x, y))| *self.visible.at(x, y)).collect();
         }
-        certificate::judge(&self.drawn, (self.handed, self.surfels), (tile, rect), marks)
+        let given = (self.handed, self.surfels);
+        certificate::judge_among(&self.drawn, &beside.others, given, (tile, rect), marks)
     }
 
     /// What the picture shows where it has weight: where no pass before has left anything the nearest of
-    /// B(i).
+    /// B(i), where one has left a polygon the nearer of that and of B(i).
     fn shown(
         &self,
         (tile, at): (usize, (u32, u32)),
         nearest: Nearest<P>,
+        others: &[Other<P>],
         marks: &mut Marks,
     ) -> Nearest<P> {
         let Some(picture) = &self.picture else { return nearest };
-        let Ball { middle, radius, .. } = nearest.depth;
-        if middle == f64::INFINITY && radius == 0.0 {
+        let Nearest { depth, id } = nearest;
+        let among = |others: Vec<Other<P>>, marks: &mut Marks| {
             let pixel = Rect::pixel(at);
             let mut own = marks.beside(pixel);
-            let given = (picture, self.surfels);
-            let found = certificate::judge(&self.chosen, given, (tile, &pixel), &mut own);
+            let (others, given) = ([others], (picture, self.surfels));
+            let found =
+                certificate::judge_among(&self.chosen, &others, given, (tile, &pixel), &mut own);
             marks.put(own);
             found.into_iter().next().unwrap_or(nearest)
-        } else if (middle + radius).is_finite() {
-            nearest
-        } else {
+        };
+        let [splat, polygon] = front(&nearest, others);
+        if depth.middle == f64::INFINITY && depth.radius == 0.0 {
+            among(others.to_vec(), marks)
+        } else if !(depth.middle + depth.radius).is_finite() || (splat && polygon) {
             Nearest { depth: anything(), id: None }
+        } else if polygon && id == Some(NO_ID) {
+            among(vec![Other { depth, lies: true }], marks)
+        } else {
+            nearest
         }
     }
 }

@@ -1,4 +1,7 @@
 mod faults;
+mod polygons;
+mod shares;
+mod wide;
 
 use super::super::indices::each_centre;
 use super::super::part::Whole;
@@ -96,6 +99,9 @@ fn sequences() -> Vec<Sequence> {
             Lens::FieldOfView(40.0),
         )),
     ]
+    .into_iter()
+    .chain(polygons::sequences())
+    .collect()
 }
 
 /// The sequence with levels of detail of all objects.
@@ -229,7 +235,15 @@ fn what_the_crate_draws_of_a_sequence_is_right() {
                 let found = shown.judge(method, &plain(frame), rounding);
                 assert_eq!(wrong(&found), None, "{what}, plain");
                 let Verdict { undecided, unbounded, covered, .. } = found;
-                assert!((undecided + unbounded) * 50 < covered, "{what}, plain");
+                let counts = format!("{undecided} and {unbounded} of {covered}");
+                // Where polygons are, what lies within epsilon behind them is selected, and not seen.
+                let most = if i < 5 { 50 } else { 6 };
+                // Nor does a picture without pass 3 say what pass 1 left.
+                let known = i < 5 || sequence.settings.second;
+                assert!(
+                    !known || (undecided + unbounded) * most < covered,
+                    "{what}, plain: {counts}"
+                );
             }
         }
     }
@@ -326,13 +340,22 @@ fn other_indices(
 
 /// That a client's planes are wrong, and first of a stage.
 fn assert_first_wrong(shown: &Shown, method: Method, frame: &Frame<f32>, stage: &str, what: &str) {
+    assert_first_wrong_of(shown, method, frame, &[stage], what);
+}
+
+/// The same of one of some stages.
+fn assert_first_wrong_of(
+    shown: &Shown,
+    method: Method,
+    frame: &Frame<f32>,
+    stages: &[&str],
+    what: &str,
+) {
     for rounding in ROUNDINGS {
         let found = shown.judge(method, frame, rounding);
-        assert_eq!(
-            found.first_wrong().map(|wrong| wrong.stage),
-            Some(stage),
-            "{what} {rounding:?}"
-        );
+        let first = found.first_wrong().map(|wrong| wrong.stage);
+        let stage = first.unwrap_or_else(|| panic!("{what} {rounding:?} is right"));
+        assert!(stages.contains(&stage), "{what} {rounding:?}: {stage}");
         // Replayed at its pixel, the fault is there.
         let exec = Exec::new(1, 16).unwrap();
         let mut client = Client::from(frame);
@@ -350,7 +373,7 @@ fn assert_first_wrong(shown: &Shown, method: Method, frame: &Frame<f32>, stage: 
 #[test]
 fn what_has_no_plane_of_a_stage_is_judged_by_the_others() {
     let exec = Exec::new(1, 16).unwrap();
-    for sequence in sequences() {
+    for (i, sequence) in sequences().into_iter().enumerate() {
         let frames = sequence.frames::<f32>(&exec);
         let shown = &frames[2];
         for stage in ["visibility", "indices", "difference", "attributes"] {
@@ -360,7 +383,10 @@ fn what_has_no_plane_of_a_stage_is_judged_by_the_others() {
                 let frame = Frame { planes: planes.clone(), ..shown.frame };
                 let found = shown.judge(sequence.method(), &frame, rounding);
                 assert_eq!(wrong(&found), None, "without {stage}");
-                assert!(found.undecided * 50 < found.covered, "without {stage}");
+                // Where a polygon is seen a splat without weight may be before it.
+                let most = if i < 5 { 50 } else { 8 };
+                let counts = [found.undecided, found.covered];
+                assert!(counts[0] * most < counts[1], "{i} without {stage}: {counts:?}");
             }
             // Ids without depths, and depths without ids.
             for other in ["Z", "id"] {

@@ -24,6 +24,19 @@ pub(in crate::method) struct Nearest<P: Profile> {
     pub(in crate::method) id: Option<u32>,
 }
 
+/// What is no splat and may be nearest all the same: a polygon, which has no id.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::method) struct Other<P: Profile> {
+    pub(in crate::method) depth: Ball<P>,
+    /// Whether it certainly lies in the pixel.
+    pub(in crate::method) lies: bool,
+}
+
+/// The others of a pixel of a tile, if any pixel has some.
+fn others_of<P: Profile>(others: &[Vec<Other<P>>], pixel: usize) -> &[Other<P>] {
+    others.get(pixel).map_or(&[], Vec::as_slice)
+}
+
 /// What is known of a pixel before other fragments are held against it.
 #[derive(Clone, Copy, Debug)]
 struct Claim<P: Profile> {
@@ -44,11 +57,22 @@ struct Claim<P: Profile> {
 /// Judges the nearest fragments of a tile, and says what later passes work with.
 pub(in crate::method) fn judge<P: Profile>(
     splats: &SwiftSplats<P>,
+    given: (&Handed<'_>, &Surfels),
+    tile: (usize, &Rect),
+    marks: &mut Marks,
+) -> Vec<Nearest<P>> {
+    judge_among(splats, &[], given, tile, marks)
+}
+
+/// The same where others may be nearest, pixel by pixel.
+pub(in crate::method) fn judge_among<P: Profile>(
+    splats: &SwiftSplats<P>,
+    others: &[Vec<Other<P>>],
     (handed, surfels): (&Handed<'_>, &Surfels),
     (tile, rect): (usize, &Rect),
     marks: &mut Marks,
 ) -> Vec<Nearest<P>> {
-    let mut claims = claims(splats, handed, (tile, rect));
+    let mut claims = claims(splats, others, handed, (tile, rect));
     // What certainly is farther than the client's fragment is no question.
     let least: Vec<f64> = claims
         .iter()
@@ -77,6 +101,9 @@ pub(in crate::method) fn judge<P: Profile>(
             claim.nearest.depth = between(claim.range);
         } else {
             claim.judge(handed, &mut marks.at(pixel));
+            others_of(others, pixel).iter().for_each(|other| {
+                other.judge(claim, &mut marks.at(pixel));
+            });
         }
     }
     claims.into_iter().map(|claim| claim.nearest).collect()
@@ -85,24 +112,27 @@ pub(in crate::method) fn judge<P: Profile>(
 /// What the client says of each pixel.
 fn claims<P: Profile>(
     splats: &SwiftSplats<P>,
+    others: &[Vec<Other<P>>],
     handed: &Handed<'_>,
     (tile, rect): (usize, &Rect),
 ) -> Vec<Claim<P>> {
     let mut claims: Vec<Claim<P>> = pixels(*rect)
-        .map(|at| {
+        .enumerate()
+        .map(|(pixel, at)| {
             let id = handed.id.map(|ids| *ids.plane.at(at.0, at.1));
             let depth = handed.depth.map_or(Ball::INFINITY, |depth| depth.ball(at));
             let nothing = depth.middle == f64::INFINITY && id.is_none_or(|id| id == NO_ID);
             let error = if nothing { 0.0 } else { f64::INFINITY };
-            let range = [f64::INFINITY; 2];
-            Claim {
+            let mut claim = Claim {
                 nearest: Nearest { depth, id },
                 error,
                 closest: Ball::INFINITY,
                 outside: None,
                 open: handed.says_nothing(at),
-                range,
-            }
+                range: [f64::INFINITY; 2],
+            };
+            claim.meet_others(handed, others_of(others, pixel));
+            claim
         })
         .collect();
     let shared = &splats.shared;
@@ -136,6 +166,30 @@ impl<P: Profile> Claim<P> {
         }
     }
 
+    /// What is no splat and may be what the client means.
+    fn meet_others(&mut self, handed: &Handed<'_>, others: &[Other<P>]) {
+        let without_id = self.nearest.id.is_none_or(|id| id == NO_ID);
+        if others.is_empty() || !(self.open || without_id) {
+            return;
+        }
+        // What a picture shows there may be behind a fragment that no weight shows.
+        if handed.empty_is_open || self.open {
+            (self.open, self.nearest.id) = (true, None);
+        }
+        others.iter().for_each(|other| other.bound(&mut self.range));
+        if handed.depth.is_none() && !self.open {
+            // Of no id it may be any of them, or nothing.
+            self.nearest.depth = between(self.range);
+        } else if self.nearest.depth.middle < f64::INFINITY {
+            for other in others {
+                let error = other.depth.misfit(self.nearest.depth);
+                if error < self.error {
+                    (self.error, self.closest) = (error, other.depth);
+                }
+            }
+        }
+    }
+
     /// Whether the claim itself can be.
     fn judge(&self, handed: &Handed<'_>, pixel: &mut PixelMarks<'_>) {
         let Nearest { depth, id } = self.nearest;
@@ -147,8 +201,8 @@ impl<P: Profile> Claim<P> {
             Some(NO_ID) => Fault::Value {
                 channel: channel(),
                 found: depth.middle,
-                truth: f64::INFINITY,
-                radius: 0.0,
+                truth: self.closest.middle,
+                radius: self.closest.radius,
             },
             Some(surfel) if self.closest.middle == f64::INFINITY => Fault::Absent { surfel },
             Some(surfel) if self.outside.is_some() => {
@@ -162,6 +216,33 @@ impl<P: Profile> Claim<P> {
             },
             None => Fault::NoSuchDepth { found: depth.middle, closest: self.closest.middle },
         });
+    }
+}
+
+impl<P: Profile> Other<P> {
+    /// Whether it certainly is nearer than what the client has, or may be.
+    fn judge(&self, claim: &Claim<P>, pixel: &mut PixelMarks<'_>) {
+        let depth = claim.nearest.depth;
+        let nearer = decide::before(self.depth, depth);
+        if self.lies && nearer.certainly() {
+            pixel.found(self.depth.distance(depth), || Fault::Hidden {
+                depth: self.depth.middle,
+                found: depth.middle,
+            });
+        } else if nearer.possibly() && self.depth.misfit(depth) > 0.0 {
+            pixel.doubt(Doubt::Nearer, !nearer.certainly());
+            pixel.doubt(Doubt::Fate, !self.lies);
+        }
+    }
+
+    /// As [`Against::bound`].
+    fn bound(&self, [least, most]: &mut [f64; 2]) {
+        let Ball { middle, radius, .. } = self.depth;
+        let radius = if radius.is_nan() { f64::INFINITY } else { radius };
+        *least = least.at_most(middle - radius);
+        if self.lies {
+            *most = most.at_most(middle + radius);
+        }
     }
 }
 
@@ -254,6 +335,8 @@ impl<P: Profile> Against<P> {
 fn between<P: Profile>([least, most]: [f64; 2]) -> Ball<P> {
     if least == f64::INFINITY {
         Ball::INFINITY
+    } else if !least.is_finite() {
+        Ball::new(0.0, f64::INFINITY)
     } else if most == f64::INFINITY {
         Ball::new(least, f64::INFINITY)
     } else {

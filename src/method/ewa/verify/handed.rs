@@ -108,6 +108,12 @@ impl<'a> Handed<'a> {
         self.depth.is_none() && self.id.is_none()
     }
 
+    /// Whether nothing is said of the sums.
+    pub(in crate::method) fn no_sums(&self) -> bool {
+        let triples = [self.normal_sum, self.color_sum];
+        self.weight.is_none() && self.count.is_none() && triples.iter().all(Option::is_none)
+    }
+
     /// Whether nothing is said of the nearest fragment of a pixel.
     pub(super) fn says_nothing(&self, (x, y): (u32, u32)) -> bool {
         let far = || self.depth.is_none_or(|plane| *plane.plane.at(x, y) == f64::INFINITY);

@@ -117,8 +117,54 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         )
     }
 
+    /// Whether the picture has a depth and no id, as no splat leaves.
+    pub(in crate::method) fn shows_no_splats(&self, (x, y): (u32, u32)) -> bool {
+        let Handed { depth_copy, id_copy, .. } = self.handed;
+        depth_copy.is_some_and(|plane| *plane.plane.at(x, y) < f64::INFINITY)
+            && id_copy.is_some_and(|plane| *plane.plane.at(x, y) == NO_ID)
+    }
+
+    /// Every plane at a pixel that shows no splats but another surface, with these sums. A weight that the
+    /// picture shows is not that of the sums: `handed` has no such.
+    pub(in crate::method) fn check_other(
+        &self,
+        at: (u32, u32),
+        surface: &Surface<P>,
+        sums: Option<&Sums<Ball<P>>>,
+        report: &mut Report<'_>,
+    ) {
+        if let Some(sums) = sums {
+            self.check_sums(at, sums, report);
+        }
+        let (handed, Surface { depth, normal, color, .. }) = (self.handed, *surface);
+        if let (Some(plane), true) = (&handed.color, self.colored) {
+            triple(NORMALIZATION, (plane, Holds::Color), at, color, report);
+        }
+        if let Some(plane) = &handed.normal {
+            triple(NORMALIZATION, (plane, Holds::Vector), at, normal, report);
+        }
+        if let Some(plane) = &handed.depth_copy {
+            number(NORMALIZATION, plane, at, depth, report);
+        }
+        if let Some(plane) = &handed.id_copy {
+            whole(NORMALIZATION, plane, at, NO_ID, report);
+        }
+        if let Some(plane) = &handed.weight_copy {
+            number(NORMALIZATION, plane, at, Ball::<P>::ONE, report);
+        }
+        if let Some(plane) = &handed.shaded {
+            let depth = handed.depth_copy.map_or(depth, |plane| plane.ball(at));
+            let color = self.color(at, depth, &Averages { normal, color });
+            triple(SHADING, (plane, Holds::Color), at, color, report);
+        }
+        if let Some(plane) = &handed.alpha {
+            let weight = handed.weight_copy.map_or(Ball::ONE, |plane| plane.ball(at));
+            number(SHADING, plane, at, self.shading.alpha(weight), report);
+        }
+    }
+
     /// Every plane at a pixel, with these sums; without any, as far as the client's own are there.
-    fn check(
+    pub(in crate::method) fn check(
         &self,
         at: (u32, u32),
         nearest: &Nearest<P>,
@@ -184,7 +230,11 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     }
 
     /// The sum of the weights as the average reads it.
-    fn weight(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
+    pub(in crate::method) fn weight(
+        &self,
+        at: (u32, u32),
+        sums: Option<&Sums<Ball<P>>>,
+    ) -> Ball<P> {
         let own = || sums.map_or_else(anything, |sums| self.stored(sums).weight);
         self.handed.weight.map_or_else(own, |plane| plane.ball(at))
     }
@@ -307,7 +357,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
 }
 
 /// What the sums of a pixel may be, as far as that is known.
-fn all<P: Profile>(sums: &Continuations<P>) -> &[Sums<Ball<P>>] {
+pub(in crate::method) fn all<P: Profile>(sums: &Continuations<P>) -> &[Sums<Ball<P>>] {
     match sums {
         Continuations::One(sums) => std::slice::from_ref(sums),
         Continuations::Several(sums, _) => sums,

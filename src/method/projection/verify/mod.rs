@@ -20,15 +20,23 @@
 //! Where a pass tests depths against limits, what may lie in a pixel is what possibly passes there, and lies
 //! there only if it certainly passes.
 //!
+//! **Triangles beside splats**, of [`deferred`](crate::method::deferred), have no such limit. The corners of
+//! a triangle, of one that certainly is cut those of its pieces, are intervals on the grid of fixed point.
+//! Where each is one place, coverage is exact. Else a piece may lie in a pixel if no edge function certainly
+//! is negative, over all places of its corners; it lies there if all certainly are positive.
+//!
 //! **Not judged**: a primitive that is cut by the near plane or the guard band, or may be, and one with
 //! more ways to snap. Pixels of its id are judged by rule 3 and by their kind alone; without ids all
 //! pixels but empty ones and surfels are.
 
 mod claim;
+mod intervals;
 mod planes;
+mod polygons;
 mod primitives;
 
 pub(in crate::method) use planes::SamplePlanes;
+pub(in crate::method) use polygons::{AllPolygons, PossibleFragment};
 
 use super::primitives::PiecePixel;
 use super::surfels::{PlacedPoint, PointProjector};
@@ -101,6 +109,16 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         snap: Snap,
         limits: Option<&'a Tiled<Ball<P>>>,
     ) -> Self {
+        Self::of(job, (cull, snap), limits, |_| true)
+    }
+
+    /// The same of those surfels that `draws` says by their indices.
+    pub(in crate::method) fn of(
+        job: &Job<'a>,
+        (cull, snap): (bool, Snap),
+        limits: Option<&'a Tiled<Ball<P>>>,
+        draws: impl Fn(usize) -> bool + Sync + Send,
+    ) -> Self {
         let (scene, grid) = (job.scene, job.grid());
         let of = &scene.surfels;
         let projector = SceneProjector::new(scene, job.camera, cull, snap);
@@ -108,7 +126,7 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         let ranges = ranges.map(|first| first..of.len().min(first + 8192)).collect();
         let surfels = job.exec.ordered(ranges, |range: std::ops::Range<usize>| {
             let place = |i| Possible::new(&projector.points, of, i, &grid);
-            let possible: Vec<_> = range.filter_map(place).collect();
+            let possible: Vec<_> = range.filter(|&i| draws(i)).filter_map(place).collect();
             let bins = Bins::new(&grid, possible.len(), |i| possible[i].bounds);
             (possible, bins)
         });

@@ -146,7 +146,7 @@ impl<P: Profile, const N: usize> Ends<P, N> {
 type Ways<P, const N: usize> = Vec<[([i64; 2], Ball<P>); N]>;
 
 /// The least and the greatest fixed-point number that a coordinate may become.
-fn fixed<P: Profile>(snap: &Snap, x: Ball<P>) -> [i64; 2] {
+pub(super) fn fixed<P: Profile>(snap: &Snap, x: Ball<P>) -> [i64; 2] {
     let guard = Ball::from_f32(GUARD_BAND as f32);
     let scaled = x.clamped(-guard, guard) * Ball::from_f32(snap.scale() as f32);
     let (middle, reach) = (scaled.middle, scaled.radius * (1.0 + 1e-9));
