@@ -1,11 +1,15 @@
-//! How long the exact greedy order takes, by the definition, on one thread and on two.
+//! How long the exact greedy order takes, by the definition, on one thread and on two; then what
+//! meshes give, see [`meshes`].
 //!
 //! `cargo bench --bench surfels` prints Markdown, and with `--write` puts the table into
-//! `docs/bjfm19.md`; an argument is a pattern that the names of point sets must contain. Each order is
+//! `docs/bjfm19.md`; an argument is a pattern that the names of point sets and
+//! meshes must contain. Scans are those in the folder that `SPLATREF_MODELS` names (`../shared/models` if that
+//! is not set). Each order is
 //! held against the definition, for the first picks, and against that of one thread.
 
 #[path = "../common/mod.rs"]
 mod common;
+mod meshes;
 
 use common::report::{Arguments, Table};
 use glam::Vec3;
@@ -31,7 +35,8 @@ fn main() -> Result<()> {
             measure(&mut table, name, &points, &execs)?;
         }
     }
-    table.publish_times(&arguments, "bjfm19.md", "greedy")
+    table.publish_times(&arguments, "bjfm19.md", "greedy")?;
+    meshes::tables(&arguments, &execs[1])
 }
 
 /// A surface, a volume, and a grid full of ties.
