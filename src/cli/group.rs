@@ -22,7 +22,7 @@ Examples:
   splatref group sphere --groups 4 --extend add -o grouped.ply
   splatref render grouped.ply --method transparent")]
 pub(super) struct Args {
-    /// A .ply, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster
+    /// A .ply, an .obj, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster
     scene: PathBuf,
     /// Where the surfels go with their groups
     #[arg(short, long, value_name = "FILE.ply")]

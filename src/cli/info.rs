@@ -6,7 +6,7 @@ use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
 use splatref::io::scene_file::{Draw, EnvironmentChoice, FileKind, Model, SceneFile, Source};
-use splatref::io::{ply, scene_file::Loaded};
+use splatref::io::scene_file::{Loaded, read_model};
 use splatref::scene::Light;
 use splatref::source::derive::{self, Derive};
 use std::path::{Path, PathBuf};
@@ -17,13 +17,13 @@ Examples:
   splatref info bunny.ply
   splatref info out/cluster.exr")]
 pub(super) struct Args {
-    /// A .ply, a scene .toml or an .exr
+    /// A .ply, an .obj, a scene .toml or an .exr
     file: PathBuf,
 }
 
 pub(super) fn run(args: &Args) -> Ended {
     match FileKind::of(&args.file)? {
-        FileKind::Ply => points(&args.file)?,
+        FileKind::Ply | FileKind::Obj => points(&args.file)?,
         FileKind::Toml => scene(&args.file)?,
         FileKind::Exr => picture(&args.file)?,
     }
@@ -31,7 +31,7 @@ pub(super) fn run(args: &Args) -> Ended {
 }
 
 fn points(path: &Path) -> Result<()> {
-    let cloud = ply::read(path)?;
+    let cloud = read_model(path, &Exec::sequential())?;
     line("points", cloud.position.len());
     line("triangles", cloud.triangles.len());
     let edges = cloud.edges.len();

@@ -27,7 +27,7 @@ Examples:
   splatref render scene.toml --number f64 --epsilon 1.5r
   splatref render scene.toml --frames 0..60 -o out/walk.exr")]
 pub(super) struct Args {
-    /// A .ply, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster,
+    /// A .ply, an .obj, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster,
     /// or tree (with --method pyramid)
     #[arg(default_value = "cluster", hide_default_value = false)]
     scene: PathBuf,

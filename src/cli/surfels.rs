@@ -4,13 +4,13 @@ use super::{Ended, Ending, output, progress, report};
 use clap::ValueEnum;
 use splatref::frame::Exec;
 use splatref::io::ply;
-use splatref::io::scene_file::FileKind;
+use splatref::io::scene_file::{FileKind, read_model};
 use splatref::scene::{Camera, Cloud, Primitives, Scene, Surfels};
 use splatref::source::candidates::{self, Directions, candidates};
 use splatref::source::derive;
 use splatref::source::sampler::{Greedy, Order, Progressive, Schedule, Start, shuffled};
 use splatref::{Error, Result};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 #[derive(clap::Args)]
@@ -27,7 +27,7 @@ Examples:
   splatref surfels bunny.ply -o blue.ply --count 100000
   splatref surfels scan.ply -o blue.ply --sampler greedy --start 3 --count 10000")]
 pub(super) struct Args {
-    /// A .ply of points or of a mesh
+    /// A .ply or .obj of points or of a mesh
     points: PathBuf,
     /// Where the points go in their order, with all that the file has of them
     #[arg(short, long, value_name = "FILE.ply")]
@@ -85,7 +85,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let exec = Exec::new(args.threads, 32)?;
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let cloud = ply::read_with(&args.points, &exec)?;
+    let cloud = read_model(&args.points, &exec)?;
     let mesh = !cloud.triangles.is_empty();
     let of_file = |error: Error| match error {
         Error::Invalid(what) => Error::format(&args.points, what),
@@ -134,14 +134,12 @@ impl Args {
         if self.sampler == Sampler::Random && self.start.is_some() {
             return Err(Error::Usage("--sampler random has no --start: remove one of them".into()));
         }
-        for path in [&self.points, &self.output] {
-            if !matches!(FileKind::of(path), Ok(FileKind::Ply)) {
-                let path = path.display();
-                let what = format!(
-                    "{path}: points are read from a PLY and go into one; give a name in .ply"
-                );
-                return Err(Error::Usage(what));
-            }
+        let refused = |path: &Path, what| Err(Error::Usage(format!("{}: {what}", path.display())));
+        if !matches!(FileKind::of(&self.points), Ok(FileKind::Ply | FileKind::Obj)) {
+            return refused(&self.points, "points or a mesh are read from a .ply or an .obj");
+        }
+        if !matches!(FileKind::of(&self.output), Ok(FileKind::Ply)) {
+            return refused(&self.output, "points go into a PLY; give a name in .ply");
         }
         output::check_folder(&self.output)?;
         output::check_other(&self.output, &self.points)

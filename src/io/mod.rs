@@ -5,6 +5,7 @@
 //! - `input`: the files that are read.
 //! - [`exr`]: every plane of a frame, exactly; reading guards against lying files.
 //! - [`npy`]: arrays of `NumPy` as planes.
+//! - [`obj`]: meshes and points as text, in.
 //! - [`ply`]: point clouds and meshes, in and out.
 //! - `png`: an 8-bit preview; needs the feature `cli`.
 //! - [`provenance`]: the text that a picture carries.
@@ -18,6 +19,7 @@ pub mod environment;
 pub mod exr;
 mod input;
 pub mod npy;
+pub mod obj;
 pub mod ply;
 #[cfg(feature = "cli")]
 pub mod png;

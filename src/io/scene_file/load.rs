@@ -1,10 +1,10 @@
 //! From a [`SceneFile`] to surfels and primitives.
 
-use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, stem};
+use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, read_model, stem};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::mipmap;
-use crate::io::{environment, ply};
+use crate::io::environment;
 use crate::scene::{Cloud, Counts, Dropped, Environment, Geometry, Object, Objects};
 use crate::scene::{Primitives, Scene, Similarity, Surfels};
 use crate::source::derive::{self, Derive, Derived};
@@ -47,7 +47,7 @@ impl SceneFile {
     /// `progress` as in [`derive::surfels`].
     ///
     /// # Errors
-    /// Those of [`environment::read`], [`ply::read`], [`crate::source::Shape::surfels`],
+    /// Those of [`environment::read`], [`read_model`], [`crate::source::Shape::surfels`],
     /// [`plant::apple_tree`], and of [`derive::surfels`] and its like for polygons and lines, the
     /// file named; of [tables](super::places) and [`Objects::new`]; [`Error::Invalid`] if neither a
     /// surfel nor a primitive is left or there are too many, if a model cannot be drawn as it says, or
@@ -210,7 +210,7 @@ fn check_draw(model: &Model) -> Result<()> {
 fn read(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<ModelParts> {
     match &model.source {
         Source::File { path, radius, prefix } => {
-            let cloud = ply::read_with(path, exec)?;
+            let cloud = read_model(path, exec)?;
             let options = Derive { radius: *radius };
             let parts = first(cloud, *prefix)
                 .and_then(|cloud| of_file(cloud, &model.draw, &options, exec, progress));

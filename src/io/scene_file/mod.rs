@@ -36,7 +36,7 @@
 //! error is not a default.
 //!
 //! [`SceneFile`] is what such a file says; [`SceneFile::open`] leads from a name to a picture. One
-//! PLY file or one shape alone makes a scene file too: [`SceneFile::of_model`]. The tables of
+//! PLY or OBJ file or one shape alone makes a scene file too: [`SceneFile::of_model`]. The tables of
 //! settings follow from the rows of [`crate::setting`], here, on the command line and in the text of a
 //! picture.
 
@@ -55,7 +55,7 @@ pub use choice::{Choice, GroupChoice, MethodChoice, Number, OutputSettings};
 pub use draw::Draw;
 pub use load::{Loaded, ModelReport};
 pub use objects::{Geometry, MOST_FRAMES, ObjectChoice, Places};
-pub use open::{FileKind, TREE, shapes};
+pub use open::{FileKind, TREE, read_model, shapes};
 pub use ready::Ready;
 
 use crate::error::{Error, Result};
@@ -129,7 +129,7 @@ pub struct Model {
 /// Where a model comes from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
-    /// A PLY file.
+    /// A PLY or an OBJ file.
     File {
         /// Where it is.
         path: PathBuf,

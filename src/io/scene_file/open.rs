@@ -2,7 +2,9 @@
 
 use super::{DEFAULT_COUNT, SceneFile, Source};
 use crate::error::{Error, Result};
-use crate::io::input;
+use crate::frame::Exec;
+use crate::io::{input, obj, ply};
+use crate::scene::Cloud;
 use crate::source::{Shape, plant};
 use std::path::Path;
 
@@ -21,10 +23,23 @@ pub fn shapes() -> String {
 pub enum FileKind {
     /// A point cloud or a mesh.
     Ply,
+    /// A mesh or points as text.
+    Obj,
     /// A scene file.
     Toml,
     /// A picture.
     Exr,
+}
+
+/// Reads the model at `path`: OBJ by its extension, else PLY.
+///
+/// # Errors
+/// As [`obj::read`] and [`ply::read_with`].
+pub fn read_model(path: &Path, exec: &Exec) -> Result<Cloud> {
+    match FileKind::of(path) {
+        Ok(FileKind::Obj) => obj::read(path),
+        _ => ply::read_with(path, exec),
+    }
 }
 
 impl FileKind {
@@ -36,12 +51,13 @@ impl FileKind {
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
             Some("ply") => Ok(Self::Ply),
+            Some("obj") => Ok(Self::Obj),
             Some("toml") => Ok(Self::Toml),
             Some("exr") => Ok(Self::Exr),
             _ => Err(Error::Usage(match input::no_file(path) {
                 Some(what) => format!("{}: {what}", path.display()),
                 None => format!(
-                    "{}: no known kind of file; give a .ply, a scene .toml, an .exr, or a shape: {}",
+                    "{}: no known kind of file; give a .ply, an .obj, a scene .toml, an .exr, or a shape: {}",
                     path.display(),
                     shapes()
                 ),
@@ -62,7 +78,7 @@ impl Source {
 }
 
 impl SceneFile {
-    /// The scene that a name stands for: a shape, `tree`, a .ply or a scene .toml. From a name to
+    /// The scene that a name stands for: a shape, `tree`, a .ply, an .obj or a scene .toml. From a name to
     /// a picture in memory:
     ///
     /// ```
@@ -85,14 +101,14 @@ impl SceneFile {
     ///
     /// # Errors
     /// [`Error::Usage`] if the name is neither a shape nor that of a scene; else as
-    /// [`SceneFile::read`]. A .ply is not read yet.
+    /// [`SceneFile::read`]. A model is not read yet.
     pub fn open(name: impl AsRef<Path>) -> Result<Self> {
         let path = name.as_ref();
         if let Some(source) = path.to_str().and_then(Source::procedural) {
             return Ok(Self::of_model(source));
         }
         match FileKind::of(path)? {
-            FileKind::Ply => Ok(Self::of_model(Source::File {
+            FileKind::Ply | FileKind::Obj => Ok(Self::of_model(Source::File {
                 path: path.to_owned(),
                 radius: None,
                 prefix: None,

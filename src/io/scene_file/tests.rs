@@ -485,3 +485,19 @@ fn a_scene_is_opened_by_its_name() {
     }
     assert_eq!(SceneFile::open("missing.toml").unwrap_err().exit_code(), 1);
 }
+
+#[test]
+fn an_obj_is_drawn_as_the_ply_of_the_same_mesh() {
+    let at = tempfile::TempDir::new().unwrap();
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+        property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let load = |name: &str, text: String| {
+        let path = at.path().join(name);
+        fs::write(&path, text).unwrap();
+        let file = SceneFile::open(&path).unwrap();
+        file.load(&Exec::sequential(), &|_, _, _| ()).unwrap().scene.surfels
+    };
+    let ply = load("a.ply", format!("{header}0 0 0\n1 0 0\n0 2 0.5\n3 0 1 2\n"));
+    let obj = load("a.OBJ", "v 0 0 0\nv 1 0 0\nv 0 2 0.5\nf 1 2 3\n".into());
+    assert_eq!((obj.len(), obj), (1, ply));
+}
