@@ -40,13 +40,14 @@ pub mod surfels;
 #[cfg(test)]
 pub(in crate::method) mod tests;
 pub mod verify;
-mod vertices;
+mod visible;
 
 pub(crate) use project::project;
+pub(crate) use visible::{Foremost, SHARES, VisibleTriangles};
 
 use crate::frame::raster::Snap;
-use crate::frame::{NO_ID, Plane, Rect};
-use crate::number::{Exact, Real, Vector2, Vector3};
+use crate::frame::{NO_ID, Plane};
+use crate::number::{Real, Vector2, Vector3};
 use crate::scene::{Camera, Scene};
 use crate::splat::clip::Clip;
 use crate::splat::{Tally, View};
@@ -172,24 +173,6 @@ impl<'a, R: Real> SceneProjector<'a, R> {
             snap,
             size: camera.size(),
         }
-    }
-}
-
-/// The weights of the corners of a scene's triangles at the pixels that they cover, c of [`primitives`]: a
-/// function of id and pixel, none where the triangle does not cover it.
-pub(crate) fn corner_weights<'a, R: Exact>(
-    scene: &'a Scene,
-    camera: &Camera,
-    snap: Snap,
-) -> impl Fn(u32, (u32, u32)) -> Option<[R; 3]> + 'a {
-    let projector = SceneProjector::<R>::new(scene, camera, false, snap);
-    move |id, pixel| {
-        let mut found = None;
-        // Of the pieces of a clipped triangle one covers the pixel.
-        primitives::pieces(&projector, id as usize, |piece| {
-            piece.for_each(&Rect::pixel(pixel), |at| found = Some(at.c));
-        });
-        found
     }
 }
 

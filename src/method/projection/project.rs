@@ -1,7 +1,6 @@
 //! The definition: every primitive in its order, tile by tile.
 
 use super::primitives;
-use super::vertices::PlacedVertices;
 use super::{PixelSample, Projected, SceneProjector};
 use crate::composite::decide;
 use crate::error::{Error, Result};
@@ -62,9 +61,6 @@ fn draw<R: Exact>(
     projected: &mut Projected<R>,
 ) {
     let [width, height] = projector.size;
-    let vertices = PlacedVertices::new(projector, exec);
-    let surfels = projector.scene.surfels.len();
-    let triangles = surfels..surfels + projector.scene.primitives.triangles.len();
     let grid = exec.grid(width, height);
     let size = (ids.len() / 64).min(8192).max(2 * grid.len());
     let ranges = ids.clone().step_by(size).map(|first| first..ids.end.min(first + size));
@@ -72,9 +68,9 @@ fn draw<R: Exact>(
         let mut drawn = Vec::with_capacity(range.len());
         let mut tally = Tally::default();
         for id in range {
-            if id < surfels {
+            if id < projector.scene.surfels.len() {
                 surfel(projector, id, &mut tally, &mut drawn);
-            } else if !triangles.contains(&id) || vertices.may_cover(projector, id - surfels) {
+            } else {
                 primitives::pieces(projector, id, |piece| drawn.push(DrawnItem::Piece(piece)));
             }
         }

@@ -44,9 +44,9 @@
 
 use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
-use crate::frame::{Exec, Plane};
+use crate::frame::{Exec, NO_ID};
 use crate::memory;
-use crate::method::projection::{PixelSample, SampleKind, corner_weights, project};
+use crate::method::projection::{Foremost, PixelSample, SHARES, VisibleTriangles};
 use crate::number::Vector3;
 use crate::scene::{Camera, Cloud, Lens, Primitives, Scene, Surfels};
 use crate::source::merge::join;
@@ -174,24 +174,23 @@ impl Directions {
     }
 }
 
-/// Bytes of a pixel of the picture of one direction, and of a candidate while its array grows.
-const OF_A_PIXEL: u64 = size_of::<PixelSample<f32>>() as u64;
-const OF_A_CANDIDATE: u64 = 2 * 36;
-/// Bytes of a triangle that is drawn, at most.
-const OF_A_TRIANGLE: u64 = 320;
+/// Bytes of a pixel of the pictures of one direction, and of a candidate while its array grows.
+const OF_A_PIXEL: u64 = (SHARES + 1) as u64 * size_of::<Foremost<f32>>() as u64;
+const OF_A_CANDIDATE: u64 = 2 * 36 + 44;
+/// Bytes of a vertex that is placed.
+const OF_A_VERTEX: u64 = 20;
 
 impl Candidates {
     /// Adds what a camera sees of a mesh.
     fn add(&mut self, mesh: &Scene, camera: &Camera, exec: &Exec) -> Result<()> {
         let pixels = u64::from(camera.width) * u64::from(camera.height);
-        let triangles = mesh.primitives.triangles.len() as u64;
-        // Every pixel may be covered, and every triangle may be in the picture.
-        memory::ask(pixels * (OF_A_PIXEL + OF_A_CANDIDATE) + triangles * OF_A_TRIANGLE, || {
-            format!("a picture of {triangles} triangles for candidates")
+        let vertices = mesh.primitives.triangles.vertices().position.len() as u64;
+        // Every pixel may be covered.
+        memory::ask(pixels * (OF_A_PIXEL + OF_A_CANDIDATE) + vertices * OF_A_VERTEX, || {
+            format!("a picture of {pixels} pixels for candidates")
         })?;
-        let picture = project::<f32>(mesh, camera, false, Snap::default(), exec)?;
         let before = self.cloud.position.len();
-        for (normal, position, color) in seen(mesh, camera, &picture.samples, exec) {
+        for (normal, position, color) in seen(mesh, camera, exec) {
             if normal == Vec3::ZERO {
                 self.dropped += 1;
                 continue;
@@ -210,28 +209,21 @@ impl Candidates {
 }
 
 /// Normal, position and colour at each covered pixel, in the order of the pixels.
-fn seen(
-    mesh: &Scene,
-    camera: &Camera,
-    samples: &Plane<PixelSample<f32>>,
-    exec: &Exec,
-) -> Vec<(Vec3, Vec3, Vec3)> {
+fn seen(mesh: &Scene, camera: &Camera, exec: &Exec) -> Vec<(Vec3, Vec3, Vec3)> {
     let columns = camera.width as usize;
-    let covered: Vec<usize> = (0..samples.values().len())
-        .filter(|&i| samples.values()[i].kind != SampleKind::Empty)
-        .collect();
-    let weights = corner_weights::<f32>(mesh, camera, Snap::default());
+    let visible = VisibleTriangles::<f32>::new(mesh, camera, Snap::default());
+    let foremost = visible.foremost(exec);
+    let covered: Vec<usize> = (0..foremost.len()).filter(|&i| foremost[i].1 != NO_ID).collect();
     let triangles = &mesh.primitives.triangles;
     let view = camera.view_from_world.as_dmat4();
     let mut all = Vec::with_capacity(covered.len());
     exec.extend(&mut all, covered.len(), |at| {
-        let i = covered[at];
-        let sample = &samples.values()[i];
-        let corners = triangles.corners()[sample.id as usize];
+        let (i, (_, id)) = (covered[at], foremost[covered[at]]);
+        let corners = triangles.corners()[id as usize];
         let [a, b, c] = corners.map(|corner| triangles.vertices().position[corner as usize]);
-        // A sample is of a triangle that covers its pixel.
         let pixel = ((i % columns) as u32, (i / columns) as u32);
-        let w = weights(sample.id, pixel).unwrap_or_default();
+        // What is nearest in a pixel covers it.
+        let (sample, w) = visible.sample(id, pixel).unwrap_or((PixelSample::empty(), [0.0; 3]));
         let position = ((a * w[0] + b * w[1]) + c * w[2]) + Vec3::ZERO;
         (turned(&view, sample.normal), position, Vec3::from_array(sample.color))
     });
