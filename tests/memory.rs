@@ -16,6 +16,7 @@ use splatref::method::{Method, Session};
 use splatref::scene::{Camera, Geometry, Groups, Lens, Motion, Object, Objects, Pose};
 use splatref::scene::{Primitives, Scene, Similarity, Surfels};
 use splatref::source::Shape;
+use splatref::source::sampler::{Greedy, Progressive, Schedule, Start, shuffled};
 use splatref::splat::SplatSettings;
 use splatref::verify::client::Client;
 
@@ -195,6 +196,47 @@ fn a_forest_has_one_tree() {
     // Placed one by one its surfels would take 6800 times as much: 28 bytes each.
     assert!(scene > 28 * 750_000, "{scene} bytes");
     assert!(frames < 200 << 20, "{frames} bytes");
+}
+
+/// Points, and what each takes at most, as the samplers ask before they begin.
+const ORDERS: [(&str, u64); 4] =
+    [("greedy", 72), ("progressive", 80), ("as shipped", 80), ("shuffled", 80)];
+/// Just beyond a power of 2, where arrays that grow have twice the room they need.
+const POINTS: usize = (1 << 20) + 9;
+
+fn taken_by_an_order(case: usize) -> u64 {
+    let points = Shape::Torus.surfels(POINTS, 0).expect("a torus").position().to_vec();
+    let (exec, start) = (Exec::new(2, 32).expect("threads"), Start::Index(3));
+    let quiet = |_: &str, _, _| ();
+    std::fs::write("/proc/self/clear_refs", "5").ok();
+    let before = status("VmRSS").expect("a size");
+    let progressive =
+        |schedule| Progressive { start, seed: 0, schedule }.order(&points, POINTS, &quiet);
+    let order = match case {
+        0 => Greedy { start }.order(&points, POINTS, &exec, &quiet),
+        1 => progressive(Schedule::Paper),
+        2 => progressive(Schedule::AsShipped),
+        _ => shuffled(&points, 0, POINTS),
+    };
+    assert!(order.expect("an order").index.len() > POINTS / 2);
+    status("VmHWM").expect("a peak") - before
+}
+
+/// As a picture: what an order is said to take is about what it takes.
+#[test]
+fn an_order_takes_what_it_is_said_to() {
+    const ORDER: &str = "SPLATREF_MEMORY_ORDER";
+    if let Some(case) = std::env::var(ORDER).ok().and_then(|case| case.parse::<usize>().ok()) {
+        println!("\nmemory 0 {}", taken_by_an_order(case));
+        return;
+    }
+    for (case, (name, bytes)) in ORDERS.into_iter().enumerate() {
+        let test = "an_order_takes_what_it_is_said_to";
+        let [_, taken] = in_a_process(test, (ORDER, &case.to_string()));
+        let ratio = (bytes * POINTS as u64) as f64 / taken as f64;
+        println!("{name}: {} for {taken}, {ratio:.2}", bytes * POINTS as u64);
+        assert!((1.0..6.0).contains(&ratio), "{name}: {ratio}");
+    }
 }
 
 /// What a picture is said to take is about what it takes: not less, and not six times as much.

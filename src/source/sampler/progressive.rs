@@ -52,8 +52,8 @@ const FEWEST: usize = 20;
 const EVERY: u64 = 500;
 /// A near sample: this part of the squared distance of the last one accepted.
 const NEAR: f32 = 1.0 / 16.0;
-/// What a point takes, and a pick.
-const BYTES: u64 = 32;
+/// What a point takes that is picked too, its arrays growing.
+const BYTES: u64 = 80;
 
 /// How many samples a round takes, and what becomes of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
