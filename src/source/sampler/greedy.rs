@@ -72,7 +72,7 @@ use crate::number::random;
 use glam::Vec3;
 
 /// What the tree and the picks take for a point, at most.
-const BYTES_A_POINT: u64 = 72;
+const BYTES_A_POINT: u64 = 80;
 
 /// The sampler, see the [module](self).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
