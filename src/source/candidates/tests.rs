@@ -1,8 +1,11 @@
 use super::*;
+use crate::number::Real;
+use crate::number::elementary::{cos, sin};
 use crate::scene::objects::{Geometry, Motion, Object, Objects};
 use crate::scene::{Similarity, Triangles, Vertices};
 use glam::DMat3;
 use proptest::prelude::*;
+use std::f64::consts::PI;
 
 fn quiet(_: &str, _: u64, _: u64) {}
 
@@ -73,15 +76,15 @@ fn cast(soup: &[[Vec3; 3]], from: DVec3, along: DVec3) -> Option<(f64, DVec3, f6
             let side = (b - a).cross(along).normalize();
             (p - a).dot(side) * -facing.signum()
         });
-        let least = inside.into_iter().fold(f64::INFINITY, f64::min);
-        clear = clear.min(least.abs());
+        let least = inside.into_iter().fold(f64::INFINITY, Real::at_most);
+        clear = clear.at_most(least.abs());
         if least > 0.0 {
             hits.push((t, normal.normalize()));
         }
     }
     hits.sort_by(|a, b| a.0.total_cmp(&b.0));
     if let [first, second, ..] = hits[..] {
-        clear = clear.min(second.0 - first.0);
+        clear = clear.at_most(second.0 - first.0);
     }
     let &(t, normal) = hits.first()?;
     Some((t, normal, clear))
@@ -193,8 +196,8 @@ fn a_sphere_is_covered_to_a_few_pixels() {
     // 80 by 40 quads of latitude and longitude.
     let at = |i: u32, j: u32| {
         let (longitude, latitude) = (f64::from(i) * 0.078_539_816, f64::from(j) * 0.078_539_816);
-        let ring = latitude.sin();
-        DVec3::new(ring * longitude.cos(), latitude.cos(), ring * longitude.sin()).as_vec3()
+        let ring = sin(latitude);
+        DVec3::new(ring * cos(longitude), cos(latitude), ring * sin(longitude)).as_vec3()
     };
     let mut all = Vec::new();
     for i in 0..80 {
@@ -211,13 +214,13 @@ fn a_sphere_is_covered_to_a_few_pixels() {
     let of_pixels = |count: &u32| f64::from(*count) * found.pixel * found.pixel;
     for area in found.counts.iter().map(of_pixels) {
         // The circle pi, less the sagitta of the facets, give or take half a pixel of its outline.
-        assert!((area - 3.14).abs() < 0.06, "{area}");
+        assert!((area - PI).abs() < 0.06, "{area}");
     }
     // No direction is farther than 54.7 degrees from one of the cube's: a pixel is at most
     // 1 / cos = sqrt 3 long there.
     for vertex in all.iter().flatten() {
         let nearest = found.cloud.position.iter().map(|p| (*p - *vertex).length_squared());
-        let nearest = f64::from(nearest.fold(f32::INFINITY, f32::min)).sqrt();
+        let nearest = f64::from(nearest.fold(f32::INFINITY, Real::at_most)).sqrt();
         assert!(nearest < 1.5 * found.pixel, "{nearest} of {}", found.pixel);
     }
 }

@@ -168,9 +168,9 @@ impl Start {
             return invalid(what);
         }
         match *self {
-            Start::Seed(seed) => Ok(random::below(seed, 0, u64::from(count)) as u32),
-            Start::Index(start) if start < count => Ok(start),
-            Start::Index(start) => {
+            Self::Seed(seed) => Ok(random::below(seed, 0, u64::from(count)) as u32),
+            Self::Index(start) if start < count => Ok(start),
+            Self::Index(start) => {
                 let last = count - 1;
                 invalid(format!("start {start}, but the points are 0 to {last}; give one of them"))
             }
