@@ -1,11 +1,12 @@
 //! Meshes and point sets.
 
 use crate::kit::dice::Dice;
-use crate::kit::scene::scene;
+use crate::kit::scene::{discs, scene, surfels};
 use glam::{DVec3, Vec3};
 use splatref::scene::transform::rotation;
 use splatref::scene::{
-    Geometry, Motion, Object, Objects, Primitives, Scene, Similarity, Surfels, Triangles, Vertices,
+    Cloud, Geometry, Motion, Object, Objects, Primitives, Scene, Similarity, Surfels, Triangles,
+    Vertices,
 };
 use splatref::source::Shape;
 
@@ -97,15 +98,20 @@ pub(crate) fn cancelling(second: Vec3) -> Triangles {
     mesh(position, direction, None, vec![[0, 2, 1], [1, 2, 3]])
 }
 
-/// Turned, scaled and moved copies of several geometries, some in one colour.
-fn objects(dice: &mut Dice) -> Scene {
-    let parts = [soup(dice, 30, Vec3::ZERO, true), ball(2, Vec3::ONE, Vec3::ZERO)];
-    let geometry = |triangles| Geometry {
+/// Turned, scaled and moved copies of two geometries, of which one may have colours and the other
+/// some surfels, which have one; and the colours of the objects.
+fn objects(dice: &mut Dice, colored: [bool; 2], colors: [Option<Vec3>; 4]) -> Scene {
+    let point = discs([(Vec3::splat(9.0), Vec3::X, 1.0)]);
+    let color = colored[1].then(|| vec![Vec3::Y]);
+    let beside = [Surfels::none(), surfels(Cloud { color, ..point })];
+    let meshes = [soup(dice, 30, Vec3::ZERO, colored[0]), ball(2, Vec3::ONE, Vec3::ZERO)];
+    let geometry = |(surfels, triangles)| Geometry {
         name: String::new(),
-        surfels: Surfels::none(),
+        surfels,
         primitives: Primitives { triangles, ..Primitives::default() },
         detail: None,
     };
+    let geometries = beside.into_iter().zip(meshes).map(geometry).collect();
     let object = |(i, color): (usize, Option<Vec3>)| {
         let axis = dice.direction().as_dvec3();
         let place = Similarity {
@@ -115,16 +121,16 @@ fn objects(dice: &mut Dice) -> Scene {
         };
         Object { name: i.to_string(), geometry: i % 2, motion: Motion::still(place), color }
     };
-    let colors = [None, None, Some(Vec3::new(0.25, 0.5, 0.75)), Some(Vec3::X)];
     let all = colors.into_iter().enumerate().map(object).collect();
-    let objects = Objects::new(parts.map(geometry).to_vec(), all, Vec3::splat(0.625));
-    Scene { objects: Some(objects.expect("objects")), ..scene(Surfels::none()) }
+    let objects = Objects::new(geometries, all, Vec3::splat(0.625)).expect("objects");
+    Scene { objects: Some(objects), ..scene(Surfels::none()) }
 }
 
 /// All meshes.
 pub(crate) fn meshes() -> Vec<Mesh> {
     let mut dice = Dice(7);
     let one = Vec3::ONE;
+    let some = Some(Vec3::new(0.25, 0.5, 0.75));
     let far = Vec3::new(300.0, -700.0, 500.0);
     let mut unused = soup(&mut dice, 20, Vec3::ZERO, true).into_parts();
     unused.0.position[4] = Vec3::splat(1e6);
@@ -143,7 +149,10 @@ pub(crate) fn meshes() -> Vec<Mesh> {
         ("octahedron in one pixel", alone(ball(0, one, Vec3::ZERO)), 1),
         ("octahedron in nine pixels", alone(ball(0, one, Vec3::ZERO)), 3),
         ("cancelling", alone(cancelling(Vec3::NEG_Z)), 15),
-        ("objects", objects(&mut dice), 40),
+        ("objects", objects(&mut dice, [true, false], [None, None, some, Some(Vec3::X)]), 40),
+        ("objects without colours", objects(&mut dice, [false; 2], [None; 4]), 27),
+        ("objects beside a colour", objects(&mut dice, [false, true], [None; 4]), 23),
+        ("an object in colour", objects(&mut dice, [false; 2], [None, some, None, None]), 25),
     ];
     all.map(|(name, scene, side)| Mesh { name, scene, side }).into()
 }
