@@ -131,7 +131,8 @@ impl Camera {
     /// # Errors
     /// [`Error::Invalid`] if the picture has no pixels or more than [`MAX_EXTENT`] a side or
     /// [`MAX_PIXELS`] in all, if the lens is out of range, if eye and target coincide or are farther
-    /// away than [`MAX_DISTANCE`], if up is 0 or parallel to the view, or if anything is not finite.
+    /// away than [`MAX_DISTANCE`], if up is 0 or all but parallel to the view, not |u x b| > 1e-6 |u|,
+    /// or if anything is not finite.
     pub fn new(width: u32, height: u32, pose: Pose, lens: Lens) -> Result<Self> {
         Self::check_size(width, height)?;
         let (projection, scale) = scale(height, lens)?;

@@ -18,7 +18,8 @@
 //! ```
 //!
 //! for the position p in view space, the radius, the colour, and the direction, which is then
-//! turned to view space and divided by its length (of length 0: the null vector). Where other parts
+//! turned to view space, see [`crate::splat::View::direction`], and divided by its length,
+//! `sqrt((x x + y y) + z z)`, component by component (of length 0: the null vector). Where other parts
 //! of a scene have colours, one without has the material's. Of two visits of a pixel by one
 //! primitive at equal depth the first stays. The depth is t = -p.z, rho as for surfels; the centre
 //! is that of the pixel.

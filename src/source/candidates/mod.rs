@@ -4,7 +4,7 @@
 //! center of the node", and every covered pixel becomes a candidate: position, normal and colour of what is
 //! nearest there. The samplers choose among the candidates. What no direction sees has none.
 //!
-//! **Camera** of a direction d, all in f64. With low and high the corners of the box around the triangles'
+//! **Camera** of a direction d, all in f64, in the terms of [`crate::scene::camera`]. With low and high the corners of the box around the triangles'
 //! vertices ([`Scene::bounds`]) and n the side of the picture in pixels:
 //!
 //! ```text
@@ -56,7 +56,7 @@ use std::borrow::Cow;
 /// The side of a picture in pixels, unless somebody asks for another one: the paper's.
 pub const SIDE: u32 = 1024;
 
-/// From where a mesh is looked at: vectors from its middle, of any length.
+/// From where a mesh is looked at: vectors from its middle, of any length from about 1e-150 to 1e150.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Directions {
     /// (-1, -1, -1), (1, -1, -1), (-1, 1, -1), (1, 1, -1), then the same with z = 1.
@@ -85,8 +85,9 @@ pub struct Candidates {
 ///
 /// # Errors
 /// [`Error::Invalid`] if the scene has no triangles or none of them covers a pixel's centre, if there is no
-/// direction or one is null or not finite, as [`Camera::new`], if there are 2^32 - 1 candidates or more, or if
-/// the process may not hold them.
+/// direction or one is null or not finite, or so short or long that its square rounds to 0 or exceeds f64, as
+/// [`Camera::new`] (an angle below about 1e-6 to the y axis is refused, but for 0), if there are 2^32 - 1
+/// candidates or more, or if the process may not hold them.
 pub fn candidates(
     scene: &Scene,
     directions: &Directions,

@@ -9,7 +9,8 @@
 //! As many as the round takes, or all of the rest if it has no more. For j = 0, 1, ...: with L the length of
 //! the rest less j, and b the next number, the item `floor(b L / 2^64)` of the rest changes places with the item
 //! L - 1. The samples are what then stands at the end of the rest, from L = the length backwards; they are taken
-//! out of it. Samples that are not used up return to the end of the rest, in the order in which they were drawn.
+//! out of it. Samples that are accepted are used up, at the distance 0 too. Samples that are not used up return
+//! to the end of the rest, in the order in which they were drawn.
 //!
 //! # [`Schedule::Paper`]
 //!
@@ -22,7 +23,8 @@
 //! # [`Schedule::AsShipped`]
 //!
 //! 1. Round 0 takes 200 samples and accepts 0. After the rounds 0, 500, 1000 ... the samples are halved, rounded
-//!    down, but not below 20, and one more is accepted, at most 3/10 of the samples, rounded down.
+//!    down, but not below 20, and one more is accepted, at most 3/10 of the samples, rounded down; the samples of a
+//!    full round, also where the rest has fewer.
 //! 2. The samples are put in falling order of their squared distances to the nearest pick of the rounds before, of
 //!    equal ones the lowest index first. The first ones are accepted.
 //! 3. The next one is used up.
@@ -212,8 +214,8 @@ impl Rest {
     }
 }
 
-/// All points in an order by chance: by [`random::bits`] of the seed and their indices, of equal ones the lowest
-/// index first.
+/// All points in an order by chance: by ascending [`random::bits`] of the seed and their indices, of equal ones
+/// the lowest index first.
 ///
 /// # Errors
 /// As [`super::Greedy::order`].
