@@ -4,8 +4,8 @@
 //! center of the node", and every covered pixel becomes a candidate: position, normal and colour of what is
 //! nearest there. The samplers choose among the candidates. What no direction sees has none.
 //!
-//! **Camera** of a direction d, all in f64, in the terms of [`crate::scene::camera`]. With low and high the corners of the box around the triangles'
-//! vertices ([`Scene::bounds`]) and n the side of the picture in pixels:
+//! **Camera** of a direction d, all in f64, in the terms of [`crate::scene::camera`]. With low and high the
+//! corners of the box around the triangles' vertices ([`Scene::bounds`]) and n the side of the picture in pixels:
 //!
 //! ```text
 //!   center = (low + high) / 2      R = |high - low| / 2, or 1 if that is 0
@@ -86,7 +86,7 @@ pub struct Candidates {
 /// # Errors
 /// [`Error::Invalid`] if the scene has no triangles or none of them covers a pixel's centre, if there is no
 /// direction or one is null or not finite, or so short or long that its square rounds to 0 or exceeds f64, as
-/// [`Camera::new`] (an angle below about 1e-6 to the y axis is refused, but for 0), if there are 2^32 - 1
+/// [`Camera::new`] (no direction is within about 1e-6 of the y axis without being on it), if there are 2^32 - 1
 /// candidates or more, or if the process may not hold them.
 pub fn candidates(
     scene: &Scene,
