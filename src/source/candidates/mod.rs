@@ -18,8 +18,8 @@
 //! is that of the side that is seen.
 //!
 //! **Candidate** of a covered pixel, with the sample's triangle, whose corners have the positions p, and its
-//! normal m. The weights c of the corners at the pixel are those of [`crate::method::projection::primitives`], and the
-//! position is interpolated as every attribute there, in `f32`. V(i,j) is the element of row i and
+//! normal m. The weights c of the corners at the pixel are those of
+//! [`crate::method::projection::primitives`], and the position is interpolated as every attribute there, in `f32`. V(i,j) is the element of row i and
 //! column j of the view matrix; the normal is computed in f64 and each component rounded to `f32` once:
 //!
 //! ```text

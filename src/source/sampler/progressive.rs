@@ -31,7 +31,8 @@
 //!
 //! # Both
 //!
-//! The order ends after k picks, in the middle of a round if need be, or when the rest is empty: there may be fewer than k.
+//! The order ends after k picks, in the middle of a round if need be, or when the rest is empty: there may be
+//! fewer than k.
 //! The distance of a pick is that to all picks before it, as for every [`Order`].
 //!
 //! `Decided:` in the paper "samples that are at close vicinity to the chosen samples can also be removed": here
