@@ -13,6 +13,7 @@
 //! - [`indexed`]: triangles, ribbons and tubes.
 //! - [`light`]: lights and the Phong material.
 //! - [`mipmap`]: prefiltered colours of surfels.
+//! - [`sides`]: how large surfels are drawn as point primitives.
 //! - [`transform`]: moving, turning and scaling a model.
 
 pub mod bounds;
@@ -27,6 +28,7 @@ pub mod indexed;
 pub mod light;
 pub mod mipmap;
 pub mod objects;
+pub mod sides;
 pub mod surfels;
 pub mod transform;
 
@@ -39,6 +41,7 @@ pub use indexed::{Counts, Polylines, Primitives, Triangles, Vertices};
 pub use light::{Light, Phong};
 pub use mipmap::Mipmap;
 pub use objects::{Geometry, Motion, Object, Objects};
+pub use sides::Sides;
 pub use surfels::{Dropped, Surfels};
 pub use transform::Similarity;
 
@@ -62,6 +65,8 @@ pub struct Scene {
     /// What the scene is made of, if it is made of objects. Surfels and primitives are then those of
     /// the objects in their places, or none until [`crate::source::flatten()`] puts them there.
     pub objects: Option<Objects>,
+    /// How large surfels are drawn as point primitives, if somebody chose that for the view.
+    pub sides: Option<Sides>,
 }
 
 impl Scene {
@@ -82,6 +87,7 @@ impl Scene {
             material: Phong::default(),
             environment: None,
             objects: None,
+            sides: None,
         }
     }
 }
