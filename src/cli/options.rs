@@ -101,6 +101,13 @@ pub(super) struct SceneOptions {
     /// The first so many points of a file alone: a level of what `splatref surfels` writes
     #[arg(long, value_name = "N", help_heading = "Shapes and models")]
     prefix: Option<usize>,
+    /// Of points in an order, such as `splatref surfels` writes, as many as a view needs: discs of so
+    /// many pixels where the points are nearest
+    #[arg(long, value_name = "PIXELS", help_heading = "Shapes and models")]
+    surfel_size: Option<f32>,
+    /// The same, but no more than N points, the best first [--surfel-size: 2]
+    #[arg(long, value_name = "N", help_heading = "Shapes and models")]
+    budget: Option<u32>,
     /// Levels of prefiltered colours a surfel, which deferred draws; 0 drops those of a file
     #[arg(long, value_name = "LEVELS", help_heading = "Shapes and models")]
     mipmaps: Option<usize>,
@@ -141,6 +148,7 @@ impl SceneOptions {
             file.all_models_mut().for_each(|model| model.mipmaps = Some(levels));
         }
         self.choose_prefix(&mut file)?;
+        self.choose_refinement(&mut file)?;
         self.choose_method(&mut file)?;
         file.output = self.number.chosen.on(file.output, "the output")?;
         Ok(file)
@@ -159,6 +167,28 @@ impl SceneOptions {
                     return Err(Error::Usage(what));
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// Of progressive models; of all if none is.
+    fn choose_refinement(&self, file: &mut SceneFile) -> Result<()> {
+        if self.surfel_size.is_none() && self.budget.is_none() {
+            return Ok(());
+        }
+        let refinement = &mut file.refinement;
+        refinement.surfel_size = self.surfel_size.unwrap_or(refinement.surfel_size);
+        refinement.budget = self.budget.or(refinement.budget);
+        refinement.check()?;
+        if file.all_models().all(|model| !model.progressive) {
+            if let Some(geometry) = file.geometries.iter().find(|one| one.detail.is_some()) {
+                let name = &geometry.name;
+                let what = format!(
+                    "--surfel-size and --budget are of points in an order, and {name} has a tree"
+                );
+                return Err(Error::Usage(what));
+            }
+            file.all_models_mut().for_each(|model| model.progressive = true);
         }
         Ok(())
     }

@@ -7,7 +7,8 @@ use splatref::index::seen::Seen;
 use splatref::io::scene_file::{Loaded, ModelReport, OutputSettings};
 use splatref::method::Method;
 use splatref::method::session::Made;
-use splatref::scene::objects::Split;
+use splatref::scene::objects::detail::prefix::Estimate;
+use splatref::scene::objects::{Detail, Split};
 use splatref::scene::{Camera, Counts, Dropped, Groups, Objects, Projection, Scene, Surfels};
 use splatref::setting::{Fields, Word};
 use splatref::source::derive::Origin;
@@ -63,13 +64,26 @@ fn objects_of(loaded: &Loaded, objects: &Objects) {
     for ((model, used), geometry) in loaded.models.iter().zip(used).zip(objects.geometries()) {
         let all = content(model.surfels as u64, model.primitives);
         let of = origin(model);
-        let detail = geometry.detail.as_ref().map_or_else(String::new, |detail| {
-            format!(", {} nodes at {} px", geometry.surfels.len(), detail.threshold())
-        });
+        let detail = match &geometry.detail {
+            None => String::new(),
+            Some(Detail::Tree(tree)) => {
+                format!(", {} nodes at {} px", geometry.surfels.len(), tree.threshold())
+            }
+            Some(Detail::Prefix(prefix)) => {
+                let Estimate { count, distance } = prefix.estimate();
+                format!(", in an order of which {count} are {} apart", short(distance.into()))
+            }
+        };
         line("  geometry", format!("{}: {all}{detail}, {of}; used by {used} objects", model.name));
     }
     if objects.have_detail() {
         line("  in view", format!("{} surfels and nodes", objects.drawn_total()));
+        if objects.objects().len() == 1
+            && let Some(disc) = objects.disc(0)
+        {
+            let (radius, side) = (short(disc.radius.into()), short(disc.side.into()));
+            line("  discs", format!("of radius {radius}, {side} px where they are nearest"));
+        }
     }
     line("  dropped", dropped(&loaded.dropped, loaded.dropped_primitives));
     let (middle, radius) = objects.bounding_sphere();

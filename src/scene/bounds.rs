@@ -24,7 +24,8 @@ impl Scene {
     }
 }
 
-fn corners(surfels: &Surfels, primitives: &Primitives) -> (Vec3, Vec3) {
+/// See [`Scene::bounds`].
+pub(super) fn corners(surfels: &Surfels, primitives: &Primitives) -> (Vec3, Vec3) {
     let surfels = (!surfels.is_empty()).then(|| surfels.bounds());
     let vertices = primitives.used().map(|(position, _)| (position, position));
     let all = surfels.into_iter().chain(vertices);

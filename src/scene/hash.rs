@@ -2,7 +2,10 @@
 
 use super::indexed::Indexed;
 use super::{Environment, Light, Mipmap, Objects, Phong, Primitives, Scene, Surfels};
+use crate::frame::NO_ID;
 use crate::scene::Groups;
+use crate::scene::objects::Detail;
+use crate::scene::objects::detail::refine::Refinement;
 use glam::Vec3;
 use sha2::{Digest, Sha256};
 
@@ -31,7 +34,11 @@ impl Scene {
     ///     the colour of objects without one (3 f32)
     ///     u64 count of objects, each: geometry (u64), colour (3 f32) after a byte 1, or a byte 0
     ///       alone; rotation row by row, scale and translation in the frame (13 f64)
-    ///     each geometry with levels of detail: a byte 6, its index (u64), its threshold (f64)
+    ///     each geometry with levels of detail: a byte 6, its index (u64), its threshold (f64); or a
+    ///       byte 7, its index (u64), p_m (u32) and r_m (f32)
+    ///     if a geometry has a byte 7: a byte 8, size (f32), budget (u32) or 0, u64 count of zones, their
+    ///       numbers (2 f32 each); of each object the one that it is a finer one of (u32), or
+    ///       0xFFFF_FFFF
     ///   prefiltered colours: nothing if no surfel has any; else a byte 5, then for the surfels, or for
     ///     those of each geometry, u64 count of levels, and the colours surfel by surfel (3 f32 each)
     /// ```
@@ -164,11 +171,30 @@ impl Hasher {
             place.for_each(|value| self.0.update(value.to_le_bytes()));
         }
         for (index, geometry) in objects.geometries().iter().enumerate() {
-            if let Some(detail) = &geometry.detail {
-                self.0.update([6]);
-                self.count(index);
-                self.0.update(detail.threshold().to_le_bytes());
+            match &geometry.detail {
+                None => {}
+                Some(Detail::Tree(tree)) => {
+                    self.0.update([6]);
+                    self.count(index);
+                    self.0.update(tree.threshold().to_le_bytes());
+                }
+                Some(Detail::Prefix(prefix)) => {
+                    self.0.update([7]);
+                    self.count(index);
+                    self.0.update(prefix.estimate().count.to_le_bytes());
+                    self.floats([prefix.estimate().distance]);
+                }
             }
+        }
+        if objects.have_prefixes() {
+            let Refinement { surfel_size, budget, zones } = objects.refinement();
+            self.0.update([8]);
+            self.floats([*surfel_size]);
+            self.0.update(budget.unwrap_or(0).to_le_bytes());
+            self.count(zones.len());
+            self.floats(zones.iter().flatten().copied());
+            let coarser = (0..objects.objects().len() as u32).map(|object| objects.coarser(object));
+            coarser.for_each(|of| self.0.update(of.unwrap_or(NO_ID).to_le_bytes()));
         }
     }
 

@@ -26,7 +26,8 @@ pub fn flatten(scene: &Scene, exec: &Exec) -> Result<Scene> {
     if surfels.is_empty() && primitives.is_empty() {
         return Err(Error::Invalid("the scene is empty: its objects have no surfels".into()));
     }
-    Ok(Scene { surfels, primitives, ..scene.clone() })
+    let sides = objects.sides()?;
+    Ok(Scene { surfels, primitives, sides, ..scene.clone() })
 }
 
 /// Bytes of a surfel with everything that it may have, twice while they are put together.

@@ -10,6 +10,7 @@ use crate::scene::{Primitives, Scene, Similarity, Surfels};
 use crate::source::derive::{self, Derive, Derived};
 use crate::source::merge::{join, merge};
 use crate::source::plant;
+use crate::source::sampler::estimate;
 
 /// A scene and how it came about.
 #[derive(Clone, Debug)]
@@ -56,7 +57,7 @@ impl SceneFile {
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
         self.all_models().try_for_each(check_draw)?;
         // What is wrong with objects is said before large files are read.
-        let objects = if self.geometries.is_empty() { None } else { Some(self.objects()?) };
+        let objects = if self.has_objects() { Some(self.objects()?) } else { None };
         let environment = match &self.environment {
             None => None,
             Some(EnvironmentChoice::Sky) => Some(Environment::Sky),
@@ -119,10 +120,12 @@ impl SceneFile {
             let geometry = Geometry { name, surfels, primitives, detail: None };
             geometries.push(match detail {
                 Some(threshold) => geometry.with_detail(threshold, exec)?,
+                None if model.progressive => in_order(geometry, exec)?,
                 None => geometry,
             });
         }
-        loaded.scene.objects = Some(Objects::new(geometries, objects, self.material.color)?);
+        let objects = Objects::new(geometries, objects, self.material.color)?;
+        loaded.scene.objects = Some(objects.with_refinement(self.refinement.clone())?);
         Ok(())
     }
 
@@ -170,6 +173,18 @@ impl Loaded {
         }
         Ok((surfels, primitives))
     }
+}
+
+/// A geometry whose surfels are in an order.
+fn in_order(geometry: Geometry, exec: &Exec) -> Result<Geometry> {
+    if !geometry.primitives.is_empty() || geometry.surfels.is_empty() {
+        let name = geometry.name;
+        let what = "what is progressive are points in an order; \"splatref surfels\" puts what is seen of triangles \
+                    in order";
+        return Err(Error::Invalid(format!("{name}: {what}")));
+    }
+    let estimate = estimate(geometry.surfels.position(), exec)?;
+    geometry.with_prefix(estimate)
 }
 
 /// A model where its file has it.

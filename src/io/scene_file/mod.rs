@@ -25,7 +25,7 @@
 #![doc = include_str!("objects.toml")]
 //! ```
 //!
-//! A scene with a geometry is one of objects: its models are objects too, which come first, in order,
+//! A scene with a geometry, or with a progressive model, is one of objects: its models are objects too, which come first, in order,
 //! each of a geometry of its own, at rest. Its geometries are those of the models and then the named
 //! ones. Where objects have no place of their own they are where their geometry is. Frames are
 //! counted from 0; keys may lie beyond the last frame. A camera that is not chosen shows the scene as
@@ -63,6 +63,7 @@ use crate::index::grouping::Grouping;
 use crate::io::input;
 use crate::method::Method;
 use crate::scene::mipmap::MOST_LEVELS;
+use crate::scene::objects::detail::refine::Refinement;
 use crate::scene::{Camera, CameraMotion, Lens, Light, Phong, Pose, Scene, Similarity};
 use crate::source::Shape;
 use glam::{DVec3, Vec3};
@@ -92,6 +93,8 @@ pub struct SceneFile {
     pub frames: u32,
     /// The frame that is pictured: 0, unless somebody asks for another.
     pub frame: u32,
+    /// What is drawn of progressive models.
+    pub refinement: Refinement,
     /// Where it is seen from.
     pub camera: CameraChoice,
     /// The lights; none at all shows the colours unlit.
@@ -124,6 +127,9 @@ pub struct Model {
     /// Levels of prefiltered colours that are [made](crate::index::mipmap) on loading, of surfels as
     /// they are read, before any transform; 0 drops those of the file, which are kept if absent.
     pub mipmaps: Option<usize>,
+    /// Whether the surfels are in an order of which a view draws a
+    /// [prefix](crate::scene::objects::detail::prefix). A scene with such a model is one of objects.
+    pub progressive: bool,
 }
 
 /// Where a model comes from.
@@ -230,11 +236,13 @@ impl SceneFile {
                 color: None,
                 opacity: None,
                 mipmaps: None,
+                progressive: false,
             }],
             geometries: Vec::new(),
             objects: Vec::new(),
             frames: 1,
             frame: 0,
+            refinement: Refinement::default(),
             camera: CameraChoice::default(),
             lights: vec![Light::DEFAULT],
             material: Phong::default(),
@@ -260,6 +268,12 @@ impl SceneFile {
             EnvironmentChoice::Sky => None,
         });
         models.chain(tables).chain(environment)
+    }
+
+    /// Whether the scene is one of objects.
+    #[must_use]
+    pub fn has_objects(&self) -> bool {
+        !self.geometries.is_empty() || self.models.iter().any(|model| model.progressive)
     }
 
     /// The models, and those of the geometries.

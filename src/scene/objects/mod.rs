@@ -30,7 +30,8 @@ mod place;
 use super::{Boxes, Primitives, Similarity, Surfels};
 use crate::error::{Error, Result};
 pub use detail::Detail;
-use detail::Mask;
+use detail::Shown;
+use detail::refine::{Forest, Refinement};
 use glam::{DVec3, Vec3};
 pub use ids::{Ids, Split};
 
@@ -43,11 +44,11 @@ use std::sync::Arc;
 pub struct Geometry {
     /// What it is called.
     pub name: String,
-    /// Its surfels; with levels of detail all nodes.
+    /// Its surfels; of a tree all nodes.
     pub surfels: Surfels,
     /// What there is beside them.
     pub primitives: Primitives,
-    /// Which of its surfels are drawn, see [`Geometry::with_detail`]; none: all.
+    /// Which of its surfels are drawn, see [`Geometry::with_detail`] and [`Geometry::with_prefix`]; none: all.
     pub detail: Option<Detail>,
 }
 
@@ -75,8 +76,10 @@ pub struct Objects {
     fill: Vec3,
     frame: u32,
     places: Vec<Similarity>,
-    /// Of each object with levels of detail.
-    drawn: Arc<[Option<Arc<Mask>>]>,
+    refinement: Arc<Refinement>,
+    forest: Option<Arc<Forest>>,
+    /// What is drawn of each object.
+    shown: Arc<[Shown]>,
     median_radius: f32,
     bounding_sphere: (DVec3, f64),
 }
@@ -103,7 +106,9 @@ impl Objects {
             fill,
             frame: 0,
             places: Vec::new(),
-            drawn: Arc::new([]),
+            refinement: Arc::new(Refinement::default()),
+            forest: None,
+            shown: Arc::new([]),
             median_radius: 0.0,
             bounding_sphere: (DVec3::ZERO, 0.0),
         };
@@ -125,9 +130,9 @@ impl Objects {
     /// [`Error::Invalid`] if surfels of an object leave the range of f32 there, and as [`Ids::new`].
     pub fn at(&self, frame: u32) -> Result<Self> {
         let places: Vec<_> = self.objects.iter().map(|object| object.motion.at(frame)).collect();
-        let detail = |object: &Object| self.geometries[object.geometry].detail.as_ref();
-        let drawn = self.objects.iter().map(|object| detail(object).map(Detail::leaves)).collect();
-        let mut moved = Self { frame, places, drawn, ..self.clone() };
+        let shown = self.objects.iter().map(|object| &self.geometries[object.geometry]);
+        let shown = shown.map(Shown::at_rest).collect();
+        let mut moved = Self { frame, places, shown, ..self.clone() };
         if self.have_detail() {
             moved.ids = Arc::new(self.ids_of_all()?);
         }
@@ -248,12 +253,8 @@ impl Objects {
 
     fn median_of_medians(&self) -> f32 {
         let of = |(object, place): (&Object, &Similarity)| {
-            let Geometry { surfels, detail, .. } = &self.geometries[object.geometry];
+            let (count, median) = self.geometries[object.geometry].at_rest();
             // The median of radii that are scaled is the median, scaled: rounding keeps their order.
-            let (median, count) = match detail {
-                Some(detail) => (detail.median_radius, detail.count),
-                None => (surfels.median_radius(), surfels.len() as u32),
-            };
             ((f64::from(median) * place.scale) as f32, u64::from(count))
         };
         let mut medians: Vec<_> = self.objects.iter().zip(&self.places).map(of).collect();

@@ -38,7 +38,7 @@ impl Extent {
         let least = radii.chain(halves).fold(f64::INFINITY, less);
         let sphere = match &geometry.detail {
             // Discs of inner nodes reach farther, but not on the screen.
-            Some(detail) => detail.sphere,
+            Some(detail) => detail.sphere(),
             None => bounds::sphere(surfels, &geometry.primitives),
         };
         Self { boxes: Boxes::new(surfels), sphere, least }
@@ -74,12 +74,13 @@ impl Objects {
         Ok((self.gather(jobs(all.collect()), exec), self.primitives()?))
     }
 
-    /// The primitives of all objects in their places, in the order of the scene.
+    /// The primitives of all objects that are drawn with theirs, in their places, in the order of the scene.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] as [`crate::scene::indexed::Indexed::new`].
     pub fn primitives(&self) -> Result<Vec<Primitives>> {
-        let placed = (0..self.objects.len()).map(|object| {
+        let shown = (0..self.objects.len()).filter(|&object| self.shown[object].primitives);
+        let placed = shown.map(|object| {
             let primitives = self.geometry(object as u32).primitives.clone();
             let color = self.objects[object].color;
             let placed = primitives.map(|vertices| {
@@ -177,6 +178,7 @@ impl Objects {
     fn place(&self, object: u32, of: impl Iterator<Item = u32>, to: &mut Arrays) {
         let (place, surfels) = (&self.places[object as usize], &self.geometry(object).surfels);
         let (moves, color) = (*place != Similarity::IDENTITY, self.objects[object as usize].color);
+        let disc = self.disc(object).map(|disc| disc.radius);
         for i in of {
             let i = i as usize;
             let [mut position, mut normal] = [surfels.position()[i], surfels.normal()[i]];
@@ -186,8 +188,9 @@ impl Objects {
                 place.turn(&mut normal);
                 place.enlarge(&mut radius);
             }
+            let radius = disc.unwrap_or(radius);
             if let Some(tangents) = &mut to.tangents {
-                tangents.push(match surfels.tangents() {
+                tangents.push(match surfels.tangents().filter(|_| disc.is_none()) {
                     Some(own) if moves => own[i].map(|half| place.stretch(half)),
                     Some(own) => own[i],
                     None => half_axes(normal, radius),

@@ -1,14 +1,17 @@
 //! Samplers: points in an order of which every prefix is spread over all of them \[BJFM19, 3.2\].
 //!
+//! - [`mod@estimate`]: how densely an order covers.
 //! - [`greedy`]: the exact farthest-point order.
 //! - [`progressive`]: the paper's, of some points by chance the farthest; and points by chance alone.
 //! - [`mod@quality`]: how evenly a prefix is spread.
 
+pub mod estimate;
 pub mod greedy;
 mod nearest;
 pub mod progressive;
 pub mod quality;
 
+pub use estimate::estimate;
 pub use greedy::{Greedy, Order, Start};
 pub use progressive::{Progressive, Schedule, shuffled};
 pub use quality::{Quality, quality};

@@ -217,7 +217,7 @@ fn deferred_views_take_the_nodes_of_the_page() {
                 let nodes: Vec<_> = mask.surfels().map(|s| s as u32).collect();
                 assert_eq!(nodes, own.nodes, "object {o} in {name}");
                 assert_eq!(found.ids().count(o as u32), own.first, "object {o} in {name}");
-                let list = found.geometry(o as u32).detail.as_ref().expect("a list").list();
+                let list = found.geometry(o as u32).tree().expect("a list").list();
                 let leaves = nodes.iter().filter(|n| list.surfel(**n as usize).is_some()).count();
                 seen.views += 1;
                 seen.out += u64::from(own.first == 0);

@@ -125,7 +125,7 @@ impl Reach {
 /// What a camera takes of an object with levels of detail; none: it has none.
 pub(crate) fn taken(objects: &Objects, object: usize, camera: &Camera) -> Option<Taken> {
     let geometry = objects.geometry(object as u32);
-    let detail = geometry.detail.as_ref()?;
+    let detail = geometry.tree()?;
     let (middle, radius) = objects.sphere(object as u32);
     if !in_sight(camera, (middle.to_array(), radius), 16.0 + detail.threshold()) {
         return Some(Taken { first: 0, nodes: Vec::new() });

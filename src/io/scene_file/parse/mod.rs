@@ -28,6 +28,7 @@ use super::{
 };
 use crate::error::{Error, Result};
 use crate::io::input;
+use crate::scene::objects::detail::refine::Refinement;
 use crate::scene::{Light, Phong};
 use camera::RawCamera;
 use exactly::Exactly;
@@ -79,6 +80,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
         objects,
         frames: file.sequence.0,
         frame: 0,
+        refinement: file.refinement,
         camera: file.camera,
         lights: file.light.unwrap_or_else(|| vec![Light::DEFAULT]),
         material: file.material,
@@ -101,6 +103,8 @@ struct File {
     #[serde(default)]
     sequence: Sequence,
     #[serde(default)]
+    refinement: Refinement,
+    #[serde(default)]
     camera: CameraChoice,
     light: Option<Vec<Light>>,
     #[serde(default)]
@@ -118,6 +122,7 @@ through! {
     Model: RawModel, RawModel::model;
     Geometry: RawModel, RawModel::geometry;
     Sequence: RawSequence, RawSequence::sequence;
+    Refinement: RawRefinement, RawRefinement::refinement;
     CameraChoice: RawCamera, RawCamera::choice;
     Light: RawLight, RawLight::light;
     Phong: RawMaterial, RawMaterial::material;
@@ -145,6 +150,24 @@ impl RawSequence {
             return Ok(Sequence(self.frames));
         }
         Err(format!("a sequence of {} frames; give 1 to {MOST_FRAMES}", self.frames))
+    }
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawRefinement {
+    surfel_size: Option<f32>,
+    budget: Option<u32>,
+    #[serde(default)]
+    zones: Vec<Exactly<f32, 2>>,
+}
+
+impl RawRefinement {
+    fn refinement(self) -> std::result::Result<Refinement, String> {
+        let surfel_size = self.surfel_size.unwrap_or(Refinement::default().surfel_size);
+        let zones = self.zones.into_iter().map(|zone| zone.0).collect();
+        let refinement = Refinement { surfel_size, budget: self.budget, zones };
+        refinement.check().map(|()| refinement).map_err(|error| error.to_string())
     }
 }
 

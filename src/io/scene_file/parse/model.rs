@@ -5,7 +5,7 @@ use super::transform::RawTransform;
 use crate::io::scene_file::{DEFAULT_COUNT, Draw, Geometry, Model, Source, TREE};
 use crate::io::scene_file::{check_mipmaps, check_opacity, check_prefix, shapes};
 use crate::scene::light::{MAX_RADIANCE, is_color};
-use crate::scene::objects::detail::MOST_PIXELS;
+use crate::scene::objects::detail::tree::MOST_PIXELS;
 use crate::source::{Shape, plant};
 use glam::Vec3;
 use std::path::PathBuf;
@@ -33,6 +33,8 @@ pub(super) struct RawModel {
     opacity: Option<f32>,
     mipmaps: Option<usize>,
     #[serde(default)]
+    progressive: bool,
+    #[serde(default)]
     transform: RawTransform,
 }
 
@@ -42,6 +44,11 @@ impl RawModel {
         let detail = self.detail.take();
         if let Some(pixels) = detail.filter(|pixels| !(0.0..=MOST_PIXELS).contains(pixels)) {
             return Err(format!("detail is {pixels} pixels; give 0 to {MOST_PIXELS}"));
+        }
+        if detail.is_some() && self.progressive {
+            return Err(
+                "`detail` and `progressive` are two kinds of levels of detail: remove one".into()
+            );
         }
         Ok(Geometry { name, detail, model: self.model()? })
     }
@@ -70,7 +77,8 @@ impl RawModel {
         }
         let (transform, opacity, mipmaps) =
             (self.transform.similarity()?, self.opacity, self.mipmaps);
-        Ok(Model { source, draw, transform, color, opacity, mipmaps })
+        let progressive = self.progressive;
+        Ok(Model { source, draw, transform, color, opacity, mipmaps, progressive })
     }
 
     /// The source; takes every key that it uses.

@@ -63,7 +63,7 @@ fn objects_are_where_the_file_says() {
     assert_eq!(objects.geometries()[0].name, "sheets");
     let counts: Vec<_> = loaded.models.iter().map(|model| model.surfels).collect();
     assert_eq!((counts[0], counts[1]), (objects.geometries()[0].surfels.len(), 60));
-    assert_eq!(objects.geometries()[1].detail.as_ref().unwrap().threshold(), 1.0);
+    assert_eq!(objects.geometries()[1].tree().unwrap().threshold(), 1.0);
 
     let exec = Exec::sequential();
     file.frame = 15;

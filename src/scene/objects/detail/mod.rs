@@ -1,113 +1,137 @@
-//! Levels of detail: which surfels of an object a view draws \[GBP04, 7.2\].
+//! Levels of detail: which surfels of an object a view draws.
 //!
-//! A geometry with levels of detail has the nodes of a [sequential point tree](crate::index::sequential) in the
-//! place of its surfels, in the order of the list, and a threshold tau in pixels. Of an object of scale k,
-//! rotation R and translation T, seen by a camera at the eye E with the focal lengths fx and fy, in f64:
+//! - [`tree`]: nodes of a sequential point tree \[GBP04, 7.2\].
+//! - [`prefix`]: a prefix of an order \[BJFM19, 4.1\].
+//! - [`refine`]: of an object and its finer ones, how much of which \[BJFM19, 4\].
 //!
-//! ```text
-//!   e    = transpose(R) (E - T) / k             the eye in the coordinates of the geometry
-//!   s    = f / tau                              f the greater of fx and fy; +inf where tau = 0
-//!   r(p) = |p - e|                              of a node at p, sqrt((dx dx + dy dy) + dz dz)
-//!   r    = 1 / k                                of every node, orthographic
-//! ```
-//!
-//! A perspective camera draws the nodes that [`Sequential::holds`] at r(p) and s, an orthographic one
-//! those that [`Sequential::cuts`] at r and s. Before a camera is known the surfels are drawn that
-//! the geometry was made of.
-//!
-//! Only the first so many nodes of the list are looked at, and have [ids](super::ids) in that view:
-//! [`Sequential::prefix`] of s and the least distance, `|c - e| - R - (|c| + R) / 2^20`, at least 0,
-//! with c and R of the sphere around the surfels that the geometry was made of, and its primitives, in its
-//! own coordinates; r of an orthographic camera.
+//! What a view draws is an f64 computation, given to every method as the camera is.
 //!
 //! An object with levels of detail whose sphere is not in the view frustum draws nothing and has no ids; of
 //! other objects all surfels are drawn. With the sphere in its place and in view
 //! space, its depth t and radius R, in f64, it is outside if `t + R <= near`, or on one of the four sides, if it is
-//! beyond the border of the picture widened by 16 pixels and tau: for the left one
+//! beyond the border of the picture widened by m pixels: for the left one
 //!
 //! ```text
-//!   fx x + (cx + m) t < -R sqrt(fx fx + (cx + m) (cx + m))        m = 16 + tau
+//!   fx x + (cx + m) t < -R sqrt(fx fx + (cx + m) (cx + m))
 //!   fx x + (cx + m)   < -R fx                                      orthographic
 //! ```
 //!
 //! for the right one with -x and `width - cx`, for the upper one with fy, -y and cy, for the lower one with
-//! fy, y and `height - cy`. View space is `((m0 x + m1 y) + m2 z) + m3` of the camera's matrix.
+//! fy, y and `height - cy`. View space is `((m0 x + m1 y) + m2 z) + m3` of the camera's matrix. m is 16 plus the
+//! error that nodes may have, or the size of discs.
 //! `Decided:` 16 pixels, more than the filter of a splat adds to it.
-//! Discs of inner nodes reach beyond the surfels by tau at most.
+
+pub mod prefix;
+pub mod refine;
+pub mod tree;
 
 use super::{Geometry, Objects};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::index::sequential::Sequential;
 use crate::number::Real;
 use crate::scene::objects::Ids;
-use crate::scene::{Camera, Projection, Similarity, bounds};
+use crate::scene::{Camera, Projection, Sides, Similarity};
 use glam::{DMat4, DVec3};
+use prefix::Prefix;
 use std::sync::Arc;
-
-/// The largest threshold in pixels.
-pub const MOST_PIXELS: f64 = 4096.0;
+use tree::Tree;
 
 /// How much the picture is widened on each side, in pixels.
 const MARGIN: f64 = 16.0;
 
 /// Levels of detail of a geometry.
 #[derive(Clone, Debug)]
-pub struct Detail {
-    list: Sequential,
-    threshold: f64,
-    leaves: Arc<Mask>,
-    /// Of the surfels that the geometry was made of: how many, their median radius, and a sphere.
-    pub(super) count: u32,
-    pub(super) median_radius: f32,
-    pub(super) sphere: (DVec3, f64),
+pub enum Detail {
+    /// Nodes of a tree.
+    Tree(Tree),
+    /// Prefixes of an order.
+    Prefix(Prefix),
 }
 
 impl Detail {
-    /// When each node is drawn.
-    #[must_use]
-    pub fn list(&self) -> &Sequential {
-        &self.list
-    }
-
-    /// tau: the error that a node may have on the screen, in pixels.
-    #[must_use]
-    pub fn threshold(&self) -> f64 {
-        self.threshold
-    }
-
-    /// The surfels that the geometry was made of.
-    pub(super) fn leaves(&self) -> Arc<Mask> {
-        Arc::clone(&self.leaves)
+    /// A sphere around the geometry.
+    pub(super) fn sphere(&self) -> (DVec3, f64) {
+        match self {
+            Self::Tree(tree) => tree.sphere,
+            Self::Prefix(prefix) => prefix.sphere,
+        }
     }
 }
 
 impl Geometry {
-    /// The geometry with levels of detail, whose nodes are its surfels from here on. `threshold` is tau,
-    /// in [0, [`MOST_PIXELS`]]. Prefiltered colours are left out: those of inner nodes are averages.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if the threshold is out of range, if there are no surfels, or levels of detail
-    /// already, and as [`Sequential::new`].
-    pub fn with_detail(self, threshold: f64, exec: &Exec) -> Result<Self> {
-        if !(0.0..=MOST_PIXELS).contains(&threshold) {
-            let what = format!("levels of detail of {threshold} pixels; give 0 to {MOST_PIXELS}");
-            return Err(Error::Invalid(what));
+    /// The tree of which the surfels are the nodes, if there is one.
+    #[must_use]
+    pub fn tree(&self) -> Option<&Tree> {
+        match &self.detail {
+            Some(Detail::Tree(tree)) => Some(tree),
+            _ => None,
         }
-        if self.detail.is_some() || self.surfels.is_empty() {
-            let what = if self.surfels.is_empty() { "no surfels for" } else { "already" };
-            return Err(Error::Invalid(format!("{} has {what} levels of detail", self.name)));
+    }
+
+    /// The order in which the surfels are, if that is known.
+    #[must_use]
+    pub fn prefix(&self) -> Option<&Prefix> {
+        match &self.detail {
+            Some(Detail::Prefix(prefix)) => Some(prefix),
+            _ => None,
         }
-        let (nodes, list) = Sequential::new(&self.surfels, exec)?;
-        let detail = Detail {
-            leaves: Arc::new(Mask::of(nodes.len(), |node| list.surfel(node).is_some())),
-            list,
-            threshold,
-            count: self.surfels.len() as u32,
-            median_radius: self.surfels.median_radius(),
-            sphere: bounds::sphere(&self.surfels, &self.primitives),
-        };
-        Ok(Self { surfels: nodes, detail: Some(detail), ..self })
+    }
+
+    /// Whether the geometry may get levels of detail.
+    fn check_plain(&self) -> Result<()> {
+        if self.detail.is_none() && !self.surfels.is_empty() {
+            return Ok(());
+        }
+        let what = if self.surfels.is_empty() { "no surfels for" } else { "already" };
+        Err(Error::Invalid(format!("{} has {what} levels of detail", self.name)))
+    }
+
+    /// How many surfels are drawn where no camera is known, and their median radius.
+    pub(super) fn at_rest(&self) -> (u32, f32) {
+        match self.tree() {
+            Some(tree) => (tree.count, tree.median_radius),
+            None => (self.surfels.len() as u32, self.surfels.median_radius()),
+        }
+    }
+}
+
+/// What a view draws of an object.
+#[derive(Clone, Debug)]
+pub(super) struct Shown {
+    /// How many surfels are looked at, and have ids.
+    count: u32,
+    /// Which of them are drawn; none: all.
+    mask: Option<Arc<Mask>>,
+    /// As what they are drawn; none: as they are.
+    pub(super) disc: Option<Disc>,
+    /// Whether primitives are drawn.
+    pub(super) primitives: bool,
+}
+
+/// The discs of a prefix.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    /// Of all, in world units.
+    pub radius: f32,
+    /// The side of their squares in pixels.
+    pub side: f32,
+}
+
+impl Default for Shown {
+    fn default() -> Self {
+        Self { count: 0, mask: None, disc: None, primitives: true }
+    }
+}
+
+impl Shown {
+    fn nothing() -> Self {
+        Self { primitives: false, ..Self::default() }
+    }
+
+    /// All that an object has, before a camera is known.
+    pub(super) fn at_rest(geometry: &Geometry) -> Self {
+        let mask = geometry.tree().map(Tree::leaves);
+        Self { count: geometry.surfels.len() as u32, mask, ..Self::default() }
     }
 }
 
@@ -159,23 +183,11 @@ impl Objects {
         if !self.have_detail() {
             return Ok(self.clone());
         }
-        let seen = Eye::new(camera);
-        let all: Vec<u32> = (0..self.objects.len() as u32).collect();
-        let drawn = exec.ordered(all, |object| {
-            let (geometry, place) = (self.geometry(object), &self.places[object as usize]);
-            let detail = geometry.detail.as_ref()?;
-            Some(seen.drawn(geometry, detail, place, self.sphere(object)))
-        });
-        let mut counts = Vec::with_capacity(drawn.len());
-        let mut masks = Vec::with_capacity(drawn.len());
-        for (object, drawn) in (0_u32..).zip(drawn) {
-            let all = self.ids.all(object);
-            counts.push(drawn.as_ref().map_or(all, |(count, _)| *count));
-            masks.push(drawn.map(|(_, mask)| Arc::new(mask)));
-        }
-        let all: Vec<u32> = (0..self.objects.len() as u32).map(|o| self.ids.all(o)).collect();
-        let ids = Ids::first(counts, all, |object| self.objects[object].name.clone())?;
-        let mut seen = Self { ids: Arc::new(ids), drawn: masks.into(), ..self.clone() };
+        let shown = self.refined(&Eye::new(camera), exec);
+        let counts = shown.iter().map(|shown| shown.count).collect();
+        let all = (0..self.objects.len() as u32).map(|o| self.geometry(o).surfels.len() as u32);
+        let ids = Ids::first(counts, all.collect(), |object| self.objects[object].name.clone())?;
+        let mut seen = Self { ids: Arc::new(ids), shown: shown.into(), ..self.clone() };
         seen.median_radius = seen.median_of_drawn(exec);
         Ok(seen)
     }
@@ -183,23 +195,48 @@ impl Objects {
     /// Whether some objects have levels of detail.
     #[must_use]
     pub fn have_detail(&self) -> bool {
-        self.geometries.iter().any(|geometry| geometry.detail.is_some())
+        self.forest.is_some() || self.geometries.iter().any(|geometry| geometry.detail.is_some())
     }
 
     /// Which surfels of an object are drawn; none: all.
     #[must_use]
     pub fn drawn(&self, object: u32) -> Option<&Mask> {
-        self.drawn[object as usize].as_deref()
+        self.shown[object as usize].mask.as_deref()
+    }
+
+    /// As which discs the surfels of an object are drawn; none: as they are.
+    #[must_use]
+    pub fn disc(&self, object: u32) -> Option<Disc> {
+        self.shown[object as usize].disc
+    }
+
+    /// The squares of all surfels that are drawn, in the order of their ids; none if no object has any.
+    pub(crate) fn sides(&self) -> Result<Option<Sides>> {
+        let objects = || self.ids.order().iter().filter(|&&object| self.drawn_of(object) > 0);
+        if objects().all(|&object| self.disc(object).is_none()) {
+            return Ok(None);
+        }
+        let mut first = 0;
+        let runs = objects().map(|&object| {
+            let run = (first, self.disc(object).map(|disc| disc.side));
+            first += self.drawn_of(object) as u32;
+            run
+        });
+        Sides::new(runs.collect()).map(Some)
+    }
+
+    /// How many surfels of an object are drawn.
+    fn drawn_of(&self, object: u32) -> u64 {
+        match self.drawn(object) {
+            Some(mask) => mask.count(),
+            None => self.ids.count(object).into(),
+        }
     }
 
     /// How many surfels are drawn.
     #[must_use]
     pub fn drawn_total(&self) -> u64 {
-        let of = |object| match self.drawn(object) {
-            Some(mask) => mask.count(),
-            None => self.ids.count(object).into(),
-        };
-        (0..self.objects.len() as u32).map(of).sum()
+        (0..self.objects.len() as u32).map(|object| self.drawn_of(object)).sum()
     }
 
     /// The ids of all surfels that are drawn, ascending.
@@ -236,15 +273,19 @@ impl Objects {
             for &object in objects {
                 let (surfels, scale) =
                     (&self.geometry(object).surfels, self.places[object as usize].scale);
+                let scaled = |radius: f32| (f64::from(radius) * scale) as f32;
                 let mut add = |radius: f32, times: u64| {
-                    let scaled = (f64::from(radius) * scale) as f32;
-                    if let Some(key) = key(scaled.to_bits()) {
+                    if let Some(key) = key(radius.to_bits()) {
                         counts[key as usize] += times;
                     }
                 };
-                match self.drawn(object) {
-                    Some(mask) => mask.surfels().for_each(|i| add(surfels.radius()[i], 1)),
-                    None => add(surfels.median_radius(), self.ids.count(object).into()),
+                let all = u64::from(self.ids.count(object));
+                match (self.drawn(object), self.disc(object)) {
+                    (Some(mask), _) => {
+                        mask.surfels().for_each(|i| add(scaled(surfels.radius()[i]), 1));
+                    }
+                    (None, Some(disc)) => add(disc.radius, all),
+                    (None, None) => add(scaled(surfels.median_radius()), all),
                 }
             }
             counts
@@ -281,35 +322,14 @@ impl Eye {
         Self { camera: *camera, view_from_world, eye: camera.eye() }
     }
 
-    /// How many nodes of an object are looked at, and which of them are drawn.
-    fn drawn(
-        &self,
-        geometry: &Geometry,
-        detail: &Detail,
-        place: &Similarity,
-        sphere: (DVec3, f64),
-    ) -> (u32, Mask) {
-        if !self.may_see(sphere, MARGIN + detail.threshold) {
-            return (0, Mask::default());
-        }
-        let list = &detail.list;
-        let scale = f64::from(self.camera.fx.at_least(self.camera.fy)) / detail.threshold;
-        if self.camera.projection == Projection::Orthographic {
-            let distance = 1.0 / place.scale;
-            let count = list.prefix(distance, scale);
-            return (count as u32, Mask::of(count, |node| list.cuts(node, distance, scale)));
-        }
-        let eye = place.rotation.transpose() * (self.eye - place.translation) / place.scale;
-        let (middle, radius) = detail.sphere;
-        let lost = (middle.length() + radius) / 1_048_576.0;
-        let least = ((middle - eye).length() - radius - lost).at_least(0.0);
-        let count = list.prefix(least, scale);
-        if scale == f64::INFINITY {
-            return (count as u32, (*detail.leaves).clone());
-        }
-        let points = geometry.surfels.position();
-        let word = |first| list.holding(first..count.min(first + 64), points, eye, scale);
-        (count as u32, Mask { words: (0..count).step_by(64).map(word).collect() })
+    /// The eye in the coordinates of an object's geometry.
+    fn before(&self, place: &Similarity) -> DVec3 {
+        place.rotation.transpose() * (self.eye - place.translation) / place.scale
+    }
+
+    /// The greater focal length.
+    fn focal(&self) -> f64 {
+        f64::from(self.camera.fx.at_least(self.camera.fy))
     }
 
     /// Whether a sphere reaches into the picture, widened by so many pixels.

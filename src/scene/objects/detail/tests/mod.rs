@@ -1,3 +1,5 @@
+mod prefixes;
+
 use super::*;
 use crate::scene::transform::rotation;
 use crate::scene::{Lens, Motion, Object, Pose, Primitives, Surfels};
@@ -63,7 +65,7 @@ proptest! {
         let lens = if ortho { Lens::Orthographic(2.0 * scale) } else { Lens::FieldOfView(40.0) };
         let camera = camera(target + direction.normalize() * (away * scale), target, lens);
         let seen = objects.seen_from(&camera, &Exec::sequential()).unwrap();
-        let (list, surfels) = (seen.geometry(0).detail.as_ref().unwrap().list(), &seen.geometry(0).surfels);
+        let (list, surfels) = (seen.geometry(0).tree().unwrap().list(), &seen.geometry(0).surfels);
         let mask = seen.drawn(0).unwrap();
         let pixels = |node: usize, error: f32| {
             let p = place.rotation * (surfels.position()[node].as_dvec3() * scale) + target;
@@ -90,7 +92,7 @@ proptest! {
             prop_assert!(path.any(|node| mask.has(node)));
         }
         if tau == 0.0 {
-            prop_assert_eq!(mask, &*objects.geometry(0).detail.as_ref().unwrap().leaves());
+            prop_assert_eq!(mask, &*objects.geometry(0).tree().unwrap().leaves());
         }
     }
 

@@ -1,0 +1,117 @@
+//! Prefixes of an order \[BJFM19, 4.1\].
+//!
+//! The surfels of the geometry are in an order of which every prefix is spread over all of them, such as that
+//! of a [sampler](crate::source::sampler). A view draws the first p(r) of them as discs of one radius r, which
+//! is s / 2 pixels where the object is nearest, in the coordinates of the geometry. In f64:
+//!
+//! ```text
+//!   d_p  = t / f / k        the width of a pixel where the object is nearest; orthographic: 1 / f / k
+//!   r    = s d_p / 2        s: the size in pixels that the view chooses
+//!   p(r) = p_m (q q)        q = r_m / r
+//! ```
+//!
+//! f is the greater of fx and fy, k the scale of the object, and r_m the [`Estimate::distance`] of a prefix of
+//! p_m = [`Estimate::count`] surfels. The object is nearest at the point c of the box around its geometry
+//! that is the closest to the eye e, both in the coordinates of the geometry, `c = max(low, min(e, high))` a
+//! component; t is its depth, in its place, at least that of the near plane.
+//!
+//! `Departs:` the paper prints r = s / (2 d_p), with which discs shrink where pixels become wider.
+//!
+//! `Decided:` d_p is that of the closest point, the paper's example. Discs farther away are smaller than s
+//! on the screen: a long object gets more of them than it needs, as the paper says in its section 6.
+
+use super::{Detail, Eye};
+use crate::error::{Error, Result};
+use crate::number::Real;
+use crate::scene::objects::Geometry;
+use crate::scene::{Projection, Similarity, bounds};
+use glam::DVec3;
+
+/// How densely an order covers: "\[r_m\] is the precomputed median minimum distance for a fixed prefix length
+/// \[p_m\]".
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// p_m: surfels of the prefix.
+    pub count: u32,
+    /// r_m: the lower median of the distances of each to the nearest other; 0 if there is no other.
+    pub distance: f32,
+}
+
+/// The order of a geometry.
+#[derive(Clone, Debug)]
+pub struct Prefix {
+    estimate: Estimate,
+    /// n: all surfels.
+    count: u32,
+    /// The box around the geometry.
+    corners: [DVec3; 2],
+    pub(super) sphere: (DVec3, f64),
+}
+
+impl Prefix {
+    /// How densely the order covers.
+    #[must_use]
+    pub fn estimate(&self) -> Estimate {
+        self.estimate
+    }
+
+    /// n: how many surfels there are.
+    #[must_use]
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// p(r): how many surfels of the radius r cover.
+    #[must_use]
+    pub fn covering(&self, radius: f64) -> f64 {
+        let q = f64::from(self.estimate.distance) / radius;
+        f64::from(self.estimate.count) * (q * q)
+    }
+
+    /// The radius with which all surfels cover, by the same estimate: where p(r) is their number.
+    #[must_use]
+    pub fn radius_of_all(&self) -> f64 {
+        let Estimate { count, distance } = self.estimate;
+        f64::from(distance) * (f64::from(count) / f64::from(self.count)).sqrt()
+    }
+
+    /// d_p of an object in its place.
+    pub(super) fn pixel(&self, place: &Similarity, eye: &Eye) -> f64 {
+        if eye.camera.projection == Projection::Orthographic {
+            return 1.0 / eye.focal() / place.scale;
+        }
+        let [low, high] = self.corners;
+        let at = eye.before(place);
+        let component = |i: usize| at[i].at_most(high[i]).at_least(low[i]);
+        let closest = DVec3::new(component(0), component(1), component(2));
+        let world = place.rotation * (closest * place.scale) + place.translation;
+        let depth = -eye.view_from_world.transform_point3(world).z;
+        depth.at_least(f64::from(eye.camera.near)) / eye.focal() / place.scale
+    }
+}
+
+impl Geometry {
+    /// The geometry with the order in which its surfels are. Radii of its surfels are of no use from here on
+    /// but where no camera is known.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there are no surfels, or levels of detail already, or if the estimate is of no surfel
+    /// or of more than there are, or its distance is not finite or less than 0.
+    pub fn with_prefix(self, estimate: Estimate) -> Result<Self> {
+        self.check_plain()?;
+        let Estimate { count, distance } = estimate;
+        let all = self.surfels.len() as u32;
+        if !(1..=all).contains(&count) || !(0.0..f32::INFINITY).contains(&distance) {
+            let what = format!("{count} of {all} surfels {distance} apart tell of no density");
+            return Err(Error::Invalid(format!("{}: {what}", self.name)));
+        }
+        let (low, high) = bounds::corners(&self.surfels, &self.primitives);
+        let prefix = Prefix {
+            estimate,
+            count: all,
+            corners: [low.as_dvec3(), high.as_dvec3()],
+            sphere: bounds::sphere(&self.surfels, &self.primitives),
+        };
+        Ok(Self { detail: Some(Detail::Prefix(prefix)), ..self })
+    }
+}

@@ -1,0 +1,382 @@
+//! How large the discs of prefixes are, and which of an object and its finer ones are drawn
+//! \[BJFM19, 4, 4.1, 4.4\].
+//!
+//! **Objects and finer ones.** Objects may form a forest: the finer objects of one show the same surfaces with
+//! more surfels, and the primitives of a geometry that has a [prefix](super::prefix) are its surfaces
+//! themselves. "We blend between the node's approximation and its children's approximations or original geometry by
+//! gradually decreasing the number of rendered surfels for the node while increasing the number of rendered
+//! surfels of the child nodes or rendering the original geometry." `Decided:` each object has a weight w, 1
+//! if it is the finer one of none. With n surfels of which p = p(r) are asked for, in f64:
+//!
+//! ```text
+//!   fade    = 0 if there is nothing finer, else min(max(2 (p / n) - 1, 0), 1)
+//!   own     = w (1 - fade)
+//!   drawn   = 0 if own = 0, else min(max(ceil(own min(p, n)), 1), n)
+//!   weight of each finer object, and of the primitives  =  w fade
+//! ```
+//!
+//! so that the surfels that are drawn are as many as one cover has, all the way: the fade begins where half of
+//! the surfels are asked for, and ends where all are. Primitives are drawn where their weight is greater than 0:
+//! a surface is there or is not. So is an object without a prefix.
+//!
+//! **Where nothing is finer** and p(r) exceeds n, all n are drawn, with the radius
+//! r_n = r_m sqrt(p_m / n) with which they cover: nothing more is known of the surface. `Decided:` here discs grow
+//! beyond the size asked for; with a fixed size there would be holes.
+//!
+//! **Size.** s is the [size](Refinement::surfel_size) asked for, times the factor z of the object's zone, and
+//! r = (size (d_p z)) / 2. Discs have the radius r k, or r_n k, in the world, with the scale k of the object,
+//! between 2^-100 and 2^100, rounded to f32; the side of the [square](crate::scene::Sides) of a surfel is size z, or (size z) (r_n / r),
+//! rounded to f32.
+//!
+//! **Zones** \[4.4\]: pairs of a distance from the principal point of the camera, in pixels, and a factor of the
+//! size, "interpolate\[d\] \[...\] between zones on a per-object basis": linearly between two pairs, the
+//! first factor before the first distance and the last behind the last; at equal distances the later pair. `Decided:` the distance of an object is that
+//! of the middle of its sphere on the screen, less the sphere's radius there, `f R / t` with the depth t of the
+//! middle (orthographic: `f R`), at least 0; 0 if `t <= R`.
+//!
+//! **Budget**: "draw\[s\] at most" so many surfels of prefixes, the best first. Of all surfels that may be
+//! drawn those come first whose prefix has the widest gaps on the screen; so a common greater size
+//! takes the place of the size asked for, the k-th of s, s (65/64), (s (65/64)) (65/64) and so on, up
+//! to k = 2048. k is 0 if the objects draw no more than the budget with s; else it is found by
+//! halving: `(few, many) = (2048, 0)`, and while `few - many > 1`, of `k = (few + many) / 2`, rounded down, few becomes k
+//! if they draw no more with it, else many becomes k; k = few. Where objects are so many that they draw more even then, those are left
+//! out that come after the budget in the order of objects.
+//!
+//! An object with a prefix whose sphere is not in the view frustum, by the test of [`super`] with the margin
+//! 16 + s, draws nothing; its finer objects have the weight that they would have.
+
+use super::prefix::Prefix;
+use super::{Disc, Eye, MARGIN, Shown};
+use crate::error::{Error, Result};
+use crate::frame::Exec;
+use crate::number::Real;
+use crate::scene::Projection;
+use crate::scene::objects::{Detail, Objects};
+use std::sync::Arc;
+
+/// How large discs of prefixes may be, in pixels.
+pub const MOST_SIZE: f32 = 4096.0;
+
+/// What a view asks of prefixes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refinement {
+    /// s: the diameter of discs where an object is nearest, in pixels, in (0, [`MOST_SIZE`]].
+    pub surfel_size: f32,
+    /// The most surfels of prefixes that are drawn; all that are asked for if absent.
+    pub budget: Option<u32>,
+    /// Distances from the principal point in pixels, ascending, and factors of the size there, greater than 0.
+    pub zones: Vec<[f32; 2]>,
+}
+
+impl Default for Refinement {
+    fn default() -> Self {
+        Self { surfel_size: 2.0, budget: None, zones: Vec::new() }
+    }
+}
+
+impl Refinement {
+    /// Whether the numbers are in range.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if one is not.
+    pub fn check(&self) -> Result<()> {
+        let invalid = |what| Err(Error::Invalid(what));
+        if !(self.surfel_size > 0.0 && self.surfel_size <= MOST_SIZE) {
+            let size = self.surfel_size;
+            return invalid(format!(
+                "discs of {size} pixels; give more than 0, at most {MOST_SIZE}"
+            ));
+        }
+        if self.budget == Some(0) {
+            return invalid("a budget of 0 surfels; give at least 1".into());
+        }
+        let sound = |[distance, factor]: &[f32; 2]| {
+            (0.0..f32::INFINITY).contains(distance) && *factor > 0.0 && *factor <= MOST_SIZE
+        };
+        if let Some([distance, factor]) = self.zones.iter().find(|zone| !sound(zone)) {
+            return invalid(format!(
+                "a zone at {distance} pixels of {factor} times the size is none"
+            ));
+        }
+        if !self.zones.is_sorted_by(|a, b| a[0] <= b[0]) {
+            return invalid("zones are not in the order of their distances".into());
+        }
+        Ok(())
+    }
+
+    /// The factor of the size at a distance from the principal point.
+    #[must_use]
+    pub fn factor(&self, distance: f64) -> f64 {
+        let zones: Vec<[f64; 2]> = self.zones.iter().map(|zone| zone.map(f64::from)).collect();
+        let after = zones.partition_point(|zone| zone[0] <= distance);
+        match (after.checked_sub(1).map(|before| zones[before]), zones.get(after)) {
+            (None, None) => 1.0,
+            (None, Some(first)) => first[1],
+            (Some(last), None) => last[1],
+            (Some([a, from]), Some([b, to])) => from + (to - from) * ((distance - a) / (b - a)),
+        }
+    }
+}
+
+/// Which objects are finer ones of which.
+#[derive(Clone, Debug)]
+pub(in crate::scene::objects) struct Forest {
+    /// The object of which each is a finer one.
+    coarser: Vec<Option<u32>>,
+    /// Whether each has finer ones.
+    has_finer: Vec<bool>,
+    /// All objects, each after the one that it is a finer one of.
+    order: Vec<u32>,
+}
+
+impl Forest {
+    /// The forest in which each object is a finer one of another, or of none.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there is not one entry for each object, or one is of no object, or objects are
+    /// finer than themselves.
+    fn new(coarser: Vec<Option<u32>>, objects: usize) -> Result<Self> {
+        let invalid = |what| Err(Error::Invalid(what));
+        if coarser.len() != objects {
+            return invalid(format!("{} finer objects, but there are {objects}", coarser.len()));
+        }
+        let mut finer: Vec<Vec<u32>> = vec![Vec::new(); objects];
+        let mut order = Vec::with_capacity(objects);
+        for (object, of) in (0..).zip(&coarser) {
+            match of {
+                None => order.push(object),
+                Some(of) if (*of as usize) < objects => finer[*of as usize].push(object),
+                Some(of) => return invalid(format!("an object is finer than {of}, which is none")),
+            }
+        }
+        let mut next = 0;
+        while let Some(&object) = order.get(next) {
+            order.extend(&finer[object as usize]);
+            next += 1;
+        }
+        if order.len() < objects {
+            return invalid("objects are finer than themselves".into());
+        }
+        let has_finer = finer.iter().map(|finer| !finer.is_empty()).collect();
+        Ok(Self { coarser, has_finer, order })
+    }
+}
+
+/// What a camera asks of an object.
+#[derive(Clone, Copy)]
+struct Asked {
+    /// d_p times the factor of the zone.
+    pixel: f64,
+    /// The factor of the zone.
+    factor: f64,
+    seen: bool,
+}
+
+/// What is drawn of an object.
+#[derive(Clone, Copy, Default)]
+struct Drawn {
+    /// Surfels of a prefix.
+    count: u32,
+    /// The weight of the object, and of its primitives.
+    weight: f64,
+    of_primitives: f64,
+}
+
+impl Objects {
+    /// The same objects with other wishes of views.
+    ///
+    /// # Errors
+    /// As [`Refinement::check`].
+    pub fn with_refinement(self, refinement: Refinement) -> Result<Self> {
+        refinement.check()?;
+        Ok(Self { refinement: Arc::new(refinement), ..self })
+    }
+
+    /// The same objects as a forest: of each the object of which it is a finer one, if there is one.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if that is no forest, or if an object without a prefix has surfels and finer objects.
+    pub fn with_coarser(self, coarser: Vec<Option<u32>>) -> Result<Self> {
+        let forest = Forest::new(coarser, self.objects.len())?;
+        for (object, _) in (0..).zip(&forest.has_finer).filter(|(_, has)| **has) {
+            let geometry = self.geometry(object);
+            if !geometry.surfels.is_empty() && geometry.prefix().is_none() {
+                let name = &self.objects[object as usize].name;
+                let what = format!("{name} has finer objects, but its surfels are in no order");
+                return Err(Error::Invalid(what));
+            }
+        }
+        Ok(Self { forest: Some(Arc::new(forest)), ..self })
+    }
+
+    /// The object of which one is a finer one.
+    #[must_use]
+    pub fn coarser(&self, object: u32) -> Option<u32> {
+        self.forest.as_ref().and_then(|forest| forest.coarser[object as usize])
+    }
+
+    /// Whether a geometry has prefixes.
+    #[must_use]
+    pub fn have_prefixes(&self) -> bool {
+        self.geometries.iter().any(|geometry| geometry.prefix().is_some())
+    }
+
+    /// What views ask of prefixes.
+    #[must_use]
+    pub fn refinement(&self) -> &Refinement {
+        &self.refinement
+    }
+
+    /// What a camera draws of each object.
+    pub(super) fn refined(&self, eye: &Eye, exec: &Exec) -> Vec<Shown> {
+        let all: Vec<u32> = (0..self.objects.len() as u32).collect();
+        let asked = exec.ordered(all.clone(), |object| self.asked(object, eye));
+        let (size, drawn) = self.within_budget(&asked);
+        exec.ordered(all, |object| {
+            let at = object as usize;
+            let Drawn { count, weight, of_primitives } = drawn[at];
+            let geometry = self.geometry(object);
+            let seen = asked[at].seen;
+            match &geometry.detail {
+                _ if weight == 0.0 => Shown::nothing(),
+                None => Shown { count: geometry.surfels.len() as u32, ..Shown::default() },
+                Some(_) if !seen => Shown::nothing(),
+                Some(Detail::Tree(tree)) => {
+                    let (count, mask) = tree.drawn(geometry, &self.places[at], eye);
+                    Shown { count, mask: Some(Arc::new(mask)), ..Shown::default() }
+                }
+                Some(Detail::Prefix(prefix)) => Shown {
+                    count,
+                    disc: Some(self.disc_with(object, prefix, size, &asked[at])),
+                    primitives: of_primitives > 0.0,
+                    mask: None,
+                },
+            }
+        })
+    }
+
+    /// What a camera asks of an object.
+    fn asked(&self, object: u32, eye: &Eye) -> Asked {
+        let (place, sphere) = (&self.places[object as usize], self.sphere(object));
+        match &self.geometry(object).detail {
+            None => Asked { pixel: 0.0, factor: 1.0, seen: true },
+            Some(Detail::Tree(tree)) => {
+                let seen = eye.may_see(sphere, MARGIN + tree.threshold());
+                Asked { pixel: 0.0, factor: 1.0, seen }
+            }
+            Some(Detail::Prefix(prefix)) => {
+                let factor = self.refinement.factor(eye.from_principal_point(sphere));
+                let side = f64::from(self.refinement.surfel_size) * factor;
+                let seen = eye.may_see(sphere, MARGIN + side);
+                Asked { pixel: prefix.pixel(place, eye) * factor, factor, seen }
+            }
+        }
+    }
+
+    /// The size and what is drawn with it, within the budget.
+    fn within_budget(&self, asked: &[Asked]) -> (f64, Vec<Drawn>) {
+        let mut size = f64::from(self.refinement.surfel_size);
+        let drawn = self.drawn_with(size, asked);
+        let total = |drawn: &[Drawn]| drawn.iter().map(|one| u64::from(one.count)).sum::<u64>();
+        let Some(budget) = self.refinement.budget.map(u64::from) else { return (size, drawn) };
+        if total(&drawn) <= budget {
+            return (size, drawn);
+        }
+        let sizes: Vec<f64> = (0..=STEPS)
+            .map(|k| {
+                size *= if k == 0 { 1.0 } else { 65.0 / 64.0 };
+                size
+            })
+            .collect();
+        let (mut few, mut many) = (STEPS, 0);
+        while few - many > 1 {
+            let k = usize::midpoint(few, many);
+            let fits = total(&self.drawn_with(sizes[k], asked)) <= budget;
+            *(if fits { &mut few } else { &mut many }) = k;
+        }
+        let mut drawn = self.drawn_with(sizes[few], asked);
+        let mut left = budget;
+        for one in &mut drawn {
+            one.count = u64::from(one.count).min(left) as u32;
+            left -= u64::from(one.count);
+        }
+        (sizes[few], drawn)
+    }
+
+    /// What is drawn with a size: how the weights go down the forest.
+    fn drawn_with(&self, size: f64, asked: &[Asked]) -> Vec<Drawn> {
+        let mut drawn = vec![Drawn { count: 0, weight: 1.0, of_primitives: 1.0 }; asked.len()];
+        let mut one = |object: u32, coarser: Option<u32>| {
+            let weight = coarser.map_or(1.0, |of| drawn[of as usize].of_primitives);
+            let geometry = self.geometry(object);
+            let Some(prefix) = geometry.prefix() else {
+                drawn[object as usize] = Drawn { count: 0, weight, of_primitives: weight };
+                return;
+            };
+            let all = f64::from(prefix.count());
+            let Asked { pixel, seen, .. } = asked[object as usize];
+            let wanted = prefix.covering(size * pixel / 2.0);
+            let fade = if self.has_finer(object) {
+                (2.0 * (wanted / all) - 1.0).clamped(0.0, 1.0)
+            } else {
+                0.0
+            };
+            let own = weight * (1.0 - fade);
+            let count = if own > 0.0 && seen {
+                (own * wanted.at_most(all)).ceil().clamped(1.0, all) as u32
+            } else {
+                0
+            };
+            drawn[object as usize] = Drawn { count, weight, of_primitives: weight * fade };
+        };
+        match &self.forest {
+            None => (0..asked.len() as u32).for_each(|object| one(object, None)),
+            Some(forest) => {
+                let all = forest.order.iter();
+                all.for_each(|&object| one(object, forest.coarser[object as usize]));
+            }
+        }
+        drawn
+    }
+
+    /// Whether the surfaces of an object are known better than by its surfels.
+    fn has_finer(&self, object: u32) -> bool {
+        let forest = self.forest.as_ref();
+        forest.is_some_and(|forest| forest.has_finer[object as usize])
+            || !self.geometry(object).primitives.is_empty()
+    }
+
+    /// The discs of an object with a prefix.
+    fn disc_with(&self, object: u32, prefix: &Prefix, size: f64, asked: &Asked) -> Disc {
+        let (mut radius, mut side) = (size * asked.pixel / 2.0, size * asked.factor);
+        let of_all = prefix.radius_of_all();
+        if !self.has_finer(object) && of_all > radius {
+            side *= of_all / radius;
+            radius = of_all;
+        }
+        let scale = self.places[object as usize].scale;
+        let radius = (radius * scale).clamped(LEAST, 1.0 / LEAST);
+        let most = f64::from(f32::MAX);
+        Disc { radius: radius as f32, side: side.clamped(LEAST, most) as f32 }
+    }
+}
+
+/// Steps of the size until the budget holds.
+const STEPS: usize = 2048;
+/// 2^-100.
+const LEAST: f64 = 1.0 / 1_267_650_600_228_229_401_496_703_205_376.0;
+
+impl Eye {
+    /// How far a sphere is from the principal point on the screen, in pixels.
+    fn from_principal_point(&self, (middle, radius): (glam::DVec3, f64)) -> f64 {
+        let v = self.view_from_world.transform_point3(middle);
+        let (depth, fx, fy) = (-v.z, f64::from(self.camera.fx), f64::from(self.camera.fy));
+        let m = match self.camera.projection {
+            Projection::Orthographic => 1.0,
+            Projection::Perspective if depth > radius => 1.0 / depth,
+            Projection::Perspective => return 0.0,
+        };
+        let (x, y) = (fx * (v.x * m), fy * (v.y * m));
+        ((x * x + y * y).sqrt() - self.focal() * (radius * m)).at_least(0.0)
+    }
+}
