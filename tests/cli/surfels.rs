@@ -133,6 +133,47 @@ fn a_prefix_is_the_file_of_its_points() {
     }
 }
 
+/// Every method draws as many points as a view needs, and no more than a budget has.
+#[test]
+fn a_view_draws_as_much_of_an_order_as_it_needs() {
+    let at = TempDir::new().unwrap();
+    ply::write(&at.path().join("mesh.ply"), &octahedron()).unwrap();
+    let surfels = ["surfels", "mesh.ply", "--side", "100", "--count", "3000", "-o", "all.ply"];
+    succeeds(at.path(), &surfels);
+    let scene =
+        "[[model]]\nfile = \"all.ply\"\nprogressive = true\n[refinement]\nsurfel_size = 8\n";
+    fs::write(at.path().join("scene.toml"), scene).unwrap();
+    let in_view = |said: &str| -> u64 {
+        let line = said.lines().find_map(|line| line.strip_prefix("  in view"));
+        line.and_then(|line| line.split_whitespace().next()?.parse().ok()).unwrap()
+    };
+    for method in
+        ["ewa", "single-pass", "pyramid", "template", "deferred", "transparent", "peeling"]
+    {
+        let render = |arguments: &[&str], to: &str| {
+            let options = ["-o", to, "--size", "48x40", "--method", method];
+            in_view(&succeeds(at.path(), &[&["render"], arguments, &options].concat()))
+        };
+        let asked = render(&["all.ply", "--surfel-size", "8"], "asked.exr");
+        assert_eq!(render(&["scene.toml"], "scene.exr"), asked);
+        succeeds(at.path(), &["compare", "asked.exr", "scene.exr"]);
+        // Of half the diameter, four times as many.
+        let small = render(&["all.ply", "--surfel-size", "4"], "small.exr");
+        assert!((4 * asked - 4..=4 * asked).contains(&small), "{method}: {asked} and {small}");
+        let few = render(&["scene.toml", "--budget", "100"], "few.exr");
+        assert!((96..=100).contains(&few), "{method}: {few}");
+    }
+    for (arguments, code, what) in [
+        (["all.ply", "--surfel-size", "0"], 1, "discs of 0 pixels"),
+        (["all.ply", "--budget", "0"], 1, "a budget of 0 surfels"),
+        (["mesh.ply", "--budget", "9"], 1, "mesh.ply: a prefix is of points"),
+        (["sphere", "--budget", "9"], 1, "sphere: what is progressive are points of a file"),
+    ] {
+        let line = fails(at.path(), &[&["render", "-o", "out.exr"], &arguments[..]].concat(), code);
+        assert!(line.contains(what), "{what} in {line}");
+    }
+}
+
 #[test]
 fn the_start_is_chosen_by_a_seed_and_threads_change_nothing() {
     let at = TempDir::new().unwrap();

@@ -177,12 +177,6 @@ impl Loaded {
 
 /// A geometry whose surfels are in an order.
 fn in_order(geometry: Geometry, exec: &Exec) -> Result<Geometry> {
-    if !geometry.primitives.is_empty() || geometry.surfels.is_empty() {
-        let name = geometry.name;
-        let what = "what is progressive are points in an order; \"splatref surfels\" puts what is seen of triangles \
-                    in order";
-        return Err(Error::Invalid(format!("{name}: {what}")));
-    }
     let estimate = estimate(geometry.surfels.position(), exec)?;
     geometry.with_prefix(estimate)
 }
@@ -203,6 +197,11 @@ impl ModelParts {
 /// Whether a model can be drawn as it says, and may have its opacity.
 fn check_draw(model: &Model) -> Result<()> {
     model.draw.check(&model.source).map_err(Error::Invalid)?;
+    if model.progressive && !matches!(model.source, Source::File { .. }) {
+        let name = model.source.name();
+        let what = format!("{name}: what is progressive are points of a file, in an order");
+        return Err(Error::Invalid(what));
+    }
     let surfels = !matches!(model.draw, Draw::Polygons | Draw::Ribbons | Draw::Tubes | Draw::Lines);
     if model.mipmaps.is_some_and(|levels| levels > 0) && (!surfels || model.color.is_some()) {
         let name = model.source.name();
@@ -227,7 +226,7 @@ fn read(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result
         Source::File { path, radius, prefix } => {
             let cloud = read_model(path, exec)?;
             let options = Derive { radius: *radius };
-            let parts = first(cloud, *prefix)
+            let parts = first(cloud, *prefix, model.progressive)
                 .and_then(|cloud| of_file(cloud, &model.draw, &options, exec, progress));
             parts.map_err(|error| match error {
                 Error::Invalid(what) => Error::format(path, what),
@@ -248,15 +247,17 @@ fn read(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result
     }
 }
 
-/// The first so many points of a file, or all.
-fn first(cloud: Cloud, prefix: Option<usize>) -> Result<Cloud> {
-    let Some(count) = prefix else { return Ok(cloud) };
+/// The first so many points of a file, or all, which are in an order if a prefix is drawn.
+fn first(cloud: Cloud, prefix: Option<usize>, progressive: bool) -> Result<Cloud> {
+    let Some(count) = prefix.or(progressive.then_some(usize::MAX)) else { return Ok(cloud) };
     if !(cloud.triangles.is_empty() && cloud.edges.is_empty()) {
         let what = "a prefix is of points, but the file has triangles or edges; \"splatref surfels\" puts what \
                     is seen of triangles in order";
         return Err(Error::Invalid(what.into()));
     }
-    let count = count.min(cloud.position.len());
+    if count >= cloud.position.len() {
+        return Ok(cloud);
+    }
     Ok(cloud.some(&(0..count as u32).collect::<Vec<_>>()))
 }
 

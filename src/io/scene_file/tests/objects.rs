@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::scene::Motion;
+use crate::scene::objects::detail::refine::Refinement;
 use crate::scene::transform::rotation;
 use crate::source::{Scatter, flatten};
 
@@ -64,6 +65,9 @@ fn objects_are_where_the_file_says() {
     let counts: Vec<_> = loaded.models.iter().map(|model| model.surfels).collect();
     assert_eq!((counts[0], counts[1]), (objects.geometries()[0].surfels.len(), 60));
     assert_eq!(objects.geometries()[1].tree().unwrap().threshold(), 1.0);
+    let zones = vec![[100.0, 1.0], [300.0, 2.5]];
+    let asked = Refinement { surfel_size: 2.0, budget: Some(100_000), zones };
+    assert_eq!(objects.refinement(), &asked);
 
     let exec = Exec::sequential();
     file.frame = 15;
