@@ -45,7 +45,7 @@
 //! 1. This page: the contract above, the pipeline and the glossary below.
 //! 2. [`scene`], what is given: surfels, camera, lights. [`source`] makes scenes; [`index`] is built
 //!    once and asked for every view.
-//! 3. [`splat`], from a surfel to its footprint on the screen: all methods but two stand on it.
+//! 3. [`splat`], from a surfel to its footprint on the screen: all methods but three stand on it.
 //! 4. [`method::ewa`], the method that the others refer to, then the method you came for: each is a
 //!    chapter below.
 //! 5. [`composite`], the algebra of fragments, and its laws.
@@ -72,6 +72,8 @@
 //!   without splats, from surfels, triangles, ribbons and tubes:                  │
 //!   method::pyramid        projection ─▶ pull ─▶ push ───────────────────────────┤
 //!   method::template       projection ─▶ propagation ─▶ reconstruction ──────────┤
+//!   without splats, from surfels and triangles:                                  │
+//!   method::blue           discs ────────────────────────────────────────────────┤
 //!                                                                                ▼
 //!   verify::compare ◀─ io::exr ◀─ Frame ◀─ scene::environment ◀─ shade::{phong, optics}
 //! ```
@@ -104,7 +106,10 @@
 //!   ellipses that hold a pixel \[MOC08\]. *To know:* the rule of levels decides how much of an
 //!   ellipse is reached, and what merges.
 //!
-//! The last two begin with [`mod@method::projection`]. [`method::Method`] is any of them as a value,
+//! - [`method::blue`]: opaque discs in squares on the screen, the nearest in each pixel \[BJFM19\]. *To
+//!   know:* which surfels of an order are drawn, and how large, is chosen before; nothing is filtered.
+//!
+//! [`method::pyramid`] and [`method::template`] begin with [`mod@method::projection`]. [`method::Method`] is any of them as a value,
 //! and [`method::Session`] is a scene that one of them draws from as many cameras as one likes. What
 //! each paper claims is measured in the pages under `docs/`.
 //!

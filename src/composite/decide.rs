@@ -7,13 +7,13 @@
 //!
 //! | decision | operator | tie | asked by |
 //! |---|---|---|---|
-//! | [`inside`] | q <= k k | the rim is inside | every splatting pass |
+//! | [`inside`] | q <= k k | the rim is inside | every splatting pass, discs |
 //! | [`nearer`] | w > than | the fragment that came first stays | visibility splatting |
 //! | [`nearer_or_lower`] | w > than | the lower surfel index | compositing of groups |
 //! | [`visible`] | t <= limit | the limit is visible | attribute splatting, compositing |
-//! | [`beyond`] | t > limit | the limit belongs to the layers before | depth peeling |
+//! | [`beyond`] | t > limit | the limit belongs to the layers before | depth peeling, near plane of discs |
 //! | [`nearer_bin`] | z < than | the fragment that came first stays | low-precision depth tests |
-//! | [`before`] | t < than | what came first stays | projection to pixels, merging |
+//! | [`before`] | t < than | what came first stays | projection to pixels, merging, discs |
 //! | [`before_or_lower`] | t < than | the lower surfel index | average of groups |
 //! | [`opaque`] | alpha >= 1 | 1 is opaque | blending of layers |
 //! | [`holds`] | 0 < square, form <= square | the rim is inside | pull, push, templates |

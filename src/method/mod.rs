@@ -13,10 +13,11 @@
 //!   \[ZP06\].
 //! - [`pyramid`]: pull-push interpolation, with ribbons, tubes and polygons \[MKC08\].
 //! - [`template`]: reconstruction with templates of k x k pixels \[MOC08\].
+//! - [`blue`]: oriented discs in squares, as progressive blue surfels are drawn \[BJFM19\].
 //!
 //! [`mod@planes`] lists the planes that each of them leaves.
 //!
-//! [`mod@projection`] is a scene as one sample a pixel, which the last two begin with.
+//! [`mod@projection`] is a scene as one sample a pixel, which [`pyramid`] and [`template`] begin with.
 //!
 //! # The files of a method
 //!
@@ -53,6 +54,7 @@
 
 mod algorithm;
 mod allowed;
+pub mod blue;
 mod checks;
 pub mod deferred;
 pub mod ewa;

@@ -3,7 +3,7 @@
 use super::algorithm::{Algorithm, Job};
 use super::given::Given;
 use super::{
-    Picture, Stage, deferred, ewa, peeling, pyramid, single_pass, template, transparent,
+    Picture, Stage, blue, deferred, ewa, peeling, pyramid, single_pass, template, transparent,
     transparent_hq,
 };
 use crate::error::{Error, Result};
@@ -213,6 +213,8 @@ methods! {
     Pyramid(pyramid::Settings),
     /// Reconstruction with templates \[MOC08\].
     Template(template::Settings),
+    /// Oriented discs in squares \[BJFM19\].
+    Blue(blue::Settings),
 }
 
 impl Default for Method {

@@ -7,8 +7,8 @@
 //! method: [`ewa`](crate::method::ewa::verify), [`single-pass`](crate::method::single_pass::verify),
 //! [`transparent`](crate::method::transparent::verify),
 //! [`transparent-hq`](crate::method::transparent_hq::verify), [`peeling`](crate::method::peeling::verify),
-//! [`pyramid`](crate::method::pyramid::verify), [`template`](crate::method::template::verify). Files:
-//! [`io::client`](crate::io::client).
+//! [`pyramid`](crate::method::pyramid::verify), [`template`](crate::method::template::verify),
+//! [`blue`](crate::method::blue::verify). Files: [`io::client`](crate::io::client).
 //!
 //! - [`client`]: the planes of a client, and how exactly each is stored.
 //! - [`compare`]: equal bit for bit, or where and by how much not.

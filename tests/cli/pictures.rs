@@ -100,6 +100,7 @@ fn every_method_draws_and_leaves_its_planes() {
         ("transparent", &["blended.group00.bin", "blended.A", "layers"]),
         ("transparent-hq", &["nearest.mask", "nearest.group00.weight", "blended.A", "l"]),
         ("peeling", &["layer1.Z", "layer2.A", "layers"]),
+        ("blue", &["discs.offset", "normal.X", "id"]),
     ] {
         let more = ["--method", method, "--opacity", "0.5", "--stages", "-o", "a.exr"];
         let said = succeeds(at.path(), &small(&more));

@@ -64,15 +64,16 @@ fn info_counts_what_there_is() {
 }
 
 #[test]
-fn only_the_pyramid_draws_them_and_deferred_triangles() {
+fn only_the_pyramid_draws_them_and_deferred_and_blue_triangles() {
     let at = scenes();
     let before = names(at.path());
-    let methods =
-        ["ewa", "single-pass", "transparent", "transparent-hq", "peeling", "template", "deferred"];
-    for method in methods {
-        for (scene, able) in [("polygons", "deferred or --method pyramid"), ("all", "pyramid")] {
+    let triangles = ["deferred", "blue"];
+    let others = ["ewa", "single-pass", "transparent", "transparent-hq", "peeling", "template"];
+    for method in others.into_iter().chain(triangles) {
+        let able = "deferred or --method pyramid or --method blue";
+        for (scene, able) in [("polygons", able), ("all", "pyramid")] {
             let file = format!("{scene}.toml");
-            if method == "deferred" && scene == "polygons" {
+            if triangles.contains(&method) && scene == "polygons" {
                 succeeds(at.path(), &["render", &file, "--method", method, "-o", "a.exr"]);
                 continue;
             }

@@ -5,7 +5,7 @@ use crate::frame::{FramebufferStrip, NO_ID, Rect, StripMut};
 use crate::number::lanes::{LANES, Lanes};
 
 /// Writes a tile without splats.
-pub(super) fn clear(rect: &Rect, pixels: &mut FramebufferStrip<'_, f32>) {
+pub(in crate::method) fn clear(rect: &Rect, pixels: &mut FramebufferStrip<'_, f32>) {
     clear_plane(rect, &mut pixels.depth, f32::INFINITY);
     clear_plane(rect, &mut pixels.id, NO_ID);
     clear_plane(rect, &mut pixels.weight, 0.0);

@@ -102,6 +102,23 @@ fn pieces<R: Exact>(
     });
 }
 
+/// The primitives of a scene that cover a pixel, each by its id and its depth there, in the
+/// order of their ids.
+pub(in crate::method) fn beside<R: Exact>(
+    job: &Job<'_>,
+    cull: bool,
+    snap: Snap,
+    pixel: (u32, u32),
+) -> Vec<(u32, R)> {
+    let projector = SceneProjector::<R>::new(job.scene, job.camera, cull, snap);
+    let first = job.scene.surfels.len();
+    let mut found = Vec::new();
+    for id in first..first + job.scene.primitives.len() {
+        pieces(&projector, id, pixel, &mut found);
+    }
+    found.iter().map(|contender| (contender.id, contender.depth)).collect()
+}
+
 impl<R: Exact> fmt::Display for PixelProjection<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let count = self.contenders.len();

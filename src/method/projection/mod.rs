@@ -42,7 +42,7 @@ pub(in crate::method) mod tests;
 pub mod verify;
 mod visible;
 
-pub(crate) use project::project;
+pub(crate) use project::{beside, project};
 pub(crate) use visible::{Foremost, SHARES, VisibleTriangles};
 
 use crate::frame::raster::Snap;

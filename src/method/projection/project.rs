@@ -39,17 +39,41 @@ pub(crate) fn project<R: Exact>(
     snap: Snap,
     exec: &Exec,
 ) -> Result<Projected<R>> {
+    from(scene, camera, (cull, snap), exec, 0)
+}
+
+/// The same of what there is beside the surfels: ids are those of the whole scene.
+///
+/// # Errors
+/// As [`project`].
+pub(crate) fn beside<R: Exact>(
+    scene: &Scene,
+    camera: &Camera,
+    cull: bool,
+    snap: Snap,
+    exec: &Exec,
+) -> Result<Projected<R>> {
+    from(scene, camera, (cull, snap), exec, scene.surfels.len())
+}
+
+/// Projects what has an id from the first on.
+fn from<R: Exact>(
+    scene: &Scene,
+    camera: &Camera,
+    (cull, snap): (bool, Snap),
+    exec: &Exec,
+    first: usize,
+) -> Result<Projected<R>> {
     let (width, height) = (camera.width, camera.height);
     let samples = Plane::filled(width, height, PixelSample::empty());
     let mut projected = Projected { samples, tally: Tally::default() };
-    let surfels = scene.surfels.len();
-    let count = surfels + scene.primitives.len();
+    let count = scene.surfels.len() + scene.primitives.len();
     if count as u64 >= u64::from(u32::MAX) {
         let what = format!("{count} primitives, but ids have 32 bits: split the scene");
         return Err(Error::Invalid(what));
     }
     let projector = SceneProjector::new(scene, camera, cull, snap);
-    draw(&projector, exec, 0..count, &mut projected);
+    draw(&projector, exec, first..count, &mut projected);
     Ok(projected)
 }
 

@@ -37,7 +37,8 @@ fn primitives_are_refused_by_methods_that_draw_surfels_alone() {
         }
         let line = found.unwrap_err().to_string();
         assert!(line.starts_with("sphere has triangles or lines, which the method "), "{line}");
-        let able = " does not draw; use --method deferred or --method pyramid";
+        let able = " does not draw; use --method deferred or --method pyramid or \
+                    --method blue";
         assert!(line.ends_with(able), "{line}");
     }
 }
@@ -104,8 +105,8 @@ fn every_method_has_a_name_of_its_own_and_is_found_by_it() {
         assert_eq!(Method::by_name(method.name()).unwrap(), method);
     }
     let line = Method::by_name("evva").unwrap_err().to_string();
-    let names =
-        "ewa, deferred, single-pass, transparent, transparent-hq, peeling, pyramid, template";
+    let names = "ewa, deferred, single-pass, transparent, transparent-hq, peeling, pyramid, template, \
+         blue";
     assert_eq!(line, format!("method `evva`; give one of {names}"));
 }
 

@@ -6,7 +6,7 @@ use crate::frame::{Exec, Frame, NO_ID};
 use crate::index::Index;
 use crate::index::order::BackToFront;
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::{Method, Session, ewa, peeling, transparent, transparent_hq};
+use crate::method::{Method, Session, blue, ewa, peeling, transparent, transparent_hq};
 use crate::number::random::unit;
 use crate::scene::{Camera, Cloud, Groups, Light, Scene, Surfels};
 
@@ -138,6 +138,37 @@ fn transparent_hq_is_explained_as_it_is_drawn() {
         assert_eq!(text.contains("the pixel is empty"), found.nearest.nearest.is_infinite());
     });
     assert!(most > 2, "{most} layers");
+}
+
+#[test]
+fn blue_is_explained_as_it_is_drawn() {
+    let mut ends = [0; 3];
+    for cull in [false, true] {
+        let settings = blue::Settings { cull };
+        Example::new().each_pixel(&settings, |job, frame, (x, y)| {
+            let found = blue::explain::explain::<f64>(job, &settings, (x, y)).unwrap();
+            let shown = *id(frame, "id").at(x, y);
+            assert_eq!(found.surfel().unwrap_or(NO_ID), shown);
+            let depth = found.kept.map_or(f64::INFINITY, |kept| kept.t);
+            assert_eq!(depth, *scalar(frame, "Z").at(x, y));
+            let offset = found.kept.and_then(|kept| kept.offset);
+            assert_eq!(offset.map_or(0.0, |[o, _]| o), *scalar(frame, "discs.offset").at(x, y));
+            let kept = |touch: &&blue::explain::BlueTouch<f64>| {
+                matches!(touch.end, blue::explain::BlueEnd::Nearest(_))
+            };
+            let last = found.touches.iter().rfind(kept).map_or(NO_ID, |touch| touch.id);
+            assert_eq!(last, shown);
+            let weights: Vec<_> = found.surfel().map(|surfel| (surfel, 1.0)).into_iter().collect();
+            assert_eq!(settings.weights(job, (x, y)).unwrap(), weights);
+            let text = found.to_string();
+            assert_eq!(text.contains("the pixel is empty"), shown == NO_ID, "{text}");
+            let words = ["dropped: the back", "discarded: offset", "loses    depth"];
+            for (count, word) in ends.iter_mut().zip(words) {
+                *count += usize::from(text.contains(word));
+            }
+        });
+    }
+    assert!(ends.iter().all(|count| *count > 20), "{ends:?}");
 }
 
 #[test]

@@ -17,10 +17,10 @@ use crate::frame::{Bins, Rect};
 use crate::method::algorithm::Job;
 use crate::method::checks::anything;
 use crate::method::judged::counted;
-use crate::method::projection::SceneProjector;
 use crate::method::projection::primitives::{
     Piece, PiecePixel, corners, triangle_piece, triangle_within,
 };
+use crate::method::projection::{PixelSample, SceneProjector};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector3};
 use crate::scene::Scene;
@@ -35,6 +35,8 @@ pub(in crate::method) struct AllPolygons<'a, P: Profile> {
 
 /// A piece of a triangle that may be drawn.
 struct PossiblePolygon<P: Profile> {
+    /// The triangle in its list.
+    index: u32,
     bounds: Rect,
     /// What depths it has.
     depths: Ball<P>,
@@ -51,6 +53,8 @@ enum Form<P: Profile> {
 /// What a triangle may leave in a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::method) struct PossibleFragment<P: Profile> {
+    /// The triangle in its list.
+    pub(in crate::method) index: u32,
     pub(in crate::method) depth: Ball<P>,
     /// In view space.
     pub(in crate::method) normal: Vector3<Ball<P>>,
@@ -108,6 +112,7 @@ impl<'a, P: Profile> AllPolygons<'a, P> {
                         if intervals.as_ref().is_none_or(|all| all.may_reach((x, y))) {
                             let (depth, color, lies) = (one.depths, [any; 3], false);
                             found[place(x, y)].push(PossibleFragment {
+                                index: one.index,
                                 depth,
                                 normal,
                                 color,
@@ -131,7 +136,8 @@ impl<'a, P: Profile> AllPolygons<'a, P> {
         let sample = piece.sample(&self.projector, at);
         let bounded = sample.depth.radius.is_finite();
         let depth = if bounded { sample.depth } else { one.depths };
-        PossibleFragment { depth, normal: sample.normal, color: sample.color, lies }
+        let PixelSample { normal, color, .. } = sample;
+        PossibleFragment { index: one.index, depth, normal, color, lies }
     }
 }
 
@@ -145,7 +151,8 @@ fn triangle<P: Profile>(
     let Some(polygon) = projector.clip.certain(p) else {
         let depths = depths(projector, &p, &p);
         let bounds = reach(projector, &p);
-        drawn.push(PossiblePolygon { bounds, depths, form: Form::Open(None) });
+        let index = index as u32;
+        drawn.push(PossiblePolygon { index, bounds, depths, form: Form::Open(None) });
         return;
     };
     for i in 2..polygon.len() {
@@ -172,6 +179,7 @@ fn piece<P: Profile>(
     if places.iter().flatten().all(|[least, greatest]| least == greatest) {
         let piece = triangle_piece(projector, id, least, weights, *p)?;
         return Some(PossiblePolygon {
+            index: id.0,
             bounds: piece.bounds,
             depths,
             form: Form::Exact(Box::new(piece)),
@@ -181,12 +189,13 @@ fn piece<P: Profile>(
     let bounds = intervals.bounds(projector.size);
     if !intervals.is_turned() {
         let form = Form::Open(Some(intervals));
-        return Some(PossiblePolygon { bounds, depths, form });
+        return Some(PossiblePolygon { index: id.0, bounds, depths, form });
     }
     let raster = Triangle::new(snap, least.map(|(place, _)| place))?;
     let piece = triangle_within(projector, id, (raster, bounds), least, weights, *p)?;
     let between = Depths::new(intervals, placed.map(|at| at.m), &weights);
-    Some(PossiblePolygon { bounds, depths, form: Form::Between(Box::new((piece, between))) })
+    let form = Form::Between(Box::new((piece, between)));
+    Some(PossiblePolygon { index: id.0, bounds, depths, form })
 }
 
 /// The depths of a piece of these corners of a triangle.
@@ -254,7 +263,7 @@ mod tests {
     use super::*;
     use crate::frame::Exec;
     use crate::index::Index;
-    use crate::method::projection::{PixelSample, SampleKind, project};
+    use crate::method::projection::{SampleKind, project};
     use crate::number::Exact;
     use crate::number::ball::{Gpu, Ieee};
     use crate::number::random::unit;

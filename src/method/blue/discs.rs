@@ -1,0 +1,121 @@
+//! The nearest disc of each pixel, see the page of [`super`].
+
+use super::squares::{Disc, Squares};
+use crate::composite::decide;
+use crate::frame::NO_ID;
+use crate::method::algorithm::Job;
+use crate::method::fragment::facing;
+use crate::method::resolved::Resolved;
+use crate::method::tiled::Tiled;
+use crate::number::{Exact, Real};
+use crate::splat::View;
+
+/// Where the ray of a pixel meets the plane of a disc.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DiscFragment<R> {
+    /// Depth.
+    pub(super) t: R,
+    /// The squared distance from the centre, in square world units.
+    pub(super) offset: R,
+}
+
+/// The ray of a pixel: a and b.
+#[inline(always)]
+pub(super) fn ray<R: Real>(view: &View<R>, (x, y): (u32, u32)) -> [R; 2] {
+    [column(view, x), row(view, y)]
+}
+
+/// a of a column.
+#[inline(always)]
+pub(super) fn column<R: Real>(view: &View<R>, x: u32) -> R {
+    (R::from_f32(x as f32 + 0.5) - view.cx) / view.fx
+}
+
+/// b of a row.
+#[inline(always)]
+pub(super) fn row<R: Real>(view: &View<R>, y: u32) -> R {
+    -((R::from_f32(y as f32 + 0.5) - view.cy) / view.fy)
+}
+
+impl<R: Real> Disc<R> {
+    /// The fragment on the ray of a pixel.
+    #[inline(always)]
+    pub(super) fn at(&self, [a, b]: [R; 2], perspective: bool) -> DiscFragment<R> {
+        let Self { p, n, .. } = *self;
+        let (t, x, y, z) = if perspective {
+            let t = self.through / ((n.x * a + n.y * b) - n.z);
+            (t, t * a - p.x, t * b - p.y, t + p.z)
+        } else {
+            let (x, y) = (a - p.x, b - p.y);
+            let z = (n.x * x + n.y * y) / n.z;
+            (z - p.z, x, y, z)
+        };
+        DiscFragment { t, offset: (x * x + y * y) + z * z }
+    }
+
+    /// Whether a fragment stays.
+    #[inline(always)]
+    pub(super) fn holds(&self, fragment: &DiscFragment<R>, near: R) -> R::Truth {
+        let DiscFragment { t, offset } = *fragment;
+        let sound = t.is_finite() & offset.is_finite();
+        sound & decide::beyond(t, near) & decide::inside(offset, self.limit)
+    }
+}
+
+/// What a pixel keeps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kept<R> {
+    /// Its depth; +inf where there is none.
+    pub(super) depth: R,
+    /// [`NO_ID`] where there is none.
+    pub(super) surfel: u32,
+    /// 0 where there is none.
+    pub(super) offset: R,
+    back: bool,
+}
+
+/// The nearest fragment of each pixel.
+pub(super) fn nearest<R: Exact>(job: &Job<'_>, squares: &Squares<R>) -> Tiled<Kept<R>> {
+    let view = View::<R>::new(job.camera);
+    let none = Kept { depth: R::INFINITY, surfel: NO_ID, offset: R::ZERO, back: false };
+    Tiled::new(job, |tile, rect| {
+        let mut pixels = vec![none; rect.pixels()];
+        squares.for_each(tile, |square| {
+            let inner = square.bounds.intersection(&rect);
+            for (x, y) in crate::method::tiled::pixels(inner) {
+                let fragment = square.disc.at(ray(&view, (x, y)), view.perspective);
+                let pixel = (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
+                let kept = &mut pixels[pixel];
+                let holds = square.disc.holds(&fragment, view.near);
+                if holds && decide::before(fragment.t, kept.depth) {
+                    let DiscFragment { t, offset } = fragment;
+                    let (surfel, back) = (square.surfel, square.back);
+                    // Adding 0 turns -0 into +0.
+                    *kept = Kept { depth: t + R::ZERO, surfel, offset, back };
+                }
+            }
+        });
+        pixels
+    })
+}
+
+/// What a pixel shows of what it keeps, in a scene with colours or without.
+pub(super) fn shown<R: Exact>(job: &Job<'_>, kept: &Kept<R>, colored: bool) -> Resolved<R> {
+    if kept.surfel == NO_ID {
+        return Resolved::EMPTY;
+    }
+    let (scene, i) = (job.scene, kept.surfel as usize);
+    let normal = scene.surfels.normal()[i].to_array().map(R::from_f32);
+    let color = scene.surfels.color().map_or(scene.material.color, |color| color[i]);
+    Resolved {
+        depth: kept.depth,
+        id: kept.surfel,
+        weight: R::ONE,
+        normal: facing(normal, kept.back).map(|part| part + R::ZERO),
+        color: if colored {
+            color.to_array().map(|part| R::from_f32(part) + R::ZERO)
+        } else {
+            [R::ZERO; 3]
+        },
+    }
+}

@@ -1,0 +1,117 @@
+//! Surfels as squares, [`LANES`] at a time.
+
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
+)]
+
+use crate::frame::Rect;
+use crate::method::blue::squares::{Disc, Square, SquareProjector};
+use crate::number::Vector3;
+use crate::number::lanes::{LANES, Lanes, components, put_vector, vectorized};
+use crate::splat::{Fate, Tally};
+use glam::Vec3;
+use std::ops::Range;
+
+/// [`LANES`] surfels.
+struct Block {
+    fate: [u32; LANES],
+    bounds: [[u32; LANES]; 4],
+    back: [u32; LANES],
+    p: [Lanes; 3],
+    n: [Lanes; 3],
+    through: Lanes,
+    limit: Lanes,
+}
+
+impl Block {
+    const EMPTY: Self = Self {
+        fate: [0; LANES],
+        bounds: [[0; LANES]; 4],
+        back: [0; LANES],
+        p: [[0.0; LANES]; 3],
+        n: [[0.0; LANES]; 3],
+        through: [0.0; LANES],
+        limit: [0.0; LANES],
+    };
+
+    fn square(&self, i: usize, surfel: u32) -> Square<f32> {
+        let [x0, y0, x1, y1] = self.bounds.map(|of| of[i]);
+        let vector = |of: &[Lanes; 3]| {
+            let [x, y, z] = components(of, i);
+            Vector3::new(x, y, z)
+        };
+        let disc = Disc {
+            p: vector(&self.p),
+            n: vector(&self.n),
+            through: self.through[i],
+            limit: self.limit[i],
+        };
+        Square { bounds: Rect { x0, y0, x1, y1 }, surfel, back: self.back[i] != 0, disc }
+    }
+}
+
+/// The squares of a range of surfels that are drawn, and what becomes of all.
+pub(super) fn squares(
+    projector: &SquareProjector<'_, f32>,
+    range: Range<usize>,
+    squares: &mut Vec<Square<f32>>,
+) -> Tally {
+    const FATES: [Fate; 5] =
+        [Fate::Visible, Fate::Behind, Fate::Degenerate, Fate::BackFacing, Fate::Outside];
+    let surfels = projector.surfels;
+    let mut block = Block::EMPTY;
+    let mut tally = Tally::default();
+    for first in range.clone().step_by(LANES) {
+        // Lanes without a surfel have the last one again, and are not counted.
+        let count = (range.end - first).min(LANES);
+        let at: [usize; LANES] = std::array::from_fn(|i| first + i.min(count - 1));
+        let input = Input {
+            position: at.map(|i| surfels.position()[i]),
+            normal: at.map(|i| surfels.normal()[i]),
+            radius: at.map(|i| surfels.radius()[i]),
+            side: projector.sides_of(&at),
+        };
+        place(projector, &input, &mut block);
+        for i in 0..count {
+            let fate = FATES[block.fate[i] as usize];
+            tally.count(fate);
+            if fate == Fate::Visible {
+                squares.push(block.square(i, (first + i) as u32));
+            }
+        }
+    }
+    tally
+}
+
+struct Input {
+    position: [Vec3; LANES],
+    normal: [Vec3; LANES],
+    radius: Lanes,
+    /// 0 of a surfel without one.
+    side: Lanes,
+}
+
+vectorized!(
+    fn place(projector: &SquareProjector<'_, f32>, input: &Input, block: &mut Block) {
+        // A copy, which nothing that is written can be thought to change.
+        let projector = &{ *projector };
+        let (mut fates, mut bounds) = ([0; LANES], [[0; LANES]; 4]);
+        let (mut p, mut n) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
+        let (mut back, mut through, mut limit) = ([0; LANES], [0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            let position = Vector3::from_glam(input.position[i]);
+            let normal = Vector3::from_glam(input.normal[i]);
+            let placed = projector.square(position, normal, input.radius[i], input.side[i]);
+            let (pixels, fate) = placed.fate(&projector.points.view);
+            fates[i] = fate as u32;
+            (bounds[0][i], bounds[1][i]) = (pixels.x0, pixels.y0);
+            (bounds[2][i], bounds[3][i]) = (pixels.x1, pixels.y1);
+            back[i] = u32::from(placed.g > 0.0);
+            put_vector(&mut p, i, placed.disc.p);
+            put_vector(&mut n, i, placed.disc.n);
+            (through[i], limit[i]) = (placed.disc.through, placed.disc.limit);
+        }
+        *block = Block { fate: fates, bounds, back, p, n, through, limit };
+    }
+);

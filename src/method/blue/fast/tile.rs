@@ -1,0 +1,153 @@
+//! The discs of a tile.
+
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
+)]
+
+use crate::composite::decide;
+use crate::frame::{FramebufferStrip, NO_ID, Rect};
+use crate::method::blue::discs::{DiscFragment, column, row};
+use crate::method::blue::squares::{Square, Squares};
+use crate::method::fast::store::clear;
+use crate::method::fragment::facing;
+use crate::number::lanes::{LANES, vectorized};
+use crate::scene::Scene;
+use crate::splat::View;
+
+/// Side of a window in pixels.
+const SIDE: usize = 4;
+const _: () = assert!(SIDE * SIDE == LANES, "a lane is a pixel of a window");
+
+/// What one tile works with; the memory is used for many tiles.
+#[derive(Default)]
+pub(super) struct TileOfDiscs {
+    rect: Rect,
+    squares: Vec<Square<f32>>,
+    /// Depth of each pixel, and the place of its disc in the list. Rows are longer than those of the tile, and
+    /// there are more of them: a window may begin at any pixel.
+    depth: Vec<f32>,
+    disc: Vec<u32>,
+    /// a of each column and b of each row.
+    a: Vec<f32>,
+    b: Vec<f32>,
+}
+
+impl TileOfDiscs {
+    /// Becomes a tile of these pixels, with the squares that touch it.
+    pub(super) fn gather(&mut self, squares: &Squares<f32>, tile: usize, rect: Rect) {
+        self.rect = rect;
+        self.squares.clear();
+        squares.for_each(tile, |square| {
+            if !square.bounds.intersection(&rect).is_empty() {
+                self.squares.push(*square);
+            }
+        });
+    }
+
+    /// How long a row is.
+    fn stride(&self) -> usize {
+        self.rect.columns() + SIDE - 1
+    }
+
+    /// Draws the squares.
+    pub(super) fn draw(&mut self, view: &View<f32>) {
+        if self.squares.is_empty() {
+            return;
+        }
+        let Rect { x0, y0, .. } = self.rect;
+        let (columns, rows) = (self.stride(), self.rect.rows() + SIDE - 1);
+        self.a.clear();
+        self.a.extend((x0..x0 + columns as u32).map(|x| column(view, x)));
+        self.b.clear();
+        self.b.extend((y0..y0 + rows as u32).map(|y| row(view, y)));
+        self.depth.clear();
+        self.depth.resize(columns * rows, f32::INFINITY);
+        self.disc.clear();
+        self.disc.resize(columns * rows, NO_ID);
+        if view.perspective {
+            draw::<true>(self, view.near);
+        } else {
+            draw::<false>(self, view.near);
+        }
+    }
+
+    /// Writes what the pixels show.
+    pub(super) fn store(&self, scene: &Scene, pixels: &mut FramebufferStrip<'_, f32>) {
+        let rect = &self.rect;
+        if self.squares.is_empty() {
+            return clear(rect, pixels);
+        }
+        let (columns, stride) = (rect.columns(), self.stride());
+        for y in 0..rect.rows() {
+            let depth = &self.depth[y * stride..][..columns];
+            let discs = &self.disc[y * stride..][..columns];
+            pixels.depth.row(rect, y).copy_from_slice(depth);
+            let seen = |disc: u32| self.squares.get(disc as usize);
+            for (id, &disc) in pixels.id.row(rect, y).iter_mut().zip(discs) {
+                *id = seen(disc).map_or(NO_ID, |square| square.surfel);
+            }
+            for (weight, &disc) in pixels.weight.row(rect, y).iter_mut().zip(discs) {
+                *weight = if disc == NO_ID { 0.0 } else { 1.0 };
+            }
+            if let Some(normal) = &mut pixels.normal {
+                for (normal, &disc) in normal.row(rect, y).iter_mut().zip(discs) {
+                    *normal = seen(disc).map_or([0.0; 3], |square| {
+                        let own = scene.surfels.normal()[square.surfel as usize].to_array();
+                        facing(own, square.back).map(|part| part + 0.0)
+                    });
+                }
+            }
+            if let Some(color) = &mut pixels.color {
+                let own = scene.surfels.color();
+                for (color, &disc) in color.row(rect, y).iter_mut().zip(discs) {
+                    *color = seen(disc).map_or([0.0; 3], |square| {
+                        let i = square.surfel as usize;
+                        let color = own.map_or(scene.material.color, |own| own[i]);
+                        color.to_array().map(|part| part + 0.0)
+                    });
+                }
+            }
+        }
+    }
+}
+
+vectorized!(
+    fn draw<const PERSPECTIVE: bool>(tile: &mut TileOfDiscs, near: f32) {
+        let (rect, stride) = (tile.rect, tile.stride());
+        let TileOfDiscs { squares, depth, disc: discs, a, b, .. } = tile;
+        for (place, square) in (0..).zip(squares.iter()) {
+            let inner = square.bounds.intersection(&rect);
+            let disc = square.disc;
+            let [x0, x1] = [inner.x0, inner.x1].map(|x| (x - rect.x0) as usize);
+            let [y0, y1] = [inner.y0, inner.y1].map(|y| (y - rect.y0) as usize);
+            for y in (y0..y1).step_by(SIDE) {
+                for x in (x0..x1).step_by(SIDE) {
+                    let (a, b) = (&a[x..x + SIDE], &b[y..y + SIDE]);
+                    let (mut ts, mut holds) = ([0.0; LANES], [0_u32; LANES]);
+                    for i in 0..LANES {
+                        let ray = [a[i % SIDE], b[i / SIDE]];
+                        let fragment = disc.at(ray, PERSPECTIVE);
+                        let DiscFragment { t, .. } = fragment;
+                        let inside = (x + i % SIDE < x1) & (y + i / SIDE < y1);
+                        ts[i] = t + 0.0;
+                        holds[i] = u32::from(inside & disc.holds(&fragment, near)).wrapping_neg();
+                    }
+                    let first = y * stride + x;
+                    for k in 0..SIDE {
+                        let at = first + k * stride;
+                        let (depth, discs) = (&mut depth[at..at + SIDE], &mut discs[at..at + SIDE]);
+                        for i in 0..SIDE {
+                            let t = ts[k * SIDE + i];
+                            let kept = holds[k * SIDE + i]
+                                & u32::from(decide::before(t, depth[i])).wrapping_neg();
+                            let bits = (t.to_bits() & kept) | (depth[i].to_bits() & !kept);
+                            depth[i] = f32::from_bits(bits);
+                            discs[i] = (place & kept) | (discs[i] & !kept);
+                        }
+                    }
+                }
+            }
+        }
+    }
+);

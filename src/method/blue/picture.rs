@@ -1,0 +1,89 @@
+//! Both stages in one call: from a scene to named planes; and one stage on somebody's planes.
+
+use super::discs::{Kept, nearest, shown};
+use super::polygons::Polygons;
+use super::squares::Squares;
+use super::{Settings, fast, planes};
+use crate::error::Result;
+use crate::frame::{Framebuffer, NamedPlane, Pool, Wanted};
+use crate::method::algorithm::Job;
+use crate::method::given::Given;
+use crate::method::picture::{Clock, Picture, finish, framebuffer};
+use crate::method::projection::Has;
+use crate::method::resolved;
+use crate::method::stage::unknown;
+use crate::method::tiled::Tiled;
+use crate::number::Exact;
+use crate::splat::Tally;
+
+/// The definition, in any number; with `stages`, every stage leaves its planes.
+pub(super) fn define<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    stages: bool,
+) -> Result<Picture<R>> {
+    let mut clock = Clock::default();
+    let Drawn { target, kept, tally } = discs(job, settings, stages)?;
+    clock.lap("discs");
+    let left = if stages { planes::stages(job, &kept, &target) } else { Vec::new() };
+    Ok(finish(target, left, tally, clock, job))
+}
+
+/// One stage on somebody's planes.
+pub(super) fn stage<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    stage: &str,
+    given: &Given<'_, R>,
+) -> Result<Vec<NamedPlane<R>>> {
+    match stage {
+        "discs" => {
+            let Drawn { target, kept, .. } = discs(job, settings, true)?;
+            let mut left = planes::stages(job, &kept, &target);
+            left.extend(planes::pixels(target));
+            Ok(left)
+        }
+        "shading" => resolved::shade(job, given, Has::of(job.scene).color),
+        _ => Err(unknown(stage)),
+    }
+}
+
+/// The fast path for `f32`.
+pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
+    let mut clock = Clock::default();
+    let mut target = framebuffer(job.camera, wanted(job, false), pool);
+    let tally = fast::render(job, settings, &mut target);
+    if let Some(polygons) = Polygons::draw(job, settings)? {
+        polygons.over(&mut target, job.exec);
+    }
+    clock.lap("discs");
+    Ok(finish(target, Vec::new(), tally, clock, job))
+}
+
+/// What the stage of the discs leaves.
+struct Drawn<R> {
+    target: Framebuffer<R>,
+    kept: Tiled<Kept<R>>,
+    tally: Tally,
+}
+
+fn discs<R: Exact>(job: &Job<'_>, settings: &Settings, stages: bool) -> Result<Drawn<R>> {
+    let squares = Squares::new(job, settings.cull);
+    let kept = nearest(job, &squares);
+    let wanted = wanted(job, stages);
+    let pixels = kept.map(|kept| shown(job, kept, wanted.color));
+    let mut target = resolved::framebuffer(job, &pixels, wanted);
+    if let Some(polygons) = Polygons::draw(job, settings)? {
+        polygons.over(&mut target, job.exec);
+    }
+    Ok(Drawn { target, kept, tally: squares.tally })
+}
+
+/// The planes that a scene needs.
+fn wanted(job: &Job<'_>, stages: bool) -> Wanted {
+    Wanted {
+        normal: stages || !job.scene.lights.is_empty(),
+        color: Has::of(job.scene).color,
+        observed: false,
+    }
+}

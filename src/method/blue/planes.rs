@@ -1,0 +1,78 @@
+//! The planes of the stages.
+
+use super::discs::Kept;
+use crate::frame::{Framebuffer, NamedPlane, Plane};
+use crate::method::algorithm::Job;
+use crate::method::resolved;
+use crate::method::stage::{Holds, PlaneRow, Stage, When};
+use crate::method::tiled::Tiled;
+use crate::number::Exact;
+
+pub(super) const COLOR: PlaneRow = PlaneRow::new(
+    "resolved",
+    Holds::Color,
+    "linear RGB",
+    "colour of the nearest fragment, before shading; 0 where there is none",
+    When::Colored,
+);
+pub(super) const OFFSET: PlaneRow = PlaneRow::new(
+    "discs.offset",
+    Holds::Scalar,
+    "square world units",
+    "o, the squared distance of the nearest fragment from the centre of its disc; 0 of a triangle, and where \
+     there is none",
+    When::Stages,
+);
+pub(super) const NORMAL: PlaneRow = PlaneRow::new(
+    "normal",
+    Holds::Vector,
+    "",
+    "normal of the nearest fragment, towards the viewer, in world space; the null vector where there is none",
+    When::Lit,
+);
+pub(super) const WEIGHT: PlaneRow =
+    PlaneRow::new("weight", Holds::Scalar, "", "1 where there is a fragment, else 0", When::Always);
+pub(super) const ID: PlaneRow = PlaneRow::new(
+    "id",
+    Holds::Index,
+    "",
+    "surfel of the nearest fragment, or its triangle, counted on after the surfels; 0xFFFF_FFFF where there \
+     is none",
+    When::Always,
+);
+
+/// The stages, see [`mod@crate::method::planes`].
+pub(super) const STAGES: &[Stage] = &[
+    Stage {
+        name: "discs",
+        reads: &[],
+        leaves: &[COLOR, OFFSET, resolved::DEPTH, NORMAL, WEIGHT, ID],
+    },
+    resolved::shading(&["discs"]),
+];
+
+/// What the discs leave that no picture without stages has.
+pub(super) fn stages<R: Exact>(
+    job: &Job<'_>,
+    kept: &Tiled<Kept<R>>,
+    target: &Framebuffer<R>,
+) -> Vec<NamedPlane<R>> {
+    let surfels = job.scene.surfels.len();
+    let offset = |x, y| {
+        let triangle = *target.id.at(x, y) as usize >= surfels;
+        if triangle { R::ZERO } else { kept.at(x, y).offset }
+    };
+    let color = target.color.clone().map(|plane| COLOR.triple(0, plane));
+    let size = [target.width, target.height];
+    color.into_iter().chain([OFFSET.scalar(0, Plane::from_pixels(size, offset))]).collect()
+}
+
+/// What the discs leave in every picture.
+pub(super) fn pixels<R: Exact>(target: Framebuffer<R>) -> Vec<NamedPlane<R>> {
+    let Framebuffer { depth, id, weight, normal, .. } = target;
+    let mut planes = vec![resolved::DEPTH.scalar(0, depth)];
+    planes.extend(normal.map(|plane| NORMAL.triple(0, plane)));
+    planes.push(WEIGHT.scalar(0, weight));
+    planes.push(ID.index(0, id));
+    planes
+}

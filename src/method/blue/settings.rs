@@ -1,0 +1,24 @@
+//! What is computed.
+
+use crate::setting::{Fields, Visit};
+use crate::splat::culling;
+
+/// What is computed; everything here may change the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Whether surfels and triangles seen from behind are dropped.
+    pub cull: bool,
+}
+
+impl Default for Settings {
+    /// Seen from the front, as by the other methods of opaque surfaces.
+    fn default() -> Self {
+        Self { cull: true }
+    }
+}
+
+impl Fields for Settings {
+    fn fields(&mut self, each: &mut Visit<'_>) {
+        each(culling(&mut self.cull));
+    }
+}

@@ -1,0 +1,185 @@
+//! Surfels as squares on the screen, see the page of [`super`].
+
+use crate::frame::{Bins, Rect};
+use crate::method::algorithm::Job;
+use crate::method::projection::surfels::PointProjector;
+use crate::number::{Exact, Real, Vector3};
+use crate::scene::{Sides, Surfels};
+use crate::splat::{Fate, Reasons, Tally, View, ellipse};
+use std::ops::Range;
+
+/// The plane and the rim of a disc, in view space.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Disc<R> {
+    /// Centre.
+    pub(super) p: Vector3<R>,
+    /// Normal.
+    pub(super) n: Vector3<R>,
+    /// n . p.
+    pub(super) through: R,
+    /// r r.
+    pub(super) limit: R,
+}
+
+/// Where a square begins and ends, in pixels: columns and rows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edges<R> {
+    pub(super) x: [R; 2],
+    pub(super) y: [R; 2],
+}
+
+/// A surfel that is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Square<R> {
+    /// Its pixels in the picture.
+    pub(super) bounds: Rect,
+    pub(super) surfel: u32,
+    /// Whether its back is seen.
+    pub(super) back: bool,
+    pub(super) disc: Disc<R>,
+}
+
+/// A surfel before it is known whether it is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlacedSquare<R: Real> {
+    pub(super) edges: Edges<R>,
+    pub(super) disc: Disc<R>,
+    /// How the surfel turns: < 0 if its front is seen.
+    pub(super) g: R,
+    /// Why it is not drawn; whether it is outside is for its edges to say.
+    pub(super) reasons: Reasons<R>,
+}
+
+/// What the squares of a picture share.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SquareProjector<'a, R> {
+    pub(super) surfels: &'a Surfels,
+    sides: Option<&'a Sides>,
+    pub(super) points: PointProjector<R>,
+}
+
+impl<'a, R: Real> SquareProjector<'a, R> {
+    pub(super) fn new(job: &Job<'a>, cull: bool) -> Self {
+        let scene = job.scene;
+        let points = PointProjector::new(View::new(job.camera), cull);
+        Self { surfels: &scene.surfels, sides: scene.sides.as_ref(), points }
+    }
+
+    /// A surfel on the screen.
+    pub(super) fn place(&self, i: usize) -> PlacedSquare<R> {
+        let [side] = self.sides_of(&[i]);
+        let [position, normal] =
+            [self.surfels.position()[i], self.surfels.normal()[i]].map(Vector3::from_glam);
+        self.square(position, normal, R::from_f32(self.surfels.radius()[i]), R::from_f32(side))
+    }
+
+    /// The sides of surfels; 0 of those without one.
+    #[inline(always)]
+    pub(super) fn sides_of<const N: usize>(&self, surfels: &[usize; N]) -> [f32; N] {
+        let of = |sides: &Sides, i: usize| sides.of(i as u32).unwrap_or(0.0);
+        self.sides.map_or([0.0; N], |sides| surfels.map(|i| of(sides, i)))
+    }
+
+    /// The same of these numbers; the side is 0 of a surfel without one.
+    #[inline(always)]
+    pub(super) fn square(
+        &self,
+        position: Vector3<R>,
+        normal: Vector3<R>,
+        radius: R,
+        side: R,
+    ) -> PlacedSquare<R> {
+        let points = &self.points;
+        let n = points.view.direction(normal);
+        let (placed, g, reasons) = points.reasons(position, n);
+        let half = R::from_f32(0.5);
+        let own = ellipse::radius_in_pixels(radius, points.focal, placed.m).at_least(half);
+        let h = R::select(side.gt(R::ZERO), side * half, own);
+        let edges = |c: R| [c - h, c + h];
+        let p = placed.p;
+        PlacedSquare {
+            edges: Edges { x: edges(placed.center.x), y: edges(placed.center.y) },
+            disc: Disc { p, n, through: n.dot(p), limit: radius * radius },
+            g,
+            reasons: Reasons { outside: false.into(), ..reasons },
+        }
+    }
+}
+
+impl<R: Exact> PlacedSquare<R> {
+    /// Its pixels in a picture, and what becomes of it; bounds of what is not drawn mean nothing.
+    #[inline(always)]
+    pub(super) fn fate(&self, view: &View<R>) -> (Rect, Fate) {
+        let pixels = |[first, end]: [R; 2], size: R| [before(first, size), before(end, size)];
+        let [x0, x1] = pixels(self.edges.x, view.width);
+        let [y0, y1] = pixels(self.edges.y, view.height);
+        let outside = (x0 >= x1) | (y0 >= y1);
+        (Rect { x0, y0, x1, y1 }, Reasons { outside, ..self.reasons }.fate())
+    }
+}
+
+impl<R: Exact> SquareProjector<'_, R> {
+    /// A surfel as it is drawn, if it is.
+    fn drawn(&self, i: usize, tally: &mut Tally) -> Option<Square<R>> {
+        let placed = self.place(i);
+        let (bounds, fate) = placed.fate(&self.points.view);
+        tally.count(fate);
+        let square =
+            Square { bounds, surfel: i as u32, back: placed.g > R::ZERO, disc: placed.disc };
+        (fate == Fate::Visible).then_some(square)
+    }
+}
+
+/// How many centres of columns or rows of a picture of this size are before a coordinate, exactly.
+#[inline(always)]
+fn before<R: Exact>(coordinate: R, size: R) -> u32 {
+    let held = coordinate.clamped(R::ZERO, size);
+    let pixel = held.to_pixel();
+    pixel + u32::from(R::from_f32(pixel as f32 + 0.5) < held)
+}
+
+/// The squares of a picture, in batches of ascending surfels with their bins.
+#[derive(Debug)]
+pub(super) struct Squares<R> {
+    pub(super) tally: Tally,
+    batches: Vec<(Vec<Square<R>>, Bins)>,
+}
+
+impl<R: Exact> Squares<R> {
+    /// Every surfel that is drawn.
+    pub(super) fn new(job: &Job<'_>, cull: bool) -> Self {
+        let projector = SquareProjector::new(job, cull);
+        Self::of(job, |range, squares| {
+            let mut tally = Tally::default();
+            squares.extend(range.filter_map(|i| projector.drawn(i, &mut tally)));
+            tally
+        })
+    }
+
+    /// The same, where `project` makes the squares of a range of surfels.
+    pub(super) fn of(
+        job: &Job<'_>,
+        project: impl Fn(Range<usize>, &mut Vec<Square<R>>) -> Tally + Sync + Send,
+    ) -> Self {
+        let (grid, count) = (job.grid(), job.scene.surfels.len());
+        // As many batches as the splats of the other methods have.
+        let size = (count / 64).min(8192).max(2 * grid.len()).min(count.div_ceil(4).max(1));
+        let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
+        let results = job.exec.ordered(ranges.collect(), |range: Range<usize>| {
+            let mut squares = Vec::with_capacity(range.len());
+            let tally = project(range, &mut squares);
+            let bins = Bins::new(&grid, squares.len(), |i| squares[i].bounds);
+            ((squares, bins), tally)
+        });
+        let tally = results.iter().fold(Tally::default(), |sum, (_, tally)| sum.plus(tally));
+        Self { tally, batches: results.into_iter().map(|(batch, _)| batch).collect() }
+    }
+
+    /// Calls `visit` for each square that may touch a tile, in the order of the surfels.
+    #[inline(always)]
+    pub(super) fn for_each(&self, tile: usize, mut visit: impl FnMut(&Square<R>)) {
+        for (squares, bins) in &self.batches {
+            bins.for_each(tile, |i| visit(&squares[i as usize]));
+        }
+    }
+}
