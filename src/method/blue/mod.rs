@@ -6,7 +6,8 @@
 //! fragment of a pixel stays. Nothing is averaged and nothing is filtered.
 //!
 //! Which surfels are drawn, how large they are and how large their squares are, is not chosen here: that is
-//! the prefix of an order, and its side \[BJFM19, 4.1\].
+//! the prefix of an order, and its side \[BJFM19, 4.1\]: [`crate::scene::objects::detail`]. How the size of
+//! discs follows the time of frames is [`controller`].
 //!
 //! # The square
 //!
@@ -76,6 +77,7 @@
 //!
 //! [`Exact`]: crate::number::Exact
 
+pub mod controller;
 mod discs;
 pub mod explain;
 mod fast;
