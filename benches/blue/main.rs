@@ -1,0 +1,59 @@
+//! Prefixes of orders as a view draws them \[BJFM19, 4 and 5.3\]: holes, where the estimate fails, and an
+//! instanced scene of 100 million triangles.
+//!
+//! `cargo bench --bench blue` prints Markdown, and with `--write` puts the tables into `docs/bjfm19.md`; an
+//! argument is a pattern that the names of rows must contain. Scans are those in the folder that
+//! `SPLATREF_MODELS` names (`../shared/models` if that is not set).
+
+#[path = "../common/mod.rs"]
+mod common;
+mod covering;
+mod failures;
+mod instanced;
+mod scene;
+
+use common::report::{Arguments, Table};
+use splatref::Result;
+use splatref::frame::Exec;
+
+fn main() -> Result<()> {
+    let arguments = Arguments::parse()?;
+    let exec = Exec::new(2, 32)?;
+    covering::tables(&arguments, &exec)?;
+    if "failures".contains(&arguments.pattern) {
+        failures(&arguments, &exec)?;
+    }
+    if "instances".contains(&arguments.pattern) {
+        instanced::table(&arguments, &exec)?;
+    }
+    Ok(())
+}
+
+/// What [`failures`] measures, as tables.
+fn failures(arguments: &Arguments, exec: &Exec) -> Result<()> {
+    let mut table = Table::new(&["gap / distance of surfels", "holes, %"]);
+    for gap in failures::GAPS {
+        table.row(&format!("{gap} | {:.2}", failures::thin_wall(gap, exec)?));
+    }
+    table.publish(arguments, "bjfm19.md", "thin")?;
+    let mut table =
+        Table::new(&["length / width", "surfels", "a pixel, near end", "a pixel, far end"]);
+    for length in failures::LENGTHS {
+        let [surfels, near, far] = failures::long_object(length, exec)?;
+        table.row(&format!("{length} | {surfels} | {near:.1} | {far:.1}"));
+    }
+    table.publish(arguments, "bjfm19.md", "long")?;
+    let mut table = Table::new(&["surfels asked for", "holes, %"]);
+    for count in failures::COUNTS {
+        let (count, holes) = failures::short_prefix(count, exec)?;
+        table.row(&format!("{count} | {holes:.2}"));
+    }
+    table.publish(arguments, "bjfm19.md", "short")?;
+    let mut table = Table::new(&["load step", "0 late", "1", "2", "3", "4"]);
+    for step in failures::STEPS {
+        let cells: Vec<_> =
+            (0..5).map(|late| failures::load_step(step, late).to_string()).collect();
+        table.row(&format!("{step} | {}", cells.join(" | ")));
+    }
+    table.publish(arguments, "bjfm19.md", "controller")
+}
