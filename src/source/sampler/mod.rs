@@ -3,12 +3,15 @@
 //! - [`greedy`]: the exact farthest-point order.
 //! - [`progressive`]: the paper's, of some points by chance the farthest; and points by chance alone.
 //! - [`mod@quality`]: how evenly a prefix is spread.
+//! - [`mod@spectrum`]: at which frequencies it is even.
 
 pub mod greedy;
 mod nearest;
 pub mod progressive;
 pub mod quality;
+pub mod spectrum;
 
 pub use greedy::{Greedy, Order, Start};
 pub use progressive::{Progressive, Schedule, shuffled};
 pub use quality::{Quality, quality};
+pub use spectrum::{Spectrum, spectrum};
