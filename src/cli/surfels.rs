@@ -2,13 +2,14 @@
 
 use super::{Ended, Ending, output, progress, report};
 use clap::ValueEnum;
+use glam::Vec3;
 use splatref::frame::Exec;
 use splatref::io::ply;
 use splatref::io::scene_file::{FileKind, read_model};
 use splatref::scene::{Camera, Cloud, Primitives, Scene, Surfels};
 use splatref::source::candidates::{self, Directions, candidates};
 use splatref::source::derive;
-use splatref::source::sampler::{Greedy, Order, Progressive, Schedule, Start, shuffled};
+use splatref::source::sampler::{Greedy, Order, Progressive, Schedule, Start, averaged, shuffled};
 use splatref::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -44,6 +45,9 @@ pub(super) struct Args {
     /// How many points at most [default: all; of a mesh 100000]
     #[arg(long, value_name = "N")]
     count: Option<usize>,
+    /// Colours of the first N points: means over what is nearest to them [default: their own]
+    #[arg(long, value_name = "N")]
+    average_colors: Option<usize>,
     /// Of a mesh: the side of the picture of each direction, in pixels [default: 1024]
     #[arg(long, value_name = "N")]
     side: Option<u32>,
@@ -98,11 +102,19 @@ pub(super) fn run(args: &Args) -> Ended {
         cloud
     };
     let all = cloud.position.len();
+    if args.average_colors.is_some() && cloud.color.is_none() {
+        let what = "the file has no colours; remove --average-colors";
+        return Err(Error::format(&args.points, what));
+    }
     let start = Instant::now();
     let count = args.count.unwrap_or(if mesh { OF_A_MESH } else { all });
     let order = args.order(&cloud, count, &exec, &show).map_err(of_file)?;
+    let colors = args.colors(&cloud, &order, &exec, &show).map_err(of_file)?;
     let time = start.elapsed();
-    let cloud = cloud.some(&order.index);
+    let mut cloud = cloud.some(&order.index);
+    if let (Some(all), Some(new)) = (&mut cloud.color, &colors) {
+        all[..new.len()].copy_from_slice(new);
+    }
     drop(steps);
 
     report::line(if mesh { "candidates" } else { "points" }, all);
@@ -115,6 +127,9 @@ pub(super) fn run(args: &Args) -> Ended {
         let apart = report::short(f64::from(last).sqrt());
         report::line("apart", format!("{apart} at least, in world units"));
     }
+    if let Some(new) = colors {
+        report::line("colours", format!("means over cells, of the first {}", new.len()));
+    }
     report::line("time", format!("{:.2} s", time.as_secs_f64()));
     progress::during("writing", || ply::write(&args.output, &cloud))?;
     report::line("file", args.output.display());
@@ -126,6 +141,12 @@ impl Args {
     fn check(&self) -> Result<()> {
         if self.count == Some(0) {
             return Err(Error::Usage("--count 0 leaves no point; give at least 1".into()));
+        }
+        if let Some(averaged) = self.average_colors
+            && (averaged == 0 || self.count.is_some_and(|count| averaged > count))
+        {
+            let what = format!("--average-colors {averaged}: give 1 to the number of points");
+            return Err(Error::Usage(what));
         }
         if let Some(side) = self.side {
             Camera::check_size(side, side)
@@ -175,6 +196,20 @@ impl Args {
         };
         let side = self.side.unwrap_or(candidates::SIDE);
         Ok(candidates(&scene, &directions, side, exec, show)?.cloud)
+    }
+
+    /// The means of the first points, if somebody asks for them.
+    fn colors(
+        &self,
+        cloud: &Cloud,
+        order: &Order,
+        exec: &Exec,
+        show: &dyn Fn(&str, u64, u64),
+    ) -> Result<Option<Vec<Vec3>>> {
+        let (Some(count), Some(color)) = (self.average_colors, &cloud.color) else {
+            return Ok(None);
+        };
+        averaged((&cloud.position, color), order, count, exec, show).map(Some)
     }
 
     fn order(

@@ -133,6 +133,35 @@ fn a_prefix_is_the_file_of_its_points() {
     }
 }
 
+/// A colour by chance becomes that of the neighbourhood; other points and properties stay.
+#[test]
+fn colours_of_the_first_points_are_means() {
+    let at = TempDir::new().unwrap();
+    let given = points(60);
+    ply::write(&at.path().join("in.ply"), &given).unwrap();
+    let options = ["surfels", "in.ply", "--start", "3", "-o"];
+    succeeds(at.path(), &[&options[..], &["own.ply"]].concat());
+    let said = succeeds(at.path(), &[&options[..], &["out.ply", "--average-colors", "8"]].concat());
+    assert!(said.contains("means over cells, of the first 8\n"), "{said}");
+    let [own, new] = ["own.ply", "out.ply"].map(|name| ply::read(&at.path().join(name)).unwrap());
+    let [own_color, new_color] = [&own, &new].map(|cloud| cloud.color.clone().unwrap());
+    // The first pick's cell is all: the mean of 0 to 59, 1 and 2.
+    assert_eq!(new_color[0], Vec3::new(29.5, 1.0, 2.0));
+    assert!((1..8).any(|i| new_color[i] != own_color[i]));
+    assert_eq!(new_color[8..], own_color[8..]);
+    assert_eq!(Cloud { color: own.color.clone(), ..new }, own);
+    for (arguments, code, what) in [
+        (["in.ply", "--average-colors", "0"], 2, "--average-colors 0: give 1"),
+        (["in.ply", "--average-colors", "61"], 1, "colours of 61 points, but the order has 60"),
+        (["plain.ply", "--average-colors", "9"], 1, "plain.ply: the file has no colours"),
+    ] {
+        let plain = Cloud { color: None, mipmap: None, ..given.clone() };
+        ply::write(&at.path().join("plain.ply"), &plain).unwrap();
+        let line = fails(at.path(), &[&["surfels", "-o", "no.ply"], &arguments[..]].concat(), code);
+        assert!(line.contains(what), "{what} in {line}");
+    }
+}
+
 #[test]
 fn the_start_is_chosen_by_a_seed_and_threads_change_nothing() {
     let at = TempDir::new().unwrap();

@@ -44,9 +44,10 @@
 //! \[WW11\] Wei, Wang: *Differential Domain Analysis for Non-uniform Sampling*, SIGGRAPH 2011.
 
 use super::greedy::squared_distance;
+use super::search::LEAF;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::index::point_tree::PointTree;
+use crate::index::point_tree::{Entry, PointTree};
 use crate::memory;
 use crate::number::elementary::bessel_j0;
 use glam::Vec3;
@@ -62,8 +63,6 @@ const BINS: usize = 1024;
 const STEPS: usize = 32;
 const FIRST: usize = 8;
 const LAST: usize = 128;
-/// Ranges of the tree of at most so many points are searched one by one.
-const LEAF: usize = 8;
 /// Points of one job.
 const JOB: usize = 1024;
 /// What the tree takes for a point, at most.
@@ -167,7 +166,7 @@ fn reach2(points: &[Vec3], exec: &Exec) -> f32 {
 fn pairs(points: &[Vec3], reach2: f32, exec: &Exec) -> Vec<u64> {
     let tree = PointTree::new(points, LEAF, exec);
     let scale = BINS as f64 / f64::from(reach2).sqrt();
-    let count = |entries: &[crate::index::point_tree::Entry]| {
+    let count = |entries: &[Entry]| {
         let mut bins = vec![0_u64; BINS];
         for from in entries {
             let mut offer = |id: u32, d2: f32| {
