@@ -182,6 +182,31 @@ mod tests {
         assert!(of(&points, &colors, &[], &exec).unwrap().is_empty());
     }
 
+    /// Of colours by chance, of variance v: a pick's own is 2 v off in the mean square from what it stands for,
+    /// and the mean of a large cell v, which is the least that one colour can be.
+    #[test]
+    fn a_mean_halves_the_square_error_of_colours_by_chance() {
+        let points = crate::source::Shape::Torus.surfels(20_000, 3).unwrap().position().to_vec();
+        let colors: Vec<Vec3> =
+            (0..20_000).map(|i| Vec3::splat(crate::number::random::unit(8, i))).collect();
+        let exec = Exec::new(2, 32).unwrap();
+        let greedy = Greedy { start: Start::Index(0) };
+        let order = greedy.order(&points, 256, &exec, &|_, _, _| ()).unwrap();
+        let new = of(&points, &colors, &order.index, &exec).unwrap();
+        let own: Vec<Vec3> = order.index.iter().map(|&i| colors[i as usize]).collect();
+        let square = |of_picks: &[Vec3]| {
+            let of_point = |(point, color): (&Vec3, &Vec3)| {
+                let d =
+                    |rank: &usize| squared_distance(*point, points[order.index[*rank] as usize]);
+                let near = (0..256).reduce(|a, b| if d(&b) < d(&a) { b } else { a }).unwrap();
+                f64::from(of_picks[near].x - color.x) * f64::from(of_picks[near].x - color.x)
+            };
+            points.iter().zip(&colors).map(of_point).sum::<f64>() / 20_000.0
+        };
+        let (own, new) = (square(&own), square(&new));
+        assert!((own - 2.0 / 12.0).abs() < 0.02 && (new - 1.0 / 12.0).abs() < 0.004, "{own} {new}");
+    }
+
     #[test]
     fn what_has_no_mean_is_refused() {
         let (points, colors) = ([Vec3::ZERO, Vec3::ONE], [Vec3::ONE; 2]);
