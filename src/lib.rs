@@ -218,6 +218,8 @@ pub mod setting;
 pub mod shade;
 pub mod source;
 pub mod splat;
+#[cfg(feature = "cli")]
+pub mod study;
 pub mod verify;
 
 pub use error::{Error, Result};

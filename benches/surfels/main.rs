@@ -10,6 +10,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod meshes;
+mod surface;
 
 use common::report::{Arguments, Table};
 use glam::Vec3;

@@ -2,6 +2,7 @@
 
 use crate::common::models::models;
 use crate::common::report::{Arguments, Table};
+use crate::surface;
 use glam::{DVec3, Vec3};
 use splatref::Result;
 use splatref::frame::Exec;
@@ -30,6 +31,7 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
         "5 k: least, median, covering",
         "10 k: least, median, covering",
     ]);
+    let mut along = surface::table();
     let quiet = |_: &str, _, _| ();
     let mut all = Vec::new();
     for (name, cloud) in models(&arguments.pattern, arguments)? {
@@ -42,17 +44,19 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
     }
     for (name, scene) in all {
         let start = Instant::now();
-        let Candidates { cloud, counts, .. } =
-            candidates(&scene, &Directions::Cube, SIDE, exec, &quiet)?;
+        let all = candidates(&scene, &Directions::Cube, SIDE, exec, &quiet)?;
+        let Candidates { cloud, counts, .. } = &all;
         let (time, triangles) = (start.elapsed().as_secs_f64(), scene.primitives.triangles.len());
         let rate = (triangles * counts.len()) as f64 / time / 1e6;
         let found = cloud.position.len();
         meshes.row(&format!("{name} | {triangles} | {found} | {time:.2} | {rate:.1}"));
-        of_samplers(name, &cloud, exec, (&mut times, &mut spread))?;
+        of_samplers(name, cloud, exec, (&mut times, &mut spread))?;
+        surface::row(&mut along, name, &all, exec)?;
     }
     meshes.publish_times(arguments, "bjfm19.md", "candidates")?;
     times.publish_times(arguments, "bjfm19.md", "samplers")?;
-    spread.publish(arguments, "bjfm19.md", "spread")
+    spread.publish(arguments, "bjfm19.md", "spread")?;
+    along.publish_times(arguments, "bjfm19.md", "geodesic")
 }
 
 fn of_samplers(

@@ -16,6 +16,7 @@ mod options;
 mod output;
 mod progress;
 mod project;
+mod quality;
 mod render;
 mod report;
 mod rows;
@@ -72,6 +73,8 @@ enum Command {
     Group(group::Args),
     /// Put points in an order of which every prefix is spread over all of them, into a PLY
     Surfels(surfels::Args),
+    /// Say how evenly prefixes of points in order are spread, with a chart
+    Quality(quality::Args),
     /// Write the visible splats as records, for a backend to upload
     Project(project::Args),
     /// Describe a PLY, a scene file or an EXR
@@ -95,6 +98,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Explain(args) => explain::run(&args),
         Command::Group(args) => group::run(&args),
         Command::Surfels(args) => surfels::run(&args),
+        Command::Quality(args) => quality::run(&args),
         Command::Project(args) => project::run(&args),
         Command::Info(args) => info::run(&args),
     };

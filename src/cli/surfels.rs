@@ -2,13 +2,16 @@
 
 use super::{Ended, Ending, output, progress, report};
 use clap::ValueEnum;
+use glam::Vec3;
 use splatref::frame::Exec;
 use splatref::io::ply;
 use splatref::io::scene_file::{FileKind, read_model};
 use splatref::scene::{Camera, Cloud, Primitives, Scene, Surfels};
-use splatref::source::candidates::{self, Directions, candidates};
+use splatref::source::candidates::{self, Candidates, Directions, candidates};
 use splatref::source::derive;
-use splatref::source::sampler::{Greedy, Order, Progressive, Schedule, Start, shuffled};
+use splatref::source::sampler::{
+    Graph, Greedy, Order, Progressive, Schedule, Start, averaged, shuffled,
+};
 use splatref::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -24,6 +27,7 @@ are what is seen from outside, a pixel each. The samplers:
   random                  by chance alone
 
 Examples:
+  splatref surfels sheet.ply -o blue.ply --distance geodesic --average-colors 20000
   splatref surfels bunny.ply -o blue.ply --count 100000
   splatref surfels scan.ply -o blue.ply --sampler greedy --start 3 --count 10000")]
 pub(super) struct Args {
@@ -44,6 +48,15 @@ pub(super) struct Args {
     /// How many points at most [default: all; of a mesh 100000]
     #[arg(long, value_name = "N")]
     count: Option<usize>,
+    /// How far points are: straight, or along the surface, which takes normals and --sampler greedy
+    #[arg(long, value_enum, default_value = "straight")]
+    distance: Distance,
+    /// Along the surface: how far neighbours are at most, in world units [default: of a mesh, two pixels]
+    #[arg(long, value_name = "LENGTH")]
+    reach: Option<f32>,
+    /// Colours of the first N points: means over what is nearest to them [default: their own]
+    #[arg(long, value_name = "N")]
+    average_colors: Option<usize>,
     /// Of a mesh: the side of the picture of each direction, in pixels [default: 1024]
     #[arg(long, value_name = "N")]
     side: Option<u32>,
@@ -69,6 +82,14 @@ impl Sampler {
     }
 }
 
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Distance {
+    /// Of a line through the air
+    Straight,
+    /// Of a path along neighbours that face alike: around thin walls
+    Geodesic,
+}
+
 #[derive(Clone, Copy, ValueEnum)]
 enum Corners {
     /// Of a cube around the mesh
@@ -91,29 +112,31 @@ pub(super) fn run(args: &Args) -> Ended {
         Error::Invalid(what) => Error::format(&args.points, what),
         other => other,
     };
-    let cloud = if mesh {
-        args.candidates(cloud, &exec, &show).map_err(of_file)?
+    let (cloud, pixel) = if mesh {
+        let found = args.candidates(cloud, &exec, &show).map_err(of_file)?;
+        (found.cloud, Some(found.pixel))
     } else {
         args.points_alone(&cloud)?;
-        cloud
+        (cloud, None)
     };
     let all = cloud.position.len();
+    args.lacks(&cloud, mesh)?;
     let start = Instant::now();
     let count = args.count.unwrap_or(if mesh { OF_A_MESH } else { all });
-    let order = args.order(&cloud, count, &exec, &show).map_err(of_file)?;
+    let graph = args.graph(&cloud, pixel, &exec, &show).map_err(of_file)?;
+    let order = args.order(&cloud, graph.as_ref(), count, &exec, &show).map_err(of_file)?;
+    let colors = args.colors(&cloud, &order, &exec, &show).map_err(of_file)?;
     let time = start.elapsed();
-    let cloud = cloud.some(&order.index);
+    let mut cloud = cloud.some(&order.index);
+    if let (Some(all), Some(new)) = (&mut cloud.color, &colors) {
+        all[..new.len()].copy_from_slice(new);
+    }
     drop(steps);
 
     report::line(if mesh { "candidates" } else { "points" }, all);
-    let (name, picked) = (args.sampler.name(), order.index.len());
-    let first = order.index.first().map_or(String::new(), |first| format!(", from point {first}"));
-    report::line("order", format!("{name}, {picked} of them{first}"));
-    if let [_, .., last] = order.distance[..]
-        && args.sampler == Sampler::Greedy
-    {
-        let apart = report::short(f64::from(last).sqrt());
-        report::line("apart", format!("{apart} at least, in world units"));
+    args.told(&order, graph.as_ref());
+    if let Some(new) = colors {
+        report::line("colours", format!("means over cells, of the first {}", new.len()));
     }
     report::line("time", format!("{:.2} s", time.as_secs_f64()));
     progress::during("writing", || ply::write(&args.output, &cloud))?;
@@ -122,10 +145,48 @@ pub(super) fn run(args: &Args) -> Ended {
 }
 
 impl Args {
+    /// Says what the order is.
+    fn told(&self, order: &Order, graph: Option<&Graph>) {
+        let (name, picked) = (self.sampler.name(), order.index.len());
+        let first =
+            order.index.first().map_or(String::new(), |first| format!(", from point {first}"));
+        report::line("order", format!("{name}, {picked} of them{first}"));
+        if let Some(graph) = graph {
+            report::line("parts", format!("{}, which no path connects", graph.parts()));
+        }
+        if let [_, .., last] = order.distance[..]
+            && self.sampler == Sampler::Greedy
+            && last.is_finite()
+        {
+            let apart = report::short(f64::from(last).sqrt());
+            let along = if graph.is_some() { " along the surface" } else { "" };
+            report::line("apart", format!("{apart} at least{along}, in world units"));
+        }
+    }
+
     /// What is refused before anything is read.
     fn check(&self) -> Result<()> {
         if self.count == Some(0) {
             return Err(Error::Usage("--count 0 leaves no point; give at least 1".into()));
+        }
+        if let Some(averaged) = self.average_colors
+            && (averaged == 0 || self.count.is_some_and(|count| averaged > count))
+        {
+            let what = format!("--average-colors {averaged}: give 1 to the number of points");
+            return Err(Error::Usage(what));
+        }
+        let along = self.distance == Distance::Geodesic;
+        if along && self.sampler != Sampler::Greedy {
+            let what = "--distance geodesic is of --sampler greedy: remove one of them";
+            return Err(Error::Usage(what.into()));
+        }
+        if let Some(reach) = self.reach {
+            if !along {
+                return Err(Error::Usage("--reach is of --distance geodesic: add that".into()));
+            }
+            if !(reach > 0.0 && reach.is_finite()) {
+                return Err(Error::Usage(format!("--reach {reach}: give a length above 0")));
+            }
         }
         if let Some(side) = self.side {
             Camera::check_size(side, side)
@@ -161,8 +222,28 @@ impl Args {
         }
     }
 
+    /// Whether the points have what the options need.
+    fn lacks(&self, cloud: &Cloud, mesh: bool) -> Result<()> {
+        let along = self.distance == Distance::Geodesic;
+        let what = if self.average_colors.is_some() && cloud.color.is_none() {
+            "the file has no colours; remove --average-colors"
+        } else if along && cloud.normal.is_none() {
+            "the file has no normals, which --distance geodesic needs"
+        } else if along && self.reach.is_none() && !mesh {
+            "of points --distance geodesic needs a --reach; give about two distances of neighbours"
+        } else {
+            return Ok(());
+        };
+        Err(Error::format(&self.points, what))
+    }
+
     /// What is seen of a mesh.
-    fn candidates(&self, mesh: Cloud, exec: &Exec, show: &dyn Fn(&str, u64, u64)) -> Result<Cloud> {
+    fn candidates(
+        &self,
+        mesh: Cloud,
+        exec: &Exec,
+        show: &dyn Fn(&str, u64, u64),
+    ) -> Result<Candidates> {
         let (triangles, derived) = derive::polygons(mesh, exec, show)?;
         if derived.dropped_primitives > 0 {
             report::line("dropped", format!("{} triangles", derived.dropped_primitives));
@@ -174,12 +255,42 @@ impl Args {
             Some(Corners::Box) => Directions::Box,
         };
         let side = self.side.unwrap_or(candidates::SIDE);
-        Ok(candidates(&scene, &directions, side, exec, show)?.cloud)
+        candidates(&scene, &directions, side, exec, show)
+    }
+
+    /// The neighbours along the surface, if distances are to go that way.
+    fn graph(
+        &self,
+        cloud: &Cloud,
+        pixel: Option<f64>,
+        exec: &Exec,
+        show: &dyn Fn(&str, u64, u64),
+    ) -> Result<Option<Graph>> {
+        let (Distance::Geodesic, Some(normal)) = (self.distance, &cloud.normal) else {
+            return Ok(None);
+        };
+        let reach = self.reach.or(pixel.map(|pixel| (2.0 * pixel) as f32)).unwrap_or(0.0);
+        Graph::new(&cloud.position, normal, reach, exec, show).map(Some)
+    }
+
+    /// The means of the first points, if somebody asks for them.
+    fn colors(
+        &self,
+        cloud: &Cloud,
+        order: &Order,
+        exec: &Exec,
+        show: &dyn Fn(&str, u64, u64),
+    ) -> Result<Option<Vec<Vec3>>> {
+        let (Some(count), Some(color)) = (self.average_colors, &cloud.color) else {
+            return Ok(None);
+        };
+        averaged((&cloud.position, color), order, count, exec, show).map(Some)
     }
 
     fn order(
         &self,
         cloud: &Cloud,
+        graph: Option<&Graph>,
         count: usize,
         exec: &Exec,
         show: &dyn Fn(&str, u64, u64),
@@ -189,6 +300,9 @@ impl Args {
         let progressive =
             |schedule| Progressive { start, seed: self.seed, schedule }.order(points, count, show);
         match self.sampler {
+            Sampler::Greedy if let Some(graph) = graph => {
+                Greedy { start }.along(graph, count, show)
+            }
             Sampler::Greedy => Greedy { start }.order(points, count, exec, show),
             Sampler::Progressive => progressive(Schedule::Paper),
             Sampler::ProgressiveAsShipped => progressive(Schedule::AsShipped),

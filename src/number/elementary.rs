@@ -4,7 +4,7 @@
 //! them everywhere.
 //!
 //! - **f64**: the functions of the crate `libm` 0.2.16 (pinned), which give the same bits on every
-//!   target: `exp`, `log`, `pow`, `sin`, `cos`, `tan` and `atan2`, ports of FreeBSD's msun. Other
+//!   target: `exp`, `log`, `pow`, `sin`, `cos`, `tan`, `atan2` and `j0`, ports of FreeBSD's msun. Other
 //!   libraries, newer versions of musl among them, differ in the last digit here and there.
 //! - **f32**: the definition is *the correctly rounded value*. It is computed in f64 and rounded
 //!   once: [`exp_f32`] by the polynomial below, which is checked over every `f32` in its range by
@@ -123,6 +123,12 @@ pub fn tan(x: f64) -> f64 {
 #[must_use]
 pub fn atan2(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
+}
+
+/// The Bessel function of the first kind and order 0, J0, in f64.
+#[must_use]
+pub fn bessel_j0(x: f64) -> f64 {
+    libm::j0(x)
 }
 
 /// The polynomial of degree 10 with the least greatest relative error from e^r, 2.1e-16, for

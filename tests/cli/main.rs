@@ -11,6 +11,7 @@ mod memory;
 mod pictures;
 mod primitives;
 mod project;
+mod quality;
 mod refusals;
 mod reports;
 mod sequence;

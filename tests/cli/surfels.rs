@@ -174,6 +174,82 @@ fn a_view_draws_as_much_of_an_order_as_it_needs() {
     }
 }
 
+/// A colour by chance becomes that of the neighbourhood; other points and properties stay.
+#[test]
+fn colours_of_the_first_points_are_means() {
+    let at = TempDir::new().unwrap();
+    let given = points(60);
+    ply::write(&at.path().join("in.ply"), &given).unwrap();
+    let options = ["surfels", "in.ply", "--start", "3", "-o"];
+    succeeds(at.path(), &[&options[..], &["own.ply"]].concat());
+    let said = succeeds(at.path(), &[&options[..], &["out.ply", "--average-colors", "8"]].concat());
+    assert!(said.contains("means over cells, of the first 8\n"), "{said}");
+    let [own, new] = ["own.ply", "out.ply"].map(|name| ply::read(&at.path().join(name)).unwrap());
+    let [own_color, new_color] = [&own, &new].map(|cloud| cloud.color.clone().unwrap());
+    // The first pick's cell is all: the mean of 0 to 59, 1 and 2.
+    assert_eq!(new_color[0], Vec3::new(29.5, 1.0, 2.0));
+    assert!((1..8).any(|i| new_color[i] != own_color[i]));
+    assert_eq!(new_color[8..], own_color[8..]);
+    assert_eq!(Cloud { color: own.color.clone(), ..new }, own);
+    for (arguments, code, what) in [
+        (["in.ply", "--average-colors", "0"], 2, "--average-colors 0: give 1"),
+        (["in.ply", "--average-colors", "61"], 1, "colours of 61 points, but the order has 60"),
+        (["plain.ply", "--average-colors", "9"], 1, "plain.ply: the file has no colours"),
+    ] {
+        let plain = Cloud { color: None, mipmap: None, ..given.clone() };
+        ply::write(&at.path().join("plain.ply"), &plain).unwrap();
+        let line = fails(at.path(), &[&["surfels", "-o", "no.ply"], &arguments[..]].concat(), code);
+        assert!(line.contains(what), "{what} in {line}");
+    }
+}
+
+/// Two sides of a sheet: a pick on one says nothing of the other.
+#[test]
+fn distances_along_a_surface_do_not_go_through_it() {
+    let at = TempDir::new().unwrap();
+    let place = |i: usize| Vec3::new((i % 10) as f32, (i / 10 % 10) as f32, (i / 100) as f32 * 0.1);
+    let normal = |i: usize| if i < 100 { -Vec3::Z } else { Vec3::Z };
+    let sheet = Cloud {
+        position: (0..200).map(place).collect(),
+        normal: Some((0..200).map(normal).collect()),
+        ..Cloud::default()
+    };
+    ply::write(&at.path().join("in.ply"), &sheet).unwrap();
+    ply::write(&at.path().join("plain.ply"), &Cloud { normal: None, ..sheet }).unwrap();
+    let along = ["--distance", "geodesic", "--reach", "1.5", "--start", "0", "--count", "4"];
+    let order = |threads| {
+        let options = ["surfels", "in.ply", "-o", "out.ply", "--threads", threads];
+        let said = succeeds(at.path(), &[&options[..], &along].concat());
+        assert!(
+            said.contains("parts      2, which") && said.contains("at least along the"),
+            "{said}"
+        );
+        ply::read(&at.path().join("out.ply")).unwrap().position
+    };
+    let corners = [0, 100, 99, 199].map(place);
+    assert_eq!(order("1"), corners, "each side in its turn");
+    assert_eq!(order("3"), corners);
+    // An octahedron: its edges are no borders, so that it is one part.
+    ply::write(&at.path().join("mesh.ply"), &octahedron()).unwrap();
+    let mesh = ["surfels", "mesh.ply", "-o", "out.ply", "--side", "60", "--distance", "geodesic"];
+    let said = succeeds(at.path(), &mesh);
+    assert!(said.contains("parts      1, which"), "{said}");
+    let count = ["surfels", "in.ply", "-o", "out.ply", "--distance", "geodesic"];
+    for (name, options, code, what) in [
+        ("in.ply", &[] as &[&str], 1, "in.ply: of points --distance geodesic needs a --reach"),
+        ("plain.ply", &["--reach", "2"], 1, "plain.ply: the file has no normals"),
+        ("in.ply", &["--reach", "0"], 2, "--reach 0: give a length above 0"),
+        ("in.ply", &["--reach", "nan"], 2, "--reach NaN"),
+        ("in.ply", &["--reach", "1", "--sampler", "random"], 2, "is of --sampler greedy"),
+    ] {
+        let all = [&[count[0], name], &count[2..], options].concat();
+        let line = fails(at.path(), &all, code);
+        assert!(line.contains(what), "{what} in {line}");
+    }
+    let line = fails(at.path(), &["surfels", "in.ply", "-o", "out.ply", "--reach", "1"], 2);
+    assert!(line.contains("--reach is of --distance geodesic"), "{line}");
+}
+
 #[test]
 fn the_start_is_chosen_by_a_seed_and_threads_change_nothing() {
     let at = TempDir::new().unwrap();

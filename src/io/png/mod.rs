@@ -5,7 +5,7 @@ mod read;
 pub use read::{Stored, read};
 
 use crate::frame::{Frame, Plane};
-use crate::io::replace::Pending;
+use crate::io::replace::{Pending, write_atomically};
 use crate::io::srgb;
 use crate::{Error, Result};
 use image::codecs::png::PngEncoder;
@@ -89,12 +89,34 @@ fn pending(
             (pixels, ExtendedColorType::Rgba8)
         }
     };
-    Pending::write(path, |file| {
-        PngEncoder::new(file).write_image(&pixels, width, height, kind).map_err(|error| match error
-        {
-            ImageError::IoError(error) => error,
-            other => io::Error::other(other),
-        })
+    Pending::write(path, |file| encode(file, &pixels, [width, height], kind))
+}
+
+/// Writes codes of 8 bits, red, green and blue of each pixel from the top row on, as they are.
+///
+/// # Errors
+/// [`Error::Io`] if there are not `3 width height` codes or none, or if the file cannot be written, and
+/// then nothing is left of it.
+pub fn write_codes(path: &Path, size: [u32; 2], codes: &[u8]) -> Result<()> {
+    let wanted = size.map(u64::from).iter().product::<u64>() * 3;
+    if wanted == 0 || codes.len() as u64 != wanted {
+        let [width, height] = size;
+        let what = format!("{} codes are no {width} x {height} pixels", codes.len());
+        return Err(Error::io(path, io::Error::other(what)));
+    }
+    write_atomically(path, |file| encode(file, codes, size, ExtendedColorType::Rgb8))
+}
+
+fn encode(
+    file: &mut impl io::Write,
+    pixels: &[u8],
+    [width, height]: [u32; 2],
+    kind: ExtendedColorType,
+) -> io::Result<()> {
+    let written = PngEncoder::new(file).write_image(pixels, width, height, kind);
+    written.map_err(|error| match error {
+        ImageError::IoError(error) => error,
+        other => io::Error::other(other),
     })
 }
 

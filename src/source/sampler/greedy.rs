@@ -155,17 +155,21 @@ impl Greedy {
 impl Start {
     /// The index of the first pick, if there can be an order.
     pub(super) fn of(&self, points: &[Vec3]) -> Result<u32> {
+        if let Some(at) = points.iter().position(|point| !point.is_finite()) {
+            let what = format!("point {at} is not finite and has no distance to others");
+            return Err(Error::Invalid(what));
+        }
+        self.among(points.len())
+    }
+
+    /// The index of the first pick of so many points, if there are some and it is one.
+    pub(super) fn among(&self, n: usize) -> Result<u32> {
         let invalid = |what| Err(Error::Invalid(what));
-        let n = points.len();
         let Ok(count) = u32::try_from(n) else {
             return invalid(format!("{n} points, but indices are of 32 bits: split the model"));
         };
         if n == 0 {
             return invalid("there are no points to put in order".into());
-        }
-        if let Some(at) = points.iter().position(|point| !point.is_finite()) {
-            let what = format!("point {at} is not finite and has no distance to others");
-            return invalid(what);
         }
         match *self {
             Self::Seed(seed) => Ok(random::below(seed, 0, u64::from(count)) as u32),
@@ -180,7 +184,7 @@ impl Start {
 
 impl Order {
     /// Once all distances are 0: the other points in ascending index.
-    fn finish(&mut self, points: usize, count: usize) {
+    pub(super) fn finish(&mut self, points: usize, count: usize) {
         let mut picked = vec![false; points];
         self.index.iter().for_each(|&i| picked[i as usize] = true);
         let rest = (0..).zip(&picked).filter(|(_, picked)| !**picked).map(|(i, _)| i);

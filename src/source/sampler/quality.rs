@@ -11,13 +11,12 @@
 //! `Decided:` another member is one at another place of the prefix, so that equal points are 0 apart.
 //! The paper draws the square roots of `nearest`, divided by one common length, as violins.
 
-use super::greedy::squared_distance;
+use super::search::{LEAF, Search};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::point_tree::PointTree;
 use crate::memory;
 use glam::Vec3;
-use std::ops::Range;
 
 /// How a prefix is spread: all are squared distances.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,8 +29,6 @@ pub struct Quality {
     pub covering: f32,
 }
 
-/// Ranges of the tree of at most so many points are searched one by one.
-const LEAF: usize = 8;
 /// Points of one job.
 const JOB: usize = 4096;
 /// What the tree and the distances take for a point of the prefix, at most.
@@ -58,66 +55,25 @@ pub fn quality(points: &[Vec3], prefix: &[u32], exec: &Exec) -> Result<Quality> 
     let members: Vec<Vec3> = prefix.iter().map(|&index| points[index as usize]).collect();
     let tree = PointTree::new(&members, LEAF, exec);
     let jobs: Vec<_> = members.chunks(JOB).enumerate().collect();
+    let least =
+        |point, own| Search { tree: &tree, point, own }.nearest((f32::INFINITY, u32::MAX)).0;
     let nearest = exec.ordered(jobs, |(job, some)| {
         let ids = (job * JOB) as u32..;
-        let all = some.iter().zip(ids);
-        all.map(|(&point, own)| Search { tree: &tree, point, own }.least()).collect::<Vec<_>>()
+        some.iter().zip(ids).map(|(&point, own)| least(point, own)).collect::<Vec<_>>()
     });
     let nearest = nearest.concat();
     let covering = exec.ordered(points.chunks(JOB).collect(), |some| {
-        let search = |&point| Search { tree: &tree, point, own: u32::MAX }.least();
-        some.iter().map(search).fold(0.0, |most, d| if d > most { d } else { most })
+        let nearest = some.iter().map(|&point| least(point, u32::MAX));
+        nearest.fold(0.0, |most, d| if d > most { d } else { most })
     });
     let packing = nearest.iter().fold(f32::INFINITY, |least, &d| if d < least { d } else { least });
     let covering = covering.into_iter().fold(0.0, |most, d| if d > most { d } else { most });
     Ok(Quality { nearest, packing, covering })
 }
 
-/// The search of the member that is nearest to a point.
-struct Search<'a> {
-    tree: &'a PointTree,
-    point: Vec3,
-    /// The member that does not count.
-    own: u32,
-}
-
-impl Search<'_> {
-    fn least(&self) -> f32 {
-        let mut least = f32::INFINITY;
-        self.within(0..self.tree.entries().len(), &mut least);
-        least
-    }
-
-    /// Lowers the least distance to that of a range of the tree.
-    fn within(&self, range: Range<usize>, least: &mut f32) {
-        if range.len() <= LEAF {
-            range.for_each(|rank| self.member(rank, least));
-            return;
-        }
-        let (middle, axis) = self.tree.node(&range);
-        self.member(middle, least);
-        let out = self.point[axis] - self.tree.entries()[middle].point[axis];
-        let (low, high) = (range.start..middle, middle + 1..range.end);
-        let (near, far) = if out < 0.0 { (low, high) } else { (high, low) };
-        self.within(near, least);
-        // Rounded, too, no point behind the plane is nearer than the plane: rounding is monotone.
-        if out * out < *least {
-            self.within(far, least);
-        }
-    }
-
-    #[inline(always)]
-    fn member(&self, rank: usize, least: &mut f32) {
-        let entry = self.tree.entries()[rank];
-        let distance = squared_distance(self.point, entry.point);
-        if distance < *least && entry.id != self.own {
-            *least = distance;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::greedy::squared_distance;
     use super::*;
     use crate::index::point_tree::given;
     use crate::source::sampler::{Greedy, Start};

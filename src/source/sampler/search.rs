@@ -1,0 +1,56 @@
+//! The search of the point that is nearest, by squared distances of [`super::greedy`].
+
+use super::greedy::squared_distance;
+use crate::index::point_tree::PointTree;
+use glam::Vec3;
+use std::ops::Range;
+
+/// Ranges of the tree of at most so many points are searched one by one.
+pub(super) const LEAF: usize = 8;
+
+/// A squared distance, and the index of the point that is so far: the lower index of equal distances.
+pub(super) type Found = (f32, u32);
+
+/// The search of the point of a tree that is nearest to a place.
+pub(super) struct Search<'a> {
+    pub(super) tree: &'a PointTree,
+    pub(super) point: Vec3,
+    /// The point that does not count.
+    pub(super) own: u32,
+}
+
+impl Search<'_> {
+    /// The nearest point, or what is found already if that is nearer, or as near and of a lower index.
+    pub(super) fn nearest(&self, mut found: Found) -> Found {
+        self.within(0..self.tree.entries().len(), &mut found);
+        found
+    }
+
+    /// Replaces what is found by the nearest of a range of the tree.
+    fn within(&self, range: Range<usize>, found: &mut Found) {
+        if range.len() <= LEAF {
+            range.for_each(|rank| self.offer(rank, found));
+            return;
+        }
+        let (middle, axis) = self.tree.node(&range);
+        self.offer(middle, found);
+        let out = self.point[axis] - self.tree.entries()[middle].point[axis];
+        let (low, high) = (range.start..middle, middle + 1..range.end);
+        let (near, far) = if out < 0.0 { (low, high) } else { (high, low) };
+        self.within(near, found);
+        // Rounded, too, no point behind the plane is nearer than the plane: rounding is monotone.
+        if out * out <= found.0 {
+            self.within(far, found);
+        }
+    }
+
+    #[inline(always)]
+    fn offer(&self, rank: usize, found: &mut Found) {
+        let entry = self.tree.entries()[rank];
+        let distance = squared_distance(self.point, entry.point);
+        let nearer = distance < found.0 || (distance == found.0 && entry.id < found.1);
+        if nearer && entry.id != self.own {
+            *found = (distance, entry.id);
+        }
+    }
+}
