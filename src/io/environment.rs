@@ -4,6 +4,7 @@ use super::exr;
 use crate::error::{Error, Result};
 use crate::frame::image::Values;
 use crate::frame::{Exec, Plane};
+use crate::memory;
 use crate::scene::environment::{Environment, Map};
 use std::path::Path;
 
@@ -45,6 +46,9 @@ pub(super) fn rgb(
             }
         }
     };
+    let count = u64::from(image.width) * u64::from(image.height);
+    memory::try_ask(12 * count, || format!("the colours of {count} pixels"))
+        .map_err(|what| Error::format(path, what))?;
     let (red, green, blue) = (channel("R")?, channel("G")?, channel("B")?);
     let pixels = red.iter().zip(&green).zip(&blue).map(|((&r, &g), &b)| [r, g, b]).collect();
     Ok(Plane::from_values(image.width, image.height, pixels))

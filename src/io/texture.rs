@@ -221,7 +221,31 @@ mod tests {
             line.ends_with("a.png: a texture of 70000 x 1 pixels; give sides of 1 to 65536"),
             "{line}"
         );
+        let bytes = fs::read(&path).unwrap();
+        for (side, what) in [
+            (100_000_u32, "a.png: a texture of 100000 x 100000 pixels; give sides of 1 to 65536"),
+            (65_536, "a.png: header: promises 65536 x 65536 pixels, more than a file of"),
+            (0, "a.png: "),
+        ] {
+            let mut huge = bytes.clone();
+            huge[16..20].copy_from_slice(&side.to_be_bytes());
+            huge[20..24].copy_from_slice(&side.to_be_bytes());
+            let crc = crc32(&huge[12..29]);
+            huge[29..33].copy_from_slice(&crc.to_be_bytes());
+            fs::write(&path, huge).unwrap();
+            let line = read(&path, &exec()).unwrap_err().to_string();
+            assert!(line.contains(what) && !line.contains('\n'), "{line}");
+        }
         fs::write(&path, "GIF").unwrap();
         assert!(read(&path, &exec()).unwrap_err().to_string().contains("write it again"));
+    }
+
+    #[cfg(feature = "cli")]
+    fn crc32(bytes: &[u8]) -> u32 {
+        !bytes.iter().fold(!0, |crc: u32, byte| {
+            (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
+                (crc >> 1) ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 }
+            })
+        })
     }
 }

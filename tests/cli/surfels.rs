@@ -230,7 +230,7 @@ fn the_candidates_of_a_textured_mesh_have_its_colours() {
             assert!((color[i] - expected).abs() < 1e-6 && color[1 - i] == 0.0, "{p}: {color}");
         }
     }
-    std::fs::remove_file(at.path().join("red.exr")).unwrap();
+    fs::remove_file(at.path().join("red.exr")).unwrap();
     let said = fails(at.path(), &common, 1);
     assert!(said.contains("in.ply: its texture red.exr: "), "{said}");
     let picture = ["render", "in.ply", "-o", "a.exr", "--size", "32x24", "--texture", "green.exr"];

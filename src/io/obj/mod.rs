@@ -59,7 +59,7 @@ use materials::Material;
 use std::path::Path;
 
 /// What a byte of a file comes to at most: a corner of a polygon takes two bytes.
-const BYTES_A_BYTE: u64 = 96;
+const BYTES_A_BYTE: u64 = 72;
 
 /// The number of no normal, no coordinates and no material.
 const NONE: u32 = u32::MAX;
@@ -263,7 +263,9 @@ impl Lines {
         corners().for_each(|corner| used[corner[0] as usize] = true);
         let unused = (0..).zip(&used).filter(|(_, used)| !**used).map(|(i, _)| [i, NONE, NONE]);
         let drawn = self.triangles.iter().map(|one| one.corners.map(|c| point(&c, one.material)));
-        let mut points: Vec<[u32; 3]> = drawn.clone().flatten().chain(unused).collect();
+        let count = 3 * self.triangles.len() + used.iter().filter(|used| !**used).count();
+        let mut points: Vec<[u32; 3]> = Vec::with_capacity(count);
+        points.extend(drawn.clone().flatten().chain(unused));
         points.sort_unstable();
         points.dedup();
         let place = |corner: [u32; 3]| points.partition_point(|point| *point < corner) as u32;

@@ -16,7 +16,7 @@
 //! | | `mip1_red mip1_green mip1_blue`, `mip2_red` ... | as `red` | [prefiltered colours](crate::scene::Mipmap), level by level from 1 on, 16 levels at most, beside `red green blue` |
 //! | | `tux tuy tuz tvx tvy tvz` | any | half axes of an ellipse, world units |
 //! | | `tx ty tz` | any | tangent of a tube, of any length |
-//! | | `u v`, `s t` or `texture_u texture_v` | any | [texture coordinates](crate::scene::texture) |
+//! | | `u v`, `s t` or `texture_u texture_v` | any | [texture coordinates](crate::scene::texture); `s` or `t` alone is something else |
 //! | | `group` | an integer | the surfel's own [group](crate::index::grouping), 0 to 63 |
 //! | | `also` | list of integers | further groups that it was added to, none twice; skipped without `group` |
 //! | `group` | `scale` | any | what radii are multiplied by, finite and > 0, for each group; skipped without `group` |

@@ -74,7 +74,13 @@ pub(super) struct Layout {
 
 impl Layout {
     pub(super) fn new(element: &Element, groups: &groups::Reader) -> Result<Self, String> {
-        let slots = element.properties.iter().map(|p| slot(&p.name, p.kind, groups));
+        let named = |name: &str| element.properties.iter().any(|p| p.name == name);
+        // One of them alone is a time or a scalar.
+        let pair = named("s") && named("t");
+        let slots = element.properties.iter().map(|p| match p.name.as_str() {
+            "s" | "t" if !pair => Ok(PropertyUse::Skip),
+            name => slot(name, p.kind, groups),
+        });
         let slots: Vec<PropertyUse> = slots.collect::<Result<_, _>>()?;
         let numbers = slots.iter().filter_map(|slot| match slot {
             PropertyUse::Number(place, _) => Some(*place),
@@ -97,7 +103,7 @@ impl Layout {
             return Err("element vertex has no properties x, y, z; declare them".into());
         }
         if given[COORDINATE.start] != given[COORDINATE.start + 1] {
-            let what = "one texture coordinate alone; declare u and v, s and t, or texture_u and texture_v";
+            let what = "one texture coordinate alone; declare u and v, or texture_u and texture_v";
             return Err(format!("element vertex has {what}"));
         }
         let colored = has(&given, COLOR)?;

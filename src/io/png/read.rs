@@ -44,6 +44,9 @@ pub(in crate::io) fn read_linear(
     check_size: fn(u32, u32) -> Result<()>,
 ) -> Result<Plane<[f32; 3]>> {
     let Stored { image, most } = read_of_size(path, check_size)?;
+    let count = image.width as usize * image.height as usize;
+    memory::try_ask(12 * count as u64, || format!("the colours of {count} pixels"))
+        .map_err(|what| Error::format(path, what))?;
     let table = srgb::table(most);
     let codes = |name: &str| match image.channel(name) {
         Some(Values::Float(values)) => values.as_slice(),
@@ -78,8 +81,9 @@ fn read_of_size(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<S
             ),
         ));
     }
-    // The bytes, their codes in 16 bits, and planes of floats.
-    memory::try_ask(decoder.total_bytes().saturating_mul(7), || {
+    // The bytes, their codes in 16 bits, and up to four planes of floats.
+    let planes = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(16);
+    memory::try_ask(decoder.total_bytes().saturating_mul(3).saturating_add(planes), || {
         format!("a picture of {width} x {height} pixels")
     })
     .map_err(|what| Error::format(path, what))?;

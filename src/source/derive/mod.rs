@@ -93,7 +93,7 @@
 //! times 4^k; those of the file are left out. A texture that no one has read changes nothing. Of vectors p and q of that
 //! plane p q^T is the matrix of all products; all in f64.
 //!
-//! **A facet** has the corners t_a, t_b, t_c in (u, v):
+//! **A facet** has the corners `t_a`, `t_b`, `t_c` in (u, v):
 //!
 //! ```text
 //!   center = ((t_a + t_b) + t_c) / 3     p = t_c - center     q = (t_b - t_a) / sqrt(3)
