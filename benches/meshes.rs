@@ -58,8 +58,10 @@ fn main() -> Result<()> {
     ]);
     for (name, cloud) in clouds.into_iter().filter(|c| c.0.contains(&arguments.pattern)) {
         let points = derive::surfels(cloud.clone(), &Derive::default(), &exec, &|_, _, _| ())?.0;
-        let (points, facets) =
-            (Scene::lit(&name, points), Scene::lit(&name, derive::facets(cloud.clone(), &exec)?.0));
+        let (points, facets) = (
+            Scene::lit(&name, points),
+            Scene::lit(&name, derive::facets(cloud.clone(), &exec, &|_, _, _| ())?.0),
+        );
         let mesh = Mesh::new(cloud, &points, &exec)?;
         let sphere = points.surfels.bounding_sphere();
         let truths = HEIGHTS.map(|height| true_picture(&mesh, sphere, height, &exec));

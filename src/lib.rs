@@ -138,6 +138,7 @@
 //! | pull, push | from finer levels to coarser ones by averages; and back, filling what is empty or occluded |
 //! | displacement | from the centre of a cell to that of its ellipse, in pixels |
 //! | mipmap | of a surfel: colours that are averages over 2, 4, 8 ... of its radii |
+//! | texture, texel | a picture that lies on a mesh, where its corners have coordinates (u, v); a pixel of it |
 //! | template | the k x k cells of a level around a pixel, in which it searches for ellipses |
 //! | ribbon, tube | a flat strip, a bent cylinder: polylines drawn one pixel wide and reconstructed |
 //! | layer | one of the surfaces that a ray passes through |

@@ -3,15 +3,21 @@
 
 use libfuzzer_sys::fuzz_target;
 use splatref::frame::Exec;
+use splatref::frame::Plane;
 use splatref::io::ply;
+use splatref::scene::{Paint, Texture};
 use splatref::source::derive::{Derive, polygons, ribbons, surfels, tubes};
 
 fuzz_target!(|bytes: &[u8]| {
-    let Ok(cloud) = ply::parse(bytes) else { return };
+    let Ok(mut cloud) = ply::parse(bytes) else { return };
     cloud.check().expect("what is read fits together");
     assert!(cloud.position.len() * 3 <= bytes.len(), "three numbers take three bytes");
     if cloud.position.len() > 2000 {
         return;
+    }
+    if let Some(coordinates) = &cloud.coordinates {
+        let texture = Texture::new(Plane::from_values(3, 2, vec![[0.25, 0.5, 1.0]; 6])).expect("a texture");
+        cloud.paint = Some(Paint::new(texture, coordinates, 2));
     }
     let asked = Derive { radius: Some(1.0) };
     if let Ok((triangles, derived)) = polygons(cloud.clone(), &Exec::sequential(), &|_, _, _| ()) {

@@ -46,10 +46,15 @@ fn points(path: &Path) -> Result<()> {
         ("half axes", cloud.tangents.is_some()),
         ("tangents", cloud.tangent.is_some()),
         ("mipmaps", cloud.mipmap.is_some()),
+        ("texture coordinates", cloud.coordinates.is_some()),
         ("groups", cloud.groups.is_some()),
     ];
     let there: Vec<&str> = arrays.iter().filter(|(_, is)| *is).map(|(name, _)| *name).collect();
     line("has", if there.is_empty() { "positions only".into() } else { there.join(", ") });
+    for name in &cloud.textures {
+        let name = name.escape_debug().to_string();
+        line("texture", if name.is_empty() { "none of some polygons" } else { &name });
+    }
 
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);

@@ -108,6 +108,9 @@ pub(super) struct SceneOptions {
     /// The same, but no more than N points, the best first [--surfel-size: 2]
     #[arg(long, value_name = "N", help_heading = "Shapes and models")]
     budget: Option<u32>,
+    /// The texture of a file, a .png or an .exr, in the place of its colours
+    #[arg(long, value_name = "FILE", help_heading = "Shapes and models")]
+    texture: Option<PathBuf>,
     /// Levels of prefiltered colours a surfel, which deferred draws; 0 drops those of a file
     #[arg(long, value_name = "LEVELS", help_heading = "Shapes and models")]
     mipmaps: Option<usize>,
@@ -147,24 +150,29 @@ impl SceneOptions {
             check_mipmaps(levels)?;
             file.all_models_mut().for_each(|model| model.mipmaps = Some(levels));
         }
-        self.choose_prefix(&mut file)?;
+        self.choose_of_files(&mut file)?;
         self.choose_refinement(&mut file)?;
         self.choose_method(&mut file)?;
         file.output = self.number.chosen.on(file.output, "the output")?;
         Ok(file)
     }
 
-    /// Of every model that is a file.
-    fn choose_prefix(&self, file: &mut SceneFile) -> Result<()> {
-        let Some(points) = self.prefix else { return Ok(()) };
-        check_prefix(points)?;
+    /// What is of every model that is a file: prefix and texture.
+    fn choose_of_files(&self, file: &mut SceneFile) -> Result<()> {
+        self.prefix.map_or(Ok(()), check_prefix)?;
+        let what = match (self.prefix, &self.texture) {
+            (None, None) => return Ok(()),
+            (Some(_), _) => "--prefix is of points of a file",
+            (None, Some(_)) => "--texture is of a file",
+        };
         for model in file.all_models_mut() {
             match &mut model.source {
-                Source::File { prefix, .. } => *prefix = Some(points),
+                Source::File { prefix, texture, .. } => {
+                    replace(prefix, self.prefix);
+                    replace(texture, self.texture.clone());
+                }
                 other => {
-                    let what =
-                        format!("--prefix is of points of a file, and {} is none", other.name());
-                    return Err(Error::Usage(what));
+                    return Err(Error::Usage(format!("{what}, and {} is none", other.name())));
                 }
             }
         }

@@ -4,11 +4,10 @@ use super::{Ended, Ending, output, progress, report};
 use clap::ValueEnum;
 use glam::Vec3;
 use splatref::frame::Exec;
-use splatref::io::ply;
 use splatref::io::scene_file::{FileKind, read_model};
-use splatref::scene::{Camera, Cloud, Primitives, Scene, Surfels};
-use splatref::source::candidates::{self, Candidates, Directions, candidates};
-use splatref::source::derive;
+use splatref::io::{ply, texture};
+use splatref::scene::{Camera, Cloud};
+use splatref::source::candidates::{self, Candidates, Directions};
 use splatref::source::sampler::{
     Graph, Greedy, Order, Progressive, Schedule, Start, averaged, shuffled,
 };
@@ -63,6 +62,9 @@ pub(super) struct Args {
     /// Of a mesh: from which corners it is looked at [default: cube]
     #[arg(long, value_enum)]
     directions: Option<Corners>,
+    /// Of a mesh: its texture, a .png or an .exr, in the place of its colours [default: that of the file]
+    #[arg(long, value_name = "FILE")]
+    texture: Option<PathBuf>,
     /// Threads; 0 takes every core
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
@@ -213,6 +215,9 @@ impl Args {
             let edges = cloud.edges.len();
             return invalid(format!("the file has {edges} edges, but lines are not put in order"));
         }
+        if self.texture.is_some() {
+            return invalid("--texture is for a mesh, but the file has no triangles".into());
+        }
         match (self.side, self.directions) {
             (None, None) => Ok(()),
             (Some(_), _) => invalid("--side is for a mesh, but the file has no triangles".into()),
@@ -240,22 +245,21 @@ impl Args {
     /// What is seen of a mesh.
     fn candidates(
         &self,
-        mesh: Cloud,
+        mut mesh: Cloud,
         exec: &Exec,
         show: &dyn Fn(&str, u64, u64),
     ) -> Result<Candidates> {
-        let (triangles, derived) = derive::polygons(mesh, exec, show)?;
-        if derived.dropped_primitives > 0 {
-            report::line("dropped", format!("{} triangles", derived.dropped_primitives));
-        }
-        let primitives = Primitives { triangles, ..Primitives::default() };
-        let scene = Scene { primitives, ..Scene::unlit("mesh", Surfels::none()) };
+        texture::paint(&mut mesh, &self.points, self.texture.as_deref(), 0, exec)?;
         let directions = match self.directions {
             None | Some(Corners::Cube) => Directions::Cube,
             Some(Corners::Box) => Directions::Box,
         };
         let side = self.side.unwrap_or(candidates::SIDE);
-        candidates(&scene, &directions, side, exec, show)
+        let (found, derived) = candidates::of_cloud(mesh, &directions, side, exec, show)?;
+        if derived.dropped_primitives > 0 {
+            report::line("dropped", format!("{} triangles", derived.dropped_primitives));
+        }
+        Ok(found)
     }
 
     /// The neighbours along the surface, if distances are to go that way.

@@ -1,4 +1,5 @@
-//! Prefiltered colours, made of the colours of finer neighbours in the same model \[GBP04, 4.4\].
+//! Prefiltered colours, made of the colours of finer neighbours in the same model \[GBP04, 4.4\]. Those of a mesh with a
+//! texture are made of the texture, by [`crate::source::derive`].
 //!
 //! The colour of level k of a surfel is a mean over what lies within R = 2^k s of its centre, where s is
 //! its radius, or sqrt(|U x V|) of an ellipse with the half axes U and V. The surfels around it are not

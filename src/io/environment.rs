@@ -4,6 +4,7 @@ use super::exr;
 use crate::error::{Error, Result};
 use crate::frame::image::Values;
 use crate::frame::{Exec, Plane};
+use crate::memory;
 use crate::scene::environment::{Environment, Map};
 use std::path::Path;
 
@@ -15,9 +16,20 @@ use std::path::Path;
 /// Those of [`exr::read`]; [`Error::Format`] if a channel is absent or holds integers, or as
 /// [`Map::new`].
 pub fn read(path: &Path, exec: &Exec) -> Result<Environment> {
+    let pixels = rgb(path, exec, "an environment map", Map::check_size)?;
+    Map::new(pixels).map(Environment::Map).map_err(|error| Error::format(path, error.to_string()))
+}
+
+/// The channels `R`, `G` and `B` of the EXR file at `path`, in which they are `what`, if its size may be.
+pub(super) fn rgb(
+    path: &Path,
+    exec: &Exec,
+    what: &str,
+    check_size: fn(u32, u32) -> Result<()>,
+) -> Result<Plane<[f32; 3]>> {
     // Before anything large is read.
     let header = exr::read_header(path)?;
-    Map::check_size(header.width, header.height)
+    check_size(header.width, header.height)
         .map_err(|error| Error::format(path, error.to_string()))?;
     let mut image = exr::read_with(path, exec)?;
     let mut channel = |name: &str| {
@@ -25,19 +37,21 @@ pub fn read(path: &Path, exec: &Exec) -> Result<Environment> {
         match found.map(|(_, values)| values) {
             Some(Values::Float(values)) => Ok(std::mem::take(values)),
             Some(Values::Index(_)) => {
-                let what = format!("channel {name} holds integers; an environment map has floats");
+                let what = format!("channel {name} holds integers; {what} has floats");
                 Err(Error::format(path, what))
             }
             None => {
-                let what = format!("no channel {name}; an environment map has R, G and B");
+                let what = format!("no channel {name}; {what} has R, G and B");
                 Err(Error::format(path, what))
             }
         }
     };
+    let count = u64::from(image.width) * u64::from(image.height);
+    memory::try_ask(12 * count, || format!("the colours of {count} pixels"))
+        .map_err(|what| Error::format(path, what))?;
     let (red, green, blue) = (channel("R")?, channel("G")?, channel("B")?);
     let pixels = red.iter().zip(&green).zip(&blue).map(|((&r, &g), &b)| [r, g, b]).collect();
-    let pixels = Plane::from_values(image.width, image.height, pixels);
-    Map::new(pixels).map(Environment::Map).map_err(|error| Error::format(path, error.to_string()))
+    Ok(Plane::from_values(image.width, image.height, pixels))
 }
 
 #[cfg(test)]

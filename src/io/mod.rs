@@ -13,6 +13,7 @@
 //! - [`scene_file`]: scenes as TOML: models, lights, camera, settings.
 //! - [`state`]: what a frame saw.
 //! - [`srgb`]: the transfer function between stored colours and linear light.
+//! - [`texture`]: textures of models.
 
 pub mod client;
 pub mod environment;
@@ -28,6 +29,7 @@ pub mod replace;
 pub mod scene_file;
 pub mod srgb;
 pub mod state;
+pub mod texture;
 
 /// A result or the reason why not, without the file's name.
 type Reason<T> = Result<T, String>;

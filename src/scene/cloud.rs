@@ -1,7 +1,6 @@
 //! Points as a file holds them: nothing derived, nothing checked but the lengths of the arrays.
 
-use super::Groups;
-use super::Mipmap;
+use super::{Coordinates, Groups, Mipmap, Paint};
 use glam::{DVec3, Vec3};
 
 /// Points, with whatever else their file gave.
@@ -28,6 +27,12 @@ pub struct Cloud {
     pub tangent: Option<Vec<Vec3>>,
     /// Groups of the points.
     pub groups: Option<Groups>,
+    /// Where points or corners are in a texture.
+    pub coordinates: Option<Coordinates>,
+    /// The names of the textures that the file gives, in the order of their first use; an empty one is of polygons without.
+    pub textures: Vec<String>,
+    /// The texture, once it is read; without one there are no colours of textures.
+    pub paint: Option<Paint>,
     /// Triangles as indices into `position`; polygons of files have been cut into fans.
     pub triangles: Vec<[u32; 3]>,
     /// Segments of ribbons and tubes as indices into `position`.
@@ -35,7 +40,7 @@ pub struct Cloud {
 }
 
 impl Cloud {
-    /// The points of these indices, in this order, without triangles and edges.
+    /// The points of these indices, in this order, without triangles and edges, and without the names of textures.
     ///
     /// # Panics
     /// If there is no point of an index, or an array is shorter than `position`.
@@ -53,6 +58,12 @@ impl Cloud {
             }),
             tangent: self.tangent.as_ref().map(|all| at(all, indices)),
             groups: self.groups.as_ref().map(|groups| groups.some(indices)),
+            coordinates: match &self.coordinates {
+                Some(Coordinates::Points(all)) => Some(Coordinates::Points(at(all, indices))),
+                Some(Coordinates::Corners(_)) | None => None,
+            },
+            textures: Vec::new(),
+            paint: self.paint.clone(),
             triangles: Vec::new(),
             edges: Vec::new(),
         }
@@ -79,6 +90,14 @@ impl Cloud {
         marked(&mut self.tangent, keep);
         self.mipmap = self.mipmap.take().map(|mipmap| mipmap.retain(keep));
         self.groups = self.groups.take().map(|groups| groups.retain(keep));
+        match &mut self.coordinates {
+            Some(Coordinates::Points(all)) => marked([all], keep),
+            Some(Coordinates::Corners(all)) => {
+                let stays = |corners: &[u32; 3]| corners.iter().all(|&i| keep[i as usize]);
+                marked([all], &self.triangles.iter().map(stays).collect::<Vec<_>>());
+            }
+            None => {}
+        }
         corners(&mut self.triangles, &index);
         corners(&mut self.edges, &index);
     }

@@ -9,7 +9,7 @@ pub const MOST_LEVELS: usize = 16;
 /// Further colours of every surfel: that of level k, from 1 to L, is what the surface has on the
 /// average within 2^k of the surfel's radii. Level 0 is the surfel's own colour and is not here.
 ///
-/// Linear RGB. [`crate::index::mipmap`] makes them, and files may give them; the method `deferred`
+/// Linear RGB. [`crate::index::mipmap`] makes them, of a texture [`crate::source::derive`], and files may give them; the method `deferred`
 /// draws them, and no other looks at them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mipmap {

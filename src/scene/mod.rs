@@ -6,6 +6,7 @@
 //! - [`surfels`]: the checked structure of arrays that every method takes.
 //! - [`boxes`]: what bounds neighbouring surfels.
 //! - [`camera`]: perspective and orthographic cameras.
+//! - [`coordinates`]: where points are in a texture.
 //! - `degenerate`: which points can be no surfels.
 //! - [`environment`]: the light that surrounds a scene.
 //! - [`groups`]: which surfels share a depth-image.
@@ -14,12 +15,14 @@
 //! - [`light`]: lights and the Phong material.
 //! - [`mipmap`]: prefiltered colours of surfels.
 //! - [`sides`]: how large surfels are drawn as point primitives.
+//! - [`texture`]: textures, and means of them.
 //! - [`transform`]: moving, turning and scaling a model.
 
 pub mod bounds;
 pub mod boxes;
 pub mod camera;
 pub mod cloud;
+pub mod coordinates;
 mod degenerate;
 pub mod environment;
 pub mod groups;
@@ -30,11 +33,13 @@ pub mod mipmap;
 pub mod objects;
 pub mod sides;
 pub mod surfels;
+pub mod texture;
 pub mod transform;
 
 pub use boxes::Boxes;
 pub use camera::{Camera, CameraMotion, Lens, Pose, Projection};
 pub use cloud::Cloud;
+pub use coordinates::Coordinates;
 pub use environment::Environment;
 pub use groups::Groups;
 pub use indexed::{Counts, Polylines, Primitives, Triangles, Vertices};
@@ -43,6 +48,7 @@ pub use mipmap::Mipmap;
 pub use objects::{Geometry, Motion, Object, Objects};
 pub use sides::Sides;
 pub use surfels::{Dropped, Surfels};
+pub use texture::{Paint, Texture};
 pub use transform::Similarity;
 
 /// A picture to be made: surfels, what lights them, and what lies behind them.

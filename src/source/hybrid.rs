@@ -47,7 +47,7 @@ impl HalfSpace {
 ///   boundary edge is a surfel as its neighbours beyond are.
 ///
 /// So every triangle is a polygon or has a surfel at each of its corners. Both parts keep the order
-/// of the vertices; the surfels have no triangles, and neither has edges.
+/// of the vertices; the surfels have no triangles, and neither has edges or texture coordinates.
 ///
 /// `Decided:` a boundary vertex is a surfel too. Which pixels a polygon gives depends on the view:
 /// seen from where it covers no pixel's centre, or its back, the surfel is all that closes the
@@ -68,10 +68,11 @@ pub fn split(cloud: &Cloud, half: &HalfSpace) -> Result<(Cloud, Cloud)> {
     };
     let (of_polygons, of_others) = (used(&polygons), used(&others));
 
-    let mut surfels = Cloud { triangles: Vec::new(), edges: Vec::new(), ..cloud.clone() };
+    let bare = Cloud { coordinates: None, triangles: vec![], edges: vec![], ..cloud.clone() };
+    let mut surfels = bare.clone();
     let is_surfel = |i: usize| !of_polygons[i] || of_others[i];
     surfels.retain(&(0..n).map(is_surfel).collect::<Vec<_>>());
-    let mut mesh = Cloud { triangles: polygons, edges: Vec::new(), ..cloud.clone() };
+    let mut mesh = Cloud { triangles: polygons, ..bare };
     for (radius, boundary) in mesh.radius.iter_mut().flatten().zip(of_others) {
         *radius = if boundary { *radius } else { 0.0 };
     }

@@ -6,7 +6,7 @@ use crate::scene::indexed::Indexed;
 use crate::scene::{Cloud, Mipmap, Primitives, Vertices};
 use glam::Vec3;
 
-/// Joins complete clouds, with normals and radii, in their order; triangles, edges and the
+/// Joins complete clouds, with normals and radii, in their order; triangles, edges, texture coordinates and the
 /// tangents of tubes are left out, and so are the groups of several, which know nothing of each
 /// other.
 ///
@@ -22,7 +22,8 @@ pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
     if clouds.len() == 1 {
         // The usual case, without a copy.
         let one = clouds.remove(0);
-        return Cloud { tangent: None, triangles: Vec::new(), edges: Vec::new(), ..one };
+        let (tangent, coordinates) = (None, None);
+        return Cloud { tangent, coordinates, triangles: vec![], edges: vec![], ..one };
     }
     let mut all = Cloud {
         normal: Some(Vec::new()),

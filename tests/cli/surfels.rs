@@ -1,9 +1,10 @@
 //! `splatref surfels`: points in order, with all that a file has of them.
 
 use super::*;
-use glam::Vec3;
-use splatref::io::ply;
-use splatref::scene::{Cloud, Groups, Mipmap};
+use glam::{Vec2, Vec3};
+use splatref::frame::{Frame, Plane, Samples};
+use splatref::io::{exr, ply};
+use splatref::scene::{Cloud, Coordinates, Groups, Mipmap};
 use splatref::source::sampler::{Greedy, Start};
 use tempfile::TempDir;
 
@@ -308,4 +309,53 @@ fn what_cannot_be_put_in_order_is_refused() {
         assert!(line.contains(what), "{what} in {line}");
     }
     assert_eq!(names(at.path()), before, "nothing is written");
+}
+
+/// A square of which each corner has a place in a texture: its candidates have the colours of the texture, of its own one or
+/// of another that is chosen.
+#[test]
+fn the_candidates_of_a_textured_mesh_have_its_colours() {
+    let at = TempDir::new().unwrap();
+    let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+    let places =
+        [Vec2::new(0.0, 0.0), Vec2::new(1.0, 0.0), Vec2::new(1.0, 1.0), Vec2::new(0.0, 1.0)];
+    let mesh = Cloud {
+        position: places.iter().map(|p| corner(p.x, p.y)).collect(),
+        coordinates: Some(Coordinates::Points(places.to_vec())),
+        textures: vec!["red.exr".into()],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Cloud::default()
+    };
+    ply::write(&at.path().join("in.ply"), &mesh).unwrap();
+    for (name, i) in [("red.exr", 0), ("green.exr", 1)] {
+        // Bright at the right.
+        let color = |x: u32| std::array::from_fn(|c| if c == i && x >= 16 { 1.0 } else { 0.0 });
+        let values = (0..32 * 32).map(|at| color(at % 32)).collect();
+        let frame = Frame::new(32, 32).with("", Samples::Color(Plane::from_values(32, 32, values)));
+        exr::write(&at.path().join(name), &frame.unwrap(), "").unwrap();
+    }
+    let common = ["surfels", "in.ply", "-o", "out.ply", "--side", "64"];
+    for (options, i) in [(&[][..], 0), (&["--texture", "green.exr"], 1)] {
+        succeeds(at.path(), &[&common[..], options].concat());
+        let found = ply::read(&at.path().join("out.ply")).unwrap();
+        let colors = found.color.unwrap();
+        assert!(colors.len() > 100);
+        for (p, color) in
+            found.position.iter().zip(&colors).filter(|(p, _)| (p.x - 0.5).abs() > 0.1)
+        {
+            let expected = if p.x > 0.5 { 1.0 } else { 0.0 };
+            assert!((color[i] - expected).abs() < 1e-6 && color[1 - i] == 0.0, "{p}: {color}");
+        }
+    }
+    fs::remove_file(at.path().join("red.exr")).unwrap();
+    let said = fails(at.path(), &common, 1);
+    assert!(said.contains("in.ply: its texture red.exr: "), "{said}");
+    let picture = ["render", "in.ply", "-o", "a.exr", "--size", "32x24", "--texture", "green.exr"];
+    succeeds(at.path(), &picture);
+    let said = fails(at.path(), &["render", "sphere", "-o", "b.exr", "--texture", "green.exr"], 2);
+    assert!(said.contains("--texture is of a file, and sphere is none"), "{said}");
+    ply::write(&at.path().join("points.ply"), &points(9)).unwrap();
+    let said =
+        fails(at.path(), &["surfels", "points.ply", "-o", "c.ply", "--texture", "green.exr"], 1);
+    assert!(said.contains("--texture is for a mesh, but the file has no triangles"), "{said}");
 }

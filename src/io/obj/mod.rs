@@ -7,9 +7,21 @@
 //! | `vn x y z` | a normal | of any length |
 //! | `f a b c ...` | a polygon | the fan of its first corner; with fewer than 3 corners it is nothing |
 //!
+//! | `mtllib FILE` | materials | an MTL file beside this one; several are one list |
+//! | `usemtl NAME` | a material | of the polygons that follow |
+//! | `vt u v` | texture coordinates | a third number is skipped; without v it is 0 |
+//!
 //! A corner is `v`, `v/vt`, `v//vn` or `v/vt/vn`: the number of a vertex from 1 on, or, below 0, of the
-//! last ones before the line, of which -1 is the last; the same for a normal. Texture coordinates are
-//! not looked at, nor are other lines, materials among them. `#` begins a comment.
+//! last ones before the line, of which -1 is the last; the same for a normal and for
+//! texture coordinates. Other lines are not looked at. `#` begins a comment.
+//!
+//! Of a material its texture and its colour are read:
+//!
+//! | line of an MTL file | | |
+//! |---|---|---|
+//! | `newmtl NAME` | a material | what follows is of it |
+//! | `Kd r g b`, `Kd r` | its colour | linear, in [0, 65536]; one number is all three |
+//! | `map_Kd FILE` | its texture, see [`crate::io::texture`] | a name without options |
 //!
 //! All vertices have a colour or none has. Values of positions and normals are not judged, as
 //! [`super::ply`] does not judge them.
@@ -17,9 +29,16 @@
 //! # Decided
 //!
 //! - Colours are sRGB: programs that paint vertices write codes of 8 bits divided by 255.
-//! - A vertex whose corners have several normals becomes several points, in the order of the normals'
-//!   numbers; points are in the order of the vertices. If a corner has no normal, all normals are
+//! - A vertex whose corners have several normals, or materials of several colours, becomes several points, in the order of the
+//!   normals' numbers, then of the materials; points are in the order of the vertices. If a corner has no normal, all normals are
 //!   left out, to be derived.
+//! - Texture coordinates are of [corners](Coordinates::Corners); those of a corner without are NaN.
+//! - Colours of materials are those of points if vertices have none and no texture takes their place. What has no Kd is
+//!   white then.
+//! - Kd is linear, as programs that write it have linear colours. A texture takes the place of Kd and is not
+//!   multiplied by it: the same programs write a Kd that nobody has chosen beside it.
+//! - A material or a file of materials that is not there is refused: nobody would see what is missing. Without any `mtllib`
+//!   the names of materials mean nothing.
 //! - Without any `f` and with as many `vn` as `v` normals belong to vertices one by one: point clouds
 //!   are written so.
 //!
@@ -27,58 +46,82 @@
 //! and drops without a word what this page keeps or refuses: points without faces, and all texture
 //! coordinates or normals of a file in which a corner has none.
 
+mod materials;
 #[cfg(test)]
 mod tests;
 
 use super::{Reason, input, srgb};
 use crate::error::{Error, Result};
 use crate::memory;
-use crate::scene::Cloud;
-use glam::Vec3;
+use crate::scene::{Cloud, Coordinates};
+use glam::{Vec2, Vec3};
+use materials::Material;
 use std::path::Path;
 
 /// What a byte of a file comes to at most: a corner of a polygon takes two bytes.
-const BYTES_A_BYTE: u64 = 48;
+const BYTES_A_BYTE: u64 = 72;
 
-/// The number of no normal.
-const NO_NORMAL: u32 = u32::MAX;
+/// The number of no normal, no coordinates and no material.
+const NONE: u32 = u32::MAX;
 
-/// Reads a file.
+/// Reads a file and its materials.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read, [`Error::Format`] as [`parse`].
+/// [`Error::Io`] if the file cannot be read; [`Error::Format`] as [`parse`], and if materials cannot be read or are
+/// not there.
 pub fn read(path: &Path) -> Result<Cloud> {
     let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
-    parse(&bytes).map_err(|what| Error::format(path, what))
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let library = |name: &str| {
+        let bytes = input::bytes(&folder.join(name)).map_err(|error| format!("{name}: {error}"))?;
+        materials::parse(&bytes).map_err(|what| format!("{name}: {what}"))
+    };
+    parse_with(&bytes, &library).map_err(|what| Error::format(path, what))
 }
 
-/// Reads the bytes of a file.
+/// Reads the bytes of a file, without materials.
 ///
 /// # Errors
 /// One line if there is no vertex, if a word is no number or names what is not there, if only some
 /// vertices have colours, or if a colour is not in [0, 1]: the line, what is wrong and what to do.
 pub fn parse(bytes: &[u8]) -> std::result::Result<Cloud, String> {
+    parse_with(bytes, &|_| Ok(Vec::new()))
+}
+
+/// [`parse`] with the materials of the files that are named.
+fn parse_with(bytes: &[u8], library: &dyn Fn(&str) -> Reason<Vec<Material>>) -> Reason<Cloud> {
     memory::try_ask(BYTES_A_BYTE.saturating_mul(bytes.len() as u64), || "a mesh".into())?;
-    let mut file = Lines::default();
+    let mut file = Lines { material: NONE, ..Lines::default() };
     for (number, line) in (1_u64..).zip(bytes.split(|&byte| byte == b'\n')) {
         let line = line.split(|&byte| byte == b'#').next().unwrap_or_default();
         let line = String::from_utf8_lossy(line);
-        let mut words = line.split_ascii_whitespace();
-        let read = match words.next() {
-            Some("v") => file.vertex(words),
-            Some("vn") => numbers(words).and_then(|all| match all[..] {
+        let (word, rest) = rest(&line);
+        let words = rest.split_ascii_whitespace();
+        let read = match word {
+            "v" => file.vertex(words),
+            "vt" => file.coordinate(words),
+            "mtllib" => library(rest).map(|more| file.materials.extend(more)),
+            "usemtl" => file.choose(rest),
+            "vn" => numbers(words).and_then(|all| match all[..] {
                 [x, y, z] => {
                     file.normal.push(Vec3::new(x as f32, y as f32, z as f32));
                     Ok(())
                 }
                 _ => Err(format!("a normal of {} numbers; give three", all.len())),
             }),
-            Some("f") => file.face(words),
+            "f" => file.face(words),
             _ => Ok(()),
         };
         read.map_err(|what| format!("line {number}: {what}"))?;
     }
     file.cloud()
+}
+
+/// The first word of a line, and what comes after it.
+fn rest(line: &str) -> (&str, &str) {
+    let line = line.trim();
+    let (word, rest) = line.split_once(|c: char| c.is_ascii_whitespace()).unwrap_or((line, ""));
+    (word, rest.trim())
 }
 
 /// What the lines have given so far.
@@ -87,8 +130,20 @@ struct Lines {
     position: Vec<Vec3>,
     color: Vec<Vec3>,
     normal: Vec<Vec3>,
-    /// Corners of triangles: vertex and normal.
-    triangles: Vec<[[u32; 2]; 3]>,
+    coordinate: Vec<Vec2>,
+    materials: Vec<Material>,
+    /// The material of the next polygon.
+    material: u32,
+    triangles: Vec<Triangle>,
+}
+
+/// Vertex, normal and coordinates.
+type Corner = [u32; 3];
+
+/// A triangle and its material.
+struct Triangle {
+    corners: [Corner; 3],
+    material: u32,
 }
 
 impl Lines {
@@ -115,12 +170,36 @@ impl Lines {
         Ok(())
     }
 
+    fn coordinate<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Reason<()> {
+        let all = numbers(words)?;
+        match all[..] {
+            [u] => self.coordinate.push(Vec2::new(u as f32, 0.0)),
+            [u, v] | [u, v, _] => self.coordinate.push(Vec2::new(u as f32, v as f32)),
+            _ => return Err(format!("texture coordinates of {} numbers; give u v", all.len())),
+        }
+        Ok(())
+    }
+
+    fn choose(&mut self, name: &str) -> Reason<()> {
+        if self.materials.is_empty() {
+            return Ok(());
+        }
+        let found = self.materials.iter().position(|material| material.name == name);
+        let shown = || name.chars().take(40).flat_map(char::escape_debug).collect::<String>();
+        let found = found.ok_or_else(|| format!("there is no material `{}`", shown()))?;
+        self.material = found as u32;
+        Ok(())
+    }
+
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Reason<()> {
         let (mut first, mut previous) = (None, None);
         for word in words {
             let corner = self.corner(word)?;
             match (first, previous) {
-                (Some(first), Some(previous)) => self.triangles.push([first, previous, corner]),
+                (Some(first), Some(previous)) => {
+                    let (corners, material) = ([first, previous, corner], self.material);
+                    self.triangles.push(Triangle { corners, material });
+                }
                 (Some(_), None) => {}
                 (None, _) => {
                     first = Some(corner);
@@ -132,11 +211,11 @@ impl Lines {
         Ok(())
     }
 
-    fn corner(&self, word: &str) -> Reason<[u32; 2]> {
+    fn corner(&self, word: &str) -> Reason<Corner> {
         let shown = || word.chars().take(40).flat_map(char::escape_debug).collect::<String>();
         let mut parts = word.split('/');
         let vertex = parts.next().unwrap_or_default();
-        let _texture = parts.next();
+        let coordinate = parts.next().unwrap_or_default();
         let normal = parts.next().unwrap_or_default();
         if parts.next().is_some() {
             return Err(format!("`{}` is no corner; give v, v/vt, v//vn or v/vt/vn", shown()));
@@ -152,51 +231,114 @@ impl Lines {
             })
         };
         let vertex = index(vertex, "vertex", self.position.len())?;
-        let normal = match normal {
-            "" => NO_NORMAL,
-            text => index(text, "normal", self.normal.len())?,
+        let optional = |text: &str, what: &str, count: usize| {
+            if text.is_empty() { Ok(NONE) } else { index(text, what, count) }
         };
-        Ok([vertex, normal])
+        let normal = optional(normal, "normal", self.normal.len())?;
+        Ok([vertex, normal, optional(coordinate, "texture coordinate", self.coordinate.len())?])
     }
 
-    /// Points, split where their normals differ.
+    /// Points, split where their normals or colours differ.
     fn cloud(self) -> Reason<Cloud> {
-        let Self { position, color, normal, mut triangles } = self;
-        if position.is_empty() {
+        if self.position.is_empty() {
             return Err("there is no line `v x y z`: the file holds no points".into());
         }
-        let colored = !color.is_empty();
-        if triangles.is_empty() {
-            let normal = (normal.len() == position.len()).then_some(normal);
-            return Ok(Cloud {
-                position,
-                normal,
-                color: colored.then_some(color),
-                ..Cloud::default()
-            });
+        let colored = !self.color.is_empty();
+        if self.triangles.is_empty() {
+            let normal = (self.normal.len() == self.position.len()).then_some(self.normal);
+            let color = colored.then_some(self.color);
+            return Ok(Cloud { position: self.position, normal, color, ..Cloud::default() });
         }
-        let has_normals = triangles.iter().flatten().all(|corner| corner[1] != NO_NORMAL);
-        if !has_normals {
-            triangles.iter_mut().flatten().for_each(|corner| corner[1] = NO_NORMAL);
-        }
-        let mut used = vec![false; position.len()];
-        triangles.iter().flatten().for_each(|corner| used[corner[0] as usize] = true);
-        let unused = (0..).zip(&used).filter(|(_, used)| !**used).map(|(i, _)| [i, NO_NORMAL]);
-        let mut points: Vec<[u32; 2]> = triangles.iter().flatten().copied().chain(unused).collect();
+        let coordinates = self.coordinates();
+        let textures = self.textures();
+        let own = !colored && (coordinates.is_none() || textures.is_empty());
+        let paints = if own { self.paints() } else { Vec::new() };
+        let corners = || self.triangles.iter().flat_map(|triangle| &triangle.corners);
+        let has_normals = corners().all(|corner| corner[1] != NONE);
+        let point = |corner: &Corner, material: u32| {
+            let normal = if has_normals { corner[1] } else { NONE };
+            [corner[0], normal, paints.get(material as usize).copied().unwrap_or(NONE)]
+        };
+        let mut used = vec![false; self.position.len()];
+        corners().for_each(|corner| used[corner[0] as usize] = true);
+        let unused = (0..).zip(&used).filter(|(_, used)| !**used).map(|(i, _)| [i, NONE, NONE]);
+        let drawn = self.triangles.iter().map(|one| one.corners.map(|c| point(&c, one.material)));
+        let count = 3 * self.triangles.len() + used.iter().filter(|used| !**used).count();
+        let mut points: Vec<[u32; 3]> = Vec::with_capacity(count);
+        points.extend(drawn.clone().flatten().chain(unused));
         points.sort_unstable();
         points.dedup();
-        let place = |corner: [u32; 2]| points.partition_point(|point| *point < corner) as u32;
+        let place = |corner: [u32; 3]| points.partition_point(|point| *point < corner) as u32;
+        let triangles = drawn.map(|corners| corners.map(place)).collect();
+        let color = if colored {
+            Some(points.iter().map(|point| self.color[point[0] as usize]).collect())
+        } else {
+            let painted = |point: &[u32; 3]| self.materials.get(point[2] as usize)?.color;
+            let of = |point: &[u32; 3]| painted(point).unwrap_or(Vec3::ONE);
+            (!paints.is_empty()).then(|| points.iter().map(of).collect())
+        };
         Ok(Cloud {
-            triangles: triangles.iter().map(|corners| corners.map(place)).collect(),
-            position: points.iter().map(|point| position[point[0] as usize]).collect(),
-            color: colored.then(|| points.iter().map(|point| color[point[0] as usize]).collect()),
+            triangles,
+            position: points.iter().map(|point| self.position[point[0] as usize]).collect(),
+            color,
             // Vertices of no polygon have none.
             normal: has_normals.then(|| {
-                let of = |point: &[u32; 2]| normal.get(point[1] as usize).copied();
+                let of = |point: &[u32; 3]| self.normal.get(point[1] as usize).copied();
                 points.iter().map(|point| of(point).unwrap_or(Vec3::ZERO)).collect()
             }),
+            coordinates,
+            textures,
             ..Cloud::default()
         })
+    }
+
+    /// Those of all corners, if one has some.
+    fn coordinates(&self) -> Option<Coordinates> {
+        let of =
+            |corner: Corner| self.coordinate.get(corner[2] as usize).copied().unwrap_or(Vec2::NAN);
+        let mut corners = self.triangles.iter().flat_map(|triangle| &triangle.corners);
+        corners.any(|corner| corner[2] != NONE).then(|| {
+            Coordinates::Corners(self.triangles.iter().map(|one| one.corners.map(of)).collect())
+        })
+    }
+
+    /// The textures of the triangles in the order of their first use, the empty one where there is none; none if
+    /// no triangle has any.
+    fn textures(&self) -> Vec<String> {
+        let mut names: Vec<&str> = Vec::new();
+        for used in self.uses() {
+            let material = self.materials.get(used as usize);
+            let name = material.and_then(|material| material.texture.as_deref()).unwrap_or("");
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        if names == [""] { Vec::new() } else { names.into_iter().map(str::to_owned).collect() }
+    }
+
+    /// For each material the first one of the same colour; nothing if no triangle has a colour.
+    fn paints(&self) -> Vec<u32> {
+        let color = |material: u32| self.materials.get(material as usize)?.color;
+        if !self.uses().into_iter().any(|used| color(used).is_some()) {
+            return Vec::new();
+        }
+        let same = |of: &Material| {
+            self.materials.iter().position(|other| other.color == of.color).unwrap_or(0) as u32
+        };
+        self.materials.iter().map(same).collect()
+    }
+
+    /// The materials of the triangles, each once, in the order of their first use.
+    fn uses(&self) -> Vec<u32> {
+        let mut first = vec![true; self.materials.len() + 1];
+        let mut uses = Vec::new();
+        for &Triangle { material, .. } in &self.triangles {
+            let place = (material as usize).min(self.materials.len());
+            if std::mem::replace(&mut first[place], false) {
+                uses.push(material);
+            }
+        }
+        uses
     }
 }
 

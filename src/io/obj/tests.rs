@@ -11,8 +11,9 @@ const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 #[test]
 fn polygons_become_fans_and_corners_count_from_both_ends() {
     let expected = vec![[0, 1, 2], [0, 2, 3]];
-    for face in ["f 1 2 3 4", "f -4 -3 -2 -1", "f 1/7 2/7 3/7 4/7 # comment", "f 1// 2// 3 4\r"] {
-        let cloud = parse(format!("o a\r\n{SQUARE}usemtl b\n{face}\nf 1 2").as_bytes()).unwrap();
+    for face in ["f 1 2 3 4", "f -4 -3 -2 -1", "f 1/1 2/1 3/1 4/1 # comment", "f 1// 2// 3 4\r"] {
+        let cloud =
+            parse(format!("o a\r\n{SQUARE}vt 0 0\nusemtl b\n{face}\nf 1 2").as_bytes()).unwrap();
         assert_eq!(cloud.triangles, expected, "{face}");
         assert_eq!((cloud.position[2], cloud.normal), (Vec3::new(1.0, 1.0, 0.0), None));
     }
@@ -82,4 +83,113 @@ fn bytes_turned_at_random_are_read_or_refused() {
             cloud.check().unwrap();
         }
     }
+}
+
+/// What a file `a.obj` of this text gives, or the line that refuses it, beside a file `a.mtl`.
+fn beside(obj: &str, mtl: &str) -> std::result::Result<Cloud, String> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.mtl"), mtl).unwrap();
+    std::fs::write(folder.path().join("a.obj"), obj).unwrap();
+    read(&folder.path().join("a.obj")).map_err(|error| {
+        let line = error.to_string();
+        assert_eq!(line.lines().count(), 1, "{line}");
+        line.split_once("a.obj: ").unwrap().1.to_owned()
+    })
+}
+
+const QUAD: &str =
+    "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nvt 0 0\nvt 1 0 7\nvt .5\n";
+
+#[test]
+fn coordinates_stay_with_their_corners() {
+    let text =
+        format!("{SQUARE}vt 0 0\nvt 1 0\nvt 1 1 0\nvt 0.5\nf 1/1 2/2 3/3 4/-1\nf 3/1 2 1/2\n");
+    let cloud = parse(text.as_bytes()).unwrap();
+    assert_eq!(cloud.position.len(), 4, "no vertex is divided");
+    let Some(Coordinates::Corners(found)) = cloud.coordinates else { panic!() };
+    let at = Vec2::new;
+    assert_eq!(
+        found[..2],
+        [[at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0)], [at(0.0, 0.0), at(1.0, 1.0), at(0.5, 0.0)]]
+    );
+    assert!(found[2][0] == at(0.0, 0.0) && found[2][1].is_nan() && found[2][2] == at(1.0, 0.0));
+    assert_eq!(parse(format!("{SQUARE}f 1 2 3").as_bytes()).unwrap().coordinates, None);
+    for (lines, why) in [
+        (
+            "vt 0 0\nf 1/1 2/2 3/1",
+            "line 6: `2/2`: there is no texture coordinate 2, as 1 came before",
+        ),
+        ("f 1/1 2/1 3/1", "line 5: `1/1`: there is no texture coordinate 1, as 0 came before"),
+        ("f 1/a 2 3", "no number of a texture coordinate"),
+        ("vt", "line 5: texture coordinates of 0 numbers; give u v"),
+        ("vt 1 2 3 4", "texture coordinates of 4 numbers"),
+        ("vt 1 x", "`x` is no number"),
+    ] {
+        let found = line(&format!("{SQUARE}{lines}\n"));
+        assert!(found.contains(why), "{found}");
+    }
+}
+
+#[test]
+fn materials_colour_points_and_name_textures() {
+    let faces = "usemtl red\nf 1 2 3\nusemtl as red\nf 1 3 4\nusemtl blue\nf 2 5 3\n";
+    let mtl =
+        "newmtl red\nKd 1 0 0\nKs 1 1 1\nnewmtl blue # light\n\tKd .25\nnewmtl as red\nKd 1 0 0\n";
+    let cloud = beside(&format!("{QUAD}{faces}"), mtl).unwrap();
+    let (red, blue) = (Vec3::X, Vec3::splat(0.25));
+    // Vertices 2 and 3 are of both colours.
+    assert_eq!(cloud.color.as_deref(), Some([red, red, blue, red, blue, red, blue].as_slice()));
+    assert_eq!(cloud.triangles, [[0, 1, 3], [0, 3, 5], [2, 6, 4]]);
+    assert_eq!((cloud.textures.len(), cloud.coordinates), (0, None));
+
+    // Vertices of their own colour keep it, and without Kd there is none; what has no Kd is white.
+    let lines = QUAD.lines();
+    let white = |line: &str| {
+        if line.starts_with("v ") { format!("{line} 1 1 1\n") } else { format!("{line}\n") }
+    };
+    let colored: String = lines.map(white).collect();
+    let cloud = beside(&format!("{colored}{faces}"), mtl).unwrap();
+    assert_eq!(cloud.color, Some(vec![Vec3::ONE; 5]));
+    let cloud = beside(&format!("{QUAD}{faces}"), &mtl.replace("Kd", "Ka")).unwrap();
+    assert_eq!((cloud.color, cloud.position.len()), (None, 5));
+    let cloud = beside(&format!("{QUAD}f 1 2 3\nusemtl red\nf 1 3 4\n"), mtl).unwrap();
+    assert_eq!(cloud.color.unwrap(), [red, Vec3::ONE, Vec3::ONE, red, Vec3::ONE, red, Vec3::ONE]);
+
+    let textured = format!("{QUAD}usemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 4/2\n");
+    let of = |mtl: &str| beside(&textured, mtl).unwrap();
+    let one =
+        of("newmtl a\nKd 0.5 0 0\nmap_Kd my wood.png\r\nnewmtl b\nKd 0 1 0\nmap_Kd my wood.png\n");
+    assert_eq!(
+        (one.textures, one.color, one.position.len()),
+        (vec!["my wood.png".to_owned()], None, 5)
+    );
+    let some = of("newmtl b\nmap_Kd b.png\nnewmtl a\nKd 0.5 0 0\n");
+    assert_eq!((some.textures, some.color), (vec![String::new(), "b.png".to_owned()], None));
+    let bare = beside(
+        &textured.replace("/1", "").replace("/2", "").replace("/3", ""),
+        "newmtl a\nKd 1 0 0\nnewmtl b\nmap_Kd c.png\n",
+    )
+    .unwrap();
+    assert!(bare.color.is_some(), "a texture without coordinates is not seen");
+}
+
+#[test]
+fn materials_that_are_none_are_refused() {
+    let face = "usemtl a\nf 1 2 3\n";
+    let refused = |mtl: &str| beside(&format!("{QUAD}{face}"), mtl).unwrap_err();
+    for (mtl, why) in [
+        ("newmtl b\n", "line 10: there is no material `a`"),
+        ("Kd 1 1 1\n", "line 1: a.mtl: line 1: Kd before the first newmtl"),
+        ("newmtl a\nKd 1 1\n", "line 1: a.mtl: line 2: a Kd of 2 numbers; give r g b"),
+        ("newmtl a\nKd 1 -1 0\n", "a.mtl: line 2: a Kd of [1, -1, 0]; give numbers in [0, 65536]"),
+        ("newmtl a\nKd spectral x\n", "`spectral` is no number"),
+        ("newmtl a\nmap_Kd -s 2 2 2 a.png\n", "a.mtl: line 2: the options of map_Kd are not read"),
+        ("newmtl a\nmap_Kd\n", "map_Kd without a file"),
+    ] {
+        let found = refused(mtl);
+        assert!(found.contains(why), "{found}");
+    }
+    let missing = beside(&format!("{SQUARE}mtllib b.mtl\n"), "").unwrap_err();
+    assert!(missing.starts_with("line 5: b.mtl: "), "{missing}");
+    assert_eq!(beside(&format!("{SQUARE}{face}"), "").unwrap().color, None, "no mtllib");
 }

@@ -2,37 +2,77 @@
 
 use super::header::{Element, PropertyKind, quote};
 use super::values::{BodyValues, Event};
+use crate::scene::{Cloud, Coordinates};
+use glam::Vec2;
 
-/// Reads all faces and appends their triangles; each index is held against `vertices`.
+/// Reads all faces and appends their triangles, and the texture coordinates of their corners, if they have some;
+/// each index is held against `vertices`.
 pub(super) fn read(
     element: &Element,
     values: &mut BodyValues<'_>,
     vertices: u64,
-    triangles: &mut Vec<[u32; 3]>,
+    cloud: &mut Cloud,
 ) -> Result<(), String> {
     if element.count == 0 {
         return Ok(());
     }
     let indices = indices(element)?;
-    // A polygon a b c d ... is the fan abc, acd, ...: only its first and last corner are kept.
-    let (mut corners, mut first, mut previous) = (0_u64, 0, 0);
+    let coordinates = coordinates(element)?;
+    let (mut corners, mut numbers) = (Vec::new(), Vec::new());
+    let mut of_corners = Vec::new();
     values.walk(element, |event| {
         match event {
             Event::Value(property, value) if property == indices => {
-                let corner = corner(value, vertices)?;
-                match corners {
-                    0 => first = corner,
-                    1 => {}
-                    _ => triangles.push([first, previous, corner]),
-                }
-                previous = corner;
-                corners += 1;
+                corners.push(corner(value, vertices)?);
+            }
+            Event::Value(property, value) if Some(property) == coordinates => {
+                numbers.push(value as f32);
             }
             Event::Value(..) => {}
-            Event::End => corners = 0,
+            Event::End => {
+                if coordinates.is_some() {
+                    let at = places(&numbers, corners.len())?;
+                    of_corners.extend(fan(at));
+                }
+                cloud.triangles.extend(fan(&corners));
+                corners.clear();
+                numbers.clear();
+            }
         }
         Ok(())
-    })
+    })?;
+    if coordinates.is_some() {
+        let corners = |at: [[f32; 2]; 3]| at.map(Vec2::from_array);
+        cloud.coordinates =
+            Some(Coordinates::Corners(of_corners.into_iter().map(corners).collect()));
+    }
+    Ok(())
+}
+
+/// A polygon a b c d ... is the fan abc, acd, ...
+fn fan<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
+    let pairs = corners.get(1..).unwrap_or_default().windows(2);
+    pairs.map(|pair| [corners[0], pair[0], pair[1]])
+}
+
+/// Numbers as coordinates, as many as there are corners.
+fn places(numbers: &[f32], corners: usize) -> Result<&[[f32; 2]], String> {
+    if numbers.len() == 2 * corners {
+        return Ok(numbers.as_chunks().0);
+    }
+    let (found, needed) = (numbers.len(), 2 * corners);
+    Err(format!("texcoord has {found} numbers, but {corners} corners need {needed}"))
+}
+
+/// Which property lists the texture coordinates of the corners, if one does.
+pub(super) fn coordinates(element: &Element) -> Result<Option<usize>, String> {
+    let found = element.properties.iter().position(|p| p.name == "texcoord");
+    match found.map(|index| element.properties[index].kind) {
+        Some(PropertyKind::One(_)) => {
+            Err("element face: property `texcoord` must be a list of numbers".into())
+        }
+        Some(PropertyKind::List { .. }) | None => Ok(found),
+    }
 }
 
 /// The vertex that a number names.

@@ -96,6 +96,8 @@ pub(super) struct Element {
 pub(super) struct PlyHeader {
     pub(super) format: Format,
     pub(super) elements: Vec<Element>,
+    /// The names in lines `comment TextureFile NAME`, each once.
+    pub(super) textures: Vec<String>,
     /// Where the body starts, in bytes.
     pub(super) body: usize,
     /// The line that the body starts on, counted from 1.
@@ -109,7 +111,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, String> {
         return Err("line 1: not a PLY file: the first line must be `ply`".into());
     }
     let mut format = None;
-    let mut elements = Vec::new();
+    let (mut elements, mut textures) = (Vec::new(), Vec::new());
     let mut names = BTreeSet::new();
     loop {
         let Some(text) = lines.next() else {
@@ -121,6 +123,13 @@ pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, String> {
         let words: Vec<&str> = text.split_ascii_whitespace().take(6).collect();
         match words[..] {
             ["end_header"] => break,
+            ["comment", "TextureFile", _, ..] => {
+                // A name may have blanks.
+                let name = text.split_once("TextureFile").map_or("", |(_, name)| name.trim());
+                if !textures.iter().any(|known| known == name) {
+                    textures.push(name.to_owned());
+                }
+            }
             [] | ["comment" | "obj_info", ..] => {}
             ["format", name, version] => {
                 if format.replace(parse_format(name, version, line)?).is_some() {
@@ -146,7 +155,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, String> {
     let format = format.ok_or_else(|| {
         format!("line {}: no format line; add `format ascii 1.0` or a binary one", lines.number)
     })?;
-    Ok(PlyHeader { format, elements, body: lines.at, line: lines.number + 1 })
+    Ok(PlyHeader { format, elements, textures, body: lines.at, line: lines.number + 1 })
 }
 
 fn unknown_line(text: &str, line: u64) -> String {

@@ -1,7 +1,8 @@
 //! PLY: point clouds and meshes, in and out.
 //!
 //! Read are ascii and binary files of both byte orders, with LF or CR LF in the header. What a
-//! [`Cloud`] has no room for (other elements, other properties, comments) is skipped.
+//! [`Cloud`] has no room for (other elements, other properties, comments) is skipped. A line `comment TextureFile
+//! NAME` of the header, which many programs write, names a texture, see [`crate::io::texture`].
 //!
 //! | element | properties | types | |
 //! |---|---|---|---|
@@ -15,10 +16,12 @@
 //! | | `mip1_red mip1_green mip1_blue`, `mip2_red` ... | as `red` | [prefiltered colours](crate::scene::Mipmap), level by level from 1 on, 16 levels at most, beside `red green blue` |
 //! | | `tux tuy tuz tvx tvy tvz` | any | half axes of an ellipse, world units |
 //! | | `tx ty tz` | any | tangent of a tube, of any length |
+//! | | `u v`, `s t` or `texture_u texture_v` | any | [texture coordinates](crate::scene::texture); `s` or `t` alone is something else |
 //! | | `group` | an integer | the surfel's own [group](crate::index::grouping), 0 to 63 |
 //! | | `also` | list of integers | further groups that it was added to, none twice; skipped without `group` |
 //! | `group` | `scale` | any | what radii are multiplied by, finite and > 0, for each group; skipped without `group` |
 //! | `face` | `vertex_indices` or `vertex_index` | list of integers | a polygon is the fan of its first corner; with fewer than 3 corners it is nothing |
+//! | | `texcoord` | list of numbers | texture coordinates, two a corner, in the place of the vertices' |
 //! | `edge` | `vertex1` and `vertex2` | integers | a segment of a ribbon or of a tube |
 //!
 //! To compare with a renderer that takes colours as they are stored, mind that integers here are
@@ -69,6 +72,8 @@ use values::BodyValues;
 /// What a vertex takes at most while arrays of all attributes grow, and a face of a few corners.
 const BYTES_A_VERTEX: u64 = 128;
 const BYTES_A_FACE: u64 = 24;
+/// What the texture coordinates of a triangle take, once more while their array grows and is handed over.
+const BYTES_OF_COORDINATES: u64 = 24;
 
 /// Reads a file, on one thread. It needs memory for the file and the cloud; little-endian ones without
 /// lists and groups of vertices need none for the file, and are decoded as they are read. Times are
@@ -113,7 +118,7 @@ fn parse_with(bytes: &[u8], exec: &Exec) -> Reason<Cloud> {
     let header = header::parse(bytes)?;
     let vertex = vertex(&header)?;
     ask(&header, bytes.len() as u64, 0)?;
-    let mut cloud = Cloud::default();
+    let mut cloud = Cloud { textures: header.textures.clone(), ..Cloud::default() };
     let mut groups = groups::Reader::new(vertex);
     let mut values = BodyValues::new(bytes, &header);
     for element in &header.elements {
@@ -143,11 +148,15 @@ fn vertex(header: &PlyHeader) -> Reason<&Element> {
 fn ask(header: &PlyHeader, length: u64, more: u64) -> Reason<()> {
     let vertices = vertex(header)?.count;
     let faces = header.elements.iter().filter(|element| element.name != "vertex");
-    let faces: u64 = faces.map(|element| element.count.min(length)).sum();
+    let a_face = |of: &Element| match faces::coordinates(of) {
+        Ok(Some(_)) if of.name == "face" => BYTES_A_FACE + 2 * BYTES_OF_COORDINATES,
+        _ => BYTES_A_FACE,
+    };
+    let faces: u64 = faces.map(|element| element.count.min(length) * a_face(element)).sum();
     let vertex = vertex(header)?.properties.iter();
     let prefiltered = vertex.filter(|property| property.name.starts_with("mip")).count() as u64;
     let a_vertex = BYTES_A_VERTEX + 8 * prefiltered.min(48);
-    let needed = vertices.min(length) * a_vertex + faces * BYTES_A_FACE;
+    let needed = vertices.min(length) * a_vertex + faces;
     memory::try_ask(needed.saturating_add(more), || format!("a cloud of {vertices} points"))
 }
 
@@ -161,7 +170,7 @@ fn other(
 ) -> Reason<()> {
     match element.name.as_str() {
         "edge" => edges::read(element, values, vertices, &mut cloud.edges),
-        "face" => faces::read(element, values, vertices, &mut cloud.triangles),
+        "face" => faces::read(element, values, vertices, cloud),
         "group" => groups.scales(element, values),
         _ => values.walk(element, |_| Ok(())),
     }

@@ -5,12 +5,12 @@
 
 use super::header::{Element, Format, PropertyKind, Scalar};
 use super::vertices::{
-    COLOR, Decode, Layout, MIPMAP, NORMAL, OPACITY, POSITION, PropertyUse, RADIUS, TANGENT,
-    TANGENTS,
+    COLOR, COORDINATE, Decode, Layout, MIPMAP, NORMAL, OPACITY, POSITION, PropertyUse, RADIUS,
+    TANGENT, TANGENTS,
 };
 use crate::frame::Exec;
-use crate::scene::Cloud;
-use glam::Vec3;
+use crate::scene::{Cloud, Coordinates};
+use glam::{Vec2, Vec3};
 use std::ops::Range;
 
 /// How to decode a row.
@@ -68,6 +68,9 @@ impl Rows {
             .flatten()
             .for_each(|numbers| numbers.reserve_exact(count));
         cloud.tangents.iter_mut().for_each(|pairs| pairs.reserve_exact(count));
+        if let Some(Coordinates::Points(all)) = &mut cloud.coordinates {
+            all.reserve_exact(count);
+        }
         if let Some(mipmap) = &mut cloud.mipmap {
             let levels = mipmap.levels();
             mipmap.colors_mut().reserve_exact(count * levels);
@@ -88,6 +91,9 @@ impl Rows {
         }
         let pair = |[a, b, c, d, e, f]: [f32; 6]| [Vec3::new(a, b, c), Vec3::new(d, e, f)];
         cloud.tangents.iter_mut().for_each(|to| table.put(to, TANGENTS, pair));
+        if let Some(Coordinates::Points(all)) = &mut cloud.coordinates {
+            table.put(all, COORDINATE, Vec2::from_array);
+        }
         cloud.mipmap.iter_mut().for_each(|mipmap| table.levels(mipmap.colors_mut()));
     }
 }

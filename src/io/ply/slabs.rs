@@ -71,7 +71,7 @@ impl Start {
         let after = header.body as u64 + vertex.count * stride;
         let slab = ROWS.min(vertex.count) * stride;
         ask(&header, length, 2 * slab + (length - after))?;
-        let mut cloud = Cloud::default();
+        let mut cloud = Cloud { textures: header.textures.clone(), ..Cloud::default() };
         layout.arrays(&mut cloud)?;
         rows.reserve(vertex.count as usize, &mut cloud);
         file.seek(SeekFrom::Start(header.body as u64))?;

@@ -7,16 +7,19 @@ use super::values::{BodyValues, Event};
 use crate::frame::Exec;
 use crate::io::srgb;
 use crate::scene::mipmap::MOST_LEVELS;
-use crate::scene::{Cloud, Mipmap};
-use glam::Vec3;
+use crate::scene::{Cloud, Coordinates, Mipmap};
+use glam::{Vec2, Vec3};
 use std::ops::Range;
 use std::sync::LazyLock;
 
 /// The properties that are read, each with its place in a row.
-const NAMES: [&str; 20] = [
+const NAMES: [&str; 22] = [
     "x", "y", "z", "nx", "ny", "nz", "radius", "red", "green", "blue", "opacity", "tux", "tuy",
-    "tuz", "tvx", "tvy", "tvz", "tx", "ty", "tz",
+    "tuz", "tvx", "tvy", "tvz", "tx", "ty", "tz", "u", "v",
 ];
+/// Other names of some of them.
+const ALIASES: [(&str, &str); 5] =
+    [("alpha", "opacity"), ("s", "u"), ("t", "v"), ("texture_u", "u"), ("texture_v", "v")];
 pub(super) const POSITION: Range<usize> = 0..3;
 pub(super) const NORMAL: Range<usize> = 3..6;
 pub(super) const RADIUS: Range<usize> = 6..7;
@@ -24,8 +27,9 @@ pub(super) const COLOR: Range<usize> = 7..10;
 pub(super) const OPACITY: Range<usize> = 10..11;
 pub(super) const TANGENTS: Range<usize> = 11..17;
 pub(super) const TANGENT: Range<usize> = 17..20;
+pub(super) const COORDINATE: Range<usize> = 20..22;
 /// The first place of prefiltered colours, three for each level.
-pub(super) const MIPMAP: usize = 20;
+pub(super) const MIPMAP: usize = 22;
 
 static SRGB_8: LazyLock<Vec<f32>> = LazyLock::new(|| srgb::table(u8::MAX.into()));
 static SRGB_16: LazyLock<Vec<f32>> = LazyLock::new(|| srgb::table(u16::MAX));
@@ -70,7 +74,13 @@ pub(super) struct Layout {
 
 impl Layout {
     pub(super) fn new(element: &Element, groups: &groups::Reader) -> Result<Self, String> {
-        let slots = element.properties.iter().map(|p| slot(&p.name, p.kind, groups));
+        let named = |name: &str| element.properties.iter().any(|p| p.name == name);
+        // One of them alone is a time or a scalar.
+        let pair = named("s") && named("t");
+        let slots = element.properties.iter().map(|p| match p.name.as_str() {
+            "s" | "t" if !pair => Ok(PropertyUse::Skip),
+            name => slot(name, p.kind, groups),
+        });
         let slots: Vec<PropertyUse> = slots.collect::<Result<_, _>>()?;
         let numbers = slots.iter().filter_map(|slot| match slot {
             PropertyUse::Number(place, _) => Some(*place),
@@ -81,11 +91,20 @@ impl Layout {
         let mut given = vec![false; NAMES.len() + 3 * levels];
         for place in numbers {
             if std::mem::replace(&mut given[place], true) {
-                return Err("element vertex has both opacity and alpha; keep one".into());
+                let what = if COORDINATE.contains(&place) {
+                    "several texture coordinates; keep u and v, s and t, or texture_u and texture_v"
+                } else {
+                    "both opacity and alpha; keep one"
+                };
+                return Err(format!("element vertex has {what}"));
             }
         }
         if !has(&given, POSITION)? {
             return Err("element vertex has no properties x, y, z; declare them".into());
+        }
+        if given[COORDINATE.start] != given[COORDINATE.start + 1] {
+            let what = "one texture coordinate alone; declare u and v, or texture_u and texture_v";
+            return Err(format!("element vertex has {what}"));
         }
         let colored = has(&given, COLOR)?;
         for level in 1..=levels {
@@ -107,7 +126,7 @@ impl Layout {
         (self.given.len() - NAMES.len()) / 3
     }
 
-    /// Gives `cloud` the arrays of what is there, empty.
+    /// Gives `cloud` the arrays of what is there, empty; no texture coordinates if its corners have them.
     pub(super) fn arrays(&self, cloud: &mut Cloud) -> Result<(), String> {
         cloud.normal = has(&self.given, NORMAL)?.then(Vec::new);
         cloud.radius = has(&self.given, RADIUS)?.then(Vec::new);
@@ -115,6 +134,9 @@ impl Layout {
         cloud.opacity = has(&self.given, OPACITY)?.then(Vec::new);
         cloud.tangents = has(&self.given, TANGENTS)?.then(Vec::new);
         cloud.tangent = has(&self.given, TANGENT)?.then(Vec::new);
+        if has(&self.given, COORDINATE)? && cloud.coordinates.is_none() {
+            cloud.coordinates = Some(Coordinates::Points(Vec::new()));
+        }
         let levels = self.levels();
         cloud.mipmap = (levels > 0).then(|| Mipmap::empty(levels));
         Ok(())
@@ -220,7 +242,7 @@ fn slot(name: &str, kind: PropertyKind, groups: &groups::Reader) -> Result<Prope
     if let Some(part) = groups.part(name, kind)? {
         return Ok(PropertyUse::Group(part));
     }
-    let name = if name == "alpha" { "opacity" } else { name };
+    let name = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, name)| name);
     let known = NAMES.iter().position(|&known| known == name);
     let Some(place) = known.map_or_else(|| prefiltered(name), |place| Ok(Some(place)))? else {
         return Ok(PropertyUse::Skip);
@@ -273,6 +295,9 @@ fn push(cloud: &mut Cloud, row: &[f32]) {
     }
     if let Some(tangents) = &mut cloud.tangent {
         tangents.push(vector(TANGENT));
+    }
+    if let Some(Coordinates::Points(all)) = &mut cloud.coordinates {
+        all.push(Vec2::from_slice(&row[COORDINATE]));
     }
     if let Some(mipmap) = &mut cloud.mipmap {
         mipmap.colors_mut().extend(row[MIPMAP..].chunks_exact(3).map(Vec3::from_slice));

@@ -3,19 +3,21 @@
 use crate::error::Result;
 use crate::io::replace::write_atomically;
 use crate::scene::Cloud;
-use crate::scene::{Groups, Mipmap};
+use crate::scene::{Coordinates, Groups, Mipmap};
 use std::io::{self, Write};
 use std::path::Path;
 
 /// Writes a cloud as binary little-endian PLY, whole or not at all.
 ///
 /// Vertices are floats: `x y z`, then what there is of `nx ny nz`, `radius`, `red green blue`
-/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`, `tx ty tz`, `mip1_red mip1_green mip1_blue` and so
+/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`, `tx ty tz`, `u v`, `mip1_red mip1_green mip1_blue` and so
 /// for each level (linear); then, if there are groups,
 /// `uchar group` and, if surfels were added to some, `list uchar uchar also`. Triangles follow as
-/// `face` with `list uchar uint vertex_indices`, edges as `edge` with `uint vertex1 vertex2`, and
+/// `face` with `list uchar uint vertex_indices` and, if there are texture coordinates of corners, `list uchar float
+/// texcoord`, edges as `edge` with `uint vertex1 vertex2`, and
 /// last, if they do not tell by themselves how many groups there are or if radii are scaled, the
-/// element `group` with `float scale`. [`super::read`] gives the same cloud back, bit for bit.
+/// element `group` with `float scale`. The names of textures are written as `comment TextureFile`, but for those that are empty or
+/// have a line break. [`super::read`] gives the same cloud back, bit for bit; the texture itself is not written.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the arrays of the cloud differ in length; [`crate::Error::Io`] as
@@ -44,6 +46,9 @@ pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
             put(&tangents[i][1].to_array())?;
         }
         cloud.tangent.as_ref().map_or(Ok(()), |tangent| put(&tangent[i].to_array()))?;
+        if let Some(Coordinates::Points(all)) = &cloud.coordinates {
+            put(&all[i].to_array())?;
+        }
         let levels = cloud.mipmap.iter().flat_map(|mipmap| mipmap.of(i));
         levels.into_iter().try_for_each(|color| put(&color.to_array()))?;
         if let Some(groups) = groups {
@@ -55,9 +60,14 @@ pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
             out.write_all(&also)?;
         }
     }
-    for triangle in &cloud.triangles {
+    for (i, triangle) in cloud.triangles.iter().enumerate() {
         out.write_all(&[3])?;
         triangle.iter().try_for_each(|index| out.write_all(&index.to_le_bytes()))?;
+        if let Some(Coordinates::Corners(all)) = &cloud.coordinates {
+            out.write_all(&[6])?;
+            let mut numbers = all[i].iter().flat_map(|at| at.to_array());
+            numbers.try_for_each(|number| out.write_all(&number.to_le_bytes()))?;
+        }
     }
     let mut ends = cloud.edges.iter().flatten();
     ends.try_for_each(|index| out.write_all(&index.to_le_bytes()))?;
@@ -75,8 +85,13 @@ fn header(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
         (cloud.opacity.is_some(), "opacity"),
         (cloud.tangents.is_some(), "tux tuy tuz tvx tvy tvz"),
         (cloud.tangent.is_some(), "tx ty tz"),
+        (matches!(cloud.coordinates, Some(Coordinates::Points(_))), "u v"),
     ];
     writeln!(out, "ply\nformat binary_little_endian 1.0")?;
+    let is_line = |name: &&String| !(name.is_empty() || name.contains(['\n', '\r']));
+    for name in cloud.textures.iter().filter(is_line) {
+        writeln!(out, "comment TextureFile {name}")?;
+    }
     writeln!(out, "element vertex {}", cloud.position.len())?;
     for name in names.iter().filter(|n| n.0).flat_map(|n| n.1.split(' ')) {
         writeln!(out, "property float {name}")?;
@@ -95,6 +110,9 @@ fn header(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
     if !cloud.triangles.is_empty() {
         writeln!(out, "element face {}", cloud.triangles.len())?;
         writeln!(out, "property list uchar uint vertex_indices")?;
+        if matches!(cloud.coordinates, Some(Coordinates::Corners(_))) {
+            writeln!(out, "property list uchar float texcoord")?;
+        }
     }
     if !cloud.edges.is_empty() {
         writeln!(out, "element edge {}", cloud.edges.len())?;

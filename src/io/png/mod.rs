@@ -2,6 +2,7 @@
 
 mod read;
 
+pub(super) use read::read_linear;
 pub use read::{Stored, read};
 
 use crate::frame::{Frame, Plane};

@@ -1,8 +1,8 @@
 //! PNG files in, and the pictures that they are compared with.
 
 use super::{quantize, straight};
-use crate::frame::Image;
 use crate::frame::image::Values;
+use crate::frame::{Image, Plane};
 use crate::io::{input, srgb};
 use crate::memory;
 use crate::{Error, Result};
@@ -32,6 +32,33 @@ pub struct Stored {
 /// [`Error::Io`] if the file cannot be read, [`Error::Format`] if it is no PNG, is damaged, or
 /// promises more pixels than its bytes can hold, which is found before these are allocated.
 pub fn read(path: &Path) -> Result<Stored> {
+    read_of_size(path, |_, _| Ok(()))
+}
+
+/// The colours of the PNG file at `path` in linear light, each code decoded as sRGB and rounded once; alpha is passed over.
+///
+/// # Errors
+/// As [`read`], and [`Error::Format`] with what `check_size` says, before any pixel is read.
+pub(in crate::io) fn read_linear(
+    path: &Path,
+    check_size: fn(u32, u32) -> Result<()>,
+) -> Result<Plane<[f32; 3]>> {
+    let Stored { image, most } = read_of_size(path, check_size)?;
+    let count = image.width as usize * image.height as usize;
+    memory::try_ask(12 * count as u64, || format!("the colours of {count} pixels"))
+        .map_err(|what| Error::format(path, what))?;
+    let table = srgb::table(most);
+    let codes = |name: &str| match image.channel(name) {
+        Some(Values::Float(values)) => values.as_slice(),
+        Some(Values::Index(_)) | None => &[],
+    };
+    let linear = |part: f32| table[quantize(part.into(), most) as usize];
+    let colors = codes("R").iter().zip(codes("G")).zip(codes("B"));
+    let pixels = colors.map(|((&r, &g), &b)| [r, g, b].map(linear)).collect();
+    Ok(Plane::from_values(image.width, image.height, pixels))
+}
+
+fn read_of_size(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<Stored> {
     let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
     let length = bytes.len() as u64;
     // One line, whatever the decoder says.
@@ -44,6 +71,7 @@ pub fn read(path: &Path) -> Result<Stored> {
     limits.max_alloc = Some(most_bytes.saturating_add(1 << 20));
     let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(reason)?;
     let (width, height) = decoder.dimensions();
+    check_size(width, height).map_err(|error| Error::format(path, error.to_string()))?;
     if decoder.total_bytes() > most_bytes {
         return Err(Error::format(
             path,
@@ -53,8 +81,9 @@ pub fn read(path: &Path) -> Result<Stored> {
             ),
         ));
     }
-    // The bytes, their codes in 16 bits, and planes of floats.
-    memory::try_ask(decoder.total_bytes().saturating_mul(7), || {
+    // The bytes, their codes in 16 bits, and up to four planes of floats.
+    let planes = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(16);
+    memory::try_ask(decoder.total_bytes().saturating_mul(3).saturating_add(planes), || {
         format!("a picture of {width} x {height} pixels")
     })
     .map_err(|what| Error::format(path, what))?;
@@ -127,7 +156,7 @@ impl Stored {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::{Frame, Plane, Samples};
+    use crate::frame::{Frame, Samples};
     use crate::verify::compare::{Criteria, Verdict, compare};
     use image::{ExtendedColorType, ImageEncoder};
     use std::fs;

@@ -4,7 +4,7 @@ use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, read_model,
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::mipmap;
-use crate::io::environment;
+use crate::io::{environment, texture};
 use crate::scene::{Cloud, Counts, Dropped, Environment, Geometry, Object, Objects};
 use crate::scene::{Primitives, Scene, Similarity, Surfels};
 use crate::source::derive::{self, Derive, Derived};
@@ -48,11 +48,11 @@ impl SceneFile {
     /// `progress` as in [`derive::surfels`].
     ///
     /// # Errors
-    /// Those of [`environment::read`], [`read_model`], [`crate::source::Shape::surfels`],
+    /// Those of [`environment::read`], [`read_model`], [`texture::paint`], [`crate::source::Shape::surfels`],
     /// [`plant::apple_tree`], and of [`derive::surfels`] and its like for polygons and lines, the
     /// file named; of [tables](super::places) and [`Objects::new`]; [`Error::Invalid`] if neither a
     /// surfel nor a primitive is left or there are too many, if a model cannot be drawn as it says, or
-    /// if one that is not drawn as points was given an opacity, or mipmaps; as [`mipmap::build`], and if
+    /// if one that is not drawn as points was given an opacity, or mipmaps, or one in one colour or drawn as lines a texture; as [`mipmap::build`], and if
     /// mipmaps are asked for of a model in one colour.
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
         self.all_models().try_for_each(check_draw)?;
@@ -155,8 +155,8 @@ impl Loaded {
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<(Surfels, Primitives)> {
-        let ModelParts { surfels, primitives, derived } = read(model, exec, progress)?;
-        let surfels = prefiltered(surfels, model, exec, progress)?;
+        let ModelParts { surfels, primitives, derived, painted } = read(model, exec, progress)?;
+        let surfels = if painted { surfels } else { prefiltered(surfels, model, exec, progress)? };
         let counts = primitives.counts();
         self.models.push(ModelReport { name, surfels: surfels.len(), primitives: counts, derived });
         // What a transform took out of the range of f32 is dropped here, or of surfels later.
@@ -186,21 +186,36 @@ struct ModelParts {
     surfels: Surfels,
     primitives: Primitives,
     derived: Option<Derived>,
+    /// Whether colours, of all levels that are asked for, are those of a texture.
+    painted: bool,
 }
 
 impl ModelParts {
     fn new(surfels: Surfels, primitives: Primitives, derived: Derived) -> Self {
-        Self { surfels, primitives, derived: Some(derived) }
+        Self { surfels, primitives, derived: Some(derived), painted: false }
     }
 }
 
-/// Whether a model can be drawn as it says, and may have its opacity.
+/// Whether a model has the colours of a texture, if there is one.
+fn shows_texture(model: &Model) -> bool {
+    model.color.is_none() && !matches!(model.draw, Draw::Ribbons | Draw::Tubes)
+}
+
+/// Whether a model can be drawn as it says, and may have its opacity and its texture.
 fn check_draw(model: &Model) -> Result<()> {
     model.draw.check(&model.source).map_err(Error::Invalid)?;
     if model.progressive && !matches!(model.source, Source::File { .. }) {
         let name = model.source.name();
         let what = format!("{name}: what is progressive are points of a file, in an order");
         return Err(Error::Invalid(what));
+    }
+    if matches!(model.source, Source::File { texture: Some(_), .. }) && !shows_texture(model) {
+        let what = match model.color {
+            Some(_) => "a model in one colour".to_owned(),
+            None => format!("what is drawn as {}", model.draw.word()),
+        };
+        let name = model.source.name();
+        return Err(Error::Invalid(format!("{name}: {what} has no texture; remove one of them")));
     }
     let surfels = !matches!(model.draw, Draw::Polygons | Draw::Ribbons | Draw::Tubes | Draw::Lines);
     if model.mipmaps.is_some_and(|levels| levels > 0) && (!surfels || model.color.is_some()) {
@@ -223,12 +238,17 @@ fn check_draw(model: &Model) -> Result<()> {
 
 fn read(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<ModelParts> {
     match &model.source {
-        Source::File { path, radius, prefix } => {
-            let cloud = read_model(path, exec)?;
+        Source::File { path, radius, prefix, texture } => {
+            let mut cloud = read_model(path, exec)?;
+            if shows_texture(model) {
+                let levels = model.mipmaps.unwrap_or(0);
+                texture::paint(&mut cloud, path, texture.as_deref(), levels, exec)?;
+            }
+            let painted = cloud.paint.is_some();
             let options = Derive { radius: *radius };
             let parts = first(cloud, *prefix, model.progressive)
                 .and_then(|cloud| of_file(cloud, &model.draw, &options, exec, progress));
-            parts.map_err(|error| match error {
+            parts.map(|parts| ModelParts { painted, ..parts }).map_err(|error| match error {
                 Error::Invalid(what) => Error::format(path, what),
                 other => other,
             })
@@ -237,12 +257,14 @@ fn read(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result
             surfels: shape.surfels(*count, *seed)?,
             primitives: Primitives::default(),
             derived: None,
+            painted: false,
         }),
         Source::Tree { leaves, seed } => {
             let tree = plant::apple_tree(*leaves, *seed)?;
             let primitives =
                 if model.draw == Draw::Polygons { tree.polygons() } else { tree.lines() }?;
-            Ok(ModelParts { surfels: Surfels::none(), primitives, derived: None })
+            let surfels = Surfels::none();
+            Ok(ModelParts { surfels, primitives, derived: None, painted: false })
         }
     }
 }
@@ -279,7 +301,7 @@ fn of_file(
             ModelParts::new(surfels, none, derived)
         }
         Draw::Facets => {
-            let (surfels, derived) = derive::facets(cloud, exec)?;
+            let (surfels, derived) = derive::facets(cloud, exec, progress)?;
             ModelParts::new(surfels, none, derived)
         }
         Draw::Polygons => {

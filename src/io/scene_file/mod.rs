@@ -120,12 +120,12 @@ pub struct Model {
     pub draw: Draw,
     /// Where they are put.
     pub transform: Similarity,
-    /// Linear RGB for all of them, in place of their own.
+    /// Linear RGB for all of them, in place of their own, and of a texture that their file names.
     pub color: Option<Vec3>,
     /// Opacity in [0, 1] for all of them, in place of their own; for points alone.
     pub opacity: Option<f32>,
-    /// Levels of prefiltered colours that are [made](crate::index::mipmap) on loading, of surfels as
-    /// they are read, before any transform; 0 drops those of the file, which are kept if absent.
+    /// Levels of prefiltered colours that are made on loading, of the [texture](crate::source::derive) if there is one, else
+    /// of [neighbours](crate::index::mipmap), of surfels as they are read, before any transform; 0 drops those of the file, which are kept if absent.
     pub mipmaps: Option<usize>,
     /// Whether the surfels are in an order of which a view draws a
     /// [prefix](crate::scene::objects::detail::prefix). A scene with such a model is one of objects.
@@ -145,6 +145,8 @@ pub enum Source {
         /// which every prefix is spread over the whole ([`crate::source::sampler`]), a level of detail: what is
         /// derived is derived of these points alone.
         prefix: Option<usize>,
+        /// The texture, see [`crate::io::texture`]; that of the file if absent.
+        texture: Option<PathBuf>,
     },
     /// A procedural shape.
     Shape {
@@ -253,12 +255,13 @@ impl SceneFile {
         }
     }
 
-    /// The files that loading reads.
+    /// The files that loading reads, but for those that models name.
     pub fn reads(&self) -> impl Iterator<Item = &Path> {
-        let models = self.all_models().filter_map(|model| match &model.source {
-            Source::File { path, .. } => Some(path.as_path()),
-            Source::Shape { .. } | Source::Tree { .. } => None,
+        let models = self.all_models().flat_map(|model| match &model.source {
+            Source::File { path, texture, .. } => [Some(path.as_path()), texture.as_deref()],
+            Source::Shape { .. } | Source::Tree { .. } => [None; 2],
         });
+        let models = models.flatten();
         let tables = self.objects.iter().filter_map(|object| match &object.places {
             Places::Table { path, .. } => Some(path.as_path()),
             Places::One(_) | Places::Scatter { .. } => None,

@@ -31,7 +31,7 @@ pub enum FileKind {
     Exr,
 }
 
-/// Reads the model at `path`: OBJ by its extension, else PLY.
+/// Reads the model at `path`: OBJ by its extension, else PLY. Its texture is not read, see [`crate::io::texture::paint`].
 ///
 /// # Errors
 /// As [`obj::read`] and [`ply::read_with`].
@@ -112,6 +112,7 @@ impl SceneFile {
                 path: path.to_owned(),
                 radius: None,
                 prefix: None,
+                texture: None,
             })),
             FileKind::Toml => Self::read(path),
             FileKind::Exr => Err(Error::Usage(format!(

@@ -1,5 +1,6 @@
 mod draw;
 mod objects;
+mod textures;
 
 use super::*;
 use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples};
@@ -49,7 +50,10 @@ fn the_example_says_what_it_says() {
     assert_eq!(file.name, "scene");
     let [bunny, sheets] = file.models.as_slice() else { panic!("two models") };
     let path = Path::new("a").join("bunny.ply");
-    assert_eq!(bunny.source, Source::File { path, radius: Some(0.002), prefix: Some(10_000) });
+    assert_eq!(
+        bunny.source,
+        Source::File { path, radius: Some(0.002), prefix: Some(10_000), texture: None }
+    );
     assert_eq!(bunny.color, Some(Vec3::new(0.75, 0.5, 0.25)));
     assert_eq!(bunny.draw, Draw::Surfels);
     assert_eq!((bunny.transform.scale, bunny.transform.translation), (10.0, -DVec3::Y));
@@ -361,6 +365,7 @@ fn errors_of_models_name_their_file() {
         path: "no/such.ply".into(),
         radius: None,
         prefix: None,
+        texture: None,
     });
     let error = missing.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err();
     assert!(error.to_string().starts_with("no/such.ply: "), "{error}");
@@ -372,7 +377,12 @@ fn errors_of_models_name_their_file() {
         property float y\nproperty float z\nend_header\n0 0 0\n",
     )
     .unwrap();
-    let lone = SceneFile::of_model(Source::File { path: path.clone(), radius: None, prefix: None });
+    let lone = SceneFile::of_model(Source::File {
+        path: path.clone(),
+        radius: None,
+        prefix: None,
+        texture: None,
+    });
     let error = lone.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err();
     assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");
 }

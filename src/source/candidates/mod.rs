@@ -27,10 +27,18 @@
 //!   normal(j) = ((V0j m.x + V1j m.y) + V2j m.z) + 0
 //! ```
 //!
-//! The colour is that of the sample, if the triangles have colours.
+//! The colour is that of the sample, if the triangles have colours. Of a mesh with a texture ([`of_cloud`]) it is the
+//! [mean](crate::scene::texture) of the texture around
+//!
+//! ```text
+//!   (u, v)    = (t_0 c_0 + t_1 c_1) + t_2 c_2          t the coordinates of the corners; in f64
+//! ```
+//!
+//! within the outline of a disc in the triangle's plane, whose radius is the side of a pixel: with the terms of
+//! [`crate::source::derive`], the matrix (S (1 / A)) times the square of that side.
 //!
 //! **Order**: by direction, row, column. A candidate whose normal is null, where opposite normals of corners
-//! cancel, is dropped and counted.
+//! cancel, or whose colour is not finite is dropped and counted.
 //!
 //! # Decided
 //!
@@ -39,8 +47,15 @@
 //! - [`Directions::Cube`] unless somebody asks for [`Directions::Box`], which is the paper's. From the corners
 //!   of a box, a flat mesh is seen edge-on and has no candidates. Of a bar ten times as long as wide and high
 //!   its ends have ten times as many candidates an area as its sides; with the cube they have as many.
+//! - A texture is filtered: "samples are taken \[...\] from pixels with colors of minor importance" \[BJFM19, section 6, Fig. 4\]
+//!   where a pixel has the colour of one texel. The disc has no part in the direction: a place has one colour,
+//!   from wherever it is seen. The weight within it has the variance of 1/8 of a pixel's square along each axis; that of the square itself is 1/12.
 //! - Both sides of a triangle are seen: meshes of leaves and of sheet metal are not closed.
 //! - Lines have no area and give no candidates; a scene that has nothing else is refused.
+
+mod painted;
+
+pub use painted::of_cloud;
 
 use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
@@ -51,6 +66,7 @@ use crate::number::Vector3;
 use crate::scene::{Camera, Cloud, Lens, Primitives, Scene, Surfels};
 use crate::source::merge::join;
 use glam::{DMat4, DVec3, DVec4, Vec3};
+use painted::Painting;
 use std::borrow::Cow;
 
 /// The side of a picture in pixels, unless somebody asks for another one: the paper's.
@@ -95,14 +111,30 @@ pub fn candidates(
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Candidates> {
-    let mesh = mesh(scene)?;
-    let (low, high) = mesh.bounds();
+    let scene = mesh(scene)?;
+    gather(&Mesh { scene: &scene, painting: None }, directions, side, exec, progress)
+}
+
+/// Triangles alone, and their texture.
+struct Mesh<'a> {
+    scene: &'a Scene,
+    painting: Option<&'a Painting>,
+}
+
+fn gather(
+    mesh: &Mesh<'_>,
+    directions: &Directions,
+    side: u32,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<Candidates> {
+    let (low, high) = mesh.scene.bounds();
     let (low, high) = (low.as_dvec3(), high.as_dvec3());
     let half = (high - low) / 2.0;
     let radius = if half == DVec3::ZERO { 1.0 } else { half.length() };
     let sphere = ((low + high) / 2.0, radius);
     let directions = directions.around(half)?;
-    let colored = mesh.primitives.colored();
+    let colored = mesh.painting.is_some() || mesh.scene.primitives.colored();
     let mut found = Candidates {
         cloud: Cloud {
             normal: Some(Vec::new()),
@@ -117,7 +149,7 @@ pub fn candidates(
         progress("candidates", done, directions.len() as u64);
         let camera =
             Camera::framing(side, side, sphere, direction, Lens::Orthographic(2.0 * radius))?;
-        found.add(&mesh, &camera, exec)?;
+        found.add(mesh, &camera, exec)?;
     }
     progress("candidates", directions.len() as u64, directions.len() as u64);
     if found.cloud.position.is_empty() {
@@ -183,16 +215,16 @@ const OF_A_VERTEX: u64 = 20;
 
 impl Candidates {
     /// Adds what a camera sees of a mesh.
-    fn add(&mut self, mesh: &Scene, camera: &Camera, exec: &Exec) -> Result<()> {
+    fn add(&mut self, mesh: &Mesh<'_>, camera: &Camera, exec: &Exec) -> Result<()> {
         let pixels = u64::from(camera.width) * u64::from(camera.height);
-        let vertices = mesh.primitives.triangles.vertices().position.len() as u64;
+        let vertices = mesh.scene.primitives.triangles.vertices().position.len() as u64;
         // Every pixel may be covered.
         memory::ask(pixels * (OF_A_PIXEL + OF_A_CANDIDATE) + vertices * OF_A_VERTEX, || {
             format!("a picture of {pixels} pixels for candidates")
         })?;
         let before = self.cloud.position.len();
-        for (normal, position, color) in seen(mesh, camera, exec) {
-            if normal == Vec3::ZERO {
+        for (normal, position, color) in seen(mesh, self.pixel, camera, exec) {
+            if normal == Vec3::ZERO || !color.is_finite() {
                 self.dropped += 1;
                 continue;
             }
@@ -209,13 +241,13 @@ impl Candidates {
     }
 }
 
-/// Normal, position and colour at each covered pixel, in the order of the pixels.
-fn seen(mesh: &Scene, camera: &Camera, exec: &Exec) -> Vec<(Vec3, Vec3, Vec3)> {
+/// Normal, position and colour at each covered pixel of this side, in the order of the pixels.
+fn seen(mesh: &Mesh<'_>, side: f64, camera: &Camera, exec: &Exec) -> Vec<(Vec3, Vec3, Vec3)> {
     let columns = camera.width as usize;
-    let visible = VisibleTriangles::<f32>::new(mesh, camera, Snap::default());
+    let visible = VisibleTriangles::<f32>::new(mesh.scene, camera, Snap::default());
     let foremost = visible.foremost(exec);
     let covered: Vec<usize> = (0..foremost.len()).filter(|&i| foremost[i].1 != NO_ID).collect();
-    let triangles = &mesh.primitives.triangles;
+    let triangles = &mesh.scene.primitives.triangles;
     let view = camera.view_from_world.as_dmat4();
     let mut all = Vec::with_capacity(covered.len());
     exec.extend(&mut all, covered.len(), |at| {
@@ -226,7 +258,9 @@ fn seen(mesh: &Scene, camera: &Camera, exec: &Exec) -> Vec<(Vec3, Vec3, Vec3)> {
         // What is nearest in a pixel covers it.
         let (sample, w) = visible.sample(id, pixel).unwrap_or((PixelSample::empty(), [0.0; 3]));
         let position = ((a * w[0] + b * w[1]) + c * w[2]) + Vec3::ZERO;
-        (turned(&view, sample.normal), position, Vec3::from_array(sample.color))
+        let color = mesh.painting.map(|painting| painting.color(id, w, side));
+        let color = color.unwrap_or(Vec3::from_array(sample.color));
+        (turned(&view, sample.normal), position, color)
     });
     all
 }

@@ -1,8 +1,8 @@
 //! Clouds whose arrays fit together.
 
 use crate::error::{Error, Result};
-use crate::scene::Cloud;
 use crate::scene::surfels::check_mipmap;
+use crate::scene::{Cloud, Coordinates};
 
 impl Cloud {
     /// Checks what [`Cloud`] promises: one length for all arrays, prefiltered colours only beside
@@ -17,6 +17,8 @@ impl Cloud {
             let what = format!("{n} points, but ids have 32 bits: split the scene");
             return Err(Error::Invalid(what));
         }
+        let [of_points, of_triangles] =
+            self.coordinates.as_ref().map_or([None; 2], Coordinates::lengths);
         let lengths = [
             ("normals", self.normal.as_ref().map(Vec::len)),
             ("radii", self.radius.as_ref().map(Vec::len)),
@@ -24,12 +26,18 @@ impl Cloud {
             ("opacities", self.opacity.as_ref().map(Vec::len)),
             ("half axes", self.tangents.as_ref().map(Vec::len)),
             ("tangents", self.tangent.as_ref().map(Vec::len)),
+            ("texture coordinates", of_points),
             ("groups", self.groups.as_ref().map(|g| g.own().len())),
         ];
         for (what, length) in lengths {
             if let Some(length) = length.filter(|&length| length != n) {
                 return Err(Error::Invalid(format!("{n} positions, but {length} {what}")));
             }
+        }
+        let triangles = self.triangles.len();
+        if let Some(length) = of_triangles.filter(|&length| length != triangles) {
+            let what = format!("{triangles} triangles, but texture coordinates of {length}");
+            return Err(Error::Invalid(what));
         }
         check_mipmap(n, self.color.is_some(), &self.mipmap)?;
         let outside = |triangle: &[u32; 3]| triangle.iter().any(|&i| i as usize >= n);

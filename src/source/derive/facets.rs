@@ -1,6 +1,6 @@
 //! The triangles of a mesh as elliptical surfels, one each.
 
-use super::{Derive, Derived, Origin, drop_nowhere, primitives};
+use super::{Derive, Derived, Origin, drop_nowhere, primitives, texture};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
@@ -24,8 +24,8 @@ use std::ops::{Add, Div};
 ///              (n_a + n_b) + n_c is < 0; divided by its length, plus 0
 /// ```
 ///
-/// each rounded to `f32` once; products x.y and lengths are sums in the order x, y, z. Colour and
-/// opacity are the means of the corners', ((a + b) + c) / 3 in `f32`; a triangle with a corner whose
+/// each rounded to `f32` once; products x.y and lengths are sums in the order x, y, z. The colour is that of the
+/// texture, if it has been read (see the module); else colour and opacity are the means of the corners', ((a + b) + c) / 3 in `f32`; a triangle with a corner whose
 /// colour or opacity cannot be is dropped and counted, as the corner would be. `Decided:` the
 /// corners' normals say which side is the front, since files wind their triangles either way. Radii
 /// and tangents of the file are not looked at, and prefiltered colours are left out: they are of radii. A triangle without area becomes a surfel without a
@@ -34,7 +34,11 @@ use std::ops::{Add, Div};
 /// # Errors
 /// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if the points have groups,
 /// which say nothing of triangles.
-pub fn facets(mut cloud: Cloud, exec: &Exec) -> Result<(Surfels, Derived)> {
+pub fn facets(
+    mut cloud: Cloud,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<(Surfels, Derived)> {
     primitives::some_triangles(&cloud)?;
     cloud.check()?;
     if cloud.groups.is_some() {
@@ -43,7 +47,12 @@ pub fn facets(mut cloud: Cloud, exec: &Exec) -> Result<(Surfels, Derived)> {
     let nowhere = drop_nowhere(&mut cloud)?;
     let count = cloud.triangles.len();
     memory::ask(count as u64 * BYTES_A_FACET, || format!("{count} facets"))?;
-    let (surfels, mut dropped) = Surfels::new_with(ellipses(&cloud), exec)?;
+    let colors = texture::facets(&cloud, exec, progress)?;
+    let mut found = ellipses(&cloud);
+    if let Some((color, mipmap)) = colors {
+        (found.color, found.mipmap) = (Some(color), mipmap);
+    }
+    let (surfels, mut dropped) = Surfels::new_with(found, exec)?;
     dropped.position += nowhere;
     let (normals, radii) = (Origin::Facets, Origin::Facets);
     Ok((surfels, Derived { normals, radii, dropped, dropped_primitives: 0 }))
@@ -66,7 +75,7 @@ pub fn facets_or_surfels(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<(Surfels, Derived)> {
     if is_bare_mesh(&cloud, options) {
-        facets(cloud, exec)
+        facets(cloud, exec, progress)
     } else {
         super::surfels(cloud, options, exec, progress)
     }
@@ -209,13 +218,14 @@ mod tests {
 
     #[test]
     fn a_triangle_is_a_surfel_or_counted() {
-        let (surfels, derived) = facets(cloud(), &Exec::sequential()).unwrap();
+        let (surfels, derived) = facets(cloud(), &Exec::sequential(), &|_, _, _| ()).unwrap();
         assert_eq!(surfels.position(), [Vec3::new(1.0, 1.0, 1.0); 2]);
         assert_eq!(surfels.normal(), [Vec3::Z, -Vec3::Z], "by the order of the corners");
         assert_eq!(surfels.color(), Some([Vec3::ONE; 2].as_slice()));
         assert_eq!(surfels.opacity(), Some([0.5; 2].as_slice()));
         let normal = Some(vec![Vec3::Z, Vec3::Z, Vec3::new(0.0, 1.0, -1.5), Vec3::Z, Vec3::Z]);
-        let turned = facets(Cloud { normal, ..cloud() }, &Exec::sequential()).unwrap().0;
+        let turned =
+            facets(Cloud { normal, ..cloud() }, &Exec::sequential(), &|_, _, _| ()).unwrap().0;
         assert_eq!(turned.normal(), [Vec3::Z; 2], "the corners' normals say the side");
         // A point that is nowhere, with its triangle, and a triangle without area.
         assert_eq!((derived.dropped.position, derived.dropped.normal), (1, 1));
@@ -225,7 +235,7 @@ mod tests {
     #[test]
     fn what_no_corner_may_have_is_not_averaged_away() {
         let two = || Cloud { triangles: vec![[0, 1, 2], [1, 3, 2]], ..cloud() };
-        let whole = facets(two(), &Exec::sequential()).unwrap().0;
+        let whole = facets(two(), &Exec::sequential(), &|_, _, _| ()).unwrap().0;
         assert_eq!(whole.len(), 2);
         for wrong in [-1.0, f32::NAN, 3e38] {
             let mut color = vec![Vec3::ONE; 5];
@@ -235,7 +245,7 @@ mod tests {
             let colored = Cloud { color: Some(color), ..two() };
             let dim = Cloud { opacity: Some(opacity), ..two() };
             for cloud in [colored, dim] {
-                let (surfels, derived) = facets(cloud, &Exec::sequential()).unwrap();
+                let (surfels, derived) = facets(cloud, &Exec::sequential(), &|_, _, _| ()).unwrap();
                 assert_eq!(surfels.position(), &whole.position()[..1], "{wrong}");
                 assert_eq!(derived.dropped.attribute, 1, "{wrong}");
             }
@@ -263,7 +273,10 @@ mod tests {
         for cloud in
             [Cloud { groups: Some(grouped), ..cloud() }, Cloud { triangles: Vec::new(), ..cloud() }]
         {
-            assert!(matches!(facets(cloud, &Exec::sequential()), Err(Error::Invalid(_))));
+            assert!(matches!(
+                facets(cloud, &Exec::sequential(), &|_, _, _| ()),
+                Err(Error::Invalid(_))
+            ));
         }
     }
 }

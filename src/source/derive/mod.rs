@@ -9,7 +9,8 @@
 //! 3. **Radii**: the one that was asked for; else the longer tangent; else, in a mesh, the longest
 //!    edge of the triangles around the vertex; else the distance to the [`RADIUS_NEIGHBOURS`]th
 //!    nearest neighbour.
-//! 4. [`Surfels::new`] checks the rest.
+//! 4. **Colours** of the texture, if it has been [read](Cloud::paint): see below.
+//! 5. [`Surfels::new`] checks the rest.
 //!
 //! [`facets`], [`polygons`], [`hybrid`], [`ribbons`] and [`tubes`] begin with step 1 too.
 //!
@@ -84,6 +85,41 @@
 //! 256 |volume| > size, the part is flipped if volume < 0. Else the part is flat: it is flipped if
 //! the component of facing of the greatest magnitude, the first of equal ones, is < 0.
 //!
+//! # Colours of a texture
+//!
+//! What a surfel has of a texture is the [mean](crate::scene::texture) within its own outline, carried into the plane of (u, v):
+//! "prefiltered texture samples" \[GBP04, 4.4\]. It takes the place of the colours of the file, and
+//! [prefiltered levels](crate::scene::Mipmap) k of it, if some are asked for, are means within 2^k of that outline, the matrix
+//! times 4^k; those of the file are left out. A texture that no one has read changes nothing. Of vectors p and q of that
+//! plane p q^T is the matrix of all products; all in f64.
+//!
+//! **A facet** has the corners `t_a`, `t_b`, `t_c` in (u, v):
+//!
+//! ```text
+//!   center = ((t_a + t_b) + t_c) / 3     p = t_c - center     q = (t_b - t_a) / sqrt(3)
+//!   matrix = p p^T + q q^T
+//! ```
+//!
+//! **A point** of radius r, or of sqrt(|U x V|) with half axes U and V, lies in triangles, each with corners a, b, c and the
+//! normal n = (b - a) x (c - a). With e = b - a, f = c - a, and x and y the differences of the coordinates of the same corners,
+//!
+//! ```text
+//!   A = |n|     E = e . e     F = e . f     G = f . f
+//!   S = (((x x^T) G - (x y^T + y x^T) F) + (y y^T) E) / A           of triangles with A > 0
+//! ```
+//!
+//! S / A is the matrix of what a disc of radius 1 in the triangle's plane becomes. The triangles at a point are taken by
+//! its coordinates there, the groups in the order of the bits of u, then v, -0 being 0; in a group by ascending number.
+//! The colour of a group is the mean around its coordinates with the matrix (sum of S) (r r / sum of A), and that of the point the
+//! mean of its groups' by their sums of A, rounded to `f32` once; of one group it is that group's own.
+//!
+//! - `Decided:` matrices are added and not the maps themselves: what is mirrored does not cancel.
+//! - `Decided:` a point at a seam has something of both sides of it.
+//! - Where a coordinate of a triangle is not finite, or a point has no triangle with an area, the colour of the facet or of the
+//!   points at it is NaN, so that these surfels are dropped and counted. In a cloud without triangles the matrix of a point is 0.
+//! - `Decided:` the vertices of polygons have the colours that they have as points with radii of the third step: between vertices
+//!   colours are linear, and what is finer than an edge would alias. Methods know no textures.
+//!
 //! # Radii
 //!
 //! `Decided:` the radii. Every point of a triangle lies within 1/sqrt(3) of its longest edge from
@@ -106,9 +142,11 @@ mod plane;
 mod primitives;
 #[cfg(test)]
 mod tests;
+mod texture;
 
 pub use facets::{facets, facets_or_surfels};
 pub use primitives::{hybrid, polygons, ribbons, tubes};
+pub(in crate::source) use texture::stretch;
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
@@ -206,6 +244,7 @@ fn complete(
         None => missing_radii(&cloud, options, &places, exec, progress)?,
     };
     let dropped = Dropped { position: nowhere, ..Dropped::default() };
+    let cloud = texture::points(cloud, &radius, exec, progress)?;
     let cloud = Cloud { normal: Some(normal), radius: Some(radius), ..cloud };
     Ok((cloud, Derived { normals, radii, dropped, dropped_primitives: 0 }))
 }

@@ -1,6 +1,8 @@
 //! Polygons, ribbons and tubes: what is drawn of the triangles and edges of a cloud.
 
-use super::{Derive, Derived, Origin, complete, drop_nowhere, given, missing_normals};
+use super::{
+    Derive, Derived, Origin, complete, drop_nowhere, faces, given, missing_normals, texture,
+};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::scene::indexed::Indexed;
@@ -11,7 +13,7 @@ use std::cell::OnceCell;
 
 /// The triangles of a cloud as polygons, which reach no farther than themselves: every radius is 0.
 ///
-/// Normals that are missing are derived as those of surfels, see the module.
+/// Normals that are missing are derived as those of surfels, see the module, and so are colours of a texture.
 ///
 /// # Errors
 /// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if each has a corner
@@ -29,6 +31,10 @@ pub fn polygons(
         Some(normal) => (normal, Origin::File),
         None => missing_normals(&cloud, &OnceCell::new(), exec, progress)?,
     };
+    if cloud.paint.is_some() {
+        let reach = faces::radii(&cloud.position, &cloud.triangles);
+        cloud = texture::points(cloud, &reach, exec, progress)?;
+    }
     let radius = vec![0.0; cloud.position.len()];
     let triangles = std::mem::take(&mut cloud.triangles);
     finish(before, cloud, (normal, normals), (radius, Origin::Zero), triangles)

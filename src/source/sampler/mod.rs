@@ -8,8 +8,8 @@
 //! - [`mod@quality`]: how evenly a prefix is spread.
 //! - [`mod@spectrum`]: at which frequencies it is even.
 
-pub mod estimate;
 pub mod cells;
+pub mod estimate;
 pub mod geodesic;
 pub mod greedy;
 mod nearest;
@@ -18,8 +18,8 @@ pub mod quality;
 mod search;
 pub mod spectrum;
 
-pub use estimate::estimate;
 pub use cells::averaged;
+pub use estimate::estimate;
 pub use geodesic::Graph;
 pub use greedy::{Greedy, Order, Start};
 pub use progressive::{Progressive, Schedule, shuffled};

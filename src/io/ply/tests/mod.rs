@@ -1,5 +1,6 @@
 //! What is read, what is refused and how, and that no bytes make the reader panic.
 
+mod coordinates;
 mod refused;
 mod rows;
 

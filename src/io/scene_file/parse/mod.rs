@@ -60,8 +60,9 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
     let beside = |other: &Path| path.parent().unwrap_or(Path::new("")).join(other);
     for model in models.iter_mut().chain(geometries.iter_mut().map(|geometry| &mut geometry.model))
     {
-        if let Source::File { path: model, .. } = &mut model.source {
+        if let Source::File { path: model, texture, .. } = &mut model.source {
             *model = beside(model);
+            texture.iter_mut().for_each(|texture| *texture = beside(texture));
         }
     }
     for object in &mut objects {

@@ -19,6 +19,7 @@ pub(super) struct RawModel {
     file: Option<PathBuf>,
     radius: Option<f32>,
     prefix: Option<usize>,
+    texture: Option<PathBuf>,
     draw: Option<String>,
     split: Option<Exactly<f64, 4>>,
     shape: Option<String>,
@@ -89,7 +90,7 @@ impl RawModel {
                 if let Some(points) = prefix {
                     check_prefix(points).map_err(|error| error.to_string())?;
                 }
-                Ok(Source::File { path, radius, prefix })
+                Ok(Source::File { path, radius, prefix, texture: self.texture.take() })
             }
             (None, Some(name)) if name == TREE => {
                 let leaves = self.leaves.take().unwrap_or(plant::LEAVES);
@@ -113,6 +114,7 @@ impl RawModel {
             ("detail", self.detail.is_some()),
             ("radius", self.radius.is_some()),
             ("prefix", self.prefix.is_some()),
+            ("texture", self.texture.is_some()),
             ("square", self.square.is_some()),
             ("gap", self.gap.is_some()),
             ("step", self.step.is_some()),
