@@ -1,6 +1,7 @@
 //! Where prefixes fail, as \[BJFM19, 6\] says, and beyond: each a scene, what is swept, and a number.
 
-use super::scene::{against, blue, draw, geometry, mesh, objects, order, percent, seen};
+use super::scene::seen;
+use super::scene::{against, blue, draw, geometry, mesh, objects, order, order_along, percent};
 use glam::{DVec3, Vec3};
 use splatref::Result;
 use splatref::frame::Exec;
@@ -47,12 +48,12 @@ fn cuboid(half: DVec3, squares: u32) -> Result<Scene> {
 }
 
 /// Holes in hundredths of a plate of 2 x 2 whose sides are `gap` distances of surfels apart, drawn by 2000
-/// surfels from the front.
-pub(crate) fn thin_wall(gap: f64, exec: &Exec) -> Result<f64> {
+/// surfels from the front: of an order by straight distances, or along the surface.
+pub(crate) fn thin_wall(gap: f64, along: bool, exec: &Exec) -> Result<f64> {
     // 2000 surfels on both sides, 8 units: about 0.068 apart.
     const APART: f64 = 0.068;
     let plate = cuboid(DVec3::new(1.0, 1.0, gap * APART / 2.0), 1)?;
-    let order = order(&plate, 768, 2000, exec)?;
+    let order = if along { order_along } else { order }(&plate, 768, 2000, exec)?;
     let objects = objects(geometry(order, Primitives::default(), exec)?, &[Similarity::IDENTITY])?;
     let camera = camera(DVec3::new(0.0, 0.0, 5.0), 256, Lens::FieldOfView(30.0))?;
     // So small that all surfels are asked for, as large as they cover with.

@@ -31,9 +31,10 @@ fn main() -> Result<()> {
 
 /// What [`failures`] measures, as tables.
 fn failures(arguments: &Arguments, exec: &Exec) -> Result<()> {
-    let mut table = Table::new(&["gap / distance of surfels", "holes, %"]);
+    let mut table = Table::new(&["gap / distance of surfels", "holes, %", "along the surface, %"]);
     for gap in failures::GAPS {
-        table.row(&format!("{gap} | {:.2}", failures::thin_wall(gap, exec)?));
+        let [straight, along] = [false, true].map(|along| failures::thin_wall(gap, along, exec));
+        table.row(&format!("{gap} | {:.2} | {:.2}", straight?, along?));
     }
     table.publish(arguments, "bjfm19.md", "thin")?;
     let mut table =

@@ -6,9 +6,9 @@ use splatref::method::{Method, Session, blue};
 use splatref::scene::objects::detail::refine::Refinement;
 use splatref::scene::objects::{Geometry, Motion, Object, Objects};
 use splatref::scene::{Camera, Cloud, Primitives, Scene, Similarity, Surfels, Triangles};
-use splatref::source::candidates::{Directions, candidates};
+use splatref::source::candidates::{Candidates, Directions, candidates};
 use splatref::source::flatten;
-use splatref::source::sampler::{Greedy, Start, estimate};
+use splatref::source::sampler::{Graph, Greedy, Start, estimate};
 use splatref::verify::metrics::{Coverage, coverage};
 
 /// Triangles under a headlight.
@@ -25,6 +25,17 @@ pub(crate) fn order(mesh: &Scene, side: u32, count: usize, exec: &Exec) -> Resul
     let order = greedy.order(&cloud.position, count, exec, &quiet)?;
     let cloud = cloud.some(&order.index);
     // Radii are chosen by views.
+    Ok(Cloud { radius: Some(vec![1.0; cloud.position.len()]), ..cloud })
+}
+
+/// The same along the surface: neighbours are within two pixels.
+pub(crate) fn order_along(mesh: &Scene, side: u32, count: usize, exec: &Exec) -> Result<Cloud> {
+    let quiet = |_: &str, _, _| ();
+    let Candidates { cloud, pixel, .. } = candidates(mesh, &Directions::Cube, side, exec, &quiet)?;
+    let normals = cloud.normal.as_deref().unwrap_or_default();
+    let graph = Graph::new(&cloud.position, normals, (2.0 * pixel) as f32, exec, &quiet)?;
+    let greedy = Greedy { start: Start::Index(0) };
+    let cloud = cloud.some(&greedy.along(&graph, count, &quiet)?.index);
     Ok(Cloud { radius: Some(vec![1.0; cloud.position.len()]), ..cloud })
 }
 
