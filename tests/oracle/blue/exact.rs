@@ -8,101 +8,148 @@ use splatref::method::blue::Settings;
 use splatref::scene::{Primitives, Projection};
 use splatref::splat::Tally;
 
-/// What the discs of a scene without triangles leave: at each pixel depth, surfel, offset and whether the back
-/// is seen; and the fates: visible, behind, degenerate, back-facing, outside.
-macro_rules! discs {
+/// What a pixel keeps: depth, surfel, offset and whether the back is seen.
+type Kept<N> = (N, u32, N, bool);
+
+/// What the discs of a scene without triangles leave, and the fates: visible, behind, degenerate, back-facing,
+/// outside.
+type Discs<N> = (Vec<Kept<N>>, [u64; 5]);
+
+/// The page in one arithmetic: a module with a function `discs`.
+macro_rules! page {
     ($name:ident, $number:ty) => {
-        fn $name(case: &Case<Settings>) -> (Vec<($number, u32, $number, bool)>, [u64; 5]) {
+        mod $name {
+            use super::{Case, Discs, Kept, NO_ID, Projection, Settings};
+
             type N = $number;
-            let Case { scene, camera, settings, .. } = case;
-            let n = |v: f32| N::from(v);
-            let rows = [0, 1, 2].map(|i| camera.view_from_world.row(i).to_array().map(n));
-            let turn = |v: glam::Vec3| {
-                let [x, y, z] = v.to_array().map(n);
-                rows.map(|m| (m[0] * x + m[1] * y) + m[2] * z)
-            };
-            let [fx, fy] = [n(camera.fx), n(camera.fy)];
-            let [cx, cy, near] = [n(camera.cx), n(camera.cy), n(camera.near)];
-            let perspective = camera.projection == Projection::Perspective;
-            let [width, height] = [camera.width, camera.height];
-            let mut pixels = vec![(N::INFINITY, NO_ID, 0.0, false); (width * height) as usize];
-            let mut fates = [0; 5];
-            for i in 0..scene.surfels.len() {
-                let moved = turn(scene.surfels.position()[i]);
-                let p = [0, 1, 2].map(|k: usize| moved[k] + rows[k][3]);
-                let normal = turn(scene.surfels.normal()[i]);
-                let r = n(scene.surfels.radius()[i]);
-                let t = -p[2];
-                let m = if perspective { 1.0 / t } else { 1.0 };
-                let (a, b) = (p[0] * m, p[1] * m);
-                let (x0, y0) = (cx + fx * a, cy - fy * b);
-                let g = if perspective {
-                    (normal[0] * a + normal[1] * b) - normal[2]
-                } else {
-                    -normal[2]
+
+            struct Eye {
+                rows: [[N; 4]; 3],
+                f: [N; 2],
+                c: [N; 2],
+                near: N,
+                perspective: bool,
+            }
+
+            /// A surfel: its plane, its radius, its square, and whether its back is seen.
+            struct Disc {
+                p: [N; 3],
+                n: [N; 3],
+                r: N,
+                middle: [N; 2],
+                h: N,
+                g: N,
+            }
+
+            fn eye(case: &Case<Settings>) -> Eye {
+                let camera = &case.camera;
+                Eye {
+                    rows: [0, 1, 2].map(|i| camera.view_from_world.row(i).to_array().map(N::from)),
+                    f: [camera.fx, camera.fy].map(N::from),
+                    c: [camera.cx, camera.cy].map(N::from),
+                    near: camera.near.into(),
+                    perspective: camera.projection == Projection::Perspective,
+                }
+            }
+
+            fn disc(case: &Case<Settings>, eye: &Eye, i: usize) -> Disc {
+                let scene = &case.scene;
+                let turn = |v: glam::Vec3| {
+                    let [x, y, z] = v.to_array().map(N::from);
+                    eye.rows.map(|m| (m[0] * x + m[1] * y) + m[2] * z)
                 };
+                let moved = turn(scene.surfels.position()[i]);
+                let p = [0, 1, 2].map(|k: usize| moved[k] + eye.rows[k][3]);
+                let n = turn(scene.surfels.normal()[i]);
+                let r = N::from(scene.surfels.radius()[i]);
+                let m = if eye.perspective { 1.0 / -p[2] } else { 1.0 };
+                let (a, b) = (p[0] * m, p[1] * m);
+                let g = if eye.perspective { (n[0] * a + n[1] * b) - n[2] } else { -n[2] };
                 let h = match scene.sides.as_ref().and_then(|sides| sides.of(i as u32)) {
-                    Some(side) => n(side) * 0.5,
+                    Some(side) => N::from(side) * 0.5,
                     None => {
-                        let rho = r * ((fx * fy).sqrt() * m);
-                        let most = n(2.0_f32.powi(48));
+                        let rho = r * ((eye.f[0] * eye.f[1]).sqrt() * m);
+                        let most = N::from(2.0_f32.powi(48));
                         let rho = if rho > most { most } else { rho };
                         if rho < 0.5 { 0.5 } else { rho }
                     }
                 };
-                let inside = |from: N, pixel: u32| {
-                    let center = N::from(pixel as f32) + 0.5;
-                    from - h <= center && center < from + h
-                };
-                let reaches =
-                    (0..width).any(|x| inside(x0, x)) && (0..height).any(|y| inside(y0, y));
-                let finite = [x0, y0, t, g].iter().all(|v| v.is_finite());
-                let fate = match () {
-                    () if !(t > near) => 1,
-                    () if !finite => 2,
-                    () if settings.cull && g >= 0.0 => 3,
-                    () if !reaches => 4,
-                    () => 0,
-                };
-                fates[fate] += 1;
-                if fate != 0 {
-                    continue;
+                let middle = [eye.c[0] + eye.f[0] * a, eye.c[1] - eye.f[1] * b];
+                Disc { p, n, r, middle, h, g }
+            }
+
+            impl Disc {
+                /// Whether a column or a row is in the square.
+                fn inside(&self, axis: usize, pixel: u32) -> bool {
+                    let (center, middle) = (N::from(pixel as f32) + 0.5, self.middle[axis]);
+                    middle - self.h <= center && center < middle + self.h
                 }
-                for (index, pixel) in pixels.iter_mut().enumerate() {
-                    let (x, y) = (index as u32 % width, index as u32 / width);
-                    if !(inside(x0, x) && inside(y0, y)) {
-                        continue;
+
+                fn fate(&self, case: &Case<Settings>, eye: &Eye) -> usize {
+                    let [width, height] = [case.camera.width, case.camera.height];
+                    let reaches = (0..width).any(|x| self.inside(0, x))
+                        && (0..height).any(|y| self.inside(1, y));
+                    let numbers = [self.middle[0], self.middle[1], -self.p[2], self.g];
+                    match () {
+                        () if !(-self.p[2] > eye.near) => 1,
+                        () if !numbers.iter().all(|v| v.is_finite()) => 2,
+                        () if case.settings.cull && self.g >= 0.0 => 3,
+                        () if !reaches => 4,
+                        () => 0,
                     }
-                    let a = ((N::from(x as f32) + 0.5) - cx) / fx;
-                    let b = -(((N::from(y as f32) + 0.5) - cy) / fy);
-                    let (t, d) = if perspective {
-                        let through = (normal[0] * p[0] + normal[1] * p[1]) + normal[2] * p[2];
-                        let t = through / ((normal[0] * a + normal[1] * b) - normal[2]);
+                }
+
+                /// Depth and offset at a pixel, if the fragment stays.
+                fn at(&self, eye: &Eye, x: u32, y: u32) -> Option<(N, N)> {
+                    let Self { p, n, r, .. } = *self;
+                    let a = ((N::from(x as f32) + 0.5) - eye.c[0]) / eye.f[0];
+                    let b = -(((N::from(y as f32) + 0.5) - eye.c[1]) / eye.f[1]);
+                    let (t, d) = if eye.perspective {
+                        let through = (n[0] * p[0] + n[1] * p[1]) + n[2] * p[2];
+                        let t = through / ((n[0] * a + n[1] * b) - n[2]);
                         (t, [t * a - p[0], t * b - p[1], t + p[2]])
                     } else {
                         let (x, y) = (a - p[0], b - p[1]);
-                        let z = (normal[0] * x + normal[1] * y) / normal[2];
+                        let z = (n[0] * x + n[1] * y) / n[2];
                         (z - p[2], [x, y, z])
                     };
                     let offset = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
-                    let stays = t > near && offset <= r * r && t.is_finite() && offset.is_finite();
-                    if stays && t < pixel.0 {
-                        *pixel = (t, i as u32, offset, g > 0.0);
-                    }
+                    let finite = t.is_finite() && offset.is_finite();
+                    (finite && t > eye.near && offset <= r * r).then_some((t, offset))
                 }
             }
-            (pixels, fates)
+
+            pub(super) fn discs(case: &Case<Settings>) -> Discs<N> {
+                let eye = eye(case);
+                let none: Kept<N> = (N::INFINITY, NO_ID, 0.0, false);
+                let mut pixels = vec![none; case.pixels().count()];
+                let mut fates = [0; 5];
+                for surfel in 0..case.scene.surfels.len() {
+                    let disc = disc(case, &eye, surfel);
+                    let fate = disc.fate(case, &eye);
+                    fates[fate] += 1;
+                    let inside = |x, y| fate == 0 && disc.inside(0, x) && disc.inside(1, y);
+                    for (i, x, y) in case.pixels().filter(|&(_, x, y)| inside(x, y)) {
+                        if let Some((t, offset)) =
+                            disc.at(&eye, x, y).filter(|at| at.0 < pixels[i].0)
+                        {
+                            pixels[i] = (t, surfel as u32, offset, disc.g > 0.0);
+                        }
+                    }
+                }
+                (pixels, fates)
+            }
         }
     };
 }
 
-discs!(single, f32);
-discs!(double, f64);
+page!(single, f32);
+page!(double, f64);
 
 /// Every plane of the discs, and their fates.
 fn check<N: Into<f64> + Copy, R: splatref::number::Exact>(
     case: &Case<Settings>,
-    (pixels, fates): (Vec<(N, u32, N, bool)>, [u64; 5]),
+    (pixels, fates): Discs<N>,
     (frame, tally): (&Frame<R>, &Tally),
 ) -> u64 {
     let Tally { visible, behind, degenerate, back_facing, outside } = *tally;
@@ -136,9 +183,9 @@ fn discs_have_the_bits_of_the_page() {
         let mut case = case(seed);
         case.scene.primitives = Primitives::default();
         let picture = case.drawing().define::<f32>();
-        shown[0] += check(&case, single(&case), (&picture.frame, &picture.tally));
+        shown[0] += check(&case, single::discs(&case), (&picture.frame, &picture.tally));
         let picture = case.drawing().define::<f64>();
-        shown[1] += check(&case, double(&case), (&picture.frame, &picture.tally));
+        shown[1] += check(&case, double::discs(&case), (&picture.frame, &picture.tally));
     }
     assert!(shown.iter().all(|count| *count > 20_000), "{shown:?}");
 }

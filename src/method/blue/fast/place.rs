@@ -1,10 +1,5 @@
 //! Surfels as squares, [`LANES`] at a time.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
-)]
-
 use crate::frame::Rect;
 use crate::method::blue::squares::{Disc, Square, SquareProjector};
 use crate::number::Vector3;

@@ -1,10 +1,5 @@
 //! The discs of a tile.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
-)]
-
 use crate::composite::decide;
 use crate::frame::{FramebufferStrip, NO_ID, Rect};
 use crate::method::blue::discs::{DiscFragment, column, row};
