@@ -14,6 +14,7 @@
 //! - [`peeling`]: depth peeling, all fragments of a pixel in one band of depth after the other.
 //! - [`pyramid`]: the pull-push pyramid, a cell at a time, over numbers that bound their rounding.
 //! - [`template`]: reconstruction with templates, a pixel that asks every centre of every level.
+//! - [`blue`]: discs in squares, every surfel at every pixel: the page again, and rays in world space.
 //! - [`sampler`]: candidates by every pixel of every triangle, orders by every distance to every pick.
 //! - [`composite`]: laws of the operators: bins, groups, over, sums and the epsilon-z test.
 //! - [`bits`]: fast and plain, threads and tiles, to the last bit.
@@ -39,6 +40,7 @@
 )]
 
 mod bits;
+mod blue;
 mod bounds;
 mod composite;
 mod counter;

@@ -23,11 +23,12 @@
 //!   pixel (x, y) is in the square if       X - h <= x + 1/2 < X + h and Y - h <= y + 1/2 < Y + h
 //! ```
 //!
-//! `Decided:` the upper ends are not part of the square, so that squares that touch share no pixels.
+//! `Decided:` the upper ends are not part of the square, so that squares that touch share no pixels; nor is
+//! the rim of a disc there, where it passes through the centre of a pixel.
 //! `Decided:` without a side a point primitive is as large as its disc when that faces the camera, and at
-//! least one pixel: so it holds one centre of a pixel. The square cuts what reaches beyond it: a disc that faces the
-//! eye at an angle of theta off the axis of a perspective camera is 1 / cos theta as long, and a tilted one is
-//! longer on its near side.
+//! least one pixel, so that it holds one centre of a pixel. The square cuts what reaches beyond it: a disc
+//! that faces the eye at an angle of theta off the axis of a perspective camera is 1 / cos theta as long, and
+//! a tilted one is longer on its near side.
 //!
 //! Fates, in this order: `Behind` unless t > near; `Degenerate` if X, Y, t or g is not finite; with culling
 //! `BackFacing` if g >= 0; `Outside` if no pixel of the picture is in the square; else it is drawn.
@@ -109,7 +110,8 @@ impl Algorithm for Settings {
         "oriented discs in squares on the screen, as progressive blue surfels are drawn [BJFM19]";
     const STAGES: &'static [Stage] = planes::STAGES;
     const DRAWS_POLYGONS: bool = true;
-    const FAST_BYTES_A_PIXEL: Option<u64> = Some(64);
+    // 52 of the picture, and the samples of triangles, if there are any.
+    const FAST_BYTES_A_PIXEL: Option<u64> = Some(160);
     type Memory = ();
 
     fn check(&self) -> Result<()> {

@@ -67,17 +67,16 @@ impl<'a, R: Real> SquareProjector<'a, R> {
 
     /// A surfel on the screen.
     pub(super) fn place(&self, i: usize) -> PlacedSquare<R> {
-        let [side] = self.sides_of(&[i]);
+        let side = R::from_f32(self.side(i));
         let [position, normal] =
             [self.surfels.position()[i], self.surfels.normal()[i]].map(Vector3::from_glam);
-        self.square(position, normal, R::from_f32(self.surfels.radius()[i]), R::from_f32(side))
+        self.square(position, normal, R::from_f32(self.surfels.radius()[i]), side)
     }
 
-    /// The sides of surfels; 0 of those without one.
+    /// The side of a surfel; 0 of one without.
     #[inline(always)]
-    pub(super) fn sides_of<const N: usize>(&self, surfels: &[usize; N]) -> [f32; N] {
-        let of = |sides: &Sides, i: usize| sides.of(i as u32).unwrap_or(0.0);
-        self.sides.map_or([0.0; N], |sides| surfels.map(|i| of(sides, i)))
+    pub(super) fn side(&self, i: usize) -> f32 {
+        self.sides.and_then(|sides| sides.of(i as u32)).unwrap_or(0.0)
     }
 
     /// The same of these numbers; the side is 0 of a surfel without one.
@@ -95,10 +94,9 @@ impl<'a, R: Real> SquareProjector<'a, R> {
         let half = R::from_f32(0.5);
         let own = ellipse::radius_in_pixels(radius, points.focal, placed.m).at_least(half);
         let h = R::select(side.gt(R::ZERO), side * half, own);
-        let edges = |c: R| [c - h, c + h];
-        let p = placed.p;
+        let (p, c) = (placed.p, placed.center);
         PlacedSquare {
-            edges: Edges { x: edges(placed.center.x), y: edges(placed.center.y) },
+            edges: Edges { x: [c.x - h, c.x + h], y: [c.y - h, c.y + h] },
             disc: Disc { p, n, through: n.dot(p), limit: radius * radius },
             g,
             reasons: Reasons { outside: false.into(), ..reasons },
@@ -110,9 +108,9 @@ impl<R: Exact> PlacedSquare<R> {
     /// Its pixels in a picture, and what becomes of it; bounds of what is not drawn mean nothing.
     #[inline(always)]
     pub(super) fn fate(&self, view: &View<R>) -> (Rect, Fate) {
-        let pixels = |[first, end]: [R; 2], size: R| [before(first, size), before(end, size)];
-        let [x0, x1] = pixels(self.edges.x, view.width);
-        let [y0, y1] = pixels(self.edges.y, view.height);
+        let Edges { x, y } = &self.edges;
+        let (x0, x1) = (before(x[0], view.width), before(x[1], view.width));
+        let (y0, y1) = (before(y[0], view.height), before(y[1], view.height));
         let outside = (x0 >= x1) | (y0 >= y1);
         (Rect { x0, y0, x1, y1 }, Reasons { outside, ..self.reasons }.fate())
     }

@@ -1,10 +1,5 @@
 //! Surfels as squares, [`LANES`] at a time.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
-)]
-
 use crate::frame::Rect;
 use crate::method::blue::squares::{Disc, Square, SquareProjector};
 use crate::number::Vector3;
@@ -35,8 +30,9 @@ impl Block {
         limit: [0.0; LANES],
     };
 
+    #[inline(always)]
     fn square(&self, i: usize, surfel: u32) -> Square<f32> {
-        let [x0, y0, x1, y1] = self.bounds.map(|of| of[i]);
+        let [x0, y0, x1, y1] = &self.bounds;
         let vector = |of: &[Lanes; 3]| {
             let [x, y, z] = components(of, i);
             Vector3::new(x, y, z)
@@ -47,7 +43,8 @@ impl Block {
             through: self.through[i],
             limit: self.limit[i],
         };
-        Square { bounds: Rect { x0, y0, x1, y1 }, surfel, back: self.back[i] != 0, disc }
+        let bounds = Rect { x0: x0[i], y0: y0[i], x1: x1[i], y1: y1[i] };
+        Square { bounds, surfel, back: self.back[i] != 0, disc }
     }
 }
 
@@ -60,18 +57,18 @@ pub(super) fn squares(
     const FATES: [Fate; 5] =
         [Fate::Visible, Fate::Behind, Fate::Degenerate, Fate::BackFacing, Fate::Outside];
     let surfels = projector.surfels;
-    let mut block = Block::EMPTY;
+    let (mut input, mut block) = (Input::default(), Block::EMPTY);
     let mut tally = Tally::default();
     for first in range.clone().step_by(LANES) {
         // Lanes without a surfel have the last one again, and are not counted.
         let count = (range.end - first).min(LANES);
-        let at: [usize; LANES] = std::array::from_fn(|i| first + i.min(count - 1));
-        let input = Input {
-            position: at.map(|i| surfels.position()[i]),
-            normal: at.map(|i| surfels.normal()[i]),
-            radius: at.map(|i| surfels.radius()[i]),
-            side: projector.sides_of(&at),
-        };
+        for i in 0..LANES {
+            let at = first + i.min(count - 1);
+            input.position[i] = surfels.position()[at];
+            input.normal[i] = surfels.normal()[at];
+            input.radius[i] = surfels.radius()[at];
+            input.side[i] = projector.side(at);
+        }
         place(projector, &input, &mut block);
         for i in 0..count {
             let fate = FATES[block.fate[i] as usize];
@@ -84,6 +81,7 @@ pub(super) fn squares(
     tally
 }
 
+#[derive(Default)]
 struct Input {
     position: [Vec3; LANES],
     normal: [Vec3; LANES],

@@ -1,10 +1,5 @@
 //! The discs of a tile.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
-)]
-
 use crate::composite::decide;
 use crate::frame::{FramebufferStrip, NO_ID, Rect};
 use crate::method::blue::discs::{DiscFragment, column, row};
@@ -80,36 +75,47 @@ impl TileOfDiscs {
         }
         let (columns, stride) = (rect.columns(), self.stride());
         for y in 0..rect.rows() {
-            let depth = &self.depth[y * stride..][..columns];
+            pixels.depth.row(rect, y).copy_from_slice(&self.depth[y * stride..][..columns]);
             let discs = &self.disc[y * stride..][..columns];
-            pixels.depth.row(rect, y).copy_from_slice(depth);
-            let seen = |disc: u32| self.squares.get(disc as usize);
-            for (id, &disc) in pixels.id.row(rect, y).iter_mut().zip(discs) {
-                *id = seen(disc).map_or(NO_ID, |square| square.surfel);
-            }
-            for (weight, &disc) in pixels.weight.row(rect, y).iter_mut().zip(discs) {
-                *weight = if disc == NO_ID { 0.0 } else { 1.0 };
-            }
+            fill(pixels.id.row(rect, y), discs, |disc| self.seen(disc, NO_ID, |s| s.surfel));
+            fill(pixels.weight.row(rect, y), discs, |disc| self.seen(disc, 0.0, |_| 1.0));
             if let Some(normal) = &mut pixels.normal {
-                for (normal, &disc) in normal.row(rect, y).iter_mut().zip(discs) {
-                    *normal = seen(disc).map_or([0.0; 3], |square| {
-                        let own = scene.surfels.normal()[square.surfel as usize].to_array();
-                        facing(own, square.back).map(|part| part + 0.0)
-                    });
-                }
+                let own = scene.surfels.normal();
+                let of = |square: &Square<f32>| {
+                    positive(facing(own[square.surfel as usize].to_array(), square.back))
+                };
+                fill(normal.row(rect, y), discs, |disc| self.seen(disc, [0.0; 3], of));
             }
             if let Some(color) = &mut pixels.color {
                 let own = scene.surfels.color();
-                for (color, &disc) in color.row(rect, y).iter_mut().zip(discs) {
-                    *color = seen(disc).map_or([0.0; 3], |square| {
-                        let i = square.surfel as usize;
-                        let color = own.map_or(scene.material.color, |own| own[i]);
-                        color.to_array().map(|part| part + 0.0)
-                    });
-                }
+                let of = |square: &Square<f32>| {
+                    let color = own.map_or(scene.material.color, |own| own[square.surfel as usize]);
+                    positive(color.to_array())
+                };
+                fill(color.row(rect, y), discs, |disc| self.seen(disc, [0.0; 3], of));
             }
         }
     }
+
+    /// What a pixel shows of a disc of the list, or of none.
+    #[inline(always)]
+    fn seen<T>(&self, disc: u32, none: T, of: impl Fn(&Square<f32>) -> T) -> T {
+        if disc == NO_ID { none } else { of(&self.squares[disc as usize]) }
+    }
+}
+
+/// Fills a row of pixels from those of the discs there.
+#[inline(always)]
+fn fill<T>(row: &mut [T], discs: &[u32], of: impl Fn(u32) -> T) {
+    for (pixel, &disc) in row.iter_mut().zip(discs) {
+        *pixel = of(disc);
+    }
+}
+
+/// The same with +0 in the place of -0.
+#[inline(always)]
+fn positive([x, y, z]: [f32; 3]) -> [f32; 3] {
+    [x + 0.0, y + 0.0, z + 0.0]
 }
 
 vectorized!(
@@ -119,8 +125,8 @@ vectorized!(
         for (place, square) in (0..).zip(squares.iter()) {
             let inner = square.bounds.intersection(&rect);
             let disc = square.disc;
-            let [x0, x1] = [inner.x0, inner.x1].map(|x| (x - rect.x0) as usize);
-            let [y0, y1] = [inner.y0, inner.y1].map(|y| (y - rect.y0) as usize);
+            let (x0, x1) = ((inner.x0 - rect.x0) as usize, (inner.x1 - rect.x0) as usize);
+            let (y0, y1) = ((inner.y0 - rect.y0) as usize, (inner.y1 - rect.y0) as usize);
             for y in (y0..y1).step_by(SIDE) {
                 for x in (x0..x1).step_by(SIDE) {
                     let (a, b) = (&a[x..x + SIDE], &b[y..y + SIDE]);

@@ -152,12 +152,15 @@ impl<'a, P: Profile> Judge<'a, P> {
             Says::Id(id) => id,
             _ => best.map_or(NO_ID, |best| best.id),
         };
-        if let Some(front) = front.filter(|front| says != Says::Nothing && front.id != id) {
-            if decide::before(front.depth, depth).certainly() {
-                let (error, rim) = (front.depth.distance(depth), front.rim);
-                let (surfel, depth, found) = (front.id, front.depth.middle, depth.middle);
-                discs.found(error, || Fault::LeftOut { surfel, rim, depth, found });
-            }
+        let before = |front: &&May<P>| {
+            says != Says::Nothing
+                && front.id != id
+                && decide::before(front.depth, depth).certainly()
+        };
+        if let Some(front) = front.filter(before) {
+            let (error, rim) = (front.depth.distance(depth), front.rim);
+            let (surfel, depth, found) = (front.id, front.depth.middle, depth.middle);
+            discs.found(error, || Fault::LeftOut { surfel, rim, depth, found });
         }
         if let Says::Id(id) = says {
             self.judge_ties(id, all, &mut discs);

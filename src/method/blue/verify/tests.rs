@@ -1,10 +1,13 @@
 //! Verdicts on pictures of discs.
 
 use crate::frame::{Exec, Frame, NO_ID, Samples};
+use crate::index::Index;
+use crate::method::algorithm::Job;
 use crate::method::blue::Settings;
+use crate::method::blue::explain::{BlueEnd, explain};
 use crate::method::blue::fast::tests::triangle;
 use crate::method::tests::verdicts::{
-    Slip, assert_environment_found, assert_found, assert_none_wrong_in_halves, assert_right,
+    Slip, assert_environment_found, assert_found_where, assert_none_wrong_in_halves, assert_right,
     assert_right_in_doubles, camera, verdict,
 };
 use crate::method::tests::{id, surfels};
@@ -78,7 +81,7 @@ fn each_slip_is_found_in_its_stage() {
         ("discs.offset", Slip::NotANumber, "discs"),
         ("normal", Slip::Off(1e-3), "discs"),
         ("normal", Slip::NotANumber, "discs"),
-        ("resolved", Slip::Next, "discs"),
+        ("resolved", Slip::Off(1e-4), "discs"),
         ("weight", Slip::Next, "discs"),
         ("id", Slip::More, "discs"),
         ("id", Slip::Dropped, "discs"),
@@ -86,7 +89,9 @@ fn each_slip_is_found_in_its_stage() {
         ("", Slip::NotANumber, "shading"),
         ("A", Slip::Off(1e-3), "shading"),
     ];
-    assert_found(&scene, &camera, method, &slips);
+    // Of a surfel: the triangle is there twice, and which of two is shown is not judged.
+    let of_surfel = |frame: &Frame<f32>, i: usize| id(frame, "id").values()[i] < 200;
+    assert_found_where(&scene, &camera, method, &slips, of_surfel);
 }
 
 #[test]
@@ -223,41 +228,41 @@ fn a_fault_says_which_surfel() {
     let exec = Exec::new(1, 16).unwrap();
     let session = Session::new(&scene, blue(false), &exec).unwrap();
     let right = session.define::<f32>(&camera, false).unwrap().frame;
-    let fault = |(x, y): (u32, u32), name: &str, own: u32| {
+    let fault = |(x, y): (u32, u32), own: u32| {
         let mut frame = right.clone();
-        frame.planes.retain(|plane| plane.name == name);
+        frame.planes.retain(|plane| plane.name == "id");
         let Samples::Index(plane) = &mut frame.planes[0].samples else { panic!("ids") };
         plane.values_mut()[(y * 29 + x) as usize] = own;
         let found = verdict(&session, &camera, &frame, Rounding::Ieee);
-        assert_eq!(found.stages[0].wrong, 1);
-        found.stages[0].worst.clone().unwrap().fault
+        found.stages[0].worst.clone().map_or(Fault::Absent { surfel: NO_ID }, |worst| worst.fault)
     };
+    let index = Index::default();
+    let job = Job { scene: &scene, index: &index, camera: &camera, exec: &exec };
     let mut found = [0; 3];
-    for at in (0..23).flat_map(|y| (0..29).map(move |x| (x, y))) {
+    for at in (0..23).flat_map(|y| (0..29).map(move |x| (x, y))).step_by(11) {
         let own = *id(&right, "id").at(at.0, at.1);
         if own != NO_ID {
-            assert!(
-                matches!(fault(at, "id", NO_ID), Fault::LeftOut { surfel, .. } if surfel == own)
-            );
+            let fault = fault(at, NO_ID);
+            assert!(matches!(fault, Fault::LeftOut { surfel, .. } if surfel == own), "{fault:?}");
             found[0] += 1;
         }
-        let other = (at.0 * 7 + at.1) % 60;
-        if other != own && found[1] + found[2] < 60 {
-            match fault(at, "id", other) {
-                Fault::Outside { surfel, rim } => {
+        let touches = explain::<f64>(&job, &Settings { cull: false }, at).unwrap().touches;
+        for other in (0..60).step_by(7).filter(|other| *other != own) {
+            let touch = touches.iter().find(|touch| touch.id == other);
+            match (fault(at, other), touch.map(|touch| touch.end)) {
+                (Fault::Outside { surfel, rim }, Some(BlueEnd::Discarded)) => {
                     assert!(surfel == other && rim > 1.0);
                     found[1] += 1;
                 }
-                Fault::Absent { surfel } => {
+                (Fault::Absent { surfel }, None) => {
                     assert_eq!(surfel, other);
                     found[2] += 1;
                 }
-                Fault::LeftOut { surfel, .. } => assert_eq!(surfel, own),
+                (Fault::LeftOut { surfel, .. }, Some(BlueEnd::Loses(_) | BlueEnd::Nearest(_))) => {
+                    assert_eq!(surfel, own);
+                }
                 other => panic!("{other:?}"),
             }
-        }
-        if found[0] > 20 && found[1] + found[2] >= 60 {
-            break;
         }
     }
     assert!(found.iter().all(|count| *count > 0), "{found:?}");
