@@ -11,6 +11,12 @@
 //!
 //! `Decided:` v grows upwards, as in OBJ files and in what writes PLY files with textures.
 //!
+//! A matrix of vectors in (u, v) becomes one of vectors in texels:
+//!
+//! ```text
+//!   Mxx = Muu (W W)      Mxy = -(Muv (W H))      Myy = Mvv (H H)
+//! ```
+//!
 //! **Pyramid.** Level 0 are the texels. A cell (i, j) of level l is the mean of the texels in the columns
 //! from i 2^l to min((i + 1) 2^l, W) and the rows likewise: cells at the right and at the bottom are cut, so that
 //! textures of any size have exact means. It is made of the up to four cells of the level before, in the

@@ -25,55 +25,58 @@ pub fn of_cloud(
 ) -> Result<(Candidates, Derived)> {
     cloud.check()?;
     let before = cloud.triangles.len();
-    let texture = lift(&mut cloud);
-    if cloud.triangles.is_empty() && before > 0 {
+    if cloud.paint.is_some() {
+        // Corners, before and after, and their places in the texture.
+        let bytes = size_of::<Painted>() as u64 + 2 * 12 + 24;
+        memory::ask(before as u64 * bytes, || format!("the texture of {before} triangles"))?;
+    }
+    let lifted = lift(&mut cloud)?;
+    let dropped = (before - cloud.triangles.len()) as u64;
+    let (triangles, mut derived) = derive::polygons(cloud, exec, progress)?;
+    derived.dropped_primitives += dropped;
+    let painting = lifted.map(|Lifted { paint, corners, at }| {
+        // Which were dropped since depends on their corners alone, so that equal ones share their fate.
+        let mut kept = triangles.corners().iter().peekable();
+        let position = &triangles.vertices().position;
+        let painted = corners.iter().zip(at).filter_map(|(corners, at)| {
+            kept.next_if_eq(&corners)?;
+            let places = corners.map(|corner| position[corner as usize]);
+            Some(Painted { at, disc: stretch(places, at) })
+        });
+        Painting { paint, painted: painted.collect() }
+    });
+    let primitives = Primitives { triangles, ..Primitives::default() };
+    let scene = Scene { primitives, ..Scene::unlit("mesh", Surfels::none()) };
+    let mesh = Mesh { scene: &scene, painting: painting.as_ref() };
+    Ok((super::gather(&mesh, directions, side, exec, progress)?, derived))
+}
+
+/// A texture, the corners of triangles, and where these corners are in it.
+struct Lifted {
+    paint: Paint,
+    corners: Vec<[u32; 3]>,
+    at: Vec<[Vec2; 3]>,
+}
+
+/// Takes a texture that has been read from a cloud, of which points and triangles that can have no candidates are dropped.
+fn lift(cloud: &mut Cloud) -> Result<Option<Lifted>> {
+    let (Some(paint), Some(_)) = (cloud.paint.take(), &cloud.coordinates) else { return Ok(None) };
+    let before = cloud.triangles.len();
+    let keep: Vec<bool> = cloud.position.iter().map(|place| place.is_finite()).collect();
+    cloud.retain(&keep);
+    let Some(coordinates) = cloud.coordinates.take() else { return Ok(None) };
+    (cloud.color, cloud.mipmap) = (None, None);
+    let finite = |at: &[Vec2; 3]| at.iter().all(|at| at.is_finite());
+    let all = std::mem::take(&mut cloud.triangles).into_iter().enumerate();
+    let all = all.map(|(i, corners)| (corners, coordinates.of(i, corners)));
+    let (corners, at): (Vec<_>, Vec<_>) = all.filter(|(_, at)| finite(at)).unzip();
+    if corners.is_empty() && before > 0 {
         let what =
             format!("none of its {before} triangles has finite places and texture coordinates");
         return Err(Error::Invalid(format!("the scene is empty: {what}")));
     }
-    let (given, lifted) = (cloud.triangles.clone(), before - cloud.triangles.len());
-    let (triangles, mut derived) = derive::polygons(cloud, exec, progress)?;
-    derived.dropped_primitives += lifted as u64;
-    let paint = match texture {
-        None => None,
-        Some((paint, at)) => {
-            let (count, bytes) = (given.len(), size_of::<Painted>() as u64);
-            memory::ask(count as u64 * bytes, || format!("the texture of {count} triangles"))?;
-            // Which were dropped depends on their corners alone, so that equal ones share their fate.
-            let mut kept = triangles.corners().iter().peekable();
-            let position = &triangles.vertices().position;
-            let painted = given.iter().zip(at).filter_map(|(corners, at)| {
-                kept.next_if_eq(&corners)?;
-                let places = corners.map(|corner| position[corner as usize]);
-                Some(Painted { at, disc: stretch(places, at) })
-            });
-            let painted = painted.collect();
-            Some(Painting { paint, painted })
-        }
-    };
-    let primitives = Primitives { triangles, ..Primitives::default() };
-    let scene = Scene { primitives, ..Scene::unlit("mesh", Surfels::none()) };
-    let mesh = Mesh { scene: &scene, painting: paint.as_ref() };
-    Ok((super::gather(&mesh, directions, side, exec, progress)?, derived))
-}
-
-/// Takes a texture and its coordinates from a cloud, of which points and triangles that can have no candidates are dropped.
-fn lift(cloud: &mut Cloud) -> Option<(Paint, Vec<[Vec2; 3]>)> {
-    cloud.coordinates.as_ref()?;
-    let paint = cloud.paint.take()?;
-    let keep: Vec<bool> = cloud.position.iter().map(|place| place.is_finite()).collect();
-    // With none left the cloud is refused later.
-    if keep.contains(&true) {
-        cloud.retain(&keep);
-    }
-    (cloud.color, cloud.mipmap) = (None, None);
-    let coordinates = cloud.coordinates.take()?;
-    let finite = |at: &[Vec2; 3]| at.iter().all(|at| at.is_finite());
-    let all = std::mem::take(&mut cloud.triangles).into_iter().enumerate();
-    let all = all.map(|(i, corners)| (corners, coordinates.of(i, corners)));
-    let (triangles, at) = all.filter(|(_, at)| finite(at)).unzip();
-    cloud.triangles = triangles;
-    Some((paint, at))
+    cloud.triangles.clone_from(&corners);
+    Ok(Some(Lifted { paint, corners, at }))
 }
 
 /// A texture on the triangles of a scene.

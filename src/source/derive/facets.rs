@@ -24,9 +24,10 @@ use std::ops::{Add, Div};
 ///              (n_a + n_b) + n_c is < 0; divided by its length, plus 0
 /// ```
 ///
-/// each rounded to `f32` once; products x.y and lengths are sums in the order x, y, z. The colour is that of the
-/// texture, if it has been read (see the module); else colour and opacity are the means of the corners', ((a + b) + c) / 3 in `f32`; a triangle with a corner whose
-/// colour or opacity cannot be is dropped and counted, as the corner would be. `Decided:` the
+/// each rounded to `f32` once; products x.y and lengths are sums in the order x, y, z. Colour and
+/// opacity are the means of the corners', ((a + b) + c) / 3 in `f32`; a triangle with a corner whose
+/// colour or opacity cannot be is dropped and counted, as the corner would be. Where a texture has been read the colour is
+/// that of the texture, see the module. `Decided:` the
 /// corners' normals say which side is the front, since files wind their triangles either way. Radii
 /// and tangents of the file are not looked at, and prefiltered colours are left out: they are of radii. A triangle without area becomes a surfel without a
 /// normal, which is dropped and counted.

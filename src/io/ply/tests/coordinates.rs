@@ -118,7 +118,7 @@ fn incomplete_coordinates_are_refused() {
         let time = vertices("1", &[&format!("property double {name}")], "0 0 0 1");
         assert_eq!(parse(&time).unwrap().coordinates, None, "a time");
     }
-    let twice = ["property float u", "property float v", "property float s"];
+    let twice = ["property float u", "property float v", "property float texture_u"];
     assert!(
         line(vertices("1", &twice, "0 0 0 1 1 1")).contains("several texture coordinates; keep")
     );

@@ -129,3 +129,21 @@ fn textures_of_what_has_none_are_refused() {
     let line = refused(&format!("{SHAPE}{texture}\n"));
     assert!(line.contains("`texture` means nothing to sphere: remove it"), "{line}");
 }
+
+/// The same square with its coordinates at vertices of a PLY, at corners of an OBJ, and of a material.
+#[test]
+fn an_obj_with_a_material_is_drawn_as_the_ply() {
+    let at = folder();
+    let file = |name: &str, text: &str| fs::write(at.path().join(name), text).unwrap();
+    file("m.mtl", "newmtl wood\nKd 0.8 0.8 0.8\nmap_Kd own.exr\n");
+    file(
+        "c.obj",
+        "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl wood\n\
+         f 1/1 2/2 3/3 4/4\n",
+    );
+    for keys in ["mipmaps = 3", "draw = \"points\"\nmipmaps = 3"] {
+        let text = format!("[[model]]\nfile = \"c.obj\"\n{keys}\n");
+        let obj = SceneFile::parse(&text, &at.path().join("scene.toml")).unwrap();
+        assert_eq!(load(&obj).scene.surfels, surfels(&at, keys));
+    }
+}
