@@ -22,7 +22,10 @@ fn walls_thinner_than_half_the_distance_of_surfels_have_holes() {
     let thin = [0.5, 0.25, 0.0625].map(|gap| holes(gap, false));
     assert!(thin[0] > 1.5 && thin.is_sorted() && thin[2] > 8.0, "{thin:?}");
     let cured = [0.5, 0.0625].map(|gap| holes(gap, true));
-    assert!(cured.iter().zip([thin[0], thin[2]]).all(|(cured, thin)| 2.0 * cured < thin), "{cured:?}");
+    assert!(
+        cured.iter().zip([thin[0], thin[2]]).all(|(cured, thin)| 2.0 * cured < thin),
+        "{cured:?}"
+    );
 }
 
 /// The far end of a bar has more surfels a pixel than the near one, for which their number is chosen.

@@ -43,7 +43,7 @@ fn of_mesh(name: &str, mesh: &Scene, holes: &mut Table, exec: &Exec) -> Result<S
     let all = candidates(mesh, &Directions::Cube, SIDE, exec, &|_, _, _| ())?.cloud.position;
     // The order, then all that it was chosen from.
     let points = [&order.position[..], &all].concat();
-    let prefix = geometry(order, Primitives::default(), exec)?;
+    let prefix = geometry(order, Primitives::default())?;
     let rule = prefix.prefix().map(|prefix| prefix.estimate());
     let mut cells = Vec::new();
     if let Some(estimate) = rule {

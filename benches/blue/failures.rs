@@ -54,7 +54,7 @@ pub(crate) fn thin_wall(gap: f64, along: bool, exec: &Exec) -> Result<f64> {
     const APART: f64 = 0.068;
     let plate = cuboid(DVec3::new(1.0, 1.0, gap * APART / 2.0), 1)?;
     let order = if along { order_along } else { order }(&plate, 768, 2000, exec)?;
-    let objects = objects(geometry(order, Primitives::default(), exec)?, &[Similarity::IDENTITY])?;
+    let objects = objects(geometry(order, Primitives::default())?, &[Similarity::IDENTITY])?;
     let camera = camera(DVec3::new(0.0, 0.0, 5.0), 256, Lens::FieldOfView(30.0))?;
     // So small that all surfels are asked for, as large as they cover with.
     let found = draw(&seen(&objects, 0.125, &camera, exec)?, blue(), &camera, exec)?;
@@ -68,7 +68,7 @@ pub(crate) fn long_object(length: f64, exec: &Exec) -> Result<[f64; 3]> {
     let half = DVec3::new(0.5, 0.5, length / 2.0);
     let bar = cuboid(half, 1)?;
     let order = order(&bar, 1024, 200_000, exec)?;
-    let objects = objects(geometry(order, Primitives::default(), exec)?, &[Similarity::IDENTITY])?;
+    let objects = objects(geometry(order, Primitives::default())?, &[Similarity::IDENTITY])?;
     let eye = DVec3::new(1.0, 1.0, length / 2.0 + 8.0);
     let target = DVec3::new(0.0, 0.0, length / 2.0);
     let pose = Pose { eye, target, up: DVec3::Y };
@@ -92,7 +92,7 @@ pub(crate) fn long_object(length: f64, exec: &Exec) -> Result<[f64; 3]> {
 pub(crate) fn short_prefix(count: f64, exec: &Exec) -> Result<(usize, f64)> {
     let torus = torus()?;
     let objects = objects(
-        geometry(order(&torus, 512, 50_000, exec)?, Primitives::default(), exec)?,
+        geometry(order(&torus, 512, 50_000, exec)?, Primitives::default())?,
         &[Similarity::IDENTITY],
     )?;
     let prefix = objects.geometries()[0].prefix().map(|prefix| prefix.estimate());

@@ -30,7 +30,7 @@ const SOME: usize = 20;
 pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
     let ring = mesh(ring()?);
     let order = order(&ring, 1024, 48_000, exec)?;
-    let geometry = geometry(order, ring.primitives.clone(), exec)?;
+    let geometry = geometry(order, ring.primitives.clone())?;
     let places: Vec<Similarity> = (0..RANK * RANK)
         .map(|i| {
             let at = |k: i32| APART * (f64::from(k) - f64::from(RANK - 1) / 2.0);

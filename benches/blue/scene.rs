@@ -40,9 +40,9 @@ pub(crate) fn order_along(mesh: &Scene, side: u32, count: usize, exec: &Exec) ->
 }
 
 /// A geometry of points in an order, and of the triangles that take their place close by.
-pub(crate) fn geometry(order: Cloud, primitives: Primitives, exec: &Exec) -> Result<Geometry> {
+pub(crate) fn geometry(order: Cloud, primitives: Primitives) -> Result<Geometry> {
     let (surfels, _) = Surfels::new(order)?;
-    let estimate = estimate(surfels.position(), exec)?;
+    let estimate = estimate(surfels.position(), surfels.normal());
     let plain = Geometry { name: "order".into(), surfels, primitives, detail: None };
     plain.with_prefix(estimate)
 }

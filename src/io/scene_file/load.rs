@@ -120,7 +120,7 @@ impl SceneFile {
             let geometry = Geometry { name, surfels, primitives, detail: None };
             geometries.push(match detail {
                 Some(threshold) => geometry.with_detail(threshold, exec)?,
-                None if model.progressive => in_order(geometry, exec)?,
+                None if model.progressive => in_order(geometry)?,
                 None => geometry,
             });
         }
@@ -176,8 +176,8 @@ impl Loaded {
 }
 
 /// A geometry whose surfels are in an order.
-fn in_order(geometry: Geometry, exec: &Exec) -> Result<Geometry> {
-    let estimate = estimate(geometry.surfels.position(), exec)?;
+fn in_order(geometry: Geometry) -> Result<Geometry> {
+    let estimate = estimate(geometry.surfels.position(), geometry.surfels.normal());
     geometry.with_prefix(estimate)
 }
 

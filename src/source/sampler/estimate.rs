@@ -1,50 +1,71 @@
 //! How densely an order covers \[BJFM19, 4.1\].
 
-use super::quality::quality;
-use crate::error::Result;
-use crate::frame::Exec;
+use super::geodesic::alike;
+use super::greedy::squared_distance;
 use crate::scene::objects::detail::prefix::Estimate;
 use glam::Vec3;
 
 /// p_m, where there are so many points: the paper's example.
 pub const COUNT: usize = 1000;
 
-/// The estimate of points in an order: p_m the lesser of [`COUNT`] and their number, r_m the lower median, of
-/// rank (p_m - 1) / 2, of the squared distances in `f32` from each of the first p_m to the nearest other of
-/// them, its square root in f64, rounded to `f32` once; 0 if there is one point alone.
+/// The estimate of points in an order, with a normal each. p_m is the lesser of [`COUNT`] and their number. With
+/// the squared distances of [`super::greedy`] in `f32`, and of the first p_m
 ///
-/// # Errors
-/// As [`quality`].
-pub fn estimate(points: &[Vec3], exec: &Exec) -> Result<Estimate> {
-    let points = &points[..points.len().min(COUNT)];
-    let prefix: Vec<u32> = (0..points.len() as u32).collect();
-    let mut nearest = quality(points, &prefix, exec)?.nearest;
-    nearest.sort_by(f32::total_cmp);
-    let median = nearest[(nearest.len() - 1) / 2];
-    let distance = if nearest.len() == 1 { 0.0 } else { f64::from(median).sqrt() as f32 };
-    Ok(Estimate { count: nearest.len() as u32, distance })
+/// ```text
+///   nearest_i = the least squared distance to another of them that faces alike, as in super::geodesic
+///   r_m       = the square root of the lower median of those nearest_i that are there, of rank (k - 1) / 2
+///               of k, in f64, rounded to f32 once; 0 if there are none
+/// ```
+///
+/// `Decided:` what faces the other way does not count, of which the paper says nothing: the two sides of a wall that is thinner than
+/// the distance of surfels are near to each other, but no side covers the other.
+///
+/// # Panics
+/// If there are fewer normals than points.
+#[must_use]
+pub fn estimate(points: &[Vec3], normals: &[Vec3]) -> Estimate {
+    let count = points.len().min(COUNT);
+    let nearest = |i: usize| {
+        let others = (0..count).filter(|&j| j != i && alike(normals[i], normals[j]));
+        let distances = others.map(|j| squared_distance(points[i], points[j]));
+        distances.fold(f32::INFINITY, |least, d| if d < least { d } else { least })
+    };
+    let mut all: Vec<f32> = (0..count).map(nearest).filter(|d| d.is_finite()).collect();
+    all.sort_by(f32::total_cmp);
+    let median = all.get(all.len().saturating_sub(1) / 2).copied().unwrap_or(0.0);
+    Estimate { count: count as u32, distance: f64::from(median).sqrt() as f32 }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn of(xs: &[f32], normals: &[Vec3]) -> Estimate {
+        let points: Vec<Vec3> = xs.iter().map(|&x| Vec3::new(x, 2.0, 2.0)).collect();
+        estimate(&points, normals)
+    }
+
     #[test]
     fn points_on_a_line_by_hand() {
-        let exec = Exec::sequential();
-        let points = |all: &[f32]| all.iter().map(|&x| Vec3::new(x, 2.0, 2.0)).collect::<Vec<_>>();
+        let up = [Vec3::Z; 2000];
         // Nearest: 1, 1, 2, 4, of which the second is the lower median.
-        let four = estimate(&points(&[0.0, 1.0, 3.0, 7.0]), &exec).unwrap();
+        let four = of(&[0.0, 1.0, 3.0, 7.0], &up);
         assert_eq!(four, Estimate { count: 4, distance: 1.0 });
-        let three = estimate(&points(&[0.0, 2.0, 5.0]), &exec).unwrap();
+        let three = of(&[0.0, 2.0, 5.0], &up);
         assert_eq!(three, Estimate { count: 3, distance: 2.0 });
-        assert_eq!(estimate(&points(&[9.0]), &exec).unwrap(), Estimate { count: 1, distance: 0.0 });
-        assert!(estimate(&[], &exec).is_err());
+        assert_eq!(of(&[9.0], &up), Estimate { count: 1, distance: 0.0 });
+        assert_eq!(of(&[], &up), Estimate { count: 0, distance: 0.0 });
         // Only the first 1000 count.
         let many: Vec<f32> = (0..2000).map(|i| if i < 1000 { i as f32 } else { 0.25 }).collect();
-        assert_eq!(
-            estimate(&points(&many), &exec).unwrap(),
-            Estimate { count: 1000, distance: 1.0 }
-        );
+        assert_eq!(of(&many, &up), Estimate { count: 1000, distance: 1.0 });
+    }
+
+    #[test]
+    fn the_other_side_of_a_wall_does_not_count() {
+        let both = [Vec3::Z, -Vec3::Z, Vec3::Z, -Vec3::Z];
+        let found = of(&[0.0, 0.125, 4.0, 5.125], &both);
+        assert_eq!(found, Estimate { count: 4, distance: 4.0 });
+        let alone = of(&[0.0, 0.125], &both[..2]);
+        assert_eq!(alone, Estimate { count: 2, distance: 0.0 });
     }
 }

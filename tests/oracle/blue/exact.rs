@@ -2,6 +2,7 @@
 
 use super::cases::case;
 use crate::kit::case::Case;
+use crate::kit::goldens;
 use crate::kit::planes::{index, number, unclean, value};
 use splatref::frame::{Frame, NO_ID};
 use splatref::method::blue::Settings;
@@ -179,8 +180,7 @@ fn check<N: Into<f64> + Copy, R: splatref::number::Exact>(
 #[test]
 fn discs_have_the_bits_of_the_page() {
     let mut shown = [0; 2];
-    for seed in 0..160 {
-        let mut case = case(seed);
+    for mut case in (0..160).map(case).chain(goldens::of()) {
         case.scene.primitives = Primitives::default();
         let picture = case.drawing().define::<f32>();
         shown[0] += check(&case, single::discs(&case), (&picture.frame, &picture.tally));

@@ -3,6 +3,7 @@
 use super::cases::case;
 use super::model::{Hit, World};
 use crate::kit::case::Case;
+use crate::kit::goldens;
 use crate::kit::planes::{index, number};
 use splatref::frame::{Frame, NO_ID};
 use splatref::method::blue::Settings;
@@ -39,8 +40,7 @@ fn check<R: Exact>(case: &Case<Settings>, frame: &Frame<R>) -> [u64; 2] {
 #[test]
 fn every_pixel_shows_the_nearest_disc_that_its_ray_meets() {
     let mut counts = [0; 2];
-    for seed in 0..200 {
-        let mut case = case(seed);
+    for mut case in (0..200).map(case).chain(goldens::of()) {
         case.scene.primitives = Primitives::default();
         let single = check(&case, &case.drawing().frame::<f32>());
         let double = check(&case, &case.drawing().frame::<f64>());

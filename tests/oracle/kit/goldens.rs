@@ -5,7 +5,9 @@
 use crate::kit::case::Case;
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;
-use splatref::method::{Method, Session, deferred, ewa, peeling, pyramid, single_pass, template};
+use splatref::method::{
+    Method, Session, blue, deferred, ewa, peeling, pyramid, single_pass, template,
+};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -71,6 +73,7 @@ taken! {
         "mkc08_odd_size_box",
         "mkc08_sphere",
     ];
+    blue::Settings, Blue: ["bjfm19_budget", "bjfm19_points", "bjfm19_prefixes"];
     template::Settings, Template: [
         "moc08_covering_3",
         "moc08_f64_7",
@@ -90,7 +93,12 @@ fn golden<S: Taken>(name: &str) -> Case<S> {
     let (exec, path) = (Exec::sequential(), Path::new("golden").join(name).with_extension("toml"));
     let file = SceneFile::read(&path).expect("a scene file");
     let method = file.method.method().expect("a method");
-    let scene = file.load(&exec, &|_, _, _| ()).expect("loads").scene;
+    let scene = if method.draws_objects() {
+        file.load(&exec, &|_, _, _| ()).expect("loads").scene
+    } else {
+        // In view, and flat.
+        file.ready(&exec, &|_, _, _| ()).expect("loads").loaded.scene
+    };
     let camera = file.camera(&scene).expect("a camera");
     let grouping = file.grouping(&method).expect("a grouping");
     let prepared = Session::prepare(&scene, method, grouping, &exec, &|_, _, _| ());

@@ -33,7 +33,8 @@ use glam::DVec3;
 pub struct Estimate {
     /// p_m: surfels of the prefix.
     pub count: u32,
-    /// r_m: the lower median of the distances of each to the nearest other; 0 if there is no other.
+    /// r_m: the lower median of the distances of each to the nearest other that faces alike, see
+    /// [`mod@crate::source::sampler::estimate`]; 0 if there is no other.
     pub distance: f32,
 }
 

@@ -252,7 +252,7 @@ impl Around<'_> {
 }
 
 /// Whether two normals face alike.
-fn alike(a: Vec3, b: Vec3) -> bool {
+pub(in crate::source::sampler) fn alike(a: Vec3, b: Vec3) -> bool {
     let [a, b] = [a.as_dvec3(), b.as_dvec3()];
     let dot = |a: glam::DVec3, b: glam::DVec3| (a.x * b.x + a.y * b.y) + a.z * b.z;
     let s = dot(a, b);

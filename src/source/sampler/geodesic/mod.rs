@@ -50,6 +50,7 @@ mod graph;
 mod tests;
 
 pub use graph::Graph;
+pub(super) use graph::alike;
 
 use super::greedy::{Greedy, Order};
 use crate::error::Result;
