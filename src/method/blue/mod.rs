@@ -87,8 +87,6 @@ mod planes;
 mod polygons;
 mod settings;
 mod squares;
-#[cfg(test)]
-mod tests;
 pub mod verify;
 
 pub use settings::Settings;

@@ -173,8 +173,8 @@ impl<'a, P: Profile> Fragments<'a, P> {
         ]
     }
 
-    /// The offset of a surfel at a pixel divided by its limit, if the surfel may be drawn and the pixel in its
-    /// square.
+    /// The offset of a surfel at a pixel divided by its limit, if that is more than 1, the surfel may be drawn,
+    /// and the pixel may be in its square.
     pub(super) fn rim(&self, surfel: u32, (x, y): (u32, u32)) -> Option<f64> {
         if surfel == NO_ID || surfel as usize >= self.scene.surfels.len() {
             return None;
@@ -184,7 +184,7 @@ impl<'a, P: Profile> Fragments<'a, P> {
         let disc = &one.placed.disc;
         let fragment = disc.at(ray(&self.view, (x, y)), self.view.perspective);
         let rim = fragment.offset.middle / disc.limit.middle;
-        (in_square(&one.placed.edges, (x, y)).possibly() && !rim.is_nan()).then_some(rim)
+        (in_square(&one.placed.edges, (x, y)).possibly() && rim > 1.0).then_some(rim)
     }
 }
 

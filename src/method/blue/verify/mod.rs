@@ -1,6 +1,6 @@
 //! What a right implementation may leave of each stage, held against somebody's planes.
 //!
-//! Surfels are placed in [`Ball`](crate::number::Ball)s of a [`Profile`], and so are their fragments. A
+//! Surfels are placed in [`Ball`]s of a [`Profile`], and so are their fragments. A
 //! surfel *may lie* in a pixel if it is not certain that it is not drawn, that the pixel is not in its square,
 //! or that its fragment is discarded; it *lies* there if all of this certainly is otherwise. Triangles as in
 //! [`projection`](crate::method::projection::verify). A fragment that stays is within the radius of its

@@ -250,7 +250,7 @@ fn a_fault_says_which_surfel() {
         for other in (0..60).step_by(7).filter(|other| *other != own) {
             let touch = touches.iter().find(|touch| touch.id == other);
             match (fault(at, other), touch.map(|touch| touch.end)) {
-                (Fault::Outside { surfel, rim }, Some(BlueEnd::Discarded)) => {
+                (Fault::Outside { surfel, rim }, Some(BlueEnd::Discarded | BlueEnd::Near)) => {
                     assert!(surfel == other && rim > 1.0);
                     found[1] += 1;
                 }
