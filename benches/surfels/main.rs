@@ -1,8 +1,8 @@
 //! How long the exact greedy order takes, by the definition, on one thread and on two; then what
 //! meshes give, see [`meshes`].
 //!
-//! `cargo bench --bench surfels` prints Markdown, and with `--write` puts the table into
-//! `docs/bjfm19.md`; an argument is a pattern that the names of point sets and
+//! `cargo bench --bench surfels` prints Markdown, and with `--write` puts the tables into
+//! `docs/bjfm19.md` and draws its figure; an argument is a pattern that the names of point sets and
 //! meshes must contain. Scans are those in the folder that `SPLATREF_MODELS` names (`../shared/models` if that
 //! is not set). Each order is
 //! held against the definition, for the first picks, and against that of one thread.

@@ -12,6 +12,7 @@ use splatref::scene::{Cloud, Primitives, Scene, Surfels, Triangles, Vertices};
 use splatref::source::candidates::{Candidates, Directions, SIDE, candidates};
 use splatref::source::derive;
 use splatref::source::sampler::{Greedy, Order, Progressive, Schedule, Start, quality, shuffled};
+use splatref::study::spread::{self, Ordered};
 use std::f64::consts::TAU;
 use std::time::Instant;
 
@@ -19,6 +20,8 @@ use std::time::Instant;
 const COUNTS: [usize; 3] = [10_000, 50_000, 100_000];
 /// Prefixes of Fig. 3.
 const PREFIXES: [usize; 3] = [1000, 5000, 10_000];
+/// The mesh of Fig. 3.
+const FIGURE: &str = "bunny";
 const SAMPLERS: [&str; 4] = ["greedy", "progressive", "as shipped", "random"];
 
 pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
@@ -50,7 +53,12 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
         let rate = (triangles * counts.len()) as f64 / time / 1e6;
         let found = cloud.position.len();
         meshes.row(&format!("{name} | {triangles} | {found} | {time:.2} | {rate:.1}"));
-        of_samplers(name, cloud, exec, (&mut times, &mut spread))?;
+        let orders = of_samplers(name, cloud, exec, (&mut times, &mut spread))?;
+        if name == FIGURE {
+            let all = Some(&cloud.position[..]);
+            let found = spread::measure(&orders, all, &PREFIXES, true, exec, &quiet)?;
+            arguments.write("bjfm19-spread.svg", &spread::chart(&found)?.svg())?;
+        }
         surface::row(&mut along, name, &all, exec)?;
     }
     meshes.publish_times(arguments, "bjfm19.md", "candidates")?;
@@ -64,9 +72,9 @@ fn of_samplers(
     cloud: &Cloud,
     exec: &Exec,
     (times, spread): (&mut Table, &mut Table),
-) -> Result<()> {
+) -> Result<Vec<Ordered>> {
     let points = &cloud.position;
-    let mut unit = None;
+    let (mut unit, mut orders) = (None, Vec::new());
     for sampler in SAMPLERS {
         let mut cells = Vec::new();
         let mut last = Order::default();
@@ -93,8 +101,11 @@ fn of_samplers(
             cells.push(all.map(|d| format!("{:.2}", d.sqrt() / unit)).join(", "));
         }
         spread.row(&format!("{name} | {sampler} | {}", cells.join(" | ")));
+        let first = &last.index[..PREFIXES[PREFIXES.len() - 1]];
+        let points = first.iter().map(|i| points[*i as usize]).collect();
+        orders.push(Ordered { name: sampler.to_owned(), points });
     }
-    Ok(())
+    Ok(orders)
 }
 
 fn order(sampler: &str, points: &[Vec3], count: usize, exec: &Exec) -> Result<Order> {

@@ -47,10 +47,10 @@ impl Axis {
     }
 }
 
-/// The least of 1, 2 and 5 times a power of ten of which at most 10 are in a length; of a length that is no
-/// number above 0, or beyond what charts have, some step.
+/// The least of 1, 2 and 5 times a power of ten, from 1e-9 to 5e12, of which at most 10 are in a length; of a
+/// greater length a tenth.
 fn step(length: f64) -> f64 {
     let steps = (-9..=12).flat_map(|power| [1, 2, 5].map(|digit| format!("{digit}e{power}")));
     let mut steps = steps.filter_map(|step| step.parse::<f64>().ok());
-    steps.find(|step| length <= 10.0 * step).unwrap_or(1e13)
+    steps.find(|step| length <= 10.0 * step).unwrap_or(length / 10.0)
 }

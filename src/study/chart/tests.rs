@@ -147,7 +147,7 @@ fn axes_have_round_numbers() {
     assert_eq!(words(&axis), ["0.0", "0.5", "1.0", "1.5", "2.0", "2.5"]);
     assert_eq!(words(&of(7.0)).len(), 8);
     assert_eq!(words(&of(0.031)).last().unwrap(), "0.035");
-    for bad in [0.0, f64::INFINITY, f64::NAN] {
+    for bad in [0.0, 1e300, f64::INFINITY, f64::NAN] {
         assert!(of(bad).ticks().len() < 20, "{bad}");
     }
 }

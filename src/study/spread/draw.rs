@@ -1,6 +1,6 @@
 //! The chart: for each prefix a panel of violins, and below it, if they were measured, the spectra.
 
-use super::AtPrefix;
+use super::{AtPrefix, Spread};
 use crate::error::{Error, Result};
 use crate::source::sampler::Spectrum;
 use crate::study::chart::axis::Axis;
@@ -11,8 +11,10 @@ use crate::study::chart::{Anchor, COLORS, DASHES, Drawing, GRID, INK, Label, Str
 pub const MOST_ORDERS: usize = COLORS.len();
 /// Panels beside each other.
 pub const MOST_PREFIXES: usize = 8;
+/// What is longer would leave nothing to see of the rest.
+pub const MOST_UNITS: f64 = 1e4;
 
-const LEFT: f64 = 64.0;
+const LEFT: f64 = 76.0;
 const RIGHT: f64 = 20.0;
 /// Between panels.
 const GAP: f64 = 24.0;
@@ -40,7 +42,7 @@ type Panel<'a> = ([f64; 2], &'a AtPrefix);
 ///
 /// # Errors
 /// [`Error::Invalid`] if there are more than [`MOST_PREFIXES`] prefixes or [`MOST_ORDERS`] orders, none of
-/// one, or if a unit is 0.
+/// one, if a unit is 0, or if a length is over [`MOST_UNITS`].
 pub fn chart(found: &[AtPrefix]) -> Result<Drawing> {
     let orders = found.first().map_or(0, |at| at.spreads.len());
     if !(1..=MOST_PREFIXES).contains(&found.len()) || !(1..=MOST_ORDERS).contains(&orders) {
@@ -53,12 +55,19 @@ pub fn chart(found: &[AtPrefix]) -> Result<Drawing> {
         let what = "every order has two points at one place, so that no distance is relative";
         return Err(Error::Invalid(format!("prefix {}: {what}", at.prefix)));
     }
+    if let Some(at) = found.iter().find(|at| !(greatest(at) <= MOST_UNITS)) {
+        let what = format!("a distance is over {MOST_UNITS} times the largest least distance");
+        return Err(Error::Invalid(format!("prefix {}: {what}, which no chart shows", at.prefix)));
+    }
     let spectra = found.iter().all(|at| at.spreads.iter().all(|s| s.spectrum.is_some()));
     let least = LEAST[usize::from(!spectra)];
     let names = found.iter().flat_map(|at| &at.spreads).map(|s| width(&s.name, SMALL) + 8.0);
     let slot = names.fold(SLOT[0], larger);
     let slot = if slot < SLOT[1] { slot } else { SLOT[1] };
-    let wide = larger(slot * orders as f64, least);
+    let notes = notes(spectra);
+    let said = notes.iter().map(|note| width(note, SMALL)).fold(0.0, larger);
+    let (n, gaps) = (found.len() as f64, GAP * (found.len() - 1) as f64);
+    let wide = larger(larger(slot * orders as f64, least), (said - gaps) / n);
     let panels: Vec<Panel<'_>> = found
         .iter()
         .enumerate()
@@ -69,9 +78,7 @@ pub fn chart(found: &[AtPrefix]) -> Result<Drawing> {
         .collect();
     let right = LEFT + (wide + GAP) * found.len() as f64 - GAP;
     let below = TOP + HEIGHT + if spectra { BETWEEN + SPECTRUM + 54.0 } else { 40.0 };
-    let notes = notes(spectra);
-    let needed = notes.iter().map(|note| LEFT + width(note, SMALL)).fold(right, larger) + RIGHT;
-    let size = [needed.ceil() as u32, (below + 16.0 * notes.len() as f64 + 4.0) as u32];
+    let size = [(right + RIGHT).ceil() as u32, (below + 16.0 * notes.len() as f64 + 4.0) as u32];
     let title = "Distance to the nearest other point of a prefix";
     let mut out = Drawing::new(size, title, &notes.join(" "));
     out.text([LEFT, 24.0], &Label { size: 15.0, ..Label::new(title, Anchor::Start) });
@@ -103,12 +110,15 @@ fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
+/// The largest length of a prefix, in its units.
+fn greatest(at: &AtPrefix) -> f64 {
+    let nearest = |s: &Spread| s.nearest.last().copied().unwrap_or(0.0);
+    let lengths = at.spreads.iter().flat_map(|s| [s.covering, nearest(s)]);
+    lengths.fold(0.0, larger) / at.unit
+}
+
 /// The upper row.
 fn violins(out: &mut Drawing, panels: &[Panel<'_>]) {
-    let greatest = |at: &AtPrefix| {
-        let lengths = at.spreads.iter().flat_map(|s| [s.covering, s.nearest[s.nearest.len() - 1]]);
-        lengths.fold(0.0, larger) / at.unit
-    };
     let most = panels.iter().map(|(_, at)| greatest(at)).fold(0.0, larger);
     let axis = Axis::from_zero(most, [TOP + HEIGHT, TOP]);
     rows(out, &axis, panels, "distance / unit");

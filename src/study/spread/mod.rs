@@ -13,7 +13,7 @@ mod draw;
 #[cfg(test)]
 mod tests;
 
-pub use draw::{MOST_ORDERS, MOST_PREFIXES, chart};
+pub use draw::{MOST_ORDERS, MOST_PREFIXES, MOST_UNITS, chart};
 
 use super::chart::violin::quantile;
 use crate::error::{Error, Result};

@@ -65,6 +65,11 @@ fn what_cannot_be_measured_or_drawn_is_refused() {
     let found = of(&orders, &[9], false).unwrap();
     assert_eq!(found[0].unit, 0.0);
     assert!(chart(&found).unwrap_err().to_string().contains("prefix 9"));
+    orders[0].points = [0.0, 1.0, 1e5].map(|x| Vec3::new(x, 0.0, 0.0)).into();
+    let error = chart(&of(&orders, &[3], false).unwrap()).unwrap_err().to_string();
+    assert!(error.contains("over 10000 times"), "{error}");
+    orders[0].points[2].x = f32::MAX;
+    assert!(chart(&of(&orders, &[3], false).unwrap()).is_err(), "infinitely far in f32");
 }
 
 /// From one order at one prefix to the most that there is room for, with names of any length.
