@@ -74,7 +74,7 @@ impl Spread {
 ///
 /// # Errors
 /// [`Error::Invalid`] if a prefix has fewer than 2 points or more than an order, and as
-/// [`quality`] and, with `spectra`, as [`spectrum`].
+/// [`quality()`] and, with `spectra`, as [`spectrum()`].
 pub fn measure(
     orders: &[Ordered],
     of: Option<&[Vec3]>,
