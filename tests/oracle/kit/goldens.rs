@@ -8,6 +8,7 @@ use splatref::io::scene_file::SceneFile;
 use splatref::method::{
     Method, Session, blue, deferred, ewa, peeling, pyramid, single_pass, template,
 };
+use splatref::scene::Scene;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -96,8 +97,9 @@ fn golden<S: Taken>(name: &str) -> Case<S> {
     let scene = if method.draws_objects() {
         file.load(&exec, &|_, _, _| ()).expect("loads").scene
     } else {
-        // In view, and flat.
-        file.ready(&exec, &|_, _, _| ()).expect("loads").loaded.scene
+        // In view and flat, with surfels by index.
+        let scene = file.ready(&exec, &|_, _, _| ()).expect("loads").loaded.scene;
+        Scene { objects: None, ..scene }
     };
     let camera = file.camera(&scene).expect("a camera");
     let grouping = file.grouping(&method).expect("a grouping");
