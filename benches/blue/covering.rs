@@ -24,12 +24,17 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
     let sizes = ["1 px", "2 px", "4 px", "8 px"];
     let mut holes = Table::new(&columns(["mesh", "picture"], sizes));
     let mut all = Vec::new();
-    for (name, cloud) in models(&arguments.pattern, arguments)? {
+    for (name, cloud) in models("", arguments)? {
         all.push((name, mesh(derive::polygons(cloud, exec, &|_, _, _| ())?.0)));
     }
     let mut rows = Vec::new();
     for (name, mesh) in &all {
-        rows.push((name, of_mesh(name, mesh, &mut holes, exec)?));
+        let cells = of_mesh(name, (mesh, &Directions::Cube), &mut holes, exec)?;
+        rows.push((*name, cells));
+        if *name == "bunny" {
+            let name = "bunny, 26 directions";
+            rows.push((name, of_mesh(name, (mesh, &twenty_six()), &mut holes, exec)?));
+        }
     }
     holes.publish(arguments, "bjfm19.md", "holes")?;
     let mut rules = Table::new(&columns(["mesh", "p_m, r_m"], ["100", "1 k", "10 k", "100 k"]));
@@ -37,10 +42,22 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
     rules.publish(arguments, "bjfm19.md", "estimate")
 }
 
+/// To the corners, the middles of the edges and those of the faces of a cube.
+fn twenty_six() -> Directions {
+    let at =
+        |i: i32| DVec3::new(f64::from(i % 3 - 1), f64::from(i / 3 % 3 - 1), f64::from(i / 9 - 1));
+    Directions::These((0..27).filter(|&i| i != 13).map(at).collect())
+}
+
 /// The rows of holes, and the cells of the rule.
-fn of_mesh(name: &str, mesh: &Scene, holes: &mut Table, exec: &Exec) -> Result<String> {
-    let order = order(mesh, SIDE, COUNT, exec)?;
-    let all = candidates(mesh, &Directions::Cube, SIDE, exec, &|_, _, _| ())?.cloud.position;
+fn of_mesh(
+    name: &str,
+    (mesh, directions): (&Scene, &Directions),
+    holes: &mut Table,
+    exec: &Exec,
+) -> Result<String> {
+    let order = order(mesh, (directions, SIDE), COUNT, exec)?;
+    let all = candidates(mesh, directions, SIDE, exec, &|_, _, _| ())?.cloud.position;
     // The order, then all that it was chosen from.
     let points = [&order.position[..], &all].concat();
     let prefix = geometry(order, Primitives::default())?;

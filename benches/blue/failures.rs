@@ -7,6 +7,7 @@ use splatref::Result;
 use splatref::frame::Exec;
 use splatref::method::blue::controller::Controller;
 use splatref::scene::{Camera, Lens, Pose, Primitives, Scene, Similarity, Triangles, Vertices};
+use splatref::source::candidates::Directions;
 
 /// Gaps between two walls, as parts of the distance of surfels.
 pub(crate) const GAPS: [f64; 6] = [4.0, 2.0, 1.0, 0.5, 0.25, 0.0625];
@@ -53,7 +54,8 @@ pub(crate) fn thin_wall(gap: f64, along: bool, exec: &Exec) -> Result<f64> {
     // 2000 surfels on both sides, 8 units: about 0.068 apart.
     const APART: f64 = 0.068;
     let plate = cuboid(DVec3::new(1.0, 1.0, gap * APART / 2.0), 1)?;
-    let order = if along { order_along } else { order }(&plate, 768, 2000, exec)?;
+    let order =
+        if along { order_along } else { order }(&plate, (&Directions::Cube, 768), 2000, exec)?;
     let objects = objects(geometry(order, Primitives::default())?, &[Similarity::IDENTITY])?;
     let camera = camera(DVec3::new(0.0, 0.0, 5.0), 256, Lens::FieldOfView(30.0))?;
     // So small that all surfels are asked for, as large as they cover with.
@@ -67,7 +69,7 @@ pub(crate) fn thin_wall(gap: f64, along: bool, exec: &Exec) -> Result<f64> {
 pub(crate) fn long_object(length: f64, exec: &Exec) -> Result<[f64; 3]> {
     let half = DVec3::new(0.5, 0.5, length / 2.0);
     let bar = cuboid(half, 1)?;
-    let order = order(&bar, 1024, 200_000, exec)?;
+    let order = order(&bar, (&Directions::Cube, 1024), 200_000, exec)?;
     let objects = objects(geometry(order, Primitives::default())?, &[Similarity::IDENTITY])?;
     let eye = DVec3::new(1.0, 1.0, length / 2.0 + 8.0);
     let target = DVec3::new(0.0, 0.0, length / 2.0);
@@ -92,7 +94,7 @@ pub(crate) fn long_object(length: f64, exec: &Exec) -> Result<[f64; 3]> {
 pub(crate) fn short_prefix(count: f64, exec: &Exec) -> Result<(usize, f64)> {
     let torus = torus()?;
     let objects = objects(
-        geometry(order(&torus, 512, 50_000, exec)?, Primitives::default())?,
+        geometry(order(&torus, (&Directions::Cube, 512), 50_000, exec)?, Primitives::default())?,
         &[Similarity::IDENTITY],
     )?;
     let prefix = objects.geometries()[0].prefix().map(|prefix| prefix.estimate());

@@ -14,6 +14,7 @@ use splatref::number::elementary::{cos, sin};
 use splatref::scene::objects::Objects;
 use splatref::scene::{Camera, Geometry, Lens, Pose, Scene, Similarity, Surfels};
 use splatref::scene::{Triangles, Vertices};
+use splatref::source::candidates::Directions;
 use splatref::source::flatten;
 use splatref::verify::metrics::summary;
 use std::f64::consts::TAU;
@@ -29,7 +30,7 @@ const SOME: usize = 20;
 
 pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
     let ring = mesh(ring()?);
-    let order = order(&ring, 1024, 48_000, exec)?;
+    let order = order(&ring, (&Directions::Cube, 1024), 48_000, exec)?;
     let geometry = geometry(order, ring.primitives.clone())?;
     let places: Vec<Similarity> = (0..RANK * RANK)
         .map(|i| {

@@ -17,10 +17,16 @@ pub(crate) fn mesh(triangles: Triangles) -> Scene {
     Scene { primitives, ..Scene::lit("mesh", Surfels::none()) }
 }
 
-/// So many of the points that are seen of a mesh in pictures of a side, in the greedy order from point 0.
-pub(crate) fn order(mesh: &Scene, side: u32, count: usize, exec: &Exec) -> Result<Cloud> {
+/// So many of the points that are seen of a mesh from directions, in pictures of a side, in the greedy order
+/// from point 0.
+pub(crate) fn order(
+    mesh: &Scene,
+    (directions, side): (&Directions, u32),
+    count: usize,
+    exec: &Exec,
+) -> Result<Cloud> {
     let quiet = |_: &str, _, _| ();
-    let cloud = candidates(mesh, &Directions::Cube, side, exec, &quiet)?.cloud;
+    let cloud = candidates(mesh, directions, side, exec, &quiet)?.cloud;
     let greedy = Greedy { start: Start::Index(0) };
     let order = greedy.order(&cloud.position, count, exec, &quiet)?;
     let cloud = cloud.some(&order.index);
@@ -29,9 +35,14 @@ pub(crate) fn order(mesh: &Scene, side: u32, count: usize, exec: &Exec) -> Resul
 }
 
 /// The same along the surface: neighbours are within two pixels.
-pub(crate) fn order_along(mesh: &Scene, side: u32, count: usize, exec: &Exec) -> Result<Cloud> {
+pub(crate) fn order_along(
+    mesh: &Scene,
+    (directions, side): (&Directions, u32),
+    count: usize,
+    exec: &Exec,
+) -> Result<Cloud> {
     let quiet = |_: &str, _, _| ();
-    let Candidates { cloud, pixel, .. } = candidates(mesh, &Directions::Cube, side, exec, &quiet)?;
+    let Candidates { cloud, pixel, .. } = candidates(mesh, directions, side, exec, &quiet)?;
     let normals = cloud.normal.as_deref().unwrap_or_default();
     let graph = Graph::new(&cloud.position, normals, (2.0 * pixel) as f32, exec, &quiet)?;
     let greedy = Greedy { start: Start::Index(0) };
