@@ -39,7 +39,7 @@ fn long_objects_have_too_many_surfels_far_away() {
     assert!(short < 1.5 && long > 5.0, "{short} {long}");
 }
 
-/// The estimate of p_m = 1000 holds for shorter prefixes down to about 100.
+/// The estimate of `p_m` = 1000 holds for shorter prefixes down to about 100.
 #[test]
 fn prefixes_too_short_for_the_estimate_have_holes() {
     let holes = |count| failures::short_prefix(count, &exec()).unwrap();

@@ -11,7 +11,7 @@
 //!
 //! rounded to f32. A size out of \[least, most\] is brought into it first.
 //!
-//! `Decided:` s_old of the paper is the size of the last frame: its formula has one number, and its sentence speaks of a
+//! `Decided:` `s_old` of the paper is the size of the last frame: its formula has one number, and its sentence speaks of a
 //! moving average over three frames.
 //!
 //! Where a frame takes b / s^2, as where every surfel takes as long, the size settles: near the size that is

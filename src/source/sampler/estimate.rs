@@ -5,11 +5,11 @@ use super::greedy::squared_distance;
 use crate::scene::objects::detail::prefix::Estimate;
 use glam::Vec3;
 
-/// p_m, where there are so many points: the paper's example.
+/// `p_m`, where there are so many points: the paper's example.
 pub const COUNT: usize = 1000;
 
-/// The estimate of points in an order, with a normal each. p_m is the lesser of [`COUNT`] and their number. With
-/// the squared distances of [`super::greedy`] in `f32`, and of the first p_m
+/// The estimate of points in an order, with a normal each. `p_m` is the lesser of [`COUNT`] and their number. With
+/// the squared distances of [`super::greedy`] in `f32`, and of the first `p_m`
 ///
 /// ```text
 ///   nearest_i = the least squared distance to another of them that faces alike, as in super::geodesic

@@ -10,14 +10,14 @@
 //!   p(r) = p_m (q q)        q = r_m / r
 //! ```
 //!
-//! f is the greater of fx and fy, k the scale of the object, and r_m the [`Estimate::distance`] of a prefix of
-//! p_m = [`Estimate::count`] surfels. The object is nearest at the point c of the box around its geometry
+//! f is the greater of fx and fy, k the scale of the object, and `r_m` the [`Estimate::distance`] of a prefix of
+//! `p_m` = [`Estimate::count`] surfels. The object is nearest at the point c of the box around its geometry
 //! that is the closest to the eye e, both in the coordinates of the geometry, `c = max(low, min(e, high))` a
 //! component; t is its depth, in its place, at least that of the near plane.
 //!
-//! `Departs:` the paper prints r = s / (2 d_p), with which discs shrink where pixels become wider.
+//! `Departs:` the paper prints r = s / (2 `d_p`), with which discs shrink where pixels become wider.
 //!
-//! `Decided:` d_p is that of the closest point, the paper's example. Discs farther away are smaller than s
+//! `Decided:` `d_p` is that of the closest point, the paper's example. Discs farther away are smaller than s
 //! on the screen: a long object gets more of them than it needs, as the paper says in its section 6.
 
 use super::{Detail, Eye};
@@ -27,13 +27,13 @@ use crate::scene::objects::Geometry;
 use crate::scene::{Projection, Similarity, bounds};
 use glam::DVec3;
 
-/// How densely an order covers: "\[r_m\] is the precomputed median minimum distance for a fixed prefix length
-/// \[p_m\]".
+/// How densely an order covers: "\[`r_m`\] is the precomputed median minimum distance for a fixed prefix length
+/// \[`p_m`\]".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// p_m: surfels of the prefix.
+    /// `p_m`: surfels of the prefix.
     pub count: u32,
-    /// r_m: the lower median of the distances of each to the nearest other that faces alike, see
+    /// `r_m`: the lower median of the distances of each to the nearest other that faces alike, see
     /// [`mod@crate::source::sampler::estimate`]; 0 if there is no other.
     pub distance: f32,
 }
@@ -76,7 +76,7 @@ impl Prefix {
         f64::from(distance) * (f64::from(count) / f64::from(self.count)).sqrt()
     }
 
-    /// d_p of an object in its place.
+    /// `d_p` of an object in its place.
     pub(super) fn pixel(&self, place: &Similarity, eye: &Eye) -> f64 {
         if eye.camera.projection == Projection::Orthographic {
             return 1.0 / eye.focal() / place.scale;

@@ -20,12 +20,12 @@
 //! a surface is there or is not. So is an object without a prefix.
 //!
 //! **Where nothing is finer** and p(r) exceeds n, all n are drawn, with the radius
-//! r_n = r_m sqrt(p_m / n) with which they cover: nothing more is known of the surface. `Decided:` here discs grow
+//! `r_n` = `r_m` sqrt(`p_m` / n) with which they cover: nothing more is known of the surface. `Decided:` here discs grow
 //! beyond the size asked for; with a fixed size there would be holes.
 //!
 //! **Size.** s is the [size](Refinement::surfel_size) asked for, times the factor z of the object's zone, and
-//! r = (size (d_p z)) / 2. Discs have the radius r k, or r_n k, in the world, with the scale k of the object,
-//! between 2^-100 and 2^100, rounded to f32; the side of the [square](crate::scene::Sides) of a surfel is size z, or (size z) (r_n / r),
+//! r = (size (`d_p` z)) / 2. Discs have the radius r k, or `r_n` k, in the world, with the scale k of the object,
+//! between 2^-100 and 2^100, rounded to f32; the side of the [square](crate::scene::Sides) of a surfel is size z, or (size z) (`r_n` / r),
 //! rounded to f32.
 //!
 //! **Zones** \[4.4\]: pairs of a distance from the principal point of the camera, in pixels, and a factor of the
@@ -165,7 +165,7 @@ impl Forest {
 /// What a camera asks of an object.
 #[derive(Clone, Copy)]
 struct Asked {
-    /// d_p times the factor of the zone.
+    /// `d_p` times the factor of the zone.
     pixel: f64,
     /// The factor of the zone.
     factor: f64,
@@ -265,7 +265,7 @@ impl Objects {
                 Asked { pixel: 0.0, factor: 1.0, seen }
             }
             Some(Detail::Prefix(prefix)) => {
-                let factor = self.refinement.factor(eye.from_principal_point(sphere));
+                let factor = self.refinement.factor(eye.off_principal_point(sphere));
                 let side = f64::from(self.refinement.surfel_size) * factor;
                 let seen = eye.may_see(sphere, MARGIN + side);
                 Asked { pixel: prefix.pixel(place, eye) * factor, factor, seen }
@@ -368,7 +368,7 @@ const LEAST: f64 = 1.0 / 1_267_650_600_228_229_401_496_703_205_376.0;
 
 impl Eye {
     /// How far a sphere is from the principal point on the screen, in pixels.
-    fn from_principal_point(&self, (middle, radius): (glam::DVec3, f64)) -> f64 {
+    fn off_principal_point(&self, (middle, radius): (glam::DVec3, f64)) -> f64 {
         let v = self.view_from_world.transform_point3(middle);
         let (depth, fx, fy) = (-v.z, f64::from(self.camera.fx), f64::from(self.camera.fy));
         let m = match self.camera.projection {

@@ -134,7 +134,7 @@ proptest! {
         let half = at(0.0, 0.5, DVec3::ZERO);
         let three = walls(&[(32, place), (32, half), (32, half)], vec![None, Some(0), Some(0)]);
         let found = seen(&three, asks(2.0), &front(away));
-        let wanted = 1024.0 * (64.0 / away).powi(2);
+        let wanted = 1024.0 * (64.0 / away) * (64.0 / away);
         let [coarse, a, b]: [u32; 3] = counts(&found).try_into().unwrap();
         prop_assert_eq!(a, b);
         let [coarse, finer] = [coarse, a + b].map(f64::from);
@@ -144,7 +144,7 @@ proptest! {
             let fade = 2.0 * (wanted / 1024.0) - 1.0;
             prop_assert!((coarse - (1.0 - fade) * wanted).abs() < 1.001);
             // Half the size of the geometry: a quarter of the surfels for the same discs, of two objects.
-            prop_assert!((finer - 2.0 * (fade * wanted / 4.0).min(1024.0)).abs() < 2.002, "{finer}");
+            prop_assert!((finer - 2.0 * (fade * wanted / 4.0).at_most(1024.0)).abs() < 2.002, "{finer}");
         } else if wanted > 1024.1 {
             prop_assert_eq!(coarse, 0.0);
         }
