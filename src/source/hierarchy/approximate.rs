@@ -15,9 +15,13 @@
 //!   side = ceil(s sqrt(count / 200000)), at least 16 and at most s        s: Settings::side; in f64
 //! ```
 //!
+//! Where there are less than 4 candidates for each of the surfels, and the side is less than s, all is drawn again with the side
+//! min(2 side, s).
+//!
 //! `Decided:` the paper draws pictures of 1024 pixels of everything, for 10k to 200k surfels. Here a node of the
 //! paper's bound has that side, and smaller ones have as many candidates for each of their surfels: "a much higher resolution
-//! unnecessarily increases the preprocessing time". The candidates of a sphere are about 20 times its surfels.
+//! unnecessarily increases the preprocessing time". The candidates of a sphere are about 11 times its surfels. What is
+//! small in its box, as houses far apart, has larger pictures.
 //!
 //! **Order.** The first `count` of the candidates in the order of the sampler, or fewer if there are fewer.
 //!
@@ -29,7 +33,7 @@
 //!   The objects of a node of the scene count as its children, in their order, before its nodes.
 //!
 //! Of a child's surfels those are drawn that cover at the resolution of the picture, by the estimate of
-//! [`crate::scene::objects::detail::prefix`]. With P = 2 R / side, where R is half the diagonal of the node's box, or 1 if that is 0;
+//! [`crate::scene::objects::detail::prefix`]. With P = 2 R / side ([`pixel`]), where R is half the diagonal of the node's box, or 1 if that is 0;
 //! k the scale of the child's place, n its surfels, `p_m` and `r_m` its estimate; in f64:
 //!
 //! ```text
@@ -58,6 +62,8 @@ pub const MOST: u32 = 200_000;
 pub const LEAST: u64 = 1000;
 /// The least side of a picture.
 const LEAST_SIDE: u32 = 16;
+/// The fewest candidates for each surfel.
+const CANDIDATES: u64 = 4;
 
 /// What the surfels of a node are chosen of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,21 +122,21 @@ impl Settings {
         if triangles < LEAST { 0 } else { (triangles / 2).min(u64::from(self.most)) as u32 }
     }
 
-    /// The side of the pictures of a node of so many surfels.
+    /// The side of the first pictures of a node of so many surfels.
     #[must_use]
     pub fn side_of(&self, count: u32) -> u32 {
         let part = (f64::from(count) / f64::from(MOST)).sqrt();
         let side = (f64::from(self.side) * part).ceil() as u32;
         side.max(LEAST_SIDE).min(self.side)
     }
+}
 
-    /// The side of a pixel of the pictures of a node of so many surfels in a box.
-    #[must_use]
-    pub fn pixel(&self, count: u32, (low, high): (Vec3, Vec3)) -> f64 {
-        let half = (high.as_dvec3() - low.as_dvec3()).length() / 2.0;
-        let radius = if half > 0.0 { half } else { 1.0 };
-        2.0 * radius / f64::from(self.side_of(count))
-    }
+/// The side of a pixel of pictures with this side of what is in a box.
+#[must_use]
+pub fn pixel(side: u32, (low, high): (Vec3, Vec3)) -> f64 {
+    let half = (high.as_dvec3() - low.as_dvec3()).length() / 2.0;
+    let radius = if half > 0.0 { half } else { 1.0 };
+    2.0 * radius / f64::from(side)
 }
 
 /// How many surfels of a child are drawn, and the half side of their squares, in a picture with pixels of this side in the
@@ -146,12 +152,37 @@ pub fn drawn(estimate: Estimate, count: u32, pixel: f64) -> (u32, f64) {
 }
 
 /// The surfels of a node: positions, normals and colours in their order; none if no triangle covers a pixel's centre.
+/// `drawn` gives the triangles that pictures of a side show.
 ///
 /// # Errors
-/// [`Error::Invalid`] as [`candidates()`].
+/// As `drawn`; [`Error::Invalid`] as [`candidates()`].
 pub fn approximate(
-    triangles: Triangles,
+    drawn: &dyn Fn(u32) -> Result<Triangles>,
     count: u32,
+    settings: &Settings,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<Cloud> {
+    let mut side = settings.side_of(count);
+    let cloud = loop {
+        let found = seen(drawn(side)?, side, settings, exec, progress)?;
+        let few = (found.position.len() as u64) < CANDIDATES * u64::from(count);
+        if !few || side == settings.side {
+            break found;
+        }
+        side = side.saturating_mul(2).min(settings.side);
+    };
+    if cloud.position.is_empty() {
+        return Ok(cloud);
+    }
+    let order = settings.order(&cloud.position, count as usize, exec, progress)?;
+    Ok(cloud.some(&order.index))
+}
+
+/// The candidates of triangles, if there are some.
+fn seen(
+    triangles: Triangles,
+    side: u32,
     settings: &Settings,
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
@@ -161,15 +192,11 @@ pub fn approximate(
     }
     let primitives = Primitives { triangles, ..Primitives::default() };
     let scene = Scene { primitives, ..Scene::unlit("node", Surfels::none()) };
-    let side = settings.side_of(count);
-    let cloud = match candidates(&scene, &settings.directions, side, exec, progress) {
-        Ok(found) => found.cloud,
-        Err(Error::Invalid(what)) if what.starts_with(UNSEEN) => return Ok(Cloud::default()),
-        Err(error) => return Err(error),
-    };
-    drop(scene);
-    let order = settings.order(&cloud.position, count as usize, exec, progress)?;
-    Ok(cloud.some(&order.index))
+    match candidates(&scene, &settings.directions, side, exec, progress) {
+        Ok(found) => Ok(found.cloud),
+        Err(Error::Invalid(what)) if what.starts_with(UNSEEN) => Ok(Cloud::default()),
+        Err(error) => Err(error),
+    }
 }
 
 /// How the error of [`candidates()`] begins where there are none.
@@ -198,6 +225,7 @@ impl Settings {
 mod tests {
     use super::*;
     use crate::scene::Vertices;
+    use std::cell::RefCell;
 
     #[test]
     fn counts_and_sides_by_hand() {
@@ -208,8 +236,8 @@ mod tests {
         assert_eq!(sides, [16, 17, 52, 512, 1024, 1024]);
         let few = Settings { most: 7, side: 9, ..settings };
         assert_eq!((few.count(u64::MAX), few.side_of(7), few.side_of(200_000)), (7, 9, 9));
-        assert_eq!(few.pixel(7, (Vec3::ZERO, Vec3::new(2.0, 3.0, 6.0))), 7.0 / 9.0);
-        assert_eq!(few.pixel(7, (Vec3::ONE, Vec3::ONE)), 2.0 / 9.0);
+        assert_eq!(pixel(9, (Vec3::ZERO, Vec3::new(2.0, 3.0, 6.0))), 7.0 / 9.0);
+        assert_eq!(pixel(9, (Vec3::ONE, Vec3::ONE)), 2.0 / 9.0);
     }
 
     #[test]
@@ -230,14 +258,24 @@ mod tests {
     }
 
     #[test]
-    fn what_nobody_sees_has_no_surfels() {
+    fn what_nobody_sees_has_no_surfels_and_what_is_small_is_seen_larger() {
         let exec = Exec::sequential();
         let quiet = |_: &str, _, _| ();
-        let of = |triangles| {
-            approximate(triangles, 10, &Settings::default(), &exec, &quiet).unwrap().position.len()
+        let of = |triangles: Triangles, count| {
+            let sides = RefCell::new(Vec::new());
+            let drawn = |side| {
+                sides.borrow_mut().push(side);
+                Ok(triangles.clone())
+            };
+            let settings = Settings { side: 100, ..Settings::default() };
+            let cloud = approximate(&drawn, count, &settings, &exec, &quiet).unwrap();
+            (cloud.position.len(), sides.take())
         };
-        assert_eq!(of(Triangles::default()), 0);
-        assert_eq!(of(soup(vec![Vec3::ONE; 3])), 0, "the words of candidates are those known here");
-        assert_eq!(of(soup(vec![Vec3::ZERO, Vec3::X, Vec3::Y])), 10);
+        assert_eq!(of(Triangles::default(), 10), (0, vec![16, 32, 64, 100]));
+        let point = soup(vec![Vec3::ONE; 3]);
+        assert_eq!(of(point, 10).0, 0, "the words of candidates are those known here");
+        let triangle = || soup(vec![Vec3::ZERO, Vec3::X, Vec3::Y]);
+        assert_eq!(of(triangle(), 10), (10, vec![16]));
+        assert_eq!(of(triangle(), 300), (300, vec![16, 32, 64]));
     }
 }

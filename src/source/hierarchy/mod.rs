@@ -10,7 +10,7 @@ pub mod flaws;
 pub mod octree;
 pub mod parts;
 
-pub use approximate::{Sampler, Settings, approximate};
+pub use approximate::{MOST, Sampler, Settings, Traversal, approximate};
 pub use flaws::Flaws;
 pub use octree::{Octree, octree};
 pub use parts::Part;
