@@ -1,7 +1,7 @@
-//! `splatref info`: what a file holds.
+//! `splatref info`: what a file or a folder of surfels holds.
 
 use super::report::{self, line};
-use super::{Ended, Ending, progress, say};
+use super::{Ended, Ending, hierarchy, progress, say};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
@@ -17,11 +17,15 @@ Examples:
   splatref info bunny.ply
   splatref info out/cluster.exr")]
 pub(super) struct Args {
-    /// A .ply, an .obj, a scene .toml or an .exr
+    /// A .ply, an .obj, a scene .toml, an .exr, or a folder of "splatref surfels"
     file: PathBuf,
 }
 
 pub(super) fn run(args: &Args) -> Ended {
+    if hierarchy::is_one(&args.file) {
+        hierarchy::info(&args.file)?;
+        return Ok(Ending::Good);
+    }
     match FileKind::of(&args.file)? {
         FileKind::Ply | FileKind::Obj => points(&args.file)?,
         FileKind::Toml => scene(&args.file)?,
