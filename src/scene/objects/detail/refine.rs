@@ -10,13 +10,15 @@
 //!
 //! ```text
 //!   fade    = 0 if there is nothing finer, else min(max(2 (p / n) - 1, 0), 1)
-//!   own     = w (1 - fade)
+//!   own     = w min(2 (1 - fade), 1)
 //!   drawn   = 0 if own = 0, else min(max(ceil(own min(p, n)), 1), n)
-//!   weight of each finer object, and of the primitives  =  w fade
+//!   weight of each finer object, and of the primitives  =  w min(2 fade, 1)
 //! ```
 //!
-//! so that the surfels that are drawn are as many as one cover has, all the way: the fade begins where half of
-//! the surfels are asked for, and ends where all are. Primitives are drawn where their weight is greater than 0:
+//! so that the fade begins where half of the surfels are asked for, and ends where all are. In its first half
+//! the finer ones grow, in the second the coarser one shrinks: one of both is always drawn whole. Where one
+//! shrinks while the other grows there are holes halfway, as two prefixes of half the length know nothing of
+//! each other. Primitives are drawn where their weight is greater than 0:
 //! a surface is there or is not. So is an object without a prefix.
 //!
 //! **Where nothing is finer** and p(r) exceeds n, all n are drawn, with the radius
@@ -321,13 +323,14 @@ impl Objects {
             } else {
                 0.0
             };
-            let own = weight * (1.0 - fade);
+            let own = weight * (2.0 * (1.0 - fade)).at_most(1.0);
             let count = if own > 0.0 && seen {
                 (own * wanted.at_most(all)).ceil().clamped(1.0, all) as u32
             } else {
                 0
             };
-            drawn[object as usize] = Drawn { count, weight, of_primitives: weight * fade };
+            let finer = weight * (2.0 * fade).at_most(1.0);
+            drawn[object as usize] = Drawn { count, weight, of_primitives: finer };
         };
         match &self.forest {
             None => (0..asked.len() as u32).for_each(|object| one(object, None)),
