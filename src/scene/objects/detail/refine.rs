@@ -21,27 +21,27 @@
 //! each other. Primitives are drawn where their weight is greater than 0:
 //! a surface is there or is not. So is an object without a prefix.
 //!
-//! **Where nothing is finer** and p(r) exceeds n, all n are drawn, with the radius
-//! `r_n` = `r_m` sqrt(`p_m` / n) with which they cover: nothing more is known of the surface. `Decided:` here discs grow
-//! beyond the size asked for; with a fixed size there would be holes.
+//! **Where nothing is finer** and p(r) exceeds n, all n are drawn, with the radius `r_n` = `r_m` sqrt(`p_m` /
+//! n) with which they cover: nothing more is known of the surface. `Decided:` here discs grow beyond the size
+//! asked for; with a fixed size there would be holes.
 //!
-//! **Size.** s is the [size](Refinement::surfel_size) asked for, times the factor z of the object's zone, and
-//! r = (size (`d_p` z)) / 2. Discs have the radius r k, or `r_n` k, in the world, with the scale k of the object,
-//! between 2^-100 and 2^100, rounded to f32; the side of the [square](crate::scene::Sides) of a surfel is size z, or (size z) (`r_n` / r),
-//! rounded to f32.
+//! **Size.** s is the [size](Refinement::surfel_size) asked for, times the factor z of the object's zone, and r
+//! = (size (`d_p` z)) / 2. Discs have the radius r k, or `r_n` k, in the world, with the scale k of the object,
+//! between 2^-100 and 2^100, rounded to f32; the side of the [square](crate::scene::Sides) of a surfel is size
+//! z, or (size z) (`r_n` / r), rounded to f32.
 //!
-//! **Zones** \[4.4\]: pairs of a distance from the principal point of the camera, in pixels, and a factor of the
-//! size, "interpolate\[d\] \[...\] between zones on a per-object basis": linearly between two pairs, the
-//! first factor before the first distance and the last behind the last; at equal distances the later pair. `Decided:` the distance of an object is that
-//! of the middle of its sphere on the screen, less the sphere's radius there, `f R / t` with the depth t of the
-//! middle (orthographic: `f R`), at least 0; 0 if `t <= R`.
+//! **Zones** \[4.4\]: pairs of a distance from the principal point of the camera, in pixels, and a factor of
+//! the size, "interpolate\[d\] \[...\] between zones on a per-object basis": between the pairs (a, from) and
+//! (b, to) at the distance d `from + (to - from) ((d - a) / (b - a))`, in f64; the first factor before the first distance and the last behind the last; at equal distances the later pair.
+//! `Decided:` the distance of an object is that of the middle of its sphere on the screen, less the sphere's
+//! radius there, `f R / t` with the depth t of the middle (orthographic: `f R`), at least 0; 0 if `t <= R`.
 //!
-//! **Budget**: "draw\[s\] at most" so many surfels of prefixes, the best first. Of all surfels that may be
-//! drawn those come first whose prefix has the widest gaps on the screen; so a common greater size
-//! takes the place of the size asked for, the k-th of s, s (65/64), (s (65/64)) (65/64) and so on, up
-//! to k = 2048. k is 0 if the objects draw no more than the budget with s; else it is found by
-//! halving: `(few, many) = (2048, 0)`, and while `few - many > 1`, of `k = (few + many) / 2`, rounded down, few becomes k
-//! if they draw no more with it, else many becomes k; k = few. Where objects are so many that they draw more even then, those are left
+//! **Budget**: at most so many surfels of prefixes are drawn, the best first. Of all surfels that may be
+//! drawn those come first whose prefix has the widest gaps on the screen; so a common greater size takes the
+//! place of the size asked for, the k-th of s, s (65/64), (s (65/64)) (65/64) and so on, up to k = 2048. k is 0
+//! if the objects draw no more than the budget with s; else it is found by halving: `(few, many) = (2048, 0)`,
+//! and while `few - many > 1`, of `k = (few + many) / 2`, rounded down, few becomes k if they draw no more with
+//! it, else many becomes k; k = few. Where objects are so many that they draw more even then, those are left
 //! out that come after the budget in the order of objects.
 //!
 //! An object with a prefix whose sphere is not in the view frustum, by the test of [`super`] with the margin
