@@ -32,9 +32,10 @@
 //!
 //! **Zones** \[4.4\]: pairs of a distance from the principal point of the camera, in pixels, and a factor of
 //! the size, "interpolate\[d\] \[...\] between zones on a per-object basis": between the pairs (a, from) and
-//! (b, to) at the distance d `from + (to - from) ((d - a) / (b - a))`, in f64; the first factor before the first distance and the last behind the last; at equal distances the later pair.
-//! `Decided:` the distance of an object is that of the middle of its sphere on the screen, less the sphere's
-//! radius there, `f R / t` with the depth t of the middle (orthographic: `f R`), at least 0; 0 if `t <= R`.
+//! (b, to) at the distance d `from + (to - from) ((d - a) / (b - a))`, in f64; the first factor before the
+//! first distance and the last behind the last; at equal distances the later pair. `Decided:` the distance of
+//! an object is that of the middle of its sphere on the screen, less the sphere's radius there, `f R / t` with
+//! the depth t of the middle (orthographic: `f R`), at least 0; 0 if `t <= R`.
 //!
 //! **Budget**: at most so many surfels of prefixes are drawn, the best first. Of all surfels that may be
 //! drawn those come first whose prefix has the widest gaps on the screen; so a common greater size takes the
