@@ -49,6 +49,14 @@ fn prefixes_too_short_for_the_estimate_have_holes() {
     assert_eq!([few.0, some.0, enough.0, many.0], [4, 11, 100, 1001]);
 }
 
+/// An object gives way to a finer one without holes.
+#[test]
+fn objects_fade_into_finer_ones_without_holes() {
+    let found = failures::FADES.map(|fade| failures::fade(fade, &exec()).unwrap());
+    assert!(found.iter().all(|(_, holes)| *holes < 0.05), "{found:?}");
+    assert!(found[3].0 > 7000, "both are drawn whole halfway: {found:?}");
+}
+
 /// Times that are known three frames late make the size swing for ever, after any load step.
 #[test]
 fn the_controller_swings_if_times_come_three_frames_late() {

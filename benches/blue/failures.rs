@@ -6,7 +6,8 @@ use glam::{DVec3, Vec3};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::method::blue::controller::Controller;
-use splatref::scene::{Camera, Lens, Pose, Primitives, Scene, Similarity, Triangles, Vertices};
+use splatref::scene::{Camera, Geometry, Lens, Motion, Object, Objects, Pose};
+use splatref::scene::{Primitives, Scene, Similarity, Triangles, Vertices};
 use splatref::source::candidates::Directions;
 
 /// Gaps between two walls, as parts of the distance of surfels.
@@ -15,6 +16,8 @@ pub(crate) const GAPS: [f64; 6] = [4.0, 2.0, 1.0, 0.5, 0.25, 0.0625];
 pub(crate) const LENGTHS: [f64; 5] = [1.0, 4.0, 16.0, 64.0, 256.0];
 /// Surfels that a view far away asks for.
 pub(crate) const COUNTS: [f64; 6] = [3.0, 10.0, 30.0, 100.0, 1000.0, 10_000.0];
+/// How far an object has given way to a finer one.
+pub(crate) const FADES: [f64; 6] = [0.0, 0.1, 0.25, 0.5, 0.75, 1.0];
 /// By how much a frame takes longer from one moment on.
 pub(crate) const STEPS: [f64; 5] = [1.5, 2.0, 4.0, 9.0, 25.0];
 
@@ -101,17 +104,48 @@ pub(crate) fn short_prefix(count: f64, exec: &Exec) -> Result<(usize, f64)> {
     let Some(estimate) = prefix else { return Ok((0, 0.0)) };
     // r of the prefix asked for, as a size in the picture below.
     let radius = f64::from(estimate.distance) * (f64::from(estimate.count) / count).sqrt();
-    let camera = Camera::new(
-        512,
-        512,
-        Pose { eye: DVec3::new(2.0, 3.0, 5.0), target: DVec3::ZERO, up: DVec3::Y },
-        Lens::Orthographic(3.2),
-    )?;
+    let camera = far_away()?;
     let size = 2.0 * radius * f64::from(camera.fy);
     let scene = seen(&objects, size as f32, &camera, exec)?;
     let found = draw(&scene, blue(), &camera, exec)?;
     let found = against(&found, &draw(&torus, blue(), &camera, exec)?);
     Ok((scene.surfels.len(), percent(found.holes, found.interior)))
+}
+
+/// Surfels of a torus that are drawn while 5000 surfels give way to a finer object's 50,000, and the holes in
+/// hundredths that they leave.
+pub(crate) fn fade(fade: f64, exec: &Exec) -> Result<(usize, f64)> {
+    let torus = torus()?;
+    let [coarse, finer] = [(5000, "coarse"), (50_000, "finer")].map(|(count, name)| {
+        let order = order(&torus, (&Directions::Cube, 512), count, exec)?;
+        Ok(Geometry { name: name.into(), ..geometry(order, Primitives::default())? })
+    });
+    let coarse: Geometry = coarse?;
+    let (density, count) = match coarse.prefix() {
+        Some(prefix) => (prefix.estimate(), f64::from(prefix.count())),
+        None => return Ok((0, 0.0)),
+    };
+    let object = |geometry| Object {
+        name: "torus".into(),
+        geometry,
+        motion: Motion::still(Similarity::IDENTITY),
+        color: None,
+    };
+    let both = Objects::new(vec![coarse, finer?], vec![object(0), object(1)], [0.75; 3].into())?;
+    let both = both.with_coarser(vec![None, Some(0)])?;
+    let wanted = count * (1.0 + fade) / 2.0;
+    let radius = f64::from(density.distance) * (f64::from(density.count) / wanted).sqrt();
+    let camera = far_away()?;
+    let scene = seen(&both, (2.0 * radius * f64::from(camera.fy)) as f32, &camera, exec)?;
+    let found = draw(&scene, blue(), &camera, exec)?;
+    let found = against(&found, &draw(&torus, blue(), &camera, exec)?);
+    Ok((scene.surfels.len(), percent(found.holes, found.interior)))
+}
+
+/// A camera before the torus, so far away that every disc has one size.
+fn far_away() -> Result<Camera> {
+    let pose = Pose { eye: DVec3::new(2.0, 3.0, 5.0), target: DVec3::ZERO, up: DVec3::Y };
+    Camera::new(512, 512, pose, Lens::Orthographic(3.2))
 }
 
 /// A torus of the radii 1 and 0.4.

@@ -52,6 +52,12 @@ fn failures(arguments: &Arguments, exec: &Exec) -> Result<()> {
         table.row(&format!("{count} | {holes:.2}"));
     }
     table.publish(arguments, "bjfm19.md", "short")?;
+    let mut table = Table::new(&["fade", "surfels", "holes, %"]);
+    for fade in failures::FADES {
+        let (count, holes) = failures::fade(fade, exec)?;
+        table.row(&format!("{fade} | {count} | {holes:.2}"));
+    }
+    table.publish(arguments, "bjfm19.md", "fade")?;
     let mut table = Table::new(&["load step", "0 late", "1", "2", "3", "4"]);
     for step in failures::STEPS {
         let cells: Vec<_> =

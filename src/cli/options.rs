@@ -107,7 +107,7 @@ pub(super) struct SceneOptions {
     surfel_size: Option<f32>,
     /// The same, but no more than N points, the best first [--surfel-size: 2]
     #[arg(long, value_name = "N", help_heading = "Shapes and models")]
-    budget: Option<u32>,
+    surfel_budget: Option<u32>,
     /// The texture of a file, a .png or an .exr, in the place of its colours
     #[arg(long, value_name = "FILE", help_heading = "Shapes and models")]
     texture: Option<PathBuf>,
@@ -181,18 +181,18 @@ impl SceneOptions {
 
     /// Of progressive models; of all if none is.
     fn choose_refinement(&self, file: &mut SceneFile) -> Result<()> {
-        if self.surfel_size.is_none() && self.budget.is_none() {
+        if self.surfel_size.is_none() && self.surfel_budget.is_none() {
             return Ok(());
         }
         let refinement = &mut file.refinement;
         refinement.surfel_size = self.surfel_size.unwrap_or(refinement.surfel_size);
-        refinement.budget = self.budget.or(refinement.budget);
+        refinement.budget = self.surfel_budget.or(refinement.budget);
         refinement.check()?;
         if file.all_models().all(|model| !model.progressive) {
             if let Some(geometry) = file.geometries.iter().find(|one| one.detail.is_some()) {
                 let name = &geometry.name;
                 let what = format!(
-                    "--surfel-size and --budget are of points in an order, and {name} has a tree"
+                    "--surfel-size and --surfel-budget are of points in an order, and {name} has a tree"
                 );
                 return Err(Error::Usage(what));
             }

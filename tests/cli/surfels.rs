@@ -161,14 +161,14 @@ fn a_view_draws_as_much_of_an_order_as_it_needs() {
         // Of half the diameter, four times as many.
         let small = render(&["all.ply", "--surfel-size", "4"], "small.exr");
         assert!((4 * asked - 4..=4 * asked).contains(&small), "{method}: {asked} and {small}");
-        let few = render(&["scene.toml", "--budget", "100"], "few.exr");
+        let few = render(&["scene.toml", "--surfel-budget", "100"], "few.exr");
         assert!((96..=100).contains(&few), "{method}: {few}");
     }
     for (arguments, code, what) in [
         (["all.ply", "--surfel-size", "0"], 1, "discs of 0 pixels"),
-        (["all.ply", "--budget", "0"], 1, "a budget of 0 surfels"),
-        (["mesh.ply", "--budget", "9"], 1, "mesh.ply: a prefix is of points"),
-        (["sphere", "--budget", "9"], 1, "sphere: what is progressive are points of a file"),
+        (["all.ply", "--surfel-budget", "0"], 1, "a budget of 0 surfels"),
+        (["mesh.ply", "--surfel-budget", "9"], 1, "mesh.ply: a prefix is of points"),
+        (["sphere", "--surfel-budget", "9"], 1, "sphere: what is progressive are points of a file"),
     ] {
         let line = fails(at.path(), &[&["render", "-o", "out.exr"], &arguments[..]].concat(), code);
         assert!(line.contains(what), "{what} in {line}");

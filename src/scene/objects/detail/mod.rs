@@ -125,7 +125,7 @@ impl Default for Shown {
 
 impl Shown {
     fn nothing() -> Self {
-        Self { primitives: false, ..Self::default() }
+        Self { mask: Some(Arc::default()), primitives: false, ..Self::default() }
     }
 
     /// All that an object has, before a camera is known.

@@ -10,36 +10,39 @@
 //!
 //! ```text
 //!   fade    = 0 if there is nothing finer, else min(max(2 (p / n) - 1, 0), 1)
-//!   own     = w (1 - fade)
+//!   own     = w min(2 (1 - fade), 1)
 //!   drawn   = 0 if own = 0, else min(max(ceil(own min(p, n)), 1), n)
-//!   weight of each finer object, and of the primitives  =  w fade
+//!   weight of each finer object, and of the primitives  =  w min(2 fade, 1)
 //! ```
 //!
-//! so that the surfels that are drawn are as many as one cover has, all the way: the fade begins where half of
-//! the surfels are asked for, and ends where all are. Primitives are drawn where their weight is greater than 0:
+//! so that the fade begins where half of the surfels are asked for, and ends where all are. In its first half
+//! the finer ones grow, in the second the coarser one shrinks: one of both is always drawn whole. Where one
+//! shrinks while the other grows there are holes halfway, as two prefixes of half the length know nothing of
+//! each other. Primitives are drawn where their weight is greater than 0:
 //! a surface is there or is not. So is an object without a prefix.
 //!
-//! **Where nothing is finer** and p(r) exceeds n, all n are drawn, with the radius
-//! `r_n` = `r_m` sqrt(`p_m` / n) with which they cover: nothing more is known of the surface. `Decided:` here discs grow
-//! beyond the size asked for; with a fixed size there would be holes.
+//! **Where nothing is finer** and p(r) exceeds n, all n are drawn, with the radius `r_n` = `r_m` sqrt(`p_m` /
+//! n) with which they cover: nothing more is known of the surface. `Decided:` here discs grow beyond the size
+//! asked for; with a fixed size there would be holes.
 //!
-//! **Size.** s is the [size](Refinement::surfel_size) asked for, times the factor z of the object's zone, and
-//! r = (size (`d_p` z)) / 2. Discs have the radius r k, or `r_n` k, in the world, with the scale k of the object,
-//! between 2^-100 and 2^100, rounded to f32; the side of the [square](crate::scene::Sides) of a surfel is size z, or (size z) (`r_n` / r),
-//! rounded to f32.
+//! **Size.** s is the [size](Refinement::surfel_size) asked for, times the factor z of the object's zone, and r
+//! = (size (`d_p` z)) / 2. Discs have the radius r k, or `r_n` k, in the world, with the scale k of the object,
+//! between 2^-100 and 2^100, rounded to f32; the side of the [square](crate::scene::Sides) of a surfel is size
+//! z, or (size z) (`r_n` / r), rounded to f32.
 //!
-//! **Zones** \[4.4\]: pairs of a distance from the principal point of the camera, in pixels, and a factor of the
-//! size, "interpolate\[d\] \[...\] between zones on a per-object basis": linearly between two pairs, the
-//! first factor before the first distance and the last behind the last; at equal distances the later pair. `Decided:` the distance of an object is that
-//! of the middle of its sphere on the screen, less the sphere's radius there, `f R / t` with the depth t of the
-//! middle (orthographic: `f R`), at least 0; 0 if `t <= R`.
+//! **Zones** \[4.4\]: pairs of a distance from the principal point of the camera, in pixels, and a factor of
+//! the size, "interpolate\[d\] \[...\] between zones on a per-object basis": between the pairs (a, from) and
+//! (b, to) at the distance d `from + (to - from) ((d - a) / (b - a))`, in f64; the first factor before the
+//! first distance and the last behind the last; at equal distances the later pair. `Decided:` the distance of
+//! an object is that of the middle of its sphere on the screen, less the sphere's radius there, `f R / t` with
+//! the depth t of the middle (orthographic: `f R`), at least 0; 0 if `t <= R`.
 //!
-//! **Budget**: "draw\[s\] at most" so many surfels of prefixes, the best first. Of all surfels that may be
-//! drawn those come first whose prefix has the widest gaps on the screen; so a common greater size
-//! takes the place of the size asked for, the k-th of s, s (65/64), (s (65/64)) (65/64) and so on, up
-//! to k = 2048. k is 0 if the objects draw no more than the budget with s; else it is found by
-//! halving: `(few, many) = (2048, 0)`, and while `few - many > 1`, of `k = (few + many) / 2`, rounded down, few becomes k
-//! if they draw no more with it, else many becomes k; k = few. Where objects are so many that they draw more even then, those are left
+//! **Budget**: at most so many surfels of prefixes are drawn, the best first. Of all surfels that may be
+//! drawn those come first whose prefix has the widest gaps on the screen; so a common greater size takes the
+//! place of the size asked for, the k-th of s, s (65/64), (s (65/64)) (65/64) and so on, up to k = 2048. k is 0
+//! if the objects draw no more than the budget with s; else it is found by halving: `(few, many) = (2048, 0)`,
+//! and while `few - many > 1`, of `k = (few + many) / 2`, rounded down, few becomes k if they draw no more with
+//! it, else many becomes k; k = few. Where objects are so many that they draw more even then, those are left
 //! out that come after the budget in the order of objects.
 //!
 //! An object with a prefix whose sphere is not in the view frustum, by the test of [`super`] with the margin
@@ -321,13 +324,14 @@ impl Objects {
             } else {
                 0.0
             };
-            let own = weight * (1.0 - fade);
+            let own = weight * (2.0 * (1.0 - fade)).at_most(1.0);
             let count = if own > 0.0 && seen {
                 (own * wanted.at_most(all)).ceil().clamped(1.0, all) as u32
             } else {
                 0
             };
-            drawn[object as usize] = Drawn { count, weight, of_primitives: weight * fade };
+            let finer = weight * (2.0 * fade).at_most(1.0);
+            drawn[object as usize] = Drawn { count, weight, of_primitives: finer };
         };
         match &self.forest {
             None => (0..asked.len() as u32).for_each(|object| one(object, None)),
