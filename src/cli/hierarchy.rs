@@ -2,6 +2,7 @@
 
 use super::report::{self, line};
 use super::{Ended, Ending, output, progress};
+use glam::Vec3;
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::hierarchy::{Built, Hierarchy, NONE, Object, build};
@@ -14,11 +15,6 @@ use std::time::Instant;
 pub(super) fn is_folder(path: &Path) -> bool {
     let slash = path.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
     slash || path.is_dir() || path.extension().is_none()
-}
-
-/// Whether there is a folder with a hierarchy, or with a part of one.
-pub(super) fn is_one(folder: &Path) -> bool {
-    folder.join("plan").is_file() || folder.join("index").is_file()
 }
 
 /// Makes the hierarchy of a scene, or goes on with one.
@@ -54,8 +50,11 @@ pub(super) fn info(folder: &Path) -> Result<()> {
     }
     sizes(&hierarchy);
     told("meshes", all);
-    if let Some(root) = hierarchy.nodes().first() {
-        report::bounds((root.low, root.high));
+    if hierarchy.upper() > 0 {
+        let root = &hierarchy.nodes()[0];
+        // Boxes of nodes over objects are one f32 wider on each side, which nobody wants to read.
+        let (low, high) = (root.low.map(f32::next_up), root.high.map(f32::next_down));
+        report::bounds((low + Vec3::ZERO, high + Vec3::ZERO));
     }
     Ok(())
 }

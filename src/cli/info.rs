@@ -5,6 +5,7 @@ use super::{Ended, Ending, hierarchy, progress, say};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
+use splatref::io::hierarchy::Hierarchy;
 use splatref::io::scene_file::{Draw, EnvironmentChoice, FileKind, Model, SceneFile, Source};
 use splatref::io::scene_file::{Loaded, read_model};
 use splatref::scene::Light;
@@ -22,7 +23,7 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Ended {
-    if hierarchy::is_one(&args.file) {
+    if Hierarchy::is_in(&args.file) {
         hierarchy::info(&args.file)?;
         return Ok(Ending::Good);
     }

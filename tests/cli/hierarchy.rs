@@ -81,6 +81,31 @@ fn a_folder_is_made_described_and_found_again() {
     assert!(files(&at.path().join("down")) != all);
 }
 
+#[test]
+fn a_folder_is_rendered_as_a_scene() {
+    let (at, mut options) = given();
+    options.push("out");
+    succeeds(at.path(), &options);
+    let options = ["--method", "blue", "--size", "96x64", "-o"];
+    let render = |scene, picture| [&["render", scene][..], &options, &[picture]].concat();
+    let said = succeeds(at.path(), &render("out", "a.exr"));
+    assert!(said.contains("2 of 1 geometries") || said.contains("node-"), "{said}");
+    fs::write(at.path().join("all.toml"), "hierarchy = \"out\"\n").unwrap();
+    succeeds(at.path(), &render("all.toml", "b.exr"));
+    succeeds(at.path(), &["compare", "a.exr", "b.exr"]);
+    fs::write(at.path().join("two.toml"), "hierarchy = \"out\"\n[[model]]\nshape = \"torus\"\n")
+        .unwrap();
+    let line = fails(at.path(), &render("two.toml", "c.exr"), 1);
+    assert!(line.contains("a hierarchy is all that a scene shows"), "{line}");
+    let line = fails(at.path(), &["render", "out", "--opacity", "0.5"], 2);
+    assert!(line.contains("--opacity is of models"), "{line}");
+    let line = fails(at.path(), &["surfels", "out", "-o", "again"], 2);
+    assert!(line.contains("is a hierarchy already"), "{line}");
+    fs::remove_file(at.path().join("out").join("surfels-0")).unwrap();
+    let line = fails(at.path(), &render("out", "d.exr"), 1);
+    assert!(line.contains("surfels-0"), "{line}");
+}
+
 /// Killed again and again, and not always gently, it gets to the end.
 #[cfg(unix)]
 #[test]

@@ -79,6 +79,10 @@ impl<'a> Work<'a> {
         if settings.most == 0 {
             return Err(Error::Usage("a hierarchy of 0 surfels; give at least 1".into()));
         }
+        if file.hierarchy.is_some() {
+            let what = format!("{} is a hierarchy already; name a mesh or a scene", file.name);
+            return Err(Error::Usage(what));
+        }
         Camera::check_size(settings.side, settings.side)?;
         let models: Vec<(String, &Model)> = file
             .models

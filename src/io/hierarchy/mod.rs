@@ -120,6 +120,7 @@ mod layout;
 mod mesh;
 mod plan;
 mod read;
+mod scene;
 mod surfels;
 #[cfg(test)]
 mod tests;

@@ -18,6 +18,12 @@ pub struct Hierarchy {
 }
 
 impl Hierarchy {
+    /// Whether there is a hierarchy in a folder, or a part of one.
+    #[must_use]
+    pub fn is_in(folder: &Path) -> bool {
+        folder.join("plan").is_file() || folder.join("index").is_file()
+    }
+
     /// Reads the index of a folder.
     ///
     /// # Errors

@@ -1,5 +1,6 @@
 mod damaged;
 mod laws;
+mod loaded;
 mod resumed;
 
 use super::build::Work;
