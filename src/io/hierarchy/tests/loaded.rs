@@ -51,7 +51,7 @@ fn far_away_it_is_its_root() {
     let at = given();
     let (scene, hierarchy) = both(&at);
     let (expected, _) = depth(scene, 60.0, 2.0);
-    let (found, objects) = depth(hierarchy, 60.0, 6.0);
+    let (found, objects) = depth(hierarchy, 60.0, 9.0);
     let objects = objects.unwrap();
     let drawn: Vec<&str> = (0..objects.objects().len() as u32)
         .filter(|&object| objects.disc(object).is_some() && objects.ids().count(object) > 0)
@@ -63,9 +63,9 @@ fn far_away_it_is_its_root() {
     let inside = expected.values().iter().filter(|z| z.is_finite()).count();
     let holes = pairs().filter(|(a, b)| b.is_finite() && !a.is_finite()).count();
     assert!(inside > 100 && holes * 50 <= inside, "{holes} holes of {inside} pixels");
-    // Discs of 6 pixels are off by their radius, and the grazing ones by more.
+    // Discs are off by less than their radius of 0.7, but for those that reach over an outline with something behind it.
     let off = pairs().filter(|(a, b)| a.is_finite() && b.is_finite() && (*a - *b).abs() > 1.0);
-    assert_eq!(off.count(), 0);
+    assert!(off.count() * 100 <= inside);
 }
 
 #[test]
