@@ -1,10 +1,11 @@
-//! `splatref info`: what a file holds.
+//! `splatref info`: what a file or a folder of surfels holds.
 
 use super::report::{self, line};
-use super::{Ended, Ending, progress, say};
+use super::{Ended, Ending, hierarchy, progress, say};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
+use splatref::io::hierarchy::Hierarchy;
 use splatref::io::scene_file::{Draw, EnvironmentChoice, FileKind, Model, SceneFile, Source};
 use splatref::io::scene_file::{Loaded, read_model};
 use splatref::scene::Light;
@@ -17,11 +18,15 @@ Examples:
   splatref info bunny.ply
   splatref info out/cluster.exr")]
 pub(super) struct Args {
-    /// A .ply, an .obj, a scene .toml or an .exr
+    /// A .ply, an .obj, a scene .toml, an .exr, or a folder of "splatref surfels"
     file: PathBuf,
 }
 
 pub(super) fn run(args: &Args) -> Ended {
+    if Hierarchy::is_in(&args.file) {
+        hierarchy::info(&args.file)?;
+        return Ok(Ending::Good);
+    }
     match FileKind::of(&args.file)? {
         FileKind::Ply | FileKind::Obj => points(&args.file)?,
         FileKind::Toml => scene(&args.file)?,

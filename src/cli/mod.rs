@@ -9,6 +9,7 @@ mod draw;
 mod explain;
 mod golden;
 mod group;
+mod hierarchy;
 mod info;
 mod interrupt;
 mod memory;
@@ -71,13 +72,13 @@ enum Command {
     Explain(explain::Args),
     /// Divide a scene into groups that do not overlap, into a PLY
     Group(group::Args),
-    /// Put points in an order of which every prefix is spread over all of them, into a PLY
+    /// Put points in an order of which every prefix is spread over all of them, into a PLY; or those of a whole scene into a folder
     Surfels(surfels::Args),
     /// Say how evenly prefixes of points in order are spread, with a chart
     Quality(quality::Args),
     /// Write the visible splats as records, for a backend to upload
     Project(project::Args),
-    /// Describe a PLY, a scene file or an EXR
+    /// Describe a PLY, a scene file, an EXR or a folder of surfels
     Info(info::Args),
 }
 

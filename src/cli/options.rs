@@ -126,6 +126,7 @@ impl SceneOptions {
     /// The scene that `name` stands for, a shape or a file, with these options on top.
     pub(super) fn scene_file(&self, name: &Path) -> Result<SceneFile> {
         let mut file = named(name, self.count, self.seed)?;
+        self.check_hierarchy(&file)?;
         if let Some(frame) = self.frame {
             file.check_frame(frame)?;
             file.frame = frame;
@@ -155,6 +156,23 @@ impl SceneOptions {
         self.choose_method(&mut file)?;
         file.output = self.number.chosen.on(file.output, "the output")?;
         Ok(file)
+    }
+
+    /// What has no meaning for a hierarchy, which has no models.
+    fn check_hierarchy(&self, file: &SceneFile) -> Result<()> {
+        let given = [
+            (self.opacity.is_some(), "--opacity"),
+            (self.prefix.is_some(), "--prefix"),
+            (self.texture.is_some(), "--texture"),
+            (self.mipmaps.is_some(), "--mipmaps"),
+        ];
+        match given.iter().find(|(given, _)| *given) {
+            Some((_, option)) if file.hierarchy.is_some() => {
+                let what = format!("{option} is of models, and {} is a hierarchy", file.name);
+                Err(Error::Usage(what))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// What is of every model that is a file: prefix and texture.

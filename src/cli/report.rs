@@ -42,6 +42,9 @@ pub(super) fn scene(loaded: &Loaded) {
     radius(&scene.surfels);
 }
 
+/// The most geometries that get a line: the nodes of a hierarchy may be thousands.
+const MOST_LINES: usize = 32;
+
 /// A scene of objects, whether its surfels are in their places or not.
 fn objects_of(loaded: &Loaded, objects: &Objects) {
     let ids = objects.ids();
@@ -61,7 +64,8 @@ fn objects_of(loaded: &Loaded, objects: &Objects) {
     line("scene", format!("{}: {}", loaded.scene.name, content(surfels, total)));
     let (count, geometries) = (objects.objects().len(), loaded.models.len());
     line("  objects", format!("{count} of {geometries} geometries, ids of {}", split(ids.split())));
-    for ((model, used), geometry) in loaded.models.iter().zip(used).zip(objects.geometries()) {
+    let all = loaded.models.iter().zip(used).zip(objects.geometries());
+    for ((model, used), geometry) in all.take(MOST_LINES) {
         let all = content(model.surfels as u64, model.primitives);
         let of = origin(model);
         let detail = match &geometry.detail {
@@ -75,6 +79,9 @@ fn objects_of(loaded: &Loaded, objects: &Objects) {
             }
         };
         line("  geometry", format!("{}: {all}{detail}, {of}; used by {used} objects", model.name));
+    }
+    if geometries > MOST_LINES {
+        line("  geometry", format!("and {} more", geometries - MOST_LINES));
     }
     if objects.have_detail() {
         line("  in view", format!("{} surfels and nodes", objects.drawn_total()));

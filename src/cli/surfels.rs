@@ -1,6 +1,6 @@
-//! `splatref surfels`: points, or what is seen of a mesh, in a progressive order, into a PLY.
+//! `splatref surfels`: points, or what is seen of a mesh, in a progressive order, into a PLY; of a whole scene into a folder.
 
-use super::{Ended, Ending, output, progress, report};
+use super::{Ended, Ending, hierarchy, output, progress, report};
 use clap::ValueEnum;
 use glam::Vec3;
 use splatref::frame::Exec;
@@ -8,6 +8,7 @@ use splatref::io::scene_file::{FileKind, read_model};
 use splatref::io::{ply, texture};
 use splatref::scene::{Camera, Cloud};
 use splatref::source::candidates::{self, Candidates, Directions};
+use splatref::source::hierarchy::{self as approximations, MOST, Settings, Traversal};
 use splatref::source::sampler::{
     Graph, Greedy, Order, Progressive, Schedule, Start, averaged, shuffled,
 };
@@ -25,15 +26,20 @@ are what is seen from outside, a pixel each. The samplers:
   progressive-as-shipped  the same by the schedule of the authors' program
   random                  by chance alone
 
+A name without an extension is a folder. It takes the hierarchy of a mesh or of a scene: the
+triangles of each part, and surfels of every part of 1000 triangles or more, half as many and
+200000 at most, or --count. Stopped in the middle, the same command goes on.
+
 Examples:
+  splatref surfels city.toml -o city
   splatref surfels sheet.ply -o blue.ply --distance geodesic --average-colors 20000
   splatref surfels bunny.ply -o blue.ply --count 100000
   splatref surfels scan.ply -o blue.ply --sampler greedy --start 3 --count 10000")]
 pub(super) struct Args {
-    /// A .ply or .obj of points or of a mesh
+    /// A .ply or .obj of points or of a mesh; for a folder a scene .toml, too
     points: PathBuf,
-    /// Where the points go in their order, with all that the file has of them
-    #[arg(short, long, value_name = "FILE.ply")]
+    /// Where the points go in their order, with all that the file has of them; or a hierarchy
+    #[arg(short, long, value_name = "FILE.ply|FOLDER")]
     output: PathBuf,
     /// What puts the points in order
     #[arg(long, value_enum, default_value = "greedy")]
@@ -65,9 +71,20 @@ pub(super) struct Args {
     /// Of a mesh: its texture, a .png or an .exr, in the place of its colours [default: that of the file]
     #[arg(long, value_name = "FILE")]
     texture: Option<PathBuf>,
+    /// Of a folder: what parts are approximated of [default: bottom-up]
+    #[arg(long, value_enum)]
+    traversal: Option<Way>,
     /// Threads; 0 takes every core
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Way {
+    /// Of all triangles of the part, which must fit into memory together
+    TopDown,
+    /// Of the surfels of smaller parts, where they have some
+    BottomUp,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -104,6 +121,10 @@ enum Corners {
 const OF_A_MESH: usize = 100_000;
 
 pub(super) fn run(args: &Args) -> Ended {
+    if hierarchy::is_folder(&args.output) {
+        let settings = args.settings()?;
+        return hierarchy::make(&args.points, &args.output, &settings, args.threads);
+    }
     args.check()?;
     let exec = Exec::new(args.threads, 32)?;
     let steps = progress::Steps::new("loading");
@@ -147,6 +168,58 @@ pub(super) fn run(args: &Args) -> Ended {
 }
 
 impl Args {
+    /// What a hierarchy is made with.
+    fn settings(&self) -> Result<Settings> {
+        let refused = [
+            (self.start.is_some(), "--start"),
+            (self.distance == Distance::Geodesic, "--distance geodesic"),
+            (self.reach.is_some(), "--reach"),
+            (self.average_colors.is_some(), "--average-colors"),
+            (self.texture.is_some(), "--texture"),
+        ];
+        if let Some((_, option)) = refused.iter().find(|(given, _)| *given) {
+            let what = format!("{option} is not for a folder; remove it, or give a name in .ply");
+            return Err(Error::Usage(what));
+        }
+        self.check_numbers()?;
+        let most = self.count.map_or(Ok(MOST), u32::try_from);
+        Ok(Settings {
+            most: most.map_err(|_| Error::Usage("--count: give less than 2^32".into()))?,
+            side: self.side.unwrap_or(candidates::SIDE),
+            directions: self.directions(),
+            sampler: match self.sampler {
+                Sampler::Greedy => approximations::Sampler::Greedy,
+                Sampler::Progressive => approximations::Sampler::Progressive(Schedule::Paper),
+                Sampler::ProgressiveAsShipped => {
+                    approximations::Sampler::Progressive(Schedule::AsShipped)
+                }
+                Sampler::Random => approximations::Sampler::Random,
+            },
+            seed: self.seed,
+            traversal: match self.traversal {
+                None | Some(Way::BottomUp) => Traversal::BottomUp,
+                Some(Way::TopDown) => Traversal::TopDown,
+            },
+        })
+    }
+
+    fn directions(&self) -> Directions {
+        match self.directions {
+            None | Some(Corners::Cube) => Directions::Cube,
+            Some(Corners::Box) => Directions::Box,
+        }
+    }
+
+    /// What is refused of any output.
+    fn check_numbers(&self) -> Result<()> {
+        if self.count == Some(0) {
+            return Err(Error::Usage("--count 0 leaves no point; give at least 1".into()));
+        }
+        let Some(side) = self.side else { return Ok(()) };
+        Camera::check_size(side, side)
+            .map_err(|error| Error::Usage(format!("--side {side}: {error}")))
+    }
+
     /// Says what the order is.
     fn told(&self, order: &Order, graph: Option<&Graph>) {
         let (name, picked) = (self.sampler.name(), order.index.len());
@@ -168,8 +241,10 @@ impl Args {
 
     /// What is refused before anything is read.
     fn check(&self) -> Result<()> {
-        if self.count == Some(0) {
-            return Err(Error::Usage("--count 0 leaves no point; give at least 1".into()));
+        self.check_numbers()?;
+        if self.traversal.is_some() {
+            let what = "--traversal is for a folder; remove it, or give a name without .ply";
+            return Err(Error::Usage(what.into()));
         }
         if let Some(averaged) = self.average_colors
             && (averaged == 0 || self.count.is_some_and(|count| averaged > count))
@@ -189,10 +264,6 @@ impl Args {
             if !(reach > 0.0 && reach.is_finite()) {
                 return Err(Error::Usage(format!("--reach {reach}: give a length above 0")));
             }
-        }
-        if let Some(side) = self.side {
-            Camera::check_size(side, side)
-                .map_err(|error| Error::Usage(format!("--side {side}: {error}")))?;
         }
         if self.sampler == Sampler::Random && self.start.is_some() {
             return Err(Error::Usage("--sampler random has no --start: remove one of them".into()));
@@ -250,10 +321,7 @@ impl Args {
         show: &dyn Fn(&str, u64, u64),
     ) -> Result<Candidates> {
         texture::paint(&mut mesh, &self.points, self.texture.as_deref(), 0, exec)?;
-        let directions = match self.directions {
-            None | Some(Corners::Cube) => Directions::Cube,
-            Some(Corners::Box) => Directions::Box,
-        };
+        let directions = self.directions();
         let side = self.side.unwrap_or(candidates::SIDE);
         let (found, derived) = candidates::of_cloud(mesh, &directions, side, exec, show)?;
         if derived.dropped_primitives > 0 {

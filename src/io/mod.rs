@@ -2,6 +2,7 @@
 //!
 //! - [`client`]: planes that somebody else drew, and the TOML file that describes them.
 //! - [`environment`]: environment maps from EXR files.
+//! - [`hierarchy`]: surfel approximations of a whole scene, in and out.
 //! - `input`: the files that are read.
 //! - [`exr`]: every plane of a frame, exactly; reading guards against lying files.
 //! - [`npy`]: arrays of `NumPy` as planes.
@@ -18,6 +19,7 @@
 pub mod client;
 pub mod environment;
 pub mod exr;
+pub mod hierarchy;
 mod input;
 pub mod npy;
 pub mod obj;

@@ -4,6 +4,7 @@
 //! - [`mod@candidates`]: what of a mesh is seen from outside, as points.
 //! - [`mod@derive`]: from what a file gives to complete surfels.
 //! - [`mod@flatten`]: a scene of objects as a scene of surfels.
+//! - [`hierarchy`]: surfels of a whole scene, coarser from level to level.
 //! - [`hybrid`]: a mesh as polygons here and surfels there.
 //! - [`merge`]: several models as one.
 //! - [`plant`]: a tree of triangles, and the ribbons and tubes that stand for the tree.
@@ -14,6 +15,7 @@
 pub mod candidates;
 pub mod derive;
 pub mod flatten;
+pub mod hierarchy;
 pub mod hybrid;
 pub mod merge;
 pub mod plant;

@@ -5,6 +5,7 @@
 mod compare;
 mod golden;
 mod groups;
+mod hierarchy;
 #[cfg(unix)]
 mod interrupts;
 mod memory;

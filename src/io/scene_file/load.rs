@@ -4,6 +4,7 @@ use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, read_model,
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::mipmap;
+use crate::io::hierarchy::Hierarchy;
 use crate::io::{environment, texture};
 use crate::scene::{Cloud, Counts, Dropped, Environment, Geometry, Object, Objects};
 use crate::scene::{Primitives, Scene, Similarity, Surfels};
@@ -56,8 +57,10 @@ impl SceneFile {
     /// mipmaps are asked for of a model in one colour.
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
         self.all_models().try_for_each(check_draw)?;
+        let hierarchy = self.hierarchy.as_deref().map(Hierarchy::open).transpose()?;
         // What is wrong with objects is said before large files are read.
-        let objects = if self.has_objects() { Some(self.objects()?) } else { None };
+        let placed = self.has_objects() && hierarchy.is_none();
+        let objects = if placed { Some(self.objects()?) } else { None };
         let environment = match &self.environment {
             None => None,
             Some(EnvironmentChoice::Sky) => Some(Environment::Sky),
@@ -71,6 +74,10 @@ impl SceneFile {
         };
         let (models, dropped) = (Vec::new(), Dropped::default());
         let mut loaded = Loaded { scene, models, dropped, dropped_primitives: 0 };
+        if let Some(hierarchy) = hierarchy {
+            self.load_hierarchy(&hierarchy, &mut loaded, exec, progress)?;
+            return Ok(loaded);
+        }
         match objects {
             None => self.load_models(&mut loaded, exec, progress)?,
             Some(objects) => self.load_objects(objects, &mut loaded, exec, progress)?,
@@ -125,6 +132,25 @@ impl SceneFile {
             });
         }
         let objects = Objects::new(geometries, objects, self.material.color)?;
+        loaded.scene.objects = Some(objects.with_refinement(self.refinement.clone())?);
+        Ok(())
+    }
+
+    /// The nodes of a hierarchy as objects.
+    fn load_hierarchy(
+        &self,
+        hierarchy: &Hierarchy,
+        loaded: &mut Loaded,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<()> {
+        let objects = hierarchy.load(exec, progress)?;
+        loaded.models.extend(objects.geometries().iter().map(|geometry| ModelReport {
+            name: geometry.name.clone(),
+            surfels: geometry.surfels.len(),
+            primitives: geometry.primitives.counts(),
+            derived: None,
+        }));
         loaded.scene.objects = Some(objects.with_refinement(self.refinement.clone())?);
         Ok(())
     }

@@ -83,7 +83,10 @@ pub const DEFAULT_SIDE: DVec3 = DVec3::new(0.5, 0.375, 1.0);
 pub struct SceneFile {
     /// What the scene is called: the name of the file without its extension, or of the shape.
     pub name: String,
-    /// The models; at least one if there are no objects.
+    /// The folder of a [hierarchy](crate::io::hierarchy), which is all that the scene shows, if there is one: then there are
+    /// neither models nor objects.
+    pub hierarchy: Option<PathBuf>,
+    /// The models; at least one if there are neither objects nor a hierarchy.
     pub models: Vec<Model>,
     /// What objects are copies of.
     pub geometries: Vec<Geometry>,
@@ -227,19 +230,29 @@ impl SceneFile {
     /// The scene of one model, everything else left open.
     #[must_use]
     pub fn of_model(source: Source) -> Self {
-        let transform = Similarity::IDENTITY;
-        let draw = Draw::of(&source);
+        let model = Model {
+            draw: Draw::of(&source),
+            source,
+            transform: Similarity::IDENTITY,
+            color: None,
+            opacity: None,
+            mipmaps: None,
+            progressive: false,
+        };
+        Self { models: vec![model.clone()], ..Self::of_nothing(model.source.name()) }
+    }
+
+    /// The scene of a [hierarchy](crate::io::hierarchy), everything else left open.
+    #[must_use]
+    pub fn of_hierarchy(folder: &Path) -> Self {
+        Self { hierarchy: Some(folder.to_owned()), ..Self::of_nothing(stem(folder)) }
+    }
+
+    fn of_nothing(name: String) -> Self {
         Self {
-            name: source.name(),
-            models: vec![Model {
-                source,
-                draw,
-                transform,
-                color: None,
-                opacity: None,
-                mipmaps: None,
-                progressive: false,
-            }],
+            name,
+            hierarchy: None,
+            models: Vec::new(),
             geometries: Vec::new(),
             objects: Vec::new(),
             frames: 1,
@@ -270,13 +283,16 @@ impl SceneFile {
             EnvironmentChoice::File(path) => Some(path.as_path()),
             EnvironmentChoice::Sky => None,
         });
-        models.chain(tables).chain(environment)
+        let index = self.hierarchy.as_deref();
+        models.chain(tables).chain(environment).chain(index)
     }
 
     /// Whether the scene is one of objects.
     #[must_use]
     pub fn has_objects(&self) -> bool {
-        !self.geometries.is_empty() || self.models.iter().any(|model| model.progressive)
+        self.hierarchy.is_some()
+            || !self.geometries.is_empty()
+            || self.models.iter().any(|model| model.progressive)
     }
 
     /// The models, and those of the geometries.

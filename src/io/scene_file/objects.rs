@@ -70,7 +70,7 @@ impl SceneFile {
     /// # Errors
     /// As [`places::read`]; [`Error::Invalid`] if there are 2^32 or more, or if the process may not
     /// hold them.
-    pub(super) fn objects(&self) -> Result<Vec<Object>> {
+    pub(in crate::io) fn objects(&self) -> Result<Vec<Object>> {
         let tables = self.objects.iter().map(|object| match &object.places {
             Places::Table { path, .. } => places::read(path).map(Some),
             Places::One(_) | Places::Scatter { .. } => Ok(None),

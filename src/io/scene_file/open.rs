@@ -3,6 +3,7 @@
 use super::{DEFAULT_COUNT, SceneFile, Source};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::io::hierarchy::Hierarchy;
 use crate::io::{input, obj, ply};
 use crate::scene::Cloud;
 use crate::source::{Shape, plant};
@@ -78,7 +79,8 @@ impl Source {
 }
 
 impl SceneFile {
-    /// The scene that a name stands for: a shape, `tree`, a .ply, an .obj or a scene .toml. From a name to
+    /// The scene that a name stands for: a shape, `tree`, a .ply, an .obj, a scene .toml or the folder of
+    /// a [hierarchy](crate::io::hierarchy). From a name to
     /// a picture in memory:
     ///
     /// ```
@@ -106,6 +108,9 @@ impl SceneFile {
         let path = name.as_ref();
         if let Some(source) = path.to_str().and_then(Source::procedural) {
             return Ok(Self::of_model(source));
+        }
+        if Hierarchy::is_in(path) {
+            return Ok(Self::of_hierarchy(path));
         }
         match FileKind::of(path)? {
             FileKind::Ply | FileKind::Obj => Ok(Self::of_model(Source::File {

@@ -45,7 +45,12 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
             return Err(Error::format(path, what));
         }
     }
-    if file.model.is_empty() && file.object.is_empty() {
+    let models = file.model.len() + file.geometry.len() + file.object.len();
+    if file.hierarchy.is_some() && models > 0 {
+        let what = "a hierarchy is all that a scene shows: remove it, or the models and objects";
+        return Err(Error::format(path, what));
+    }
+    if file.hierarchy.is_none() && file.model.is_empty() && file.object.is_empty() {
         let what = match file.geometry.as_slice() {
             [] => "there is no [[model]]: name a file or a shape",
             _ => "there is no [[object]] and no [[model]]: geometries are not drawn by themselves",
@@ -76,6 +81,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
     }
     Ok(SceneFile {
         name: stem(path),
+        hierarchy: file.hierarchy.as_deref().map(beside),
         models,
         geometries,
         objects,
@@ -95,6 +101,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
+    hierarchy: Option<PathBuf>,
     #[serde(default)]
     model: Vec<Model>,
     #[serde(default)]

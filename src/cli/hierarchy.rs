@@ -1,0 +1,92 @@
+//! Hierarchies as folders: `splatref surfels SCENE -o folder/`, and what `splatref info` says of one.
+
+use super::report::{self, line};
+use super::{Ended, Ending, output, progress};
+use glam::Vec3;
+use splatref::Result;
+use splatref::frame::Exec;
+use splatref::io::hierarchy::{Built, Hierarchy, NONE, Object, build};
+use splatref::io::scene_file::SceneFile;
+use splatref::source::hierarchy::{Flaws, Settings};
+use std::path::Path;
+use std::time::Instant;
+
+/// Whether an output is a folder: it is one, ends as one, or has no extension.
+pub(super) fn is_folder(path: &Path) -> bool {
+    let slash = path.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
+    slash || path.is_dir() || path.extension().is_none()
+}
+
+/// Makes the hierarchy of a scene, or goes on with one.
+pub(super) fn make(scene: &Path, folder: &Path, settings: &Settings, threads: usize) -> Ended {
+    output::check_folder(folder)?;
+    let file = SceneFile::open(scene)?;
+    let exec = Exec::new(threads, 32)?;
+    let start = Instant::now();
+    let steps = progress::Steps::new("loading");
+    let built = build(&file, folder, settings, &exec, &|what, done, of| steps.show(what, done, of));
+    drop(steps);
+    let Built { geometries, nodes, found, unseen } = built?;
+    for (name, _, flaws) in &geometries {
+        told(name, *flaws);
+    }
+    let there = if found > 0 { format!(", {found} of them were there") } else { String::new() };
+    line("nodes", format!("{nodes} approximated{there}"));
+    if unseen > 0 {
+        line("unseen", format!("{unseen} nodes, of which no pixel sees a triangle"));
+    }
+    sizes(&Hierarchy::open(folder)?);
+    line("time", format!("{:.2} s", start.elapsed().as_secs_f64()));
+    line("folder", folder.display());
+    Ok(Ending::Good)
+}
+
+/// What a folder holds.
+pub(super) fn info(folder: &Path) -> Result<()> {
+    let hierarchy = Hierarchy::open(folder)?;
+    let mut all = Flaws::default();
+    for geometry in hierarchy.geometries() {
+        all = all.and(geometry.flaws);
+    }
+    sizes(&hierarchy);
+    told("meshes", all);
+    if hierarchy.upper() > 0 {
+        let root = &hierarchy.nodes()[0];
+        // Boxes of nodes over objects are one f32 wider on each side, which nobody wants to read.
+        let (low, high) = (root.low.map(f32::next_up), root.high.map(f32::next_down));
+        report::bounds((low + Vec3::ZERO, high + Vec3::ZERO));
+    }
+    Ok(())
+}
+
+/// How much of everything there is.
+fn sizes(hierarchy: &Hierarchy) {
+    let (nodes, geometries) = (hierarchy.nodes(), hierarchy.geometries());
+    let own: u64 = nodes.iter().map(|node| u64::from(node.triangles)).sum();
+    let below = |object: &Object| nodes[hierarchy.root(object) as usize].below;
+    let shown: u64 = hierarchy.objects().iter().map(below).sum();
+    let (objects, unique) = (hierarchy.objects().len(), geometries.len());
+    line("objects", format!("{objects} of {unique} geometries"));
+    line("triangles", format!("{shown}, {own} of them unique"));
+    let lods: Vec<_> = nodes.iter().filter(|node| node.surfels > 0).collect();
+    let upper = lods.iter().filter(|node| node.geometry == NONE).count();
+    line("approximations", format!("{}, {upper} of them of several objects", lods.len()));
+    let surfels: u64 = lods.iter().map(|node| u64::from(node.surfels)).sum();
+    line("surfels", format!("{surfels}, {} bytes", 20 * surfels));
+}
+
+/// What is wrong with meshes, if something is.
+fn told(name: &str, flaws: Flaws) {
+    let Flaws { dropped, degenerate, duplicate, edges_of_many } = flaws;
+    let kinds = [
+        (dropped, "triangles dropped, with a corner that is none"),
+        (degenerate, "without an area"),
+        (duplicate, "twice"),
+        (edges_of_many, "edges of more than two triangles"),
+    ];
+    let kinds = kinds.iter().filter(|(count, _)| *count > 0);
+    let kinds: Vec<String> = kinds.map(|(count, what)| format!("{count} {what}")).collect();
+    if !kinds.is_empty() {
+        line("flaws", format!("{name}: {}", kinds.join(", ")));
+    }
+}

@@ -1,0 +1,88 @@
+//! Numbers as bytes, and back.
+
+use crate::io::Reason;
+use glam::{DMat3, DVec3, Vec3};
+
+/// The SHA-256 of something.
+pub(super) type Hash = [u8; 32];
+
+/// Bytes that grow.
+#[derive(Default)]
+pub(super) struct Writer(pub(super) Vec<u8>);
+
+impl Writer {
+    pub(super) fn bytes(&mut self, bytes: &[u8]) {
+        self.0.extend_from_slice(bytes);
+    }
+
+    pub(super) fn words(&mut self, words: &[u32]) {
+        words.iter().for_each(|word| self.bytes(&word.to_le_bytes()));
+    }
+
+    pub(super) fn long(&mut self, long: u64) {
+        self.bytes(&long.to_le_bytes());
+    }
+
+    pub(super) fn float(&mut self, float: f32) {
+        self.bytes(&float.to_le_bytes());
+    }
+
+    pub(super) fn vector(&mut self, v: Vec3) {
+        v.to_array().into_iter().for_each(|float| self.float(float));
+    }
+
+    pub(super) fn double(&mut self, double: f64) {
+        self.bytes(&double.to_le_bytes());
+    }
+}
+
+/// Bytes that are read from the front.
+pub(super) struct Reader<'a>(pub(super) &'a [u8]);
+
+impl Reader<'_> {
+    pub(super) fn take<const N: usize>(&mut self) -> Reason<[u8; N]> {
+        let (first, rest) = self.0.split_first_chunk::<N>().ok_or("the file ends too early")?;
+        self.0 = rest;
+        Ok(*first)
+    }
+
+    pub(super) fn word(&mut self) -> Reason<u32> {
+        self.take().map(u32::from_le_bytes)
+    }
+
+    pub(super) fn words<const N: usize>(&mut self) -> Reason<[u32; N]> {
+        let mut words = [0; N];
+        for word in &mut words {
+            *word = self.word()?;
+        }
+        Ok(words)
+    }
+
+    pub(super) fn long(&mut self) -> Reason<u64> {
+        self.take().map(u64::from_le_bytes)
+    }
+
+    pub(super) fn float(&mut self) -> Reason<f32> {
+        self.take().map(f32::from_le_bytes)
+    }
+
+    pub(super) fn vector(&mut self) -> Reason<Vec3> {
+        Ok(Vec3::new(self.float()?, self.float()?, self.float()?))
+    }
+
+    fn double(&mut self) -> Reason<f64> {
+        self.take().map(f64::from_le_bytes)
+    }
+
+    pub(super) fn position(&mut self) -> Reason<DVec3> {
+        Ok(DVec3::new(self.double()?, self.double()?, self.double()?))
+    }
+
+    pub(super) fn matrix(&mut self) -> Reason<DMat3> {
+        Ok(DMat3::from_cols(self.position()?, self.position()?, self.position()?))
+    }
+
+    pub(super) fn scale(&mut self) -> Reason<f64> {
+        self.double()
+    }
+}

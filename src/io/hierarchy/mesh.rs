@@ -1,0 +1,234 @@
+//! The file of a geometry: its tree and its triangles, see the [module](super).
+
+use super::bytes::{Hash, Reader, Writer};
+use super::index::{self, NONE, Node};
+use crate::error::{Error, Result};
+use crate::io::replace::write_atomically;
+use crate::io::{Reason, input};
+use crate::memory;
+use crate::scene::Triangles;
+use crate::scene::objects::detail::prefix::Estimate;
+use crate::source::hierarchy::parts::tree;
+use crate::source::hierarchy::{BOUND, Flaws, Part};
+use sha2::{Digest, Sha256};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+const MAGIC: &[u8; 16] = b"splatref mesh 1\n";
+const HEADER: u64 = 88;
+const OF_A_NODE: u64 = 56;
+/// Bytes of a triangle, and of a vertex without and with a colour.
+const TRIANGLE: u64 = 12;
+const VERTEX: [u64; 2] = [24, 36];
+/// Bytes of the largest of both in memory, beside those of the file.
+const IN_MEMORY: u64 = 2;
+
+/// What a file says of its geometry, but for its triangles.
+pub(super) struct Header {
+    pub(super) hash: Hash,
+    pub(super) colored: bool,
+    pub(super) flaws: Flaws,
+    /// By their numbers in the geometry; without surfels.
+    pub(super) nodes: Vec<Node>,
+}
+
+/// Where a geometry is.
+pub(super) fn path(folder: &Path, geometry: u32) -> PathBuf {
+    folder.join(format!("mesh-{geometry}"))
+}
+
+/// The hash of a geometry.
+pub(super) fn hash(triangles: &Triangles) -> Hash {
+    let mut hash = Sha256::new();
+    let vertices = triangles.vertices();
+    let mut update = |write: &dyn Fn(&mut Writer)| {
+        let mut to = Writer::default();
+        write(&mut to);
+        hash.update(&to.0);
+    };
+    update(&|to| to.long(vertices.position.len() as u64));
+    for (p, n) in vertices.position.iter().zip(&vertices.direction) {
+        update(&|to| {
+            to.vector(*p);
+            to.vector(*n);
+        });
+    }
+    update(&|to| to.bytes(&[u8::from(vertices.color.is_some())]));
+    for color in vertices.color.iter().flatten() {
+        update(&|to| to.vector(*color));
+    }
+    update(&|to| to.long(triangles.len() as u64));
+    for corners in triangles.corners() {
+        update(&|to| to.words(corners));
+    }
+    hash.finalize().into()
+}
+
+/// Makes the tree of a geometry and writes both.
+pub(super) fn write(
+    folder: &Path,
+    geometry: u32,
+    hash: &Hash,
+    triangles: &Triangles,
+    dropped: u64,
+) -> Result<()> {
+    let tree = tree(triangles, BOUND)?;
+    let flaws = Flaws::of(triangles, dropped);
+    let colored = triangles.vertices().color.is_some();
+    let mut header = Writer::default();
+    header.bytes(MAGIC);
+    header.bytes(hash);
+    header.words(&[tree.nodes.len() as u32, u32::from(colored)]);
+    index::flaws(&mut header, flaws);
+    for (number, node) in (0..).zip(&tree.nodes) {
+        let own = tree.own(number);
+        let vertices = Part::vertices_of(triangles, own).len() as u32;
+        let (start, children) = (node.children.start, node.children.len() as u32);
+        header.words(&[node.parent, start, children, own.len() as u32, vertices, 0]);
+        header.vector(node.low);
+        header.vector(node.high);
+        header.long(node.weight);
+    }
+    write_atomically(&path(folder, geometry), |to| {
+        to.write_all(&header.0)?;
+        for number in 0..tree.nodes.len() as u32 {
+            to.write_all(&block(&Part::of(triangles, tree.own(number))))?;
+        }
+        Ok(())
+    })
+}
+
+/// The bytes of the triangles of a node.
+fn block(part: &Part) -> Vec<u8> {
+    let mut to = Writer::default();
+    for (i, p) in part.position.iter().enumerate() {
+        to.vector(*p);
+        to.vector(part.normal[i]);
+        if let Some(color) = &part.color {
+            to.vector(color[i]);
+        }
+    }
+    part.triangles.iter().for_each(|corners| to.words(corners));
+    to.0
+}
+
+fn size(node: &Node, colored: bool) -> u64 {
+    u64::from(node.vertices) * VERTEX[usize::from(colored)] + u64::from(node.triangles) * TRIANGLE
+}
+
+/// The header of the file of a geometry, if there is a file; its nodes have the number of the geometry.
+pub(super) fn read(folder: &Path, geometry: u32) -> Result<Option<Header>> {
+    let path = path(folder, geometry);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let io = |source| Error::io(&path, source);
+    let format = |what| Error::format(&path, what);
+    let (mut file, length) = input::open(&path).map_err(io)?;
+    let mut start = vec![0; length.min(HEADER) as usize];
+    file.read_exact(&mut start).map_err(io)?;
+    let mut rest = Reader(&start);
+    let (mut header, nodes) = beginning(&mut rest).map_err(format)?;
+    let records = u64::from(nodes) * OF_A_NODE;
+    if records > length - HEADER {
+        let what = format!("{nodes} nodes take more bytes than the {length} of the file");
+        return Err(format(what));
+    }
+    let bytes = input::rest(file, records).map_err(io)?;
+    header.nodes = records_of(&bytes, nodes, geometry, header.colored, length).map_err(format)?;
+    Ok(Some(header))
+}
+
+fn beginning(rest: &mut Reader<'_>) -> Reason<(Header, u32)> {
+    if &rest.take::<16>()? != MAGIC {
+        return Err("this is no geometry of a hierarchy".into());
+    }
+    let hash = rest.take()?;
+    let [nodes, colored] = rest.words()?;
+    let flaws = index::read_flaws(rest)?;
+    Ok((Header { hash, colored: colored == 1, flaws, nodes: Vec::new() }, nodes))
+}
+
+fn records_of(
+    bytes: &[u8],
+    nodes: u32,
+    geometry: u32,
+    colored: bool,
+    length: u64,
+) -> Reason<Vec<Node>> {
+    let mut rest = Reader(bytes);
+    let mut offset = HEADER + bytes.len() as u64;
+    let mut all = Vec::with_capacity(nodes as usize);
+    for _ in 0..nodes {
+        let [parent, first, children, triangles, vertices, _] = rest.words()?;
+        let (low, high, below) = (rest.vector()?, rest.vector()?, rest.long()?);
+        let node = Node {
+            parent,
+            children: index::range(first, children)?,
+            geometry,
+            low,
+            high,
+            below,
+            triangles,
+            vertices,
+            offset,
+            objects: 0..0,
+            surfels: 0,
+            estimate: Estimate { count: 0, distance: 0.0 },
+        };
+        offset = offset.saturating_add(size(&node, colored));
+        all.push(node);
+    }
+    if offset != length {
+        return Err(format!("its triangles end at byte {offset}, but the file at byte {length}"));
+    }
+    Ok(all)
+}
+
+/// The triangles of a node, as the index says.
+pub(super) fn part(folder: &Path, hash: &Hash, node: &Node, colored: bool) -> Result<Part> {
+    if node.triangles == 0 || node.geometry == NONE {
+        return Ok(Part { color: colored.then(Vec::new), ..Part::default() });
+    }
+    let path = path(folder, node.geometry);
+    let io = |source| Error::io(&path, source);
+    let (mut file, length) = input::open(&path).map_err(io)?;
+    let mut start = vec![0; length.min(HEADER) as usize];
+    file.read_exact(&mut start).map_err(io)?;
+    let format = |what: String| Error::format(&path, what);
+    let (header, _) = beginning(&mut Reader(&start)).map_err(format)?;
+    if header.hash != *hash || header.colored != colored {
+        return Err(format("the geometry is not that of the index".into()));
+    }
+    let bytes = size(node, colored);
+    if node.offset.checked_add(bytes).is_none_or(|end| end > length) {
+        return Err(format("the triangles of a node lie beyond the end of the file".into()));
+    }
+    memory::ask(bytes * IN_MEMORY, || format!("{} triangles", node.triangles))?;
+    file.seek(SeekFrom::Start(node.offset)).map_err(io)?;
+    let bytes = input::rest(file, bytes).map_err(io)?;
+    if (bytes.len() as u64) < size(node, colored) {
+        return Err(io(io::ErrorKind::UnexpectedEof.into()));
+    }
+    parse(&bytes, node, colored).map_err(format)
+}
+
+fn parse(bytes: &[u8], node: &Node, colored: bool) -> Reason<Part> {
+    let mut rest = Reader(bytes);
+    let mut part = Part { color: colored.then(Vec::new), ..Part::default() };
+    for _ in 0..node.vertices {
+        part.position.push(rest.vector()?);
+        part.normal.push(rest.vector()?);
+        if let Some(color) = &mut part.color {
+            color.push(rest.vector()?);
+        }
+    }
+    for _ in 0..node.triangles {
+        let corners = rest.words()?;
+        if let Some(corner) = corners.iter().find(|corner| **corner >= node.vertices) {
+            return Err(format!("there is no vertex {corner}, only {} of a node", node.vertices));
+        }
+        part.triangles.push(corners);
+    }
+    Ok(part)
+}

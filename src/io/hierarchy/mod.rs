@@ -1,0 +1,131 @@
+//! Hierarchies of surfel approximations as folders \[BJFM19, 3.4\].
+//!
+//! What is in them is defined by [`crate::source::hierarchy`]. [`build()`] makes a folder, and goes on with one that was
+//! begun; [`Hierarchy`] reads it: the index at once, surfels and triangles a node at a time.
+//!
+//! # The tree
+//!
+//! A scene has geometries and objects that show them. Each geometry has a tree of *nodes* over its triangles
+//! ([`mod@crate::source::hierarchy::octree`], bound [`BOUND`]) in its own coordinates, however many objects show it. A tree of the same
+//! kind over the objects, in world coordinates, lies above these trees: its items are the objects that rest, by the boxes
+//! around them, and weigh as much as the triangles of their geometries. The box of an object is that around the eight corners
+//! of its geometry's box in their places, in f64, its corners rounded to `f32` and one `f32` outwards. Objects that move are in no node: they "should
+//! \[be generated\] seperately from the static scene parts".
+//!
+//! Nodes are numbered from 0: those of the tree over the objects, then those of geometry 0, of geometry 1, ... A node of the
+//! first tree with one object here and below has no surfels, because the object's geometry has them.
+//!
+//! # Files
+//!
+//! Numbers are little-endian, without gaps. Indices that are none are `0xFFFF_FFFF`. Hashes are SHA-256.
+//!
+//! | file | | |
+//! |---|---|---|
+//! | `plan` | `"splatref hierarchy 1\n"`, 64 hexadecimal digits, `"\n"` | written first: the hash of what is computed |
+//! | `mesh-N` | the tree and the triangles of geometry N, a decimal number | |
+//! | `surfels-N` | the surfels of node N | |
+//! | `index` | all nodes, objects and geometries | written last: the hierarchy is whole |
+//!
+//! **mesh-N**
+//!
+//! ```text
+//!   "splatref mesh 1\n"                     16 bytes
+//!   hash of the geometry                    32
+//!   u32 nodes, u32 1 if there are colours   8
+//!   u64 dropped, degenerate, duplicate triangles, edges of many           32, see source::hierarchy::Flaws
+//!   of each node: u32 parent, first child, children, own triangles, own vertices, 0     24
+//!                 f32 low x y z, high x y z                                             24
+//!                 u64 triangles here and below                                           8
+//!   of each node: of each own vertex f32 position x y z, normal x y z, then colour r g b if there are colours
+//!                 of each own triangle u32 of its three vertices, counted from 0 in the node
+//! ```
+//!
+//! Nodes are counted from 0 in the geometry. The colours are linear.
+//!
+//! **surfels-N**
+//!
+//! ```text
+//!   "splatref blue 1\n"                     16 bytes
+//!   hash of the hierarchy                   32
+//!   u32 node, u32 count, u32 p_m, f32 r_m   16, see scene::objects::detail::prefix::Estimate
+//!   count times, in the order:              20, the bytes of a surfel in the paper's Table 1
+//!     f32 position x y z                    12
+//!     i16 u, v: the normal                  4
+//!     u8 red, green, blue, 255              4, sRGB
+//! ```
+//!
+//! The codes of a unit normal, in f64, and the normal of codes, where sign is 1 for 0:
+//!
+//! ```text
+//!   s = (|x| + |y|) + |z|      a = x / s      b = y / s
+//!   if z < 0:                  (a, b) = ((1 - |b|) sign a, (1 - |a|) sign b)
+//!   u = floor(32767 a + 1/2)   v = floor(32767 b + 1/2)
+//!
+//!   a = u / 32767   b = v / 32767   z = (1 - |a|) - |b|      t = -z if z < 0, else 0
+//!   x = a - t sign a                y = b - t sign b
+//!   (x, y, z) divided by sqrt((x x + y y) + z z), each rounded to f32 once, plus 0
+//! ```
+//!
+//! so that a normal is at most 1e-4 off. Colours are clamped to \[0, 1\], encoded by [`crate::io::srgb`], and rounded as
+//! floor(255 c + 1/2). `Decided:` Table 1 has 20 bytes a surfel (494.79 MB for 24.74 M) and does not say which. `Decided:` light above 1 is cut, as
+//! it is in the paper's bytes. What has no colours has that of the scene's material. The estimate is that of the surfels as they are in the file.
+//!
+//! **index**
+//!
+//! ```text
+//!   "splatref tree 1\n"                     16 bytes
+//!   hash of the hierarchy                   32
+//!   u32 nodes, of these over objects, objects, geometries                 16
+//!   f32 r g b: the colour of what has none, f32 0                         16
+//!   of each node: u32 parent, first child, children, geometry             16
+//!                 f32 low x y z, high x y z                               24
+//!                 u64 triangles here and below, as often as they are shown 8
+//!                 u32 own triangles, own vertices, u64 where they begin in the mesh's file     16
+//!                 u32 first object, objects, surfels, p_m, f32 r_m, u32 0                      24
+//!   of each object: u32 number in the scene, geometry, node, 1 if it has a colour + 2 if it moves      16
+//!                 f32 r g b of its colour or 0, f32 0                                                  16
+//!                 f64 rotation by columns, scale, translation x y z, in frame 0                       104
+//!   of each geometry: u32 first node, nodes, 1 if it has colours, 0       16
+//!                 hash, then the flaws, as in its file                    64
+//! ```
+//!
+//! Here nodes are those of all trees. Objects are in the order of their nodes, in a node as in the scene, then those that move.
+//!
+//! # Which hash is of what
+//!
+//! - `plan`: `"splatref hierarchy 1\n"`; the settings (u32 most, side; u8 sampler: 0 greedy, 1 the paper's, 2 as shipped, 3 random; u8 1 if
+//!   bottom-up; u64 seed; u32 directions: 0 cube, 1 box, else 2 + their number and f64 x y z of each); the f32 colour of what has none; u64 geometries; u64 objects, of each
+//!   u64 geometry, u64 keys, of each key u32 frame and f64 rotation by columns, scale, translation; u8 1 and f32 r g b of its colour, or u8 0.
+//! - a geometry: u64 vertices, of each f32 position and normal; u8 1 and f32 colours of all, or u8 0; u64 triangles, of each u32 x 3.
+//! - the hierarchy: the hash of `plan`, those of the geometries.
+//!
+//! # Interruption
+//!
+//! Each file is put in its place when it is whole. A run finds what is there: a `mesh-N` or a `surfels-N` of the right
+//! hash and length stays as it is. A run of other settings, or of a geometry that has changed, is refused. Every file is a function
+//! of the scene and the settings, so that two runs at a time write the same bytes. Of a process that was
+//! killed without a warning partial files may stay (`.splatref-*.partial`); nobody reads them.
+//!
+//! # Memory
+//!
+//! A geometry at a time is in memory as a whole, while its tree is made; the readers of meshes do not read parts of files.
+//! Afterwards what is in memory is what one node is approximated of: bottom-up a number of surfels that is bounded by its
+//! surface at the resolution of its pictures and its own triangles, top-down all its triangles.
+
+mod build;
+mod bytes;
+mod gather;
+mod index;
+mod layout;
+mod mesh;
+mod plan;
+mod read;
+mod scene;
+mod surfels;
+#[cfg(test)]
+mod tests;
+
+pub use crate::source::hierarchy::BOUND;
+pub use build::{Built, build};
+pub use index::{Geometry, NONE, Node, Object};
+pub use read::Hierarchy;

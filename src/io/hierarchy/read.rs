@@ -1,0 +1,112 @@
+//! A hierarchy that is read a node at a time.
+
+use super::index::{Geometry, Index, NONE, Node, Object};
+use super::mesh;
+use super::surfels::{self, Header};
+use crate::error::{Error, Result};
+use crate::io::input;
+use crate::scene::{Cloud, Triangles, Vertices};
+use crate::source::hierarchy::Part;
+use glam::Vec3;
+use std::path::{Path, PathBuf};
+
+/// A hierarchy in a folder: its index is in memory, the rest is read when it is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hierarchy {
+    pub(super) folder: PathBuf,
+    pub(super) index: Index,
+}
+
+impl Hierarchy {
+    /// Whether there is a hierarchy in a folder, or a part of one.
+    #[must_use]
+    pub fn is_in(folder: &Path) -> bool {
+        folder.join("plan").is_file() || folder.join("index").is_file()
+    }
+
+    /// Reads the index of a folder.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if there is none, or it cannot be read; [`Error::Format`] if it is damaged.
+    pub fn open(folder: &Path) -> Result<Self> {
+        let path = folder.join("index");
+        if folder.join("plan").exists() && !path.exists() {
+            let what = "the hierarchy is not whole yet; make it again, and it goes on";
+            return Err(Error::format(folder, what));
+        }
+        let bytes = input::bytes(&path).map_err(|source| Error::io(&path, source))?;
+        let index = Index::parse(&bytes).map_err(|what| Error::format(&path, what))?;
+        Ok(Self { folder: folder.to_owned(), index })
+    }
+
+    /// All nodes: those over the objects, then those of geometry 0, of geometry 1, ...
+    #[must_use]
+    pub fn nodes(&self) -> &[Node] {
+        &self.index.nodes
+    }
+
+    /// How many nodes are over the objects; the first of them, if there is one, is the root of the scene.
+    #[must_use]
+    pub fn upper(&self) -> u32 {
+        self.index.upper
+    }
+
+    /// The objects, in the order of their nodes; then those that move.
+    #[must_use]
+    pub fn objects(&self) -> &[Object] {
+        &self.index.objects
+    }
+
+    /// The geometries.
+    #[must_use]
+    pub fn geometries(&self) -> &[Geometry] {
+        &self.index.geometries
+    }
+
+    /// The colour of triangles without one.
+    #[must_use]
+    pub fn fill(&self) -> Vec3 {
+        self.index.fill
+    }
+
+    /// The first `most` surfels of a node, or all: positions, normals and colours in their order. No more is read.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if they cannot be read, [`Error::Format`] if they are not what the index says, or if
+    /// the process may not hold them; [`Error::Invalid`] if there is no such node.
+    pub fn surfels(&self, node: u32, most: u32) -> Result<Cloud> {
+        let Node { surfels: count, estimate, .. } = *self.node(node)?;
+        if count == 0 {
+            return Ok(Cloud::default());
+        }
+        let header = Header { node, count, estimate };
+        surfels::read(&self.folder, &self.index.hash, &header, most)
+    }
+
+    /// The own triangles of a node, in the coordinates of its geometry; radii are 0. A node over the objects has none.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::surfels`].
+    pub fn triangles(&self, node: u32) -> Result<Triangles> {
+        let Part { position, normal, color, triangles } = self.part(node)?;
+        let radius = vec![0.0; position.len()];
+        let vertices = Vertices { position, direction: normal, radius, color };
+        Ok(Triangles::new(vertices, triangles)?.0)
+    }
+
+    pub(super) fn part(&self, node: u32) -> Result<Part> {
+        let node = self.node(node)?;
+        if node.geometry == NONE {
+            return Ok(Part::default());
+        }
+        let Geometry { hash, colored, .. } = &self.index.geometries[node.geometry as usize];
+        mesh::part(&self.folder, hash, node, *colored)
+    }
+
+    fn node(&self, node: u32) -> Result<&Node> {
+        let nodes = &self.index.nodes;
+        nodes
+            .get(node as usize)
+            .ok_or_else(|| Error::Invalid(format!("there is no node {node}, only {}", nodes.len())))
+    }
+}

@@ -1,0 +1,221 @@
+//! The file of a node's surfels, see the [module](super).
+
+use super::bytes::{Hash, Reader, Writer};
+use crate::error::{Error, Result};
+use crate::io::replace::write_atomically;
+use crate::io::{Reason, input, srgb};
+use crate::memory;
+use crate::scene::Cloud;
+use crate::scene::objects::detail::prefix::Estimate;
+use crate::source::sampler::estimate;
+use glam::{DVec3, Vec3};
+use std::fs::File;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+
+const MAGIC: &[u8; 16] = b"splatref blue 1\n";
+const HEADER: u64 = 64;
+/// Bytes of a surfel, and of one in memory beside them.
+const BYTES: u64 = 20;
+const IN_MEMORY: u64 = BYTES + 36;
+
+/// What the header of a file says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Header {
+    pub(super) node: u32,
+    pub(super) count: u32,
+    pub(super) estimate: Estimate,
+}
+
+/// Where the surfels of a node are.
+pub(super) fn path(folder: &Path, node: u32) -> PathBuf {
+    folder.join(format!("surfels-{node}"))
+}
+
+/// Writes the surfels of a node: positions, normals and colours.
+pub(super) fn write(folder: &Path, hash: &Hash, node: u32, cloud: &Cloud) -> Result<()> {
+    let count = cloud.position.len();
+    let mut body = Writer(Vec::with_capacity(count * BYTES as usize));
+    let (normal, color) = (cloud.normal.as_deref(), cloud.color.as_deref());
+    let (normal, color) = (normal.unwrap_or_default(), color.unwrap_or_default());
+    for ((p, n), c) in cloud.position.iter().zip(normal).zip(color) {
+        body.vector(*p);
+        encode_normal(*n).iter().for_each(|code| body.bytes(&code.to_le_bytes()));
+        body.bytes(&encode_color(*c));
+    }
+    // Of the normals as they will be read.
+    let normals: Vec<Vec3> = normal.iter().map(|n| decode_normal(encode_normal(*n))).collect();
+    let Estimate { count: p_m, distance } = estimate(&cloud.position, &normals);
+    let mut header = Writer::default();
+    header.bytes(MAGIC);
+    header.bytes(hash);
+    header.words(&[node, count as u32, p_m]);
+    header.float(distance);
+    write_atomically(&path(folder, node), |to| {
+        to.write_all(&header.0)?;
+        to.write_all(&body.0)
+    })
+}
+
+/// What the header says, if there is a whole file of this hierarchy and this node.
+pub(super) fn header(folder: &Path, hash: &Hash, node: u32) -> Result<Option<Header>> {
+    let path = path(folder, node);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let (mut file, length) = input::open(&path).map_err(|source| Error::io(&path, source))?;
+    let mut bytes = [0; HEADER as usize];
+    if length < HEADER {
+        return Ok(None);
+    }
+    file.read_exact(&mut bytes).map_err(|source| Error::io(&path, source))?;
+    Ok(parse(&bytes, length, hash).ok().filter(|header| header.node == node))
+}
+
+fn parse(bytes: &[u8; HEADER as usize], length: u64, hash: &Hash) -> Reason<Header> {
+    let mut rest = Reader(bytes);
+    if &rest.take::<16>()? != MAGIC {
+        return Err("these are no surfels of a hierarchy".into());
+    }
+    if &rest.take::<32>()? != hash {
+        return Err("the surfels are of another hierarchy than the index".into());
+    }
+    let [node, count, p_m] = rest.words()?;
+    let estimate = Estimate { count: p_m, distance: rest.float()? };
+    let expected = HEADER + u64::from(count) * BYTES;
+    if length != expected {
+        return Err(format!("{count} surfels take {expected} bytes, but the file has {length}"));
+    }
+    check(estimate, count)?;
+    Ok(Header { node, count, estimate })
+}
+
+/// Whether an estimate can be one of so many surfels.
+pub(super) fn check(estimate: Estimate, count: u32) -> Reason<()> {
+    let Estimate { count: p_m, distance } = estimate;
+    if p_m > count || (p_m == 0) != (count == 0) || !(0.0..f32::INFINITY).contains(&distance) {
+        return Err(format!("p_m = {p_m} and r_m = {distance} of {count} surfels"));
+    }
+    Ok(())
+}
+
+/// The first `most` surfels of a node, or all, of which the index says what the header says.
+pub(super) fn read(folder: &Path, hash: &Hash, expected: &Header, most: u32) -> Result<Cloud> {
+    let path = path(folder, expected.node);
+    let io = |source| Error::io(&path, source);
+    let (mut file, length) = input::open(&path).map_err(io)?;
+    let mut bytes = [0; HEADER as usize];
+    if length < HEADER {
+        return Err(Error::format(&path, format!("the file ends too early, after {length} bytes")));
+    }
+    file.read_exact(&mut bytes).map_err(io)?;
+    let found = parse(&bytes, length, hash).map_err(|what| Error::format(&path, what))?;
+    if found != *expected {
+        return Err(Error::format(&path, "the surfels are not those of the index"));
+    }
+    body(file, found.count.min(most)).map_err(|error| match error {
+        Error::Io { source, .. } => io(source),
+        Error::Invalid(what) => Error::format(&path, what),
+        other => other,
+    })
+}
+
+fn body(mut file: File, count: u32) -> Result<Cloud> {
+    memory::ask(u64::from(count) * IN_MEMORY, || format!("{count} surfels"))?;
+    let mut bytes = vec![0; count as usize * BYTES as usize];
+    file.read_exact(&mut bytes).map_err(|source| Error::io(Path::new(""), source))?;
+    let table = srgb::table(255);
+    let count = count as usize;
+    let [mut position, mut normal, mut color] = [(); 3].map(|()| Vec::with_capacity(count));
+    for surfel in bytes.chunks_exact(BYTES as usize) {
+        let mut rest = Reader(surfel);
+        position.push(rest.vector().map_err(Error::Invalid)?);
+        let [u, v] = [rest.take(), rest.take()].map(|code| code.map(i16::from_le_bytes));
+        normal.push(decode_normal([u.map_err(Error::Invalid)?, v.map_err(Error::Invalid)?]));
+        let [r, g, b, _] =
+            rest.take().map_err(Error::Invalid)?.map(|code| table[usize::from(code)]);
+        color.push(Vec3::new(r, g, b));
+    }
+    if let Some(at) = position.iter().position(|p: &Vec3| !p.is_finite()) {
+        return Err(Error::Invalid(format!("surfel {at} has no finite position")));
+    }
+    Ok(Cloud { position, normal: Some(normal), color: Some(color), ..Cloud::default() })
+}
+
+fn sign(v: f64) -> f64 {
+    if v < 0.0 { -1.0 } else { 1.0 }
+}
+
+fn encode_normal(normal: Vec3) -> [i16; 2] {
+    let n = normal.as_dvec3();
+    let s = (n.x.abs() + n.y.abs()) + n.z.abs();
+    let (mut a, mut b) = (n.x / s, n.y / s);
+    if n.z < 0.0 {
+        (a, b) = ((1.0 - b.abs()) * sign(a), (1.0 - a.abs()) * sign(b));
+    }
+    [a, b].map(|v| (32767.0 * v + 0.5).floor() as i16)
+}
+
+fn decode_normal(codes: [i16; 2]) -> Vec3 {
+    let [a, b] = codes.map(|code| f64::from(code) / 32767.0);
+    let z = (1.0 - a.abs()) - b.abs();
+    let t = if z < 0.0 { -z } else { 0.0 };
+    let (x, y) = (a - t * sign(a), b - t * sign(b));
+    let length = ((x * x + y * y) + z * z).sqrt();
+    (DVec3::new(x, y, z) / length).as_vec3() + Vec3::ZERO
+}
+
+fn encode_color(color: Vec3) -> [u8; 4] {
+    let code = |v: f32| {
+        let v = f64::from(v);
+        let v = if v > 1.0 { 1.0 } else { v };
+        // Numbers below 0 become 0.
+        (255.0 * srgb::from_linear(v) + 0.5).floor() as u8
+    };
+    [code(color.x), code(color.y), code(color.z), 255]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn normals_come_back(v in prop::array::uniform3(-1.0_f32..1.0), flat in 0_usize..4) {
+            let mut v = Vec3::from_array(v);
+            if flat < 3 {
+                v[flat] = 0.0;
+            }
+            prop_assume!(v.length() > 1e-3);
+            let n = v.normalize();
+            let back = decode_normal(encode_normal(n));
+            prop_assert!((back.length() - 1.0).abs() < 1e-6);
+            prop_assert!((back - n).length() < 1e-4, "{} {}", n, back);
+            let again = decode_normal(encode_normal(back));
+            prop_assert!((again - back).length() < 1e-6, "once is for all but rounding");
+        }
+    }
+
+    #[test]
+    fn axes_are_exact_and_no_code_is_without_a_direction() {
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+            for n in [axis, -axis] {
+                assert_eq!(decode_normal(encode_normal(n)), n);
+            }
+        }
+        for codes in [[i16::MIN, i16::MIN], [i16::MIN, 0], [i16::MAX, i16::MAX], [0, 0]] {
+            assert!((decode_normal(codes).length() - 1.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn colours_are_those_of_eight_bits() {
+        let table = srgb::table(255);
+        for code in 0..=255_u8 {
+            let value = table[usize::from(code)];
+            assert_eq!(encode_color(Vec3::splat(value)), [code, code, code, 255]);
+        }
+        assert_eq!(encode_color(Vec3::new(7.0, 0.0, 1.0)), [255, 0, 255, 255]);
+    }
+}

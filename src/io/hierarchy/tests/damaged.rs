@@ -1,0 +1,112 @@
+//! Folders that lie.
+
+use super::super::index::Index;
+use super::*;
+use proptest::prelude::*;
+
+fn whole() -> TempDir {
+    let at = TempDir::new().unwrap();
+    ply::write(&at.path().join("mesh.ply"), &sphere(75, true)).unwrap();
+    let settings = Settings { most: 50, side: 200, ..Settings::default() };
+    make(&at, "mesh.ply", "out", &settings).unwrap();
+    at
+}
+
+#[test]
+fn an_index_comes_back_as_it_is_and_no_beginning_of_one_does() {
+    let at = whole();
+    let bytes = fs::read(at.path().join("out/index")).unwrap();
+    let index = Index::parse(&bytes).unwrap();
+    assert_eq!(index.bytes(), bytes);
+    for end in 0..bytes.len() {
+        Index::parse(&bytes[..end]).unwrap_err();
+    }
+    Index::parse(&[&bytes[..], &[0]].concat()).unwrap_err();
+    // 2^32 - 1 nodes, which would take 378 GB.
+    let mut many = bytes;
+    many[48..52].copy_from_slice(&[0xff; 4]);
+    let line = Index::parse(&many).unwrap_err();
+    assert!(
+        line.contains("4294967295 nodes") && line.contains("bytes, but the file has"),
+        "{line}"
+    );
+}
+
+proptest! {
+    #[test]
+    fn no_index_makes_it_panic(flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6)) {
+        thread_local! {
+            static WHOLE: (TempDir, Vec<u8>) = {
+                let at = whole();
+                let bytes = fs::read(at.path().join("out/index")).unwrap();
+                (at, bytes)
+            };
+        }
+        WHOLE.with(|(at, whole)| {
+            let mut bytes = whole.clone();
+            for (at, value) in flips {
+                let at = at.index(bytes.len());
+                bytes[at] = value;
+            }
+            if let Ok(index) = Index::parse(&bytes) {
+                let hierarchy = Hierarchy { folder: at.path().join("out"), index };
+                for node in 0..hierarchy.nodes().len() as u32 {
+                    // Either is as it should be, or one line says why not.
+                    let _ = (hierarchy.surfels(node, u32::MAX), hierarchy.triangles(node));
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn no_other_file_makes_it_panic(
+        name in prop::sample::select(vec!["mesh-0", "surfels-1"]),
+        cut in any::<prop::sample::Index>(),
+        flips in prop::collection::vec((0_usize..300, any::<u8>()), 0..4),
+    ) {
+        thread_local! {
+            static WHOLE: TempDir = whole();
+        }
+        WHOLE.with(|at| {
+            let path = at.path().join("out").join(name);
+            let whole = fs::read(&path).unwrap();
+            let mut bytes = whole.clone();
+            flips.iter().for_each(|(at, value)| bytes[at % whole.len()] = *value);
+            bytes.truncate(cut.index(whole.len()) + 1);
+            fs::write(&path, &bytes).unwrap();
+            let hierarchy = Hierarchy::open(&at.path().join("out")).unwrap();
+            let _ = (hierarchy.surfels(1, u32::MAX), hierarchy.triangles(1), hierarchy.triangles(2));
+            fs::write(&path, whole).unwrap();
+        });
+    }
+}
+
+#[test]
+fn what_is_missing_or_of_another_is_told_in_a_line() {
+    let at = whole();
+    let out = at.path().join("out");
+    let hierarchy = Hierarchy::open(&out).unwrap();
+    let told = |node: u32| hierarchy.surfels(node, 9).unwrap_err().to_string();
+    let one = fs::read(out.join("surfels-1")).unwrap();
+    let line = hierarchy.surfels(99, 9).unwrap_err().to_string();
+    assert!(line.contains("there is no node 99"), "{line}");
+    fs::remove_file(out.join("surfels-1")).unwrap();
+    assert!(told(1).contains("surfels-1: "), "{}", told(1));
+    let other = fs::read(out.join("surfels-2")).unwrap();
+    fs::write(out.join("surfels-1"), &other).unwrap();
+    assert!(told(1).contains("not those of the index"), "{}", told(1));
+    fs::write(out.join("surfels-1"), &one[..one.len() - 1]).unwrap();
+    assert!(told(1).contains("50 surfels take 1064 bytes, but the file has 1063"), "{}", told(1));
+    let mut foreign = one.clone();
+    foreign[20] ^= 1;
+    fs::write(out.join("surfels-1"), &foreign).unwrap();
+    assert!(told(1).contains("of another hierarchy"), "{}", told(1));
+    fs::write(out.join("surfels-1"), &one).unwrap();
+    assert!(hierarchy.surfels(1, 9).is_ok());
+    let mesh = fs::read(out.join("mesh-0")).unwrap();
+    fs::write(out.join("mesh-0"), &mesh[..200]).unwrap();
+    let leaf = hierarchy.nodes().len() as u32 - 1;
+    let line = hierarchy.triangles(leaf).unwrap_err().to_string();
+    assert!(line.contains("mesh-0: ") && line.contains("beyond the end of the file"), "{line}");
+    assert!(Hierarchy::open(at.path()).unwrap_err().to_string().contains("index"));
+}

@@ -1,0 +1,124 @@
+//! What is wrong with a mesh: counted and told, not repaired.
+//!
+//! Corners are compared by their places: of two vertices at one place (-0 = +0) neither is another. Of triangles of
+//! checked vertices, without those that were dropped before:
+//!
+//! - *degenerate*: two corners at one place, or all three on a line: each component of (b - a) x (c - a) is 0 in f64.
+//! - *duplicate*: the three places, in any order, are those of a triangle before it.
+//! - *edges of many*: edges, as pairs of different places, of more than two triangles that are not degenerate. A
+//!   mesh with such edges is no manifold.
+
+use crate::scene::Triangles;
+use glam::Vec3;
+
+/// How many of each kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Flaws {
+    /// Triangles that are left out, because a corner or its normal or its colour is none.
+    pub dropped: u64,
+    /// Triangles without an area.
+    pub degenerate: u64,
+    /// Triangles that are there already.
+    pub duplicate: u64,
+    /// Edges of more than two triangles.
+    pub edges_of_many: u64,
+}
+
+impl Flaws {
+    /// Those of some triangles, of which so many were dropped.
+    #[must_use]
+    pub fn of(triangles: &Triangles, dropped: u64) -> Self {
+        let position = &triangles.vertices().position;
+        let place = places(position);
+        let mut flaws = Self { dropped, ..Self::default() };
+        let mut all = Vec::with_capacity(triangles.len());
+        let mut edges = Vec::with_capacity(3 * triangles.len());
+        for corners in triangles.corners() {
+            let mut at = corners.map(|corner| place[corner as usize]);
+            at.sort_unstable();
+            all.push(at);
+            if is_degenerate(corners.map(|corner| position[corner as usize])) {
+                flaws.degenerate += 1;
+            } else {
+                edges.extend([[at[0], at[1]], [at[0], at[2]], [at[1], at[2]]]);
+            }
+        }
+        all.sort_unstable();
+        flaws.duplicate = all.windows(2).filter(|pair| pair[0] == pair[1]).count() as u64;
+        edges.sort_unstable();
+        let many = edges.chunk_by(|a, b| a == b).filter(|run| run.len() > 2);
+        flaws.edges_of_many = many.count() as u64;
+        flaws
+    }
+
+    /// Both.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            dropped: self.dropped + other.dropped,
+            degenerate: self.degenerate + other.degenerate,
+            duplicate: self.duplicate + other.duplicate,
+            edges_of_many: self.edges_of_many + other.edges_of_many,
+        }
+    }
+}
+
+/// For each vertex the first one at its place, by the order of places.
+fn places(position: &[Vec3]) -> Vec<u32> {
+    let key = |i: u32| (position[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
+    let mut order: Vec<u32> = (0..position.len() as u32).collect();
+    order.sort_unstable_by_key(|&i| (key(i), i));
+    let mut place = vec![0; position.len()];
+    let mut first = 0;
+    for (rank, &i) in order.iter().enumerate() {
+        if rank == 0 || key(i) != key(order[rank - 1]) {
+            first = i;
+        }
+        place[i as usize] = first;
+    }
+    place
+}
+
+/// Whether a triangle has no area.
+fn is_degenerate([a, b, c]: [Vec3; 3]) -> bool {
+    let (u, v) = (b.as_dvec3() - a.as_dvec3(), c.as_dvec3() - a.as_dvec3());
+    let zero = |x: f64, y: f64| x - y == 0.0;
+    zero(u.y * v.z, v.y * u.z) && zero(u.z * v.x, v.z * u.x) && zero(u.x * v.y, v.x * u.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Vertices;
+
+    #[test]
+    fn each_kind_is_counted() {
+        // A unit square with a fin on its diagonal; vertex 6 is where vertex 0 is.
+        let position = vec![
+            Vec3::ZERO,
+            Vec3::X,
+            Vec3::new(1.0, 1.0, 0.0),
+            Vec3::Y,
+            Vec3::new(0.5, 0.5, 1.0),
+            Vec3::new(2.0, 2.0, 0.0),
+            Vec3::new(-0.0, 0.0, -0.0),
+        ];
+        let n = position.len();
+        let (direction, radius) = (vec![Vec3::Z; n], vec![0.0; n]);
+        let vertices = Vertices { position, direction, radius, color: None };
+        let flaws = |corners: &[[u32; 3]]| {
+            let (triangles, dropped) = Triangles::new(vertices.clone(), corners.to_vec()).unwrap();
+            Flaws::of(&triangles, dropped)
+        };
+        let square = [[0, 1, 2], [6, 2, 3]];
+        assert_eq!(flaws(&square), Flaws::default());
+        let fin = Flaws { edges_of_many: 1, ..Flaws::default() };
+        assert_eq!(flaws(&[square[0], square[1], [0, 2, 4]]), fin);
+        let twice = flaws(&[square[0], square[1], [2, 1, 6], [1, 2, 0]]);
+        assert_eq!((twice.duplicate, twice.edges_of_many), (2, 3));
+        // On a line; two corners at one place; one corner three times.
+        let flat = flaws(&[square[0], [0, 2, 5], [0, 6, 3], [4, 4, 4]]);
+        assert_eq!(flat, Flaws { degenerate: 3, ..Flaws::default() });
+        assert_eq!(flaws(&[]), Flaws::default());
+    }
+}

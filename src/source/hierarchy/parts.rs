@@ -1,0 +1,229 @@
+//! The triangles of a geometry, divided among the nodes of its tree, and put together again.
+
+use super::octree::{Item, Octree, octree};
+use crate::error::Result;
+use crate::memory;
+use crate::scene::{Similarity, Triangles, Vertices};
+use glam::Vec3;
+
+/// The triangles of a node, with the vertices that they use.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Part {
+    /// Positions in the coordinates of the geometry.
+    pub position: Vec<Vec3>,
+    /// Unit normals.
+    pub normal: Vec<Vec3>,
+    /// Linear RGB, if the geometry has colours.
+    pub color: Option<Vec<Vec3>>,
+    /// Triangles as indices into `position`.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Bytes of a triangle while a tree is made: its box and its place, its number in two levels, and what becomes of its
+/// corners.
+const OF_A_TRIANGLE: u64 = 160;
+
+/// The tree over the triangles of a geometry: items are triangles of weight 1, by their boxes.
+///
+/// # Errors
+/// [`crate::Error::Invalid`] if the process may not hold it.
+pub fn tree(triangles: &Triangles, bound: u64) -> Result<Octree> {
+    let count = triangles.len();
+    memory::ask(count as u64 * OF_A_TRIANGLE, || format!("a tree of {count} triangles"))?;
+    let position = &triangles.vertices().position;
+    let item = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|corner| position[corner as usize]);
+        Item { low: a.min(b).min(c), high: a.max(b).max(c), weight: 1 }
+    };
+    let items: Vec<Item> = triangles.corners().iter().map(item).collect();
+    Ok(octree(&items, bound))
+}
+
+impl Part {
+    /// The vertices of some triangles, ascending.
+    ///
+    /// # Panics
+    /// If there is no triangle of a number.
+    #[must_use]
+    pub fn vertices_of(triangles: &Triangles, some: &[u32]) -> Vec<u32> {
+        let corners = some.iter().map(|&i| triangles.corners()[i as usize]);
+        let mut used: Vec<u32> = corners.flatten().collect();
+        used.sort_unstable();
+        used.dedup();
+        used
+    }
+
+    /// Those of some triangles in ascending order; vertices are in the order that they had.
+    ///
+    /// # Panics
+    /// If there is no triangle of a number.
+    #[must_use]
+    pub fn of(triangles: &Triangles, some: &[u32]) -> Self {
+        let corners = some.iter().map(|&i| triangles.corners()[i as usize]);
+        let used = Self::vertices_of(triangles, some);
+        let all = triangles.vertices();
+        let at = |values: &[Vec3]| used.iter().map(|&i| values[i as usize]).collect::<Vec<_>>();
+        let new = |old: u32| used.partition_point(|&i| i < old) as u32;
+        Self {
+            position: at(&all.position),
+            normal: at(&all.direction),
+            color: all.color.as_deref().map(at),
+            triangles: corners.map(|corners| corners.map(new)).collect(),
+        }
+    }
+}
+
+/// Triangles from several places, all with colours.
+#[derive(Debug, Default)]
+pub struct Gathered {
+    vertices: Vertices,
+    corners: Vec<[u32; 3]>,
+}
+
+/// Bytes of a vertex and of a triangle while they are gathered, their arrays growing.
+const OF_A_VERTEX: u64 = 2 * 40;
+const OF_CORNERS: u64 = 2 * 12;
+
+impl Gathered {
+    /// Adds those of a part in a place, in one colour if one is given; `fill` is that of parts without.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] if the process may not hold them.
+    pub fn part(
+        &mut self,
+        part: Part,
+        place: &Similarity,
+        color: Option<Vec3>,
+        fill: Vec3,
+    ) -> Result<()> {
+        let n = part.position.len();
+        let colors = match (color, part.color) {
+            (None, Some(own)) => own,
+            (color, _) => vec![color.unwrap_or(fill); n],
+        };
+        let mut vertices = Vertices {
+            position: part.position,
+            direction: part.normal,
+            radius: vec![0.0; n],
+            color: Some(colors),
+        };
+        place.apply_to_vertices(&mut vertices);
+        self.add(vertices, &part.triangles)
+    }
+
+    /// Adds surfels as squares: of the half axes u and v ([`crate::scene::cloud::half_axes`]) of a disc of the radius
+    /// `half`, the corners are ((p - u) - v), ((p + u) - v), ((p + u) + v), ((p - u) + v) in `f32`, and the triangles
+    /// 0 1 2 and 0 2 3 of them.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] if the process may not hold them.
+    pub fn squares(&mut self, surfels: &[[Vec3; 3]], half: f32) -> Result<()> {
+        let n = 4 * surfels.len();
+        let mut vertices = Vertices {
+            position: Vec::with_capacity(n),
+            direction: Vec::with_capacity(n),
+            radius: vec![0.0; n],
+            color: Some(Vec::with_capacity(n)),
+        };
+        let mut corners = Vec::with_capacity(2 * surfels.len());
+        for &[p, normal, color] in surfels {
+            let [u, v] = crate::scene::cloud::half_axes(normal, half);
+            let first = vertices.position.len() as u32;
+            corners.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+            vertices.position.extend([p - u - v, p + u - v, p + u + v, p - u + v]);
+            vertices.direction.extend([normal; 4]);
+            vertices.color.iter_mut().for_each(|all| all.extend([color; 4]));
+        }
+        self.add(vertices, &corners)
+    }
+
+    fn add(&mut self, vertices: Vertices, corners: &[[u32; 3]]) -> Result<()> {
+        let (n, more) = (vertices.position.len() as u64, corners.len() as u64);
+        memory::ask(n * OF_A_VERTEX + more * OF_CORNERS, || {
+            format!("{} triangles of a subtree", more + self.corners.len() as u64)
+        })?;
+        // What does not fit is refused in the end, by the count of the vertices.
+        let first = self.vertices.position.len() as u32;
+        let moved = corners.iter().map(|corners| corners.map(|i| first.wrapping_add(i)));
+        self.corners.extend(moved);
+        self.vertices.position.extend(vertices.position);
+        self.vertices.direction.extend(vertices.direction);
+        self.vertices.radius.extend(vertices.radius);
+        let colors = vertices.color.unwrap_or_default();
+        self.vertices.color.get_or_insert_default().extend(colors);
+        Ok(())
+    }
+
+    /// All of them. What a place took out of the range of `f32` is left out.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] as [`Triangles::new`].
+    pub fn finish(self) -> Result<Triangles> {
+        Ok(Triangles::new(self.vertices, self.corners)?.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn soup(corners: Vec<[u32; 3]>, position: Vec<Vec3>, colored: bool) -> Triangles {
+        let n = position.len();
+        let color = colored.then(|| (0..n).map(|i| Vec3::splat(i as f32)).collect());
+        let vertices =
+            Vertices { position, direction: vec![Vec3::Z; n], radius: vec![0.0; n], color };
+        Triangles::new(vertices, corners).unwrap().0
+    }
+
+    fn places(vertices: &Vertices, corners: &[[u32; 3]]) -> Vec<[[u32; 3]; 3]> {
+        let bits = |i: u32| vertices.position[i as usize].to_array().map(f32::to_bits);
+        corners.iter().map(|corners| corners.map(bits)).collect()
+    }
+
+    proptest! {
+        /// The parts of all nodes are the mesh: no triangle lost, none twice, none changed.
+        #[test]
+        fn parts_are_the_mesh(
+            position in prop::collection::vec(prop::array::uniform3(-9.0_f32..9.0), 4..60),
+            corners in prop::collection::vec(prop::array::uniform3(0_usize..1000), 1..200),
+            bound in 1_u64..50,
+            colored: bool,
+        ) {
+            let n = position.len();
+            let corners = corners.iter().map(|c| c.map(|i| (i % n) as u32)).collect();
+            let mesh = soup(corners, position.into_iter().map(Vec3::from_array).collect(), colored);
+            let tree = tree(&mesh, bound).unwrap();
+            let mut all = Gathered::default();
+            for node in 0..tree.nodes.len() as u32 {
+                let part = Part::of(&mesh, tree.own(node));
+                prop_assert_eq!(part.color.is_some(), colored);
+                all.part(part, &Similarity::IDENTITY, None, Vec3::X).unwrap();
+            }
+            let all = all.finish().unwrap();
+            let mut found = places(all.vertices(), all.corners());
+            let mut given = places(mesh.vertices(), mesh.corners());
+            found.sort_unstable();
+            given.sort_unstable();
+            prop_assert_eq!(found, given);
+            let fill = all.vertices().color.as_ref().unwrap().iter().all(|&c| c == Vec3::X);
+            prop_assert_eq!(fill, !colored);
+        }
+    }
+
+    #[test]
+    fn squares_face_as_their_surfels() {
+        let mut all = Gathered::default();
+        let normal = Vec3::new(0.6, 0.0, 0.8);
+        all.squares(&[[Vec3::ONE, normal, Vec3::X]], 0.5).unwrap();
+        let all = all.finish().unwrap();
+        let position = &all.vertices().position;
+        for corners in all.corners() {
+            let [a, b, c] = corners.map(|i| position[i as usize]);
+            let across = (b - a).cross(c - a);
+            assert!((across - normal).length() < 1e-6, "{across}: twice an area of 1/2");
+            assert!(((a - Vec3::ONE).length() - 0.5_f32.sqrt()).abs() < 1e-6);
+        }
+        assert_eq!(all.vertices().direction, [normal; 4]);
+    }
+}

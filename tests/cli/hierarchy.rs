@@ -1,0 +1,205 @@
+//! `splatref surfels SCENE -o folder`: hierarchies, stopped and whole.
+
+use super::*;
+use glam::Vec3;
+use splatref::io::hierarchy::Hierarchy;
+use splatref::io::ply;
+use splatref::scene::Cloud;
+use std::collections::BTreeMap;
+use tempfile::TempDir;
+
+/// A hilly square of 2 n n triangles.
+fn hills(n: u32) -> Cloud {
+    let mut mesh = Cloud::default();
+    for row in 0..=n {
+        for column in 0..=n {
+            let [x, z] = [column, row].map(|i| i as f32 / n as f32);
+            mesh.position.push(Vec3::new(x, x * (1.0 - x) * z * (1.0 - z), z));
+        }
+    }
+    for row in 0..n {
+        for column in 0..n {
+            let a = row * (n + 1) + column;
+            let (b, c, d) = (a + 1, a + n + 1, a + n + 2);
+            mesh.triangles.extend([[a, d, b], [a, c, d]]);
+        }
+    }
+    mesh
+}
+
+/// A scene of two hills in a directory, and the arguments that make its hierarchy.
+fn given() -> (TempDir, Vec<&'static str>) {
+    let at = TempDir::new().unwrap();
+    ply::write(&at.path().join("hills.ply"), &hills(72)).unwrap();
+    let scene = "\
+[[geometry]]
+name = \"hills\"
+file = \"hills.ply\"
+[[object]]
+of = \"hills\"
+[[object]]
+of = \"hills\"
+transform = { translate = [2, 0, 0] }
+";
+    fs::write(at.path().join("scene.toml"), scene).unwrap();
+    (at, vec!["surfels", "scene.toml", "--side", "256", "--count", "500", "-o"])
+}
+
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    names(folder)
+        .into_iter()
+        .map(|name| (name.clone(), fs::read(folder.join(name)).unwrap()))
+        .collect()
+}
+
+#[test]
+fn a_folder_is_made_described_and_found_again() {
+    let (at, options) = given();
+    let with = |more: &[&'static str]| [&options[..], more].concat();
+    let said = succeeds(at.path(), &with(&["out"]));
+    for word in ["2 of 1 geometries", "20736, 10368 of them unique", "1 of them of several objects"]
+    {
+        assert!(said.contains(word), "{word} in {said}");
+    }
+    assert!(!said.contains("flaws") && !said.contains("were there"), "{said}");
+    let info = succeeds(at.path(), &["info", "out"]);
+    assert!(
+        info.contains("2 of 1 geometries") && info.contains("(0, 0, 0) to (3, 0.0625, 1)"),
+        "{info}"
+    );
+    let all = files(&at.path().join("out"));
+    for (to, threads) in [("one/", "1"), ("three", "3")] {
+        succeeds(at.path(), &with(&[to, "--threads", threads]));
+        assert!(files(&at.path().join(to)) == all, "{threads} threads");
+    }
+    let nodes = Hierarchy::open(&at.path().join("out")).unwrap().nodes().len();
+    let made = all.keys().filter(|name| name.starts_with("surfels-")).count();
+    let said = succeeds(at.path(), &with(&["out"]));
+    assert!(said.contains(&format!("{made} approximated, {made} of them were there")), "{said}");
+    assert!(made > 3 && made <= nodes);
+    succeeds(at.path(), &with(&["down", "--traversal", "top-down", "--sampler", "progressive"]));
+    assert!(files(&at.path().join("down")) != all);
+}
+
+#[test]
+fn a_folder_is_rendered_as_a_scene() {
+    let (at, mut options) = given();
+    options.push("out");
+    succeeds(at.path(), &options);
+    let options = ["--method", "blue", "--size", "96x64", "-o"];
+    let render = |scene, picture| [&["render", scene][..], &options, &[picture]].concat();
+    let said = succeeds(at.path(), &render("out", "a.exr"));
+    assert!(said.contains("object-1.") || said.contains("node-0: "), "{said}");
+    fs::write(at.path().join("all.toml"), "hierarchy = \"out\"\n").unwrap();
+    succeeds(at.path(), &render("all.toml", "b.exr"));
+    succeeds(at.path(), &["compare", "a.exr", "b.exr"]);
+    fs::write(at.path().join("two.toml"), "hierarchy = \"out\"\n[[model]]\nshape = \"torus\"\n")
+        .unwrap();
+    let line = fails(at.path(), &render("two.toml", "c.exr"), 1);
+    assert!(line.contains("a hierarchy is all that a scene shows"), "{line}");
+    let line = fails(at.path(), &["render", "out", "--opacity", "0.5"], 2);
+    assert!(line.contains("--opacity is of models"), "{line}");
+    let line = fails(at.path(), &["surfels", "out", "-o", "again"], 2);
+    assert!(line.contains("is a hierarchy already"), "{line}");
+    fs::remove_file(at.path().join("out").join("surfels-0")).unwrap();
+    let line = fails(at.path(), &render("out", "d.exr"), 1);
+    assert!(line.contains("surfels-0"), "{line}");
+}
+
+/// Killed again and again, and not always gently, it gets to the end.
+#[cfg(unix)]
+#[test]
+fn it_goes_on_after_signals() {
+    let (at, mut options) = given();
+    options.push("all");
+    succeeds(at.path(), &options);
+    let all = files(&at.path().join("all"));
+    *options.last_mut().unwrap() = "out";
+    let folder = at.path().join("out");
+    let made = || if folder.exists() { names(&folder).len() } else { 0 };
+    for signal in ["-TERM", "-KILL", "-TERM"] {
+        let before = made();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_splatref"));
+        let mut child = command.current_dir(at.path()).args(&options).spawn().unwrap();
+        while made() < before + 2 && child.try_wait().unwrap().is_none() {
+            std::thread::yield_now();
+        }
+        let sent = Command::new("kill").args([signal, &child.id().to_string()]).output();
+        sent.unwrap();
+        child.wait().unwrap();
+        for (name, bytes) in files(&folder) {
+            let partial = name.ends_with(".partial") && signal == "-KILL";
+            assert!(partial || all[&name] == bytes, "{name} after {signal}");
+        }
+        for name in names(&folder).iter().filter(|name| name.ends_with(".partial")) {
+            fs::remove_file(folder.join(name)).unwrap();
+        }
+    }
+    succeeds(at.path(), &options);
+    assert!(files(&folder) == all);
+}
+
+/// A limit on the size of files stands for a full disk.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_a_full_disk_stopped_goes_on() {
+    let (at, mut options) = given();
+    options.push("out");
+    let mut shell = Command::new("sh");
+    shell.args([
+        "-c",
+        "trap '' XFSZ; ulimit -f 16; exec \"$0\" \"$@\"",
+        env!("CARGO_BIN_EXE_splatref"),
+    ]);
+    let output = shell.current_dir(at.path()).args(&options).output().unwrap();
+    let line = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{line}");
+    assert!(line.lines().count() == 1 && line.contains("mesh-0: "), "{line}");
+    assert_eq!(names(&at.path().join("out")), ["plan"]);
+    let line = fails(at.path(), &["info", "out"], 1);
+    assert!(line.contains("not whole yet"), "{line}");
+    succeeds(at.path(), &options);
+    let all = files(&at.path().join("out"));
+    *options.last_mut().unwrap() = "all";
+    succeeds(at.path(), &options);
+    assert!(files(&at.path().join("all")) == all);
+}
+
+/// Both write the same files: neither harms the other.
+#[test]
+fn two_at_once_make_one() {
+    let (at, mut options) = given();
+    options.push("all");
+    succeeds(at.path(), &options);
+    *options.last_mut().unwrap() = "out";
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| succeeds(at.path(), &options));
+        }
+    });
+    assert!(files(&at.path().join("out")) == files(&at.path().join("all")));
+}
+
+#[test]
+fn options_that_a_folder_has_no_use_for_are_refused() {
+    let (at, options) = given();
+    for (more, what) in [
+        (&["--start", "3"][..], "--start is not for a folder"),
+        (&["--distance", "geodesic"], "--distance geodesic is not for a folder"),
+        (&["--average-colors", "3"], "--average-colors is not for a folder"),
+    ] {
+        let line = fails(at.path(), &[&options[..], &["out"], more].concat(), 2);
+        assert!(line.contains(what), "{what} in {line}");
+    }
+    let line =
+        fails(at.path(), &["surfels", "hills.ply", "-o", "a.ply", "--traversal", "top-down"], 2);
+    assert!(line.contains("--traversal is for a folder"), "{line}");
+    let line = fails(at.path(), &["surfels", "sphere", "-o", "out"], 1);
+    assert!(line.contains("no triangles to approximate"), "{line}");
+    let line = fails(at.path(), &["surfels", "hills.ply", "-o", "no/where"], 1);
+    assert!(line.contains("no/where"), "{line}");
+    fs::write(at.path().join("file"), "kept").unwrap();
+    let line = fails(at.path(), &["surfels", "hills.ply", "-o", "file"], 1);
+    assert!(line.contains("file: "), "{line}");
+    assert_eq!(names(at.path()), ["file", "hills.ply", "scene.toml"]);
+}
