@@ -1,7 +1,11 @@
-//! What is measured of samplers, and the charts that show it.
+//! What is measured: of samplers, and of methods, speed against accuracy.
 //!
 //! - [`chart`]: drawings that are written as SVG and as PNG, the same picture in both.
+//! - [`mod@front`]: what nothing else is both faster and nearer to the truth than.
 //! - [`spread`]: how evenly prefixes of several orders are spread \[BJFM19, Fig. 3\].
+//! - [`sweep`]: what a study of a scene tries.
 
 pub mod chart;
+pub mod front;
 pub mod spread;
+pub mod sweep;
