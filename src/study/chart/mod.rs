@@ -10,11 +10,19 @@
 //! the font lacks is an empty box in a PNG.
 //!
 //! - [`axis`]: where values lie, and round numbers for ticks.
+//! - [`label`]: labels that do not collide.
+//! - [`log`]: logarithmic axes.
+//! - [`mark`]: shapes and colours of points.
+//! - [`scatter`]: points on two logarithmic axes, with their front.
 //! - [`text`]: how wide texts are.
 //! - [`violin`]: how values are spread.
 
 pub mod axis;
+pub mod label;
+pub mod log;
+pub mod mark;
 mod raster;
+pub mod scatter;
 mod svg;
 pub mod text;
 pub mod violin;
