@@ -142,7 +142,7 @@ fn picture_of(
     let Ready { loaded, camera, method, .. } = ready;
     let (mut session, _) = ready.session(exec, &|_, _, _| ())?;
     session.resume(seen);
-    let drawn = draw::draw(&mut session, camera, file.output)?.into_owned();
+    let drawn = file.output.draw(&mut session, camera)?.into_owned();
     let (groups, number) = (session.groups(), file.output.number);
     Ok((drawn, provenance::text(&loaded.scene, groups, camera, method, number)))
 }

@@ -219,6 +219,19 @@ impl SceneOptions {
         Ok(())
     }
 
+    /// The method, if one was chosen.
+    pub(super) fn chosen_method(&self) -> Option<&'static str> {
+        self.method
+    }
+
+    /// Whether no state is given, to a command that has no use for one, and why.
+    pub(super) fn refuse_state(&self, why: &str) -> Result<()> {
+        match &self.state {
+            None => Ok(()),
+            Some(_) => Err(Error::Usage(format!("--state: {why}"))),
+        }
+    }
+
     /// The file that says what the frame before saw.
     pub(super) fn state(&self) -> Option<&Path> {
         self.state.as_deref()

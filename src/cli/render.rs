@@ -79,11 +79,11 @@ pub(super) fn run(args: &Args) -> Ended {
     let drawing = progress::during("rendering", || -> Result<_> {
         let before = session.seen().cloned();
         for _ in 1..args.repeat {
-            timed(&mut times, || draw::draw(&mut session, camera, file.output))?;
+            timed(&mut times, || file.output.draw(&mut session, camera))?;
             // The same frame again, not the next.
             session.resume(before.clone());
         }
-        timed(&mut times, || draw::draw(&mut session, camera, file.output))
+        timed(&mut times, || file.output.draw(&mut session, camera))
     })?;
 
     let writing = Instant::now();

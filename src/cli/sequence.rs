@@ -82,7 +82,7 @@ fn one(
     times: &mut Times,
 ) -> Result<Option<Seen>> {
     let (scene, method, groups) = (session.scene(), *session.method(), session.groups().cloned());
-    let drawing = draw::draw(session, camera, output)?;
+    let drawing = output.draw(session, camera)?;
     drawing.timings.iter().for_each(|(stage, time)| times.add(stage, *time));
     let text = || provenance::text(scene, groups.as_ref(), camera, &method, output.number);
     times.of("writing", || write(path, &drawing.frame, text, output, exec))?;

@@ -32,33 +32,36 @@ pub fn text(
         let Counts { triangles, ribbons, tubes } = scene.primitives.counts();
         format!("triangles = {triangles}\nribbons = {ribbons}\ntubes = {tubes}\n")
     };
-    let projection = match camera.projection {
-        Projection::Perspective => "perspective",
-        Projection::Orthographic => "orthographic",
-    };
-    let rows: Vec<String> =
-        (0..4).map(|i| format!("  {:?},\n", camera.view_from_world.row(i).to_array())).collect();
     format!(
         "splatref = \"{version}\"\nnumber = \"{number}\"\n\n\
          [scene]\nname = {name}\nsurfels = {surfels}\n{primitives}sha256 = \"{hash}\"\n\n\
          [method]\nname = \"{method}\"\n{settings}\n{groups}\
-         [camera]\nsize = [{width}, {height}]\nprojection = \"{projection}\"\n\
-         f = [{fx:?}, {fy:?}]\nc = [{cx:?}, {cy:?}]\nnear = {near:?}\n\
-         view_from_world = [\n{rows}]\n",
+         [camera]\n{camera}",
         version = env!("CARGO_PKG_VERSION"),
         number = number.word(),
         name = toml::Value::String(scene.name.clone()),
         surfels = scene.surfels.len(),
         hash = scene.sha256(),
         method = method.name(),
-        width = camera.width,
-        height = camera.height,
-        fx = camera.fx,
-        fy = camera.fy,
-        cx = camera.cx,
-        cy = camera.cy,
-        near = camera.near,
-        rows = rows.concat(),
+        camera = self::camera(camera),
+    )
+}
+
+/// All numbers of a camera as TOML, its size included.
+#[must_use]
+pub fn camera(camera: &Camera) -> String {
+    let Camera { width, height, fx, fy, cx, cy, near, .. } = *camera;
+    let projection = match camera.projection {
+        Projection::Perspective => "perspective",
+        Projection::Orthographic => "orthographic",
+    };
+    let rows: Vec<String> =
+        (0..4).map(|i| format!("  {:?},\n", camera.view_from_world.row(i).to_array())).collect();
+    let rows = rows.concat();
+    format!(
+        "size = [{width}, {height}]\nprojection = \"{projection}\"\n\
+         f = [{fx:?}, {fy:?}]\nc = [{cx:?}, {cy:?}]\nnear = {near:?}\n\
+         view_from_world = [\n{rows}]\n"
     )
 }
 

@@ -2,10 +2,16 @@
 //!
 //! - [`chart`]: drawings that are written as SVG and as PNG, the same picture in both.
 //! - [`mod@front`]: what nothing else is both faster and nearer to the truth than.
+//! - [`mod@report`]: a study as files.
+//! - [`mod@run`]: candidates measured and timed.
 //! - [`spread`]: how evenly prefixes of several orders are spread \[BJFM19, Fig. 3\].
 //! - [`sweep`]: what a study of a scene tries.
+//! - [`mod@truth`]: the true picture of a scene.
 
 pub mod chart;
 pub mod front;
+// REPORT
+// RUN
 pub mod spread;
 pub mod sweep;
+pub mod truth;

@@ -1,15 +1,16 @@
 //! From a scene file to a session.
 
-use super::{Loaded, SceneFile};
+use super::{Loaded, Number, OutputSettings, SceneFile};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::grouping::Grouping;
 use crate::index::seen::Seen;
 use crate::io::state::{self, State};
 use crate::method::session::Made;
-use crate::method::{Method, Session, deferred};
+use crate::method::{Method, Picture, Session, deferred};
 use crate::scene::{Camera, CameraMotion, Lens, Objects, Primitives, Scene, Surfels};
 use crate::source::flatten;
+use std::borrow::Cow;
 use std::path::Path;
 
 /// What a scene file says, loaded and resolved: all that the picture of a frame needs.
@@ -158,5 +159,27 @@ impl Ready {
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<(Session<'a>, Option<Made>)> {
         Session::prepare(&self.loaded.scene, self.method, self.grouping, exec, progress)
+    }
+}
+
+impl OutputSettings {
+    /// A picture in the number type and with the planes that are asked for, as files hold it.
+    ///
+    /// # Errors
+    /// As [`Session::render`] and [`Session::define`].
+    pub fn draw<'s>(
+        self,
+        session: &'s mut Session<'_>,
+        camera: &Camera,
+    ) -> Result<Cow<'s, Picture<f32>>> {
+        Ok(match (self.number, self.stages) {
+            (Number::F32, false) => Cow::Borrowed(session.render(camera)?),
+            (Number::F32, true) => Cow::Owned(session.define::<f32>(camera, true)?),
+            (Number::F64, stages) => {
+                let Picture { frame, tally, timings, seen } =
+                    session.define::<f64>(camera, stages)?;
+                Cow::Owned(Picture { frame: frame.to_f32(), tally, timings, seen })
+            }
+        })
     }
 }

@@ -189,6 +189,12 @@ impl Shape {
         self.surface().trace(origin, direction, 0.0)
     }
 
+    /// [`Shape::trace`] beyond a parameter of at least 0.
+    #[cfg(feature = "cli")] // for the study
+    pub(crate) fn trace_beyond(&self, origin: DVec3, direction: DVec3, beyond: f64) -> Option<Hit> {
+        self.surface().trace(origin, direction, beyond)
+    }
+
     /// The exact picture: one ray through the centre of each pixel, in f64, without lights.
     ///
     /// Planes, in this order: the colour (empty name, linear RGB, 0 where nothing is seen), `Z`

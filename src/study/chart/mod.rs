@@ -28,6 +28,7 @@ pub mod text;
 pub mod violin;
 
 pub use raster::{Picture, SCALE};
+pub use svg::escaped;
 
 /// Red, green and blue, as sRGB has them.
 pub type Rgb = [u8; 3];
@@ -106,6 +107,7 @@ pub struct Label<'a> {
 enum Shape {
     Path { points: Vec<[f64; 2]>, closed: bool, fill: Option<Rgb>, stroke: Option<Stroke> },
     Text { text: String, at: [f64; 2], size: f64, anchor: Anchor, turned: bool },
+    Spot { at: [f64; 2], reach: f64, index: usize, title: String },
 }
 
 impl Stroke {
@@ -151,6 +153,17 @@ impl Drawing {
         let Label { text, size, anchor, turned } = *label;
         let text = text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
         self.shapes.push(Shape::Text { text, at: at.map(rounded), size, anchor, turned });
+    }
+
+    /// A disc that is not seen: in an SVG it says a title to who points at it, and which of the
+    /// things that are shown it belongs to, for pages that answer a click.
+    pub fn spot(&mut self, at: [f64; 2], reach: f64, index: usize, title: &str) {
+        self.shapes.push(Shape::Spot {
+            at: at.map(rounded),
+            reach,
+            index,
+            title: title.to_owned(),
+        });
     }
 
     fn path(

@@ -56,6 +56,7 @@ fn draw(map: &mut Pixmap, shape: &Shape) {
                 map.stroke_path(&path, &paint(color), &how, whole, None);
             }
         }
+        Shape::Spot { .. } => {}
         Shape::Text { text, at: [x, y], size, anchor, turned } => {
             let Some((letters, units)) = letters(text) else { return };
             let width = text::width(text, *size) as f32;

@@ -51,6 +51,8 @@ const NOTE: f64 = 16.0;
 const SMALL: f64 = 10.0;
 /// A row of the list.
 const ROW: f64 = 14.0;
+/// How far from a point it is pointed at.
+const SPOT: f64 = 8.0;
 /// Where the list has its numbers, marks and names, from the right edge of the plot.
 const COLUMNS: [f64; 3] = [44.0, 58.0, 70.0];
 /// The most room of a name, and the room of each value behind it.
@@ -164,6 +166,7 @@ impl Scatter {
             }
             let on_front = front.iter().any(|&f| shown[f] == i);
             mark::draw(out, [x, y], *series, on_front);
+            out.spot([x, y], SPOT, i, &self.points[i].name);
         }
         let others = (0..shown.len()).filter(|i| !front.contains(i));
         let named = front.iter().map(|&i| {
@@ -194,6 +197,7 @@ impl Scatter {
             let y = top + ROW * (i + 1) as f64;
             out.text([columns[0], y], &small(&number(i), Anchor::End));
             mark::draw(out, [columns[1], y - 3.5], point.series, front.contains(&i));
+            out.spot([columns[1], y - 3.5], ROW / 2.0, i, &point.name);
             out.text([columns[2], y], &small(&shortened(&point.name, SMALL, name), Anchor::Start));
             for (value, x) in point.at.into_iter().zip(values) {
                 out.text([x, y], &small(&three(value), Anchor::End));

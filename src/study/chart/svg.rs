@@ -46,6 +46,15 @@ fn element(out: &mut String, shape: &Shape) {
             }
             out.push_str("/>\n");
         }
+        Shape::Spot { at: [x, y], reach, index, title } => {
+            let title = escaped(title);
+            let _ = writeln!(
+                out,
+                "<g data-point=\"{index}\" tabindex=\"0\" role=\"button\" aria-label=\"{title}\">\
+                 <title>{title}</title><circle class=\"ring\" cx=\"{x}\" cy=\"{y}\" r=\"{reach}\" \
+                 pointer-events=\"all\"/></g>"
+            );
+        }
         Shape::Text { text, at: [x, y], size, anchor, turned } => {
             let anchor = match anchor {
                 Anchor::Start => "start",
@@ -72,8 +81,9 @@ fn hexadecimal([r, g, b]: Rgb) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// Text that is no markup.
-fn escaped(text: &str) -> String {
+/// Text that is no markup, of XML and of HTML.
+#[must_use]
+pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

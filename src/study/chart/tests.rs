@@ -24,7 +24,7 @@ impl Drawing {
                     },
                 ))
             }
-            Shape::Path { .. } => None,
+            Shape::Path { .. } | Shape::Spot { .. } => None,
         };
         self.shapes.iter().filter_map(of).collect()
     }

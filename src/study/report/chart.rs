@@ -1,0 +1,64 @@
+//! The chart: time against error, with the front.
+
+use crate::study::chart::Drawing;
+use crate::study::chart::scatter::{Point, Scatter};
+use crate::study::run::{Record, Study};
+
+/// What is up in a chart: a figure as a loss, of which less is better.
+#[derive(Clone, Copy, Debug)]
+pub struct Loss {
+    /// What it is called, with its unit.
+    pub title: &'static str,
+    /// The name of the figure.
+    pub figure: &'static str,
+    /// The loss of a value of it.
+    pub of: fn(f64) -> f64,
+}
+
+impl Loss {
+    /// The loss of a candidate, if its figure is known.
+    #[must_use]
+    pub fn value(&self, record: &Record) -> Option<f64> {
+        record.figure(self.figure).map(self.of)
+    }
+}
+
+/// The points of a study, in the order of its candidates: those that were timed and measured. The
+/// first of each is the index of the candidate.
+#[must_use]
+pub fn points(study: &Study, loss: &Loss) -> Vec<(usize, Point)> {
+    let mut methods: Vec<&str> = Vec::new();
+    for record in &study.candidates {
+        if !methods.contains(&record.method.as_str()) {
+            methods.push(&record.method);
+        }
+    }
+    let point = |(i, record): (usize, &Record)| {
+        let [first, median, last] = record.quartiles()?;
+        let error = loss.value(record)?;
+        let series = methods.iter().position(|method| *method == record.method)?;
+        let short = record.options.trim_start_matches("--method ").to_owned();
+        let name = record.options.clone();
+        Some((i, Point { name, short, series, at: [median, error], spread: [first, last] }))
+    };
+    study.candidates.iter().enumerate().filter_map(point).collect()
+}
+
+/// The chart of a study.
+#[must_use]
+pub fn chart(study: &Study, loss: &Loss) -> Drawing {
+    let [width, height] = study.of.size;
+    let all = points(study, loss);
+    let notes = vec![
+        format!("Truth: {}.", study.of.truth),
+        format!("Time: median and quartiles of a picture, {}.", study.machine),
+        "Filled: on the front; nothing else is both faster and nearer to the truth.".into(),
+    ];
+    Scatter {
+        title: format!("{}, {width} x {height}: speed against accuracy", study.of.scene),
+        notes,
+        axes: ["ms a picture".into(), loss.title.to_owned()],
+        points: all.into_iter().map(|(_, point)| point).collect(),
+    }
+    .draw()
+}

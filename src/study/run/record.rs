@@ -1,0 +1,204 @@
+//! What is known so far: kept in `study.json`, so that a study that was stopped goes on.
+
+use crate::error::{Error, Result};
+use crate::study::chart::violin::quantile;
+use crate::study::front::front;
+use crate::study::sweep::Candidate;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A study, finished or not.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Study {
+    /// What it is a study of. Two studies of the same have the same errors on every machine.
+    pub of: Subject,
+    /// What the candidates, in their order, have given so far.
+    pub candidates: Vec<Record>,
+    /// The options of those that their methods cannot draw, and why.
+    pub left_out: Vec<(String, String)>,
+    /// On what the times were measured.
+    pub machine: String,
+}
+
+/// What a study is of.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Subject {
+    /// The version of the program.
+    pub splatref: String,
+    /// What the scene is called.
+    pub scene: String,
+    /// The SHA-256 of the scene as it is given.
+    pub scene_sha256: String,
+    /// Width and height of the picture in pixels.
+    pub size: [u32; 2],
+    /// Where it is seen from: all numbers of the camera.
+    pub camera: String,
+    /// What is taken for the truth, in a sentence.
+    pub truth: String,
+    /// The SHA-256 of the true picture.
+    pub truth_sha256: String,
+}
+
+/// What is known of a candidate.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// The options that make it of the scene.
+    pub options: String,
+    /// The name of its method.
+    pub method: String,
+    /// Its errors, once they are measured.
+    pub measured: Option<Measured>,
+    /// How long its pictures took, in ms, in the order in which they were timed.
+    pub times: Vec<f64>,
+}
+
+/// The errors of a candidate; a figure that cannot be said is absent.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// How many surfels it was given.
+    pub surfels: u64,
+    /// How long the first session took to prepare, in ms.
+    pub prepared: f64,
+    /// The figures by their names.
+    pub figures: BTreeMap<String, f64>,
+    /// The power of flicker by frequency: under shifts, and along the path; empty of what was not
+    /// measured.
+    pub spectra: [Vec<f64>; 2],
+}
+
+impl Record {
+    /// Of a candidate nothing is known yet.
+    #[must_use]
+    pub fn of(candidate: &Candidate) -> Self {
+        let (options, method) = (candidate.options.clone(), candidate.method.to_owned());
+        Self { options, method, measured: None, times: Vec::new() }
+    }
+
+    /// A name for its files: the options, with `-` for what names of files may not have.
+    #[must_use]
+    pub fn file_name(&self) -> String {
+        let plain = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' };
+        self.options.trim_start_matches("--method ").chars().map(plain).collect()
+    }
+
+    /// The times in ascending order.
+    fn ascending(&self) -> Vec<f64> {
+        let mut times = self.times.clone();
+        times.sort_by(f64::total_cmp);
+        times
+    }
+
+    /// The quartiles of the times in ms: a quarter, the half, and three quarters; none before the
+    /// first time.
+    #[must_use]
+    pub fn quartiles(&self) -> Option<[f64; 3]> {
+        let times = self.ascending();
+        (!times.is_empty()).then(|| [0.25, 0.5, 0.75].map(|share| quantile(&times, share)))
+    }
+
+    /// A figure, if it is known.
+    #[must_use]
+    pub fn figure(&self, name: &str) -> Option<f64> {
+        self.measured.as_ref()?.figures.get(name).copied()
+    }
+}
+
+impl Study {
+    /// The front of median time and an error, of the candidates that have both: indices by
+    /// ascending time. `loss` is what is the less the better.
+    #[must_use]
+    pub fn front(&self, loss: impl Fn(&Record) -> Option<f64>) -> Vec<usize> {
+        let point = |record: &Record| {
+            let time = record.quartiles().map_or(f64::NAN, |[_, median, _]| median);
+            [time, loss(record).unwrap_or(f64::NAN)]
+        };
+        front(&self.candidates.iter().map(point).collect::<Vec<_>>())
+    }
+
+    /// This study with what another of the same has measured already.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the other is of something else.
+    pub fn resumed(mut self, before: Self) -> Result<Self> {
+        if before.of != self.of {
+            return Err(Error::Invalid(
+                "the study to go on with is of another scene, camera, truth or version: leave out \
+                 --resume, or give another -o"
+                    .into(),
+            ));
+        }
+        for record in &mut self.candidates {
+            if let Some(known) = before.candidates.iter().find(|one| one.options == record.options)
+            {
+                record.measured.clone_from(&known.measured);
+                record.times.clone_from(&known.times);
+            }
+        }
+        Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn study(options: &[&str]) -> Study {
+        let record = |options: &&str| Record {
+            options: (*options).to_owned(),
+            method: "ewa".into(),
+            measured: None,
+            times: Vec::new(),
+        };
+        let of = Subject {
+            splatref: "0".into(),
+            scene: "s".into(),
+            scene_sha256: "h".into(),
+            size: [2, 1],
+            camera: "c".into(),
+            truth: "t".into(),
+            truth_sha256: "u".into(),
+        };
+        let candidates = options.iter().map(record).collect();
+        Study { of, candidates, left_out: Vec::new(), machine: String::new() }
+    }
+
+    fn known(record: &mut Record, times: &[f64], rmse: f64) {
+        let figures = BTreeMap::from([("rmse".to_owned(), rmse)]);
+        let spectra = [vec![0.1, 1.0 / 3.0], Vec::new()];
+        record.measured = Some(Measured { surfels: 3, prepared: 0.5, figures, spectra });
+        record.times = times.to_vec();
+    }
+
+    #[test]
+    fn what_was_kept_is_what_is_read() {
+        let mut first = study(&["a", "b"]);
+        known(&mut first.candidates[0], &[0.1, 1.0 / 3.0, 1e-300], 0.123_456_789_012_345_67);
+        let text = serde_json::to_string(&first).unwrap();
+        assert_eq!(serde_json::from_str::<Study>(&text).unwrap(), first);
+    }
+
+    #[test]
+    fn a_study_goes_on_with_what_it_has() {
+        let mut before = study(&["a", "gone", "b"]);
+        known(&mut before.candidates[2], &[1.0], 0.5);
+        let after = study(&["b", "new"]).resumed(before.clone()).unwrap();
+        assert_eq!(after.candidates[0], before.candidates[2]);
+        assert_eq!(after.candidates[1].measured, None);
+        before.of.size = [3, 1];
+        assert!(study(&["b"]).resumed(before).is_err());
+    }
+
+    #[test]
+    fn the_front_needs_both_a_time_and_an_error() {
+        let mut all = study(&["slow", "fast", "untimed", "unmeasured", "beaten"]);
+        let set =
+            [(0, &[9.0, 8.0, 10.0][..], 0.1), (1, &[1.0], 0.5), (2, &[], 0.0), (4, &[9.5], 0.2)];
+        for (i, times, rmse) in set {
+            known(&mut all.candidates[i], times, rmse);
+        }
+        all.candidates[3].times = vec![0.5];
+        assert_eq!(all.front(|record| record.figure("rmse")), [1, 0]);
+        assert_eq!(all.candidates[0].quartiles(), Some([8.0, 9.0, 10.0]));
+        assert_eq!(all.candidates[2].quartiles(), None);
+    }
+}
