@@ -242,7 +242,7 @@ fn nothing_shows_through_a_closed_mesh() {
         let regions = regions(alpha, 64);
         let inside: Vec<usize> =
             (0..regions.len()).filter(|&i| regions[i] == Region::Interior).collect();
-        assert!(inside.len() > 1000);
+        assert!(inside.len() > 500);
         // Of one colour, the material's: whatever shines through would be darker.
         let open = inside.iter().filter(|&&i| color[i][0] != unlit.material.color.x);
         assert_eq!(open.count(), 0);
