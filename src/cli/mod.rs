@@ -22,7 +22,7 @@ mod render;
 mod report;
 mod rows;
 mod sequence;
-// STUDY
+mod study;
 mod suite;
 mod surfels;
 mod verify;
@@ -76,7 +76,7 @@ enum Command {
     /// Put points in an order of which every prefix is spread over all of them, into a PLY; or those of a whole scene into a folder
     Surfels(surfels::Args),
     /// Chart every method and setting, speed against accuracy, for a scene
-    // Study(study::Args),
+    Study(study::Args),
     /// Say how evenly prefixes of points in order are spread, with a chart
     Quality(quality::Args),
     /// Write the visible splats as records, for a backend to upload
@@ -102,7 +102,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Explain(args) => explain::run(&args),
         Command::Group(args) => group::run(&args),
         Command::Surfels(args) => surfels::run(&args),
-        // Command::Study(args) => study::run(&args),
+        Command::Study(args) => study::run(&args),
         Command::Quality(args) => quality::run(&args),
         Command::Project(args) => project::run(&args),
         Command::Info(args) => info::run(&args),

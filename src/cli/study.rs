@@ -8,11 +8,12 @@ use splatref::io::scene_file::SceneFile;
 use splatref::io::{png, provenance};
 use splatref::study::report::chart::{Loss, chart};
 use splatref::study::report::{csv, page};
-use splatref::study::run::measure::{figures, losses, measure};
+use splatref::study::run::measure::{losses, measure};
 use splatref::study::run::truths::{Known, Truths};
 use splatref::study::run::{Bench, Record, Study, Subject, time};
 use splatref::study::sweep::{Candidate, candidates};
 use splatref::verify::digest;
+use splatref::verify::metrics::errors::Reference;
 use splatref::{Error, Result};
 use std::fs;
 use std::io::Write;
@@ -119,6 +120,7 @@ impl Job<'_> {
         truths: &Truths,
         study: &mut Study,
     ) -> Result<()> {
+        let reference = Reference::of(&truths.still.frame, self.exec)?;
         let late = self.args.time.map(|time| time.mul_f64(MEASURING));
         for (i, candidate) in candidates.iter().enumerate() {
             let record = &study.candidates[i];
@@ -129,7 +131,7 @@ impl Job<'_> {
                 break;
             }
             self.steps.show("measuring", i as u64, candidates.len() as u64);
-            let (measured, frame) = measure(bench, candidate, truths, self.exec)?;
+            let (measured, frame) = measure(bench, candidate, (truths, &reference), self.exec)?;
             self.folder.keep_picture(record, &frame)?;
             study.candidates[i].measured = Some(measured);
             self.folder.keep(study)?;
@@ -233,12 +235,13 @@ impl Folder {
     /// Writes the table, the charts and the page; where they are.
     fn publish(&self, study: &Study, loss: &Loss) -> Result<Vec<PathBuf>> {
         self.keep(study)?;
+        let figures: Vec<&str> = losses().iter().map(|loss| loss.figure).collect();
         let paths = FILES.map(|name| self.0.join(name));
         let [page_path, svg, png, csv_path, _] = &paths;
         let text = |path: &Path, text: &str| {
             write_atomically(path, |file| file.write_all(text.as_bytes()))
         };
-        text(csv_path, &csv::csv(study, &figures()))?;
+        text(csv_path, &csv::csv(study, &figures))?;
         let drawing = chart(study, loss);
         text(svg, &drawing.svg())?;
         let picture =
@@ -250,7 +253,7 @@ impl Folder {
             None => Ok(Vec::new()),
         });
         let pictures = pictures.collect::<Result<Vec<_>>>()?;
-        let page = page::page(study, &drawing, loss, &figures(), &read(self.truth())?, &pictures);
+        let page = page::page(study, &drawing, loss, &figures, &read(self.truth())?, &pictures);
         text(page_path, &page)?;
         Ok(paths.into())
     }

@@ -65,6 +65,8 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     const DRAWS_OBJECTS: bool = false;
     /// How surfels are divided into groups if nobody says; none: the method draws no groups.
     const GROUPING: Option<Grouping> = None;
+    /// Whether layers of surfels with opacities are blended; else a surfel is opaque.
+    const BLENDS: bool = false;
     /// Whether surfels are needed from back to front.
     const BACK_TO_FRONT: bool = false;
 

@@ -95,6 +95,12 @@ macro_rules! methods {
                 match self { $(Self::$method(_) => <$settings>::GROUPING,)* }
             }
 
+            /// Whether layers of surfels with opacities are blended; else a surfel is opaque.
+            #[must_use]
+            pub fn blends(&self) -> bool {
+                match self { $(Self::$method(_) => <$settings>::BLENDS,)* }
+            }
+
             /// Whether surfels are needed from back to front.
             #[must_use]
             pub fn needs_order(&self) -> bool {

@@ -10,8 +10,8 @@
 
 pub mod chart;
 pub mod front;
-// REPORT
-// RUN
+pub mod report;
+pub mod run;
 pub mod spread;
 pub mod sweep;
 pub mod truth;

@@ -89,6 +89,7 @@ impl Algorithm for Settings {
     const SUMMARY: &'static str =
         "depth peeling, each layer by 2+1 passes: the truth of transparency [Mam89, Eve02]";
     const STAGES: &'static [Stage] = planes::ROWS;
+    const BLENDS: bool = true;
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(48);
     type Memory = ();
 

@@ -91,6 +91,7 @@ impl Algorithm for Settings {
     const SUMMARY: &'static str =
         "layers alpha-blended within groups, averaged [ZP06, Algorithm 2]";
     const STAGES: &'static [Stage] = planes::STAGES;
+    const BLENDS: bool = true;
     const GROUPING: Option<Grouping> = Some(GROUPING);
     const BACK_TO_FRONT: bool = true;
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(48);

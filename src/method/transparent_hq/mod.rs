@@ -80,6 +80,7 @@ impl Algorithm for Settings {
     const SUMMARY: &'static str = "layers behind a smoothly interpolated nearest one; reflection, \
          refraction, dispersion [ZP06, Algorithm 3]";
     const STAGES: &'static [Stage] = planes::STAGES;
+    const BLENDS: bool = true;
     const GROUPING: Option<Grouping> = Some(transparent::GROUPING);
     const BACK_TO_FRONT: bool = true;
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(72);

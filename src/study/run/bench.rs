@@ -25,6 +25,16 @@ struct Load {
     ready: Ready,
 }
 
+impl Load {
+    /// Whether no surfel has an opacity.
+    fn is_opaque(&self) -> bool {
+        let scene = &self.ready.loaded.scene;
+        let shared = scene.objects.iter().flat_map(|objects| objects.geometries());
+        let all = shared.map(|geometry| &geometry.surfels).chain([&scene.surfels]);
+        all.into_iter().all(|surfels| surfels.opacity().is_none())
+    }
+}
+
 /// Groups of a scene.
 #[derive(Debug)]
 struct Grouped {
@@ -48,7 +58,8 @@ pub struct Visit<'a> {
 }
 
 impl<'e> Bench<'e> {
-    /// Loads the scenes of candidates; those that their methods cannot draw are left out, and why.
+    /// Loads the scenes of candidates; those that their methods cannot draw are left out, and why. Those
+    /// that need opacities are dropped where there are none.
     ///
     /// # Errors
     /// As [`SceneFile::ready`] if no candidate can be drawn.
@@ -61,6 +72,7 @@ impl<'e> Bench<'e> {
         let (mut kept, mut left_out, mut first) = (Vec::new(), Vec::new(), None);
         for candidate in candidates {
             match bench.scene(&candidate, progress) {
+                Ok(load) if candidate.needs_opacity && bench.loads[load].is_opaque() => {}
                 Ok(_) => kept.push(candidate),
                 Err(error @ Error::Invalid(_)) => {
                     left_out.push((candidate, error.to_string()));

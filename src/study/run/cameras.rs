@@ -8,16 +8,23 @@ pub const FRAMES: u32 = 8;
 /// How far the camera turns from picture to picture along its path, in degrees.
 pub const DEGREES: f64 = 0.25;
 
-/// The camera under shifts by less than a pixel: frame i by (i / 8, (3 i mod 8) / 8) px to the right
-/// and down, so that each eighth comes once in either direction.
+/// Shifts by less than a pixel, in eighths: frame i by i to the right and 3 i mod 8 down, so that
+/// each eighth comes once in either direction.
+#[must_use]
+pub fn shifts() -> Vec<[u32; 2]> {
+    (0..FRAMES).map(|i| [i, 3 * i % FRAMES]).collect()
+}
+
+/// The camera under these shifts.
 #[must_use]
 pub fn shifted(camera: &Camera) -> Vec<Camera> {
-    let eighth = |i: u32| i as f32 / FRAMES as f32;
-    let shift = |i: u32| {
-        let (right, down) = (eighth(i), eighth(3 * i % FRAMES));
-        Camera { cx: camera.cx + right, cy: camera.cy + down, ..*camera }
+    let eighths = |k: u32| k as f32 / 8.0;
+    let shift = |[right, down]: [u32; 2]| Camera {
+        cx: camera.cx + eighths(right),
+        cy: camera.cy + eighths(down),
+        ..*camera
     };
-    (0..FRAMES).map(shift).collect()
+    shifts().into_iter().map(shift).collect()
 }
 
 /// The camera on its way around what it looks at: frame i turned by [`DEGREES`] i about the vertical axis of the

@@ -6,14 +6,34 @@ use super::record::Measured;
 use super::truths::Truths;
 use crate::error::Result;
 use crate::frame::{Exec, Frame};
-use crate::io::scene_file::{Number, OutputSettings};
-use crate::method::Session;
-use crate::scene::Camera;
+use crate::io::scene_file::{Number, Ready};
+use crate::scene::Objects;
+use crate::study::report::chart::Loss;
 use crate::study::sweep::Candidate;
-use crate::verify::metrics::{Errors, Flicker};
+use crate::verify::metrics::errors::{Errors, FIGURES, Figure, Reference};
+use crate::verify::metrics::flicker;
 use std::collections::BTreeMap;
 
-/// Draws a candidate and measures its errors; the picture, too.
+/// The figures of flicker.
+const FLICKERS: [Loss; 2] = [
+    Loss { figure: "flicker_shift", title: "flicker under shifts, RMS", of: |v| v },
+    Loss { figure: "flicker_path", title: "flicker along a path, RMS", of: |v| v },
+];
+
+/// Every figure as a loss, in the order of tables; the name is that of the figure.
+#[must_use]
+pub fn losses() -> Vec<Loss> {
+    let of = |figure: &Figure| Loss { figure: figure.name, title: figure.title, of: figure.loss };
+    FIGURES.iter().map(of).chain(FLICKERS).collect()
+}
+
+/// How many surfels a scene shows.
+fn drawn(ready: &Ready) -> u64 {
+    let scene = &ready.loaded.scene;
+    scene.objects.as_ref().map_or(scene.surfels.len() as u64, Objects::drawn_total)
+}
+
+/// Draws a candidate and measures its errors, with what is needed of the [still](Truths::still) truth; the picture, too.
 ///
 /// The picture is the second of two of one camera: `deferred` shows what it has come to where
 /// nothing moves. Flicker is measured on the pictures of [`cameras`], in their order, of which each
@@ -25,7 +45,7 @@ use std::collections::BTreeMap;
 pub fn measure(
     bench: &mut Bench<'_>,
     candidate: &Candidate,
-    truths: &Truths,
+    (truths, reference): (&Truths, &Reference<'_>),
     exec: &Exec,
 ) -> Result<(Measured, Frame<f32>)> {
     let output = candidate.file.output;
@@ -33,25 +53,37 @@ pub fn measure(
     let camera = visit.ready.camera;
     output.draw(&mut visit.session, &camera)?;
     let frame = output.draw(&mut visit.session, &camera)?.frame.clone();
-    let errors = Errors::of(&frame, &truths.still.frame, exec)?;
-    let mut figures: BTreeMap<String, f64> = errors
-        .figures()
-        .into_iter()
-        .filter_map(|(name, value)| Some((name.to_owned(), value.filter(|v| v.is_finite())?)))
-        .collect();
+    let errors = Errors::of(&frame, reference, exec)?;
+    let mut known = BTreeMap::new();
+    let mut know = |name: &str, value: Option<f64>| {
+        // Of equal pictures the PSNR is infinite, which no file holds.
+        known.extend(value.filter(|value| value.is_finite()).map(|value| (name.to_owned(), value)));
+    };
+    for figure in FIGURES {
+        know(figure.name, (figure.of)(&errors));
+    }
     let mut spectra = [Vec::new(), Vec::new()];
     if output.number == Number::F32 {
         let looks = [
-            ("flicker_shift", cameras::shifted(&camera), &truths.shifted),
-            ("flicker_path", cameras::path(&camera), &truths.path),
+            (cameras::shifted(&camera), &truths.still.shifted),
+            (cameras::path(&camera), &truths.path),
         ];
-        for (spectrum, (name, cameras, truths)) in spectra.iter_mut().zip(looks) {
-            let flicker = flicker(&mut visit.session, output, &cameras, truths)?;
-            figures.insert(name.to_owned(), flicker.rms());
+        for ((spectrum, flickers), (cameras, truths)) in spectra.iter_mut().zip(FLICKERS).zip(looks)
+        {
+            if truths.is_empty() {
+                continue;
+            }
+            let mut errors = flicker::Errors::default();
+            for (camera, truth) in cameras.iter().zip(truths) {
+                let picture = output.draw(&mut visit.session, camera)?;
+                errors.push(picture.frame.color("")?, truth)?;
+            }
+            let flicker = errors.flicker();
+            know(flickers.figure, Some(flicker.rms()));
             *spectrum = flicker.power;
         }
     }
-    let surfels = visit.ready.loaded.surfels_drawn();
+    let surfels = drawn(visit.ready);
     let prepared = visit.prepared.as_secs_f64() * 1e3;
-    Ok((Measured { surfels, prepared, figures, spectra }, frame))
+    Ok((Measured { surfels, prepared, figures: known, spectra }, frame))
 }

@@ -10,10 +10,11 @@
 
 use super::cameras;
 use crate::error::Result;
-use crate::frame::{Exec, Frame};
+use crate::frame::{Exec, Plane};
 use crate::io::scene_file::{Draw, GroupChoice, MethodChoice, SceneFile, Source};
 use crate::method::Method;
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Scene, Surfels};
+use crate::setting::{Fields, Value};
 use crate::study::truth::{self, Surface, Truth};
 
 /// What the true picture is of.
@@ -22,6 +23,8 @@ pub struct Known {
     /// The lights, and the surfels if there are no surfaces.
     scene: Scene,
     surfaces: Vec<Surface>,
+    /// Whether what is seen from behind is passed through.
+    cull: bool,
     /// Why no surface is known.
     unknown: Option<String>,
 }
@@ -29,12 +32,11 @@ pub struct Known {
 /// The true pictures of a study.
 #[derive(Clone, Debug)]
 pub struct Truths {
-    /// Of the picture itself.
+    /// Of the picture itself, and its colours under the [shifts](cameras::shifted).
     pub still: Truth,
-    /// Under the [shifts](cameras::shifted).
-    pub shifted: Vec<Frame<f32>>,
-    /// Along the [path](cameras::path).
-    pub path: Vec<Frame<f32>>,
+    /// The colours along the [path](cameras::path), the first those of the picture itself; none where
+    /// no surface is known.
+    pub path: Vec<Plane<[f32; 3]>>,
 }
 
 impl Known {
@@ -43,11 +45,13 @@ impl Known {
     /// # Errors
     /// As [`SceneFile::ready`] where not even points can be drawn.
     pub fn of(file: &SceneFile, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Self> {
+        let method = file.method.method()?;
+        let cull = method.values().contains(&("cull", Value::Switch(true)));
         match surfaces(file, exec, progress) {
-            Ok((scene, surfaces)) => Ok(Self { scene, surfaces, unknown: None }),
+            Ok((scene, surfaces)) => Ok(Self { scene, surfaces, cull, unknown: None }),
             Err(why) => {
                 let scene = drawn(file, |draw| draw, exec, progress)?;
-                Ok(Self { scene, surfaces: Vec::new(), unknown: Some(why) })
+                Ok(Self { scene, surfaces: Vec::new(), cull, unknown: Some(why) })
             }
         }
     }
@@ -66,43 +70,44 @@ impl Known {
         self.unknown.as_deref()
     }
 
-    /// The true picture from a camera.
+    /// The true picture from a camera, and its colours under shifts.
     ///
     /// # Errors
     /// As [`truth::of_surfaces`] and [`truth::of_points`].
-    pub fn picture(
+    fn picture(
         &self,
-        camera: &Camera,
+        looks: (&Camera, &[[u32; 2]]),
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Truth> {
         if self.unknown.is_some() {
-            truth::of_points(&self.scene, camera, exec, progress)
-        } else {
-            truth::of_surfaces(&self.surfaces, &self.scene, camera, exec, progress)
+            return truth::of_points(&self.scene, looks, exec, progress);
         }
+        truth::of_surfaces(&self.surfaces, &self.scene, self.cull, looks, exec, progress)
     }
 
-    /// The true pictures of a study that looks from a camera.
+    /// The true pictures of a study that looks from a camera. Those along the path are not made of
+    /// points alone, where each takes as long as a study.
     ///
     /// # Errors
-    /// As [`Known::picture`].
+    /// As [`truth::of_surfaces`] and [`truth::of_points`].
     pub fn pictures(
         &self,
         camera: &Camera,
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Truths> {
-        let all: Vec<Camera> =
-            [cameras::shifted(camera), cameras::path(camera)].into_iter().flatten().collect();
-        let mut frames = Vec::new();
-        let still = self.picture(camera, exec, progress)?;
-        for (i, camera) in all.iter().enumerate() {
-            progress("the truth of flicker", i as u64, all.len() as u64);
-            frames.push(self.picture(camera, exec, &|_, _, _| ())?.frame);
+        let still = self.picture((camera, &cameras::shifts()), exec, progress)?;
+        let mut path = Vec::new();
+        if self.unknown.is_none() {
+            path.push(still.frame.color("")?.clone());
+            for (i, camera) in cameras::path(camera).iter().enumerate().skip(1) {
+                progress("the truth along a path", i as u64, cameras::FRAMES.into());
+                let truth = self.picture((camera, &[]), exec, &|_, _, _| ())?;
+                path.push(truth.frame.color("")?.clone());
+            }
         }
-        let path = frames.split_off(cameras::FRAMES as usize);
-        Ok(Truths { still, shifted: frames, path })
+        Ok(Truths { still, path })
     }
 }
 
@@ -134,7 +139,7 @@ fn surfaces(
         let lights = Scene {
             lights: file.lights.clone(),
             material: file.material,
-            ..Scene::unlit(&file.name, crate::scene::Surfels::none())
+            ..Scene::unlit(&file.name, Surfels::none())
         };
         return Ok((lights, all));
     }
@@ -143,7 +148,7 @@ fn surfaces(
     if !scene.surfels.is_empty() {
         return Err("a part of the scene is points alone".into());
     }
-    all.push(Surface::Triangles(scene.primitives.clone()));
+    all.push(Surface::Triangles(scene.primitives.triangles.clone()));
     Ok((scene, all))
 }
 

@@ -10,6 +10,9 @@
 //! 3. each method with one setting at another [value](TRADES), setting by setting, and for each
 //!    setting method by method.
 //!
+//! In a scene without opacities a method that [blends](Method::blends) layers is tried as in 1 alone,
+//! unless it is the one that is asked for: there are no layers to see.
+//!
 //! `Decided:` one setting at a time. All combinations would be thousands of pictures, and the study
 //! names which setting buys what.
 
@@ -34,6 +37,8 @@ pub struct Candidate {
     pub method: &'static str,
     /// The scene with these options.
     pub file: SceneFile,
+    /// Whether it is tried in scenes with opacities alone.
+    pub needs_opacity: bool,
 }
 
 /// The candidates of a scene; of one method alone if one is `only` asked for.
@@ -47,6 +52,10 @@ pub fn candidates(scene: &SceneFile, only: Option<&str>) -> Result<Vec<Candidate
     let methods = methods.filter(|name| only.is_none_or(|only| only == *name));
     let starts = methods.map(|name| start(scene, name)).collect::<Result<Vec<_>>>()?;
     let mut all = starts.clone();
+    let blends = |one: &Candidate| Method::by_name(one.method).is_ok_and(|method| method.blends());
+    let mark =
+        |one: &Candidate| Candidate { needs_opacity: only.is_none() && blends(one), ..one.clone() };
+    let starts: Vec<Candidate> = starts.iter().map(mark).collect();
     all.extend(starts.iter().flat_map(details));
     for trade in TRADES {
         for start in &starts {
@@ -68,7 +77,8 @@ fn start(scene: &SceneFile, name: &'static str) -> Result<Candidate> {
     }
     // What else is kept or how is no question of this study.
     file.output = OutputSettings { number: scene.output.number, ..OutputSettings::default() };
-    Ok(Candidate { options: format!("--method {name}"), method: name, file })
+    let options = format!("--method {name}");
+    Ok(Candidate { options, method: name, file, needs_opacity: false })
 }
 
 /// The same at every other level of detail.

@@ -67,6 +67,17 @@ fn no_two_are_alike_and_methods_come_first() {
 }
 
 #[test]
+fn what_blends_is_tried_once_where_nothing_is_blended() {
+    let count = |only, needs| {
+        let all = candidates(&shape("torus"), only).unwrap();
+        all.iter().filter(|one| one.method == "peeling" && one.needs_opacity == needs).count()
+    };
+    assert_eq!(count(None, false), 1);
+    assert!(count(None, true) > 5);
+    assert_eq!(count(Some("peeling"), true), 0);
+}
+
+#[test]
 fn the_scene_s_method_is_tried_as_the_scene_has_set_it() {
     let mut scene = shape("torus");
     scene.method.name = Some("ewa");

@@ -3,7 +3,7 @@
 use super::{Coverage, Region, coverage, flip, outline, psnr, regions, rmse, ssim};
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Frame, Plane};
-use crate::number::elementary::atan2;
+use crate::number::elementary::{atan2, pow};
 
 /// The errors of a picture; a figure is absent where it cannot be said.
 ///
@@ -29,12 +29,34 @@ pub struct Errors {
     pub normal: Option<f64>,
 }
 
+/// A true picture, and what comparing with it needs of it alone.
+#[derive(Clone, Debug)]
+pub struct Reference<'t> {
+    truth: &'t Frame<f32>,
+    seen: flip::Seen,
+    regions: Vec<Region>,
+    outline: f64,
+}
+
+impl<'t> Reference<'t> {
+    /// Of a true picture with the colour (empty name), `A` and `Z`.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if it lacks a plane; as [`flip::Seen::of`].
+    pub fn of(truth: &'t Frame<f32>, exec: &Exec) -> Result<Self> {
+        let (alpha, width) = (truth.scalar("A")?.values(), truth.width as usize);
+        let seen = flip::Seen::of(truth.color("")?, flip::PIXELS_PER_DEGREE, exec)?;
+        let (regions, outline) = (regions(alpha, width), outline::length(alpha, width));
+        Ok(Self { truth, seen, regions, outline })
+    }
+}
+
 /// A figure of [`Errors`].
 #[derive(Clone, Copy, Debug)]
 pub struct Figure {
     /// What it is called in tables.
     pub name: &'static str,
-    /// What it is, with its unit.
+    /// What its loss is, with its unit.
     pub title: &'static str,
     /// Its value.
     pub of: fn(&Errors) -> Option<f64>,
@@ -45,7 +67,10 @@ pub struct Figure {
 /// Every figure, in the order of tables.
 pub const FIGURES: [Figure; 9] = [
     figure("rmse", "RMSE, linear RGB", |e| Some(e.rmse)),
-    Figure { loss: |v| -v, ..figure("psnr", "PSNR, dB", |e| Some(psnr(e.rmse))) },
+    Figure {
+        loss: |v| pow(10.0, -v / 20.0),
+        ..figure("psnr", "RMSE of the PSNR", |e| Some(psnr(e.rmse)))
+    },
     Figure { loss: |v| 1.0 - v, ..figure("ssim", "1 - SSIM", |e| e.ssim) },
     figure("flip", "FLIP, mean", |e| Some(e.flip)),
     figure("holes", "holes, per mille of what is covered", |e| e.of_covered(e.coverage.holes)),
@@ -60,23 +85,23 @@ const fn figure(name: &'static str, title: &'static str, of: fn(&Errors) -> Opti
 }
 
 impl Errors {
-    /// The errors of the planes of a picture: the colour (empty name), `A`, `Z` and, where both have
-    /// it, `normal`.
+    /// The errors of the planes of a picture: the colour (empty name), `A`, `Z` and, where the truth has
+    /// it too, `normal`.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the two are not of one size or lack a plane; as [`flip::flip`].
-    pub fn of(picture: &Frame<f32>, truth: &Frame<f32>, exec: &Exec) -> Result<Self> {
+    /// [`Error::Invalid`] if the two are not of one size or lack a plane; as [`flip::Seen::of`].
+    pub fn of(picture: &Frame<f32>, reference: &Reference<'_>, exec: &Exec) -> Result<Self> {
+        let Reference { truth, seen, regions, outline } = reference;
         if (picture.width, picture.height) != (truth.width, truth.height) {
             return Err(Error::Invalid("a picture and its truth are of one size".into()));
         }
         let width = truth.width as usize;
-        let colors = [picture.color("")?, truth.color("")?];
-        let [found, expected] = colors.map(|plane| channels(plane));
-        let similar = |c: usize| ssim(&found[c], &expected[c], width);
-        let ssim = [0, 1, 2].map(similar).into_iter().sum::<Option<f64>>().map(|sum| sum / 3.0);
-        let differences = flip::flip(colors[0], colors[1], flip::PIXELS_PER_DEGREE, exec)?;
+        let color = picture.color("")?;
+        let [found, expected] = [color, truth.color("")?].map(channels);
+        let similar = exec.ordered(vec![0, 1, 2], |c: usize| ssim(&found[c], &expected[c], width));
+        let similar = similar.into_iter().sum::<Option<f64>>();
+        let seen_here = flip::Seen::of(color, flip::PIXELS_PER_DEGREE, exec)?;
         let alphas = [picture.scalar("A")?.values(), truth.scalar("A")?.values()];
-        let regions = regions(alphas[1], width);
         let inside: Vec<usize> = (0..regions.len())
             .filter(|&i| regions[i] == Region::Interior && alphas[0][i] > 0.0)
             .collect();
@@ -90,11 +115,11 @@ impl Errors {
         };
         Ok(Self {
             rmse: rmse(&found.concat(), &expected.concat()),
-            ssim,
-            flip: flip::mean(&differences),
+            ssim: similar.map(|sum| sum / 3.0),
+            flip: flip::mean(&seen_here.differences(seen, exec)?),
             coverage: coverage(alphas[0], alphas[1], width),
             outline: outline::length(alphas[0], width),
-            true_outline: outline::length(alphas[1], width),
+            true_outline: *outline,
             depth: root_mean(depth),
             normal,
         })
@@ -163,10 +188,15 @@ mod tests {
         })
     }
 
+    fn errors(picture: &Frame<f32>, truth: &Frame<f32>) -> Result<Errors> {
+        let exec = Exec::sequential();
+        Errors::of(picture, &Reference::of(truth, &exec)?, &exec)
+    }
+
     #[test]
     fn the_truth_has_no_error() {
         let truth = square(0, 3.0, [0.0, 0.0, 1.0]);
-        let errors = Errors::of(&truth, &truth, &Exec::sequential()).unwrap();
+        let errors = errors(&truth, &truth).unwrap();
         for Figure { name, of, loss, .. } in FIGURES {
             let value = of(&errors).unwrap();
             assert!(
@@ -179,12 +209,11 @@ mod tests {
     #[test]
     fn each_error_by_hand() {
         let truth = square(0, 3.0, [0.0, 0.0, 1.0]);
-        let exec = Exec::sequential();
-        let deep = Errors::of(&square(0, 3.5, [0.0, 1.0, 1.0]), &truth, &exec).unwrap();
+        let deep = errors(&square(0, 3.5, [0.0, 1.0, 1.0]), &truth).unwrap();
         assert!((deep.depth.unwrap() - 0.5).abs() < 1e-12);
         assert!((deep.normal.unwrap() - 45.0).abs() < 1e-12);
         assert_eq!([deep.rmse, deep.flip, deep.outline - deep.true_outline], [0.0; 3]);
-        let moved = Errors::of(&square(2, 3.0, [0.0, 0.0, 1.0]), &truth, &exec).unwrap();
+        let moved = errors(&square(2, 3.0, [0.0, 0.0, 1.0]), &truth).unwrap();
         // Two columns are uncovered, of which 8 px are interior, and two covered, of which 12 are outside.
         assert!((moved.rmse - (40.0 * 0.25 / 400.0_f64).sqrt()).abs() < 1e-12);
         let Coverage { holes, spill, .. } = moved.coverage;
@@ -193,19 +222,17 @@ mod tests {
         assert_eq!((holes.of)(&moved), Some(80.0));
         assert_eq!(moved.depth, Some(0.0), "of pixels that both cover");
         let empty = frame([20, 20], |_, _| ([0.0; 3], f32::INFINITY, [0.0; 3]));
-        let nothing = Errors::of(&empty, &empty, &exec).unwrap();
+        let nothing = errors(&empty, &empty).unwrap();
         let absent = FIGURES.iter().filter(|figure| (figure.of)(&nothing).is_none());
         let names: Vec<_> = absent.map(|figure| figure.name).collect();
         assert_eq!(names, ["holes", "spill", "outline", "depth", "normal"]);
-        assert!(
-            Errors::of(&frame([3, 3], |_, _| ([0.0; 3], 1.0, [0.0; 3])), &truth, &exec).is_err()
-        );
+        assert!(errors(&frame([3, 3], |_, _| ([0.0; 3], 1.0, [0.0; 3])), &truth).is_err());
     }
 
     #[test]
     fn small_pictures_have_no_ssim() {
         let small = frame([10, 12], |x, y| ([(x + y) as f32 / 30.0; 3], 1.0, [0.0, 0.0, 1.0]));
-        let errors = Errors::of(&small, &small, &Exec::sequential()).unwrap();
+        let errors = errors(&small, &small).unwrap();
         assert_eq!(errors.ssim, None);
     }
 }

@@ -51,28 +51,15 @@ type Colors = Vec<[f64; 3]>;
 /// The difference at each pixel, from 0 to 1; its mean is the figure.
 ///
 /// # Errors
-/// [`Error::Invalid`] if the pictures are not of one size, or if the process may not hold what it
-/// takes.
+/// As [`Seen::of`] and [`Seen::differences`].
 pub fn flip(
     picture: &Plane<[f32; 3]>,
     reference: &Plane<[f32; 3]>,
     pixels_per_degree: f64,
     exec: &Exec,
 ) -> Result<Plane<f32>> {
-    let (width, height) = (reference.width(), reference.height());
-    if (picture.width(), picture.height()) != (width, height) {
-        return Err(Error::Invalid("FLIP compares pictures of one size".into()));
-    }
-    memory::ask(u64::from(width) * u64::from(height) * 360, || "FLIP".into())?;
-    let seen = [picture, reference].map(|plane| Seen::of(plane, pixels_per_degree, exec));
-    let most = hyab(lab([0.0, 1.0, 0.0]), lab([0.0, 0.0, 1.0]));
-    let [a, b] = &seen;
-    let row = |y: usize| -> Vec<f32> {
-        let pixels = y * width as usize..(y + 1) * width as usize;
-        pixels.map(|i| difference(a, b, i, most) as f32 + 0.0).collect()
-    };
-    let rows = exec.ordered((0..height as usize).collect(), row);
-    Ok(Plane::from_values(width, height, rows.concat()))
+    let seen = |plane| Seen::of(plane, pixels_per_degree, exec);
+    seen(picture)?.differences(&seen(reference)?, exec)
 }
 
 /// The mean of the differences.
@@ -82,8 +69,11 @@ pub fn mean(differences: &Plane<f32>) -> f64 {
     values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len() as f64
 }
 
-/// What of a picture is compared.
-struct Seen {
+/// What of a picture is compared: steps 1 to 4, which need no other picture.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    width: u32,
+    height: u32,
     /// Step 3: L*, a* and b*.
     lab: Colors,
     /// Step 4: the responses to edges and to points.
@@ -91,21 +81,38 @@ struct Seen {
 }
 
 impl Seen {
-    fn of(plane: &Plane<[f32; 3]>, pixels_per_degree: f64, exec: &Exec) -> Self {
-        let (width, height) = (plane.width() as usize, plane.height() as usize);
-        let rows = |row: &(dyn Fn(usize) -> Colors + Sync)| -> Colors {
-            exec.ordered((0..height).collect(), row).concat()
-        };
-        let opponent = rows(&|y| {
-            let row = &plane.values()[y * width..(y + 1) * width];
-            row.iter().map(|rgb| opponent(xyz(rgb.map(|v| cut(f64::from(v)))))).collect()
-        });
-        let grid = Grid { width, height, exec };
+    /// Of a picture that is seen at so many pixels a degree.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the process may not hold what it takes.
+    pub fn of(plane: &Plane<[f32; 3]>, pixels_per_degree: f64, exec: &Exec) -> Result<Self> {
+        let [width, height] = [plane.width(), plane.height()];
+        memory::ask(u64::from(width) * u64::from(height) * 180, || "FLIP".into())?;
+        let grid = Grid { width: width as usize, height: height as usize, exec };
+        let opponent =
+            grid.each(plane.values(), |rgb| opponent(xyz(rgb.map(|v| cut(f64::from(v))))));
         let filtered = resolved(&opponent, &grid, pixels_per_degree);
-        let lab =
-            rows(&|y| filtered[y * width..(y + 1) * width].iter().map(|c| lab(rgb(*c))).collect());
+        let lab = grid.each(&filtered, |color| lab(rgb(color)));
         let features = features(&opponent, &grid, pixels_per_degree);
-        Self { lab, features }
+        Ok(Self { width, height, lab, features })
+    }
+
+    /// The difference at each pixel, from 0 to 1.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the pictures are not of one size.
+    pub fn differences(&self, other: &Self, exec: &Exec) -> Result<Plane<f32>> {
+        let (width, height) = (self.width, self.height);
+        if (other.width, other.height) != (width, height) {
+            return Err(Error::Invalid("FLIP compares pictures of one size".into()));
+        }
+        let most = hyab(lab([0.0, 1.0, 0.0]), lab([0.0, 0.0, 1.0]));
+        let row = |y: usize| -> Vec<f32> {
+            let pixels = y * width as usize..(y + 1) * width as usize;
+            pixels.map(|i| difference(self, other, i, most) as f32 + 0.0).collect()
+        };
+        let rows = exec.ordered((0..height as usize).collect(), row);
+        Ok(Plane::from_values(width, height, rows.concat()))
     }
 }
 
@@ -118,6 +125,10 @@ fn difference(a: &Seen, b: &Seen, i: usize, most: f64) -> f64 {
         0.95 + (of_colors - knee) / (most - knee) * 0.05
     };
     let [edges, points] = [0, 1].map(|kind| (a.features[i][kind] - b.features[i][kind]).abs());
+    // Most pixels of most pictures are equal, and powers take long.
+    if of_colors == 0.0 && edges == 0.0 && points == 0.0 {
+        return 0.0;
+    }
     let of_features = pow(FRAC_1_SQRT_2 * if edges > points { edges } else { points }, 0.5);
     pow(of_colors, 1.0 - of_features)
 }
@@ -168,7 +179,8 @@ fn lab(rgb: [f64; 3]) -> [f64; 3] {
 /// The difference of two adjusted colours, to the power of 0.7.
 fn hyab(a: [f64; 3], b: [f64; 3]) -> f64 {
     let [l, r, g] = [0, 1, 2].map(|c| a[c] - b[c]);
-    pow(l.abs() + (r * r + g * g).sqrt(), 0.7)
+    let distance = l.abs() + (r * r + g * g).sqrt();
+    if distance > 0.0 { pow(distance, 0.7) } else { 0.0 }
 }
 
 /// What filters run over.
@@ -179,31 +191,54 @@ struct Grid<'e> {
 }
 
 impl Grid<'_> {
-    /// The sums of weights times values at offsets along a row (of step 1) or a column.
-    fn along<const N: usize>(
+    /// Something of each value.
+    fn each<T: Copy + Sync, U: Clone + Send>(
         &self,
-        values: &[[f64; N]],
-        down: bool,
-        weights: &[[f64; N]],
-    ) -> Vec<[f64; N]> {
+        values: &[T],
+        of: impl Fn(T) -> U + Sync,
+    ) -> Vec<U> {
+        let row = |row: &[T]| row.iter().map(|value| of(*value)).collect::<Vec<U>>();
+        self.exec.ordered(values.chunks(self.width).collect(), row).concat()
+    }
+
+    /// The sums of weights times values at offsets along rows.
+    fn across<const N: usize>(&self, values: &[[f64; N]], weights: &[[f64; N]]) -> Vec<[f64; N]> {
         let reach = weights.len() / 2;
-        let (width, last) = (self.width, if down { self.height } else { self.width } - 1);
-        let row = |y: usize| -> Vec<[f64; N]> {
-            let pixel = |x: usize| {
-                let place = if down { y } else { x };
-                let mut sum = [0.0; N];
-                for (k, weights) in weights.iter().enumerate() {
-                    let at = (place + k).saturating_sub(reach).min(last);
-                    let value = &values[if down { at * width + x } else { y * width + at }];
-                    for c in 0..N {
-                        sum[c] += weights[c] * value[c];
-                    }
-                }
-                sum
-            };
-            (0..width).map(pixel).collect()
+        let row = |row: &[[f64; N]]| {
+            // The row with its ends continued.
+            let last = row.len() - 1;
+            let wide = (0..row.len() + 2 * reach).map(|i| row[i.saturating_sub(reach).min(last)]);
+            let wide: Vec<[f64; N]> = wide.collect();
+            let mut sums = vec![[0.0; N]; row.len()];
+            for (k, weights) in weights.iter().enumerate() {
+                add(&mut sums, &wide[k..k + row.len()], weights);
+            }
+            sums
+        };
+        self.exec.ordered(values.chunks(self.width).collect(), row).concat()
+    }
+
+    /// The same along columns.
+    fn down<const N: usize>(&self, values: &[[f64; N]], weights: &[[f64; N]]) -> Vec<[f64; N]> {
+        let reach = weights.len() / 2;
+        let row = |y: usize| {
+            let mut sums = vec![[0.0; N]; self.width];
+            for (k, weights) in weights.iter().enumerate() {
+                let at = (y + k).saturating_sub(reach).min(self.height - 1);
+                add(&mut sums, &values[at * self.width..(at + 1) * self.width], weights);
+            }
+            sums
         };
         self.exec.ordered((0..self.height).collect(), row).concat()
+    }
+}
+
+/// Adds weights times values.
+fn add<const N: usize>(sums: &mut [[f64; N]], values: &[[f64; N]], weights: &[f64; N]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        for c in 0..N {
+            sum[c] += weights[c] * value[c];
+        }
     }
 }
 
@@ -237,7 +272,7 @@ fn resolved(opponent: &[[f64; 3]], grid: &Grid<'_>, pixels_per_degree: f64) -> C
     let [y, cx, wide, narrow] = [y, cx, wide, narrow].map(normalized);
     let all: Vec<[f64; 4]> = (0..y.len()).map(|k| [y[k], cx[k], wide[k], narrow[k]]).collect();
     let four: Vec<[f64; 4]> = opponent.iter().map(|&[y, cx, cz]| [y, cx, cz, cz]).collect();
-    let filtered = grid.along(&grid.along(&four, false, &all), true, &all);
+    let filtered = grid.down(&grid.across(&four, &all), &all);
     filtered
         .iter()
         .map(|&[y, cx, wide, narrow]| [y, cx, shares[0] * wide + shares[1] * narrow])
@@ -262,8 +297,8 @@ fn features(opponent: &[[f64; 3]], grid: &Grid<'_>, pixels_per_degree: f64) -> V
         (0..across.len()).map(|k| of.map(|weights| weights[k])).collect()
     };
     let luminance: Vec<[f64; 4]> = opponent.iter().map(|[y, ..]| [(y + 16.0) / 116.0; 4]).collect();
-    let rows = grid.along(&luminance, false, &all([&edge, &across, &point, &across]));
-    let both = grid.along(&rows, true, &all([&across, &edge, &across, &point]));
+    let rows = grid.across(&luminance, &all([&edge, &across, &point, &across]));
+    let both = grid.down(&rows, &all([&across, &edge, &across, &point]));
     let length = |a: f64, b: f64| (a * a + b * b).sqrt();
     both.iter().map(|&[ex, ey, px, py]| [length(ex, ey), length(px, py)]).collect()
 }
