@@ -216,7 +216,8 @@ impl<'a> Caster<'a> {
         let x = [place(left, width), place(right + 2.0, width)];
         let y = [place(top, height), place(bottom + 2.0, height)];
         let rect = Rect { x0: x[0], y0: y[0], x1: x[1], y1: y[1] };
-        (!rect.is_empty() && !(self.cull && from_behind())).then_some(rect)
+        let hidden = rect.is_empty() || (self.cull && from_behind());
+        (!hidden).then_some(rect)
     }
 }
 

@@ -124,7 +124,9 @@ fn mean(samples: &[[f64; 3]], width: usize, [x, y]: [usize; 2]) -> [f32; 3] {
     let mut sum = [0.0; 3];
     for row in 0..side {
         for sample in &samples[(y + row) * width + x..][..side] {
-            sum = [0, 1, 2].map(|c| sum[c] + sample[c]);
+            for (sum, part) in sum.iter_mut().zip(sample) {
+                *sum += part;
+            }
         }
     }
     sum.map(|sum: f64| (sum / f64::from(SAMPLES * SAMPLES)) as f32 + 0.0)

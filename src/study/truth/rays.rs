@@ -67,9 +67,10 @@ impl Rays {
         self.x.len() * self.y.len()
     }
 
-    /// x and y of the ray of a number, counted row by row.
-    pub(super) fn at(&self, i: usize) -> [f64; 2] {
-        [self.x[i % self.x.len()], self.y[i / self.x.len()]]
+    /// x and y of each ray and its number, row by row.
+    pub(super) fn each(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let rows = self.y.iter().flat_map(|&y| self.x.iter().map(move |&x| [x, y]));
+        rows.enumerate()
     }
 
     /// The columns within bounds in px, the end exclusive.
@@ -87,8 +88,9 @@ impl Rays {
     /// Those of some columns whose x is in a range.
     #[inline(always)]
     pub(super) fn span(&self, range: [f64; 2], columns: [usize; 2]) -> [usize; 2] {
-        let Axis { focal, center, .. } = self.columns;
-        within(range.map(|x| self.columns.place(x * focal + center)), columns)
+        let axis = &self.columns;
+        let place = |x: f64| axis.place(x * axis.focal + axis.center);
+        within([place(range[0]), place(range[1])], columns)
     }
 }
 

@@ -107,8 +107,8 @@ impl Caster<'_> {
 
     /// The nearest of a shape and of what is before it.
     fn trace(&self, shape: &Turned, surface: u32, rays: &Rays, nearest: &mut Nearest) {
-        for i in 0..rays.len() {
-            let (origin, direction) = self.ray(rays.at(i));
+        for (i, at) in rays.each() {
+            let (origin, direction) = self.ray(at);
             let origin = shape.shape_from_view.transform_point3(origin);
             let direction = shape.shape_from_view.transform_vector3(direction);
             let mut beyond = self.view.near;
@@ -146,8 +146,7 @@ impl Caster<'_> {
         let mut colors = vec![[0.0; 3]; rays.len()];
         let mut batch = Batch::default();
         let mut last = None;
-        for i in 0..rays.len() {
-            let at = rays.at(i);
+        for (i, at) in rays.each() {
             let t = nearest.t[i];
             let Some((normal, color)) = self.surface(nearest, i, at, &mut last) else {
                 colors[i] = self.behind(at);
@@ -208,7 +207,7 @@ impl Caster<'_> {
     fn seen(&self, rays: &Rays, nearest: &Nearest) -> Vec<Seen> {
         let behind = if self.scene.environment.is_some() { 1.0 } else { 0.0 };
         let mut last = None;
-        let seen = |i| match self.surface(nearest, i, rays.at(i), &mut last) {
+        let seen = |(i, at): (usize, _)| match self.surface(nearest, i, at, &mut last) {
             None => Seen { alpha: behind, depth: f32::INFINITY, normal: [0.0; 3] },
             Some((V { x, y, z }, _)) => Seen {
                 alpha: 1.0,
@@ -216,7 +215,7 @@ impl Caster<'_> {
                 normal: [x, y, z].map(|v| v as f32 + 0.0),
             },
         };
-        (0..rays.len()).map(seen).collect()
+        rays.each().map(seen).collect()
     }
 }
 

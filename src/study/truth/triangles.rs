@@ -128,9 +128,9 @@ impl Placed {
     /// The lines that bound it, for rays that reach so far; none if they look along it, so that rounding
     /// decides what they meet.
     ///
-    /// With h the triples (v.x, v.y, w) of the corners and D their determinant, a ray (x, y) meets the
-    /// plane where the sum of b_k h_k is W (x, y, 1), and there e_k = b_k D / W. W is a depth, or 1: so
-    /// before the eye every e has the sign of D.
+    /// With h0, h1, h2 the triples (v.x, v.y, w) of the corners and D their determinant, a ray (x, y) meets
+    /// the plane where (b0 h0 + b1 h1) + b2 h2 is W (x, y, 1). There e0 = b0 D / W, and so on. W is
+    /// a depth, or 1: so before the eye every e has the sign of D.
     pub(super) fn lines(&self, reach: Reach) -> Option<Lines> {
         let [x, y, w] = [&self.x, &self.y, &self.w];
         let wide = [0, 1, 2].map(|k| x[k].abs() + reach.x * w[k].abs());
@@ -162,7 +162,11 @@ impl Placed {
     /// Where the ray of (x, y) meets it, beyond the near plane.
     #[inline(always)]
     pub(super) fn meet(&self, x: f64, y: f64, near: f64) -> Option<Met> {
-        let p = [0, 1, 2].map(|k| [self.x[k] - x * self.w[k], self.y[k] - y * self.w[k]]);
+        // No closures: those of arrays stay functions.
+        let mut p = [[0.0; 2]; 3];
+        for (k, p) in p.iter_mut().enumerate() {
+            *p = [self.x[k] - x * self.w[k], self.y[k] - y * self.w[k]];
+        }
         let e = [area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1])];
         let above = e[0] > 0.0 || e[1] > 0.0 || e[2] > 0.0;
         let below = e[0] < 0.0 || e[1] < 0.0 || e[2] < 0.0;
@@ -170,7 +174,7 @@ impl Placed {
             return None;
         }
         let sum = (e[0] + e[1]) + e[2];
-        let weights = e.map(|e| e / sum);
+        let weights = [e[0] / sum, e[1] / sum, e[2] / sum];
         let t = mix(self.t, weights);
         (t > near && t < f64::INFINITY).then_some(Met { t, weights, front: above })
     }
@@ -224,22 +228,29 @@ const SLACK: f64 = 1.0 / 1024.0;
 /// 2^-46: far more than what rounding moves anything by, relative to what it was computed from.
 const RELATIVE: f64 = 1.0 / 70_368_744_177_664.0;
 
+#[inline(always)]
 fn mix([a, b, c]: [f64; 3], [wa, wb, wc]: [f64; 3]) -> f64 {
     (a * wa + b * wb) + c * wc
 }
 
 /// The sum of three vectors by their weights.
+#[inline(always)]
 pub(super) fn mixed([a, b, c]: [V; 3], weights: [f64; 3]) -> V {
-    let of = |part: fn(V) -> f64| mix([part(a), part(b), part(c)], weights);
-    Vector3::new(of(|v| v.x), of(|v| v.y), of(|v| v.z))
+    Vector3::new(
+        mix([a.x, b.x, c.x], weights),
+        mix([a.y, b.y, c.y], weights),
+        mix([a.z, b.z, c.z], weights),
+    )
 }
 
 /// The lesser of two numbers.
+#[inline(always)]
 fn lesser(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
 /// The greater of two numbers.
+#[inline(always)]
 fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
