@@ -254,3 +254,33 @@ fn lesser(a: f64, b: f64) -> f64 {
 fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Against integers, of products that are equal or all but.
+        #[test]
+        fn an_area_has_the_sign_of_the_exact_number(
+            x in -(1_i64 << 52)..(1_i64 << 52),
+            y in -(1_i64 << 52)..(1_i64 << 52),
+            part in -64_i64..64,
+            off in prop::array::uniform2(-2_i64..3),
+            power in -200_i32..200,
+        ) {
+            // Along one line but for the last digits.
+            let (a, b) = ([x, y], [x * part / 64 + off[0], y * part / 64 + off[1]]);
+            let product = |p: i64, q: i64| i128::from(p) * i128::from(q);
+            let exact = product(a[0], b[1]) - product(a[1], b[0]);
+            // A power of two takes no digit.
+            let scale = f64::from_bits(((1023 + power) as u64) << 52);
+            let [a, b] = [a, b].map(|p| p.map(|v| v as f64 * scale));
+            let found = area(a, b);
+            let sign = i128::from(found > 0.0) - i128::from(found < 0.0);
+            prop_assert_eq!(sign, exact.signum());
+            prop_assert_eq!(area(b, a), -found);
+        }
+    }
+}
