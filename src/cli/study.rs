@@ -10,7 +10,7 @@ use splatref::study::report::chart::{Loss, chart};
 use splatref::study::report::{csv, page};
 use splatref::study::run::measure::{losses, measure};
 use splatref::study::run::truths::{Known, Truths};
-use splatref::study::run::{Bench, Record, Study, Subject, time};
+use splatref::study::run::{Bench, LeftOut, Record, Study, Subject, time};
 use splatref::study::sweep::{Candidate, candidates};
 use splatref::verify::digest;
 use splatref::verify::metrics::errors::Reference;
@@ -174,6 +174,10 @@ impl Folder {
         for name in FILES {
             output::check_unread(&folder.0.join(name), &args.scene, scene)?;
         }
+        if args.resume {
+            let state = folder.0.join(STATE);
+            fs::metadata(&state).map_err(|source| Error::io(&state, source))?;
+        }
         let pictures = folder.0.join(PICTURES);
         fs::create_dir_all(&pictures).map_err(|source| Error::io(&pictures, source))?;
         Ok(folder)
@@ -184,14 +188,14 @@ impl Folder {
         &self,
         of: Subject,
         candidates: &[Candidate],
-        left_out: Vec<(Candidate, String)>,
+        left_out: Vec<LeftOut>,
         resume: bool,
         exec: &Exec,
     ) -> Result<Study> {
         let study = Study {
             of,
             candidates: candidates.iter().map(Record::of).collect(),
-            left_out: left_out.into_iter().map(|(one, why)| (one.options, why)).collect(),
+            left_out: left_out.into_iter().map(|(method, why)| (method.to_owned(), why)).collect(),
             machine: time::machine(exec),
         };
         if !resume {
@@ -289,8 +293,8 @@ fn print(study: &Study, loss: &Loss, total: Duration) {
     let [width, height] = study.of.size;
     report::line("scene", format!("{}, {width} x {height}", study.of.scene));
     report::line("truth", &study.of.truth);
-    for (options, why) in &study.left_out {
-        report::line("left out", format!("{options}: {why}"));
+    for (method, why) in &study.left_out {
+        report::line("left out", format!("{method}: {why}"));
     }
     let front = study.front(|record| loss.value(record));
     let timed =

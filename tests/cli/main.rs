@@ -16,6 +16,7 @@ mod quality;
 mod refusals;
 mod reports;
 mod sequence;
+mod study;
 mod surfels;
 mod verify;
 
