@@ -2,6 +2,8 @@
 //!
 //! Without Chromium (`SPLATREF_CHROMIUM` or the command `chromium`) the tests say so and are skipped.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 mod chromium;
 
 use chromium::{Browser, Page};

@@ -152,7 +152,8 @@ impl<R: Real> Shader<R> {
     }
 
     /// The colour of a surface at a point in view space, whose normal is in world space.
-    pub(crate) fn at(&self, p: Vector3<R>, normal: Vector3<R>, surface: [R; 3]) -> [R; 3] {
+    #[must_use]
+    pub fn at(&self, p: Vector3<R>, normal: Vector3<R>, surface: [R; 3]) -> [R; 3] {
         let normal = self.view.direction(normal);
         self.lit(p, |l| (normal, normal.dot(l)), surface)
     }

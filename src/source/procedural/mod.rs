@@ -190,8 +190,8 @@ impl Shape {
     }
 
     /// [`Shape::trace`] beyond a parameter of at least 0.
-    #[cfg(feature = "cli")] // for the study
-    pub(crate) fn trace_beyond(&self, origin: DVec3, direction: DVec3, beyond: f64) -> Option<Hit> {
+    #[must_use]
+    pub fn trace_beyond(&self, origin: DVec3, direction: DVec3, beyond: f64) -> Option<Hit> {
         self.surface().trace(origin, direction, beyond)
     }
 

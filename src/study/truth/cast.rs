@@ -210,7 +210,7 @@ impl<'a> Caster<'a> {
                 (Surface::Triangles(triangles), (indices, Some(bins))) => {
                     bins.for_each(tile, |at| {
                         self.triangle(triangles, (i, indices[at as usize]), rays, &mut all);
-                    })
+                    });
                 }
                 _ => self.shape(surface, rays, &mut all),
             }

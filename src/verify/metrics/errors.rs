@@ -163,13 +163,16 @@ mod tests {
     use super::*;
     use crate::frame::Samples;
 
-    fn frame(size: [u32; 2], of: impl Fn(u32, u32) -> ([f32; 3], f32, [f32; 3])) -> Frame<f32> {
+    /// Colour, depth and normal.
+    type Pixel = ([f32; 3], f32, [f32; 3]);
+
+    fn frame(size: [u32; 2], of: impl Fn(u32, u32) -> Pixel) -> Frame<f32> {
         let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
         let all: Vec<_> = pixels.map(|(x, y)| of(x, y)).collect();
         let plane = |of: &dyn Fn(f32) -> f32| {
             Plane::from_values(size[0], size[1], all.iter().map(|p| of(p.1)).collect())
         };
-        let vectors = |of: &dyn Fn(&([f32; 3], f32, [f32; 3])) -> [f32; 3]| {
+        let vectors = |of: &dyn Fn(&Pixel) -> [f32; 3]| {
             Plane::from_values(size[0], size[1], all.iter().map(of).collect())
         };
         let mut frame = Frame::new(size[0], size[1]);

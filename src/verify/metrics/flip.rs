@@ -2,16 +2,16 @@
 //!
 //! After \[ANA+20\] (Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild: *FLIP: A
 //! Difference Evaluator for Alternating Images*, Proc. ACM CGIT 3(2), 2020), in the form of the
-//! authors' program for pictures of a display. Both pictures are linear RGB, each value cut to [0,
-//! 1] (a NaN is 0). With p pixels a degree of the field of view:
+//! authors' program for pictures of a display. Both pictures are linear RGB, each value cut to \[0,
+//! 1\] (a NaN is 0). With p pixels a degree of the field of view:
 //!
 //! 1. **Opponent colours**: XYZ of D65 ([`XYZ`]), divided by the white X, Y, Z of RGB (1, 1, 1), and
 //!    `Y = 116 Y' - 16, Cx = 500 (X' - Y'), Cz = 200 (Y' - Z')`.
 //! 2. **What the eye resolves**: each of the three is filtered by a sum of Gaussians of the distance x in
 //!    degrees, `a sqrt(pi / b) exp(-pi^2 x^2 / b)`, with (a, b) = (1, 0.0047) for Y, (1, 0.0053) for
 //!    Cx, (34.1, 0.04) and (13.5, 0.025) for Cz, over offsets up to `ceil(3 sqrt(0.04 / (2 pi^2)) p)` px,
-//!    divided by the sum of its weights. Back to RGB, cut to [0, 1] again.
-//! 3. **Difference of colours**: L*, a*, b* of CIE 1976, the latter two times `0.01 L*` [Hunt effect];
+//!    divided by the sum of its weights. Back to RGB ([`RGB`]), cut to \[0, 1\] again.
+//! 3. **Difference of colours**: L*, a*, b* of CIE 1976, the latter two times `0.01 L*` (Hunt effect);
 //!    `d = (|dL| + sqrt(da^2 + db^2))^0.7`. With m that of green and blue, `d` is `0.95 d / (0.4 m)` below
 //!    `0.4 m`, else `0.95 + 0.05 (d - 0.4 m) / (0.6 m)`.
 //! 4. **Difference of features**, of `(Y + 16) / 116` of step 1: with s = 0.041 p px and g the Gaussian
@@ -21,7 +21,7 @@
 //! 5. The difference is `d^(1 - f)`, from 0 to 1.
 //!
 //! Beyond the border the nearest pixel continues. All in f64, sums from the lowest offset up, along x
-//! first; powers from [`elementary`].
+//! first; powers from [`crate::number::elementary`].
 
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Plane};
@@ -34,13 +34,13 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 pub const PIXELS_PER_DEGREE: f64 = 67.0;
 
 /// Rows of X, Y and Z of linear sRGB, as fractions that the authors give.
-const XYZ: [[f64; 3]; 3] = [
+pub const XYZ: [[f64; 3]; 3] = [
     [10_135_552.0 / 24_577_794.0, 8_788_810.0 / 24_577_794.0, 4_435_075.0 / 24_577_794.0],
     [2_613_072.0 / 12_288_897.0, 8_788_810.0 / 12_288_897.0, 887_015.0 / 12_288_897.0],
     [1_425_312.0 / 73_733_382.0, 8_788_810.0 / 73_733_382.0, 70_074_185.0 / 73_733_382.0],
 ];
 /// Rows of R, G and B of XYZ: the inverse.
-const RGB: [[f64; 3]; 3] = [
+pub const RGB: [[f64; 3]; 3] = [
     [3.241_003_232_976_358, -1.537_398_969_488_785, -0.498_615_881_996_363],
     [-0.969_224_252_202_516, 1.875_929_983_695_176, 0.041_554_226_340_085],
     [0.055_639_419_851_975, -0.204_011_206_123_910, 1.057_148_977_187_533],
@@ -325,14 +325,14 @@ mod tests {
                 1 => (x + 1) * 4 + y * 2 + c * 40,
                 2 => x * x * 7 + y * 13 + x * y * 3 + c * 91,
                 3 => {
-                    if (x / 8 + y / 8) % 2 == 0 {
+                    if (x / 8 + y / 8).is_multiple_of(2) {
                         200 + c * 20
                     } else {
                         30 + c * 60
                     }
                 }
                 _ => {
-                    if (x + 1) / 8 % 2 == 0 {
+                    if ((x + 1) / 8).is_multiple_of(2) {
                         200 - c * 70
                     } else {
                         30 + c * 60
@@ -346,8 +346,10 @@ mod tests {
         Plane::from_values(size[0], size[1], colors.collect())
     }
 
+    type Printed = ([u32; 2], [u32; 2], f64, [f64; 3]);
+
     /// Printed by `tests/data/flip`: size, the two pictures, pixels a degree, mean, and the differences at two pixels.
-    const REFERENCES: [([u32; 2], [u32; 2], f64, [f64; 3]); 6] = [
+    const REFERENCES: [Printed; 6] = [
         ([64, 48], [0, 1], 67.0, [0.21887226, 0.10537856, 0.2134741]),
         ([64, 48], [0, 2], 67.0, [0.784849, 0.84564114, 0.78701365]),
         ([64, 48], [3, 4], 67.0, [0.81834465, 0.9601556, 0.79354453]),

@@ -1,8 +1,8 @@
 //! How far a picture is from another, or from the truth.
 //!
 //! - [`rmse`], [`psnr`], [`ssim()`] and [`summary`]: in one number each.
-//! - [`mod@flip`]: how different two pictures look when one flips to the other [ANA+20].
-//! - [`mod@coverage`]: holes and spill, how far they agree on what is covered; [`mod@outline`]: how long
+//! - [`mod@flip`]: how different two pictures look when one flips to the other \[ANA+20\].
+//! - [`coverage()`]: holes and spill, how far they agree on what is covered; [`mod@outline`]: how long
 //!   the outline is.
 //! - [`errors`]: these and those of depth and normals against the truth, together.
 //! - [`flicker`]: how the errors of a sequence change from picture to picture.

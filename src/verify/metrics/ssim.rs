@@ -1,4 +1,4 @@
-//! The mean structural similarity [WBSS04].
+//! The mean structural similarity \[WBSS04\].
 
 use crate::number::elementary;
 
