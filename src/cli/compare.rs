@@ -59,7 +59,9 @@ pub(super) fn run(args: &Args) -> Ended {
     let lines = found.lines();
     let (verdict, planes) = lines.split_last().map_or(("", [].as_slice()), |(v, p)| (v, p));
     planes.iter().for_each(say);
-    distances(&first, &second, stored, &exec)?.map(say);
+    if let Some(line) = distances(&first, &second, stored, &exec)? {
+        say(line);
+    }
     say(verdict);
     Ok(match found.verdict() {
         Verdict::Equal | Verdict::Within => Ending::Good,

@@ -14,8 +14,8 @@
 //! P_k = w_k |1/n sum_t (e_t - m) exp(-2 pi i k t/n)|^2,    w_k = 1 if 2 k = n, else 2
 //! ```
 //!
-//! as a mean over the pixels. By Parseval's theorem the sum of all P_k is the mean over the pixels of
-//! the variance of e_t over the frames. The *flicker* is its root: 0 for an error that stays, however
+//! as a mean over the pixels. By Parseval's theorem the sum of all `P_k` is the mean over the pixels of
+//! the variance of `e_t` over the frames. The *flicker* is its root: 0 for an error that stays, however
 //! large. With the root of the mean of m^2, the *constant* error, it makes up the RMSE of the whole
 //! sequence: `constant^2 + flicker^2 = mean e_t^2`.
 //!
@@ -55,7 +55,7 @@ pub struct Spectrum {
     pub constant: f64,
     /// The root of the sum of [`Spectrum::power`], at least 0.
     pub flicker: f64,
-    /// The power of each frequency, P_1, P_2 ...; [`Spectrum::frequency`] says of which.
+    /// The power of each frequency, `P_1`, `P_2` ...; [`Spectrum::frequency`] says of which.
     pub power: Vec<f64>,
 }
 
@@ -213,6 +213,22 @@ mod tests {
                 }
                 assert!((found.frequency(k - 1) - k as f64 / n as f64).abs() < 1e-15);
                 assert!((found.constant - 0.2).abs() < 1e-6);
+            }
+        }
+    }
+
+    /// An error of a t at frame t has the transform a n/(exp(-2 pi i k/n) - 1), whose square is
+    /// a^2 n^2/(4 sin^2(pi k/n)).
+    #[test]
+    fn a_drift_shows_at_all_frequencies() {
+        for n in [5, 8, 32] {
+            let found = spectrum(n, |t, _| t as f32 / 256.0);
+            for (place, power) in found.power.iter().enumerate() {
+                let k = place + 1;
+                let half = elementary::sin(PI * k as f64 / n as f64);
+                let weight = if 2 * k == n { 1.0 } else { 2.0 };
+                let expected = weight / (256.0 * 256.0) / (4.0 * half * half);
+                assert!((power / expected - 1.0).abs() < 1e-6, "{n} {k}: {power}, {expected}");
             }
         }
     }

@@ -21,47 +21,68 @@ const RGB: [[f64; 3]; 3] = [
 const WHITE: [f64; 3] = [0.950_428_545, 1.0, 1.088_900_371];
 const OVER_WHITE: [f64; 3] = [1.052_156_925, 1.0, 0.918_357_670];
 
+/// Written out, here and below: closures over arrays stay calls, which take longer than the work.
+#[inline(always)]
 fn times(matrix: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
-    matrix.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
+    let [p, q, r] = matrix;
+    [
+        p[0] * v[0] + p[1] * v[1] + p[2] * v[2],
+        q[0] * v[0] + q[1] * v[1] + q[2] * v[2],
+        r[0] * v[0] + r[1] * v[1] + r[2] * v[2],
+    ]
 }
 
 /// XYZ in parts of white.
+#[inline(always)]
 fn relative(rgb: [f64; 3]) -> [f64; 3] {
-    let xyz = times(&XYZ, rgb);
-    [0, 1, 2].map(|i| xyz[i] * OVER_WHITE[i])
+    let [x, y, z] = times(&XYZ, rgb);
+    [x * OVER_WHITE[0], y * OVER_WHITE[1], z * OVER_WHITE[2]]
+}
+
+/// Each in [0, 1]; NaN stays NaN.
+#[inline(always)]
+pub(super) fn clamped([r, g, b]: [f64; 3]) -> [f64; 3] {
+    [r.clamped(0.0, 1.0), g.clamped(0.0, 1.0), b.clamped(0.0, 1.0)]
 }
 
 /// Y in [-16, 100], Cx and Cz: luminance, red against green, blue against yellow; linear in RGB.
+#[inline(always)]
 pub(super) fn opponent(rgb: [f64; 3]) -> [f64; 3] {
     let [x, y, z] = relative(rgb);
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
 /// The linear RGB of opponent colours, each in [0, 1].
+#[inline(always)]
 pub(super) fn clamped_rgb([y, cx, cz]: [f64; 3]) -> [f64; 3] {
     let y = (y + 16.0) / 116.0;
-    let xyz = [y + cx / 500.0, y, y - cz / 200.0];
-    times(&RGB, [0, 1, 2].map(|i| xyz[i] * WHITE[i])).map(|c| c.clamped(0.0, 1.0))
+    let (x, z) = (y + cx / 500.0, y - cz / 200.0);
+    clamped(times(&RGB, [x * WHITE[0], y * WHITE[1], z * WHITE[2]]))
 }
 
 /// CIE L a b, with a and b multiplied by L / 100: colours look paler where it is dark (Hunt).
 pub(super) fn hunt_lab(rgb: [f64; 3]) -> [f64; 3] {
-    const DELTA: f64 = 6.0 / 29.0;
-    let [x, y, z] = relative(rgb).map(|t| {
-        if t > DELTA * DELTA * DELTA {
-            elementary::pow(t, 1.0 / 3.0)
-        } else {
-            t / (3.0 * DELTA * DELTA) + 4.0 / 29.0
-        }
-    });
+    let [x, y, z] = relative(rgb);
+    let (x, y, z) = (response(x), response(y), response(z));
     let lightness = 116.0 * y - 16.0;
     let hunt = |chroma: f64| 0.01 * lightness * chroma;
     [lightness, hunt(500.0 * (x - y)), hunt(200.0 * (y - z))]
 }
 
+/// The cube root, and its tangent where it is dark.
+fn response(t: f64) -> f64 {
+    const DELTA: f64 = 6.0 / 29.0;
+    if t > DELTA * DELTA * DELTA {
+        elementary::pow(t, 1.0 / 3.0)
+    } else {
+        t / (3.0 * DELTA * DELTA) + 4.0 / 29.0
+    }
+}
+
 /// The distance `HyAB` of two colours of [`hunt_lab`]: of lightness, and of a and b together.
+#[inline(always)]
 pub(super) fn hyab(p: [f64; 3], q: [f64; 3]) -> f64 {
-    let [l, a, b] = [0, 1, 2].map(|i| p[i] - q[i]);
+    let (l, a, b) = (p[0] - q[0], p[1] - q[1], p[2] - q[2]);
     l.abs() + (a * a + b * b).sqrt()
 }
 

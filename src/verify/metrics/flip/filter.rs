@@ -124,7 +124,7 @@ mod tests {
             assert!((first * first + second * second - 1.0).abs() < 1e-14);
             // The parts of a sum of two Gaussians are as their integrals, a sqrt(b).
             if pixels_per_degree > 50.0 {
-                let ratio = (first / second).powi(2);
+                let ratio = first * first / (second * second);
                 assert!((ratio - 34.1 * 0.04_f64.sqrt() / (13.5 * 0.025_f64.sqrt())).abs() < 0.02);
             }
             let Feature([g, edge, point]) = Feature::new(pixels_per_degree);

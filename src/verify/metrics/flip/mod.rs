@@ -39,7 +39,7 @@ mod tests;
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Plane};
 use crate::memory;
-use crate::number::{Real, elementary};
+use crate::number::elementary;
 use filter::{Eye, Feature, along_column, along_row};
 use std::ops::Range;
 
@@ -163,7 +163,7 @@ impl Observer {
         let colors = &picture.values()[y * width..(y + 1) * width];
         let opponents: Vec<[f64; 3]> = colors
             .iter()
-            .map(|rgb| color::opponent(rgb.map(|c| f64::from(c).clamped(0.0, 1.0))))
+            .map(|&[r, g, b]| color::opponent(color::clamped([r.into(), g.into(), b.into()])))
             .collect();
         let longer = |of: &dyn Fn([f64; 3]) -> f64| -> Vec<f64> {
             let inside = |x: usize| x.saturating_sub(self.reach).min(width - 1);
@@ -220,7 +220,8 @@ impl Observer {
         } else {
             Self::AT_KNEE + (1.0 - Self::AT_KNEE) * (distance - knee) / (greatest - knee)
         };
-        let [edge, point] = [0, 1].map(|i| (features[0][i] - features[1][i]).abs());
+        let edge = (features[0][0] - features[1][0]).abs();
+        let point = (features[0][1] - features[1][1]).abs();
         let greater = if point > edge { point } else { edge };
         let feature = elementary::pow(greater * std::f64::consts::FRAC_1_SQRT_2, Self::FEATURE);
         elementary::pow(color, 1.0 - feature)

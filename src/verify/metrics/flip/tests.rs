@@ -1,5 +1,6 @@
 use super::super::tests::{pattern, ramp};
 use super::*;
+use crate::number::Real;
 use crate::number::random::unit;
 
 type Picture = Plane<[f32; 3]>;
