@@ -1,4 +1,25 @@
 //! All errors of a picture against its truth, and the table of their names.
+//!
+//! ```
+//! use splatref::frame::{Exec, Frame, Plane, Samples};
+//! use splatref::verify::metrics::{Errors, METRICS};
+//!
+//! let gray = |value| {
+//!     Frame::new(16, 16)
+//!         .with("", Samples::Color(Plane::filled(16, 16, [value; 3])))?
+//!         .with("A", Samples::Scalar(Plane::filled(16, 16, 1.0)))?
+//!         .with("Z", Samples::Scalar(Plane::filled(16, 16, 2.0_f32 + value)))
+//! };
+//! let errors = Errors::of(&gray(0.25)?, &gray(0.5)?, &Exec::sequential())?;
+//! for metric in &METRICS {
+//!     if let Some(value) = (metric.of)(&errors) {
+//!         println!("{}: {value} {}", metric.title, metric.unit); // RMSE: 0.25 linear RGB ...
+//!     }
+//! }
+//! assert_eq!((errors.color.rmse, errors.depth.map(|e| e.max)), (0.25, Some(0.25)));
+//! assert!(errors.normal.is_none(), "the frames have none");
+//! # Ok::<(), splatref::Error>(())
+//! ```
 
 use super::summary::channel;
 use super::{
@@ -262,6 +283,15 @@ mod tests {
         assert!(number(&found, "flip").unwrap() > 0.0 && number(&found, "ssim").unwrap() < 1.0);
         let shrunk = frame(|x, y| (14..26).contains(&x) && (9..21).contains(&y), |_| 4.0, tilted);
         assert!(number(&of(&shrunk, &truth), "silhouette-px").unwrap() > 0.0);
+    }
+
+    #[test]
+    fn a_surface_is_not_compared_at_the_silhouette() {
+        let (truth, mut picture) = (disc(), disc());
+        let Samples::Scalar(depths) = &mut picture.planes[2].samples else { panic!("no Z") };
+        // The uppermost row of the disc is that of y = 7.
+        depths.values_mut()[7 * SIZE[0] as usize + 19] = 100.0;
+        assert_eq!(of(&picture, &truth), of(&truth, &truth));
     }
 
     #[test]

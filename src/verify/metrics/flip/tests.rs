@@ -34,7 +34,6 @@ fn run(a: &Picture, b: &Picture) -> Flip {
 /// Printed by `tests/data/flip.py`: flip-evaluator 1.7, which is f32; the mean, and FLIP of the first
 /// pixel, of one in the middle and of the last.
 #[test]
-#[rustfmt::skip] // as it is printed
 fn the_published_implementation_agrees() {
     let references = [
         ("shifted", 64, 48, 67.0, [0.220592, 0.532001, 0.094035, 0.106061]),
