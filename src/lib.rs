@@ -153,6 +153,8 @@
 //!
 //! # Sources
 //!
+//! - \[ANA+20\] Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild: FLIP: A Difference
+//!   Evaluator for Alternating Images, HPG 2020.
 //! - \[BHZK05\] Botsch, Hornung, Zwicker, Kobbelt: High-Quality Surface Splatting on Today's GPUs,
 //!   PBG 2005.
 //! - \[BJFM19\] Brandt, Jähn, Fischer, Meyer auf der Heide: Rendering of Complex Heterogenous Scenes

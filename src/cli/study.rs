@@ -13,7 +13,6 @@ use splatref::study::run::truths::{Known, Truths};
 use splatref::study::run::{Bench, LeftOut, Record, Study, Subject, time};
 use splatref::study::sweep::{Candidate, candidates};
 use splatref::verify::digest;
-use splatref::verify::metrics::errors::Reference;
 use splatref::{Error, Result};
 use std::fs;
 use std::io::Write;
@@ -120,7 +119,6 @@ impl Job<'_> {
         truths: &Truths,
         study: &mut Study,
     ) -> Result<()> {
-        let reference = Reference::of(&truths.still.frame, self.exec)?;
         let late = self.args.time.map(|time| time.mul_f64(MEASURING));
         for (i, candidate) in candidates.iter().enumerate() {
             let record = &study.candidates[i];
@@ -131,7 +129,7 @@ impl Job<'_> {
                 break;
             }
             self.steps.show("measuring", i as u64, candidates.len() as u64);
-            let (measured, frame) = measure(bench, candidate, (truths, &reference), self.exec)?;
+            let (measured, frame) = measure(bench, candidate, truths, self.exec)?;
             self.folder.keep_picture(record, &frame)?;
             study.candidates[i].measured = Some(measured);
             self.folder.keep(study)?;
@@ -282,7 +280,7 @@ fn span(text: &str) -> std::result::Result<Duration, String> {
 /// A loss by the name of its figure.
 fn loss(name: &str) -> std::result::Result<Loss, String> {
     let all = losses();
-    all.iter().find(|loss| loss.figure == name).copied().ok_or_else(|| {
+    all.iter().find(|loss| loss.figure == name).cloned().ok_or_else(|| {
         let names: Vec<&str> = all.iter().map(|loss| loss.figure).collect();
         format!("give one of {}", names.join(", "))
     })
