@@ -12,6 +12,7 @@ use splatref::study::run::measure::{losses, measure};
 use splatref::study::run::truths::{Known, Truths};
 use splatref::study::run::{Bench, LeftOut, Record, Study, Subject, time};
 use splatref::study::sweep::{Candidate, candidates};
+use splatref::study::truth::Truth;
 use splatref::verify::digest;
 use splatref::{Error, Result};
 use std::fs;
@@ -72,10 +73,7 @@ pub(super) fn run(args: &Args) -> Ended {
     };
     let camera = bench.visit(&candidates[0], &show)?.ready.camera;
     let truths = known.pictures(&camera, &exec, &show)?;
-    let truth = known.unknown().map_or_else(
-        || truths.still.how.to_string(),
-        |why| format!("{} ({why})", truths.still.how),
-    );
+    let truth = truth_in_words(&known, &truths.still);
     let of = Subject {
         splatref: env!("CARGO_PKG_VERSION").into(),
         scene: scene.name.clone(),
@@ -261,6 +259,11 @@ impl Folder {
     }
 }
 
+/// What the truth is, and why it is no better.
+pub(super) fn truth_in_words(known: &Known, truth: &Truth) -> String {
+    known.unknown().map_or_else(|| truth.how.to_string(), |why| format!("{} ({why})", truth.how))
+}
+
 /// What is known so far; the last of the files.
 const STATE: &str = "study.json";
 const FILES: [&str; 5] = ["index.html", "chart.svg", "chart.png", "study.csv", STATE];
@@ -278,7 +281,7 @@ fn span(text: &str) -> std::result::Result<Duration, String> {
 }
 
 /// A loss by the name of its figure.
-fn loss(name: &str) -> std::result::Result<Loss, String> {
+pub(super) fn loss(name: &str) -> std::result::Result<Loss, String> {
     let all = losses();
     all.iter().find(|loss| loss.figure == name).cloned().ok_or_else(|| {
         let names: Vec<&str> = all.iter().map(|loss| loss.figure).collect();

@@ -10,6 +10,7 @@ mod hierarchy;
 mod interrupts;
 mod memory;
 mod pictures;
+mod plan;
 mod primitives;
 mod project;
 mod quality;

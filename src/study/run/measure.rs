@@ -11,8 +11,10 @@ use crate::number::elementary::pow;
 use crate::scene::Objects;
 use crate::study::report::chart::Loss;
 use crate::study::sweep::Candidate;
+use crate::study::truth::Truth;
 use crate::verify::metrics::{Better, Errors, Flicker, METRICS, Metric};
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 /// The figures of flicker: under shifts, and along the path.
 const FLICKERS: [(&str, &str); 2] =
@@ -45,6 +47,25 @@ pub fn losses() -> Vec<Loss> {
 fn drawn(ready: &Ready) -> u64 {
     let scene = &ready.loaded.scene;
     scene.objects.as_ref().map_or(scene.surfels.len() as u64, Objects::drawn_total)
+}
+
+/// The errors of the second of two pictures of a candidate, and how long that took in ms.
+///
+/// # Errors
+/// As [`measure`].
+pub fn picture_errors(
+    bench: &mut Bench<'_>,
+    candidate: &Candidate,
+    truth: &Truth,
+    exec: &Exec,
+) -> Result<(Errors, f64)> {
+    let mut visit = bench.visit(candidate, &|_, _, _| ())?;
+    let camera = visit.ready.camera;
+    candidate.file.output.draw(&mut visit.session, &camera)?;
+    let start = Instant::now();
+    let picture = candidate.file.output.draw(&mut visit.session, &camera)?;
+    let time = start.elapsed().as_secs_f64() * 1e3;
+    Ok((Errors::of(&picture.frame, &truth.frame, exec)?, time))
 }
 
 /// Draws a candidate and measures its errors; the picture, too.
