@@ -26,6 +26,7 @@ mod sequence;
 mod study;
 mod suite;
 mod surfels;
+mod tried;
 mod verify;
 mod words;
 

@@ -1,18 +1,15 @@
 //! `splatref plan`: the cheapest method and settings within a budget.
 
-use super::options::{ExecOptions, SceneOptions};
-use super::study::{loss, truth_in_words};
+use super::study::loss;
+use super::tried::{Loaded, Tried, truth_in_words};
 use super::{Ended, Ending, progress, report, say};
 use splatref::Result;
-use splatref::io::scene_file::SceneFile;
 use splatref::study::plan::{Budget, Known as Row};
 use splatref::study::report::chart::Loss;
 use splatref::study::run::measure::picture_errors;
-use splatref::study::run::truths::Known;
 use splatref::study::run::{Bench, Record, time};
-use splatref::study::sweep::{Candidate, candidates};
+use splatref::study::sweep::Candidate;
 use splatref::verify::metrics::METRICS;
-use std::path::PathBuf;
 use std::time::Instant;
 
 #[derive(clap::Args)]
@@ -27,8 +24,8 @@ Examples:
   splatref plan torus --time 20ms --metric flip")]
 #[command(group(clap::ArgGroup::new("budget").required(true)))]
 pub(super) struct Args {
-    /// A .ply, an .obj, a scene .toml, a folder of surfels, or a shape
-    scene: PathBuf,
+    #[command(flatten)]
+    tried: Tried,
     /// The most error; of SSIM what is missing to 1, of PSNR the RMSE: the fastest is chosen
     #[arg(long, value_name = "E", value_parser = error, group = "budget")]
     error: Option<f64>,
@@ -38,13 +35,6 @@ pub(super) struct Args {
     /// What the error is
     #[arg(long, value_name = "NAME", default_value = "rmse", value_parser = still)]
     metric: Loss,
-    /// A scene whose surface is the truth, such as the mesh that points were sampled from
-    #[arg(long, value_name = "SCENE")]
-    truth: Option<PathBuf>,
-    #[command(flatten)]
-    exec: ExecOptions,
-    #[command(flatten)]
-    options: SceneOptions,
 }
 
 /// Candidates that took so many times as long as the fastest within the budget are not timed again.
@@ -58,18 +48,12 @@ pub(super) fn run(args: &Args) -> Ended {
         (Some(error), _) => Budget::Error(error),
         (None, time) => Budget::Time(time.unwrap_or(f64::INFINITY)),
     };
-    let scene = args.options.scene_file(&args.scene)?;
-    args.options.refuse_state("a plan begins with nothing seen")?;
-    let exec = args.exec.exec()?;
+    let scene = args.tried.scene_file()?;
+    let exec = args.tried.exec()?;
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let all = candidates(&scene, args.options.chosen_method())?;
-    let (mut bench, candidates, _) = Bench::load(all, &exec, &show)?;
-    let known = match &args.truth {
-        None => Known::of(&scene, &exec, &show)?,
-        Some(truth) => Known::of(&SceneFile::open(truth)?, &exec, &show)?.lit_as(&scene),
-    };
-    let camera = bench.visit(&candidates[0], &show)?.ready.camera;
+    let Loaded { mut bench, candidates, known, camera, .. } =
+        args.tried.load(&scene, &exec, &steps)?;
     let truth = known.still(&camera, &exec, &show)?;
 
     let mut rows = Vec::new();

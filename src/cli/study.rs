@@ -1,6 +1,6 @@
 //! `splatref study`: every method and setting against the true picture and the clock.
 
-use super::options::{ExecOptions, SceneOptions};
+use super::tried::{Loaded, Tried, truth_in_words};
 use super::{Ended, Ending, output, progress, report, say};
 use splatref::frame::{Exec, Frame, Image};
 use splatref::io::replace::write_atomically;
@@ -9,10 +9,9 @@ use splatref::io::{png, provenance};
 use splatref::study::report::chart::{Loss, chart};
 use splatref::study::report::{csv, page};
 use splatref::study::run::measure::{losses, measure};
-use splatref::study::run::truths::{Known, Truths};
+use splatref::study::run::truths::Truths;
 use splatref::study::run::{Bench, LeftOut, Record, Study, Subject, time};
-use splatref::study::sweep::{Candidate, candidates};
-use splatref::study::truth::Truth;
+use splatref::study::sweep::Candidate;
 use splatref::verify::digest;
 use splatref::{Error, Result};
 use std::fs;
@@ -31,8 +30,8 @@ Examples:
   splatref study blue.ply --surfel-size 2 --truth bunny.ply -o out/blue
   splatref study scene.toml --time 60s")]
 pub(super) struct Args {
-    /// A .ply, an .obj, a scene .toml, a folder of surfels, or a shape
-    scene: PathBuf,
+    #[command(flatten)]
+    tried: Tried,
     /// Where the files go; made if it is not there
     #[arg(short, long, value_name = "DIR", default_value = "out/study")]
     output: PathBuf,
@@ -45,13 +44,6 @@ pub(super) struct Args {
     /// Go on with the study that is in the folder
     #[arg(long)]
     resume: bool,
-    /// A scene whose surface is the truth, such as the mesh that points were sampled from
-    #[arg(long, value_name = "SCENE")]
-    truth: Option<PathBuf>,
-    #[command(flatten)]
-    exec: ExecOptions,
-    #[command(flatten)]
-    options: SceneOptions,
 }
 
 /// The share of the time that errors may take; the rest is for times.
@@ -59,19 +51,13 @@ const MEASURING: f64 = 0.7;
 
 pub(super) fn run(args: &Args) -> Ended {
     let start = Instant::now();
-    let scene = args.options.scene_file(&args.scene)?;
-    args.options.refuse_state("a study begins with nothing seen")?;
-    let exec = args.exec.exec()?;
+    let scene = args.tried.scene_file()?;
+    let exec = args.tried.exec()?;
     let folder = Folder::make(args, &scene)?;
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let all = candidates(&scene, args.options.chosen_method())?;
-    let (mut bench, candidates, left_out) = Bench::load(all, &exec, &show)?;
-    let known = match &args.truth {
-        None => Known::of(&scene, &exec, &show)?,
-        Some(truth) => Known::of(&SceneFile::open(truth)?, &exec, &show)?.lit_as(&scene),
-    };
-    let camera = bench.visit(&candidates[0], &show)?.ready.camera;
+    let Loaded { mut bench, candidates, left_out, known, camera } =
+        args.tried.load(&scene, &exec, &steps)?;
     let truths = known.pictures(&camera, &exec, &show)?;
     let truth = truth_in_words(&known, &truths.still);
     let of = Subject {
@@ -168,7 +154,7 @@ impl Folder {
     fn make(args: &Args, scene: &SceneFile) -> Result<Self> {
         let folder = Self(args.output.clone());
         for name in FILES {
-            output::check_unread(&folder.0.join(name), &args.scene, scene)?;
+            output::check_unread(&folder.0.join(name), &args.tried.scene, scene)?;
         }
         if args.resume {
             let state = folder.0.join(STATE);
@@ -257,11 +243,6 @@ impl Folder {
         text(page_path, &page)?;
         Ok(paths.into())
     }
-}
-
-/// What the truth is, and why it is no better.
-pub(super) fn truth_in_words(known: &Known, truth: &Truth) -> String {
-    known.unknown().map_or_else(|| truth.how.to_string(), |why| format!("{} ({why})", truth.how))
 }
 
 /// What is known so far; the last of the files.
