@@ -111,7 +111,8 @@
 //!
 //! [`method::pyramid`] and [`method::template`] begin with [`mod@method::projection`]. [`method::Method`] is any of them as a value,
 //! and [`method::Session`] is a scene that one of them draws from as many cameras as one likes. What
-//! each paper claims is measured in the pages under `docs/`.
+//! each paper claims is measured in the pages under `docs/`. The program's feature `cli` has `study`: the true
+//! picture of a scene, and every method and setting against that picture and the clock.
 //!
 //! # Glossary
 //!
@@ -153,6 +154,8 @@
 //!
 //! # Sources
 //!
+//! - \[ANA+20\] Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild: FLIP: A Difference
+//!   Evaluator for Alternating Images, HPG 2020.
 //! - \[BHZK05\] Botsch, Hornung, Zwicker, Kobbelt: High-Quality Surface Splatting on Today's GPUs,
 //!   PBG 2005.
 //! - \[BJFM19\] Brandt, Jähn, Fischer, Meyer auf der Heide: Rendering of Complex Heterogenous Scenes

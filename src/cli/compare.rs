@@ -2,7 +2,7 @@
 
 use super::{Ended, Ending, report, say};
 use splatref::frame::{Exec, Image};
-use splatref::io::{exr, npy, png};
+use splatref::io::{exr, npy, png, srgb};
 use splatref::verify::compare::{Criteria, Tolerance, Verdict, compare};
 use splatref::verify::metrics;
 use splatref::{Error, Result};
@@ -14,7 +14,8 @@ A NAME stands for a channel (Z), for the three of a colour or a vector (normal),
 end, for all that start so (visibility.*); the colour of the picture is R,G,B. An EXR, a PNG (as it
 is stored, sRGB) and an NPY (h x w or h x w x 3, floats or integers; it is called as its file, or
 --as, and RGB.npy is R,G,B) are compared in the planes that both kinds can hold. A plane `margin`
-that only the first picture has is left out.
+that only the first picture has is left out. Of the colours RMSE, PSNR and SSIM are printed, and the
+mean of FLIP at 67 pixels per degree, for which what is stored as sRGB is made linear.
 
 Examples:
   splatref compare out/a.exr out/b.exr
@@ -58,17 +59,40 @@ pub(super) fn run(args: &Args) -> Ended {
     let lines = found.lines();
     let (verdict, planes) = lines.split_last().map_or(("", [].as_slice()), |(v, p)| (v, p));
     planes.iter().for_each(say);
-    if let Some(metrics::Summary { rmse, psnr, ssim }) = metrics::summary(&first, &second) {
-        let ssim = ssim.map_or_else(|| "too small for SSIM".into(), |s| format!("SSIM {s:.6}"));
-        let rmse = report::short(rmse);
-        let encoding = if stored { " as sRGB" } else { "" };
-        say(format!("R, G, B{encoding}: RMSE {rmse}, PSNR {psnr:.3} dB, {ssim}"));
+    if let Some(line) = distances(&first, &second, stored, &exec)? {
+        say(line);
     }
     say(verdict);
     Ok(match found.verdict() {
         Verdict::Equal | Verdict::Within => Ending::Good,
         Verdict::Different => Ending::Different,
     })
+}
+
+/// How far the colours of two pictures are apart, in a line; none unless both have one, of one size.
+///
+/// RMSE, PSNR and SSIM are of what is compared; FLIP is of light, and what is stored as sRGB is made
+/// linear for it.
+fn distances(first: &Image, second: &Image, stored: bool, exec: &Exec) -> Result<Option<String>> {
+    let light = |image: &Image| {
+        let color = image.color()?;
+        let linear = |c: f32| srgb::to_linear(f64::from(c)) as f32;
+        Some(if stored { color.map(|rgb| rgb.map(linear)) } else { color })
+    };
+    let (Some(summary), Some(picture), Some(reference)) =
+        (metrics::summary(first, second), light(second), light(first))
+    else {
+        return Ok(None);
+    };
+    let metrics::Summary { rmse, psnr, ssim } = summary;
+    let ssim = ssim.map_or_else(|| "too small for SSIM".into(), |s| format!("SSIM {s:.6}"));
+    let rmse = report::short(rmse);
+    let encoding = if stored { " as sRGB" } else { "" };
+    let flip = metrics::flip(&picture, &reference, metrics::flip::PIXELS_PER_DEGREE, exec)?.mean;
+    Ok(Some(format!(
+        "R, G, B{encoding}: RMSE {rmse}, PSNR {psnr:.3} dB, {ssim}, FLIP {}",
+        report::short(flip)
+    )))
 }
 
 impl Args {

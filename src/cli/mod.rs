@@ -15,6 +15,7 @@ mod interrupt;
 mod memory;
 mod options;
 mod output;
+mod plan;
 mod progress;
 mod project;
 mod quality;
@@ -25,6 +26,7 @@ mod sequence;
 mod study;
 mod suite;
 mod surfels;
+mod tried;
 mod verify;
 mod words;
 
@@ -77,6 +79,8 @@ enum Command {
     Surfels(surfels::Args),
     /// Chart every method and setting, speed against accuracy, for a scene
     Study(study::Args),
+    /// Choose the fastest method and settings within an error, or the best within a time
+    Plan(plan::Args),
     /// Say how evenly prefixes of points in order are spread, with a chart
     Quality(quality::Args),
     /// Write the visible splats as records, for a backend to upload
@@ -103,6 +107,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Group(args) => group::run(&args),
         Command::Surfels(args) => surfels::run(&args),
         Command::Study(args) => study::run(&args),
+        Command::Plan(args) => plan::run(&args),
         Command::Quality(args) => quality::run(&args),
         Command::Project(args) => project::run(&args),
         Command::Info(args) => info::run(&args),

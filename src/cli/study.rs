@@ -1,6 +1,6 @@
 //! `splatref study`: every method and setting against the true picture and the clock.
 
-use super::options::{ExecOptions, SceneOptions};
+use super::tried::{Loaded, Tried, truth_in_words};
 use super::{Ended, Ending, output, progress, report, say};
 use splatref::frame::{Exec, Frame, Image};
 use splatref::io::replace::write_atomically;
@@ -9,11 +9,10 @@ use splatref::io::{png, provenance};
 use splatref::study::report::chart::{Loss, chart};
 use splatref::study::report::{csv, page};
 use splatref::study::run::measure::{losses, measure};
-use splatref::study::run::truths::{Known, Truths};
-use splatref::study::run::{Bench, Record, Study, Subject, time};
-use splatref::study::sweep::{Candidate, candidates};
+use splatref::study::run::truths::Truths;
+use splatref::study::run::{Bench, LeftOut, Record, Study, Subject, time};
+use splatref::study::sweep::Candidate;
 use splatref::verify::digest;
-use splatref::verify::metrics::errors::Reference;
 use splatref::{Error, Result};
 use std::fs;
 use std::io::Write;
@@ -31,8 +30,8 @@ Examples:
   splatref study blue.ply --surfel-size 2 --truth bunny.ply -o out/blue
   splatref study scene.toml --time 60s")]
 pub(super) struct Args {
-    /// A .ply, an .obj, a scene .toml, a folder of surfels, or a shape
-    scene: PathBuf,
+    #[command(flatten)]
+    tried: Tried,
     /// Where the files go; made if it is not there
     #[arg(short, long, value_name = "DIR", default_value = "out/study")]
     output: PathBuf,
@@ -45,13 +44,6 @@ pub(super) struct Args {
     /// Go on with the study that is in the folder
     #[arg(long)]
     resume: bool,
-    /// A scene whose surface is the truth, such as the mesh that points were sampled from
-    #[arg(long, value_name = "SCENE")]
-    truth: Option<PathBuf>,
-    #[command(flatten)]
-    exec: ExecOptions,
-    #[command(flatten)]
-    options: SceneOptions,
 }
 
 /// The share of the time that errors may take; the rest is for times.
@@ -59,24 +51,15 @@ const MEASURING: f64 = 0.7;
 
 pub(super) fn run(args: &Args) -> Ended {
     let start = Instant::now();
-    let scene = args.options.scene_file(&args.scene)?;
-    args.options.refuse_state("a study begins with nothing seen")?;
-    let exec = args.exec.exec()?;
+    let scene = args.tried.scene_file()?;
+    let exec = args.tried.exec()?;
     let folder = Folder::make(args, &scene)?;
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let all = candidates(&scene, args.options.chosen_method())?;
-    let (mut bench, candidates, left_out) = Bench::load(all, &exec, &show)?;
-    let known = match &args.truth {
-        None => Known::of(&scene, &exec, &show)?,
-        Some(truth) => Known::of(&SceneFile::open(truth)?, &exec, &show)?.lit_as(&scene),
-    };
-    let camera = bench.visit(&candidates[0], &show)?.ready.camera;
+    let Loaded { mut bench, candidates, left_out, known, camera } =
+        args.tried.load(&scene, &exec, &steps)?;
     let truths = known.pictures(&camera, &exec, &show)?;
-    let truth = known.unknown().map_or_else(
-        || truths.still.how.to_string(),
-        |why| format!("{} ({why})", truths.still.how),
-    );
+    let truth = truth_in_words(&known, &truths.still);
     let of = Subject {
         splatref: env!("CARGO_PKG_VERSION").into(),
         scene: scene.name.clone(),
@@ -120,7 +103,6 @@ impl Job<'_> {
         truths: &Truths,
         study: &mut Study,
     ) -> Result<()> {
-        let reference = Reference::of(&truths.still.frame, self.exec)?;
         let late = self.args.time.map(|time| time.mul_f64(MEASURING));
         for (i, candidate) in candidates.iter().enumerate() {
             let record = &study.candidates[i];
@@ -131,7 +113,7 @@ impl Job<'_> {
                 break;
             }
             self.steps.show("measuring", i as u64, candidates.len() as u64);
-            let (measured, frame) = measure(bench, candidate, (truths, &reference), self.exec)?;
+            let (measured, frame) = measure(bench, candidate, truths, self.exec)?;
             self.folder.keep_picture(record, &frame)?;
             study.candidates[i].measured = Some(measured);
             self.folder.keep(study)?;
@@ -172,7 +154,11 @@ impl Folder {
     fn make(args: &Args, scene: &SceneFile) -> Result<Self> {
         let folder = Self(args.output.clone());
         for name in FILES {
-            output::check_unread(&folder.0.join(name), &args.scene, scene)?;
+            output::check_unread(&folder.0.join(name), &args.tried.scene, scene)?;
+        }
+        if args.resume {
+            let state = folder.0.join(STATE);
+            fs::metadata(&state).map_err(|source| Error::io(&state, source))?;
         }
         let pictures = folder.0.join(PICTURES);
         fs::create_dir_all(&pictures).map_err(|source| Error::io(&pictures, source))?;
@@ -184,14 +170,14 @@ impl Folder {
         &self,
         of: Subject,
         candidates: &[Candidate],
-        left_out: Vec<(Candidate, String)>,
+        left_out: Vec<LeftOut>,
         resume: bool,
         exec: &Exec,
     ) -> Result<Study> {
         let study = Study {
             of,
             candidates: candidates.iter().map(Record::of).collect(),
-            left_out: left_out.into_iter().map(|(one, why)| (one.options, why)).collect(),
+            left_out: left_out.into_iter().map(|(method, why)| (method.to_owned(), why)).collect(),
             machine: time::machine(exec),
         };
         if !resume {
@@ -276,9 +262,9 @@ fn span(text: &str) -> std::result::Result<Duration, String> {
 }
 
 /// A loss by the name of its figure.
-fn loss(name: &str) -> std::result::Result<Loss, String> {
+pub(super) fn loss(name: &str) -> std::result::Result<Loss, String> {
     let all = losses();
-    all.iter().find(|loss| loss.figure == name).copied().ok_or_else(|| {
+    all.iter().find(|loss| loss.figure == name).cloned().ok_or_else(|| {
         let names: Vec<&str> = all.iter().map(|loss| loss.figure).collect();
         format!("give one of {}", names.join(", "))
     })
@@ -289,8 +275,8 @@ fn print(study: &Study, loss: &Loss, total: Duration) {
     let [width, height] = study.of.size;
     report::line("scene", format!("{}, {width} x {height}", study.of.scene));
     report::line("truth", &study.of.truth);
-    for (options, why) in &study.left_out {
-        report::line("left out", format!("{options}: {why}"));
+    for (method, why) in &study.left_out {
+        report::line("left out", format!("{method}: {why}"));
     }
     let front = study.front(|record| loss.value(record));
     let timed =

@@ -1,6 +1,6 @@
 //! A picture as files hold it: what is compared, measured and hashed.
 
-use super::{ChannelData, Frame};
+use super::{ChannelData, Frame, Plane};
 
 /// A picture as files hold it: channels by name, without the planes that they are of.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,5 +49,17 @@ impl Image {
     #[must_use]
     pub fn channel(&self, name: &str) -> Option<&Values> {
         self.channels.iter().find(|(of, _)| of == name).map(|(_, values)| values)
+    }
+
+    /// The channels `R`, `G` and `B` together; none unless all three are floats.
+    #[must_use]
+    pub fn color(&self) -> Option<Plane<[f32; 3]>> {
+        let channel = |name| match self.channel(name)? {
+            Values::Float(values) => Some(values),
+            Values::Index(_) => None,
+        };
+        let (r, g, b) = (channel("R")?, channel("G")?, channel("B")?);
+        let pixels = r.iter().zip(g).zip(b).map(|((&r, &g), &b)| [r, g, b]);
+        Some(Plane::from_values(self.width, self.height, pixels.collect()))
     }
 }

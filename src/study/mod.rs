@@ -2,6 +2,7 @@
 //!
 //! - [`chart`]: drawings that are written as SVG and as PNG, the same picture in both.
 //! - [`mod@front`]: what nothing else is both faster and nearer to the truth than.
+//! - [`plan`]: the cheapest within a budget.
 //! - [`mod@report`]: a study as files.
 //! - [`mod@run`]: candidates measured and timed.
 //! - [`spread`]: how evenly prefixes of several orders are spread \[BJFM19, Fig. 3\].
@@ -10,6 +11,7 @@
 
 pub mod chart;
 pub mod front;
+pub mod plan;
 pub mod report;
 pub mod run;
 pub mod spread;

@@ -14,7 +14,8 @@
 //! - [`compare`]: equal bit for bit, or where and by how much not.
 //! - [`digest`]: one hash of many pictures.
 //! - [`mod@laws`]: what must hold of compositing operators, anybody's.
-//! - [`metrics`]: RMSE, PSNR and SSIM of planes, holes and spill.
+//! - [`metrics`]: how far a picture is off, in numbers: colours, coverage, outline, depth, normals,
+//!   flicker.
 //! - [`mod@signature`]: known mistakes, and which of them a client makes.
 //! - [`shift`]: whether the decisions that may be either way lean to one side, over a suite of scenes.
 //! - [`verdict`]: what a right implementation may leave, and whether a client's planes are that.

@@ -135,6 +135,23 @@ fn arrays_of_numpy_are_compared_by_their_name() {
     fails(at.path(), &["compare", "a.exr", "missing.npy"], 1);
 }
 
+/// FLIP is of light: what is stored as sRGB has the same, but for its rounding to codes.
+#[test]
+fn flip_is_of_light() {
+    let at = TempDir::new().unwrap();
+    succeeds(at.path(), &small(&["-o", "a.exr"]));
+    succeeds(at.path(), &small(&["-o", "b.exr", "--method", "pyramid"]));
+    let flip = |arguments: &[&str]| -> f64 {
+        let (_, said) = compared(&at, arguments);
+        let (_, rest) = said.split_once(", FLIP ").unwrap();
+        rest.lines().next().unwrap().parse().unwrap()
+    };
+    let (of_numbers, of_codes) = (flip(&["a.exr", "b.exr"]), flip(&["a.png", "b.png"]));
+    assert!(of_numbers > 0.01, "{of_numbers}");
+    assert!((of_codes / of_numbers - 1.0).abs() < 0.1, "{of_codes} against {of_numbers}");
+    assert!(flip(&["a.exr", "a.png"]) < 0.1 * of_numbers);
+}
+
 #[test]
 fn a_png_is_compared_as_it_is_stored() {
     let at = TempDir::new().unwrap();

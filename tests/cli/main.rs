@@ -10,12 +10,14 @@ mod hierarchy;
 mod interrupts;
 mod memory;
 mod pictures;
+mod plan;
 mod primitives;
 mod project;
 mod quality;
 mod refusals;
 mod reports;
 mod sequence;
+mod study;
 mod surfels;
 mod verify;
 

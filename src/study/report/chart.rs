@@ -5,10 +5,10 @@ use crate::study::chart::scatter::{Point, Scatter};
 use crate::study::run::{Record, Study};
 
 /// What is up in a chart: a figure as a loss, of which less is better.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Loss {
     /// What it is called, with its unit.
-    pub title: &'static str,
+    pub title: String,
     /// The name of the figure.
     pub figure: &'static str,
     /// The loss of a value of it.
@@ -57,7 +57,7 @@ pub fn chart(study: &Study, loss: &Loss) -> Drawing {
     Scatter {
         title: format!("{}, {width} x {height}: speed against accuracy", study.of.scene),
         notes,
-        axes: ["ms a picture".into(), loss.title.to_owned()],
+        axes: ["ms a picture".into(), loss.title.clone()],
         points: all.into_iter().map(|(_, point)| point).collect(),
     }
     .draw()

@@ -1,4 +1,4 @@
-//! The table: comma-separated values [RFC 4180], a row a candidate.
+//! The table: comma-separated values (RFC 4180), a row a candidate.
 
 use crate::study::run::{Record, Study};
 use std::fmt::Write;

@@ -43,8 +43,8 @@ struct Grouped {
     groups: Groups,
 }
 
-/// Why a candidate is not drawn.
-pub type LeftOut = (Candidate, String);
+/// A method that cannot draw the scene, and why.
+pub type LeftOut = (&'static str, String);
 
 /// What is ready to be drawn.
 #[derive(Debug)]
@@ -69,13 +69,16 @@ impl<'e> Bench<'e> {
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<(Self, Vec<Candidate>, Vec<LeftOut>)> {
         let mut bench = Self { exec, loads: Vec::new(), groups: Vec::new() };
-        let (mut kept, mut left_out, mut first) = (Vec::new(), Vec::new(), None);
+        let (mut kept, mut left_out, mut first) = (Vec::new(), Vec::<LeftOut>::new(), None);
         for candidate in candidates {
             match bench.scene(&candidate, progress) {
                 Ok(load) if candidate.needs_opacity && bench.loads[load].is_opaque() => {}
                 Ok(_) => kept.push(candidate),
                 Err(error @ Error::Invalid(_)) => {
-                    left_out.push((candidate, error.to_string()));
+                    let why = (candidate.method, error.to_string());
+                    if !left_out.contains(&why) {
+                        left_out.push(why);
+                    }
                     first.get_or_insert(error);
                 }
                 Err(error) => return Err(error),

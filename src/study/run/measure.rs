@@ -7,24 +7,40 @@ use super::truths::Truths;
 use crate::error::Result;
 use crate::frame::{Exec, Frame};
 use crate::io::scene_file::{Number, Ready};
+use crate::number::elementary::pow;
 use crate::scene::Objects;
 use crate::study::report::chart::Loss;
 use crate::study::sweep::Candidate;
-use crate::verify::metrics::errors::{Errors, FIGURES, Figure, Reference};
-use crate::verify::metrics::flicker;
+use crate::study::truth::Truth;
+use crate::verify::metrics::{Better, Errors, Flicker, METRICS, Metric};
 use std::collections::BTreeMap;
+use std::time::Instant;
 
-/// The figures of flicker.
-const FLICKERS: [Loss; 2] = [
-    Loss { figure: "flicker_shift", title: "flicker under shifts, RMS", of: |v| v },
-    Loss { figure: "flicker_path", title: "flicker along a path, RMS", of: |v| v },
-];
+/// The figures of flicker: under shifts, and along the path.
+const FLICKERS: [(&str, &str); 2] =
+    [("flicker-shift", "flicker under shifts"), ("flicker-path", "flicker along a path")];
 
-/// Every figure as a loss, in the order of tables; the name is that of the figure.
+/// Every figure as a loss, in the order of tables.
 #[must_use]
 pub fn losses() -> Vec<Loss> {
-    let of = |figure: &Figure| Loss { figure: figure.name, title: figure.title, of: figure.loss };
-    FIGURES.iter().map(of).chain(FLICKERS).collect()
+    let of = |metric: &Metric| {
+        let Metric { name, title, unit, better, .. } = *metric;
+        let (before, of): (&str, fn(f64) -> f64) = match better {
+            Better::Less => ("", |v| v),
+            // The RMSE of a PSNR; SSIM has no unit.
+            Better::More if unit == "dB" => ("RMSE of the ", |v| pow(10.0, -v / 20.0)),
+            Better::More => ("1 - ", |v| 1.0 - v),
+            Better::NearOne => ("difference from 1 of ", |v| (v - 1.0).abs()),
+        };
+        let unit =
+            if unit.is_empty() || unit == "dB" { String::new() } else { format!(", {unit}") };
+        Loss { figure: name, title: format!("{before}{title}{unit}"), of }
+    };
+    let flicker = |&(name, title): &(&'static str, &str)| {
+        let title = format!("{title}, RMS of luminance");
+        Loss { figure: name, title, of: |v| v }
+    };
+    METRICS.iter().map(of).chain(FLICKERS.iter().map(flicker)).collect()
 }
 
 /// How many surfels a scene shows.
@@ -33,7 +49,26 @@ fn drawn(ready: &Ready) -> u64 {
     scene.objects.as_ref().map_or(scene.surfels.len() as u64, Objects::drawn_total)
 }
 
-/// Draws a candidate and measures its errors, with what is needed of the [still](Truths::still) truth; the picture, too.
+/// The errors of the second of two pictures of a candidate, and how long that took in ms.
+///
+/// # Errors
+/// As [`measure`].
+pub fn picture_errors(
+    bench: &mut Bench<'_>,
+    candidate: &Candidate,
+    truth: &Truth,
+    exec: &Exec,
+) -> Result<(Errors, f64)> {
+    let mut visit = bench.visit(candidate, &|_, _, _| ())?;
+    let camera = visit.ready.camera;
+    candidate.file.output.draw(&mut visit.session, &camera)?;
+    let start = Instant::now();
+    let picture = candidate.file.output.draw(&mut visit.session, &camera)?;
+    let time = start.elapsed().as_secs_f64() * 1e3;
+    Ok((Errors::of(&picture.frame, &truth.frame, exec)?, time))
+}
+
+/// Draws a candidate and measures its errors; the picture, too.
 ///
 /// The picture is the second of two of one camera: `deferred` shows what it has come to where
 /// nothing moves. Flicker is measured on the pictures of [`cameras`], in their order, of which each
@@ -45,7 +80,7 @@ fn drawn(ready: &Ready) -> u64 {
 pub fn measure(
     bench: &mut Bench<'_>,
     candidate: &Candidate,
-    (truths, reference): (&Truths, &Reference<'_>),
+    truths: &Truths,
     exec: &Exec,
 ) -> Result<(Measured, Frame<f32>)> {
     let output = candidate.file.output;
@@ -53,14 +88,14 @@ pub fn measure(
     let camera = visit.ready.camera;
     output.draw(&mut visit.session, &camera)?;
     let frame = output.draw(&mut visit.session, &camera)?.frame.clone();
-    let errors = Errors::of(&frame, reference, exec)?;
+    let errors = Errors::of(&frame, &truths.still.frame, exec)?;
     let mut known = BTreeMap::new();
     let mut know = |name: &str, value: Option<f64>| {
         // Of equal pictures the PSNR is infinite, which no file holds.
         known.extend(value.filter(|value| value.is_finite()).map(|value| (name.to_owned(), value)));
     };
-    for figure in FIGURES {
-        know(figure.name, (figure.of)(&errors));
+    for metric in &METRICS {
+        know(metric.name, (metric.of)(&errors));
     }
     let mut spectra = [Vec::new(), Vec::new()];
     if output.number == Number::F32 {
@@ -68,19 +103,20 @@ pub fn measure(
             (cameras::shifted(&camera), &truths.still.shifted),
             (cameras::path(&camera), &truths.path),
         ];
-        for ((spectrum, flickers), (cameras, truths)) in spectra.iter_mut().zip(FLICKERS).zip(looks)
+        for ((spectrum, (name, _)), (cameras, truths)) in
+            spectra.iter_mut().zip(FLICKERS).zip(looks)
         {
             if truths.is_empty() {
                 continue;
             }
-            let mut errors = flicker::Errors::default();
+            let mut errors = Flicker::new(camera.width, camera.height, cameras.len())?;
             for (camera, truth) in cameras.iter().zip(truths) {
                 let picture = output.draw(&mut visit.session, camera)?;
                 errors.push(picture.frame.color("")?, truth)?;
             }
-            let flicker = errors.flicker();
-            know(flickers.figure, Some(flicker.rms()));
-            *spectrum = flicker.power;
+            let found = errors.spectrum(exec)?;
+            know(name, Some(found.flicker));
+            *spectrum = found.power;
         }
     }
     let surfels = drawn(visit.ready);

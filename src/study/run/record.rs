@@ -14,7 +14,7 @@ pub struct Study {
     pub of: Subject,
     /// What the candidates, in their order, have given so far.
     pub candidates: Vec<Record>,
-    /// The options of those that their methods cannot draw, and why.
+    /// The methods that cannot draw the scene, and why.
     pub left_out: Vec<(String, String)>,
     /// On what the times were measured.
     pub machine: String,

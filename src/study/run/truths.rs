@@ -86,6 +86,19 @@ impl Known {
         truth::of_surfaces(&self.surfaces, &self.scene, self.cull, looks, exec, progress)
     }
 
+    /// The true picture from a camera.
+    ///
+    /// # Errors
+    /// As [`truth::of_surfaces`] and [`truth::of_points`].
+    pub fn still(
+        &self,
+        camera: &Camera,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Truth> {
+        self.picture((camera, &[]), exec, progress)
+    }
+
     /// The true pictures of a study that looks from a camera. Those along the path are not made of
     /// points alone, where each takes as long as a study.
     ///

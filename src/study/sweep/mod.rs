@@ -20,7 +20,7 @@
 mod tests;
 mod trades;
 
-pub use trades::{DETAILS, NOT_TRADED, Of, TRADES, Trade};
+pub use trades::{DETAILS, Details, NOT_TRADED, Of, TRADES, Trade};
 
 use crate::error::{Error, Result};
 use crate::io::scene_file::{GroupChoice, MethodChoice, OutputSettings, SceneFile, Source};

@@ -84,3 +84,43 @@ pub fn coverage(picture: &[f32], reference: &[f32], width: usize) -> Coverage {
     }
     counts
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::plane;
+    use super::*;
+
+    #[test]
+    fn regions_of_a_drawing() {
+        let drawing = ["......", ".###..", ".###..", ".###.#", "....##"];
+        // i interior, e edge, x exterior; the corner has no neighbours beyond the picture.
+        let expected = ["eeeeex", "eeeeex", "eeieee", "eeeeee", "eeeeee"];
+        let plane: Vec<f32> =
+            drawing.concat().bytes().map(|c| if c == b'#' { 0.25 } else { 0.0 }).collect();
+        let letter = |region| match region {
+            Region::Interior => 'i',
+            Region::Edge => 'e',
+            Region::Exterior => 'x',
+        };
+        let found: String = regions(&plane, 6).into_iter().map(letter).collect();
+        assert_eq!(found, expected.concat());
+        assert_eq!(regions(&[1.0; 6], 3), [Region::Interior; 6], "no silhouette at the border");
+        assert_eq!(regions(&[f32::NAN, -1.0], 1), [Region::Exterior; 2]);
+        assert!(regions(&[], 0).is_empty());
+    }
+
+    #[test]
+    fn a_hole_a_spill_and_a_shifted_silhouette() {
+        let reference = plane(16, 9, |x, _| f32::from(u8::from(x < 8)));
+        let whole = Coverage { covered: 72, interior: 63, edge: 18, ..Coverage::default() };
+        assert_eq!(coverage(&reference, &reference, 16), whole);
+        let shifted = plane(16, 9, |x, _| f32::from(u8::from(x < 9)));
+        assert_eq!(coverage(&shifted, &reference, 16), Coverage { mismatch: 9, ..whole });
+        let mut picture = reference.clone();
+        (picture[3 * 16 + 6], picture[3 * 16 + 7], picture[3 * 16 + 9]) = (0.0, 0.0, 0.5);
+        let found = coverage(&picture, &reference, 16);
+        assert_eq!(found, Coverage { holes: 1, spill: 1, mismatch: 1, ..whole });
+        let swapped = coverage(&plane(16, 9, |_, _| 0.0), &reference, 16);
+        assert_eq!(swapped, Coverage { holes: 63, mismatch: 9, ..whole });
+    }
+}

@@ -1,238 +1,336 @@
-//! The errors of a picture against the truth, together.
+//! All errors of a picture against its truth, and the table of their names.
+//!
+//! ```
+//! use splatref::frame::{Exec, Frame, Plane, Samples};
+//! use splatref::verify::metrics::{Errors, METRICS};
+//!
+//! let gray = |value| {
+//!     Frame::new(16, 16)
+//!         .with("", Samples::Color(Plane::filled(16, 16, [value; 3])))?
+//!         .with("A", Samples::Scalar(Plane::filled(16, 16, 1.0)))?
+//!         .with("Z", Samples::Scalar(Plane::filled(16, 16, 2.0_f32 + value)))
+//! };
+//! let errors = Errors::of(&gray(0.25)?, &gray(0.5)?, &Exec::sequential())?;
+//! for metric in &METRICS {
+//!     if let Some(value) = (metric.of)(&errors) {
+//!         println!("{}: {value} {}", metric.title, metric.unit); // RMSE: 0.25 linear RGB ...
+//!     }
+//! }
+//! assert_eq!((errors.color.rmse, errors.depth.map(|e| e.max)), (0.25, Some(0.25)));
+//! assert!(errors.normal.is_none(), "the frames have none");
+//! # Ok::<(), splatref::Error>(())
+//! ```
 
-use super::{Coverage, Region, coverage, flip, outline, psnr, regions, rmse, ssim};
+use super::summary::channel;
+use super::{
+    Coverage, DepthError, NormalError, Region, Summary, coverage, depth, flip, normal, outline,
+    regions, same_size,
+};
 use crate::error::{Error, Result};
-use crate::frame::{Exec, Frame, Plane};
-use crate::number::elementary::{atan2, pow};
+use crate::frame::{Exec, Frame, Plane, Samples};
 
-/// The errors of a picture; a figure is absent where it cannot be said.
+/// What is wrong with one picture.
 ///
-/// Depth and normals are compared where both cover a pixel and the truth covers its neighbours, too
-/// ([`Region::Interior`]): at the outline a pixel off is not an error of depth.
+/// A pixel is *covered* where a surface is seen: `A` > 0 and `Z` finite. So an environment, which has
+/// no depth, covers nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
-    /// Of R, G and B together, linear.
-    pub rmse: f64,
-    /// The mean over the channels, see [`super::ssim()`].
-    pub ssim: Option<f64>,
-    /// The mean of [`mod@flip`].
+    /// RMSE, PSNR and SSIM of the colours.
+    pub color: Summary,
+    /// The mean of [FLIP](flip::flip()) at [`flip::PIXELS_PER_DEGREE`].
     pub flip: f64,
-    /// Pixels that only one covers, see [`super::coverage()`].
+    /// Holes and spill of what is covered.
     pub coverage: Coverage,
-    /// The length of the outline in px, see [`outline`].
+    /// The length of the [outline](outline::outline()) of what the picture covers, in pixels.
     pub outline: f64,
     /// That of the truth.
     pub true_outline: f64,
-    /// The root of the mean squared difference of depths, in world units.
-    pub depth: Option<f64>,
-    /// The root of the mean squared angle between normals, in degrees.
-    pub normal: Option<f64>,
-}
-
-/// A true picture, and what comparing with it needs of it alone.
-#[derive(Clone, Debug)]
-pub struct Reference<'t> {
-    truth: &'t Frame<f32>,
-    seen: flip::Seen,
-    regions: Vec<Region>,
-    outline: f64,
-}
-
-impl<'t> Reference<'t> {
-    /// Of a true picture with the colour (empty name), `A` and `Z`.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if it lacks a plane; as [`flip::Seen::of`].
-    pub fn of(truth: &'t Frame<f32>, exec: &Exec) -> Result<Self> {
-        let (alpha, width) = (truth.scalar("A")?.values(), truth.width as usize);
-        let seen = flip::Seen::of(truth.color("")?, flip::PIXELS_PER_DEGREE, exec)?;
-        let (regions, outline) = (regions(alpha, width), outline::length(alpha, width));
-        Ok(Self { truth, seen, regions, outline })
-    }
-}
-
-/// A figure of [`Errors`].
-#[derive(Clone, Copy, Debug)]
-pub struct Figure {
-    /// What it is called in tables.
-    pub name: &'static str,
-    /// What its loss is, with its unit.
-    pub title: &'static str,
-    /// Its value.
-    pub of: fn(&Errors) -> Option<f64>,
-    /// What is the less the better, of a value.
-    pub loss: fn(f64) -> f64,
-}
-
-/// Every figure, in the order of tables.
-pub const FIGURES: [Figure; 9] = [
-    figure("rmse", "RMSE, linear RGB", |e| Some(e.rmse)),
-    Figure {
-        loss: |v| pow(10.0, -v / 20.0),
-        ..figure("psnr", "RMSE of the PSNR", |e| Some(psnr(e.rmse)))
-    },
-    Figure { loss: |v| 1.0 - v, ..figure("ssim", "1 - SSIM", |e| e.ssim) },
-    figure("flip", "FLIP, mean", |e| Some(e.flip)),
-    figure("holes", "holes, per mille of what is covered", |e| e.of_covered(e.coverage.holes)),
-    figure("spill", "spill, per mille of what is covered", |e| e.of_covered(e.coverage.spill)),
-    figure("outline", "outline, per cent off", |e| e.outline_off()),
-    figure("depth", "depth, RMSE in world units", |e| e.depth),
-    figure("normal", "normal, RMS in degrees", |e| e.normal),
-];
-
-const fn figure(name: &'static str, title: &'static str, of: fn(&Errors) -> Option<f64>) -> Figure {
-    Figure { name, title, of, loss: |v| v }
+    /// Of the pixels that both cover and that are interior in the truth; none if there are none.
+    pub depth: Option<DepthError>,
+    /// Of the same pixels, if both frames have normals.
+    pub normal: Option<NormalError>,
 }
 
 impl Errors {
-    /// The errors of the planes of a picture: the colour (empty name), `A`, `Z` and, where the truth has
-    /// it too, `normal`.
+    /// The errors of a picture against its truth: the frame of a
+    /// [`Picture`](crate::method::Picture), whose planes are the colour, `A`, `Z` and, where there is
+    /// light, `normal`.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the two are not of one size or lack a plane; as [`flip::Seen::of`].
-    pub fn of(picture: &Frame<f32>, reference: &Reference<'_>, exec: &Exec) -> Result<Self> {
-        let Reference { truth, seen, regions, outline } = reference;
-        if (picture.width, picture.height) != (truth.width, truth.height) {
-            return Err(Error::Invalid("a picture and its truth are of one size".into()));
-        }
+    /// [`Error::Invalid`] if the frames differ in size or a plane other than `normal` is missing, or
+    /// if there is not enough memory.
+    pub fn of(picture: &Frame<f32>, truth: &Frame<f32>, exec: &Exec) -> Result<Self> {
+        let colors = [picture.color("")?, truth.color("")?];
+        same_size(colors[0], colors[1])?;
+        let [covered, expected] = [covered(picture)?, covered(truth)?];
         let width = truth.width as usize;
-        let color = picture.color("")?;
-        let [found, expected] = [color, truth.color("")?].map(channels);
-        let similar = exec.ordered(vec![0, 1, 2], |c: usize| ssim(&found[c], &expected[c], width));
-        let similar = similar.into_iter().sum::<Option<f64>>();
-        let seen_here = flip::Seen::of(color, flip::PIXELS_PER_DEGREE, exec)?;
-        let alphas = [picture.scalar("A")?.values(), truth.scalar("A")?.values()];
-        let inside: Vec<usize> = (0..regions.len())
-            .filter(|&i| regions[i] == Region::Interior && alphas[0][i] > 0.0)
+        let pairs = covered.iter().zip(&expected).zip(regions(&expected, width));
+        let compared: Vec<bool> = pairs
+            .map(|((covered, _), region)| *covered > 0.0 && region == Region::Interior)
             .collect();
-        let depths = [picture.scalar("Z")?.values(), truth.scalar("Z")?.values()];
-        let depth = inside.iter().map(|&i| f64::from(depths[0][i]) - f64::from(depths[1][i]));
-        let normal = match (picture.vector("normal"), truth.vector("normal")) {
-            (Ok(found), Ok(expected)) => {
-                root_mean(inside.iter().map(|&i| angle(found.values()[i], expected.values()[i])))
-            }
+        let depths = [picture.scalar("Z")?, truth.scalar("Z")?].map(Plane::values);
+        let normals = [picture, truth].map(|frame| match frame.plane("normal") {
+            Some(Samples::Vector(plane)) => Some(plane.values()),
             _ => None,
-        };
+        });
+        let normal = normals[0].zip(normals[1]).and_then(|(a, b)| normal(a, b, &compared));
+        let distances = exec.ordered(vec![0, 1, 2], |c: usize| {
+            let [a, b] = colors.map(|p| p.values().iter().map(|v| v[c]).collect::<Vec<f32>>());
+            channel(&a, &b, width)
+        });
         Ok(Self {
-            rmse: rmse(&found.concat(), &expected.concat()),
-            ssim: similar.map(|sum| sum / 3.0),
-            flip: flip::mean(&seen_here.differences(seen, exec)?),
-            coverage: coverage(alphas[0], alphas[1], width),
-            outline: outline::length(alphas[0], width),
-            true_outline: *outline,
-            depth: root_mean(depth),
+            color: Summary::of_channels(&distances),
+            flip: flip(colors[0], colors[1], flip::PIXELS_PER_DEGREE, exec)?.mean,
+            coverage: coverage(&covered, &expected, width),
+            outline: outline(&covered, width),
+            true_outline: outline(&expected, width),
+            depth: depth(depths[0], depths[1], &compared),
             normal,
         })
     }
 
-    /// A count per mille of what the truth covers.
-    fn of_covered(&self, count: u64) -> Option<f64> {
+    /// Pixels in per mille of what the truth covers; none if it covers nothing.
+    fn per_mille(&self, pixels: u64) -> Option<f64> {
         let covered = self.coverage.covered;
-        (covered > 0).then(|| 1000.0 * count as f64 / covered as f64)
-    }
-
-    /// By how many per cent the outline is longer or shorter than the true one.
-    fn outline_off(&self) -> Option<f64> {
-        let off = 100.0 * (self.outline / self.true_outline - 1.0).abs();
-        (self.true_outline > 0.0).then_some(off)
+        (covered > 0).then(|| 1000.0 * pixels as f64 / covered as f64)
     }
 }
 
-fn channels(plane: &Plane<[f32; 3]>) -> [Vec<f32>; 3] {
-    [0, 1, 2].map(|c| plane.values().iter().map(|color| color[c]).collect())
+/// 1 where a frame shows a surface, else 0.
+fn covered(frame: &Frame<f32>) -> Result<Vec<f32>> {
+    let (alphas, depths) = (frame.scalar("A")?.values(), frame.scalar("Z")?.values());
+    let pixels = alphas.iter().zip(depths);
+    Ok(pixels.map(|(a, z)| if *a > 0.0 && z.is_finite() { 1.0 } else { 0.0 }).collect())
 }
 
-/// The root of the mean square; none of nothing.
-fn root_mean(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (mut sum, mut count) = (0.0, 0_u64);
-    for value in values {
-        sum += value * value;
-        count += 1;
+/// Which of two numbers is the better one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Better {
+    /// The smaller one; 0 is perfect.
+    Less,
+    /// The greater one.
+    More,
+    /// The one nearer to 1.
+    NearOne,
+}
+
+/// A number of [`Errors`]: how it is called, and where it is.
+#[derive(Clone, Copy, Debug)]
+pub struct Metric {
+    /// Its name in files and options: `rmse`.
+    pub name: &'static str,
+    /// Its name in sentences and charts.
+    pub title: &'static str,
+    /// What it is counted in; empty for a plain number.
+    pub unit: &'static str,
+    /// Which of two is the better one.
+    pub better: Better,
+    /// The number; none where there is nothing to take it of. PSNR of equal pictures is infinite.
+    pub of: fn(&Errors) -> Option<f64>,
+}
+
+/// All numbers of [`Errors`].
+pub const METRICS: [Metric; 17] = [
+    metric("rmse", "RMSE", "linear RGB", Better::Less, |e| Some(e.color.rmse)),
+    metric("psnr", "PSNR", "dB", Better::More, |e| Some(e.color.psnr)),
+    metric("ssim", "SSIM", "", Better::More, |e| e.color.ssim),
+    metric("flip", "FLIP", "", Better::Less, |e| Some(e.flip)),
+    metric("holes", "holes", "per mille", Better::Less, |e| e.per_mille(e.coverage.holes)),
+    metric("holes-px", "holes", "px", Better::Less, |e| Some(e.coverage.holes as f64)),
+    metric("spill", "spill", "per mille", Better::Less, |e| e.per_mille(e.coverage.spill)),
+    metric("spill-px", "spill", "px", Better::Less, |e| Some(e.coverage.spill as f64)),
+    metric("silhouette", "wrong at the silhouette", "per mille", Better::Less, |e| {
+        e.per_mille(e.coverage.mismatch)
+    }),
+    metric("silhouette-px", "wrong at the silhouette", "px", Better::Less, |e| {
+        Some(e.coverage.mismatch as f64)
+    }),
+    metric("outline", "outline", "of the true length", Better::NearOne, |e| {
+        (e.true_outline > 0.0).then(|| e.outline / e.true_outline)
+    }),
+    metric("depth", "depth error, RMS", "world units", Better::Less, |e| Some(e.depth?.rms)),
+    metric("depth-99", "depth error, 99 %", "world units", Better::Less, |e| Some(e.depth?.most)),
+    metric("depth-max", "depth error, greatest", "world units", Better::Less, |e| {
+        Some(e.depth?.max)
+    }),
+    metric("depth-relative", "depth error, RMS", "of the depth", Better::Less, |e| {
+        Some(e.depth?.relative)
+    }),
+    metric("normal", "normal error, mean", "degrees", Better::Less, |e| Some(e.normal?.mean)),
+    metric("normal-99", "normal error, 99 %", "degrees", Better::Less, |e| Some(e.normal?.most)),
+];
+
+const fn metric(
+    name: &'static str,
+    title: &'static str,
+    unit: &'static str,
+    better: Better,
+    of: fn(&Errors) -> Option<f64>,
+) -> Metric {
+    Metric { name, title, unit, better, of }
+}
+
+impl Metric {
+    /// The row of [`METRICS`] that is called `name`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`], which lists the names, if there is none.
+    pub fn named(name: &str) -> Result<&'static Self> {
+        const { &METRICS }.iter().find(|metric| metric.name == name).ok_or_else(|| {
+            let names = METRICS.map(|metric| metric.name).join(", ");
+            Error::Usage(format!("no metric is called {name}; give one of: {names}"))
+        })
     }
-    (count > 0).then(|| (sum / count as f64).sqrt())
-}
-
-/// The angle between two vectors in degrees, of any lengths: that of the sine and the cosine.
-fn angle(a: [f32; 3], b: [f32; 3]) -> f64 {
-    let [a, b] = [a, b].map(|v| glam::Vec3::from_array(v).as_dvec3());
-    atan2(a.cross(b).length(), a.dot(b)).to_degrees()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Samples;
+    use crate::number::elementary::{cos, sin};
 
-    fn frame(size: [u32; 2], of: impl Fn(u32, u32) -> ([f32; 3], f32, [f32; 3])) -> Frame<f32> {
-        let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
-        let all: Vec<_> = pixels.map(|(x, y)| of(x, y)).collect();
-        let plane = |of: &dyn Fn(f32) -> f32| {
-            Plane::from_values(size[0], size[1], all.iter().map(|p| of(p.1)).collect())
+    const SIZE: [u32; 2] = [40, 30];
+
+    /// A gray disc of radius 8 on black, at a depth that grows to the right.
+    fn disc() -> Frame<f32> {
+        let inside = |x: u32, y: u32| {
+            let (dx, dy) = (f64::from(x) - 19.5, f64::from(y) - 14.5);
+            dx * dx + dy * dy < 64.0
         };
-        let vectors = |of: &dyn Fn(&([f32; 3], f32, [f32; 3])) -> [f32; 3]| {
-            Plane::from_values(size[0], size[1], all.iter().map(of).collect())
-        };
-        let mut frame = Frame::new(size[0], size[1]);
-        frame.push("", Samples::Color(vectors(&|p| p.0))).unwrap();
-        frame.push("A", Samples::Scalar(plane(&|z| f32::from(u8::from(z.is_finite()))))).unwrap();
-        frame.push("Z", Samples::Scalar(plane(&|z| z))).unwrap();
-        frame.push("normal", Samples::Vector(vectors(&|p| p.2))).unwrap();
-        frame
+        frame(inside, |x| 4.0 + x as f32 / 8.0, [0.0, 0.0, 1.0])
     }
 
-    /// A square of 10 x 10 px in the middle of 20 x 20.
-    fn square(shift: u32, depth: f32, normal: [f32; 3]) -> Frame<f32> {
-        frame([20, 20], |x, y| {
-            let inside = (5 + shift..15 + shift).contains(&x) && (5..15).contains(&y);
-            if inside { ([0.5; 3], depth, normal) } else { ([0.0; 3], f32::INFINITY, [0.0; 3]) }
-        })
+    fn frame(
+        covered: impl Fn(u32, u32) -> bool,
+        depth: impl Fn(u32) -> f32,
+        normal: [f32; 3],
+    ) -> Frame<f32> {
+        let plane =
+            |inside: f32, outside: f32| {
+                Samples::Scalar(Plane::from_pixels(SIZE, |x, y| {
+                    if covered(x, y) { inside } else { outside }
+                }))
+            };
+        let three =
+            |v: [f32; 3]| Plane::from_pixels(SIZE, |x, y| if covered(x, y) { v } else { [0.0; 3] });
+        let depths =
+            Plane::from_pixels(SIZE, |x, y| if covered(x, y) { depth(x) } else { f32::INFINITY });
+        Frame::new(SIZE[0], SIZE[1])
+            .with("", Samples::Color(three([0.5; 3])))
+            .and_then(|f| f.with("A", plane(1.0, 0.0)))
+            .and_then(|f| f.with("Z", Samples::Scalar(depths)))
+            .and_then(|f| f.with("normal", Samples::Vector(three(normal))))
+            .unwrap()
     }
 
-    fn errors(picture: &Frame<f32>, truth: &Frame<f32>) -> Result<Errors> {
-        let exec = Exec::sequential();
-        Errors::of(picture, &Reference::of(truth, &exec)?, &exec)
+    fn of(picture: &Frame<f32>, truth: &Frame<f32>) -> Errors {
+        let found = Errors::of(picture, truth, &Exec::sequential()).unwrap();
+        assert_eq!(Errors::of(picture, truth, &Exec::new(3, 8).unwrap()).unwrap(), found);
+        found
+    }
+
+    fn number(errors: &Errors, name: &str) -> Option<f64> {
+        (Metric::named(name).unwrap().of)(errors)
     }
 
     #[test]
-    fn the_truth_has_no_error() {
-        let truth = square(0, 3.0, [0.0, 0.0, 1.0]);
-        let errors = errors(&truth, &truth).unwrap();
-        for Figure { name, of, loss, .. } in FIGURES {
-            let value = of(&errors).unwrap();
-            assert!(
-                if name == "psnr" { value == f64::INFINITY } else { loss(value) == 0.0 },
-                "{name} {value}"
-            );
+    fn the_truth_itself_is_perfect() {
+        let truth = disc();
+        let found = of(&truth, &truth);
+        for metric in &METRICS {
+            let value = (metric.of)(&found).unwrap();
+            let perfect = match (metric.name, metric.better) {
+                ("psnr", _) => f64::INFINITY,
+                (_, Better::Less) => 0.0,
+                (_, Better::More | Better::NearOne) => 1.0,
+            };
+            assert_eq!(value, perfect, "{}", metric.name);
         }
     }
 
     #[test]
-    fn each_error_by_hand() {
-        let truth = square(0, 3.0, [0.0, 0.0, 1.0]);
-        let deep = errors(&square(0, 3.5, [0.0, 1.0, 1.0]), &truth).unwrap();
-        assert!((deep.depth.unwrap() - 0.5).abs() < 1e-12);
-        assert!((deep.normal.unwrap() - 45.0).abs() < 1e-12);
-        assert_eq!([deep.rmse, deep.flip, deep.outline - deep.true_outline], [0.0; 3]);
-        let moved = errors(&square(2, 3.0, [0.0, 0.0, 1.0]), &truth).unwrap();
-        // Two columns are uncovered, of which 8 px are interior, and two covered, of which 12 are outside.
-        assert!((moved.rmse - (40.0 * 0.25 / 400.0_f64).sqrt()).abs() < 1e-12);
-        let Coverage { holes, spill, .. } = moved.coverage;
-        assert_eq!((holes, spill), (8, 10));
-        let holes = FIGURES.iter().find(|figure| figure.name == "holes").unwrap();
-        assert_eq!((holes.of)(&moved), Some(80.0));
-        assert_eq!(moved.depth, Some(0.0), "of pixels that both cover");
-        let empty = frame([20, 20], |_, _| ([0.0; 3], f32::INFINITY, [0.0; 3]));
-        let nothing = errors(&empty, &empty).unwrap();
-        let absent = FIGURES.iter().filter(|figure| (figure.of)(&nothing).is_none());
-        let names: Vec<_> = absent.map(|figure| figure.name).collect();
-        assert_eq!(names, ["holes", "spill", "outline", "depth", "normal"]);
-        assert!(errors(&frame([3, 3], |_, _| ([0.0; 3], 1.0, [0.0; 3])), &truth).is_err());
+    fn each_error_shows_in_its_number() {
+        let truth = disc();
+        let Some(Samples::Scalar(alphas)) = truth.plane("A") else { panic!("no A") };
+        // A pixel in the middle is missing, one far away is there.
+        let covered = |x, y| (*alphas.at(x, y) > 0.0 && (x, y) != (20, 14)) || (x, y) == (2, 3);
+        let tilted = [sin(0.25) as f32, 0.0, cos(0.25) as f32];
+        let picture = frame(covered, |x| 4.25 + x as f32 / 8.0, tilted);
+        let found = of(&picture, &truth);
+        let total = found.coverage.covered as f64;
+        let expected = [
+            ("rmse", (2.0 * 0.25 / 1200.0_f64).sqrt()),
+            ("holes", 1000.0 / total),
+            ("holes-px", 1.0),
+            ("spill", 1000.0 / total),
+            ("spill-px", 1.0),
+            ("silhouette", 0.0),
+            ("depth", 0.25),
+            ("depth-99", 0.25),
+            ("depth-max", 0.25),
+            ("normal", 0.25 * 180.0 / std::f64::consts::PI),
+            ("normal-99", 0.25 * 180.0 / std::f64::consts::PI),
+        ];
+        for (name, expected) in expected {
+            let value = number(&found, name).unwrap();
+            assert!((value - expected).abs() < 1e-5, "{name}: {value} against {expected}");
+        }
+        // The disc is mirror symmetric about x = 19.5, but for the pixel that is missing.
+        let relative = number(&found, "depth-relative").unwrap();
+        assert!((relative - 0.25 / (4.0 + 19.5 / 8.0)).abs() < 1e-3, "{relative}");
+        // Two single pixels more: 4 sides and 4 corners each.
+        let more = 2.0 * std::f64::consts::FRAC_PI_8 * (4.0 + 8.0_f64.sqrt());
+        assert!((found.outline - found.true_outline - more).abs() < 1e-9);
+        assert!(number(&found, "flip").unwrap() > 0.0 && number(&found, "ssim").unwrap() < 1.0);
+        let shrunk = frame(|x, y| (14..26).contains(&x) && (9..21).contains(&y), |_| 4.0, tilted);
+        assert!(number(&of(&shrunk, &truth), "silhouette-px").unwrap() > 0.0);
     }
 
     #[test]
-    fn small_pictures_have_no_ssim() {
-        let small = frame([10, 12], |x, y| ([(x + y) as f32 / 30.0; 3], 1.0, [0.0, 0.0, 1.0]));
-        let errors = errors(&small, &small).unwrap();
-        assert_eq!(errors.ssim, None);
+    fn a_surface_is_not_compared_at_the_silhouette() {
+        let (truth, mut picture) = (disc(), disc());
+        let Samples::Scalar(depths) = &mut picture.planes[2].samples else { panic!("no Z") };
+        // The uppermost row of the disc is that of y = 7.
+        depths.values_mut()[7 * SIZE[0] as usize + 19] = 100.0;
+        assert_eq!(of(&picture, &truth), of(&truth, &truth));
+    }
+
+    #[test]
+    fn an_environment_covers_nothing() {
+        let (truth, mut picture) = (disc(), disc());
+        picture.planes[1].samples = Samples::Scalar(Plane::filled(SIZE[0], SIZE[1], 1.0));
+        assert_eq!(of(&picture, &truth), of(&truth, &truth));
+    }
+
+    #[test]
+    fn what_cannot_be_taken_is_none() {
+        let (truth, empty) = (disc(), frame(|_, _| false, |_| 1.0, [0.0; 3]));
+        let found = of(&empty, &truth);
+        assert_eq!((found.depth, found.normal), (None, None));
+        assert_eq!((number(&found, "outline"), number(&found, "depth")), (Some(0.0), None));
+        let found = of(&truth, &empty);
+        assert_eq!((number(&found, "outline"), number(&found, "holes")), (None, None));
+        let mut unlit = disc();
+        unlit.planes.pop();
+        let found = of(&unlit, &truth);
+        assert!(found.normal.is_none() && found.depth.is_some());
+
+        let exec = Exec::sequential();
+        unlit.planes.pop();
+        let said = Errors::of(&unlit, &truth, &exec).unwrap_err().to_string();
+        assert!(said.contains("no scalar plane is called `Z`"), "{said}");
+        let small = Frame::new(2, 1).with("", Samples::Color(Plane::filled(2, 1, [0.0; 3])));
+        let said = Errors::of(&small.unwrap(), &truth, &exec).unwrap_err().to_string();
+        assert!(said.contains("2 x 1 pixels and a reference of 40 x 30"), "{said}");
+    }
+
+    #[test]
+    fn names_are_found_and_listed() {
+        for metric in &METRICS {
+            let same = METRICS.iter().filter(|other| other.name == metric.name).count();
+            assert!(same == 1 && Metric::named(metric.name).is_ok(), "{}", metric.name);
+        }
+        let error = Metric::named("ssmi").unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("no metric is called ssmi; give one of: rmse, psnr"));
     }
 }

@@ -1,147 +1,280 @@
-//! Flicker: how the error of a pixel changes over the pictures of a sequence.
+//! Flicker: what of the error of a sequence is not constant, and how fast it changes.
 //!
-//! Of n pictures and their truths, each pixel has the errors e_t, t = 0 .. n - 1: the mean over R, G
-//! and B of picture minus truth. An error that stays is none of flicker. With the discrete Fourier
-//! transform of the errors,
+//! Of n frames, each with its truth, the error of a pixel at frame t is the difference of
+//! luminances,
 //!
 //! ```text
-//!   E_k = sum over t, ascending, of e_t exp(-2 pi i k t / n)
-//!   power_k = mean over the pixels of c |E_k|^2 / n^2      k = 1 .. floor(n / 2)
+//! e_t = 0.2126 dR + 0.7152 dG + 0.0722 dB,    d = picture - truth
 //! ```
 //!
-//! where c is 2, but 1 for k = n / 2: the power of both frequencies k and n - k. The sum of all
-//! powers is then the mean over the pixels of the variance of e_t over time [Parseval], and
-//! [`Flicker::rms`] is its root. In f64; the sum over the pixels is row by row from the top left.
+//! of linear colours, not clipped. Its mean over the frames, m, is an error that does not flicker.
+//! What is left is a sum of waves of k/n cycles a frame, k = 1 to n/2 rounded down; the power of one is
+//!
+//! ```text
+//! P_k = w_k |1/n sum_t (e_t - m) exp(-2 pi i k t/n)|^2,    w_k = 1 if 2 k = n, else 2
+//! ```
+//!
+//! as a mean over the pixels. By Parseval's theorem the sum of all `P_k` is the mean over the pixels of
+//! the variance of `e_t` over the frames. The *flicker* is its root: 0 for an error that stays, however
+//! large. With the root of the mean of m^2, the *constant* error, it makes up the RMSE of the whole
+//! sequence: `constant^2 + flicker^2 = mean e_t^2`.
+//!
+//! The frames are those of a path of the camera, or of one scene under shifts by parts of a pixel.
+//! They are taken as they are: no window tapers them. So an error that drifts from the first frame to
+//! the last shows at all frequencies, with a power that falls as 1/k^2; only if the path closes, or
+//! the shifts go through a whole pixel, is the sequence a period.
+//!
+//! `Decided:` pixels are those of the picture; they are not followed along the motion of the surface.
+//! A pixel that flickers in colour alone, at equal luminance, is not seen here. A NaN or an infinity
+//! in a colour makes the numbers NaN.
 
+use super::same_size;
 use crate::error::{Error, Result};
-use crate::frame::Plane;
+use crate::frame::{Exec, Plane};
 use crate::memory;
-use crate::number::elementary::{cos, sin};
+use crate::number::elementary;
+use std::f64::consts::PI;
 
-/// The most pictures.
-pub const MOST: usize = 1024;
+/// The weights of linear red, green and blue in the luminance (Rec. 709).
+const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
-/// The errors of a sequence so far.
-#[derive(Clone, Debug, Default)]
-pub struct Errors {
-    /// Of each picture that of each pixel.
-    frames: Vec<Vec<f32>>,
+/// The errors of a sequence, added frame by frame: an `f32` a pixel and frame.
+#[derive(Clone, Debug)]
+pub struct Flicker {
+    width: u32,
+    height: u32,
+    frames: Vec<Plane<f32>>,
 }
 
-/// The flicker of a sequence.
+/// How a sequence flickers, see the [page](self); in luminance, of which 1 is white.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Flicker {
-    /// The power at the frequencies 1 / n, 2 / n, ... of a cycle a picture, up to 1 / 2.
+pub struct Spectrum {
+    /// How many frames there were.
+    pub frames: usize,
+    /// The root of the mean square of the mean errors, at least 0.
+    pub constant: f64,
+    /// The root of the sum of [`Spectrum::power`], at least 0.
+    pub flicker: f64,
+    /// The power of each frequency, `P_1`, `P_2` ...; [`Spectrum::frequency`] says of which.
     pub power: Vec<f64>,
 }
 
-impl Errors {
-    /// Adds a picture; errors are kept rounded to `f32`.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if it is not of the size of its truth or of those before, if there are
-    /// [`MOST`] already, or if the process may not hold it.
-    pub fn push(&mut self, picture: &Plane<[f32; 3]>, truth: &Plane<[f32; 3]>) -> Result<()> {
-        let (found, expected) = (picture.values(), truth.values());
-        let first = self.frames.first().map_or(found.len(), Vec::len);
-        let is_one_size = picture.width() == truth.width() && found.len() == expected.len();
-        if !is_one_size || found.len() != first || self.frames.len() == MOST {
-            let what =
-                format!("flicker is of at most {MOST} pictures of one size with their truths");
-            return Err(Error::Invalid(what));
-        }
-        memory::ask(4 * found.len() as u64, || "the errors of a picture".into())?;
-        let error = |(a, b): (&[f32; 3], &[f32; 3])| {
-            let [r, g, b] = [0, 1, 2].map(|c| f64::from(a[c]) - f64::from(b[c]));
-            ((r + g + b) / 3.0) as f32
-        };
-        self.frames.push(found.iter().zip(expected).map(error).collect());
-        Ok(())
-    }
-
-    /// The flicker of the pictures so far; none of fewer than two.
+impl Spectrum {
+    /// The frequency of a place in [`Spectrum::power`] in cycles a frame, in (0, 1/2].
     #[must_use]
-    pub fn flicker(&self) -> Flicker {
-        let n = self.frames.len();
-        let pixels = self.frames.first().map_or(0, Vec::len);
-        let turn = |step: usize| std::f64::consts::TAU * (step % n) as f64 / n as f64;
-        let waves: Vec<[f64; 2]> = (0..n).map(|step| [cos(turn(step)), sin(turn(step))]).collect();
-        let power = |k: usize| {
-            let weight = if 2 * k == n { 1.0 } else { 2.0 };
-            let mut sum = 0.0;
-            for pixel in 0..pixels {
-                let (mut real, mut imaginary) = (0.0, 0.0);
-                for (t, frame) in self.frames.iter().enumerate() {
-                    let [c, s] = waves[k * t % n];
-                    real += f64::from(frame[pixel]) * c;
-                    imaginary += f64::from(frame[pixel]) * s;
-                }
-                sum += real * real + imaginary * imaginary;
-            }
-            weight * sum / (n * n * pixels) as f64
-        };
-        Flicker { power: (1..=n / 2).map(power).collect() }
+    pub fn frequency(&self, place: usize) -> f64 {
+        (place + 1) as f64 / self.frames as f64
     }
 }
 
 impl Flicker {
-    /// The root of the mean over the pixels of the variance of their error over time.
-    #[must_use]
-    pub fn rms(&self) -> f64 {
-        self.power.iter().sum::<f64>().sqrt()
+    /// No frame yet, of at most `frames` that are to come.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there is not enough memory.
+    pub fn new(width: u32, height: u32, frames: usize) -> Result<Self> {
+        let values = u64::from(width) * u64::from(height);
+        let bytes = values.saturating_mul(frames as u64).saturating_mul(4);
+        memory::ask(bytes, || format!("the errors of {frames} frames of {width} x {height}"))?;
+        Ok(Self { width, height, frames: Vec::new() })
+    }
+
+    /// Adds a frame: a picture and its truth, linear RGB.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if either has not the size of the sequence.
+    pub fn push(&mut self, picture: &Plane<[f32; 3]>, truth: &Plane<[f32; 3]>) -> Result<()> {
+        same_size(picture, truth)?;
+        if (picture.width(), picture.height()) != (self.width, self.height) {
+            return Err(Error::Invalid(format!(
+                "a frame of {} x {} pixels in a sequence of {} x {}; give frames of one size",
+                picture.width(),
+                picture.height(),
+                self.width,
+                self.height
+            )));
+        }
+        let errors = picture.values().iter().zip(truth.values()).map(|(p, q)| {
+            let [r, g, b] = [0, 1, 2].map(|c| LUMINANCE[c] * (f64::from(p[c]) - f64::from(q[c])));
+            (r + g + b) as f32
+        });
+        self.frames.push(Plane::from_values(self.width, self.height, errors.collect()));
+        Ok(())
+    }
+
+    /// The spectrum of the frames that were added.
+    ///
+    /// The sum of each frequency as it is written, in n^2 additions a pixel.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there is no frame.
+    pub fn spectrum(&self, exec: &Exec) -> Result<Spectrum> {
+        let n = self.frames.len();
+        if n == 0 {
+            return Err(Error::Invalid("the spectrum of no frame; add frames before".into()));
+        }
+        let circle: Vec<[f64; 2]> = (0..n)
+            .map(|i| 2.0 * PI * i as f64 / n as f64)
+            .map(|angle| [elementary::cos(angle), elementary::sin(angle)])
+            .collect();
+        let rows = exec.ordered((0..self.height as usize).collect(), |y| self.row(y, &circle));
+        let mut sums = vec![0.0; n / 2 + 1];
+        for row in rows {
+            sums.iter_mut().zip(row).for_each(|(sum, of_row)| *sum += of_row);
+        }
+        let pixels = f64::from(self.width) * f64::from(self.height);
+        let mean = |sum: &f64| sum / pixels;
+        let constant = mean(&sums[0]).sqrt();
+        let power: Vec<f64> = sums[1..].iter().map(mean).collect();
+        let flicker = power.iter().sum::<f64>().sqrt();
+        // -- An empty sum of floats is -0.
+        Ok(Spectrum { frames: n, constant, flicker: flicker + 0.0, power })
+    }
+
+    /// The sums along a row of m^2 and of each P, in the order of their frequencies.
+    fn row(&self, y: usize, circle: &[[f64; 2]]) -> Vec<f64> {
+        let (width, n) = (self.width as usize, self.frames.len());
+        let mut errors: Vec<Vec<f64>> = self
+            .frames
+            .iter()
+            .map(|frame| {
+                frame.values()[y * width..(y + 1) * width].iter().map(|&e| e.into()).collect()
+            })
+            .collect();
+        let mut means = vec![0.0; width];
+        for frame in &errors {
+            means.iter_mut().zip(frame).for_each(|(mean, error)| *mean += error);
+        }
+        means.iter_mut().for_each(|mean| *mean /= n as f64);
+        for frame in &mut errors {
+            frame.iter_mut().zip(&means).for_each(|(error, mean)| *error -= mean);
+        }
+        let constant = means.iter().map(|mean| mean * mean).sum();
+        let powers = (1..=n / 2).map(|k| {
+            let (mut real, mut imaginary) = (vec![0.0; width], vec![0.0; width]);
+            for (t, frame) in errors.iter().enumerate() {
+                let [c, s] = circle[k * t % n];
+                for ((re, im), error) in real.iter_mut().zip(&mut imaginary).zip(frame) {
+                    *re += c * error;
+                    *im += s * error;
+                }
+            }
+            let weight = if 2 * k == n { 1.0 } else { 2.0 };
+            let squares: f64 = real.iter().zip(&imaginary).map(|(re, im)| re * re + im * im).sum();
+            weight * squares / (n * n) as f64
+        });
+        [constant].into_iter().chain(powers).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use crate::number::random::unit;
 
-    fn plane(values: &[f32]) -> Plane<[f32; 3]> {
-        Plane::from_values(values.len() as u32, 1, values.iter().map(|v| [*v; 3]).collect())
-    }
-
-    fn of(frames: &[Vec<f32>]) -> Flicker {
-        let mut errors = Errors::default();
-        for frame in frames {
-            errors.push(&plane(frame), &plane(&vec![0.0; frame.len()])).unwrap();
+    /// The spectrum of gray pictures whose errors are given by frame and pixel.
+    fn spectrum(frames: usize, error: impl Fn(usize, usize) -> f32) -> Spectrum {
+        let (width, height) = (7, 5);
+        let truth = Plane::filled(width, height, [0.5; 3]);
+        let mut flicker = Flicker::new(width, height, frames).unwrap();
+        for t in 0..frames {
+            let values = (0..35).map(|i| [0.5 + error(t, i); 3]).collect();
+            flicker.push(&Plane::from_values(width, height, values), &truth).unwrap();
         }
-        errors.flicker()
+        let found = flicker.spectrum(&Exec::sequential()).unwrap();
+        assert_eq!(flicker.spectrum(&Exec::new(3, 8).unwrap()).unwrap(), found, "threads");
+        assert_eq!((found.power.len(), found.frames), (frames / 2, frames));
+        found
     }
 
     #[test]
-    fn known_answers() {
-        assert!(of(&[]).power.is_empty());
-        assert_eq!(of(&[vec![1.0]]).rms(), 0.0);
-        assert_eq!(of(&vec![vec![0.5, -2.0]; 8]).rms() < 1e-15, true, "what stays is no flicker");
-        // Every other picture off by 1: all power at one half.
-        let blink = of(&[vec![0.0], vec![1.0], vec![0.0], vec![1.0]]);
-        assert!((blink.rms() - 0.5).abs() < 1e-15);
-        assert!(blink.power[0] < 1e-30 && (blink.power[1] - 0.25).abs() < 1e-15);
-        // A cosine of two cycles in 8 pictures, amplitude 3.
-        let wave: Vec<Vec<f32>> = (0..8).map(|t| vec![[3.0, 0.0, -3.0, 0.0][t % 4]]).collect();
-        let found = of(&wave);
-        assert!((found.power[1] - 4.5).abs() < 1e-14, "{found:?}");
-        let mut errors = Errors::default();
-        errors.push(&plane(&[1.0]), &plane(&[1.0])).unwrap();
-        assert!(errors.push(&plane(&[1.0, 2.0]), &plane(&[1.0, 2.0])).is_err());
-        assert!(errors.push(&plane(&[1.0]), &plane(&[1.0, 2.0])).is_err());
+    fn a_constant_error_does_not_flicker() {
+        let found = spectrum(8, |_, i| if i % 2 == 0 { 0.25 } else { -0.25 });
+        assert!((found.constant - 0.25).abs() < 1e-7 && found.flicker == 0.0, "{found:?}");
+        let one = spectrum(1, |_, _| 0.25);
+        assert_eq!((one.flicker.to_bits(), one.power), (0, vec![]));
     }
 
-    proptest! {
-        #[test]
-        fn the_powers_sum_up_to_the_variance(
-            frames in (2_usize..12, 1_usize..6).prop_flat_map(|(n, pixels)| {
-                prop::collection::vec(prop::collection::vec(-2.0_f32..2.0, pixels), n)
-            })
-        ) {
-            let (n, pixels) = (frames.len() as f64, frames[0].len());
-            let variance = |pixel: usize| {
-                let mean = frames.iter().map(|f| f64::from(f[pixel])).sum::<f64>() / n;
-                frames.iter().map(|f| (f64::from(f[pixel]) - mean).powi(2)).sum::<f64>() / n
-            };
-            let expected = ((0..pixels).map(variance).sum::<f64>() / pixels as f64).sqrt();
-            prop_assert!((of(&frames).rms() - expected).abs() < 1e-6);
+    /// A wave of amplitude a has the variance a^2/2, wherever its phase is, all at its frequency;
+    /// the fastest one, +a -a, has a^2.
+    #[test]
+    fn a_wave_has_its_power_at_its_frequency() {
+        for n in [4, 9, 16, 33] {
+            for k in 1..=n / 2 {
+                let found = spectrum(n, |t, i| {
+                    let phase = if 2 * k == n { 0.0 } else { i as f64 };
+                    let angle = 2.0 * PI * (k * t) as f64 / n as f64 + phase;
+                    (0.1 * elementary::cos(angle) + 0.2) as f32
+                });
+                let expected = if 2 * k == n { 0.01 } else { 0.005 };
+                for (place, power) in found.power.iter().enumerate() {
+                    let here = if place + 1 == k { expected } else { 0.0 };
+                    assert!((power - here).abs() < 1e-7, "{n} {k} {place}: {power}");
+                }
+                assert!((found.frequency(k - 1) - k as f64 / n as f64).abs() < 1e-15);
+                assert!((found.constant - 0.2).abs() < 1e-6);
+            }
         }
+    }
+
+    /// An error of a t at frame t has the transform a n/(exp(-2 pi i k/n) - 1), whose square is
+    /// a^2 n^2/(4 sin^2(pi k/n)).
+    #[test]
+    fn a_drift_shows_at_all_frequencies() {
+        for n in [5, 8, 32] {
+            let found = spectrum(n, |t, _| t as f32 / 256.0);
+            for (place, power) in found.power.iter().enumerate() {
+                let k = place + 1;
+                let half = elementary::sin(PI * k as f64 / n as f64);
+                let weight = if 2 * k == n { 1.0 } else { 2.0 };
+                let expected = weight / (256.0 * 256.0) / (4.0 * half * half);
+                assert!((power / expected - 1.0).abs() < 1e-6, "{n} {k}: {power}, {expected}");
+            }
+        }
+    }
+
+    /// Parseval: the flicker is the standard deviation over time, and with the constant error makes
+    /// up the whole.
+    #[test]
+    fn the_flicker_is_the_deviation_over_time() {
+        for n in [2, 3, 8, 17, 64] {
+            // Multiples of 2^-10 are exact in f32 beside 0.5.
+            let error = |t: usize, i: usize| {
+                let random = unit(7, (t * 35 + i) as u64);
+                ((random - 0.3) * 512.0).floor() / 1024.0 * (1.0 + (i % 3) as f32)
+            };
+            let found = spectrum(n, error);
+            let (mut variance, mut square) = (0.0, 0.0);
+            for i in 0..35 {
+                let of: Vec<f64> = (0..n).map(|t| error(t, i).into()).collect();
+                let mean = of.iter().sum::<f64>() / n as f64;
+                variance += of.iter().map(|e| (e - mean) * (e - mean)).sum::<f64>() / n as f64;
+                square += of.iter().map(|e| e * e).sum::<f64>() / n as f64;
+            }
+            let (variance, square) = (variance / 35.0, square / 35.0);
+            let whole = found.constant * found.constant + found.flicker * found.flicker;
+            assert!((found.flicker * found.flicker - variance).abs() < 1e-7, "{n}: {found:?}");
+            assert!((whole - square).abs() < 1e-7, "{n}: {whole} against {square}");
+            // Played backwards, the same.
+            let back = spectrum(n, |t, i| error(n - 1 - t, i));
+            let off = back.power.iter().zip(&found.power).map(|(a, b)| (a - b).abs());
+            assert!(off.into_iter().all(|off| off < 1e-12));
+        }
+    }
+
+    #[test]
+    fn the_error_is_of_luminance() {
+        let (truth, mut flicker) = (Plane::filled(2, 1, [0.0; 3]), Flicker::new(2, 1, 2).unwrap());
+        let red = Plane::from_values(2, 1, vec![[1.0, 0.0, 0.0], [0.0; 3]]);
+        flicker.push(&red, &truth).unwrap();
+        flicker.push(&truth, &truth).unwrap();
+        let found = flicker.spectrum(&Exec::sequential()).unwrap();
+        // One of two pixels, half of the frames: variance 0.2126^2/4 in one, 0 in the other.
+        assert!((found.flicker - 0.2126 / 8.0_f64.sqrt()).abs() < 1e-8, "{found:?}");
+        assert!(Flicker::new(2, 1, 0).unwrap().spectrum(&Exec::sequential()).is_err());
+        let small = Plane::filled(1, 1, [0.0; 3]);
+        assert!(flicker.push(&small, &truth).is_err());
+        let said = flicker.push(&small, &small).unwrap_err().to_string();
+        assert!(said.contains("1 x 1 pixels in a sequence of 2 x 1"), "{said}");
     }
 }

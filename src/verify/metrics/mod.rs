@@ -1,91 +1,106 @@
-//! How far a picture is from another, or from the truth.
+//! How far a picture is from another one, from the truth for example: a number a file.
 //!
-//! - [`rmse`], [`psnr`], [`ssim()`] and [`summary`]: in one number each.
-//! - [`mod@flip`]: how different two pictures look when one flips to the other [ANA+20].
-//! - [`mod@coverage`]: holes and spill, how far they agree on what is covered; [`mod@outline`]: how long
-//!   the outline is.
-//! - [`errors`]: these and those of depth and normals against the truth, together.
-//! - [`flicker`]: how the errors of a sequence change from picture to picture.
+//! - [`mod@rmse`]: RMSE and PSNR, of colours, as numbers.
+//! - [`mod@ssim`]: their structure \[WBSS04\].
+//! - [`mod@flip`]: how visible the difference is \[ANA+20\].
+//! - [`mod@coverage`]: holes and spill, by regions of what is covered.
+//! - [`mod@outline`]: the length of the silhouette.
+//! - [`mod@depth`], [`mod@normal`]: the surface in the pixels that both cover.
+//! - [`mod@flicker`]: errors of a sequence that are not constant, and their spectrum.
+//! - [`mod@errors`]: all of one picture against its truth, and the table of their names and units.
 //!
-//! `Decided:` all but FLIP are taken of the values as stored, for pictures linear and not
-//! clipped, with a peak of 1: a value that a display would clip counts in full. They serve to rank
-//! methods; whether a picture is right is for [`super::compare`] to say. A NaN or an infinity in a
-//! plane makes RMSE, PSNR and SSIM NaN or infinite. Everything is f64, summed row by row from the top
-//! left.
+//! Whether a picture is right is for [`super::compare`] to say; these serve to rank methods. Every
+//! number is f64, and a sum runs row by row from the top left, the rows one after the other.
+//!
+//! `Decided:` RMSE, PSNR and SSIM are taken of the values as stored, for pictures linear and not
+//! clipped, with a peak of 1: a value that a display would clip counts in full. A NaN or an infinity
+//! in a plane makes each of these numbers NaN or infinite. What the others do with them is said on
+//! their pages.
 
-mod coverage;
+pub mod coverage;
+pub mod depth;
 pub mod errors;
 pub mod flicker;
 pub mod flip;
+pub mod normal;
 pub mod outline;
-mod ssim;
-#[cfg(test)]
-mod tests;
+pub mod rmse;
+pub mod ssim;
+mod summary;
 
 pub use coverage::{Coverage, Region, coverage, regions};
-pub use errors::Errors;
-pub use flicker::Flicker;
+pub use depth::{DepthError, depth};
+pub use errors::{Better, Errors, METRICS, Metric};
+pub use flicker::{Flicker, Spectrum};
+pub use flip::{Flip, flip};
+pub use normal::{NormalError, normal};
+pub use outline::outline;
+pub use rmse::{psnr, rmse};
 pub use ssim::ssim;
+pub use summary::{Summary, summary};
 
-use crate::frame::image::{Image, Values};
-use crate::number::elementary;
+use crate::error::{Error, Result};
+use crate::frame::Plane;
 
-/// The distances between the colours of two pictures.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Summary {
-    /// Over all pixels of the three channels; at least 0.
-    pub rmse: f64,
-    /// Of that RMSE, in decibels; infinite if it is 0.
-    pub psnr: f64,
-    /// The mean of the three channels' SSIM, at most 1; none for pictures that no window fits into.
-    pub ssim: Option<f64>,
-}
-
-/// The distances between the channels `R`, `G` and `B` of two pictures.
-///
-/// None unless both have all three as floats, and one size.
-#[must_use]
-pub fn summary(a: &Image, b: &Image) -> Option<Summary> {
-    if (a.width, a.height) != (b.width, b.height) {
-        return None;
+/// Whether two planes have one size.
+fn same_size<A, B>(picture: &Plane<A>, reference: &Plane<B>) -> Result<()> {
+    let [size, other] =
+        [(picture.width(), picture.height()), (reference.width(), reference.height())];
+    if size == other {
+        return Ok(());
     }
-    let (mut squares, mut similarity) = (0.0, Some(0.0));
-    for name in ["R", "G", "B"] {
-        let (Values::Float(a_values), Values::Float(b_values)) =
-            (a.channel(name)?, b.channel(name)?)
-        else {
-            return None;
-        };
-        squares += mean_square(a_values, b_values);
-        let channel = ssim(a_values, b_values, a.width as usize);
-        similarity = similarity.zip(channel).map(|(sum, one)| sum + one);
+    Err(Error::Invalid(format!(
+        "a picture of {} x {} pixels and a reference of {} x {}; give two of one size",
+        size.0, size.1, other.0, other.1
+    )))
+}
+
+/// The number of an ascending list that `percent` of the numbers do not exceed: the one at
+/// ceil(n percent/100), counted from 1. None of none.
+fn percentile(ascending: &[f64], percent: usize) -> Option<f64> {
+    let rank = (ascending.len() * percent).div_ceil(100);
+    ascending.get(rank.saturating_sub(1)).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    pub(super) fn plane(width: usize, height: usize, of: impl Fn(usize, usize) -> f32) -> Vec<f32> {
+        (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| of(x, y)).collect()
     }
-    let rmse = (squares / 3.0).sqrt();
-    Some(Summary { rmse, psnr: psnr(rmse), ssim: similarity.map(|sum| sum / 3.0) })
-}
 
-/// The root of the mean squared difference of two planes of one size; NaN if they have no value.
-///
-/// # Panics
-/// If the planes differ in length.
-#[must_use]
-pub fn rmse(a: &[f32], b: &[f32]) -> f64 {
-    mean_square(a, b).sqrt()
-}
-
-/// The mean squared difference.
-fn mean_square(a: &[f32], b: &[f32]) -> f64 {
-    assert_eq!(a.len(), b.len(), "planes of one size");
-    let mut sum = 0.0;
-    for (&a, &b) in a.iter().zip(b) {
-        let difference = f64::from(a) - f64::from(b);
-        sum += difference * difference;
+    pub(super) fn pattern(x: usize, y: usize) -> f32 {
+        ((x * x * 7 + y * 13 + x * y * 3) % 256) as f32 / 256.0
     }
-    sum / a.len() as f64
-}
 
-/// The peak signal-to-noise ratio of an RMSE in decibels, `-20 log10(rmse)`; infinite for 0.
-#[must_use]
-pub fn psnr(rmse: f64) -> f64 {
-    -20.0 * elementary::ln(rmse) / std::f64::consts::LN_10
+    pub(super) fn ramp(x: usize, y: usize) -> f32 {
+        ((x * 4 + y * 2) % 256) as f32 / 256.0
+    }
+
+    pub(super) fn noisy(x: usize, y: usize) -> f32 {
+        0.75 * ramp(x, y) + ((x * 31 + y * 17) % 64) as f32 / 256.0
+    }
+
+    #[test]
+    fn percentiles_are_numbers_of_the_list() {
+        let hundred: Vec<f64> = (1..=100).map(f64::from).collect();
+        assert_eq!(percentile(&hundred, 99), Some(99.0));
+        assert_eq!(percentile(&hundred, 100), Some(100.0));
+        assert_eq!(percentile(&hundred[..3], 50), Some(2.0));
+        assert_eq!(percentile(&hundred[..3], 99), Some(3.0));
+        assert_eq!(percentile(&hundred[..1], 0), Some(1.0));
+        assert_eq!(percentile(&[], 99), None);
+    }
+
+    #[test]
+    fn sizes_are_one_clear_line() {
+        let (a, b) = (Plane::filled(3, 2, 0.0), Plane::filled(2, 3, 0.0));
+        assert!(same_size(&a, &a).is_ok());
+        let said = same_size(&a, &b).unwrap_err().to_string();
+        assert_eq!(
+            said,
+            "a picture of 3 x 2 pixels and a reference of 2 x 3; give two of one size"
+        );
+    }
 }

@@ -1,4 +1,4 @@
-//! The mean structural similarity [WBSS04].
+//! SSIM \[WBSS04\].
 
 use crate::number::elementary;
 
@@ -7,7 +7,7 @@ const WINDOW: usize = 11;
 /// Its standard deviation, in pixels.
 const SIGMA: f64 = 1.5;
 /// (K1 L)^2, with L = 1 the range of values.
-pub(super) const C1: f64 = 0.01 * 0.01;
+const C1: f64 = 0.01 * 0.01;
 /// (K2 L)^2.
 const C2: f64 = 0.03 * 0.03;
 
@@ -96,4 +96,61 @@ fn blur_columns(rows: [&[f64]; WINDOW], weights: &[f64; WINDOW]) -> Vec<f64> {
 fn similarity([m_a, m_b, m_aa, m_bb, m_ab]: [f64; 5]) -> f64 {
     let (v_a, v_b, c) = (m_aa - m_a * m_a, m_bb - m_b * m_b, m_ab - m_a * m_b);
     (2.0 * m_a * m_b + C1) * (2.0 * c + C2) / ((m_a * m_a + m_b * m_b + C1) * (v_a + v_b + C2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{noisy, pattern, plane, ramp};
+    use super::super::{psnr, rmse};
+    use super::*;
+
+    /// Printed by `tests/data/ssim.py`: scikit-image 0.26.0, which it first holds against the
+    /// definition; RMSE, PSNR, SSIM of shifted, noisy and other patterns.
+    #[test]
+    fn the_published_implementation_agrees() {
+        let references = [
+            (64, 48, 0, [0.12401959270615269, 18.130193985141926, 0.8939135771776123]),
+            (64, 48, 1, [0.10200910919004928, 19.827220899206058, 0.3467302549767385]),
+            (64, 48, 2, [0.4047306700550418, 7.856677679849904, 0.006799754254667338]),
+            (11, 11, 0, [0.015625, 36.12359947967774, 0.9922426258401237]),
+            (11, 11, 1, [0.11809263799334681, 18.555543517420446, 0.2673579220730217]),
+            (11, 11, 2, [0.43176283778303237, 7.295094810221422, -0.0034520839930268993]),
+            (37, 12, 0, [0.015625, 36.12359947967774, 0.9981501638224874]),
+            (37, 12, 1, [0.09377941323150962, 20.557849778523632, 0.2643361860724498]),
+            (37, 12, 2, [0.35852509711643926, 8.909608757653997, 0.010594669017081988]),
+        ];
+        for (width, height, pair, [expected_rmse, expected_psnr, expected_ssim]) in references {
+            let (a, b) = match pair {
+                0 => (plane(width, height, ramp), plane(width, height, |x, y| ramp(x + 1, y))),
+                1 => (plane(width, height, ramp), plane(width, height, noisy)),
+                _ => (plane(width, height, pattern), plane(width, height, ramp)),
+            };
+            let near = |found: f64, expected: f64| (found - expected).abs() < 1e-12;
+            let found = rmse(&a, &b);
+            assert!(near(found, expected_rmse), "{width} {pair}: {found}");
+            assert!(near(psnr(found), expected_psnr), "{width} {pair}: {}", psnr(found));
+            let found = ssim(&a, &b, width).unwrap();
+            assert!(near(found, expected_ssim), "{width} {pair}: {found}");
+            assert_eq!(ssim(&b, &a, width), Some(found), "symmetric");
+        }
+    }
+
+    #[test]
+    fn known_answers() {
+        let a = plane(20, 15, pattern);
+        assert_eq!(ssim(&a, &a, 20), Some(1.0), "with itself");
+        assert_eq!(rmse(&a, &a), 0.0);
+        assert_eq!(psnr(0.0), f64::INFINITY);
+        assert!((psnr(0.1) - 20.0).abs() < 1e-12);
+        // Of two constants the second factor is C2 / C2.
+        let (p, q) = (0.25_f64, 0.75_f64);
+        let found = ssim(&[0.25; 169], &[0.75; 169], 13).unwrap();
+        assert!((found - (2.0 * p * q + C1) / (p * p + q * q + C1)).abs() < 1e-12);
+        assert_eq!(rmse(&[0.25; 169], &[0.75; 169]), 0.5);
+        // Too small in one direction, or empty.
+        assert_eq!(ssim(&[0.0; 110], &[0.0; 110], 10), None);
+        assert_eq!(ssim(&[0.0; 110], &[0.0; 110], 11), None);
+        assert_eq!(ssim(&[], &[], 0), None);
+        assert!(rmse(&[1.0, f32::NAN], &[1.0, 1.0]).is_nan());
+    }
 }

@@ -1,0 +1,211 @@
+//! `splatref plan`: the cheapest method and settings within a budget.
+
+use super::study::loss;
+use super::tried::{Loaded, Tried, truth_in_words};
+use super::{Ended, Ending, progress, report, say};
+use splatref::Result;
+use splatref::study::plan::{Budget, Known as Row};
+use splatref::study::report::chart::Loss;
+use splatref::study::run::measure::picture_errors;
+use splatref::study::run::{Bench, Record, time};
+use splatref::study::sweep::Candidate;
+use splatref::verify::metrics::METRICS;
+use std::time::Instant;
+
+#[derive(clap::Args)]
+#[command(after_help = "\
+Every candidate of `splatref study` is drawn at the full size and compared with the true picture; what is
+within the budget is timed by turns. Errors of a smaller picture would be those of another: holes come and
+go with its size.
+
+Examples:
+  splatref plan bunny.ply --error 0.02
+  splatref plan bunny.ply --error 0.03 --metric ssim
+  splatref plan torus --time 20ms --metric flip")]
+#[command(group(clap::ArgGroup::new("budget").required(true)))]
+pub(super) struct Args {
+    #[command(flatten)]
+    tried: Tried,
+    /// The most error; of SSIM what is missing to 1, of PSNR the RMSE: the fastest is chosen
+    #[arg(long, value_name = "E", value_parser = error, group = "budget")]
+    error: Option<f64>,
+    /// The most time of a picture, such as 20ms or 0.5s: the one with the least error is chosen
+    #[arg(long, value_name = "TIME", value_parser = milliseconds, group = "budget")]
+    time: Option<f64>,
+    /// What the error is
+    #[arg(long, value_name = "NAME", default_value = "rmse", value_parser = still)]
+    metric: Loss,
+}
+
+/// Candidates that took so many times as long as the fastest within the budget are not timed again.
+const HOPELESS: f64 = 2.0;
+/// How many that were not chosen are named.
+const RUNNERS_UP: usize = 3;
+
+pub(super) fn run(args: &Args) -> Ended {
+    let start = Instant::now();
+    let budget = match (args.error, args.time) {
+        (Some(error), _) => Budget::Error(error),
+        (None, time) => Budget::Time(time.unwrap_or(f64::INFINITY)),
+    };
+    let scene = args.tried.scene_file()?;
+    let exec = args.tried.exec()?;
+    let steps = progress::Steps::new("loading");
+    let show = |what: &str, done, of| steps.show(what, done, of);
+    let Loaded { mut bench, candidates, known, camera, .. } =
+        args.tried.load(&scene, &exec, &steps)?;
+    let truth = known.still(&camera, &exec, &show)?;
+
+    let mut rows = Vec::new();
+    for (i, candidate) in candidates.iter().enumerate() {
+        steps.show("measuring", i as u64, candidates.len() as u64);
+        let (errors, time) = picture_errors(&mut bench, candidate, &truth, &exec)?;
+        let metric = METRICS.iter().find(|metric| metric.name == args.metric.figure);
+        let value = metric.and_then(|metric| (metric.of)(&errors));
+        let loss = value.map_or(f64::NAN, args.metric.of);
+        rows.push(Row { time, loss });
+    }
+    timed(&mut bench, &candidates, budget, &mut rows, &steps)?;
+    drop(steps);
+    report::line("scene", format!("{}, {} x {}", scene.name, camera.width, camera.height));
+    report::line("truth", truth_in_words(&known, &truth));
+    report::line("tried", format!("{} candidates", candidates.len()));
+    let ended = print(args, budget, &candidates, &rows);
+    report::time("total", vec![start.elapsed()]);
+    ended
+}
+
+/// Times what may be the best, by turns.
+fn timed(
+    bench: &mut Bench<'_>,
+    candidates: &[Candidate],
+    budget: Budget,
+    rows: &mut [Row],
+    steps: &progress::Steps,
+) -> Result<()> {
+    // A first time may be too long by much, never too short by much.
+    let may = |row: &Row| match budget {
+        Budget::Error(_) => budget.allows(row),
+        Budget::Time(most) => row.time <= HOPELESS * most,
+    };
+    let fastest = rows.iter().filter(|row| may(row)).map(|row| row.time);
+    let fastest =
+        fastest.fold(f64::INFINITY, |least, time| if time < least { time } else { least });
+    let far = |row: &Row| matches!(budget, Budget::Error(_)) && row.time > HOPELESS * fastest;
+    let left: Vec<usize> = (0..rows.len()).filter(|&i| may(&rows[i]) && !far(&rows[i])).collect();
+    let mut records: Vec<Record> = left.iter().map(|&i| Record::of(&candidates[i])).collect();
+    for round in 0..time::ROUNDS {
+        for (done, i) in time::order(round, left.len()).into_iter().enumerate() {
+            let count = left.len() as u64;
+            steps.show("timing", round * count + done as u64, time::ROUNDS * count);
+            time::turn(bench, &candidates[left[i]], round, &mut records[i].times)?;
+        }
+    }
+    for (&i, record) in left.iter().zip(&records) {
+        if let Some([_, median, _]) = record.quartiles() {
+            rows[i].time = median;
+        }
+    }
+    Ok(())
+}
+
+/// What is chosen, how to draw it, and what comes next.
+fn print(args: &Args, budget: Budget, candidates: &[Candidate], rows: &[Row]) -> Ended {
+    let in_words = |i: usize| {
+        let Row { time, loss } = rows[i];
+        let (time, loss) = (report::short(time), report::short(loss));
+        format!("{}: {time} ms, {} {loss}", candidates[i].options, args.metric.title)
+    };
+    let ranked = budget.ranked(rows);
+    let Some((&best, others)) = ranked.split_first() else {
+        let by = |of: fn(&Row) -> f64| {
+            let finite = (0..rows.len()).filter(|&i| !rows[i].loss.is_nan());
+            finite.min_by(|&a, &b| of(&rows[a]).total_cmp(&of(&rows[b])))
+        };
+        let (what, nearest) = match budget {
+            Budget::Error(most) => (format!("an error of {most}"), by(|row| row.loss)),
+            Budget::Time(most) => (format!("{most} ms"), by(|row| row.time)),
+        };
+        let nearest = nearest.map_or_else(|| "none has such an error".into(), in_words);
+        say(format!("nothing is within {what}; the nearest is {nearest}"));
+        return Ok(Ending::Different);
+    };
+    report::line("plan", in_words(best));
+    for &i in others.iter().take(RUNNERS_UP) {
+        let why = match budget {
+            Budget::Error(_) => {
+                format!("{} times as long", report::short(rows[i].time / rows[best].time))
+            }
+            Budget::Time(_) => {
+                format!("{} times the error", report::short(rows[i].loss / rows[best].loss))
+            }
+        };
+        report::line("  next", format!("{}; {why}", in_words(i)));
+    }
+    report::line(
+        "command",
+        format!("splatref render {}{}", own_options(), candidates[best].options),
+    );
+    Ok(Ending::Good)
+}
+
+/// The options of this command that `render` takes too, and the scene.
+fn own_options() -> String {
+    let mut all = std::env::args().skip(1).peekable();
+    let mut kept = String::new();
+    let mut first = true;
+    while let Some(option) = all.next() {
+        if first && option == "plan" {
+            first = false;
+            continue;
+        }
+        let (name, has_value) = match option.split_once('=') {
+            Some((name, _)) => (name.to_owned(), true),
+            None => (option.clone(), false),
+        };
+        if ["--error", "--time", "--metric", "--truth", "--method"].contains(&name.as_str()) {
+            if !has_value {
+                all.next();
+            }
+            continue;
+        }
+        kept.push_str(&quoted(&option));
+        kept.push(' ');
+    }
+    kept
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_=./,:+@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+/// A number of at least 0.
+fn error(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse().ok().filter(|v: &f64| *v >= 0.0 && v.is_finite());
+    number.ok_or_else(|| "give a number of at least 0, such as 0.02".into())
+}
+
+/// `20ms` or `0.5s`.
+fn milliseconds(text: &str) -> std::result::Result<f64, String> {
+    let number = text.strip_suffix("ms").map(|digits| (digits, 1.0));
+    let number = number.or_else(|| text.strip_suffix('s').map(|digits| (digits, 1000.0)));
+    let time = number.and_then(|(digits, scale)| Some(digits.parse::<f64>().ok()? * scale));
+    time.filter(|time| *time > 0.0 && time.is_finite())
+        .ok_or_else(|| "give a time of a picture, such as 20ms or 0.5s".into())
+}
+
+/// A loss of one picture.
+fn still(name: &str) -> std::result::Result<Loss, String> {
+    match loss(name) {
+        Ok(loss) if !METRICS.iter().any(|metric| metric.name == name) => {
+            Err(format!("{} is of a sequence; give an error of one picture", loss.figure))
+        }
+        other => other,
+    }
+}

@@ -1,0 +1,70 @@
+//! What `study` and `plan` share: a scene, what is tried of it, and its truth.
+
+use super::options::{ExecOptions, SceneOptions};
+use super::progress;
+use splatref::Result;
+use splatref::frame::Exec;
+use splatref::io::scene_file::SceneFile;
+use splatref::scene::Camera;
+use splatref::study::run::truths::Known;
+use splatref::study::run::{Bench, LeftOut};
+use splatref::study::sweep::{Candidate, candidates};
+use splatref::study::truth::Truth;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub(super) struct Tried {
+    /// A .ply, an .obj, a scene .toml, a folder of surfels, or a shape
+    pub(super) scene: PathBuf,
+    /// A scene whose surface is the truth, such as the mesh that points were sampled from
+    #[arg(long, value_name = "SCENE")]
+    truth: Option<PathBuf>,
+    #[command(flatten)]
+    exec: ExecOptions,
+    #[command(flatten)]
+    options: SceneOptions,
+}
+
+/// All that is loaded before anything is measured.
+pub(super) struct Loaded<'e> {
+    pub(super) bench: Bench<'e>,
+    pub(super) candidates: Vec<Candidate>,
+    pub(super) left_out: Vec<LeftOut>,
+    pub(super) known: Known,
+    pub(super) camera: Camera,
+}
+
+impl Tried {
+    /// The scene, with the options on top.
+    pub(super) fn scene_file(&self) -> Result<SceneFile> {
+        self.options.refuse_state("what is tried begins with nothing seen")?;
+        self.options.scene_file(&self.scene)
+    }
+
+    pub(super) fn exec(&self) -> Result<Exec> {
+        self.exec.exec()
+    }
+
+    /// Loads what is tried of the scene.
+    pub(super) fn load<'e>(
+        &self,
+        scene: &SceneFile,
+        exec: &'e Exec,
+        steps: &progress::Steps,
+    ) -> Result<Loaded<'e>> {
+        let show = |what: &str, done, of| steps.show(what, done, of);
+        let all = candidates(scene, self.options.chosen_method())?;
+        let (mut bench, candidates, left_out) = Bench::load(all, exec, &show)?;
+        let known = match &self.truth {
+            None => Known::of(scene, exec, &show)?,
+            Some(truth) => Known::of(&SceneFile::open(truth)?, exec, &show)?.lit_as(scene),
+        };
+        let camera = bench.visit(&candidates[0], &show)?.ready.camera;
+        Ok(Loaded { bench, candidates, left_out, known, camera })
+    }
+}
+
+/// What the truth is, and why it is no better.
+pub(super) fn truth_in_words(known: &Known, truth: &Truth) -> String {
+    known.unknown().map_or_else(|| truth.how.to_string(), |why| format!("{} ({why})", truth.how))
+}
