@@ -135,9 +135,23 @@ impl<R: Exact> Shader<R> {
         for i in 0..LANES {
             put_vector(&mut points, i, self.view.point(vector(positions, i)));
         }
+        self.points(&points, normals, surface)
+    }
+
+    /// The colours of surfaces at points in view space, whose normals are in world space.
+    #[inline(always)]
+    pub(crate) fn points(
+        &self,
+        points: &[Lanes<R>; 3],
+        normals: &[Lanes<R>; 3],
+        surface: &[Lanes<R>; 3],
+    ) -> [Lanes<R>; 3] {
+        if self.lights.is_empty() {
+            return *surface;
+        }
         let turned = |i| self.view.direction(vector(normals, i));
         let form = |i| Form { normal: turned(i), tangent: Vector3::ZERO };
-        lit(self, &points, form, surface)
+        lit(self, points, form, surface)
     }
 }
 

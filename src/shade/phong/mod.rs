@@ -151,13 +151,6 @@ impl<R: Real> Shader<R> {
         self.lit(self.position(x, y, t), |l| (normal, normal.dot(l)), surface)
     }
 
-    /// The colour of a surface at a point in view space, whose normal is in world space.
-    #[must_use]
-    pub fn at(&self, p: Vector3<R>, normal: Vector3<R>, surface: [R; 3]) -> [R; 3] {
-        let normal = self.view.direction(normal);
-        self.lit(p, |l| (normal, normal.dot(l)), surface)
-    }
-
     /// The same of a tube; its tangent, in world space, is not the null vector.
     pub(crate) fn tube(
         &self,

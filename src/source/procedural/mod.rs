@@ -189,10 +189,11 @@ impl Shape {
         self.surface().trace(origin, direction, 0.0)
     }
 
-    /// [`Shape::trace`] beyond a parameter of at least 0.
-    #[must_use]
-    pub fn trace_beyond(&self, origin: DVec3, direction: DVec3, beyond: f64) -> Option<Hit> {
-        self.surface().trace(origin, direction, beyond)
+    /// The shape for many rays; errors are those of [`Shape::true_picture`].
+    #[cfg(feature = "cli")] // for the study
+    pub(crate) fn tracer(&self) -> Result<Tracer> {
+        self.check()?;
+        Ok(Tracer(self.surface()))
     }
 
     /// The exact picture: one ray through the centre of each pixel, in f64, without lights.
@@ -277,6 +278,18 @@ impl Shape {
             }
             Self::Cluster => Surface::Balls(ball::cluster()),
         }
+    }
+}
+
+/// A shape that many rays are sent to.
+#[cfg(feature = "cli")]
+pub(crate) struct Tracer(Surface);
+
+#[cfg(feature = "cli")]
+impl Tracer {
+    /// [`Shape::trace`] beyond a parameter of at least 0.
+    pub(crate) fn trace(&self, origin: DVec3, direction: DVec3, beyond: f64) -> Option<Hit> {
+        self.0.trace(origin, direction, beyond)
     }
 }
 

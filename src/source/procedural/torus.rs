@@ -66,8 +66,7 @@ pub(super) fn trace(origin: DVec3, direction: DVec3, beyond: f64) -> Option<Hit>
         linear: -2.0 * four * (c.x * d.x + c.z * d.z),
         constant: k * k - four * (c.x * c.x + c.z * c.z),
     };
-    let roots = quartic.roots(reach);
-    let s = roots.into_iter().flatten().find(|s| (s + middle) / length > beyond)?;
+    let s = quartic.roots(reach).find(|s| (s + middle) / length > beyond)?;
     let p = c + d * s;
     let ring = (p.x * p.x + p.z * p.z).sqrt();
     let on_ring = DVec3::new(p.x / ring, 0.0, p.z / ring) * RING;
@@ -96,15 +95,23 @@ impl Quartic {
     /// Between neighbouring zeros of its derivative a function crosses zero at most once. So the
     /// zeros of the second derivative, +-sqrt(-square / 6), isolate those of the first, and these
     /// the roots. A ray that only touches the torus, to rounding, may be taken to miss it.
-    fn roots(&self, reach: f64) -> [Option<f64>; 4] {
+    fn roots(&self, reach: f64) -> impl Iterator<Item = f64> {
         let bend = if self.square < 0.0 { (-self.square / 6.0).sqrt() } else { 0.0 };
         let bend = if bend < reach { bend } else { reach };
         let bends = [-reach, -bend, bend, reach];
-        // Where there is no zero, an end of the interval does: it parts nothing.
-        let turn =
-            |i: usize| crossing(|s| self.slope(s), bends[i], bends[i + 1]).unwrap_or(bends[i]);
-        let turns = [-reach, turn(0), turn(1), turn(2), reach];
-        [0, 1, 2, 3].map(|i| crossing(|s| self.value(s), turns[i], turns[i + 1]))
+        let mut low = -reach;
+        // One at a time: most rays need the first only.
+        (0..4).filter_map(move |i| {
+            let slope = |s| self.slope(s);
+            let high = match i {
+                // Where there is no zero, an end of the interval does: it parts nothing.
+                0..3 => crossing(slope, bends[i], bends[i + 1]).unwrap_or(bends[i]),
+                _ => reach,
+            };
+            let root = crossing(|s| self.value(s), low, high);
+            low = high;
+            root
+        })
     }
 }
 

@@ -7,17 +7,22 @@
 //!   [`crate::shade::phong`] at its own point and normal, or what is behind: the environment in the
 //!   direction of the sample's ray, or black. The colour of the pixel is their mean: the sum over
 //!   j, and within over i, both ascending, divided by 64, rounded to `f32` once.
-//! - `A` (1 where a surface is seen, else 0), `Z` (depth) and `normal` (world space) are those of the
-//!   ray through the pixel's centre. `Decided:` they are not averaged; a mean of depths is the depth of
-//!   nothing.
-//! - Shapes are met exactly ([`crate::source::Shape::trace`]), triangles as [`triangles`] says. Of
-//!   surfaces at one depth the first in order wins; of the triangles of one surface the lower index.
+//! - `A` (1 where a surface or the environment is seen, else 0), `Z` (depth) and `normal` (world space)
+//!   are those of the ray through the pixel's centre. `Decided:` they are not averaged; a mean of depths
+//!   is the depth of nothing.
+//! - Shapes are met exactly ([`crate::source::Shape::trace`]) along rays taken back through their place.
+//!   Triangles are met as [`triangles`] says. Of surfaces at one depth the first in order wins; of the
+//!   triangles of one surface the lower index.
 //! - With `cull`, what is seen from behind is passed through, as by methods that cull; else its
-//!   normal is reversed.
+//!   normal is reversed. From behind a shape is seen where n . d > 0, d the direction of the ray (with
+//!   `cull` where n . d >= 0); which side of a triangle is the front its corners say. `Decided:` their
+//!   order, and not the normals, as where polygons are drawn.
+//! - A surface without a colour has the material's.
 //!
 //! [`of_points`] has no surface to look at. It takes the picture of [`mod@crate::method::ewa`] in f64, of
-//! [`mod@crate::method::peeling`] where surfels have opacities, at 8 times the size, and the mean of
-//! its 8 x 8 pixels as above. That is what EWA splatting comes to without the limits of a pixel; it
+//! [`mod@crate::method::peeling`] where surfels have opacities, both with their default settings, at 8 times
+//! the size, and the mean of its 8 x 8 pixels as above. `A`, `Z` and `normal` are those of that
+//! picture at its own size. That is what EWA splatting comes to without the limits of a pixel; it
 //! favours methods that are like it.
 //!
 //! A camera that is shifted by whole eighths of a pixel sees the same samples in other pixels. So
@@ -26,8 +31,10 @@
 
 mod cast;
 mod points;
+mod rays;
 #[cfg(test)]
 mod tests;
+mod tile;
 pub mod triangles;
 
 pub use cast::of_surfaces;
@@ -78,6 +85,8 @@ pub enum How {
     Triangles,
     /// Points alone.
     Points,
+    /// Points with opacities.
+    Layers,
 }
 
 impl fmt::Display for How {
@@ -86,6 +95,7 @@ impl fmt::Display for How {
             Self::Exact => "the exact surface, 8 x 8 rays a pixel",
             Self::Triangles => "the triangles, 8 x 8 rays a pixel",
             Self::Points => "no surface is known: the splats by EWA in f64 at 8 x 8 times the pixels, which favours EWA",
+            Self::Layers => "no surface is known: the layers by depth peeling in f64 at 8 x 8 times the pixels, which favours EWA",
         })
     }
 }
@@ -114,7 +124,9 @@ fn mean(samples: &[[f64; 3]], width: usize, [x, y]: [usize; 2]) -> [f32; 3] {
     let mut sum = [0.0; 3];
     for row in 0..side {
         for sample in &samples[(y + row) * width + x..][..side] {
-            sum = [0, 1, 2].map(|c| sum[c] + sample[c]);
+            for (sum, part) in sum.iter_mut().zip(sample) {
+                *sum += part;
+            }
         }
     }
     sum.map(|sum: f64| (sum / f64::from(SAMPLES * SAMPLES)) as f32 + 0.0)

@@ -1,14 +1,21 @@
 //! What EWA splatting comes to without the limits of a pixel.
 
+use super::cast::STEP;
 use super::{How, SAMPLES, Truth, frame, mean};
 use crate::error::Result;
-use crate::frame::{Exec, Frame, NamedPlane, Plane, Rect, Samples};
+use crate::frame::{Exec, NamedPlane, Plane, Rect, Samples};
 use crate::memory;
 use crate::method::{Method, Session, ewa, peeling};
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Primitives, Scene};
+use std::borrow::Cow;
 
 /// The true picture of a scene of surfels alone, and its colours under shifts by eighths of a pixel, each 0
 /// to 7; see the [module](super). Primitives are not shown.
+///
+/// The samples are drawn in blocks of 127 x 127 pixels, counted from the top left, each by a camera of its
+/// own. Its scale is 8 times that of the camera, its centre is at 8 cx - 8 (x0 - 1) and likewise in y,
+/// rounded to `f32`, with x0 the first column of the block. So samples may be off their places by up to
+/// width / 2^24 px; they are where they belong if cx and cy are multiples of 1/16.
 ///
 /// # Errors
 /// As [`Session::define`], and [`crate::Error::Invalid`] if the process may not hold what it takes.
@@ -18,20 +25,24 @@ pub fn of_points(
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Truth> {
-    let pixels = u64::from(camera.width) * u64::from(camera.height);
-    memory::ask(pixels * 32 + LARGE * 256, || "the true picture".into())?;
-    let method = match scene.surfels.opacity() {
-        None => Method::Ewa(ewa::Settings::default()),
-        Some(_) => Method::Peeling(peeling::Settings::default()),
+    camera.check()?;
+    let (width, height) = (camera.width, camera.height);
+    let pixels = u64::from(width) * u64::from(height);
+    let colors = 1 + shifts.len();
+    memory::ask(pixels * (20 + 12 * colors as u64), || {
+        format!("the true picture of {width} x {height} pixels")
+    })?;
+    let (method, how) = match scene.surfels.opacity() {
+        None => (Method::Ewa(ewa::Settings::default()), How::Points),
+        Some(_) => (Method::Peeling(peeling::Settings::default()), How::Layers),
     };
-    let surfels = Scene { primitives: Default::default(), objects: None, ..scene.clone() };
+    let surfels = of_surfels(scene);
     let session = Session::new(&surfels, method, exec)?;
     let whole = session.define::<f64>(camera, false)?.frame.to_f32();
-    let (width, height) = (camera.width, camera.height);
-    let mut colors = vec![Plane::filled(width, height, [0.0; 3]); shifts.len() + 1];
+    let mut colors = vec![Plane::filled(width, height, [0.0; 3]); colors];
     let blocks = blocks(camera);
-    for (done, block) in blocks.iter().enumerate() {
-        progress("the true picture", done as u64, blocks.len() as u64);
+    for (done, block) in (0..).zip(&blocks) {
+        progress(STEP, done, blocks.len() as u64);
         let large = session.define::<f64>(&enlarged(camera, block), false)?.frame;
         let samples = large.color("")?;
         let row = samples.width() as usize;
@@ -41,19 +52,33 @@ pub fn of_points(
             for y in block.y0..block.y1 {
                 for x in block.x0..block.x1 {
                     let at = [first(x, block.x0, kx), first(y, block.y0, ky)];
-                    plane.values_mut()[(y * width + x) as usize] = mean(samples.values(), row, at);
+                    let to = y as usize * width as usize + x as usize;
+                    plane.values_mut()[to] = mean(samples.values(), row, at);
                 }
             }
         }
     }
+    progress(STEP, blocks.len() as u64, blocks.len() as u64);
     let shifted = colors.split_off(1);
-    Ok(Truth { frame: with_color(whole, colors)?, how: How::Points, shifted })
+    let (alpha, depth) = (whole.scalar("A")?.clone(), whole.scalar("Z")?.clone());
+    let normal = whole.planes.into_iter().find_map(|NamedPlane { name, samples }| match samples {
+        Samples::Vector(plane) if name == "normal" => Some(plane),
+        _ => None,
+    });
+    Ok(Truth { frame: frame(colors.remove(0), alpha, depth, normal), how, shifted })
 }
 
-/// The most pixels of a block at its large size.
-const LARGE: u64 = 1 << 22;
+/// The scene without all that is not surfels.
+fn of_surfels(scene: &Scene) -> Cow<'_, Scene> {
+    if scene.primitives.is_empty() && scene.objects.is_none() {
+        return Cow::Borrowed(scene);
+    }
+    let surfels = Scene { primitives: Primitives::default(), objects: None, ..scene.clone() };
+    Cow::Owned(surfels)
+}
+
 /// The most pixels of the picture along a side of a block, of which there is one more before.
-const SIDE: u32 = 255;
+const SIDE: u32 = 127;
 
 /// A picture in parts.
 fn blocks(camera: &Camera) -> Vec<Rect> {
@@ -69,28 +94,17 @@ fn blocks(camera: &Camera) -> Vec<Rect> {
 /// The camera that sees a block, with the pixels before it, at the large size.
 fn enlarged(camera: &Camera, block: &Rect) -> Camera {
     let side = SAMPLES as f32;
-    let before = |from: u32| side * (from as f32 - 1.0);
+    let center = |center: f32, from: u32| {
+        let before = f64::from(SAMPLES) * (f64::from(from) - 1.0);
+        (f64::from(SAMPLES) * f64::from(center) - before) as f32
+    };
     Camera {
         width: SAMPLES * (block.x1 - block.x0 + 1),
         height: SAMPLES * (block.y1 - block.y0 + 1),
         fx: camera.fx * side,
         fy: camera.fy * side,
-        cx: camera.cx * side - before(block.x0),
-        cy: camera.cy * side - before(block.y0),
+        cx: center(camera.cx, block.x0),
+        cy: center(camera.cy, block.y0),
         ..*camera
     }
-}
-
-/// The planes of a truth, of a picture at its own size and other colours.
-fn with_color(whole: Frame<f32>, colors: Vec<Plane<[f32; 3]>>) -> Result<Frame<f32>> {
-    let (alpha, depth) = (whole.scalar("A")?.clone(), whole.scalar("Z")?.clone());
-    let normal = whole.planes.iter().find_map(|NamedPlane { name, samples }| match samples {
-        Samples::Vector(plane) if name == "normal" => Some(plane.clone()),
-        _ => None,
-    });
-    let color = colors
-        .into_iter()
-        .next()
-        .unwrap_or_else(|| Plane::filled(whole.width, whole.height, [0.0; 3]));
-    Ok(frame(color, alpha, depth, normal))
 }

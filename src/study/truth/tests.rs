@@ -1,3 +1,6 @@
+mod behind;
+mod edges;
+
 use super::*;
 use crate::frame::Exec;
 use crate::number::random::unit;

@@ -1,26 +1,34 @@
 //! Where rays meet triangles.
 //!
-//! With v0, v1, v2 the corners in view space ([`View::point`], in f64), the ray of a sample has the
-//! direction d = (x, y, -1) from the eye, and
+//! A corner v in view space ([`View::point`], in f64) has the depth t = -v.z, and w = t under a
+//! perspective camera, w = 1 under an orthographic one. Seen along the ray of a sample, whose point at
+//! the depth t is (x w, y w, -t), the corner is at
 //!
 //! ```text
-//!   e0 = d . (v1 x v2)    e1 = d . (v2 x v0)    e2 = d . (v0 x v1)     each (a + b) + c
-//!   s  = (e0 + e1) + e2      b1 = e1 / s      b2 = e2 / s      b0 = 1 - (b1 + b2)
-//!   t  = -((b0 v0.z + b1 v1.z) + b2 v2.z)
+//!   p = (v.x - x w, v.y - y w)
 //! ```
 //!
-//! The ray meets the triangle if no two of the three e have opposite signs, and not all are 0, and t
-//! is > near. Two triangles with a common edge have e of exactly opposite sign there, and a zero
-//! belongs to both, so that no ray passes between them. The front is seen where s < 0.
-//!
-//! Orthographic: the ray goes through p = (x, y), and with u = v - p
+//! and with p0, p1, p2 those of the corners, each e twice an area,
 //!
 //! ```text
-//!   e0 = u2.x u1.y - u1.x u2.y    and so on      front and rest as above
+//!   e0 = p1.x p2.y - p1.y p2.x    e1 = p2.x p0.y - p2.y p0.x    e2 = p0.x p1.y - p0.y p1.x
+//!   s  = (e0 + e1) + e2           b_k = e_k / s
+//!   t  = (b0 t0 + b1 t1) + b2 t2
 //! ```
+//!
+//! The ray meets the triangle if no two of the three e have opposite signs, and not all are 0, and
+//! t is > near. The front is seen, the corners counter-clockwise, where s > 0.
+//!
+//! **Nothing falls between two triangles.** An e is the difference of the two rounded products; where
+//! these are equal it is the difference of what the roundings took away, each exactly \[Dekker: A
+//! Floating-Point Technique for Extending the Available Precision, 1971\]. So an e has the sign of the exact
+//! difference, and a zero is exact. A corner has one p, whichever triangle it is looked at in. What a
+//! ray meets is thus what is there exactly, of corners that are off by a rounding: a ray through
+//! the inside of a surface meets a triangle, one through an edge both of its triangles.
 //!
 //! The normal is that of the corners, (b0 n0 + b1 n1) + b2 n2 divided by its length; if that length
-//! is 0 it is that of corner 0. Colours are interpolated likewise.
+//! is 0 it is that of corner 0. Colours are interpolated likewise. As polygons are drawn, see
+//! [`mod@crate::method::projection`], the corners alone say which side is the front.
 
 use crate::number::Vector3;
 use crate::scene::Triangles;
@@ -31,10 +39,10 @@ type V = Vector3<f64>;
 /// A triangle in view space.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
-    corners: [V; 3],
-    /// v1 x v2, v2 x v0, v0 x v1.
-    edges: [V; 3],
-    perspective: bool,
+    x: [f64; 3],
+    y: [f64; 3],
+    w: [f64; 3],
+    t: [f64; 3],
 }
 
 /// Where a ray meets a triangle.
@@ -45,79 +53,234 @@ pub(super) struct Met {
     pub(super) front: bool,
 }
 
+/// Where the rays are that may meet a triangle: those with `a x + b y + c >= 0` for each of three lines.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lines {
+    lines: [[f64; 3]; 3],
+    /// Whether they see its front.
+    pub(super) front: bool,
+}
+
+/// What the rays of a picture have in common.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach {
+    /// The largest magnitudes of x and y.
+    pub(super) x: f64,
+    pub(super) y: f64,
+}
+
 impl Placed {
     pub(super) fn new(triangles: &Triangles, index: u32, view: &View<f64>) -> Self {
         let corners = triangles.corners()[index as usize];
         let position = &triangles.vertices().position;
-        let corners = corners.map(|i| view.point(Vector3::from_glam(position[i as usize])));
-        let [a, b, c] = corners;
-        let edges = [b.cross(c), c.cross(a), a.cross(b)];
-        Self { corners, edges, perspective: view.perspective }
+        let v = corners.map(|i| view.point(Vector3::from_glam(position[i as usize])));
+        let t = v.map(|v| -v.z);
+        let w = if view.perspective { t } else { [1.0; 3] };
+        Self { x: v.map(|v| v.x), y: v.map(|v| v.y), w, t }
     }
 
     /// Where the triangle may be seen, in px: left, top, right and bottom; none if it is nowhere
     /// beyond the near plane.
     pub(super) fn bounds(&self, view: &View<f64>) -> Option<[f64; 4]> {
+        // Where weights are rounded a triangle that ends at the near plane may be met beyond it.
+        let far = self.t.map(f64::abs).into_iter().fold(view.near.abs(), greater);
+        let near = view.near - far * RELATIVE;
+        if view.perspective && !(near > 0.0) {
+            return Some(EVERYWHERE);
+        }
         let mut bounds: Option<[f64; 4]> = None;
-        let mut add = |v: V| {
-            let t = if self.perspective { -v.z } else { 1.0 };
-            let x = view.fx * (v.x / t) + view.cx;
-            let y = view.cy - view.fy * (v.y / t);
-            let [l, t, r, b] = bounds.unwrap_or([x, y, x, y]);
-            bounds = Some([lesser(l, x), lesser(t, y), greater(r, x), greater(b, y)]);
+        // A corner of what is beyond, and how large the numbers were that it was computed from.
+        let mut add = |[x, y, w]: [f64; 3], [wide, high]: [f64; 2]| {
+            let (px, py) = (view.fx * (x / w) + view.cx, view.cy - view.fy * (y / w));
+            let off = |f: f64, wide: f64, p: f64, c: f64| {
+                SLACK + RELATIVE * ((f * (wide / w)).abs() + (p.abs() + c.abs()))
+            };
+            let (dx, dy) = (off(view.fx, wide, px, view.cx), off(view.fy, high, py, view.cy));
+            let mut here = [px - dx, py - dy, px + dx, py + dy];
+            if !here.iter().all(|v| v.is_finite()) {
+                here = EVERYWHERE;
+            }
+            let [l, t, r, b] = bounds.unwrap_or(here);
+            bounds = Some([
+                lesser(l, here[0]),
+                lesser(t, here[1]),
+                greater(r, here[2]),
+                greater(b, here[3]),
+            ]);
         };
-        let near = view.near;
         for i in 0..3 {
-            let (a, b) = (self.corners[i], self.corners[(i + 1) % 3]);
-            let (ta, tb) = (-a.z, -b.z);
+            let j = (i + 1) % 3;
+            let (ta, tb) = (self.t[i], self.t[j]);
             if ta >= near {
-                add(a);
+                add([self.x[i], self.y[i], self.w[i]], [self.x[i].abs(), self.y[i].abs()]);
             }
             if (ta < near) != (tb < near) {
                 let s = (near - ta) / (tb - ta);
-                add(Vector3::new(a.x + s * (b.x - a.x), a.y + s * (b.y - a.y), -near));
+                let at = |of: &[f64; 3]| of[i] + s * (of[j] - of[i]);
+                let wide = |of: &[f64; 3]| of[i].abs() + of[j].abs();
+                let w = if view.perspective { near } else { 1.0 };
+                add([at(&self.x), at(&self.y), w], [wide(&self.x), wide(&self.y)]);
             }
         }
-        // Rounding is far below this.
-        bounds.map(|[l, t, r, b]| [l - SLACK, t - SLACK, r + SLACK, b + SLACK])
+        bounds
+    }
+
+    /// The lines that bound it, for rays that reach so far; none if they look along it, so that rounding
+    /// decides what they meet.
+    ///
+    /// With h0, h1, h2 the triples (v.x, v.y, w) of the corners and D their determinant, a ray (x, y) meets
+    /// the plane where (b0 h0 + b1 h1) + b2 h2 is W (x, y, 1). There e0 = b0 D / W, and so on. W is
+    /// a depth, or 1: so before the eye every e has the sign of D.
+    pub(super) fn lines(&self, reach: Reach) -> Option<Lines> {
+        let [x, y, w] = [&self.x, &self.y, &self.w];
+        let wide = [0, 1, 2].map(|k| x[k].abs() + reach.x * w[k].abs());
+        let high = [0, 1, 2].map(|k| y[k].abs() + reach.y * w[k].abs());
+        let (mut lines, mut volume, mut doubt) = ([[0.0; 3]; 3], 0.0, 0.0);
+        let mut slack = [0.0; 3];
+        for k in 0..3 {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            let a = y[i] * w[j] - w[i] * y[j];
+            let b = w[i] * x[j] - x[i] * w[j];
+            let c = x[i] * y[j] - y[i] * x[j];
+            lines[k] = [a, b, c];
+            // Some 30 roundings of all that e is the sum of.
+            slack[k] = RELATIVE * (wide[i] * high[j] + high[i] * wide[j]);
+            volume += w[k] * c;
+            doubt += 4.0 * (w[k].abs() * slack[k]);
+        }
+        let front = volume > 0.0;
+        if !(volume > doubt || -volume > doubt) {
+            return None;
+        }
+        for (line, slack) in lines.iter_mut().zip(slack) {
+            *line = line.map(|v| if front { v } else { -v });
+            line[2] += slack;
+        }
+        Some(Lines { lines, front })
     }
 
     /// Where the ray of (x, y) meets it, beyond the near plane.
-    #[inline]
+    #[inline(always)]
     pub(super) fn meet(&self, x: f64, y: f64, near: f64) -> Option<Met> {
-        let e = if self.perspective {
-            self.edges.map(|n| (x * n.x + y * n.y) - n.z)
-        } else {
-            let [a, b, c] = self.corners.map(|v| [v.x - x, v.y - y]);
-            [[b, c], [c, a], [a, b]].map(|[u, v]| v[0] * u[1] - u[0] * v[1])
-        };
-        let (any_above, any_below) =
-            (e[0] > 0.0 || e[1] > 0.0 || e[2] > 0.0, e[0] < 0.0 || e[1] < 0.0 || e[2] < 0.0);
-        if any_above == any_below {
+        // No closures: those of arrays stay functions.
+        let mut p = [[0.0; 2]; 3];
+        for (k, p) in p.iter_mut().enumerate() {
+            *p = [self.x[k] - x * self.w[k], self.y[k] - y * self.w[k]];
+        }
+        let e = [area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1])];
+        let above = e[0] > 0.0 || e[1] > 0.0 || e[2] > 0.0;
+        let below = e[0] < 0.0 || e[1] < 0.0 || e[2] < 0.0;
+        if above == below {
             return None;
         }
         let sum = (e[0] + e[1]) + e[2];
-        let (b1, b2) = (e[1] / sum, e[2] / sum);
-        let weights = [1.0 - (b1 + b2), b1, b2];
-        let z = self.corners.map(|v| v.z);
-        let t = -((weights[0] * z[0] + weights[1] * z[1]) + weights[2] * z[2]);
-        (t > near && t < f64::INFINITY).then_some(Met { t, weights, front: sum < 0.0 })
+        let weights = [e[0] / sum, e[1] / sum, e[2] / sum];
+        let t = mix(self.t, weights);
+        (t > near && t < f64::INFINITY).then_some(Met { t, weights, front: above })
     }
 }
 
-/// How much farther bounds are taken, in px.
-const SLACK: f64 = 1e-3;
+impl Lines {
+    /// The least and the largest x of the rays of y that may meet the triangle; none if no ray may.
+    #[inline(always)]
+    pub(super) fn span(&self, y: f64) -> Option<[f64; 2]> {
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        for [a, b, c] in self.lines {
+            let rest = b * y + c;
+            let edge = -(rest / a);
+            if a > 0.0 {
+                low = greater(low, edge);
+            } else if a < 0.0 {
+                high = lesser(high, edge);
+            } else if rest < 0.0 {
+                return None;
+            }
+        }
+        Some([low, high])
+    }
+}
+
+/// a.x b.y - a.y b.x with the sign of the exact number, see the [module](self).
+#[inline(always)]
+fn area(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let (p, q) = (a[0] * b[1], a[1] * b[0]);
+    if p == q { lost(a[0], b[1], p) - lost(a[1], b[0], q) } else { p - q }
+}
+
+/// The exact a b less the product as it was rounded.
+#[cold]
+fn lost(a: f64, b: f64, product: f64) -> f64 {
+    let ([a, a_low], [b, b_low]) = (halves(a), halves(b));
+    ((a * b - product) + a * b_low + a_low * b) + a_low * b_low
+}
+
+/// A number as the sum of two of 26 bits.
+fn halves(v: f64) -> [f64; 2] {
+    let scaled = 134_217_729.0 * v; // 2^27 + 1
+    let high = scaled - (scaled - v);
+    [high, v - high]
+}
+
+/// The bounds of what may be seen anywhere.
+const EVERYWHERE: [f64; 4] = [f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY];
+/// How much farther bounds are taken, in px, beside what rounding moves them.
+const SLACK: f64 = 1.0 / 1024.0;
+/// 2^-46: far more than what rounding moves anything by, relative to what it was computed from.
+const RELATIVE: f64 = 1.0 / 70_368_744_177_664.0;
+
+#[inline(always)]
+fn mix([a, b, c]: [f64; 3], [wa, wb, wc]: [f64; 3]) -> f64 {
+    (a * wa + b * wb) + c * wc
+}
 
 /// The sum of three vectors by their weights.
-pub(super) fn mixed([a, b, c]: [V; 3], [wa, wb, wc]: [f64; 3]) -> V {
-    let mix = |a: f64, b: f64, c: f64| (a * wa + b * wb) + c * wc;
-    Vector3::new(mix(a.x, b.x, c.x), mix(a.y, b.y, c.y), mix(a.z, b.z, c.z))
+#[inline(always)]
+pub(super) fn mixed([a, b, c]: [V; 3], weights: [f64; 3]) -> V {
+    Vector3::new(
+        mix([a.x, b.x, c.x], weights),
+        mix([a.y, b.y, c.y], weights),
+        mix([a.z, b.z, c.z], weights),
+    )
 }
 
+/// The lesser of two numbers.
+#[inline(always)]
 fn lesser(a: f64, b: f64) -> f64 {
-    if b < a { b } else { a }
+    if a < b { a } else { b }
 }
 
+/// The greater of two numbers.
+#[inline(always)]
 fn greater(a: f64, b: f64) -> f64 {
-    if b > a { b } else { a }
+    if a > b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Against integers, of products that are equal or all but.
+        #[test]
+        fn an_area_has_the_sign_of_the_exact_number(
+            x in -(1_i64 << 52)..(1_i64 << 52),
+            y in -(1_i64 << 52)..(1_i64 << 52),
+            part in -64_i64..64,
+            off in prop::array::uniform2(-2_i64..3),
+            power in -200_i32..200,
+        ) {
+            // Along one line but for the last digits.
+            let (a, b) = ([x, y], [x * part / 64 + off[0], y * part / 64 + off[1]]);
+            let product = |p: i64, q: i64| i128::from(p) * i128::from(q);
+            let exact = product(a[0], b[1]) - product(a[1], b[0]);
+            // A power of two takes no digit.
+            let scale = f64::from_bits(((1023 + power) as u64) << 52);
+            let [a, b] = [a, b].map(|p| p.map(|v| v as f64 * scale));
+            let found = area(a, b);
+            let sign = i128::from(found > 0.0) - i128::from(found < 0.0);
+            prop_assert_eq!(sign, exact.signum());
+            prop_assert_eq!(area(b, a), -found);
+        }
+    }
 }
