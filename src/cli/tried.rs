@@ -55,11 +55,11 @@ impl Tried {
         let show = |what: &str, done, of| steps.show(what, done, of);
         let all = candidates(scene, self.options.chosen_method())?;
         let (mut bench, candidates, left_out) = Bench::load(all, exec, &show)?;
-        let known = match &self.truth {
-            None => Known::of(scene, exec, &show)?,
-            Some(truth) => Known::of(&SceneFile::open(truth)?, exec, &show)?.lit_as(scene),
-        };
-        let camera = bench.visit(&candidates[0], &show)?.ready.camera;
+        let other = self.truth.as_deref().map(SceneFile::open).transpose()?;
+        let shown = other.as_ref().unwrap_or(scene);
+        let ready = bench.visit(&candidates[0], &show)?.ready;
+        let known = Known::of(shown, &ready.loaded.scene, exec, &show)?;
+        let camera = ready.camera;
         Ok(Loaded { bench, candidates, left_out, known, camera })
     }
 }

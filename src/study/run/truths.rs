@@ -40,28 +40,34 @@ pub struct Truths {
 }
 
 impl Known {
-    /// What is known of a scene.
+    /// What is known of a scene, under the lights and before the environment of a loaded one: its own,
+    /// or that whose truth it is.
     ///
     /// # Errors
     /// As [`SceneFile::ready`] where not even points can be drawn.
-    pub fn of(file: &SceneFile, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Self> {
+    pub fn of(
+        file: &SceneFile,
+        lit: &Scene,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Self> {
         let method = file.method.method()?;
         let cull = method.values().contains(&("cull", Value::Switch(true)));
-        match surfaces(file, exec, progress) {
-            Ok((scene, surfaces)) => Ok(Self { scene, surfaces, cull, unknown: None }),
+        let (surfels, surfaces, unknown) = match surfaces(file, exec, progress) {
+            Ok(surfaces) => (Surfels::none(), surfaces, None),
             Err(why) => {
-                let scene = drawn(file, |draw| draw, exec, progress)?;
-                Ok(Self { scene, surfaces: Vec::new(), cull, unknown: Some(why) })
+                let points = drawn(file, |draw| draw, exec, progress)?.surfels;
+                (points, Vec::new(), Some(why))
             }
-        }
-    }
-
-    /// The same under the lights of another scene.
-    #[must_use]
-    pub fn lit_as(mut self, other: &SceneFile) -> Self {
-        self.scene.lights.clone_from(&other.lights);
-        self.scene.material = other.material;
-        self
+        };
+        let scene = Scene {
+            surfels,
+            lights: lit.lights.clone(),
+            material: lit.material,
+            environment: lit.environment.clone(),
+            ..Scene::unlit(&lit.name, Surfels::none())
+        };
+        Ok(Self { scene, surfaces, cull, unknown })
     }
 
     /// Why no surface is known, if none is.
@@ -124,12 +130,12 @@ impl Known {
     }
 }
 
-/// The surfaces of a scene and its lights, or why there are none.
+/// The surfaces of a scene, or why there are none.
 fn surfaces(
     file: &SceneFile,
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
-) -> std::result::Result<(Scene, Vec<Surface>), String> {
+) -> std::result::Result<Vec<Surface>, String> {
     if file.hierarchy.is_some() {
         return Err("a hierarchy shows what its nodes hold".into());
     }
@@ -149,20 +155,15 @@ fn surfaces(
     let mut meshes = file.clone();
     meshes.models.retain(|model| !is_shape(&model.source));
     if meshes.models.is_empty() && meshes.geometries.is_empty() {
-        let lights = Scene {
-            lights: file.lights.clone(),
-            material: file.material,
-            ..Scene::unlit(&file.name, Surfels::none())
-        };
-        return Ok((lights, all));
+        return Ok(all);
     }
     let scene =
         drawn(&meshes, |_| Draw::Polygons, exec, progress).map_err(|error| error.to_string())?;
     if !scene.surfels.is_empty() {
         return Err("a part of the scene is points alone".into());
     }
-    all.push(Surface::Triangles(scene.primitives.triangles.clone()));
-    Ok((scene, all))
+    all.push(Surface::Triangles(scene.primitives.triangles));
+    Ok(all)
 }
 
 /// The whole scene with all that it has, each model drawn as `draw` says of its draw, flat.
@@ -184,4 +185,42 @@ fn drawn(
     whole.method =
         MethodChoice { name: able.map(|method| method.name()), ..MethodChoice::default() };
     Ok(whole.ready(exec, progress)?.loaded.scene)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::scene_file::EnvironmentChoice;
+    use crate::study::truth::How;
+
+    /// What is taken for the truth of a shape, with what is changed of its scene.
+    fn known(change: impl Fn(&mut SceneFile)) -> (Known, Truth) {
+        let exec = Exec::sequential();
+        let mut file = SceneFile::open("sphere").unwrap();
+        file.camera.size = Some([24, 16]);
+        if let Source::Shape { count, .. } = &mut file.models[0].source {
+            *count = 100;
+        }
+        change(&mut file);
+        let ready = file.ready(&exec, &|_, _, _| ()).unwrap();
+        let known = Known::of(&file, &ready.loaded.scene, &exec, &|_, _, _| ()).unwrap();
+        let truth = known.still(&ready.camera, &exec, &|_, _, _| ()).unwrap();
+        (known, truth)
+    }
+
+    #[test]
+    fn the_environment_is_behind_shapes_too() {
+        let corner = |truth: &Truth| *truth.frame.color("").unwrap().at(0, 0);
+        let (_, black) = known(|_| ());
+        assert_eq!((corner(&black), black.how), ([0.0; 3], How::Exact));
+        let (_, sky) = known(|file| file.environment = Some(EnvironmentChoice::Sky));
+        assert!(corner(&sky).iter().all(|v| *v > 0.0));
+    }
+
+    #[test]
+    fn what_has_no_surface_says_why() {
+        let (known, truth) = known(|file| file.models[0].opacity = Some(0.5));
+        assert_eq!(known.unknown(), Some("surfaces have no opacity"));
+        assert_eq!(truth.how, How::Layers);
+    }
 }
