@@ -112,7 +112,8 @@
 //! [`method::pyramid`] and [`method::template`] begin with [`mod@method::projection`]. [`method::Method`] is any of them as a value,
 //! and [`method::Session`] is a scene that one of them draws from as many cameras as one likes. What
 //! each paper claims is measured in the pages under `docs/`. The program's feature `cli` has `study`: the true
-//! picture of a scene, and every method and setting against that picture and the clock.
+//! picture of a scene, every method and setting against that picture and the clock, and the atlas of
+//! failures.
 //!
 //! # Glossary
 //!

@@ -2,7 +2,7 @@
 
 use super::common::models::models;
 use super::common::report::{Arguments, Table};
-use super::scene::{against, blue, draw, geometry, mesh, objects, order, percent, seen};
+use super::scene::{against, blue, draw, percent};
 use glam::DVec3;
 use splatref::Result;
 use splatref::frame::Exec;
@@ -11,6 +11,7 @@ use splatref::scene::{Camera, Lens, Primitives, Scene, Similarity};
 use splatref::source::candidates::{Directions, SIDE, candidates};
 use splatref::source::derive;
 use splatref::source::sampler::quality;
+use splatref::study::atlas::orders::{geometry, mesh, objects, order, seen};
 
 /// Sides of pictures, and sizes of surfels.
 const SIDES: [u32; 3] = [256, 512, 1024];

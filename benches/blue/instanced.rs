@@ -5,7 +5,7 @@
 //! pixels, drawn so many objects at a time, of which the nearest stays.
 
 use super::common::report::{Arguments, Table};
-use super::scene::{against, blue, draw, geometry, mesh, objects, order, percent, seen};
+use super::scene::{against, blue, draw, percent};
 use glam::DVec3;
 use splatref::Result;
 use splatref::frame::image::Image;
@@ -16,6 +16,7 @@ use splatref::scene::{Camera, Geometry, Lens, Pose, Scene, Similarity, Surfels};
 use splatref::scene::{Triangles, Vertices};
 use splatref::source::candidates::Directions;
 use splatref::source::flatten;
+use splatref::study::atlas::orders::{geometry, mesh, objects, order, seen};
 use splatref::verify::metrics::summary;
 use std::f64::consts::TAU;
 use std::time::Instant;

@@ -33,25 +33,6 @@ fn main() -> Result<()> {
 
 /// What [`failures`] measures, as tables.
 fn failures(arguments: &Arguments, exec: &Exec) -> Result<()> {
-    let mut table = Table::new(&["gap / distance of surfels", "holes, %", "along the surface, %"]);
-    for gap in failures::GAPS {
-        let [straight, along] = [false, true].map(|along| failures::thin_wall(gap, along, exec));
-        table.row(&format!("{gap} | {:.2} | {:.2}", straight?, along?));
-    }
-    table.publish(arguments, "bjfm19.md", "thin")?;
-    let mut table =
-        Table::new(&["length / width", "surfels", "a pixel, near end", "a pixel, far end"]);
-    for length in failures::LENGTHS {
-        let [surfels, near, far] = failures::long_object(length, exec)?;
-        table.row(&format!("{length} | {surfels} | {near:.1} | {far:.1}"));
-    }
-    table.publish(arguments, "bjfm19.md", "long")?;
-    let mut table = Table::new(&["surfels asked for", "holes, %"]);
-    for count in failures::COUNTS {
-        let (count, holes) = failures::short_prefix(count, exec)?;
-        table.row(&format!("{count} | {holes:.2}"));
-    }
-    table.publish(arguments, "bjfm19.md", "short")?;
     let mut table = Table::new(&["fade", "surfels", "holes, %"]);
     for fade in failures::FADES {
         let (count, holes) = failures::fade(fade, exec)?;

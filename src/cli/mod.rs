@@ -4,6 +4,7 @@
 //! the exit code is 2 for wrong usage and 1 for everything else, a picture that differs included.
 //! `verify` has codes of its own.
 
+mod atlas;
 mod compare;
 mod draw;
 mod explain;

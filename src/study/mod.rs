@@ -1,5 +1,6 @@
 //! What is measured: of samplers, and of methods, speed against accuracy.
 //!
+//! - [`mod@atlas`]: where each method breaks.
 //! - [`chart`]: drawings that are written as SVG and as PNG, the same picture in both.
 //! - [`mod@front`]: what nothing else is both faster and nearer to the truth than.
 //! - [`plan`]: the cheapest within a budget.
@@ -9,6 +10,7 @@
 //! - [`sweep`]: what a study of a scene tries.
 //! - [`mod@truth`]: the true picture of a scene.
 
+pub mod atlas;
 pub mod chart;
 pub mod front;
 pub mod plan;

@@ -123,3 +123,17 @@ fn what_cannot_be_studied_is_refused() {
     let out = splatref(at.path(), &["study", "torus", "--memory", "1M", "-o", "m"]);
     assert_eq!(out.status.code(), Some(1));
 }
+
+#[test]
+fn one_failure_of_the_atlas() {
+    let at = tempfile::tempdir().unwrap();
+    let said = succeeds(at.path(), &["study", "failures", "--only", "bounds", "-o", "a"]);
+    assert!(said.contains("bounds               breaks at 2 (distance, radii)"), "{said}");
+    let page = fs::read_to_string(at.path().join("a/atlas.md")).unwrap();
+    assert!(page.contains("## bounds\n") && !page.contains("## ewa-thin"));
+    assert_eq!(names(&at.path().join("a/atlas")), ["bounds.svg"]);
+    let said = fails(at.path(), &["study", "failures", "--only", "nothing"], 2);
+    assert!(said.contains("give one of ewa-grazing, "), "{said}");
+    let said = fails(at.path(), &["study"], 2);
+    assert!(said.contains("<SCENE>"), "{said}");
+}

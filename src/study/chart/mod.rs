@@ -10,6 +10,7 @@
 //! the font lacks is an empty box in a PNG.
 //!
 //! - [`axis`]: where values lie, and round numbers for ticks.
+//! - [`curve`]: errors over a sweep.
 //! - [`label`]: labels that do not collide.
 //! - [`log`]: logarithmic axes.
 //! - [`mark`]: shapes and colours of points.
@@ -18,6 +19,7 @@
 //! - [`violin`]: how values are spread.
 
 pub mod axis;
+pub mod curve;
 pub mod label;
 pub mod log;
 pub mod mark;

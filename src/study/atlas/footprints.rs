@@ -1,0 +1,146 @@
+//! Footprints that are not what a disc projects to.
+
+use super::case::{Case, checked, exact, quiet};
+use super::{Failure, Found};
+use crate::error::Result;
+use crate::frame::Exec;
+use crate::method::ewa;
+use crate::number::elementary::{cos, sin, tan};
+use crate::scene::{Camera, Cloud, Lens, Pose, Scene, Surfels};
+use crate::source::Shape;
+use crate::splat::{Kernel, Outline};
+use crate::study::truth::of_points;
+use glam::DVec3;
+
+pub(super) const FAILURES: [Failure; 4] = [
+    Failure {
+        id: "ewa-grazing",
+        title: "The footprint of a tilted disc is not its outline",
+        why: "One disc, three radii away, tilted more and more, without low-pass filter and cut off at its rim. The affine footprint \
+              of EWA is a linear map at the disc's centre [ZPvBG01, eq. 8]: perspective makes the near half of a tilted disc larger \
+              and its far half smaller, and the footprint has neither.",
+        swept: "tilt, degrees",
+        values: &[0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0, 85.0],
+        error: "pixels of disc or footprint that are not of both, per mille of the disc",
+        limit: 50.0,
+        cure: "`--outline raycast`: each pixel's ray meets the disc's plane",
+        at: grazing,
+    },
+    Failure {
+        id: "ewa-wide",
+        title: "A footprint off the axis of a wide lens is not the disc's outline",
+        why: "One disc that faces the eye, three radii away along the axis, farther and farther from it. What the lens stretches \
+              it also tilts against the picture; the affine footprint is as if the stretch were that of the centre everywhere [ZRB+04].",
+        swept: "angle to the axis, degrees",
+        values: &[0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0],
+        error: "pixels of disc or footprint that are not of both, per mille of the disc",
+        limit: 50.0,
+        cure: "`--outline perspective` [ZRB+04]",
+        at: wide,
+    },
+    Failure {
+        id: "ewa-near",
+        title: "Discs close to the eye leave holes and cover the sky",
+        why: "The checked plane of 2,000 surfels from an eye that comes down to it. A disc that reaches behind the \
+              camera has no ellipse as its outline; an affine footprint ends above the horizon or before the disc does.",
+        swept: "height of the eye over the plane, radii of the nearest discs",
+        values: &[16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125],
+        error: "pixels covered that should not be or the other way round, per mille of the picture",
+        limit: 50.0,
+        cure: "`--outline raycast`",
+        at: near,
+    },
+    Failure {
+        id: "ewa-minify",
+        title: "Checks smaller than a pixel alias",
+        why: "A sphere of 100,000 surfels with finer and finer checks, drawn without the low-pass filter: \
+              splats smaller than a pixel count by where their centres fall [ZPvBG01, 4].",
+        swept: "side of a check, px",
+        values: &[8.0, 4.0, 3.0, 2.0, 1.5, 1.0, 0.75, 0.5],
+        error: "RMSE, linear RGB, to the same surfels at 8 x 8 times the pixels",
+        limit: 0.15,
+        cure: "`--low-pass 0.25`, the default",
+        at: minify,
+    },
+];
+
+const FLOOR: Shape = Shape::Checkerboard { square: 1.0 };
+
+fn splatting(outline: Outline, low_pass: f32) -> ewa::Settings {
+    let kernel = Kernel { outline, low_pass, ..Kernel::DEFAULT };
+    ewa::Settings { kernel, ..ewa::Settings::default() }
+}
+
+fn grazing(degrees: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    let outline = if cured { Outline::RayCast } else { Outline::Affine };
+    one_disc(DVec3::Z * -3.0, degrees, outline, exec)
+}
+
+fn wide(degrees: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    let outline = if cured { Outline::Perspective } else { Outline::Affine };
+    let center = DVec3::new(3.0 * tan(degrees.to_radians()), 0.0, -3.0);
+    one_disc(center, -degrees, outline, exec)
+}
+
+/// A disc of the radius 1 around a point, its normal turned about +y from +z, in the middle of a picture whose plane is z = -1.
+fn one_disc(center: DVec3, degrees: f64, outline: Outline, exec: &Exec) -> Result<Found> {
+    const SIDE: u32 = 256;
+    let tilt = degrees.to_radians();
+    let normal = DVec3::new(sin(tilt), 0.0, cos(tilt));
+    let cloud = Cloud {
+        position: vec![center.as_vec3()],
+        normal: Some(vec![normal.as_vec3()]),
+        radius: Some(vec![1.0]),
+        ..Cloud::default()
+    };
+    let pose = Pose { eye: DVec3::ZERO, target: -DVec3::Z, up: DVec3::Y };
+    let mut camera = Camera::new(SIDE, SIDE, pose, Lens::Focal(256.0))?;
+    // Shifted, not turned.
+    camera.cx -= (f64::from(camera.fx) * center.x / -center.z) as f32;
+    let kernel = Kernel { outline, low_pass: 0.0, cutoff: 1.0 };
+    let settings = ewa::Settings { kernel, ..ewa::Settings::BOTH_SIDES };
+    let scene = Scene::lit("disc", Surfels::new(cloud)?.0);
+    let case = Case { scene, camera, method: settings.into(), grouping: None };
+    let (frame, time) = case.draw(exec)?;
+    let (mut disc, mut wrong) = (0_u32, 0_u32);
+    for (i, alpha) in (0..).zip(frame.scalar("A")?.values()) {
+        let [x, y] = [i % SIDE, i / SIDE].map(|v| f64::from(v) + 0.5);
+        let [cx, cy, fx] = [camera.cx, camera.cy, camera.fx].map(f64::from);
+        let ray = DVec3::new((x - cx) / fx, -(y - cy) / fx, -1.0);
+        let t = center.dot(normal) / ray.dot(normal);
+        let inside = t > 0.0 && (ray * t - center).length() <= 1.0;
+        disc += u32::from(inside);
+        wrong += u32::from(inside != (*alpha > 0.0));
+    }
+    let error = 1e3 * f64::from(wrong) / f64::from(disc.max(1));
+    Ok(Found { error, picture: Some(frame.color("")?.clone()), time: Some(time) })
+}
+
+fn near(radii: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    let outline = if cured { Outline::RayCast } else { Outline::Affine };
+    let case = Case::of_shape(FLOOR, 2000, splatting(outline, Kernel::DEFAULT.low_pass).into())?;
+    let radii_of = case.scene.surfels.radius().iter();
+    let least = radii_of.fold(f32::INFINITY, |a, b| if *b < a { *b } else { a });
+    let eye = DVec3::new(0.0, radii * f64::from(least), 0.0);
+    let target = eye + DVec3::new(0.5, -0.2, -1.0);
+    let case = case.seen_from(eye, target, 60.0)?;
+    let truth = case.truth(&exact(FLOOR), exec)?;
+    let (frame, time) = case.draw(exec)?;
+    let both = frame.scalar("A")?.values().iter().zip(truth.scalar("A")?.values());
+    let wrong = both.filter(|(found, truth)| (**found > 0.0) != (**truth > 0.0)).count();
+    let error = 1e3 * wrong as f64 / truth.scalar("A")?.values().len() as f64;
+    Ok(Found { error, picture: Some(frame.color("")?.clone()), time: Some(time) })
+}
+
+fn minify(pixels: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    const SIDE: u32 = 80;
+    let low_pass = if cured { Kernel::DEFAULT.low_pass } else { 0.0 };
+    let camera =
+        Camera::new(SIDE, SIDE, Shape::Sphere.default_pose(), Shape::Sphere.default_lens())?;
+    let side = pixels * 4.0 / f64::from(camera.fy);
+    let surfels = checked(Shape::Sphere.surfels(100_000, 0)?, side)?;
+    let scene = Scene::unlit("checks", surfels);
+    let truth = of_points(&scene, (&camera, &[]), exec, &quiet)?.frame;
+    let method = splatting(Outline::Affine, low_pass).into();
+    Case { scene, camera, method, grouping: None }.against(&truth, "rmse", exec)
+}

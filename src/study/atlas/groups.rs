@@ -1,0 +1,101 @@
+//! Groups of surfels that overlap little.
+
+use super::case::Case;
+use super::{Failure, Found};
+use crate::error::Result;
+use crate::frame::{Exec, Frame};
+use crate::index::grouping::{Extension, Grouping, Rules};
+use crate::method::single_pass::{self, BinCount, DepthTest};
+use crate::method::{Method, ewa, peeling, transparent, transparent_hq};
+use crate::scene::{Cloud, Scene, Surfels};
+use crate::source::Shape;
+
+pub(super) const FAILURES: [Failure; 3] = [
+    Failure {
+        id: "group-c",
+        title: "Surfels of one group that overlap show flaps",
+        why: "The spheres of the cluster, 20,000 surfels, by the single pass. Groups are fewer where surfels may \
+              overlap more, down to c = 0 [ZP06, 5.1]; of two that overlap in a group the plain depth test keeps the nearest.",
+        swept: "c",
+        values: &[1.0, 0.8, 0.6, 0.4, 0.2],
+        error: "RMSE, linear RGB, to the picture of EWA",
+        limit: 0.01,
+        cure: "`--overlap 1`, the default: more groups; Voronoi depth alone takes off a fifth",
+        at: overlap,
+    },
+    Failure {
+        id: "transparent-holes",
+        title: "Groups that do not cover the surface",
+        why: "A torus of 4,000 surfels with opacity 0.4 by Algorithm 2 [ZP06, 4.2]. Each of K groups shows a part of the \
+              surface; where a group has a hole, a layer is missing from its picture, and the average of K is too \
+              transparent or shows what is behind.",
+        swept: "K",
+        values: &[2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0],
+        error: "RMSE, linear RGB, to the picture of peeling",
+        limit: 0.05,
+        cure: "`--extend enlarge`: the discs of each group grow until they cover",
+        at: holes,
+    },
+    Failure {
+        id: "bin-arcs",
+        title: "Arcs at the borders of depth bins",
+        why: "A torus of 20,000 surfels with opacity 0.4 by Algorithm 3 [ZP06, 4.2.1]. Fragments are of one layer if they share a bin \
+              of depth; a surface that passes from one bin to the next is two layers where discs of both bins overlap. \
+              These places are arcs, in which too much is opaque.",
+        swept: "bins",
+        values: &[8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0, 4096.0],
+        error: "RMSE, linear RGB, to the picture of peeling",
+        limit: 0.012,
+        cure: "`--bins epsilon`, the default",
+        at: arcs,
+    },
+];
+
+fn rules(overlap: f32) -> Rules {
+    Rules { overlap, opposite: true, coplanar: None }
+}
+
+fn overlap(c: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    let splats = ewa::Settings::default();
+    let c = if cured { 1.0 } else { c };
+    let mut case = Case::of_shape(Shape::Cluster, 20_000, splats.into())?;
+    let truth = case.draw(exec)?.0;
+    case.method = single_pass::Settings { splats, depth: DepthTest::Plain }.into();
+    case.grouping =
+        Some(Grouping { rules: rules(c as f32), count: None, extension: Extension::None });
+    case.against(&truth, "rmse", exec)
+}
+
+/// A torus through which one sees, and its picture by peeling.
+fn torus(count: usize, splats: ewa::Settings, exec: &Exec) -> Result<(Case, Frame<f32>)> {
+    let method = peeling::Settings { splats, layers: 64 };
+    let mut case = Case::of_shape(Shape::Torus, count, method.into())?;
+    let cloud = case.scene.surfels.into_cloud();
+    let opacity = Some(vec![0.4; cloud.position.len()]);
+    case.scene = Scene::lit("torus", Surfels::new(Cloud { opacity, ..cloud })?.0);
+    let truth = case.draw(exec)?.0;
+    Ok((case, truth))
+}
+
+fn holes(groups: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    let splats = ewa::Settings::BOTH_SIDES;
+    let (mut case, truth) = torus(4000, splats, exec)?;
+    let extension = if cured { Extension::Enlarge } else { Extension::None };
+    let holes = transparent::Holes::Background;
+    let settings = transparent::Settings { splats, holes, ..transparent::Settings::default() };
+    case.method = settings.into();
+    case.grouping = Some(Grouping { rules: rules(1.0), count: Some(groups as usize), extension });
+    case.against(&truth, "rmse", exec)
+}
+
+fn arcs(bins: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    let splats = ewa::Settings::BOTH_SIDES;
+    let (mut case, truth) = torus(20_000, splats, exec)?;
+    let bins = if cured { BinCount::Epsilon } else { BinCount::Count(bins as u32) };
+    let layers = transparent::Settings { splats, bins, ..transparent::Settings::default() };
+    let settings = transparent_hq::Settings { layers, ..transparent_hq::Settings::default() };
+    case.method = Method::from(settings);
+    let extension = Extension::Add { most: 0.5 };
+    case.grouping = Some(Grouping { rules: rules(1.0), count: Some(4), extension });
+    case.against(&truth, "rmse", exec)
+}

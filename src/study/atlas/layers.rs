@@ -1,0 +1,119 @@
+//! Layers told apart by epsilon.
+
+use super::case::Case;
+use super::{Failure, Found};
+use crate::error::Result;
+use crate::frame::Exec;
+use crate::method::ewa;
+use crate::method::single_pass::{self, BinCount, DepthTest};
+use crate::scene::{Cloud, Scene, Surfels};
+use crate::source::Shape;
+use crate::splat::Epsilon;
+
+pub(super) const FAILURES: [Failure; 4] = [
+    Failure {
+        id: "eps-sheets",
+        title: "The sheet behind bleeds through",
+        why: "Two sheets of 20,000 surfels, one behind the other. What lies within epsilon of the nearest depth is \
+              blended with it [GP03; ZP06, 3]: with the default epsilon of two median radii both sheets are, once \
+              they are as near to each other as that.",
+        swept: "gap, median radii",
+        values: &[16.0, 8.0, 4.0, 3.0, 2.5, 2.0, 1.5, 1.0, 0.5, 0.25],
+        error: "RMSE, linear RGB",
+        limit: 0.05,
+        cure: "an `--epsilon` of half the gap, as long as it is more than the surface's own depth differs within a disc",
+        at: sheets,
+    },
+    Failure {
+        id: "eps-slope",
+        title: "A curved surface leaves its band and is torn",
+        why: "A sphere of 2,000 surfels with a smaller and smaller epsilon. Discs that overlap in a pixel differ in depth there, by up to their \
+              radius times the slope; those beyond epsilon are not blended, and the nearest one is seen as it is.",
+        swept: "epsilon, median radii",
+        values: &[4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125],
+        error: "normal error, 99 %, degrees",
+        limit: 3.0,
+        cure: "`--epsilon 2r`, the default",
+        at: slope,
+    },
+    Failure {
+        id: "eps-default",
+        title: "One epsilon does not fit a scan of uneven density",
+        why: "A sphere of 40,000 surfels, its right half thinned, radii grown accordingly. The default epsilon \
+              is two radii of the median surfel, so less than one of a large one: large discs tear each other where they \
+              overlap.",
+        swept: "how many times denser the left half is",
+        values: &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0],
+        error: "normal error, 99 %, degrees",
+        limit: 10.0,
+        cure: "an `--epsilon` of two of the large radii",
+        at: density,
+    },
+    Failure {
+        id: "voronoi-bin",
+        title: "Depth bins thinner than a disc is deep cut layers apart",
+        why: "A sphere of 5,000 surfels by the single pass with Voronoi depth [ZP06, 5.1, eq. 10]. Within a bin of depth the disc whose centre \
+              is nearest wins. Two fragments of one layer on either side of a border of bins are told apart by depth, as by the plain test: \
+              the thinner the bins, the more of them.",
+        swept: "bins",
+        values: &[8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 1024.0, 4096.0],
+        error: "RMSE, linear RGB, to the picture of EWA",
+        limit: 0.015,
+        cure: "`--bins epsilon`, the default",
+        at: bins,
+    },
+];
+
+fn epsilon(epsilon: Epsilon) -> ewa::Settings {
+    ewa::Settings { epsilon, ..ewa::Settings::default() }
+}
+
+fn sheets(radii: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    let trial = Shape::Sheets { gap: 1.0 }.surfels(20_000, 0)?;
+    let radius = f64::from(Epsilon::MedianRadii(1.0).resolve(&trial));
+    let shape = Shape::Sheets { gap: (radii * radius) as f32 };
+    let wanted =
+        if cured { Epsilon::World((radii * radius / 2.0) as f32) } else { Epsilon::DEFAULT };
+    Case::of_shape(shape, 20_000, epsilon(wanted).into())?.against_shape(shape, "rmse", exec)
+}
+
+fn slope(radii: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    let wanted = if cured { Epsilon::DEFAULT } else { Epsilon::MedianRadii(radii as f32) };
+    let shape = Shape::Sphere;
+    Case::of_shape(shape, 2000, epsilon(wanted).into())?.against_shape(shape, "normal-99", exec)
+}
+
+fn density(times: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    let surfels = thinned(&Shape::Sphere.surfels(40_000, 0)?, times)?;
+    let most = surfels.radius().iter().fold(0.0, |a, b| if *b > a { *b } else { a });
+    let wanted = if cured { Epsilon::World(2.0 * most) } else { Epsilon::DEFAULT };
+    let mut case = Case::of_shape(Shape::Sphere, 1, epsilon(wanted).into())?;
+    case.scene = Scene::lit("sphere", surfels);
+    case.against_shape(Shape::Sphere, "normal-99", exec)
+}
+
+/// One of so many of the surfels with x > 0, as large as those that it stands for; all others.
+fn thinned(surfels: &Surfels, times: f64) -> Result<Surfels> {
+    let mut count = 0.0;
+    let kept = surfels.position().iter().map(|p| {
+        count += f64::from(u8::from(p.x > 0.0));
+        p.x <= 0.0 || count % times == 0.0
+    });
+    let kept: Vec<u32> = (0..).zip(kept).filter(|(_, kept)| *kept).map(|(i, _)| i).collect();
+    let cloud = surfels.clone().into_cloud().some(&kept);
+    let grow = times.sqrt() as f32;
+    let radius = cloud.radius.map(|radii| {
+        let grown = radii.iter().zip(&cloud.position);
+        grown.map(|(r, p)| if p.x > 0.0 { r * grow } else { *r }).collect()
+    });
+    Ok(Surfels::new(Cloud { radius, ..cloud })?.0)
+}
+
+fn bins(count: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    let splats = ewa::Settings::default();
+    let mut case = Case::of_shape(Shape::Sphere, 5000, splats.into())?;
+    let truth = case.draw(exec)?.0;
+    let bins = if cured { BinCount::Epsilon } else { BinCount::Count(count as u32) };
+    case.method = single_pass::Settings { splats, depth: DepthTest::Voronoi(bins) }.into();
+    case.against(&truth, "rmse", exec)
+}

@@ -1,0 +1,147 @@
+//! The atlas of failures: where each method breaks, measured.
+//!
+//! A [`Failure`] is a scene, one parameter that is swept, and an error against the truth. Its [`Curve`] is
+//! the error at each value, as the method is by default or as the entry says, and again with the cure. It
+//! *breaks* at the first value whose error is above [`Failure::limit`]; values are in the order from
+//! where it works to where it does not.
+//!
+//! The truth is that of [`mod@crate::study::truth`] where a surface is known. Where the entry is about layers, which
+//! have no surface, it is the picture of depth peeling; where about arithmetic, the same in f64. Errors
+//! are functions of the scene alone: the same on every machine. Times are not, and no test looks at them.
+//!
+//! The page of the atlas is `docs/atlas.md`, made by `splatref study failures -o docs`.
+
+mod case;
+mod footprints;
+mod groups;
+mod layers;
+mod moving;
+mod numbers;
+pub mod orders;
+mod page;
+mod prefixes;
+mod reconstruction;
+#[cfg(test)]
+mod tests;
+
+pub use page::{Files, PICTURES, page};
+
+use crate::error::Result;
+use crate::frame::{Exec, Plane};
+use std::time::Duration;
+
+/// An entry of the atlas.
+#[derive(Clone, Copy, Debug)]
+pub struct Failure {
+    /// How it is called.
+    pub id: &'static str,
+    /// What is seen.
+    pub title: &'static str,
+    /// What is drawn, why it fails, and who says so.
+    pub why: &'static str,
+    /// What is swept, with its unit.
+    pub swept: &'static str,
+    /// Its values, from where it works to where it does not.
+    pub values: &'static [f64],
+    /// What is measured, with its unit.
+    pub error: &'static str,
+    /// An error above this is a failure.
+    pub limit: f64,
+    /// What cures it.
+    pub cure: &'static str,
+    /// Measures a value, with the cure or without it.
+    pub at: fn(f64, bool, &Exec) -> Result<Found>,
+}
+
+/// What is found at a value.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The error.
+    pub error: f64,
+    /// The picture, linear RGB; none where the error is of no picture.
+    pub picture: Option<Plane<[f32; 3]>>,
+    /// How long a picture took.
+    pub time: Option<Duration>,
+}
+
+/// A failure, measured.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// Of which failure.
+    pub of: &'static Failure,
+    /// Of each value, as it is.
+    pub plain: Vec<f64>,
+    /// Of each value, with the cure.
+    pub cured: Vec<f64>,
+    /// The index of the first value at which it is broken; none if it never is.
+    pub breaks: Option<usize>,
+    /// Pictures just before it breaks, where it is broken, and there with the cure.
+    pub pictures: Vec<Plane<[f32; 3]>>,
+}
+
+/// Every failure.
+#[must_use]
+pub fn failures() -> Vec<&'static Failure> {
+    let rooms: [&[Failure]; 7] = [
+        &footprints::FAILURES,
+        &numbers::FAILURES,
+        &layers::FAILURES,
+        &groups::FAILURES,
+        &moving::FAILURES,
+        &reconstruction::FAILURES,
+        &prefixes::FAILURES,
+    ];
+    rooms.into_iter().flatten().collect()
+}
+
+impl Failure {
+    /// Measures every value. `progress` is told how many of how many measurements are done.
+    ///
+    /// # Errors
+    /// As drawing the scenes.
+    pub fn curve(&'static self, exec: &Exec, progress: &dyn Fn(u64, u64)) -> Result<Curve> {
+        let count = 2 * self.values.len() as u64;
+        let mut sweeps = [Vec::new(), Vec::new()];
+        for (i, &value) in self.values.iter().enumerate() {
+            for (k, sweep) in sweeps.iter_mut().enumerate() {
+                progress((2 * i + k) as u64, count);
+                sweep.push((self.at)(value, k == 1, exec)?);
+            }
+        }
+        let [plain, cured] = sweeps;
+        let breaks = plain.iter().position(|found| found.error > self.limit);
+        let shown = breaks.map_or([None; 3], |at| {
+            [at.checked_sub(1).map(|before| &plain[before]), Some(&plain[at]), Some(&cured[at])]
+        });
+        let pictures = shown.into_iter().flatten().filter_map(|found| found.picture.clone());
+        Ok(Curve {
+            of: self,
+            breaks,
+            pictures: pictures.collect(),
+            plain: plain.iter().map(|found| found.error).collect(),
+            cured: cured.iter().map(|found| found.error).collect(),
+        })
+    }
+
+    /// How many times as long a picture takes with the cure, where it breaks: the ratio of medians of
+    /// five by turns; none where no picture is drawn.
+    ///
+    /// # Errors
+    /// As drawing the scenes.
+    pub fn cost(&self, at: usize, exec: &Exec) -> Result<Option<f64>> {
+        let mut times = [Vec::new(), Vec::new()];
+        for _ in 0..5 {
+            for (k, times) in times.iter_mut().enumerate() {
+                times.extend((self.at)(self.values[at], k == 1, exec)?.time);
+            }
+        }
+        let medians = times.map(|mut times| {
+            times.sort();
+            times.get(times.len() / 2).map(Duration::as_secs_f64)
+        });
+        Ok(match medians {
+            [Some(plain), Some(cured)] if plain > 0.0 => Some(cured / plain),
+            _ => None,
+        })
+    }
+}

@@ -1,0 +1,239 @@
+//! Prefixes of orders \[BJFM19, 6\], and meshes as surfels.
+
+use super::case::{Case, SIZE, quiet};
+use super::orders::{geometry, mesh, objects, order, order_along, seen, torus};
+use super::{Failure, Found};
+use crate::error::Result;
+use crate::frame::Exec;
+use crate::method::blue::{self, controller::Controller};
+use crate::method::{Method, ewa};
+use crate::number::elementary::{cos, sin};
+use crate::scene::{Camera, Cloud, Lens, Pose, Primitives, Scene, Similarity, Triangles, Vertices};
+use crate::source::candidates::Directions;
+use crate::source::derive::{self, Derive};
+use crate::study::truth::Surface;
+use glam::{DVec3, Vec3};
+
+pub(super) const FAILURES: [Failure; 5] = [
+    Failure {
+        id: "mesh-paddles",
+        title: "Vertices of thin triangles are paddles",
+        why: "A cylinder of 64 columns whose triangles are longer and longer, its vertices drawn as surfels. The radius that is derived \
+              is the longest edge, so that discs cover; those at long edges stand out over the silhouette.",
+        swept: "length of a triangle, its widths",
+        values: &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0],
+        error: "spill, per mille",
+        limit: 100.0,
+        cure: "`--draw facets`: an ellipse for each triangle",
+        at: paddles,
+    },
+    Failure {
+        id: "blue-thin",
+        title: "Walls that are nearer to each other than surfels are have holes",
+        why: "A plate of 2 x 2 in 500 surfels, both sides together, seen from the front by the method blue. The order keeps surfels apart in \
+              space, also those on two sides [BJFM19, 6].",
+        swept: "thickness, distances of surfels",
+        values: &[4.0, 2.0, 1.0, 0.5, 0.25, 0.0625],
+        error: "holes, per mille",
+        limit: 10.0,
+        cure: "`--distance geodesic`: distances along the surface",
+        at: thin,
+    },
+    Failure {
+        id: "blue-prefix",
+        title: "Prefixes too short for their estimate have holes",
+        why: "A torus in an order of 20,000, from so far away that few surfels are asked for. The radius of a prefix is \
+              estimated from the first 1,000, as if each stood for one share of the area [BJFM19, 4.1]; a few on a curved \
+              surface do not.",
+        swept: "surfels asked for",
+        values: &[10_000.0, 1000.0, 300.0, 100.0, 30.0, 10.0, 3.0],
+        error: "holes, per mille",
+        limit: 5.0,
+        cure: "never fewer than 100 surfels: `p_min` of no paper; a smaller `--surfel-size` for what is small",
+        at: short,
+    },
+    Failure {
+        id: "blue-long",
+        title: "Long objects have too many surfels far away",
+        why: "A bar seen along it, in discs of 8 px. An object has one prefix, chosen for its nearest point [BJFM19, 6].",
+        swept: "length, widths",
+        values: &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0],
+        error: "surfels a pixel in the farthest eighth, by those in the nearest",
+        limit: 3.0,
+        cure: "the bar as objects as long as it is wide",
+        at: long,
+    },
+    Failure {
+        id: "blue-controller",
+        title: "The frame-time controller swings",
+        why: "Frames that take four times as long from one moment on, their times known some frames late. Each late time is answered \
+              again by a step of the size [BJFM19, 4.3].",
+        swept: "frames until a time is known",
+        values: &[0.0, 1.0, 2.0, 3.0, 4.0, 6.0],
+        error: "largest size by smallest, of the last 100 of 1,000 frames",
+        limit: 1.05,
+        cure: "ask the controller again only when the time of its last answer is known",
+        at: swing,
+    },
+];
+
+fn blue() -> Method {
+    blue::Settings::default().into()
+}
+
+/// The picture of what a view draws against the triangles, by holes.
+fn against(drawn: Scene, whole: &Scene, camera: Camera, exec: &Exec) -> Result<Found> {
+    let case = Case { scene: drawn, camera, method: blue(), grouping: None };
+    let truth = case.truth(&[Surface::Triangles(whole.primitives.triangles.clone())], exec)?;
+    case.against(&truth, "holes", exec)
+}
+
+fn camera(eye: DVec3, side: u32, lens: Lens) -> Result<Camera> {
+    Camera::new(side, side, Pose { eye, target: DVec3::ZERO, up: DVec3::Y }, lens)
+}
+
+fn thin(gap: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    // 500 surfels on both sides, 8 units: about 0.136 apart.
+    const APART: f64 = 0.136;
+    let plate = cuboid(DVec3::new(1.0, 1.0, gap * APART / 2.0))?;
+    let order = if cured { order_along } else { order };
+    let order = order(&plate, (&Directions::Cube, 384), 500, exec)?;
+    let objects = objects(geometry(order, Primitives::default())?, &[Similarity::IDENTITY])?;
+    let camera = camera(DVec3::new(0.0, 0.0, 5.0), 256, Lens::FieldOfView(30.0))?;
+    // So small that all surfels are asked for, as large as they cover with.
+    against(seen(&objects, 0.125, &camera, exec)?, &plate, camera, exec)
+}
+
+fn short(count: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    let torus = torus()?;
+    let order = order(&torus, (&Directions::Cube, 256), 20_000, exec)?;
+    let objects = objects(geometry(order, Primitives::default())?, &[Similarity::IDENTITY])?;
+    let pose = DVec3::new(2.0, 3.0, 5.0);
+    let camera = camera(pose, 256, Lens::Orthographic(3.2))?;
+    let count = if cured && count < 100.0 { 100.0 } else { count };
+    // r of the prefix asked for, as a size in this picture.
+    let radius = objects.geometries()[0].prefix().map_or(0.0, |prefix| {
+        let estimate = prefix.estimate();
+        f64::from(estimate.distance) * (f64::from(estimate.count) / count).sqrt()
+    });
+    let size = (2.0 * radius * f64::from(camera.fy)) as f32;
+    against(seen(&objects, size, &camera, exec)?, &torus, camera, exec)
+}
+
+fn long(length: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    let pieces = if cured { length as u32 } else { 1 };
+    let piece = length / f64::from(pieces);
+    let bar = cuboid(DVec3::new(0.5, 0.5, piece / 2.0))?;
+    let order = order(&bar, (&Directions::Cube, 512), 50_000, exec)?;
+    let places: Vec<Similarity> = (0..pieces)
+        .map(|i| {
+            let z = (f64::from(i) + 0.5) * piece - length / 2.0;
+            Similarity { translation: DVec3::Z * z, ..Similarity::IDENTITY }
+        })
+        .collect();
+    let objects = objects(geometry(order, Primitives::default())?, &places)?;
+    let eye = DVec3::new(1.0, 1.0, length / 2.0 + 8.0);
+    let pose = Pose { eye, target: DVec3::Z * (length / 2.0), up: DVec3::Y };
+    let camera = Camera::new(256, 256, pose, Lens::FieldOfView(20.0))?;
+    let scene = seen(&objects, 8.0, &camera, exec)?;
+    // A piece of a side between two depths has 1 / t^2 of its area in pixels, times one number for all.
+    let density = |near: bool| {
+        let eighth = |z: f64| if near { z > 0.375 * length } else { z < -0.375 * length };
+        let all = scene.surfels.position().iter().map(|p| f64::from(p.z));
+        let surfels = all.filter(|z| eighth(*z)).count() as f64;
+        let from = if near { 8.0 } else { 8.0 + 0.875 * length };
+        surfels / (1.0 / from - 1.0 / (from + 0.125 * length))
+    };
+    let error = density(false) / density(true);
+    let case = Case { scene, camera, method: blue(), grouping: None };
+    let (frame, time) = case.draw(exec)?;
+    Ok(Found { error, picture: Some(frame.color("")?.clone()), time: Some(time) })
+}
+
+/// Surfels that take `s^-2` of the target's time at the size 1.25, and from frame 0 on four times as long.
+fn swing(late: f64, cured: bool, _: &Exec) -> Result<Found> {
+    let late = late as usize;
+    let controller = Controller::new(1.0)?;
+    let mut sizes = vec![1.25_f32; late + 1];
+    for frame in 0..1000 {
+        let at = |back: usize| sizes[sizes.len() - 1 - back];
+        let known = f64::from(at(late));
+        let waits = cured && frame % (late + 1) != late;
+        let time = 1.25 * 1.25 * 4.0 / (known * known);
+        let next = if waits { at(0) } else { controller.next(at(0), time) };
+        sizes.push(next);
+    }
+    let last = &sizes[sizes.len() - 100..];
+    let ends = last.iter().fold([f32::INFINITY, 0.0], |[least, most], &size| {
+        [if size < least { size } else { least }, if size > most { size } else { most }]
+    });
+    Ok(Found { error: f64::from(ends[1]) / f64::from(ends[0]), picture: None, time: None })
+}
+
+fn paddles(aspect: f64, cured: bool, exec: &Exec) -> Result<Found> {
+    let cloud = cylinder(64, aspect);
+    let (triangles, _) = derive::polygons(cloud.clone(), exec, &quiet)?;
+    let (surfels, _) = match cured {
+        true => derive::facets(cloud, exec, &quiet)?,
+        false => derive::surfels(cloud, &Derive::default(), exec, &quiet)?,
+    };
+    let [width, height] = SIZE;
+    let pose = Pose { eye: DVec3::new(0.0, 1.0, 8.0), target: DVec3::ZERO, up: DVec3::Y };
+    let case = Case {
+        scene: Scene::lit("cylinder", surfels),
+        camera: Camera::new(width, height, pose, Lens::FieldOfView(34.0))?,
+        method: ewa::Settings::default().into(),
+        grouping: None,
+    };
+    let truth = case.truth(&[Surface::Triangles(triangles)], exec)?;
+    case.against(&truth, "spill", exec)
+}
+
+/// A cylinder of the radius 1, about 3 high, of so many columns around, and as many rows as have triangles so
+/// many times as long as they are wide.
+fn cylinder(columns: u32, aspect: f64) -> Cloud {
+    let width = std::f64::consts::TAU / f64::from(columns);
+    let rows = (3.0 / (width * aspect)).round() as u32;
+    let rows = if rows > 0 { rows } else { 1 };
+    let high = width * aspect * f64::from(rows);
+    let mut cloud = Cloud::default();
+    let mut normal = Vec::new();
+    for j in 0..=rows {
+        for i in 0..columns {
+            let angle = std::f64::consts::TAU * f64::from(i) / f64::from(columns);
+            let out = DVec3::new(sin(angle), 0.0, cos(angle));
+            let y = (f64::from(j) / f64::from(rows) - 0.5) * high;
+            cloud.position.push((out + DVec3::Y * y).as_vec3());
+            normal.push(out.as_vec3());
+        }
+    }
+    for j in 0..rows {
+        for i in 0..columns {
+            let (a, b) = (j * columns + i, j * columns + (i + 1) % columns);
+            cloud.triangles.extend([[a, b, b + columns], [a, b + columns, a + columns]]);
+        }
+    }
+    cloud.normal = Some(normal);
+    cloud
+}
+
+/// A box around the origin, with normals of its faces.
+fn cuboid(half: DVec3) -> Result<Scene> {
+    let mut vertices = Vertices::default();
+    let mut corners = Vec::new();
+    for face in 0..6 {
+        let (axis, sign) = (face % 3, if face < 3 { 1.0 } else { -1.0 });
+        let first = vertices.position.len() as u32;
+        for (i, j) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
+            let mut p = DVec3::ZERO;
+            (p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]) = (sign, i * sign, j);
+            let mut normal = Vec3::ZERO;
+            normal[axis] = sign as f32;
+            vertices.position.push((p * half).as_vec3());
+            vertices.direction.push(normal);
+            vertices.radius.push(0.0);
+        }
+        corners.extend([[first, first + 2, first + 3], [first, first + 3, first + 1]]);
+    }
+    Ok(mesh(Triangles::new(vertices, corners)?.0))
+}

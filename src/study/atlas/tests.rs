@@ -1,0 +1,61 @@
+//! The page in `docs/` is what the command writes, and says what is measured.
+
+use super::page::lasting;
+use super::*;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+fn exec() -> Exec {
+    Exec::new(2, 32).unwrap()
+}
+
+/// Where the page of the crate is.
+fn docs() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/docs"))
+}
+
+#[test]
+fn every_failure_has_a_name_and_a_sweep() {
+    let all = failures();
+    let names: BTreeSet<&str> = all.iter().map(|failure| failure.id).collect();
+    assert_eq!(names.len(), all.len(), "no two have one name");
+    for failure in all {
+        assert!(failure.values.len() >= 5, "{}: a curve has points", failure.id);
+        assert!(failure.limit > 0.0, "{}", failure.id);
+    }
+}
+
+/// All that the page says of errors, and its charts; the page is blessed by `splatref study failures -o docs`.
+#[test]
+fn the_page_is_what_is_measured() {
+    let curves = failures().into_iter().map(|failure| {
+        (failure.curve(&exec(), &|_, _| ()).unwrap_or_else(|e| panic!("{}: {e}", failure.id)), None)
+    });
+    let curves: Vec<_> = curves.collect();
+    let files = page(&curves);
+    let kept = std::fs::read_to_string(docs().join("atlas.md")).unwrap();
+    for (now, then) in lasting(&files.text).lines().zip(lasting(&kept).lines()) {
+        assert_eq!(now, then, "splatref study failures -o docs");
+    }
+    assert_eq!(lasting(&files.text), lasting(&kept));
+    for (id, chart) in &files.charts {
+        let path = docs().join(PICTURES).join(id).with_extension("svg");
+        assert_eq!(std::fs::read_to_string(path).unwrap(), chart.svg(), "{id}");
+    }
+    for (id, _) in &files.pictures {
+        assert!(docs().join(PICTURES).join(id).with_extension("png").is_file(), "{id}");
+    }
+}
+
+/// What the page may not stop to say, whatever numbers it has: where it breaks, the cure cures.
+#[test]
+fn cures_cure() {
+    for id in ["ewa-thin", "bounds", "blue-controller", "ewa-grazing", "template-mirror"] {
+        let failure = failures().into_iter().find(|failure| failure.id == id).unwrap();
+        let curve = failure.curve(&exec(), &|_, _| ()).unwrap();
+        let at = curve.breaks.unwrap();
+        assert!(at > 0, "{id}: works at first");
+        assert!(curve.plain[at] > failure.limit, "{id}");
+        assert!(curve.cured.iter().all(|error| *error <= failure.limit), "{id}: {curve:?}");
+    }
+}
