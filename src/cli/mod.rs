@@ -5,6 +5,7 @@
 //! `verify` has codes of its own.
 
 mod atlas;
+mod claims;
 mod compare;
 mod draw;
 mod explain;

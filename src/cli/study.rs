@@ -1,7 +1,7 @@
 //! `splatref study`: every method and setting against the true picture and the clock.
 
 use super::tried::{Loaded, Tried, truth_in_words};
-use super::{Ended, Ending, atlas, output, progress, report, say};
+use super::{Ended, Ending, atlas, claims, output, progress, report, say};
 use splatref::frame::{Exec, Frame, Image};
 use splatref::io::replace::write_atomically;
 use splatref::io::scene_file::SceneFile;
@@ -27,6 +27,7 @@ it goes: a study that was stopped goes on with --resume.
 Examples:
   splatref study bunny.ply
   splatref study failures
+  splatref study claims
   splatref study torus --method ewa --metric flip
   splatref study blue.ply --surfel-size 2 --truth bunny.ply -o out/blue
   splatref study scene.toml --time 60s")]
@@ -35,7 +36,7 @@ pub(super) struct Args {
     #[command(subcommand)]
     what: Option<What>,
     #[command(flatten)]
-    tried: Option<Tried>,
+    tried: Tried,
     /// Where the files go; made if it is not there
     #[arg(short, long, value_name = "DIR", default_value = "out/study")]
     output: PathBuf,
@@ -54,24 +55,27 @@ pub(super) struct Args {
 enum What {
     /// The atlas: where each method breaks, and what cures it, into a page
     Failures(atlas::Args),
+    /// What the papers claim, measured, into a page
+    Claims(claims::Args),
 }
 
 /// The share of the time that errors may take; the rest is for times.
 const MEASURING: f64 = 0.7;
 
 pub(super) fn run(args: &Args) -> Ended {
-    match (&args.what, &args.tried) {
-        (Some(What::Failures(args)), _) => atlas::run(args),
-        (None, Some(tried)) => scene(args, tried),
-        (None, None) => Err(Error::Usage("give a scene, or `failures`".into())),
+    match &args.what {
+        Some(What::Failures(args)) => atlas::run(args),
+        Some(What::Claims(args)) => claims::run(args),
+        None => scene(args),
     }
 }
 
-fn scene(args: &Args, tried: &Tried) -> Ended {
+fn scene(args: &Args) -> Ended {
     let start = Instant::now();
+    let tried = &args.tried;
     let scene = tried.scene_file()?;
     let exec = tried.exec()?;
-    let folder = Folder::make(args, tried, &scene)?;
+    let folder = Folder::make(args, &scene)?;
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
     let Loaded { mut bench, candidates, left_out, known, camera } =
@@ -169,10 +173,10 @@ struct Folder(PathBuf);
 
 impl Folder {
     /// Makes the folder, which must hold nothing that the study reads.
-    fn make(args: &Args, tried: &Tried, scene: &SceneFile) -> Result<Self> {
+    fn make(args: &Args, scene: &SceneFile) -> Result<Self> {
         let folder = Self(args.output.clone());
         for name in FILES {
-            output::check_unread(&folder.0.join(name), &tried.scene, scene)?;
+            output::check_unread(&folder.0.join(name), args.tried.path()?, scene)?;
         }
         if args.resume {
             let state = folder.0.join(STATE);

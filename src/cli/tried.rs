@@ -2,7 +2,6 @@
 
 use super::options::{ExecOptions, SceneOptions};
 use super::progress;
-use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;
 use splatref::scene::Camera;
@@ -10,12 +9,15 @@ use splatref::study::run::truths::Known;
 use splatref::study::run::{Bench, LeftOut};
 use splatref::study::sweep::{Candidate, candidates};
 use splatref::study::truth::Truth;
-use std::path::PathBuf;
+use splatref::{Error, Result};
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(super) struct Tried {
     /// A .ply, an .obj, a scene .toml, a folder of surfels, or a shape
-    pub(super) scene: PathBuf,
+    // Required but where a subcommand stands in its place.
+    #[arg(required = true)]
+    scene: Option<PathBuf>,
     /// A scene whose surface is the truth, such as the mesh that points were sampled from
     #[arg(long, value_name = "SCENE")]
     truth: Option<PathBuf>,
@@ -35,10 +37,15 @@ pub(super) struct Loaded<'e> {
 }
 
 impl Tried {
+    /// Where the scene is.
+    pub(super) fn path(&self) -> Result<&Path> {
+        self.scene.as_deref().ok_or_else(|| Error::Usage("give a scene".into()))
+    }
+
     /// The scene, with the options on top.
     pub(super) fn scene_file(&self) -> Result<SceneFile> {
         self.options.refuse_state("what is tried begins with nothing seen")?;
-        self.options.scene_file(&self.scene)
+        self.options.scene_file(self.path()?)
     }
 
     pub(super) fn exec(&self) -> Result<Exec> {

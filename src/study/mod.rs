@@ -2,6 +2,7 @@
 //!
 //! - [`mod@atlas`]: where each method breaks.
 //! - [`chart`]: drawings that are written as SVG and as PNG, the same picture in both.
+//! - [`mod@claims`]: what the papers claim, measured.
 //! - [`mod@front`]: what nothing else is both faster and nearer to the truth than.
 //! - [`plan`]: the cheapest within a budget.
 //! - [`mod@report`]: a study as files.
@@ -12,6 +13,7 @@
 
 pub mod atlas;
 pub mod chart;
+pub mod claims;
 pub mod front;
 pub mod plan;
 pub mod report;

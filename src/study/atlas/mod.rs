@@ -25,6 +25,7 @@ mod reconstruction;
 mod tests;
 
 pub use page::{Files, PICTURES, page};
+pub(super) use page::{beside, short};
 
 use crate::error::Result;
 use crate::frame::{Exec, Plane};

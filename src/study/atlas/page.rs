@@ -80,7 +80,7 @@ fn entry(text: &mut String, curve: &Curve, cost: Option<f64>) {
 }
 
 /// A number with three digits that count.
-fn short(value: f64) -> String {
+pub(in crate::study) fn short(value: f64) -> String {
     format!("{value:.2e}").parse::<f64>().map_or_else(|_| value.to_string(), |v| v.to_string())
 }
 
@@ -98,7 +98,7 @@ fn chart(curve: &Curve) -> Drawing {
 }
 
 /// Pictures side by side, a white gap between them; none of none.
-fn beside(pictures: &[Plane<[f32; 3]>]) -> Option<Plane<[f32; 3]>> {
+pub(in crate::study) fn beside(pictures: &[Plane<[f32; 3]>]) -> Option<Plane<[f32; 3]>> {
     const GAP: u32 = 6;
     let high = pictures.iter().map(Plane::height).max()?;
     let wide: u32 = pictures.iter().map(|picture| picture.width() + GAP).sum::<u32>() - GAP;

@@ -1,0 +1,48 @@
+//! `splatref study claims`: what the papers claim.
+
+use super::options::ExecOptions;
+use super::{Ended, Ending, progress, report, say};
+use splatref::Error;
+use splatref::io::png;
+use splatref::io::replace::write_atomically;
+use splatref::study::claims::{Files, PICTURES, claims, outcome, page};
+use std::fs;
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::Instant;
+
+#[derive(clap::Args)]
+#[command(after_help = "Writes claims.md, and pictures beside it in claims/.")]
+pub(super) struct Args {
+    /// Where the files go; made if it is not there
+    #[arg(short, long, value_name = "DIR", default_value = "out/study")]
+    output: PathBuf,
+    #[command(flatten)]
+    exec: ExecOptions,
+}
+
+pub(super) fn run(args: &Args) -> Ended {
+    let start = Instant::now();
+    let exec = args.exec.exec()?;
+    let folder = args.output.join(PICTURES);
+    fs::create_dir_all(&folder).map_err(|source| Error::io(&folder, source))?;
+    let steps = progress::Steps::new("measuring");
+    let mut verdicts = Vec::new();
+    for claim in claims() {
+        verdicts.push(claim.verdict(&exec, &|done, of| steps.show(claim.id, done, of))?);
+    }
+    steps.show("writing", 0, 1);
+    let Files { text, pictures } = page(&verdicts);
+    for (id, picture) in &pictures {
+        png::write(&folder.join(id).with_extension("png"), picture, None)?;
+    }
+    let path = args.output.join("claims.md");
+    write_atomically(&path, |file| file.write_all(text.as_bytes()))?;
+    drop(steps);
+    for verdict in &verdicts {
+        say(format!("{:<16} {:<7} {}", verdict.of.id, outcome(verdict), verdict.of.says));
+    }
+    report::line("page", path.display());
+    report::time("total", vec![start.elapsed()]);
+    Ok(Ending::Good)
+}

@@ -1,0 +1,138 @@
+//! \[ZP06\]: groups, Voronoi depth, transparency.
+
+use super::subject::{Subject, colors, groups};
+use super::{Case, Claim, Measured};
+use crate::error::Result;
+use crate::frame::Exec;
+use crate::index::grouping::Extension;
+use crate::method::single_pass::{self, BinCount, DepthTest};
+use crate::method::{Method, ewa, peeling, transparent, transparent_hq};
+
+pub(super) const CLAIMS: [Claim; 5] = [
+    Claim {
+        id: "zp06-voronoi",
+        from: "[ZP06] 5.1, Fig. 9",
+        says: "artifacts caused by overlapping splats within a group are reduced by Voronoi rasterization",
+        measured: "RMSE to the picture of 2 + 1 passes, c = 0.4: Voronoi depth; plain depth",
+        at_most: 1.0,
+        timed: false,
+        more: "zp06.md",
+        of: voronoi,
+    },
+    Claim {
+        id: "zp06-c",
+        from: "[ZP06] 6.2, Fig. 8",
+        says: "hardly any visible artifacts are introduced even if c is set as low as 0.4",
+        measured: "FLIP to the picture of 2 + 1 passes, at most 0.05 times, c = 0.4, Voronoi depth; 1",
+        at_most: 0.05,
+        timed: false,
+        more: "zp06.md",
+        of: relaxed,
+    },
+    Claim {
+        id: "zp06-single",
+        from: "[ZP06] 6.2, Table 2",
+        says: "1 + 1 passes are faster than 2 + 1 passes",
+        measured: "ms: `single-pass`, c = 0.4; `ewa`",
+        at_most: 1.0,
+        timed: true,
+        more: "zp06.md",
+        of: single,
+    },
+    Claim {
+        id: "zp06-far",
+        from: "[ZP06] 6.3, Fig. 12",
+        says: "artifacts are hardly visible by Algorithm 2, and virtually none by Algorithm 3",
+        measured: "RMSE to depth peeling, K = 4, groups completed: Algorithm 3; Algorithm 2",
+        at_most: 1.0,
+        timed: false,
+        more: "zp06.md",
+        of: layers,
+    },
+    Claim {
+        id: "zp06-peeling",
+        from: "[ZP06] 6.3",
+        says: "Algorithm 3 has 5 frames a second where depth peeling of at most 8 layers has less than 2",
+        measured: "ms, at most 0.4 times: Algorithm 3; peeling of 8 layers",
+        at_most: 0.4,
+        timed: true,
+        more: "zp06.md",
+        of: peeled,
+    },
+];
+
+const RELAXED: f32 = 0.4;
+
+fn single_pass(depth: DepthTest) -> Method {
+    single_pass::Settings { splats: ewa::Settings::default(), depth }.into()
+}
+
+fn two_passes() -> Method {
+    ewa::Settings::default().into()
+}
+
+fn voronoi(case: Case, exec: &Exec) -> Result<Measured> {
+    let subject = Subject::new(case, exec)?;
+    let truth = subject.draw(two_passes(), None)?;
+    let grouping = groups(RELAXED, None, Extension::None);
+    let drawn = [DepthTest::Voronoi(BinCount::Epsilon), DepthTest::Plain]
+        .map(|depth| subject.draw(single_pass(depth), Some(&grouping)));
+    let [first, second] = drawn;
+    let (first, second) = (first?, second?);
+    let error = |frame| subject.error(frame, &truth, "rmse");
+    Ok(Measured {
+        numbers: [error(&first)?, error(&second)?],
+        pictures: colors(&[&first, &second])?,
+    })
+}
+
+fn relaxed(case: Case, exec: &Exec) -> Result<Measured> {
+    let subject = Subject::new(case, exec)?;
+    let truth = subject.draw(two_passes(), None)?;
+    let grouping = groups(RELAXED, None, Extension::None);
+    let drawn = subject.draw(single_pass(DepthTest::default()), Some(&grouping))?;
+    let numbers = [subject.error(&drawn, &truth, "flip")?, 1.0];
+    Ok(Measured { numbers, pictures: colors(&[&drawn, &truth])? })
+}
+
+fn single(case: Case, exec: &Exec) -> Result<Measured> {
+    let subject = Subject::new(case, exec)?;
+    let grouping = groups(RELAXED, None, Extension::None);
+    let one = subject.session(single_pass(DepthTest::default()), Some(&grouping))?;
+    let numbers = subject.times([one, subject.session(two_passes(), None)?])?;
+    Ok(Measured { numbers, pictures: Vec::new() })
+}
+
+/// Algorithms 3 and 2 and peeling of so many layers, each of both sides.
+fn transparencies(count: u32) -> [Method; 3] {
+    let splats = ewa::Settings::BOTH_SIDES;
+    let layers = transparent::Settings { splats, ..transparent::Settings::default() };
+    [
+        transparent_hq::Settings { layers, ..transparent_hq::Settings::default() }.into(),
+        layers.into(),
+        peeling::Settings { splats, layers: count }.into(),
+    ]
+}
+
+fn layers(case: Case, exec: &Exec) -> Result<Measured> {
+    let subject = Subject::new(case, exec)?.transparent()?;
+    let [nearest, all, peeling] = transparencies(64);
+    let truth = subject.draw(peeling, None)?;
+    let grouping = groups(1.0, Some(4), Extension::Add { most: 0.5 });
+    let (first, second) =
+        (subject.draw(nearest, Some(&grouping))?, subject.draw(all, Some(&grouping))?);
+    let error = |frame| subject.error(frame, &truth, "rmse");
+    Ok(Measured {
+        numbers: [error(&first)?, error(&second)?],
+        pictures: colors(&[&first, &second, &truth])?,
+    })
+}
+
+fn peeled(case: Case, exec: &Exec) -> Result<Measured> {
+    let subject = Subject::new(case, exec)?.transparent()?;
+    let [nearest, _, peeling] = transparencies(8);
+    let grouping = groups(1.0, Some(4), Extension::Add { most: 0.5 });
+    let first = subject.session(nearest, Some(&grouping))?;
+    let numbers = subject.times([first, subject.session(peeling, None)?])?;
+    Ok(Measured { numbers, pictures: Vec::new() })
+}

@@ -1,0 +1,82 @@
+//! The page of the claims and its pictures.
+
+use super::{CASES, Verdict};
+use crate::frame::Plane;
+use crate::study::atlas::{beside, short};
+use std::fmt::Write;
+
+/// The folder of pictures beside the page.
+pub const PICTURES: &str = "claims";
+
+const INTRODUCTION: &str = "\
+# What the five papers claim, measured
+
+Every claim is a comparison of two numbers: the first is to be at most the second, or at most so many times the second where the
+row says so. Each is measured on nine cases: a sphere, a torus and a cluster of spheres, of 10,000 surfels unless the
+claim is about more, in pictures of 120, 180 and 300 rows. *Holds* tells in how many of the nine. The numbers are the
+pair of each shape at 180 rows. A claim that has no number in its paper is read as weakly as its words allow: better is
+less error. Where the words are *similar*, *slightly* or *hardly*, the limit is of this page, and stands in the row.
+
+This page is made by `splatref study claims -o docs`. Errors are the same on every machine, and a test holds the page
+against them. Rows with *ms* are times of the machine that made the page, on a CPU with two threads; the papers' were
+of GPUs. The pages in the last column have scans, more settings and the papers' own numbers.
+
+";
+
+/// What the page is made of.
+#[derive(Clone, Debug)]
+pub struct Files {
+    /// The page, Markdown.
+    pub text: String,
+    /// Pictures side by side, linear RGB, by the names of claims: those of the two numbers and, where there is one,
+    /// the true one.
+    pub pictures: Vec<(&'static str, Plane<[f32; 3]>)>,
+}
+
+/// The page of some claims.
+#[must_use]
+pub fn page(verdicts: &[Verdict]) -> Files {
+    let mut text = INTRODUCTION.to_owned();
+    text.push_str("| claim | from | measured | sphere | torus | cluster | holds | more |\n");
+    text.push_str("|---|---|---|---|---|---|---|---|\n");
+    let mut pictures = Vec::new();
+    for verdict in verdicts {
+        let super::Claim { id, from, says, measured, more, .. } = verdict.of;
+        let seen = beside(&verdict.found[MIDDLE].pictures);
+        let name = match seen {
+            Some(_) => format!("[{says}]({PICTURES}/{id}.png)"),
+            None => (*says).to_owned(),
+        };
+        let pairs = (0..3).map(|shape| {
+            let [first, second] = verdict.found[MIDDLE + 3 * shape].numbers;
+            format!("{}; {}", short(first), short(second))
+        });
+        let pairs = pairs.collect::<Vec<_>>().join(" | ");
+        let _ = writeln!(
+            text,
+            "| {name} | {from} | {measured} | {pairs} | {} | [{more}]({more}) |",
+            outcome(verdict)
+        );
+        pictures.extend(seen.map(|seen| (*id, seen)));
+    }
+    Files { text, pictures }
+}
+
+/// The case of a shape whose numbers are shown.
+const MIDDLE: usize = 1;
+
+/// In words.
+#[must_use]
+pub fn outcome(verdict: &Verdict) -> String {
+    match verdict.holds() {
+        0 => "no".into(),
+        all if all == CASES.len() => "yes".into(),
+        some => format!("{some} of {}", CASES.len()),
+    }
+}
+
+/// A page without rows of times.
+#[cfg(test)]
+pub(super) fn lasting(page: &str) -> String {
+    page.lines().filter(|line| !line.contains("| ms")).collect::<Vec<_>>().join("\n")
+}
