@@ -3,11 +3,8 @@
 use super::study::loss;
 use super::tried::{Loaded, Tried, truth_in_words};
 use super::{Ended, Ending, progress, report, say};
-use splatref::Result;
-use splatref::study::plan::{Budget, Known as Row};
+use splatref::study::plan::{Budget, Known as Row, choose};
 use splatref::study::report::chart::Loss;
-use splatref::study::run::measure::picture_errors;
-use splatref::study::run::{Bench, Record, time};
 use splatref::study::sweep::Candidate;
 use splatref::verify::metrics::METRICS;
 use std::time::Instant;
@@ -37,8 +34,6 @@ pub(super) struct Args {
     metric: Loss,
 }
 
-/// Candidates that took so many times as long as the fastest within the budget are not timed again.
-const HOPELESS: f64 = 2.0;
 /// How many that were not chosen are named.
 const RUNNERS_UP: usize = 3;
 
@@ -56,16 +51,7 @@ pub(super) fn run(args: &Args) -> Ended {
         args.tried.load(&scene, &exec, &steps)?;
     let truth = known.still(&camera, &exec, &show)?;
 
-    let mut rows = Vec::new();
-    for (i, candidate) in candidates.iter().enumerate() {
-        steps.show("measuring", i as u64, candidates.len() as u64);
-        let (errors, time) = picture_errors(&mut bench, candidate, &truth, &exec)?;
-        let metric = METRICS.iter().find(|metric| metric.name == args.metric.figure);
-        let value = metric.and_then(|metric| (metric.of)(&errors));
-        let loss = value.map_or(f64::NAN, args.metric.of);
-        rows.push(Row { time, loss });
-    }
-    timed(&mut bench, &candidates, budget, &mut rows, &steps)?;
+    let rows = choose(&mut bench, (&candidates, &truth), (budget, &args.metric), &exec, &show)?;
     drop(steps);
     report::line("scene", format!("{}, {} x {}", scene.name, camera.width, camera.height));
     report::line("truth", truth_in_words(&known, &truth));
@@ -73,40 +59,6 @@ pub(super) fn run(args: &Args) -> Ended {
     let ended = print(args, budget, &candidates, &rows);
     report::time("total", vec![start.elapsed()]);
     ended
-}
-
-/// Times what may be the best, by turns.
-fn timed(
-    bench: &mut Bench<'_>,
-    candidates: &[Candidate],
-    budget: Budget,
-    rows: &mut [Row],
-    steps: &progress::Steps,
-) -> Result<()> {
-    // A first time may be too long by much, never too short by much.
-    let may = |row: &Row| match budget {
-        Budget::Error(_) => budget.allows(row),
-        Budget::Time(most) => row.time <= HOPELESS * most,
-    };
-    let fastest = rows.iter().filter(|row| may(row)).map(|row| row.time);
-    let fastest =
-        fastest.fold(f64::INFINITY, |least, time| if time < least { time } else { least });
-    let far = |row: &Row| matches!(budget, Budget::Error(_)) && row.time > HOPELESS * fastest;
-    let left: Vec<usize> = (0..rows.len()).filter(|&i| may(&rows[i]) && !far(&rows[i])).collect();
-    let mut records: Vec<Record> = left.iter().map(|&i| Record::of(&candidates[i])).collect();
-    for round in 0..time::ROUNDS {
-        for (done, i) in time::order(round, left.len()).into_iter().enumerate() {
-            let count = left.len() as u64;
-            steps.show("timing", round * count + done as u64, time::ROUNDS * count);
-            time::turn(bench, &candidates[left[i]], round, &mut records[i].times)?;
-        }
-    }
-    for (&i, record) in left.iter().zip(&records) {
-        if let Some([_, median, _]) = record.quartiles() {
-            rows[i].time = median;
-        }
-    }
-    Ok(())
 }
 
 /// What is chosen, how to draw it, and what comes next.
@@ -186,13 +138,13 @@ fn quoted(word: &str) -> String {
 }
 
 /// A number of at least 0.
-fn error(text: &str) -> std::result::Result<f64, String> {
+fn error(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|v: &f64| *v >= 0.0 && v.is_finite());
     number.ok_or_else(|| "give a number of at least 0, such as 0.02".into())
 }
 
 /// `20ms` or `0.5s`.
-fn milliseconds(text: &str) -> std::result::Result<f64, String> {
+fn milliseconds(text: &str) -> Result<f64, String> {
     let number = text.strip_suffix("ms").map(|digits| (digits, 1.0));
     let number = number.or_else(|| text.strip_suffix('s').map(|digits| (digits, 1000.0)));
     let time = number.and_then(|(digits, scale)| Some(digits.parse::<f64>().ok()? * scale));
@@ -201,7 +153,7 @@ fn milliseconds(text: &str) -> std::result::Result<f64, String> {
 }
 
 /// A loss of one picture.
-fn still(name: &str) -> std::result::Result<Loss, String> {
+fn still(name: &str) -> Result<Loss, String> {
     match loss(name) {
         Ok(loss) if !METRICS.iter().any(|metric| metric.name == name) => {
             Err(format!("{} is of a sequence; give an error of one picture", loss.figure))
