@@ -13,7 +13,6 @@ use common::sphere::{STANDARD, camera, cell, sphere};
 use splatref::frame::{Exec, Frame};
 use splatref::io::exr::{self, Compression};
 use splatref::io::replace::Pending;
-use splatref::io::scene_file::Number;
 use splatref::io::{ply, png, provenance};
 use splatref::method::{Method, Session};
 use splatref::scene::{Scene, Surfels};
@@ -66,7 +65,7 @@ fn picture(
     let (large, small) = (folder.join("picture.exr"), folder.join("picture.png"));
     let exr = measured(|| exr::pending(&large, frame, "", compression, exec)?.put())?;
     let all = measured(|| {
-        let text = || provenance::text(scene, None, &camera(), method, Number::F32);
+        let text = || provenance::text(scene, None, &camera(), method, Default::default());
         let (small, large) = exec.join(
             || png::pending_frame(&small, frame),
             || exr::pending(&large, frame, &text(), compression, exec),

@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use splatref::io::provenance;
-use splatref::io::scene_file::{GroupChoice, MethodChoice, Number, OutputSettings, SceneFile};
+use splatref::io::scene_file::{GroupChoice, MethodChoice, OutputSettings, SceneFile};
 use splatref::method::Method;
 use splatref::scene::{Camera, Scene};
 use splatref::setting::{Fields, Refused, Setting, Value};
@@ -313,7 +313,7 @@ fn a_picture_carries_every_setting() {
     let camera = Camera::new(8, 8, shape.default_pose(), shape.default_lens()).unwrap();
     for mut method in Method::all() {
         let _ = method.set("refraction", &Value::Numbers(vec![0.5; 3]));
-        let text = provenance::text(&scene, None, &camera, &method, Number::F32);
+        let text = provenance::text(&scene, None, &camera, &method, OutputSettings::default());
         let text: toml::Table = text.parse().unwrap();
         for row in Setting::of([("", method)]).iter().filter(|row| row.name != "kernel") {
             assert!(text["method"].get(row.name).is_some(), "{}: {}", method.name(), row.name);

@@ -35,6 +35,7 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Ended {
     let file = args.options.scene_file(&args.scene)?;
+    file.output.check_kept("what is explained are the decisions of f32 or f64")?;
     let exec = args.exec.exec()?;
     let ready = draw::ready(&file, &exec)?;
     ready.camera.check_pixel(args.x, args.y)?;

@@ -143,8 +143,8 @@ fn picture_of(
     let (mut session, _) = ready.session(exec, &|_, _, _| ())?;
     session.resume(seen);
     let drawn = file.output.draw(&mut session, camera)?.into_owned();
-    let (groups, number) = (session.groups(), file.output.number);
-    Ok((drawn, provenance::text(&loaded.scene, groups, camera, method, number)))
+    let (groups, output) = (session.groups(), file.output);
+    Ok((drawn, provenance::text(&loaded.scene, groups, camera, method, output)))
 }
 
 /// The first planes that differ, and how to look into the first pixel.

@@ -35,6 +35,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let exec = args.exec.exec()?;
     let method = file.method.method()?;
     check(args, method.splats().is_some(), file.output.number)?;
+    file.output.check_kept("records are f32")?;
     output::check(&args.output, &args.scene, &file)?;
     let ready = draw::ready(&file, &exec)?;
     let Ready { loaded, camera, method, .. } = &ready;

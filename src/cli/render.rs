@@ -89,7 +89,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let writing = Instant::now();
     make_folder(args)?;
     progress::during("writing", || -> Result<()> {
-        let text = || provenance::text(scene, groups.as_ref(), camera, method, file.output.number);
+        let text = || provenance::text(scene, groups.as_ref(), camera, method, file.output);
         write(&picture, &drawing.frame, text, file.output, &exec)
     })?;
     let (writing, tally, seen) = (writing.elapsed(), drawing.tally, drawing.seen.clone());

@@ -264,7 +264,13 @@ pub(super) fn groups(groups: Option<&Groups>, made: Option<&Made>) {
 pub(super) fn picture(camera: &Camera, output: OutputSettings) {
     let number = output.number.word();
     let stages = if output.stages { ", with the planes of every stage" } else { "" };
-    line("picture", format!("{} x {} pixels, {number}{stages}", camera.width, camera.height));
+    let formats = output.formats;
+    let stored = match formats.keep_all() {
+        true => String::new(),
+        false => format!(", stored as {}, depths {}", formats.buffers.word(), formats.depth.word()),
+    };
+    let Camera { width, height, .. } = *camera;
+    line("picture", format!("{width} x {height} pixels, {number}{stored}{stages}"));
 }
 
 /// What a method selected of the surfels that a view leaves, if it did.

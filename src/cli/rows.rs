@@ -86,7 +86,7 @@ impl Rows for OfGroupsAlone {
 
 impl Rows for OfNumber {
     fn rows() -> Vec<Setting> {
-        OutputSettings::rows().into_iter().filter(|row| row.name == "number").collect()
+        OutputSettings::rows().into_iter().filter(|row| is_of_picture(row.name)).collect()
     }
 
     fn heading(_: &Setting) -> String {
@@ -100,7 +100,7 @@ impl Rows for OfNumber {
 
 impl Rows for OfFiles {
     fn rows() -> Vec<Setting> {
-        OutputSettings::rows().into_iter().filter(|row| row.name != "number").collect()
+        OutputSettings::rows().into_iter().filter(|row| !is_of_picture(row.name)).collect()
     }
 
     fn heading(row: &Setting) -> String {
@@ -110,6 +110,11 @@ impl Rows for OfFiles {
     fn read(name: &str, text: &str) -> Option<Result<Value, String>> {
         OfNumber::read(name, text)
     }
+}
+
+/// Whether a setting of the output may change numbers of a picture.
+fn is_of_picture(name: &str) -> bool {
+    ["number", "storage", "depth_storage"].contains(&name)
 }
 
 /// The option of a row.

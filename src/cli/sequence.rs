@@ -84,7 +84,7 @@ fn one(
     let (scene, method, groups) = (session.scene(), *session.method(), session.groups().cloned());
     let drawing = output.draw(session, camera)?;
     drawing.timings.iter().for_each(|(stage, time)| times.add(stage, *time));
-    let text = || provenance::text(scene, groups.as_ref(), camera, &method, output.number);
+    let text = || provenance::text(scene, groups.as_ref(), camera, &method, output);
     times.of("writing", || write(path, &drawing.frame, text, output, exec))?;
     Ok(drawing.seen.clone())
 }

@@ -183,6 +183,28 @@ impl<R> Frame<R> {
         Ok(self)
     }
 
+    /// Puts planes in the place of those of their names, or after all; whether anything is other than before.
+    pub(crate) fn put(&mut self, planes: Self) -> bool
+    where
+        R: PartialEq,
+    {
+        let mut changed = false;
+        for plane in planes.planes {
+            match self.planes.iter_mut().find(|own| own.name == plane.name) {
+                Some(own) if *own == plane => {}
+                Some(own) => {
+                    *own = plane;
+                    changed = true;
+                }
+                None => {
+                    self.planes.push(plane);
+                    changed = true;
+                }
+            }
+        }
+        changed
+    }
+
     /// The samples of the plane called `name`.
     #[must_use]
     pub fn plane(&self, name: &str) -> Option<&Samples<R>> {

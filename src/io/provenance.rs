@@ -1,7 +1,8 @@
 //! The text that a picture carries: what it is a picture of, and by which settings.
 
-use crate::io::scene_file::Number;
+use crate::io::scene_file::OutputSettings;
 use crate::method::Method;
+use crate::method::stored::Formats;
 use crate::scene::{Camera, Counts, Groups, Projection, Scene};
 use crate::setting::{Fields, Word};
 
@@ -18,7 +19,7 @@ pub fn text(
     groups: Option<&Groups>,
     camera: &Camera,
     method: &Method,
-    number: Number,
+    output: OutputSettings,
 ) -> String {
     let groups = groups.map_or(String::new(), |groups| {
         format!("[groups]\ncount = {}\nsha256 = \"{}\"\n\n", groups.len(), groups.sha256())
@@ -33,18 +34,28 @@ pub fn text(
         format!("triangles = {triangles}\nribbons = {ribbons}\ntubes = {tubes}\n")
     };
     format!(
-        "splatref = \"{version}\"\nnumber = \"{number}\"\n\n\
+        "splatref = \"{version}\"\nnumber = \"{number}\"\n{formats}\n\
          [scene]\nname = {name}\nsurfels = {surfels}\n{primitives}sha256 = \"{hash}\"\n\n\
          [method]\nname = \"{method}\"\n{settings}\n{groups}\
          [camera]\n{camera}",
         version = env!("CARGO_PKG_VERSION"),
-        number = number.word(),
+        number = output.number.word(),
+        formats = formats(output.formats),
         name = toml::Value::String(scene.name.clone()),
         surfels = scene.surfels.len(),
         hash = scene.sha256(),
         method = method.name(),
         camera = self::camera(camera),
     )
+}
+
+/// Formats that are not those of `f32`, as TOML.
+fn formats(formats: Formats) -> String {
+    if formats.keep_all() {
+        return String::new();
+    }
+    let Formats { buffers, depth } = formats;
+    format!("storage = \"{}\"\ndepth_storage = \"{}\"\n", buffers.word(), depth.word())
 }
 
 /// All numbers of a camera as TOML, its size included.
@@ -68,6 +79,8 @@ pub fn camera(camera: &Camera) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::io::scene_file::Number;
+    use crate::method::stored::Buffers;
     use crate::scene::{Lens, Pose};
     use crate::setting::Value;
     use crate::source::Shape;
@@ -85,10 +98,14 @@ mod tests {
         let camera = Camera::new(61, 47, pose, Lens::FieldOfView(33.3)).unwrap();
         let settings = SplatSettings::default();
         let method = Method::Ewa(settings);
-        let text = text(&scene, None, &camera, &method, Number::F64);
+        let formats = Formats { buffers: Buffers::F16, ..Formats::default() };
+        let output = OutputSettings { number: Number::F64, formats, ..OutputSettings::default() };
+        let text = text(&scene, None, &camera, &method, output);
 
         let table: toml::Table = text.parse().unwrap();
         assert_eq!(table["number"].as_str(), Some("f64"));
+        assert_eq!(table["storage"].as_str(), Some("f16"));
+        assert_eq!(table["depth_storage"].as_str(), Some("f32"));
         assert_eq!(table["scene"]["name"].as_str(), Some(name.as_str()));
         assert_eq!(table["scene"]["sha256"].as_str(), Some(scene.sha256().as_str()));
         let epsilon = Value::Text(table["method"]["epsilon"].as_str().unwrap().into());

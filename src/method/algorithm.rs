@@ -1,6 +1,7 @@
 //! What a method is: the interface that a row of the table of methods implements.
 
 use super::given::Given;
+use super::stored::Buffers;
 use super::{Picture, Stage};
 use crate::error::Result;
 use crate::frame::{Exec, Frame, Grid, NamedPlane, Pool, Rect};
@@ -26,9 +27,17 @@ pub struct Job<'a> {
     pub camera: &'a Camera,
     /// Threads and tiles; these cannot change one bit.
     pub exec: &'a Exec,
+    /// How the sums that fragments are blended into are stored.
+    pub(super) buffers: Buffers,
 }
 
-impl Job<'_> {
+impl<'a> Job<'a> {
+    /// A picture whose sums are stored as they are.
+    #[must_use]
+    pub fn new(scene: &'a Scene, index: &'a Index, camera: &'a Camera, exec: &'a Exec) -> Self {
+        Self { scene, index, camera, exec, buffers: Buffers::F32 }
+    }
+
     /// The tiles of the picture.
     pub(super) fn grid(&self) -> Grid {
         self.exec.grid(self.camera.width, self.camera.height)

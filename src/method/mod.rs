@@ -73,6 +73,7 @@ mod resolved;
 pub mod session;
 pub mod single_pass;
 pub mod stage;
+pub mod stored;
 mod table;
 pub mod template;
 #[cfg(test)]

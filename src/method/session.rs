@@ -7,10 +7,12 @@ use names::Names;
 pub use needs::Making;
 
 use super::algorithm::Job;
+use super::stage::When;
+use super::stored::{DepthRange, Formats};
 use super::table::Memory;
 use super::{Method, Picture};
 use crate::error::{Error, Result};
-use crate::frame::{Exec, Frame, Pool};
+use crate::frame::{Exec, Frame, NamedPlane, Pool};
 use crate::index::Index;
 use crate::index::grouping::{Extended, Grouping, GroupingReport};
 use crate::index::order::BackToFront;
@@ -170,7 +172,7 @@ impl<'a> Session<'a> {
             self.pool.recycle(last.frame);
         }
         let Self { scene, exec, index, .. } = self;
-        let job = Job { scene, index, camera, exec };
+        let job = Job::new(scene, index, camera, exec);
         let picture = self.method.draw(&job, &mut self.memory, &mut self.pool)?;
         self.pool.clear();
         self.index.seen.clone_from(&picture.seen);
@@ -193,6 +195,48 @@ impl<'a> Session<'a> {
         if let Some(names) = self.names() {
             names.name(&mut picture.frame);
         }
+        Ok(picture)
+    }
+
+    /// The picture by the definition in `f32`, as it becomes where passes leave their numbers in buffers of
+    /// these formats, see [`mod@super::stored`]; with `stages`, the planes of every stage, too. What a method
+    /// carries to the next frame is what this frame saw in `f32`.
+    ///
+    /// # Errors
+    /// As [`Session::define`].
+    pub fn stored(
+        &mut self,
+        camera: &Camera,
+        formats: Formats,
+        stages: bool,
+    ) -> Result<Picture<f32>> {
+        if matches!(self.method, Method::Peeling(_)) {
+            let what =
+                "peeling has no buffers of other formats: it is the truth of the other methods";
+            return Err(Error::Invalid(format!("{what}; give storage = \"f32\"")));
+        }
+        let mut picture = self.define::<f32>(camera, true)?;
+        let job = Job { buffers: formats.buffers, ..self.job(camera)? };
+        let range = DepthRange::new(self.scene, camera);
+        for stage in self.method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
+            // A level is made from the last, so that each is as it is stored after as many runs as there are.
+            loop {
+                let mut left = self.run(&job, stage.name, &picture.frame)?;
+                formats.store(stage, &mut left, &range);
+                if !picture.frame.put(left) {
+                    break;
+                }
+            }
+        }
+        if !stages {
+            let is_shown = |plane: &NamedPlane<f32>| {
+                let rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
+                let row = rows.into_iter().find(|row| row.is_called(&plane.name));
+                row.is_none_or(|row| matches!(row.when, When::Always | When::Lit | When::Tubes))
+            };
+            picture.frame.planes.retain(is_shown);
+        }
+        self.index.seen.clone_from(&picture.seen);
         Ok(picture)
     }
 
@@ -221,11 +265,15 @@ impl<'a> Session<'a> {
         stage: &str,
         from: &Frame<R>,
     ) -> Result<Frame<R>> {
-        let job = self.job(camera)?;
-        let Some(names) = self.names() else { return self.method.stage(&job, stage, from) };
+        self.run(&self.job(camera)?, stage, from)
+    }
+
+    /// A stage of a job on somebody's planes.
+    fn run<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
+        let Some(names) = self.names() else { return self.method.stage(job, stage, from) };
         let mut numbered = from.clone();
         names.number(&mut numbered)?;
-        let mut left = self.method.stage(&job, stage, &numbered)?;
+        let mut left = self.method.stage(job, stage, &numbered)?;
         names.name(&mut left);
         Ok(left)
     }
@@ -341,7 +389,8 @@ impl<'a> Session<'a> {
 
     fn job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {
         camera.check()?;
-        Ok(Job { scene: self.scene, index: &self.index, camera, exec: self.exec })
+        let Self { scene, index, exec, .. } = self;
+        Ok(Job::new(scene, index, camera, exec))
     }
 }
 

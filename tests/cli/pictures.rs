@@ -133,3 +133,27 @@ fn another_method_forgets_what_the_file_says_of_its_own() {
     let image = exr::read(&at.path().join("out/s.exr")).unwrap();
     assert!(floats(&image, "A").iter().all(|&a| a == 1.0), "the sky is behind every method");
 }
+
+#[test]
+fn pictures_are_stored_in_few_digits() {
+    let at = TempDir::new().unwrap();
+    succeeds(at.path(), &small(&["-o", "whole.exr", "--stages"]));
+    let how = ["-o", "half.exr", "--stages", "--storage", "f16", "--depth-storage", "unorm16"];
+    let said = succeeds(at.path(), &small(&how));
+    assert!(said.contains("f32, stored as f16, depths unorm16, with the planes"), "{said}");
+    let [whole, half] =
+        ["whole.exr", "half.exr"].map(|name| exr::read(&at.path().join(name)).unwrap());
+    let [whole, half] = [&whole, &half].map(|image| floats(image, "attributes.weight").to_vec());
+    assert_ne!(whole, half);
+    assert!(half.iter().all(|w| (w * 16_777_216.0).fract() == 0.0), "half floats");
+    for command in ["explain", "project"] {
+        let more = if command == "explain" { &["3", "4"][..] } else { &["-o", "a.bin"] };
+        let all = [&[command, "sphere"][..], more, &["--count", "100", "--storage", "f16"]];
+        assert!(fails(at.path(), &all.concat(), 2).contains("give --storage f32"));
+    }
+    let both = ["-o", "a.exr", "--storage", "f16", "--number", "f64"];
+    assert!(fails(at.path(), &small(&both), 1).contains("storage formats are those of f32"));
+    let peeling = ["-o", "a.exr", "--storage", "f16", "--method", "peeling"];
+    assert!(fails(at.path(), &small(&peeling), 1).contains("peeling has no buffers"));
+    assert_eq!(names(at.path()), ["half.exr", "half.png", "whole.exr", "whole.png"]);
+}

@@ -65,6 +65,7 @@ pub(super) fn run(args: &Args) -> Ended {
 
 fn judge(args: &Args) -> Ended {
     let file = args.options.scene_file(&args.scene)?;
+    file.output.check_kept("how a client stores planes is said beside them")?;
     let exec = args.exec.exec()?;
     let described = Description::open(&args.client)?;
     check(args, &file, &described)?;

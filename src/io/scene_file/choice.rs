@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::io::exr::Compression;
 use crate::method::Method;
+use crate::method::stored::Formats;
 use crate::setting::{Field, Fields, Refused, Setting, Slot, Value, Visit, Words};
 
 /// Settings that were chosen, in the order in which they are set: a later value replaces an
@@ -165,6 +166,8 @@ impl Words for Number {
 pub struct OutputSettings {
     /// The arithmetic.
     pub number: Number,
+    /// How passes store what they leave.
+    pub formats: Formats,
     /// Whether the planes of every stage are kept.
     pub stages: bool,
     /// How the blocks of the EXR are compressed.
@@ -174,6 +177,10 @@ pub struct OutputSettings {
 impl Fields for OutputSettings {
     fn fields(&mut self, each: &mut Visit<'_>) {
         each(Field::new("number", "the arithmetic", Slot::Word(&mut self.number)));
+        let storage = "how passes store colours, weights and normals, rounded after every blending";
+        each(Field::new("storage", storage, Slot::Word(&mut self.formats.buffers)));
+        let depth = "how passes store depths";
+        each(Field::new("depth_storage", depth, Slot::Word(&mut self.formats.depth)));
         let stages = "whether the planes of every stage are kept";
         each(Field::new("stages", stages, Slot::Switch(&mut self.stages)));
         let compression = "how the EXR is compressed, which loses no bit: fast, as most programs do, \

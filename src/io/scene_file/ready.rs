@@ -163,15 +163,35 @@ impl Ready {
 }
 
 impl OutputSettings {
+    /// Whether passes store all as it is, for what is said of no other pictures.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with a reason.
+    pub fn check_kept(&self, why: &str) -> Result<()> {
+        if self.formats.keep_all() {
+            return Ok(());
+        }
+        Err(Error::Usage(format!("{why}; give --storage f32 and --depth-storage f32")))
+    }
+
     /// A picture in the number type and with the planes that are asked for, as files hold it.
     ///
     /// # Errors
-    /// As [`Session::render`] and [`Session::define`].
+    /// As [`Session::render`], [`Session::define`] and [`Session::stored`], and [`Error::Invalid`] if other formats
+    /// are asked for in f64.
     pub fn draw<'s>(
         self,
         session: &'s mut Session<'_>,
         camera: &Camera,
     ) -> Result<Cow<'s, Picture<f32>>> {
+        if !self.formats.keep_all() {
+            if self.number == Number::F64 {
+                let what =
+                    "storage formats are those of f32; give number = \"f32\", or f32 storage";
+                return Err(Error::Invalid(what.into()));
+            }
+            return Ok(Cow::Owned(session.stored(camera, self.formats, self.stages)?));
+        }
         Ok(match (self.number, self.stages) {
             (Number::F32, false) => Cow::Borrowed(session.render(camera)?),
             (Number::F32, true) => Cow::Owned(session.define::<f32>(camera, true)?),

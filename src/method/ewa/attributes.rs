@@ -7,6 +7,7 @@ use crate::frame::stencil::{Outcome, Stencil};
 use crate::method::algorithm::Job;
 use crate::method::fragment::{TileSplats, facing};
 use crate::method::prepare::Prepared;
+use crate::method::stored::Buffers;
 use crate::method::tiled::Tiled;
 use crate::number::{Exact, Real};
 use crate::scene::Surfels;
@@ -35,16 +36,17 @@ pub(in crate::method) fn attributes<R: Exact>(
 ) -> Tiled<Sums<R>> {
     let surfels = &job.scene.surfels;
     Tiled::new(job, |tile, rect| {
-        sums(&TileSplats::new(splats, tile, rect), surfels, visible.tile(tile), |_, _| true)
+        let splats = TileSplats::new(splats, tile, rect);
+        sums(&splats, (surfels, job.buffers), visible.tile(tile), |_, _| true)
     })
 }
 
 /// The sums over the fragments that are inside, for which `candidate` holds (as in
 /// [`super::visibility::foremost`]) and that pass the epsilon-z test against the nearest, in
-/// ascending surfel index.
+/// ascending surfel index, each stored as its buffer does.
 pub(in crate::method) fn sums<R: Exact>(
     tile: &TileSplats<'_, R>,
-    surfels: &Surfels,
+    (surfels, buffers): (&Surfels, Buffers),
     nearest: &[Foremost<R>],
     candidate: impl Fn(usize, R) -> bool,
 ) -> Vec<Sums<R>> {
@@ -53,7 +55,9 @@ pub(in crate::method) fn sums<R: Exact>(
     tile.each_inside(|splat, pixel, q, w| {
         let limit = decide::limit(nearest[pixel].depth, epsilon);
         if candidate(pixel, w) && decide::visible(shared.depth(w), limit) {
-            pixels[pixel].add(surfels, (splat.surfel, splat.back), splat.footprint.weight(q));
+            let sums = &mut pixels[pixel];
+            sums.add(surfels, (splat.surfel, splat.back), splat.footprint.weight(q));
+            *sums = sums.stored(buffers);
         }
     });
     pixels
@@ -68,6 +72,20 @@ impl<R: Real> Sums<R> {
         opacity: R::ZERO,
         count: 0,
     };
+
+    /// The sums as buffers hold them.
+    fn stored(self, buffers: Buffers) -> Self
+    where
+        R: Exact,
+    {
+        Self {
+            weight: buffers.sum(self.weight),
+            normal: buffers.vector(self.normal),
+            color: buffers.color(self.color),
+            opacity: buffers.sum(self.opacity),
+            ..self
+        }
+    }
 
     /// Adds the attributes of a fragment of a surfel, of which the back is seen or not.
     pub(in crate::method) fn add(

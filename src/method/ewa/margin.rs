@@ -141,7 +141,8 @@ mod tests {
             let scene = Scene::unlit("shape", shape.surfels(900, 5).unwrap());
             let camera = Camera::new(57, 43, shape.default_pose(), shape.default_lens()).unwrap();
             let settings = Settings { kernel, ..Settings::default() };
-            let job = Job { scene: &scene, index: &Index::default(), camera: &camera, exec: &exec };
+            let index = Index::default();
+            let job = Job::new(&scene, &index, &camera, &exec);
             let single = visibility(&job, &Prepared::splats(&job, &settings));
             let double = visibility(&job, &Prepared::splats(&job, &settings));
             test(&job, &settings, &single, &double);

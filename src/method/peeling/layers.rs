@@ -11,6 +11,7 @@ use crate::method::ewa::normalization::resolve;
 use crate::method::ewa::visibility::{Foremost, foremost};
 use crate::method::fragment::TileSplats;
 use crate::method::prepare::Prepared;
+use crate::method::stored::Buffers;
 use crate::method::tiled::pixels;
 use crate::number::{Exact, Vector3};
 use crate::scene::Surfels;
@@ -113,7 +114,7 @@ impl<'a, R: Exact> Peeling<'a, R> {
         if nearest.iter().all(|nearest| nearest.id == NO_ID) {
             return None;
         }
-        let sums = sums(splats, self.surfels, &nearest, beyond);
+        let sums = sums(splats, (self.surfels, Buffers::F32), &nearest, beyond);
         let found = pixels(splats.rect).zip(nearest.iter().zip(&sums));
         Some(found.map(|(at, (nearest, sums))| self.resolve(nearest, sums, at)).collect())
     }

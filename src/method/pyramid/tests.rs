@@ -94,7 +94,8 @@ fn a_wrong_level_spoils_the_next_alone() {
 /// The explanation of every pixel is the picture's.
 fn assert_explained<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) {
     let exec = Exec::sequential();
-    let job = Job { scene, index: &Index::default(), camera, exec: &exec };
+    let index = Index::default();
+    let job = Job::new(scene, &index, camera, &exec);
     let (frame, has) = (settings.define::<R>(&job, true).unwrap().frame, Has::of(scene));
     let given = Given::new(&frame, &job).unwrap();
     let samples = projection::planes::read(&given, has).unwrap();
@@ -143,7 +144,8 @@ fn explanations_agree_with_the_picture() {
 fn a_pixel_of_one_surfel_in_words() {
     let (scene, camera) = (scene(surfels(300, 0.1, false, 9)), cameras()[4]);
     let (exec, settings) = (Exec::sequential(), Settings::default());
-    let job = Job { scene: &scene, index: &Index::default(), camera: &camera, exec: &exec };
+    let index = Index::default();
+    let job = Job::new(&scene, &index, &camera, &exec);
     let text = explain::<f32>(&job, &settings, (16, 8)).unwrap().to_string();
     for part in ["pixel (16, 8)", "projection:", "pull:", "push:", "level 1, cell (8, 4)", "ulp"] {
         assert!(text.contains(part), "{part}: {text}");

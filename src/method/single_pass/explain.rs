@@ -157,7 +157,7 @@ mod tests {
         let lens = Lens::FieldOfView(40.0);
         let camera = Camera::new(19, 17, Shape::Sphere.default_pose(), lens).unwrap();
         let exec = Exec::new(1, 8).unwrap();
-        let job = Job { scene: &scene, index: &index, camera: &camera, exec: &exec };
+        let job = Job::new(&scene, &index, &camera, &exec);
         for depth in [DepthTest::Plain, DepthTest::Voronoi(BinCount::Count(40))] {
             let splats = SplatSettings { epsilon: Epsilon::World(0.0625), ..Default::default() };
             let settings = Settings { splats, depth };

@@ -59,7 +59,8 @@ fn a_wrong_level_spoils_the_next_alone() {
 /// The explanation of every pixel is the picture's.
 fn assert_explained<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) {
     let exec = Exec::sequential();
-    let job = Job { scene, index: &Index::default(), camera, exec: &exec };
+    let index = Index::default();
+    let job = Job::new(scene, &index, camera, &exec);
     let (frame, has) = (settings.define::<R>(&job, true).unwrap().frame, Has::of(scene));
     let given = Given::new(&frame, &job).unwrap();
     let samples = projection::planes::read(&given, has).unwrap();

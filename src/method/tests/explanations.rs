@@ -42,7 +42,7 @@ impl Example {
         mut test: impl FnMut(&Job<'_>, &Frame<f64>, (u32, u32)),
     ) {
         let Self { scene, index, camera, exec } = self;
-        let job = Job { scene, index, camera, exec };
+        let job = Job::new(scene, index, camera, exec);
         let frame = settings.define::<f64>(&job, true).unwrap().frame;
         let pixels = (0..camera.height).flat_map(|y| (0..camera.width).map(move |x| (x, y)));
         pixels.for_each(|pixel| test(&job, &frame, pixel));

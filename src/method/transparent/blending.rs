@@ -11,6 +11,7 @@ use crate::index::Item;
 use crate::method::algorithm::Job;
 use crate::method::fragment::{each_in_bounds, each_inside, facing};
 use crate::method::prepare::Prepared;
+use crate::method::stored::Buffers;
 use crate::number::{Exact, Real, Vector3};
 use crate::scene::Scene;
 use crate::shade::phong::Shader;
@@ -84,6 +85,7 @@ pub(in crate::method) struct Blending<R: Exact> {
     prepared: Prepared<R, GroupSplat<R>>,
     pub(super) bins: DepthBins<R>,
     groups: usize,
+    buffers: Buffers,
 }
 
 /// What is known before anything is projected.
@@ -134,7 +136,7 @@ impl<R: Exact> Blending<R> {
             },
             |drawn: &GroupSplat<R>| drawn.splat.bounds,
         );
-        Ok(Self { prepared, bins, groups: groups.len() })
+        Ok(Self { prepared, bins, groups: groups.len(), buffers: job.buffers })
     }
 
     /// What became of the surfels, each counted once in each of its groups.
@@ -179,6 +181,7 @@ impl<R: Exact> Blending<R> {
                 let bin = self.bins.bin(depth);
                 if image[i].is_behind(bin) {
                     image[i].add(drawn, bin, depth);
+                    image[i].blend = self.buffers.blend(image[i].blend);
                 }
             });
         });

@@ -76,7 +76,11 @@ fn start(scene: &SceneFile, name: &'static str) -> Result<Candidate> {
         file.groups = GroupChoice::default();
     }
     // What else is kept or how is no question of this study.
-    file.output = OutputSettings { number: scene.output.number, ..OutputSettings::default() };
+    file.output = OutputSettings {
+        number: scene.output.number,
+        formats: scene.output.formats,
+        ..OutputSettings::default()
+    };
     let options = format!("--method {name}");
     Ok(Candidate { options, method: name, file, needs_opacity: false })
 }

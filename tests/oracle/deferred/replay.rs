@@ -111,7 +111,7 @@ fn deferred_explanations_say_what_the_planes_hold() {
             let objects = scene.objects.as_ref().expect("objects");
             let flagged = seen.as_ref().map_or(0, |seen| seen.surfels(objects.ids()).len() as u64);
             let index = Index { seen, ..Index::default() };
-            let job = Job { scene, index: &index, camera, exec: &exec };
+            let job = Job::new(scene, &index, camera, &exec);
             let pixels = (frame.width * frame.height) as usize;
             let ids = (0..pixels).map(|i| crate::kit::planes::index(&frame, "indices.id", i));
             let selected = ids.filter(|id| *id != NO_ID).count() as u64;

@@ -83,7 +83,7 @@ impl<'a> Drawing<'a> {
 pub(crate) fn explained(case: &Case<ewa::Settings>, pixel: (u32, u32)) -> EwaReplay<f32> {
     let Case { scene, camera, settings, .. } = case;
     let (index, exec) = (Index::default(), Exec::sequential());
-    let job = Job { scene, index: &index, camera, exec: &exec };
+    let job = Job::new(scene, &index, camera, &exec);
     explain(&job, settings, pixel).expect("inside")
 }
 

@@ -237,7 +237,7 @@ fn a_fault_says_which_surfel() {
         found.stages[0].worst.clone().map_or(Fault::Absent { surfel: NO_ID }, |worst| worst.fault)
     };
     let index = Index::default();
-    let job = Job { scene: &scene, index: &index, camera: &camera, exec: &exec };
+    let job = Job::new(&scene, &index, &camera, &exec);
     let mut found = [0; 3];
     for at in (0..23).flat_map(|y| (0..29).map(move |x| (x, y))).step_by(11) {
         let own = *id(&right, "id").at(at.0, at.1);

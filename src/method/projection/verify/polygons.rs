@@ -310,7 +310,7 @@ mod tests {
     ) -> [usize; 3] {
         let exec = Exec::new(1, 16).unwrap();
         let index = Index { groups: None, order: None, boxes: None, seen: None };
-        let job = Job { scene, camera, index: &index, exec: &exec };
+        let job = Job::new(scene, &index, camera, &exec);
         let all = AllPolygons::<P>::new(&job, scene, cull);
         let drawn = project::<R>(scene, camera, cull, Snap::default(), &exec).unwrap().samples;
         let mut counts = [0; 3];

@@ -13,7 +13,8 @@ fn assert_same(scene: Scene, camera: &Camera, settings: &Settings, levels: &mut 
     // With a light, so that normals are there too.
     let scene = Scene { lights: vec![Light::DEFAULT], ..scene };
     let exec = Exec::new(3, 16).unwrap();
-    let job = Job { scene: &scene, index: &Index::default(), camera, exec: &exec };
+    let index = Index::default();
+    let job = Job::new(&scene, &index, camera, &exec);
     let expected = settings.define::<f32>(&job, false).unwrap();
     let found = Algorithm::draw(settings, &job, levels, &mut Pool::default()).unwrap();
     assert_eq!(found.tally, expected.tally);

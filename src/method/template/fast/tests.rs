@@ -32,7 +32,7 @@ fn every_pixel_has_the_bits_of_the_definition() {
                 let mut found = Framebuffer::new(camera.width, camera.height, 9.0, wanted);
                 let (tally, _) = levels.draw(&scene, &camera, &settings, &exec, &mut found);
                 let (index, camera) = (&Index::default(), &camera);
-                let job = Job { scene: &scene, index, camera, exec: &exec };
+                let job = Job::new(&scene, index, camera, &exec);
                 let picture = settings.define::<f32>(&job, true).unwrap();
                 let place = format!("{i}: {count} surfels, {settings:?}");
                 assert_eq!(tally, picture.tally, "{place}");

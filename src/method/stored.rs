@@ -1,0 +1,242 @@
+//! Storage formats: the picture as it becomes where passes leave their numbers in buffers of few digits.
+//!
+//! The GPUs of the five papers blended into 8-bit or half-float buffers and tested depths of 16 or 24 bits:
+//! \[ZP06, 5.2\] counts on "current 8-bit color and alpha resolutions", \[MOC08, 4\] has "all buffers and textures"
+//! in 16-bit floats. [`super::Session::stored`] draws the definition of a method in `f32` and rounds what each
+//! [stage](super::Stage) leaves, before the next one reads it:
+//!
+//! - [`Buffers`] rounds planes of colours, vectors and numbers but depths, indices and counts.
+//! - [`DepthBuffer`] rounds planes of depths, those called `Z` or `.Z` after another name.
+//! - A stage that reads what it leaves, level by level, runs until nothing changes, so that each level is
+//!   rounded before the next is made.
+//! - Where fragments are *blended* into a buffer, the buffer is rounded after every one: the sums of
+//!   attribute splatting ([`mod@super::ewa`], [`mod@super::deferred`], and the layers of
+//!   [`mod@super::peeling`]) after every addition, the layers of [`mod@super::transparent`] and
+//!   [`mod@super::transparent_hq`] after every one that is laid over those before.
+//! - Diagnostics that no buffer holds (`margin`, `voronoi`) are left as they are.
+//!
+//! # Rounding
+//!
+//! In f64, which holds every `f32`:
+//!
+//! ```text
+//!   f16      the nearest binary16, ties to the even one, denormals too; beyond 65504: +-65504
+//!   unorm8   colours, and numbers without a unit:   floor(255 min(max(v, 0), 1) + 1/2) / 255
+//!            vectors without a unit:                +-floor(127 min(|v|, 1) + 1/2) / 127
+//!   unormN   z = ((t - n) / (f - n)) (f / t)        under an orthographic camera without (f / t)
+//!            k = floor((2^N - 1) min(max(z, 0), 1) + 1/2)      y = k / (2^N - 1)
+//!            t = (n f) / (f - y (f - n))            under an orthographic camera n + y (f - n)
+//! ```
+//!
+//! each rounded to `f32` once, -0 as +0; +inf, the depth of an empty pixel, stays. n and f are the depths
+//! between which the scene's [bounding sphere](crate::scene::Scene::bounding_sphere) lies: with t its centre's and r
+//! its radius, n = t - r, at least the near plane, f = t + r, at least 2 n.
+//!
+//! # Decided
+//!
+//! - Fragments come in `f32` and only what is stored is rounded: the blending units of that time
+//!   computed in more digits than they stored.
+//! - What overflows a half float is the greatest one and not +inf: no plane may hold what follows from infinities.
+//! - `unorm8` of numbers with a unit (pixels, bins, world units) is `f32`: no 8 bits could hold them.
+//! - The shift by epsilon is added in `f32` to what the depth buffer holds. Two fragments whose depths round to one are
+//!   told apart before they are stored: the nearer one is seen.
+//! - What `deferred` carries to the next frame is what a frame in `f32` saw.
+
+use super::Stage;
+use crate::composite::over::Blend;
+use crate::frame::{Frame, NamedPlane, Samples};
+use crate::number::{Exact, Real};
+use crate::scene::{Camera, Projection, Scene};
+use crate::setting::Words;
+
+/// How colours, weights, normals and their sums are stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Buffers {
+    /// `f32`: as they are.
+    #[default]
+    F32,
+    /// Half floats.
+    F16,
+    /// 8 bits in [0, 1].
+    Unorm8,
+}
+
+/// How depths are stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DepthBuffer {
+    /// `f32`: as they are.
+    #[default]
+    F32,
+    /// 24 bits in [0, 1].
+    Unorm24,
+    /// 16 bits in [0, 1].
+    Unorm16,
+}
+
+/// Both.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Formats {
+    /// Of colours, weights, normals and their sums.
+    pub buffers: Buffers,
+    /// Of depths.
+    pub depth: DepthBuffer,
+}
+
+impl Words for Buffers {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("f32", Self::F32), ("f16", Self::F16), ("unorm8", Self::Unorm8)];
+}
+
+impl Words for DepthBuffer {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("f32", Self::F32), ("unorm24", Self::Unorm24), ("unorm16", Self::Unorm16)];
+}
+
+impl Formats {
+    /// Whether all is stored as it is.
+    #[must_use]
+    pub fn keep_all(self) -> bool {
+        self == Self::default()
+    }
+
+    /// Rounds what a stage leaves.
+    pub(super) fn store(self, stage: &Stage, left: &mut Frame<f32>, range: &DepthRange) {
+        for NamedPlane { name, samples } in &mut left.planes {
+            let row = stage.leaves.iter().find(|row| row.is_called(name));
+            let has_unit = row.is_some_and(|row| !row.unit.is_empty() && row.unit != "linear RGB");
+            let buffers = if has_unit && self.buffers == Buffers::Unorm8 {
+                Buffers::F32
+            } else {
+                self.buffers
+            };
+            let each = |values: &mut [f32], store: &dyn Fn(f64) -> f64| {
+                values.iter_mut().for_each(|v| *v = store(f64::from(*v)) as f32 + 0.0);
+            };
+            match samples {
+                Samples::Scalar(plane) if name == "Z" || name.ends_with(".Z") => {
+                    each(plane.values_mut(), &|t| range.store(t, self.depth));
+                }
+                Samples::Scalar(_) if name == "margin" || name.ends_with(".voronoi") => {}
+                Samples::Scalar(plane) => each(plane.values_mut(), &|v| buffers.number(v)),
+                Samples::Color(plane) => {
+                    each(plane.values_mut().as_flattened_mut(), &|v| buffers.number(v));
+                }
+                Samples::Vector(plane) => {
+                    each(plane.values_mut().as_flattened_mut(), &|v| buffers.signed(v));
+                }
+                Samples::Index(_) | Samples::Count(_) => {}
+            }
+        }
+    }
+}
+
+impl Buffers {
+    /// A number of [0, 1], as far as the format has such.
+    fn number(self, v: f64) -> f64 {
+        match self {
+            Self::F32 => v,
+            Self::F16 => half(v),
+            Self::Unorm8 => steps(if v > 0.0 { v } else { 0.0 }, 255.0),
+        }
+    }
+
+    /// A component of a vector.
+    fn signed(self, v: f64) -> f64 {
+        match self {
+            Self::F32 => v,
+            Self::F16 => half(v),
+            Self::Unorm8 if v < 0.0 => -steps(-v, 127.0),
+            Self::Unorm8 => steps(v, 127.0),
+        }
+    }
+
+    /// A sum of numbers that fragments are added to.
+    #[inline]
+    pub(super) fn sum<R: Exact>(self, v: R) -> R {
+        if self == Self::F32 { v } else { R::from_f32(self.number(v.to_f64()) as f32 + 0.0) }
+    }
+
+    /// A sum of colours.
+    #[inline]
+    pub(super) fn color<R: Exact>(self, [x, y, z]: [R; 3]) -> [R; 3] {
+        [self.sum(x), self.sum(y), self.sum(z)]
+    }
+
+    /// A sum of vectors.
+    #[inline]
+    pub(super) fn vector<R: Exact>(self, v: [R; 3]) -> [R; 3] {
+        if self == Self::F32 {
+            v
+        } else {
+            v.map(|v| R::from_f32(self.signed(v.to_f64()) as f32 + 0.0))
+        }
+    }
+
+    /// Layers that were blended.
+    #[inline]
+    pub(super) fn blend<R: Exact>(self, Blend { color, alpha }: Blend<R>) -> Blend<R> {
+        Blend { color: self.color(color), alpha: self.sum(alpha) }
+    }
+}
+
+/// The depths between which a depth buffer tells apart.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DepthRange {
+    near: f64,
+    far: f64,
+    perspective: bool,
+}
+
+impl DepthRange {
+    pub(super) fn new(scene: &Scene, camera: &Camera) -> Self {
+        let (center, radius) = scene.bounding_sphere();
+        let [m0, m1, m2, m3] = camera.view_from_world.row(2).to_array().map(f64::from);
+        let t = -(((m0 * center.x + m1 * center.y) + m2 * center.z) + m3);
+        let least = f64::from(camera.near);
+        let near = if t - radius > least { t - radius } else { least };
+        let far = if t + radius > 2.0 * near { t + radius } else { 2.0 * near };
+        let perspective = camera.projection == Projection::Perspective;
+        Self { near, far, perspective }
+    }
+
+    fn store(&self, t: f64, format: DepthBuffer) -> f64 {
+        let steps_of = match format {
+            DepthBuffer::F32 => return t,
+            DepthBuffer::Unorm24 => 16_777_215.0,
+            DepthBuffer::Unorm16 => 65_535.0,
+        };
+        if !t.is_finite() {
+            return t;
+        }
+        let Self { near, far, perspective } = *self;
+        let z = (t - near) / (far - near);
+        let z = if perspective { z * (far / t) } else { z };
+        let y = steps(if z > 0.0 { z } else { 0.0 }, steps_of);
+        if perspective { (near * far) / (far - y * (far - near)) } else { near + y * (far - near) }
+    }
+}
+
+/// The nearest of so many equal steps from 0 to 1, of a number of at least 0.
+fn steps(v: f64, count: f64) -> f64 {
+    let v = if v < 1.0 { v } else { 1.0 };
+    (count * v + 0.5).floor() / count
+}
+
+/// The nearest half float, ties to the even one; the greatest of its sign beyond all.
+fn half(v: f64) -> f64 {
+    const MOST: f64 = 65_504.0;
+    // Adding and taking away leaves a whole number: the nearest, ties to the even one.
+    const WHOLE: f64 = 6_755_399_441_055_744.0;
+    if !v.is_finite() {
+        return v;
+    }
+    let exponent = (v.to_bits() >> 52 & 0x7ff) as i64 - 1023;
+    let step = if exponent < -14 { -24 } else { exponent - 10 };
+    // 2^step, by its bits.
+    let step = f64::from_bits(((step + 1023) as u64) << 52);
+    let nearest = ((v / step + WHOLE) - WHOLE) * step;
+    nearest.clamped(-MOST, MOST)
+}
+
+#[cfg(test)]
+mod tests;

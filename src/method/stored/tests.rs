@@ -1,0 +1,202 @@
+use super::*;
+use crate::frame::{Exec, Frame, Plane};
+use crate::method::{Method, Session, ewa};
+use crate::scene::{Cloud, Lens, Pose, Surfels};
+use crate::source::Shape;
+use glam::{DVec3, Vec3};
+use proptest::prelude::*;
+
+/// What the bits of a half float say, by its fields.
+fn decoded(bits: u16) -> f64 {
+    let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f64::from(bits & 0x3ff));
+    let power = |e: i32| (0..e.abs()).fold(1.0, |p, _| if e < 0 { p / 2.0 } else { p * 2.0 });
+    let value = match exponent {
+        0 => fraction * power(-24),
+        _ => (1024.0 + fraction) * power(exponent - 25),
+    };
+    if bits >> 15 == 1 { -value } else { value }
+}
+
+/// Every half float is itself; what lies between two goes to the nearer one, halfway to the even one.
+#[test]
+fn halves_are_the_nearest() {
+    for bits in 0..0x7c00_u16 {
+        let (low, high) = (decoded(bits), decoded(bits + 1));
+        assert_eq!([half(low), half(-low)], [low, -low], "{bits:#x}");
+        if bits == 0x7bff {
+            break;
+        }
+        let middle = f64::midpoint(low, high);
+        let even = if bits % 2 == 0 { low } else { high };
+        assert_eq!([half(middle), half(-middle)], [even, -even], "{bits:#x}");
+        assert_eq!([half(middle.next_down()), half(middle.next_up())], [low, high], "{bits:#x}");
+    }
+    assert_eq!([half(65_519.9), half(65_520.0), half(-1e38)], [65_504.0, 65_504.0, -65_504.0]);
+    assert_eq!(half(f64::INFINITY), f64::INFINITY, "an empty depth stays");
+}
+
+#[test]
+fn eight_bits_have_256_values() {
+    let stored = |v| Buffers::Unorm8.number(v);
+    for code in 0..=255 {
+        let value = f64::from(code) / 255.0;
+        assert_eq!(stored(value), value);
+        assert_eq!(stored(value + 0.499 / 255.0), value);
+    }
+    assert_eq!([stored(-3.0), stored(7.0), stored(f64::INFINITY)], [0.0, 1.0, 1.0]);
+    let signed = |v| Buffers::Unorm8.signed(v);
+    assert_eq!([signed(-1.0), signed(1.0), signed(-5.0), signed(0.001)], [-1.0, 1.0, -1.0, 0.0]);
+}
+
+fn range(perspective: bool) -> DepthRange {
+    DepthRange { near: 2.0, far: 6.0, perspective }
+}
+
+/// The step of t is that of z by the derivative of z, t^2 (f - n) / (n f) / (2^N - 1).
+#[test]
+fn a_depth_is_off_by_half_a_step_of_its_buffer() {
+    for (format, count) in [(DepthBuffer::Unorm16, 65_535.0), (DepthBuffer::Unorm24, 16_777_215.0)]
+    {
+        for i in 0..=4000 {
+            let t = 2.0 + f64::from(i) / 1000.0;
+            let perspective = range(true).store(t, format);
+            let step = t * t * 4.0 / 12.0 / count;
+            assert!((perspective - t).abs() <= 0.501 * step, "{t}: {perspective}");
+            let linear = range(false).store(t, format);
+            assert!((linear - t).abs() <= 0.501 * 4.0 / count, "{t}: {linear}");
+        }
+    }
+    assert_eq!(range(true).store(f64::INFINITY, DepthBuffer::Unorm16), f64::INFINITY);
+    let ends = [1.0, 9.0].map(|t| range(true).store(t, DepthBuffer::Unorm24));
+    assert_eq!(ends, [2.0, 6.0], "what lies beyond is at the end");
+}
+
+/// So many discs one behind the other, closer than epsilon, seen from the front.
+fn stack(count: usize, color: f32) -> Scene {
+    let cloud = Cloud {
+        position: (0..count).map(|i| Vec3::Z * (i as f32 * 1e-5)).collect(),
+        normal: Some(vec![Vec3::Z; count]),
+        radius: Some(vec![1.0; count]),
+        color: Some(vec![Vec3::splat(color); count]),
+        ..Cloud::default()
+    };
+    Scene::unlit("stack", Surfels::new(cloud).unwrap().0)
+}
+
+fn front() -> Camera {
+    let pose = Pose { eye: DVec3::Z * 4.0, target: DVec3::ZERO, up: DVec3::Y };
+    Camera::new(17, 17, pose, Lens::Orthographic(1.0)).unwrap()
+}
+
+fn sums(scene: &Scene, formats: Formats) -> Frame<f32> {
+    let exec = Exec::new(2, 8).unwrap();
+    let mut session = Session::new(scene, ewa::Settings::default().into(), &exec).unwrap();
+    session.stored(&front(), formats, true).unwrap().frame
+}
+
+fn formats(buffers: Buffers) -> Formats {
+    Formats { buffers, ..Formats::default() }
+}
+
+/// Additions one by one, by a table of all half floats: the sum sticks where half a step is more than a weight.
+#[test]
+fn sums_are_rounded_after_every_addition() {
+    let count = 3000;
+    let scene = stack(count, 0.7);
+    // All discs have the same weight: the camera is orthographic.
+    let one = sums(&stack(1, 0.7), Formats::default());
+    let weight = f64::from(*one.scalar("attributes.weight").unwrap().at(8, 8));
+    let halves: Vec<f64> = (0..=0x7bff).map(decoded).collect();
+    let nearest = |v: f64| {
+        let at = halves.partition_point(|half| *half < v);
+        let [low, high] = [halves[at.saturating_sub(1)], halves[at]];
+        let [down, up] = [v - low, high - v];
+        let even = if at % 2 == 0 { high } else { low };
+        if down < up {
+            low
+        } else if up < down {
+            high
+        } else {
+            even
+        }
+    };
+    let expected = (0..count).fold(0.0, |sum, _| nearest(sum + weight));
+    let half = sums(&scene, formats(Buffers::F16));
+    assert_eq!(f64::from(*half.scalar("attributes.weight").unwrap().at(8, 8)), expected);
+    assert!(expected < 0.75 * count as f64, "from 2048 on a step is 2: {expected}");
+    let eight = sums(&scene, formats(Buffers::Unorm8));
+    assert_eq!(*eight.scalar("attributes.weight").unwrap().at(8, 8), 1.0);
+    assert_eq!(*eight.color("attributes").unwrap().at(8, 8), [1.0; 3], "colours saturate too");
+}
+
+/// In `f32` the stages one by one are the definition, of every method that has formats.
+#[test]
+fn stored_as_they_are_pictures_are_the_definition() {
+    let exec = Exec::new(2, 16).unwrap();
+    let shape = Shape::Torus;
+    let camera = Camera::new(48, 40, shape.default_pose(), shape.default_lens()).unwrap();
+    let scene = Scene::lit("torus", shape.surfels(800, 0).unwrap());
+    for method in Method::all().into_iter().filter(|method| method.name() != "peeling") {
+        let mut session = Session::new(&scene, method, &exec).unwrap();
+        let whole = session.define::<f32>(&camera, false).unwrap().frame;
+        let stored = session.stored(&camera, Formats::default(), false).unwrap().frame;
+        assert_eq!(stored.planes, whole.planes, "{}", method.name());
+    }
+}
+
+/// What every number of every plane is, where it is stored.
+#[test]
+fn every_plane_holds_what_its_buffer_can() {
+    let exec = Exec::new(2, 16).unwrap();
+    let shape = Shape::Torus;
+    let camera = Camera::new(48, 40, shape.default_pose(), shape.default_lens()).unwrap();
+    let scene = Scene::lit("torus", shape.surfels(800, 0).unwrap());
+    let formats = Formats { buffers: Buffers::F16, depth: DepthBuffer::Unorm16 };
+    for method in Method::all().into_iter().filter(|method| method.name() != "peeling") {
+        let mut session = Session::new(&scene, method, &exec).unwrap();
+        let plain = session.define::<f32>(&camera, true).unwrap().frame;
+        let picture = session.stored(&camera, formats, true).unwrap().frame;
+        assert_ne!(picture.color("").unwrap(), plain.color("").unwrap(), "{}", method.name());
+        for NamedPlane { name, samples } in &picture.planes {
+            let values: &[f32] = match samples {
+                _ if ["Z", "margin"].contains(&name.as_str()) => continue,
+                Samples::Scalar(_) if name.ends_with(".Z") || name.ends_with("voronoi") => continue,
+                Samples::Scalar(plane) => plane.values(),
+                Samples::Color(plane) | Samples::Vector(plane) => plane.values().as_flattened(),
+                Samples::Index(_) | Samples::Count(_) => continue,
+            };
+            let other = values.iter().find(|v| half(f64::from(**v)) != f64::from(**v));
+            assert_eq!(other, None, "{} {name}", method.name());
+        }
+    }
+    let mut session = Session::new(&scene, Method::by_name("peeling").unwrap(), &exec).unwrap();
+    let line = session.stored(&camera, formats, false).unwrap_err().to_string();
+    assert!(line.contains("peeling has no buffers of other formats"), "{line}");
+}
+
+proptest! {
+    /// No rounding turns two numbers around, and none gives what a plane may not hold.
+    #[test]
+    fn order_stays(a in any::<f32>(), b in any::<f32>()) {
+        prop_assume!(!a.is_nan() && !b.is_nan());
+        let (a, b) = (f64::from(a), f64::from(b));
+        for buffers in [Buffers::F16, Buffers::Unorm8] {
+            prop_assert!(!buffers.number(a).is_nan() && !buffers.signed(a).is_nan());
+            if a <= b {
+                prop_assert!(buffers.number(a) <= buffers.number(b));
+                prop_assert!(buffers.signed(a) <= buffers.signed(b));
+            }
+        }
+    }
+}
+
+#[test]
+fn an_empty_plane_is_left_alone() {
+    let mut plane = Frame::new(2, 1)
+        .with("visibility.Z", Samples::Scalar(Plane::filled(2, 1, f32::INFINITY)))
+        .unwrap();
+    let stage = Method::default().stages()[1];
+    let formats = Formats { buffers: Buffers::Unorm8, depth: DepthBuffer::Unorm16 };
+    formats.store(&stage, &mut plane, &range(true));
+    assert_eq!(plane.scalar("visibility.Z").unwrap().values(), [f32::INFINITY; 2]);
+}
