@@ -74,7 +74,8 @@ fn scene(shape: &str, count: usize, exec: &Exec) -> Result<Vec<Row>> {
         *own = count;
     }
     let quiet = |_: &str, _, _| ();
-    let (mut bench, all, _) = Bench::load(candidates(&file, None)?, exec, &quiet)?;
+    let all = candidates(&file, None)?.into_iter().filter(|candidate| !candidate.imitates);
+    let (mut bench, all, _) = Bench::load(all.collect(), exec, &quiet)?;
     let ready = bench.visit(&all[0], &quiet)?.ready;
     let camera = ready.camera;
     let truth = truths::Known::of(&file, &ready.loaded.scene, exec, &quiet)?;

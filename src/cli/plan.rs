@@ -47,8 +47,9 @@ pub(super) fn run(args: &Args) -> Ended {
     let exec = args.tried.exec()?;
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let Loaded { mut bench, candidates, known, camera, .. } =
+    let Loaded { mut bench, mut candidates, known, camera, .. } =
         args.tried.load(&scene, &exec, &steps)?;
+    candidates.retain(|candidate| !candidate.imitates);
     let truth = known.still(&camera, &exec, &show)?;
 
     let rows = choose(&mut bench, (&candidates, &truth), (budget, &args.metric), &exec, &show)?;

@@ -155,7 +155,8 @@ impl Job<'_> {
             for (done, &i) in order.iter().enumerate() {
                 let over = self.args.time.is_some_and(|time| self.start.elapsed() >= time);
                 let Record { measured, times, .. } = &mut study.candidates[i];
-                if measured.is_none() || over && !times.is_empty() {
+                let timed = !candidates[i].imitates && measured.is_some();
+                if !timed || over && !times.is_empty() {
                     continue;
                 }
                 let count = candidates.len() as u64;
@@ -312,6 +313,11 @@ fn print(study: &Study, loss: &Loss, total: Duration) {
         let spread = format!("{} to {}", report::short(first), report::short(last));
         let options = &study.candidates[i].options;
         say(format!("{:>10} {spread:>17} {error:>12} {mark} {options}", report::short(median)));
+    }
+    let untimed = |record: &&Record| record.measured.is_some() && record.times.is_empty();
+    for record in study.candidates.iter().filter(untimed) {
+        let error = loss.value(record).map_or_else(|| "-".into(), report::short);
+        say(format!("{:>10} {:>17} {error:>12}   {}", "-", "", record.options));
     }
     let left = study.candidates.iter().filter(|record| record.measured.is_none()).count();
     if left > 0 {

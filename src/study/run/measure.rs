@@ -72,8 +72,8 @@ pub fn picture_errors(
 ///
 /// The picture is the second of two of one camera: `deferred` shows what it has come to where
 /// nothing moves. Flicker is measured on the pictures of [`cameras`], in their order, of which each
-/// goes on from the one before; not in f64, whose pictures differ from those in f32 by rounding
-/// alone and take many times as long.
+/// goes on from the one before; not in f64 nor in formats that are imitated, whose pictures differ from
+/// those in f32 by rounding alone and take many times as long.
 ///
 /// # Errors
 /// As [`Bench::visit`] and of the drawing.
@@ -86,7 +86,12 @@ pub fn measure(
     let output = candidate.file.output;
     let mut visit = bench.visit(candidate, &|_, _, _| ())?;
     let camera = visit.ready.camera;
-    output.draw(&mut visit.session, &camera)?;
+    if candidate.imitates {
+        // Only what the first picture saw counts.
+        visit.session.render(&camera)?;
+    } else {
+        output.draw(&mut visit.session, &camera)?;
+    }
     let frame = output.draw(&mut visit.session, &camera)?.frame.clone();
     let errors = Errors::of(&frame, &truths.still.frame, exec)?;
     let mut known = BTreeMap::new();
@@ -98,7 +103,7 @@ pub fn measure(
         know(metric.name, (metric.of)(&errors));
     }
     let mut spectra = [Vec::new(), Vec::new()];
-    if output.number == Number::F32 {
+    if output.number == Number::F32 && !candidate.imitates {
         let looks = [
             (cameras::shifted(&camera), &truths.still.shifted),
             (cameras::path(&camera), &truths.path),

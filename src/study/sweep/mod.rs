@@ -39,6 +39,9 @@ pub struct Candidate {
     pub file: SceneFile,
     /// Whether it is tried in scenes with opacities alone.
     pub needs_opacity: bool,
+    /// Whether it imitates [formats](crate::method::stored) that the scene does not ask for: its errors are those of
+    /// a GPU that has them, its times are of no use.
+    pub imitates: bool,
 }
 
 /// The candidates of a scene; of one method alone if one is `only` asked for.
@@ -82,7 +85,7 @@ fn start(scene: &SceneFile, name: &'static str) -> Result<Candidate> {
         ..OutputSettings::default()
     };
     let options = format!("--method {name}");
-    Ok(Candidate { options, method: name, file, needs_opacity: false })
+    Ok(Candidate { options, method: name, file, needs_opacity: false, imitates: false })
 }
 
 /// The same at every other level of detail.
@@ -148,7 +151,8 @@ fn traded(start: &Candidate, trade: &Trade, value: &str) -> Result<Option<Candid
         }
     };
     let options = format!("{} {}", start.options, written(&option, value));
-    Ok(changed.then_some(Candidate { options, file, ..start.clone() }))
+    let imitates = file.output.formats != start.file.output.formats;
+    Ok(changed.then_some(Candidate { options, file, imitates, ..start.clone() }))
 }
 
 fn written(row: &Setting, value: &str) -> String {
