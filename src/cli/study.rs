@@ -31,7 +31,7 @@ Examples:
   splatref study torus --method ewa --metric flip
   splatref study blue.ply --surfel-size 2 --truth bunny.ply -o out/blue
   splatref study scene.toml --time 60s")]
-#[command(subcommand_precedence_over_arg = true, subcommand_negates_reqs = true)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(super) struct Args {
     #[command(subcommand)]
     what: Option<What>,

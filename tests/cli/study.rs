@@ -134,6 +134,11 @@ fn one_failure_of_the_atlas() {
     assert_eq!(names(&at.path().join("a/atlas")), ["bounds.svg"]);
     let said = fails(at.path(), &["study", "failures", "--only", "nothing"], 2);
     assert!(said.contains("give one of ewa-grazing, "), "{said}");
+    for others in [&["study", "torus", "failures"][..], &["study", "--metric", "flip", "failures"]]
+    {
+        fails(at.path(), &[others, &["--only", "bounds", "-o", "b"]].concat(), 2);
+    }
+    assert_eq!(names(at.path()), ["a"]);
     let said = fails(at.path(), &["study"], 2);
     assert!(said.contains("<SCENE>"), "{said}");
 }
