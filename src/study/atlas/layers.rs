@@ -39,7 +39,7 @@ pub(super) const FAILURES: [Failure; 4] = [
     Failure {
         id: "eps-default",
         title: "One epsilon does not fit a scan of uneven density",
-        why: "A sphere of 40,000 surfels, its right half thinned, radii grown accordingly. The default epsilon \
+        why: "The left half of a sphere of 40,000 surfels, and the right half of one of fewer. The default epsilon \
               is two radii of the median surfel, so less than one of a large one: large discs tear each other where they \
               overlap.",
         swept: "how many times denser the left half is",
@@ -84,7 +84,7 @@ fn slope(radii: f64, cured: bool, exec: &Exec) -> Result<Found> {
 }
 
 fn density(times: f64, cured: bool, exec: &Exec) -> Result<Found> {
-    let surfels = thinned(&Shape::Sphere.surfels(40_000, 0)?, times)?;
+    let surfels = halves(40_000, times)?;
     let most = surfels.radius().iter().fold(0.0, |a, b| if *b > a { *b } else { a });
     let wanted = if cured { Epsilon::World(2.0 * most) } else { Epsilon::DEFAULT };
     let mut case = Case::of_shape(Shape::Sphere, 1, epsilon(wanted).into())?;
@@ -92,21 +92,23 @@ fn density(times: f64, cured: bool, exec: &Exec) -> Result<Found> {
     case.against_shape(Shape::Sphere, "normal-99", exec)
 }
 
-/// One of so many of the surfels with x > 0, as large as those that it stands for; all others.
-fn thinned(surfels: &Surfels, times: f64) -> Result<Surfels> {
-    let mut count = 0.0;
-    let kept = surfels.position().iter().map(|p| {
-        count += f64::from(u8::from(p.x > 0.0));
-        p.x <= 0.0 || count % times == 0.0
-    });
-    let kept: Vec<u32> = (0..).zip(kept).filter(|(_, kept)| *kept).map(|(i, _)| i).collect();
-    let cloud = surfels.clone().into_cloud().some(&kept);
-    let grow = times.sqrt() as f32;
-    let radius = cloud.radius.map(|radii| {
-        let grown = radii.iter().zip(&cloud.position);
-        grown.map(|(r, p)| if p.x > 0.0 { r * grow } else { *r }).collect()
-    });
-    Ok(Surfels::new(Cloud { radius, ..cloud })?.0)
+/// The left half of a sphere of so many surfels, and the right half of one of `times` as few.
+fn halves(count: usize, times: f64) -> Result<Surfels> {
+    let half = |count: usize, left: bool| -> Result<Cloud> {
+        let surfels = Shape::Sphere.surfels(count, 0)?;
+        let all = (0..).zip(surfels.position());
+        let kept: Vec<u32> = all.filter(|(_, p)| (p.x <= 0.0) == left).map(|(i, _)| i).collect();
+        Ok(surfels.into_cloud().some(&kept))
+    };
+    let (mut dense, sparse) = (half(count, true)?, half((count as f64 / times) as usize, false)?);
+    dense.position.extend(sparse.position);
+    let both = |own: &mut Option<Vec<_>>, other: Option<Vec<_>>| {
+        own.iter_mut().zip(other).for_each(|(own, other)| own.extend(other));
+    };
+    both(&mut dense.normal, sparse.normal);
+    both(&mut dense.color, sparse.color);
+    dense.radius.iter_mut().zip(sparse.radius).for_each(|(own, other)| own.extend(other));
+    Ok(Surfels::new(dense)?.0)
 }
 
 fn bins(count: f64, cured: bool, exec: &Exec) -> Result<Found> {
