@@ -2,11 +2,14 @@
 
 use super::study::loss;
 use super::tried::{Loaded, Tried, truth_in_words};
-use super::{Ended, Ending, progress, report, say};
+use super::{Ended, Ending, output, progress, report, say};
+use splatref::io::replace::write_atomically;
 use splatref::study::plan::{Budget, Known as Row, choose};
 use splatref::study::report::chart::Loss;
 use splatref::study::sweep::Candidate;
 use splatref::verify::metrics::METRICS;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 #[derive(clap::Args)]
@@ -18,7 +21,8 @@ go with its size.
 Examples:
   splatref plan bunny.ply --error 0.02
   splatref plan bunny.ply --error 0.03 --metric ssim
-  splatref plan torus --time 20ms --metric flip")]
+  splatref plan torus --time 20ms --metric flip
+  splatref plan bunny.ply --error 0.02 -o best.toml && splatref render best.toml")]
 #[command(group(clap::ArgGroup::new("budget").required(true)))]
 pub(super) struct Args {
     #[command(flatten)]
@@ -32,6 +36,9 @@ pub(super) struct Args {
     /// What the error is
     #[arg(long, value_name = "NAME", default_value = "rmse", value_parser = still)]
     metric: Loss,
+    /// Writes the scene file that draws what is chosen, and nothing that it does not need
+    #[arg(short, long, value_name = "FILE.toml", value_parser = toml)]
+    output: Option<PathBuf>,
 }
 
 /// How many that were not chosen are named.
@@ -44,6 +51,10 @@ pub(super) fn run(args: &Args) -> Ended {
         (None, time) => Budget::Time(time.unwrap_or(f64::INFINITY)),
     };
     let scene = args.tried.scene_file()?;
+    if let Some(path) = &args.output {
+        output::check(path, args.tried.path()?, &scene)?;
+        args.tried.truth().map_or(Ok(()), |truth| output::check_other(path, truth))?;
+    }
     let exec = args.tried.exec()?;
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
@@ -99,8 +110,17 @@ fn print(args: &Args, budget: Budget, candidates: &[Candidate], rows: &[Row]) ->
         "command",
         format!("splatref render {}{}", own_options(), candidates[best].options),
     );
+    if let Some(path) = &args.output {
+        let text = candidates[best].file.text(path)?;
+        write_atomically(path, |file| file.write_all(text.as_bytes()))?;
+        report::line("wrote", path.display());
+    }
     Ok(Ending::Good)
 }
+
+/// The options that `render` does not take, or that the plan replaces; each has a value.
+const LEFT: [&str; 7] =
+    ["--error", "--time", "--metric", "--truth", "--method", "--output", "-o"];
 
 /// The options of this command that `render` takes too, and the scene.
 fn own_options() -> String {
@@ -116,8 +136,9 @@ fn own_options() -> String {
             Some((name, _)) => (name.to_owned(), true),
             None => (option.clone(), false),
         };
-        if ["--error", "--time", "--metric", "--truth", "--method"].contains(&name.as_str()) {
-            if !has_value {
+        let attached = option.starts_with("-o") && option.len() > 2;
+        if LEFT.contains(&name.as_str()) || attached {
+            if !has_value && !attached {
                 all.next();
             }
             continue;
@@ -135,6 +156,14 @@ fn quoted(word: &str) -> String {
         word.to_owned()
     } else {
         format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+/// The name of a scene file.
+fn toml(text: &str) -> Result<PathBuf, String> {
+    match Path::new(text).extension() {
+        Some(end) if end == "toml" => Ok(text.into()),
+        _ => Err("a scene file is called .toml, such as best.toml".into()),
     }
 }
 

@@ -48,6 +48,11 @@ impl Tried {
         self.options.scene_file(self.path()?)
     }
 
+    /// The scene that is the truth, if it is another.
+    pub(super) fn truth(&self) -> Option<&Path> {
+        self.truth.as_deref()
+    }
+
     pub(super) fn exec(&self) -> Result<Exec> {
         self.exec.exec()
     }

@@ -26,6 +26,11 @@ impl HalfSpace {
         Ok(Self { normal, offset: d })
     }
 
+    /// a, b, c and d.
+    pub(crate) fn numbers(&self) -> [f64; 4] {
+        [self.normal.x, self.normal.y, self.normal.z, self.offset]
+    }
+
     /// Whether a point is in it; one that is NaN is not.
     #[must_use]
     pub fn contains(&self, point: Vec3) -> bool {

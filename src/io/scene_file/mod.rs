@@ -45,11 +45,11 @@ mod draw;
 mod load;
 mod objects;
 mod open;
-mod parse;
 pub mod places;
 mod ready;
 #[cfg(test)]
 mod tests;
+mod text;
 
 pub use choice::{Choice, GroupChoice, MethodChoice, Number, OutputSettings};
 pub use draw::Draw;
@@ -224,7 +224,17 @@ impl SceneFile {
     /// [`Error::Format`] with the line if it is no TOML, has an unknown key, a value of the wrong
     /// type, no model, or a number that no picture can be made with.
     pub fn parse(text: &str, path: &Path) -> Result<Self> {
-        parse::parse(text, path)
+        text::parse(text, path)
+    }
+
+    /// The text of a scene file at `path` that draws the same, with a line for each thing that is not as if
+    /// nobody had said it. Files that are named lie beside it, or have their whole path. Which frame is pictured is not
+    /// in it.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`MethodChoice::method`], or if a path is not Unicode, which TOML cannot say.
+    pub fn text(&self, path: &Path) -> Result<String> {
+        text::write(self, path)
     }
 
     /// The scene of one model, everything else left open.

@@ -1,6 +1,7 @@
 mod draw;
 mod objects;
 mod textures;
+mod written;
 
 use super::*;
 use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples};

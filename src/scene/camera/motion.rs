@@ -60,6 +60,11 @@ impl CameraMotion {
         Ok(Self { keys: keys.into_iter().map(key).collect::<Result<_>>()? })
     }
 
+    /// The keys, in ascending frames.
+    pub fn keys(&self) -> impl Iterator<Item = (u32, Pose)> {
+        self.keys.iter().map(|key| (key.frame, key.pose))
+    }
+
     /// Where it is in a frame.
     #[must_use]
     pub fn at(&self, frame: u32) -> Pose {

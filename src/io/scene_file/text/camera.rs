@@ -5,7 +5,7 @@ use crate::io::scene_file::CameraChoice;
 use crate::scene::{CameraMotion, Lens, Pose};
 use glam::DVec3;
 
-#[derive(serde::Deserialize)]
+#[derive(serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawCamera {
     size: Option<Exactly<u32, 2>>,
@@ -19,7 +19,7 @@ pub(super) struct RawCamera {
 }
 
 /// Where the camera is in a frame.
-#[derive(serde::Deserialize)]
+#[derive(serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 struct RawKey {
     frame: u32,
@@ -32,6 +32,11 @@ impl RawKey {
     fn pose(self) -> (u32, Pose) {
         let [eye, target] = [self.eye, self.target].map(|at| DVec3::from_array(at.0));
         (self.frame, Pose { eye, target, up: self.up.map_or(DVec3::Y, |up| up.0.into()) })
+    }
+
+    fn of((frame, pose): (u32, Pose)) -> Self {
+        let array = |v: DVec3| Exactly(v.to_array());
+        Self { frame, eye: array(pose.eye), target: array(pose.target), up: Some(array(pose.up)) }
     }
 }
 
@@ -64,5 +69,27 @@ impl RawCamera {
             motion,
             lens,
         })
+    }
+
+    pub(super) fn of(choice: &CameraChoice) -> Self {
+        let CameraChoice { size, eye, target, up, motion, lens } = choice;
+        let array = |v: &Option<DVec3>| v.map(|v| Exactly(v.to_array()));
+        let [mut fov, mut focal, mut ortho] = [None; 3];
+        match *lens {
+            None => {}
+            Some(Lens::FieldOfView(degrees)) => fov = Some(degrees),
+            Some(Lens::Focal(pixels)) => focal = Some(pixels),
+            Some(Lens::Orthographic(height)) => ortho = Some(height),
+        }
+        Self {
+            size: size.map(Exactly),
+            eye: array(eye),
+            target: array(target),
+            up: array(up),
+            keys: motion.as_ref().map(|motion| motion.keys().map(RawKey::of).collect()),
+            fov,
+            focal,
+            ortho,
+        }
     }
 }

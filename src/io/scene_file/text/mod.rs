@@ -1,7 +1,7 @@
-//! From text to a [`SceneFile`].
+//! From text to a [`SceneFile`], and back.
 //!
 //! Each table is read into a struct that mirrors its keys and then converted; a conversion that
-//! fails is reported by serde at the table's place in the text.
+//! fails is reported by serde at the table's place in the text. What is written is of the same structs.
 
 /// Implements `Deserialize` through a struct that mirrors the keys.
 macro_rules! through {
@@ -21,6 +21,9 @@ mod model;
 mod object;
 mod table;
 mod transform;
+mod written;
+
+pub(super) use written::write;
 
 use super::{
     CameraChoice, EnvironmentChoice, Geometry, GroupChoice, MOST_FRAMES, MethodChoice, Model,
@@ -32,10 +35,12 @@ use crate::scene::objects::detail::refine::Refinement;
 use crate::scene::{Light, Phong};
 use camera::RawCamera;
 use exactly::Exactly;
+use glam::Vec3;
 use model::RawModel;
 use object::Unresolved;
 use serde::de::{self, Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
+use written::Folder;
 
 pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
     let file: File = toml::from_str(text).map_err(|error| input::no_toml(path, text, &error))?;
@@ -146,7 +151,7 @@ impl Default for Sequence {
     }
 }
 
-#[derive(serde::Deserialize)]
+#[derive(serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 struct RawSequence {
     frames: u32,
@@ -161,7 +166,7 @@ impl RawSequence {
     }
 }
 
-#[derive(serde::Deserialize)]
+#[derive(serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 struct RawRefinement {
     surfel_size: Option<f32>,
@@ -177,9 +182,15 @@ impl RawRefinement {
         let refinement = Refinement { surfel_size, budget: self.budget, zones };
         refinement.check().map(|()| refinement).map_err(|error| error.to_string())
     }
+
+    fn of(refinement: &Refinement) -> Self {
+        let Refinement { surfel_size, budget, ref zones } = *refinement;
+        let zones = zones.iter().map(|zone| Exactly(*zone)).collect();
+        Self { surfel_size: Some(surfel_size), budget, zones }
+    }
 }
 
-#[derive(serde::Deserialize)]
+#[derive(serde::Deserialize, serde::Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 enum RawLight {
     Directional {
@@ -218,9 +229,24 @@ impl RawLight {
         };
         light.check().map(|()| light).map_err(|error| error.to_string())
     }
+
+    fn of(light: &Light) -> Self {
+        let array = |v: Vec3| Exactly(v.to_array());
+        match *light {
+            Light::Directional { towards, color } => {
+                Self::Directional { towards: array(towards), color: array(color) }
+            }
+            Light::Headlight { towards, color } => {
+                Self::Headlight { towards: array(towards), color: array(color) }
+            }
+            Light::Point { position, color } => {
+                Self::Point { position: array(position), color: array(color) }
+            }
+        }
+    }
 }
 
-#[derive(serde::Deserialize)]
+#[derive(serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 struct RawMaterial {
     ambient: Option<f32>,
@@ -242,9 +268,20 @@ impl RawMaterial {
         };
         material.check().map(|()| material).map_err(|error| error.to_string())
     }
+
+    fn of(material: &Phong) -> Self {
+        let Phong { ambient, diffuse, specular, shininess, color } = *material;
+        Self {
+            ambient: Some(ambient),
+            diffuse: Some(diffuse),
+            specular: Some(specular),
+            shininess: Some(shininess),
+            color: Some(Exactly(color.to_array())),
+        }
+    }
 }
 
-#[derive(serde::Deserialize)]
+#[derive(serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 struct RawEnvironment {
     file: Option<PathBuf>,
@@ -257,6 +294,13 @@ impl RawEnvironment {
             (Some(path), None) => Ok(EnvironmentChoice::File(path)),
             (None, Some(true)) => Ok(EnvironmentChoice::Sky),
             _ => Err("environment: give either a `file` or `sky = true`".into()),
+        }
+    }
+
+    fn of(environment: &EnvironmentChoice, place: &Folder) -> Self {
+        match environment {
+            EnvironmentChoice::Sky => Self { file: None, sky: Some(true) },
+            EnvironmentChoice::File(path) => Self { file: Some(place.path(path)), sky: None },
         }
     }
 }

@@ -4,6 +4,7 @@ use super::super::{Choice, GroupChoice, MethodChoice, OutputSettings};
 use crate::method::{Method, transparent};
 use crate::setting::{Setting, Value, check_type};
 use serde::de::{self, DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::fmt;
 
 /// The key of a method.
@@ -41,6 +42,38 @@ pub(super) fn output<'de, D: Deserializer<'de>>(from: D) -> Result<OutputSetting
     let table = Table { rows: OutputSettings::rows(), named: false, check };
     let (_, settings) = from.deserialize_map(&table)?;
     settings.on(OutputSettings::default(), "the output").map_err(de::Error::custom)
+}
+
+/// A table that is written.
+pub(super) struct Written {
+    /// The value of [`NAME`], if there is one.
+    pub(super) name: Option<&'static str>,
+    /// Keys and values.
+    pub(super) settings: Vec<(&'static str, Value)>,
+}
+
+impl Serialize for Written {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let mut map = to.serialize_map(None)?;
+        if let Some(name) = self.name {
+            map.serialize_entry(NAME, name)?;
+        }
+        self.settings.iter().try_for_each(|(key, value)| map.serialize_entry(key, value))?;
+        map.end()
+    }
+}
+
+impl Serialize for Value {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Whole(number) => to.serialize_i64(*number),
+            Self::Number(number) => to.serialize_f32(*number),
+            Self::Switch(on) => to.serialize_bool(*on),
+            Self::Text(text) => to.serialize_str(text),
+            Self::Numbers(numbers) => to.collect_seq(numbers),
+            Self::Parts(parts) => to.collect_map(parts.iter().map(|(name, number)| (name, number))),
+        }
+    }
 }
 
 impl<'de> Visitor<'de> for &Table {

@@ -2,6 +2,7 @@
 
 use super::exactly::Exactly;
 use super::transform::RawTransform;
+use super::written::Folder;
 use crate::io::scene_file::{DEFAULT_COUNT, Draw, Geometry, Model, Source, TREE};
 use crate::io::scene_file::{check_mipmaps, check_opacity, check_prefix, shapes};
 use crate::scene::light::{MAX_RADIANCE, is_color};
@@ -11,7 +12,7 @@ use glam::Vec3;
 use std::path::PathBuf;
 
 /// A model, or a geometry.
-#[derive(serde::Deserialize)]
+#[derive(Default, serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawModel {
     name: Option<String>,
@@ -34,9 +35,8 @@ pub(super) struct RawModel {
     opacity: Option<f32>,
     mipmaps: Option<usize>,
     #[serde(default)]
-    progressive: bool,
-    #[serde(default)]
-    transform: RawTransform,
+    progressive: Option<bool>,
+    transform: Option<RawTransform>,
 }
 
 impl RawModel {
@@ -46,7 +46,7 @@ impl RawModel {
         if let Some(pixels) = detail.filter(|pixels| !(0.0..=MOST_PIXELS).contains(pixels)) {
             return Err(format!("detail is {pixels} pixels; give 0 to {MOST_PIXELS}"));
         }
-        if detail.is_some() && self.progressive {
+        if detail.is_some() && self.progressive == Some(true) {
             return Err(
                 "`detail` and `progressive` are two kinds of levels of detail: remove one".into()
             );
@@ -77,9 +77,68 @@ impl RawModel {
             check_mipmaps(levels).map_err(|error| error.to_string())?;
         }
         let (transform, opacity, mipmaps) =
-            (self.transform.similarity()?, self.opacity, self.mipmaps);
-        let progressive = self.progressive;
+            (self.transform.unwrap_or_default().similarity()?, self.opacity, self.mipmaps);
+        let progressive = self.progressive.unwrap_or(false);
         Ok(Model { source, draw, transform, color, opacity, mipmaps, progressive })
+    }
+
+    pub(super) fn of_geometry(geometry: &Geometry, place: &Folder) -> Self {
+        let Geometry { name, detail, model } = geometry;
+        Self { name: Some(name.clone()), detail: *detail, ..Self::of(model, place) }
+    }
+
+    pub(super) fn of(model: &Model, place: &Folder) -> Self {
+        let Model { ref source, draw, transform, color, opacity, mipmaps, progressive } = *model;
+        let split = match draw {
+            Draw::Hybrid(half) => Some(Exactly(half.numbers())),
+            _ => None,
+        };
+        Self {
+            draw: (draw != Draw::of(source)).then(|| draw.word().into()),
+            split,
+            color: color.map(|color| Exactly(color.to_array())),
+            opacity,
+            mipmaps,
+            progressive: progressive.then_some(true),
+            transform: RawTransform::of(&transform),
+            ..Self::of_source(source, place)
+        }
+    }
+
+    fn of_source(source: &Source, place: &Folder) -> Self {
+        match *source {
+            Source::File { ref path, radius, prefix, ref texture } => Self {
+                file: Some(place.path(path)),
+                radius,
+                prefix,
+                texture: texture.as_deref().map(|texture| place.path(texture)),
+                ..Self::default()
+            },
+            Source::Tree { leaves, seed } => Self {
+                shape: Some(TREE.into()),
+                leaves: Some(leaves),
+                seed: Some(seed),
+                ..Self::default()
+            },
+            Source::Shape { shape, count, seed } => Self {
+                shape: Some(shape.name().into()),
+                count: Some(count),
+                seed: Some(seed),
+                ..Self::of_parameters(shape)
+            },
+        }
+    }
+
+    fn of_parameters(shape: Shape) -> Self {
+        let none = Self::default();
+        match shape {
+            Shape::Sphere | Shape::Torus | Shape::Cluster => none,
+            Shape::Checkerboard { square } => Self { square: Some(square), ..none },
+            Shape::Sheets { gap } => Self { gap: Some(gap), ..none },
+            Shape::Staircase { step, thickness } => {
+                Self { step: Some(step), thickness: Some(thickness), ..none }
+            }
+        }
     }
 
     /// The source; takes every key that it uses.

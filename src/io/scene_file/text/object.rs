@@ -3,6 +3,7 @@
 use super::exactly::Exactly;
 use super::model::color;
 use super::transform::{RawRotation, RawTransform};
+use super::written::Folder;
 use crate::io::scene_file::{Geometry, ObjectChoice, Places};
 use crate::scene::{Motion, Similarity};
 use crate::source::Scatter;
@@ -23,9 +24,9 @@ through! {
     Unresolved: RawObject, RawObject::object;
 }
 
-#[derive(serde::Deserialize)]
+#[derive(serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
-struct RawObject {
+pub(super) struct RawObject {
     of: Spanned<String>,
     name: Option<String>,
     color: Option<Exactly<f32, 3>>,
@@ -36,7 +37,7 @@ struct RawObject {
 }
 
 /// Where an object is in a frame.
-#[derive(serde::Deserialize)]
+#[derive(serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 struct RawKey {
     frame: u32,
@@ -45,7 +46,7 @@ struct RawKey {
     translate: Option<Exactly<f64, 3>>,
 }
 
-#[derive(serde::Deserialize)]
+#[derive(serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 struct RawScatter {
     count: u64,
@@ -87,11 +88,48 @@ impl RawObject {
     }
 }
 
+impl RawObject {
+    pub(super) fn of(object: &ObjectChoice, geometries: &[Geometry], place: &Folder) -> Self {
+        let ObjectChoice { name, geometry, color, places } = object;
+        let of = geometries[*geometry].name.clone();
+        let mut raw = Self {
+            of: Spanned::new(0..of.len(), of),
+            name: name.clone(),
+            color: color.map(|color| Exactly(color.to_array())),
+            transform: None,
+            keys: None,
+            table: None,
+            scatter: None,
+        };
+        match places {
+            Places::One(motion) => match motion.keys() {
+                [(0, place)] => raw.transform = RawTransform::of(place),
+                keys => raw.keys = Some(keys.iter().map(RawKey::of).collect()),
+            },
+            Places::Table { path, transform } => {
+                raw.table = Some(place.path(path));
+                raw.transform = RawTransform::of(transform);
+            }
+            Places::Scatter { scatter, transform } => {
+                raw.scatter = Some(RawScatter::of(scatter));
+                raw.transform = RawTransform::of(transform);
+            }
+        }
+        raw
+    }
+}
+
 impl RawKey {
     fn place(self) -> Result<(u32, Similarity), String> {
         let Self { frame, scale, rotate, translate } = self;
         let place = RawTransform { scale, rotate, translate }.similarity();
         place.map(|place| (frame, place)).map_err(|what| format!("frame {frame}: {what}"))
+    }
+
+    fn of(&(frame, ref place): &(u32, Similarity)) -> Self {
+        let RawTransform { scale, rotate, translate } =
+            RawTransform::of(place).unwrap_or_default();
+        Self { frame, scale, rotate, translate }
     }
 }
 
@@ -109,6 +147,18 @@ impl RawScatter {
             axis: self.axis.map(|axis| DVec3::from_array(axis.0)),
         };
         scatter.check().map(|()| scatter).map_err(|error| error.to_string())
+    }
+
+    fn of(scatter: &Scatter) -> Self {
+        let Scatter { count, seed, low, high, scale, axis } = *scatter;
+        Self {
+            count: count.into(),
+            seed,
+            low: Exactly(low.to_array()),
+            high: Exactly(high.to_array()),
+            scale: Exactly(scale),
+            axis: axis.map(|axis| Exactly(axis.to_array())),
+        }
     }
 }
 

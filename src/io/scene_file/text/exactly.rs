@@ -1,6 +1,7 @@
 //! Arrays of as many values as there must be: serde's read the first of them and drop the rest.
 
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
+use serde::ser::{Serialize, Serializer};
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -11,6 +12,12 @@ pub(super) struct Exactly<T, const N: usize>(pub(super) [T; N]);
 impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Exactly<T, N> {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         from.deserialize_seq(Values(PhantomData))
+    }
+}
+
+impl<T: Serialize, const N: usize> Serialize for Exactly<T, N> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(&self.0)
     }
 }
 

@@ -4,7 +4,7 @@ use super::exactly::Exactly;
 use crate::scene::transform::{self, Similarity};
 use glam::{DMat3, DVec3};
 
-#[derive(serde::Deserialize, Default)]
+#[derive(Default, serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawTransform {
     pub(super) scale: Option<f64>,
@@ -12,7 +12,7 @@ pub(super) struct RawTransform {
     pub(super) translate: Option<Exactly<f64, 3>>,
 }
 
-#[derive(serde::Deserialize)]
+#[derive(serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawRotation {
     axis: Option<Exactly<f64, 3>>,
@@ -43,5 +43,17 @@ impl RawTransform {
         };
         similarity.check().map_err(|error| error.to_string())?;
         Ok(similarity)
+    }
+
+    /// None of what stays where it is.
+    pub(super) fn of(similarity: &Similarity) -> Option<Self> {
+        let Similarity { rotation, scale, translation } = *similarity;
+        let rows = Exactly(rotation.transpose().to_cols_array_2d().map(Exactly));
+        let matrix = RawRotation { axis: None, degrees: None, matrix: Some(rows) };
+        (*similarity != Similarity::IDENTITY).then(|| Self {
+            scale: (scale != 1.0).then_some(scale),
+            rotate: (rotation != DMat3::IDENTITY).then_some(matrix),
+            translate: (translation != DVec3::ZERO).then(|| Exactly(translation.to_array())),
+        })
     }
 }
