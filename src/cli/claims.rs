@@ -5,7 +5,7 @@ use super::{Ended, Ending, progress, report, say};
 use splatref::Error;
 use splatref::io::png;
 use splatref::io::replace::write_atomically;
-use splatref::study::claims::{Files, PICTURES, claims, outcome, page};
+use splatref::study::claims::{FORMATS, Files, PICTURES, claims, outcome, page, verdicts};
 use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
@@ -27,10 +27,8 @@ pub(super) fn run(args: &Args) -> Ended {
     let folder = args.output.join(PICTURES);
     fs::create_dir_all(&folder).map_err(|source| Error::io(&folder, source))?;
     let steps = progress::Steps::new("measuring");
-    let mut verdicts = Vec::new();
-    for claim in claims() {
-        verdicts.push(claim.verdict(&exec, &|done, of| steps.show(claim.id, done, of))?);
-    }
+    let verdicts =
+        verdicts(&claims(), &FORMATS, &exec, &|what, done, of| steps.show(what, done, of))?;
     steps.show("writing", 0, 1);
     let Files { text, pictures } = page(&verdicts);
     for (id, picture) in &pictures {

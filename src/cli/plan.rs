@@ -119,8 +119,7 @@ fn print(args: &Args, budget: Budget, candidates: &[Candidate], rows: &[Row]) ->
 }
 
 /// The options that `render` does not take, or that the plan replaces; each has a value.
-const LEFT: [&str; 7] =
-    ["--error", "--time", "--metric", "--truth", "--method", "--output", "-o"];
+const LEFT: [&str; 7] = ["--error", "--time", "--metric", "--truth", "--method", "--output", "-o"];
 
 /// The options of this command that `render` takes too, and the scene.
 fn own_options() -> String {

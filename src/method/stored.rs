@@ -93,6 +93,9 @@ impl Words for DepthBuffer {
 }
 
 impl Formats {
+    /// All is stored as it is.
+    pub const WHOLE: Self = Self { buffers: Buffers::F32, depth: DepthBuffer::F32 };
+
     /// Whether all is stored as it is.
     #[must_use]
     pub fn keep_all(self) -> bool {

@@ -1,9 +1,8 @@
 //! \[ZP06\]: groups, Voronoi depth, transparency.
 
 use super::subject::{Subject, colors, groups};
-use super::{Case, Claim, Measured};
+use super::{Claim, Measured};
 use crate::error::Result;
-use crate::frame::Exec;
 use crate::index::grouping::Extension;
 use crate::method::single_pass::{self, BinCount, DepthTest};
 use crate::method::{Method, ewa, peeling, transparent, transparent_hq};
@@ -71,9 +70,8 @@ fn two_passes() -> Method {
     ewa::Settings::default().into()
 }
 
-fn voronoi(case: Case, exec: &Exec) -> Result<Measured> {
-    let subject = Subject::new(case, exec)?;
-    let truth = subject.draw(two_passes(), None)?;
+fn voronoi(subject: &Subject<'_>) -> Result<Measured> {
+    let truth = subject.reference(two_passes(), None)?;
     let grouping = groups(RELAXED, None, Extension::None);
     let drawn = [DepthTest::Voronoi(BinCount::Epsilon), DepthTest::Plain]
         .map(|depth| subject.draw(single_pass(depth), Some(&grouping)));
@@ -86,17 +84,15 @@ fn voronoi(case: Case, exec: &Exec) -> Result<Measured> {
     })
 }
 
-fn relaxed(case: Case, exec: &Exec) -> Result<Measured> {
-    let subject = Subject::new(case, exec)?;
-    let truth = subject.draw(two_passes(), None)?;
+fn relaxed(subject: &Subject<'_>) -> Result<Measured> {
+    let truth = subject.reference(two_passes(), None)?;
     let grouping = groups(RELAXED, None, Extension::None);
     let drawn = subject.draw(single_pass(DepthTest::default()), Some(&grouping))?;
     let numbers = [subject.error(&drawn, &truth, "flip")?, 1.0];
     Ok(Measured { numbers, pictures: colors(&[&drawn, &truth])? })
 }
 
-fn single(case: Case, exec: &Exec) -> Result<Measured> {
-    let subject = Subject::new(case, exec)?;
+fn single(subject: &Subject<'_>) -> Result<Measured> {
     let grouping = groups(RELAXED, None, Extension::None);
     let one = subject.session(single_pass(DepthTest::default()), Some(&grouping))?;
     let numbers = subject.times([one, subject.session(two_passes(), None)?])?;
@@ -114,10 +110,10 @@ fn transparencies(count: u32) -> [Method; 3] {
     ]
 }
 
-fn layers(case: Case, exec: &Exec) -> Result<Measured> {
-    let subject = Subject::new(case, exec)?.transparent()?;
+fn layers(subject: &Subject<'_>) -> Result<Measured> {
+    let subject = subject.transparent()?;
     let [nearest, all, peeling] = transparencies(64);
-    let truth = subject.draw(peeling, None)?;
+    let truth = subject.reference(peeling, None)?;
     let grouping = groups(1.0, Some(4), Extension::Add { most: 0.5 });
     let (first, second) =
         (subject.draw(nearest, Some(&grouping))?, subject.draw(all, Some(&grouping))?);
@@ -128,8 +124,8 @@ fn layers(case: Case, exec: &Exec) -> Result<Measured> {
     })
 }
 
-fn peeled(case: Case, exec: &Exec) -> Result<Measured> {
-    let subject = Subject::new(case, exec)?.transparent()?;
+fn peeled(subject: &Subject<'_>) -> Result<Measured> {
+    let subject = subject.transparent()?;
     let [nearest, _, peeling] = transparencies(8);
     let grouping = groups(1.0, Some(4), Extension::Add { most: 0.5 });
     let first = subject.session(nearest, Some(&grouping))?;

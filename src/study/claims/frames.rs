@@ -1,9 +1,8 @@
 //! \[GBP04\]: only what is visible is splatted.
 
 use super::subject::Subject;
-use super::{Case, Claim, Measured};
+use super::{Claim, Measured};
 use crate::error::Result;
-use crate::frame::Exec;
 use crate::method::{deferred, ewa};
 
 pub(super) const CLAIMS: [Claim; 2] = [
@@ -29,13 +28,11 @@ pub(super) const CLAIMS: [Claim; 2] = [
     },
 ];
 
-/// The paper's head, as far as its points go.
-fn head(case: Case) -> Case {
-    Case { count: 285_000, ..case }
-}
+/// The points of the paper's head.
+const HEAD: usize = 285_000;
 
-fn culled(case: Case, exec: &Exec) -> Result<Measured> {
-    let subject = Subject::new(head(case), exec)?;
+fn culled(subject: &Subject<'_>) -> Result<Measured> {
+    let subject = subject.of_count(HEAD)?;
     let mut session = subject.session(deferred::Settings::default().into(), None)?;
     session.render(&subject.camera)?;
     let picture = session.render(&subject.camera)?;
@@ -44,8 +41,8 @@ fn culled(case: Case, exec: &Exec) -> Result<Measured> {
     Ok(Measured { numbers, pictures: Vec::new() })
 }
 
-fn speed(case: Case, exec: &Exec) -> Result<Measured> {
-    let subject = Subject::new(head(case), exec)?;
+fn speed(subject: &Subject<'_>) -> Result<Measured> {
+    let subject = subject.of_count(HEAD)?;
     let numbers = subject.times([
         subject.session(deferred::Settings::default().into(), None)?,
         subject.session(ewa::Settings::default().into(), None)?,

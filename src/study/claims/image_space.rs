@@ -1,9 +1,8 @@
 //! \[MKC08\] and \[MOC08\]: reconstruction in image space.
 
 use super::subject::{Subject, colors};
-use super::{Case, Claim, Measured};
+use super::{Claim, Measured};
 use crate::error::Result;
-use crate::frame::Exec;
 use crate::method::pyramid::{self, Weights};
 use crate::method::{Method, ewa, template};
 
@@ -16,7 +15,7 @@ pub(super) const CLAIMS: [Claim; 7] = [
         at_most: 1.0,
         timed: false,
         more: "image-space.md",
-        of: |case, exec| truth(case, exec, [weights(Weights::Gaussian), weights(Weights::Box)]),
+        of: |subject| truth(subject, [weights(Weights::Gaussian), weights(Weights::Box)]),
     },
     Claim {
         id: "mkc08-speed",
@@ -26,7 +25,7 @@ pub(super) const CLAIMS: [Claim; 7] = [
         at_most: 1.0,
         timed: true,
         more: "image-space.md",
-        of: |case, exec| times(case, exec, [pyramid(), splatting()]),
+        of: |subject| times(subject, [pyramid(), splatting()]),
     },
     Claim {
         id: "moc08-ppr",
@@ -36,7 +35,7 @@ pub(super) const CLAIMS: [Claim; 7] = [
         at_most: 1.0,
         timed: false,
         more: "image-space.md",
-        of: |case, exec| truth(case, exec, [template(5), pyramid()]),
+        of: |subject| truth(subject, [template(5), pyramid()]),
     },
     Claim {
         id: "moc08-splatting",
@@ -46,7 +45,7 @@ pub(super) const CLAIMS: [Claim; 7] = [
         at_most: 1.1,
         timed: false,
         more: "image-space.md",
-        of: |case, exec| truth(case, exec, [template(5), splatting()]),
+        of: |subject| truth(subject, [template(5), splatting()]),
     },
     Claim {
         id: "moc08-seven",
@@ -56,7 +55,7 @@ pub(super) const CLAIMS: [Claim; 7] = [
         at_most: 1.1,
         timed: false,
         more: "image-space.md",
-        of: |case, exec| truth(case, exec, [template(5), template(7)]),
+        of: |subject| truth(subject, [template(5), template(7)]),
     },
     Claim {
         id: "moc08-speed",
@@ -66,7 +65,7 @@ pub(super) const CLAIMS: [Claim; 7] = [
         at_most: 1.15,
         timed: true,
         more: "image-space.md",
-        of: |case, exec| times(case, exec, [template(3), pyramid()]),
+        of: |subject| times(subject, [template(3), pyramid()]),
     },
     Claim {
         id: "moc08-falloff",
@@ -96,29 +95,27 @@ fn splatting() -> Method {
     ewa::Settings::default().into()
 }
 
-fn truth(case: Case, exec: &Exec, methods: [Method; 2]) -> Result<Measured> {
-    by(case, exec, methods, "rmse")
+fn truth(subject: &Subject<'_>, methods: [Method; 2]) -> Result<Measured> {
+    by(subject, methods, "rmse")
 }
 
-fn by(case: Case, exec: &Exec, [first, second]: [Method; 2], metric: &str) -> Result<Measured> {
-    let subject = Subject::new(case, exec)?;
+fn by(subject: &Subject<'_>, [first, second]: [Method; 2], metric: &str) -> Result<Measured> {
     let truth = subject.truth()?;
     let (first, second) = (subject.draw(first, None)?, subject.draw(second, None)?);
-    let error = |frame| subject.error(frame, &truth, metric);
+    let error = |frame| subject.error(frame, truth, metric);
     Ok(Measured {
         numbers: [error(&first)?, error(&second)?],
-        pictures: colors(&[&first, &second, &truth])?,
+        pictures: colors(&[&first, &second, truth])?,
     })
 }
 
-fn times(case: Case, exec: &Exec, [first, second]: [Method; 2]) -> Result<Measured> {
-    let subject = Subject::new(case, exec)?;
+fn times(subject: &Subject<'_>, [first, second]: [Method; 2]) -> Result<Measured> {
     let numbers = subject.times([subject.session(first, None)?, subject.session(second, None)?])?;
     Ok(Measured { numbers, pictures: Vec::new() })
 }
 
-fn falloff(case: Case, exec: &Exec) -> Result<Measured> {
+fn falloff(subject: &Subject<'_>) -> Result<Measured> {
     use crate::method::template::Falloff;
     let with = |falloff| template::Settings { falloff, ..template::Settings::default() }.into();
-    by(case, exec, [with(Falloff::Linear), with(Falloff::Gaussian)], "normal")
+    by(subject, [with(Falloff::Linear), with(Falloff::Gaussian)], "normal")
 }

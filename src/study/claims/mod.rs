@@ -7,6 +7,9 @@
 //! `Decided:` a claim that has no number in its paper is read as weakly as its words allow: "better" is less
 //! error. Where words say "nearly as" or "similar", the limit is of this page, and stands in the claim.
 //!
+//! Claims about pictures are judged in storage [formats](FORMATS) of the papers' time too: the methods draw in them, and
+//! are compared with the same true picture, or with the same reference in `f32`.
+//!
 //! The page is `docs/claims.md`, made by `splatref study claims -o docs`. Errors are the same on every
 //! machine, and a test holds the page against them; numbers that are times are not held.
 
@@ -23,7 +26,9 @@ pub use page::{Files, PICTURES, outcome, page};
 
 use crate::error::Result;
 use crate::frame::{Exec, Plane};
+use crate::method::stored::{Buffers, DepthBuffer, Formats};
 use crate::source::Shape;
+use subject::Subject;
 
 /// A shape in so many surfels and a picture of so many rows, 4/3 as many columns.
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +61,12 @@ pub const CASES: [Case; 9] = {
     ]
 };
 
+/// Formats that the papers' GPUs had, and what they are called.
+pub const FORMATS: [(&str, Formats); 2] = [
+    ("f16, 24 bits", Formats { buffers: Buffers::F16, depth: DepthBuffer::Unorm24 }),
+    ("unorm8, 16 bits", Formats { buffers: Buffers::Unorm8, depth: DepthBuffer::Unorm16 }),
+];
+
 /// What a paper says.
 #[derive(Clone, Copy, Debug)]
 pub struct Claim {
@@ -74,7 +85,7 @@ pub struct Claim {
     /// The page that has more of it, under `docs/`.
     pub more: &'static str,
     /// Measures a case.
-    pub of: fn(Case, &Exec) -> Result<Measured>,
+    of: fn(&Subject<'_>) -> Result<Measured>,
 }
 
 /// What is found of a case.
@@ -93,6 +104,8 @@ pub struct Verdict {
     pub of: &'static Claim,
     /// What was found, in the order of [`CASES`].
     pub found: Vec<Measured>,
+    /// In how many cases it holds in each of [`FORMATS`]; none of a claim that is not about pictures.
+    pub stored: Vec<usize>,
 }
 
 /// Every claim.
@@ -103,29 +116,60 @@ pub fn claims() -> Vec<&'static Claim> {
     rooms.into_iter().flatten().collect()
 }
 
-impl Claim {
-    /// Measures every case. `progress` is told how many of how many are done.
-    ///
-    /// # Errors
-    /// As drawing the scenes.
-    pub fn verdict(&'static self, exec: &Exec, progress: &dyn Fn(u64, u64)) -> Result<Verdict> {
-        let count = CASES.len() as u64;
-        let found = (0..).zip(CASES).map(|(done, case)| {
-            progress(done, count);
-            (self.of)(case, exec)
-        });
-        Ok(Verdict { of: self, found: found.collect::<Result<_>>()? })
+/// Measures claims in every case, in `f32` and, those about pictures, in each of some formats. `progress` is told of
+/// which claim, and how many measurements are done.
+///
+/// # Errors
+/// As drawing the scenes.
+pub fn verdicts(
+    claims: &[&'static Claim],
+    formats: &[(&str, Formats)],
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<Vec<Verdict>> {
+    let none = |of: &&'static Claim| Verdict { of, found: Vec::new(), stored: Vec::new() };
+    let mut all: Vec<Verdict> = claims.iter().map(none).collect();
+    let count = (CASES.len() * claims.len()) as u64;
+    let mut done = 0;
+    for case in CASES {
+        // What the claims share of a case is made once.
+        let mut subject = Subject::new(case, exec)?;
+        for verdict in &mut all {
+            progress(verdict.of.id, done, count);
+            verdict.measure(&mut subject, formats)?;
+            done += 1;
+        }
     }
+    Ok(all)
 }
 
 impl Verdict {
+    /// Measures one more case.
+    fn measure(&mut self, subject: &mut Subject<'_>, formats: &[(&str, Formats)]) -> Result<()> {
+        subject.formats = Formats::WHOLE;
+        let found = (self.of.of)(subject)?;
+        if !found.pictures.is_empty() {
+            self.stored.resize(formats.len(), 0);
+            for (holds, (_, formats)) in self.stored.iter_mut().zip(formats) {
+                subject.formats = *formats;
+                *holds += usize::from(self.of.holds(&(self.of.of)(subject)?));
+            }
+        }
+        self.found.push(found);
+        Ok(())
+    }
+
     /// In how many cases it holds.
     #[must_use]
     pub fn holds(&self) -> usize {
-        let holds = |found: &&Measured| {
-            let [first, second] = found.numbers;
-            first <= self.of.at_most * second
-        };
-        self.found.iter().filter(holds).count()
+        self.found.iter().filter(|found| self.of.holds(found)).count()
+    }
+}
+
+impl Claim {
+    /// Whether it holds.
+    fn holds(&self, found: &Measured) -> bool {
+        let [first, second] = found.numbers;
+        first <= self.at_most * second
     }
 }

@@ -1,7 +1,7 @@
 //! \[BJFM19\]: prefixes of orders.
 
 use super::subject::{Subject, quiet};
-use super::{Case, Claim, Measured};
+use super::{Claim, Measured};
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::source::sampler::{Greedy, Progressive, Schedule, Start, quality, shuffled};
@@ -53,9 +53,9 @@ pub(super) const CLAIMS: [Claim; 4] = [
 ];
 
 /// Points on the shape, a hundred for each row of the picture.
-fn points(case: Case, exec: &Exec) -> Result<Vec<Vec3>> {
-    let count = 100 * case.rows as usize;
-    Ok(Subject::new(Case { count, ..case }, exec)?.scene.surfels.position().to_vec())
+fn points(subject: &Subject<'_>) -> Result<Vec<Vec3>> {
+    let count = 100 * subject.case.rows as usize;
+    Ok(subject.of_count(count)?.scene.surfels.position().to_vec())
 }
 
 /// Progressive sampling as the paper says.
@@ -70,8 +70,8 @@ fn covering(points: &[Vec3], prefix: &[u32], exec: &Exec) -> Result<f64> {
     Ok(f64::from(quality(points, prefix, exec)?.covering).sqrt())
 }
 
-fn against_random(case: Case, exec: &Exec) -> Result<Measured> {
-    let points = points(case, exec)?;
+fn against_random(subject: &Subject<'_>) -> Result<Measured> {
+    let (points, exec) = (points(subject)?, subject.exec);
     let count = points.len() / 20;
     let (first, second) =
         (progressive().order(&points, count, &quiet)?, shuffled(&points, 0, count)?);
@@ -79,8 +79,8 @@ fn against_random(case: Case, exec: &Exec) -> Result<Measured> {
     Ok(Measured { numbers, pictures: Vec::new() })
 }
 
-fn against_greedy(case: Case, exec: &Exec) -> Result<Measured> {
-    let points = points(case, exec)?;
+fn against_greedy(subject: &Subject<'_>) -> Result<Measured> {
+    let (points, exec) = (points(subject)?, subject.exec);
     let count = points.len() / 20;
     let (first, second) =
         (progressive().order(&points, count, &quiet)?, EXACT.order(&points, count, exec, &quiet)?);
@@ -88,8 +88,8 @@ fn against_greedy(case: Case, exec: &Exec) -> Result<Measured> {
     Ok(Measured { numbers, pictures: Vec::new() })
 }
 
-fn quarter(case: Case, exec: &Exec) -> Result<Measured> {
-    let points = points(case, exec)?;
+fn quarter(subject: &Subject<'_>) -> Result<Measured> {
+    let (points, exec) = (points(subject)?, subject.exec);
     let order = EXACT.order(&points, points.len() / 5, exec, &quiet)?.index;
     let apart = |part: usize| -> Result<f64> {
         Ok(f64::from(quality(&points, &order[..points.len() / part], exec)?.packing).sqrt())
@@ -99,8 +99,8 @@ fn quarter(case: Case, exec: &Exec) -> Result<Measured> {
     Ok(Measured { numbers: [ratio, 1.0], pictures: Vec::new() })
 }
 
-fn speed(case: Case, exec: &Exec) -> Result<Measured> {
-    let points = points(case, exec)?;
+fn speed(subject: &Subject<'_>) -> Result<Measured> {
+    let (points, exec) = (points(subject)?, subject.exec);
     let count = points.len() / 10;
     let mut times = [Vec::new(), Vec::new()];
     for _ in 0..5 {

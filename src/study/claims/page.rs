@@ -1,6 +1,6 @@
 //! The page of the claims and its pictures.
 
-use super::{CASES, Verdict};
+use super::{CASES, FORMATS, Verdict};
 use crate::frame::Plane;
 use crate::study::atlas::{beside, short};
 use std::fmt::Write;
@@ -16,6 +16,10 @@ row says so. Each is measured on nine cases: a sphere, a torus and a cluster of 
 claim is about more, in pictures of 120, 180 and 300 rows. *Holds* tells in how many of the nine. The numbers are the
 pair of each shape at 180 rows. A claim that has no number in its paper is read as weakly as its words allow: better is
 less error. Where the words are *similar*, *slightly* or *hardly*, the limit is of this page, and stands in the row.
+
+The numbers and *holds* are of buffers in `f32`. The columns after it judge the claim once more with buffers that the papers'
+GPUs had: half floats with depths of 24 bits, and 8 bits with depths of 16. Only the methods draw into them; what they are compared with
+stays the same. A claim that is not about pictures has a dash.
 
 This page is made by `splatref study claims -o docs`. Errors are the same on every machine, and a test holds the page
 against them. Rows with *ms* are times of the machine that made the page, on a CPU with two threads; the papers' were
@@ -37,8 +41,12 @@ pub struct Files {
 #[must_use]
 pub fn page(verdicts: &[Verdict]) -> Files {
     let mut text = INTRODUCTION.to_owned();
-    text.push_str("| claim | from | measured | sphere | torus | cluster | holds | more |\n");
-    text.push_str("|---|---|---|---|---|---|---|---|\n");
+    let formats = FORMATS.map(|(name, _)| format!("in {name} |")).join(" ");
+    let _ = writeln!(
+        text,
+        "| claim | from | measured | sphere | torus | cluster | holds | {formats} more |"
+    );
+    let _ = writeln!(text, "|{}", "---|".repeat(8 + FORMATS.len()));
     let mut pictures = Vec::new();
     for verdict in verdicts {
         let super::Claim { id, from, says, measured, more, .. } = verdict.of;
@@ -51,11 +59,15 @@ pub fn page(verdicts: &[Verdict]) -> Files {
             let [first, second] = verdict.found[MIDDLE + 3 * shape].numbers;
             format!("{}; {}", short(first), short(second))
         });
+        let stored = (0..FORMATS.len())
+            .map(|i| verdict.stored.get(i).map_or_else(|| "-".into(), |holds| in_words(*holds)));
+        let stored: Vec<String> = stored.collect();
         let pairs = pairs.collect::<Vec<_>>().join(" | ");
         let _ = writeln!(
             text,
-            "| {name} | {from} | {measured} | {pairs} | {} | [{more}]({more}) |",
-            outcome(verdict)
+            "| {name} | {from} | {measured} | {pairs} | {} | {} | [{more}]({more}) |",
+            outcome(verdict),
+            stored.join(" | "),
         );
         pictures.extend(seen.map(|seen| (*id, seen)));
     }
@@ -68,7 +80,11 @@ const MIDDLE: usize = 1;
 /// In words.
 #[must_use]
 pub fn outcome(verdict: &Verdict) -> String {
-    match verdict.holds() {
+    in_words(verdict.holds())
+}
+
+fn in_words(holds: usize) -> String {
+    match holds {
         0 => "no".into(),
         all if all == CASES.len() => "yes".into(),
         some => format!("{some} of {}", CASES.len()),

@@ -4,10 +4,12 @@ use super::Case;
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Frame, Plane};
 use crate::index::grouping::{Extension, Grouping, Rules};
+use crate::method::stored::Formats;
 use crate::method::{Method, Session};
 use crate::scene::{Camera, Cloud, Scene, Similarity, Surfels};
 use crate::study::truth::{Surface, of_surfaces};
 use crate::verify::metrics::{Errors, Metric};
+use std::cell::OnceCell;
 use std::time::Instant;
 
 /// Progress that nobody sees.
@@ -15,10 +17,13 @@ pub(super) fn quiet(_: &str, _: u64, _: u64) {}
 
 /// A scene before a camera.
 pub(super) struct Subject<'e> {
-    case: Case,
+    pub(super) case: Case,
+    /// How passes store what they leave.
+    pub(super) formats: Formats,
     pub(super) scene: Scene,
     pub(super) camera: Camera,
     pub(super) exec: &'e Exec,
+    truth: OnceCell<Frame<f32>>,
 }
 
 /// Groups of the overlap c; a given number of them, or as many as that takes.
@@ -31,15 +36,22 @@ impl<'e> Subject<'e> {
         let Case { shape, count, rows } = case;
         let camera = Camera::new(rows * 4 / 3, rows, shape.default_pose(), shape.default_lens())?;
         let scene = Scene::lit(shape.name(), shape.surfels(count, 0)?);
-        Ok(Self { case, scene, camera, exec })
+        Ok(Self { case, formats: Formats::WHOLE, scene, camera, exec, truth: OnceCell::new() })
+    }
+
+    /// The same of another count.
+    pub(super) fn of_count(&self, count: usize) -> Result<Self> {
+        let same = Self::new(Case { count, ..self.case }, self.exec)?;
+        Ok(Self { formats: self.formats, ..same })
     }
 
     /// The same, seen through.
-    pub(super) fn transparent(self) -> Result<Self> {
-        let cloud = self.scene.surfels.into_cloud();
+    pub(super) fn transparent(&self) -> Result<Self> {
+        let same = self.of_count(self.case.count)?;
+        let cloud = same.scene.surfels.into_cloud();
         let opacity = Some(vec![0.4; cloud.position.len()]);
         let surfels = Surfels::new(Cloud { opacity, ..cloud })?.0;
-        Ok(Self { scene: Scene::lit(self.case.shape.name(), surfels), ..self })
+        Ok(Self { scene: Scene::lit(self.case.shape.name(), surfels), ..same })
     }
 
     pub(super) fn session(&self, method: Method, groups: Option<&Grouping>) -> Result<Session<'_>> {
@@ -52,16 +64,33 @@ impl<'e> Subject<'e> {
         }
     }
 
+    /// The picture, in the formats.
     pub(super) fn draw(&self, method: Method, groups: Option<&Grouping>) -> Result<Frame<f32>> {
+        if self.formats.keep_all() {
+            return self.reference(method, groups);
+        }
+        Ok(self.session(method, groups)?.stored(&self.camera, self.formats, false)?.frame)
+    }
+
+    /// The picture in `f32`, which others are compared with.
+    pub(super) fn reference(
+        &self,
+        method: Method,
+        groups: Option<&Grouping>,
+    ) -> Result<Frame<f32>> {
         Ok(self.session(method, groups)?.render(&self.camera)?.frame.clone())
     }
 
     /// The exact picture.
-    pub(super) fn truth(&self) -> Result<Frame<f32>> {
+    pub(super) fn truth(&self) -> Result<&Frame<f32>> {
+        if let Some(known) = self.truth.get() {
+            return Ok(known);
+        }
         let shape = self.case.shape;
         let surface = Surface::Shape { shape, place: Similarity::IDENTITY, color: None };
         let view = (&self.camera, &[][..]);
-        Ok(of_surfaces(&[surface], &self.scene, false, view, self.exec, &quiet)?.frame)
+        let truth = of_surfaces(&[surface], &self.scene, false, view, self.exec, &quiet)?;
+        Ok(self.truth.get_or_init(|| truth.frame))
     }
 
     /// An error of a picture, by the name of a metric.

@@ -17,16 +17,38 @@ fn every_claim_is_of_a_page_that_is_there() {
     }
 }
 
-/// All that the page says of errors; the page is blessed by `splatref study claims -o docs`.
+fn kept() -> String {
+    let page = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/claims.md"));
+    lasting(&std::fs::read_to_string(page).unwrap())
+}
+
+fn of_errors() -> Vec<&'static Claim> {
+    claims().into_iter().filter(|claim| !claim.timed).collect()
+}
+
+/// A row without what is said of formats.
+fn in_f32(line: &str) -> String {
+    let cells: Vec<&str> = line.split('|').collect();
+    match cells.len() {
+        12 => [&cells[..8], &cells[10..]].concat().join("|"),
+        _ => line.to_owned(),
+    }
+}
+
 #[test]
 fn the_page_is_what_is_measured() {
     let exec = Exec::new(2, 32).unwrap();
-    let errors = claims().into_iter().filter(|claim| !claim.timed);
-    let verdicts: Vec<_> = errors.map(|claim| claim.verdict(&exec, &|_, _| ()).unwrap()).collect();
-    let kept = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/claims.md"));
-    let kept = std::fs::read_to_string(kept).unwrap();
-    for (now, then) in lasting(&page(&verdicts).text).lines().zip(lasting(&kept).lines()) {
-        assert_eq!(now, then, "splatref study claims -o docs");
-    }
-    assert_eq!(lasting(&page(&verdicts).text), lasting(&kept));
+    let measured = verdicts(&of_errors(), &[], &exec, &|_, _, _| ()).unwrap();
+    let (now, then) = (lasting(&page(&measured).text), kept());
+    let lines = |page: &str| page.lines().map(in_f32).collect::<Vec<_>>();
+    assert!(lines(&then).concat().len() < then.len(), "there are columns of formats");
+    assert_eq!(lines(&now), lines(&then), "splatref study claims -o docs");
+}
+
+#[test]
+#[ignore = "a minute: every picture stage by stage in two more formats; .ci/run runs it"]
+fn the_page_is_what_is_measured_in_every_format() {
+    let exec = Exec::new(2, 32).unwrap();
+    let measured = verdicts(&of_errors(), &FORMATS, &exec, &|_, _, _| ()).unwrap();
+    assert_eq!(lasting(&page(&measured).text), kept(), "splatref study claims -o docs");
 }

@@ -127,8 +127,7 @@ impl RawKey {
     }
 
     fn of(&(frame, ref place): &(u32, Similarity)) -> Self {
-        let RawTransform { scale, rotate, translate } =
-            RawTransform::of(place).unwrap_or_default();
+        let RawTransform { scale, rotate, translate } = RawTransform::of(place).unwrap_or_default();
         Self { frame, scale, rotate, translate }
     }
 }
