@@ -67,6 +67,8 @@ pub enum DepthBuffer {
     /// `f32`: as they are.
     #[default]
     F32,
+    /// Half floats of the depth t itself.
+    F16,
     /// 24 bits in [0, 1].
     Unorm24,
     /// 16 bits in [0, 1].
@@ -88,8 +90,12 @@ impl Words for Buffers {
 }
 
 impl Words for DepthBuffer {
-    const WORDS: &'static [(&'static str, Self)] =
-        &[("f32", Self::F32), ("unorm24", Self::Unorm24), ("unorm16", Self::Unorm16)];
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("f32", Self::F32),
+        ("f16", Self::F16),
+        ("unorm24", Self::Unorm24),
+        ("unorm16", Self::Unorm16),
+    ];
 }
 
 impl Formats {
@@ -205,6 +211,7 @@ impl DepthRange {
     fn store(&self, t: f64, format: DepthBuffer) -> f64 {
         let steps_of = match format {
             DepthBuffer::F32 => return t,
+            DepthBuffer::F16 => return half(t),
             DepthBuffer::Unorm24 => 16_777_215.0,
             DepthBuffer::Unorm16 => 65_535.0,
         };

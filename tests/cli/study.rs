@@ -51,7 +51,7 @@ fn a_study_says_the_same_again() {
     let all = a["candidates"].as_array().unwrap();
     let untimed: Vec<&str> =
         all.iter().filter(untimed).map(|one| one["options"].as_str().unwrap()).collect();
-    assert_eq!(untimed.len(), 4, "{untimed:?}");
+    assert_eq!(untimed.len(), 5, "{untimed:?}");
     assert!(untimed.iter().all(|options| options.contains("storage ")), "{untimed:?}");
     let page = fs::read_to_string(at.path().join("a/index.html")).unwrap();
     assert_eq!(page.matches("data:image/png").count(), rmse.len() - untimed.len() + 1);

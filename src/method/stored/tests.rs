@@ -66,7 +66,11 @@ fn a_depth_is_off_by_half_a_step_of_its_buffer() {
             assert!((linear - t).abs() <= 0.501 * 4.0 / count, "{t}: {linear}");
         }
     }
-    assert_eq!(range(true).store(f64::INFINITY, DepthBuffer::Unorm16), f64::INFINITY);
+    for format in [DepthBuffer::Unorm16, DepthBuffer::F16] {
+        assert_eq!(range(true).store(f64::INFINITY, format), f64::INFINITY);
+    }
+    assert_eq!(range(true).store(2.000_976, DepthBuffer::F16), 2.0);
+    assert_eq!(range(true).store(2.000_977, DepthBuffer::F16), 2.0 + 1.0 / 512.0);
     let ends = [1.0, 9.0].map(|t| range(true).store(t, DepthBuffer::Unorm24));
     assert_eq!(ends, [2.0, 6.0], "what lies beyond is at the end");
 }

@@ -62,8 +62,9 @@ pub const CASES: [Case; 9] = {
 };
 
 /// Formats that the papers' GPUs had, and what they are called.
-pub const FORMATS: [(&str, Formats); 2] = [
+pub const FORMATS: [(&str, Formats); 3] = [
     ("f16, 24 bits", Formats { buffers: Buffers::F16, depth: DepthBuffer::Unorm24 }),
+    ("f16, f16", Formats { buffers: Buffers::F16, depth: DepthBuffer::F16 }),
     ("unorm8, 16 bits", Formats { buffers: Buffers::Unorm8, depth: DepthBuffer::Unorm16 }),
 ];
 

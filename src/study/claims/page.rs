@@ -18,7 +18,8 @@ pair of each shape at 180 rows. A claim that has no number in its paper is read 
 less error. Where the words are *similar*, *slightly* or *hardly*, the limit is of this page, and stands in the row.
 
 The numbers and *holds* are of buffers in `f32`. The columns after it judge the claim once more with buffers that the papers'
-GPUs had: half floats with depths of 24 bits, and 8 bits with depths of 16. Only the methods draw into them; what they are compared with
+GPUs had: half floats with depths of 24 bits, half floats with depths in half floats as [MOC08, 4] has them, and 8 bits with
+depths of 16. Only the methods draw into them; what they are compared with
 stays the same. A claim that is not about pictures has a dash.
 
 This page is made by `splatref study claims -o docs`. Errors are the same on every machine, and a test holds the page

@@ -30,7 +30,7 @@ fn of_errors() -> Vec<&'static Claim> {
 fn in_f32(line: &str) -> String {
     let cells: Vec<&str> = line.split('|').collect();
     match cells.len() {
-        12 => [&cells[..8], &cells[10..]].concat().join("|"),
+        13 => [&cells[..8], &cells[11..]].concat().join("|"),
         _ => line.to_owned(),
     }
 }

@@ -7,3 +7,5 @@
 pub mod chart;
 pub mod csv;
 pub mod page;
+#[cfg(test)]
+mod tests;

@@ -61,7 +61,11 @@ pub const TRADES: &[Trade] = &[
     of_method("peel", &["4", "16", "64"]),
     Trade { setting: "number", of: Of::Output, values: &["f32", "f64"] },
     Trade { setting: "storage", of: Of::Output, values: &["f32", "f16", "unorm8"] },
-    Trade { setting: "depth_storage", of: Of::Output, values: &["f32", "unorm24", "unorm16"] },
+    Trade {
+        setting: "depth_storage",
+        of: Of::Output,
+        values: &["f32", "f16", "unorm24", "unorm16"],
+    },
 ];
 
 /// The settings that are not traded, and why not: with [`TRADES`] these are all there are.
