@@ -12,6 +12,8 @@ mod memory;
 mod pictures;
 mod plan;
 mod primitives;
+#[cfg(target_os = "linux")]
+mod progress;
 mod project;
 mod quality;
 mod refusals;
