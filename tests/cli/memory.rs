@@ -28,6 +28,7 @@ fn greedy(at: &TempDir) -> Vec<(Vec<&'static str>, &'static str)> {
             "2000 x 2000 pixels by ewa",
         ),
         (vec!["explain", "sphere", "9", "9", "--count", "3000000"], "sphere: 3000000 surfels"),
+        (vec!["group", "sphere", "--count", "400000", "-o", "g.ply"], "groups of 400000 surfels"),
     ]
 }
 

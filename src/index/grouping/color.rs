@@ -32,7 +32,7 @@ pub struct GroupingReport {
 ///
 /// # Errors
 /// [`Error::Invalid`] as [`Rules::check`]; if there would be more than [`MAX_GROUPS`]; if more than
-/// 64 pairs a surfel, and a million, overlap.
+/// 64 pairs a surfel, and a million, overlap; if the process may not hold what it takes.
 pub fn group(
     surfels: &Surfels,
     rules: &Rules,
@@ -40,8 +40,7 @@ pub fn group(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<(Groups, GroupingReport)> {
     rules.check()?;
-    progress("sorting surfels", 0, 1);
-    let tree = DiscTree::new(surfels, 0..surfels.len() as u32, exec);
+    let tree = DiscTree::of_all(surfels, exec, progress)?;
     Coloring { surfels, tree: &tree, rules, exec, progress }.group(None)
 }
 
@@ -49,7 +48,8 @@ pub fn group(
 /// defines it.
 ///
 /// # Errors
-/// [`Error::Invalid`] as [`Rules::check`], and if `count` is not in 1 to [`MAX_GROUPS`].
+/// [`Error::Invalid`] as [`Rules::check`], if `count` is not in 1 to [`MAX_GROUPS`], or if the process may not
+/// hold what it takes.
 pub fn group_into(
     surfels: &Surfels,
     rules: &Rules,
@@ -59,8 +59,7 @@ pub fn group_into(
 ) -> Result<(Groups, GroupingReport)> {
     rules.check()?;
     check_count(count)?;
-    progress("sorting surfels", 0, 1);
-    let tree = DiscTree::new(surfels, 0..surfels.len() as u32, exec);
+    let tree = DiscTree::of_all(surfels, exec, progress)?;
     Coloring { surfels, tree: &tree, rules, exec, progress }.group_into(count, None)
 }
 

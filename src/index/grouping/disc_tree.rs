@@ -11,6 +11,7 @@ use super::curve;
 use super::disc::SpaceDisc;
 use crate::error::Result;
 use crate::frame::Exec;
+use crate::memory;
 use crate::scene::Surfels;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
@@ -51,7 +52,23 @@ struct Bounds {
     r: f64,
 }
 
+/// Bytes of a surfel in the trees, its neighbours in two graphs, what is covered of it: 250 where it overlaps 12
+/// others.
+const OF_A_SURFEL: u64 = 512;
+
 impl DiscTree {
+    /// Of all surfels, for groups of them.
+    pub(super) fn of_all(
+        surfels: &Surfels,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Self> {
+        let count = surfels.len();
+        memory::ask(count as u64 * OF_A_SURFEL, || format!("groups of {count} surfels"))?;
+        progress("sorting surfels", 0, 1);
+        Ok(Self::new(surfels, 0..count as u32, exec))
+    }
+
     /// Of some surfels, by index in ascending order.
     pub(super) fn new(surfels: &Surfels, members: impl Iterator<Item = u32>, exec: &Exec) -> Self {
         let members: Vec<u32> = members.collect();

@@ -109,8 +109,7 @@ pub fn extend(
 ) -> Result<(Groups, Extended)> {
     extension.check()?;
     groups.check(surfels)?;
-    progress("sorting surfels", 0, 1);
-    let tree = DiscTree::new(surfels, 0..surfels.len() as u32, exec);
+    let tree = DiscTree::of_all(surfels, exec, progress)?;
     Work { surfels, tree: &tree, exec, progress }.extend(groups, extension, None)
 }
 

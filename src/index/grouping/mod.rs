@@ -189,8 +189,7 @@ impl Grouping {
         self.rules.check()?;
         self.extension.check()?;
         self.count.map_or(Ok(()), check_count)?;
-        progress("sorting surfels", 0, 1);
-        let tree = DiscTree::new(surfels, 0..surfels.len() as u32, exec);
+        let tree = DiscTree::of_all(surfels, exec, progress)?;
         // To be extended by surfels, groups need the graph of all that overlap, which has the edges
         // of every other one. If it has too many, there may be groups all the same.
         let overlaps = match self.extension {
