@@ -5,6 +5,7 @@ use super::{Ended, Ending, progress, report, say};
 use splatref::Error;
 use splatref::io::png;
 use splatref::io::replace::write_atomically;
+use splatref::io::scene_file::SceneFile;
 use splatref::study::claims::{FORMATS, Files, PICTURES, claims, outcome, page, verdicts};
 use std::fs;
 use std::io::Write;
@@ -12,8 +13,15 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 #[derive(clap::Args)]
-#[command(after_help = "Writes claims.md, and pictures beside it in claims/.")]
+#[command(after_help = "\
+Writes claims.md, and pictures beside it in claims/.
+
+Examples:
+  splatref study claims
+  splatref study claims bunny.ply dragon.ply -o docs")]
 pub(super) struct Args {
+    /// Scans to measure beside the shapes: scenes of surfels
+    scans: Vec<PathBuf>,
     /// Where the files go; made if it is not there
     #[arg(short, long, value_name = "DIR", default_value = "out/study")]
     output: PathBuf,
@@ -24,13 +32,17 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args) -> Ended {
     let start = Instant::now();
     let exec = args.exec.exec()?;
+    let scans = args.scans.iter().map(|path| SceneFile::open(path));
+    let scans = scans.collect::<splatref::Result<Vec<_>>>()?;
     let folder = args.output.join(PICTURES);
     fs::create_dir_all(&folder).map_err(|source| Error::io(&folder, source))?;
     let steps = progress::Steps::new("measuring");
-    let verdicts =
-        verdicts(&claims(), &FORMATS, &exec, &|what, done, of| steps.show(what, done, of))?;
+    let verdicts = verdicts(&claims(), (&scans, &FORMATS), &exec, &|what, done, of| {
+        steps.show(what, done, of)
+    })?;
     steps.show("writing", 0, 1);
-    let Files { text, pictures } = page(&verdicts);
+    let names: Vec<&str> = scans.iter().map(|scan| scan.name.as_str()).collect();
+    let Files { text, pictures } = page(&verdicts, &names);
     for (id, picture) in &pictures {
         png::write(&folder.join(id).with_extension("png"), picture, None)?;
     }

@@ -1,13 +1,13 @@
 //! What the five papers claim, measured.
 //!
 //! A [`Claim`] says that one number is at most a part of another, or at most a limit. Each is measured on nine
-//! [cases](CASES): three shapes in pictures of three sizes. A claim *holds* if it does in all nine, *fails* if in
-//! none, and else holds in so many of them.
+//! cases: three [shapes](SHAPES) in pictures of three [sizes](ROWS). A claim *holds* if it does in all nine, *fails* if
+//! in none, and else holds in so many of them. Scans are cases too, where somebody has some.
 //!
 //! `Decided:` a claim that has no number in its paper is read as weakly as its words allow: "better" is less
 //! error. Where words say "nearly as" or "similar", the limit is of this page, and stands in the claim.
 //!
-//! Claims about pictures are judged in storage [formats](FORMATS) of the papers' time too: the methods draw in them, and
+//! Claims about pictures of shapes are judged in storage [formats](FORMATS) of the papers' time too: the methods draw in them, and
 //! are compared with the same true picture, or with the same reference in `f32`.
 //!
 //! The page is `docs/claims.md`, made by `splatref study claims -o docs`. Errors are the same on every
@@ -26,40 +26,43 @@ pub use page::{Files, PICTURES, outcome, page};
 
 use crate::error::Result;
 use crate::frame::{Exec, Plane};
+use crate::io::scene_file::SceneFile;
 use crate::method::stored::{Buffers, DepthBuffer, Formats};
 use crate::source::Shape;
 use subject::Subject;
 
-/// A shape in so many surfels and a picture of so many rows, 4/3 as many columns.
-#[derive(Clone, Copy, Debug)]
+/// What is drawn, in a picture of so many rows, 4/3 as many columns.
+#[derive(Clone, Debug)]
 pub struct Case {
-    /// Which shape.
-    pub shape: Shape,
-    /// Its surfels.
-    pub count: usize,
+    /// What is drawn.
+    pub of: Drawn,
     /// The rows of the picture.
     pub rows: u32,
 }
 
-/// The cases of every claim.
-pub const CASES: [Case; 9] = {
-    const fn case(shape: Shape, rows: u32) -> Case {
-        Case { shape, count: 10_000, rows }
-    }
-    const SHAPES: [Shape; 3] = [Shape::Sphere, Shape::Torus, Shape::Cluster];
-    const ROWS: [u32; 3] = [120, 180, 300];
-    [
-        case(SHAPES[0], ROWS[0]),
-        case(SHAPES[0], ROWS[1]),
-        case(SHAPES[0], ROWS[2]),
-        case(SHAPES[1], ROWS[0]),
-        case(SHAPES[1], ROWS[1]),
-        case(SHAPES[1], ROWS[2]),
-        case(SHAPES[2], ROWS[0]),
-        case(SHAPES[2], ROWS[1]),
-        case(SHAPES[2], ROWS[2]),
-    ]
-};
+/// What is drawn.
+#[derive(Clone, Debug)]
+pub enum Drawn {
+    /// A shape in so many surfels.
+    Shape(Shape, usize),
+    /// The surfels of a scene, as it draws them: a scan.
+    Scan(Box<SceneFile>),
+}
+
+/// The shapes of the first cases, each of [`COUNT`] surfels.
+pub const SHAPES: [Shape; 3] = [Shape::Sphere, Shape::Torus, Shape::Cluster];
+/// The surfels of a shape.
+pub const COUNT: usize = 10_000;
+/// The rows of the pictures, of each shape and each scan.
+pub const ROWS: [u32; 3] = [120, 180, 300];
+
+/// The cases of every claim: the shapes, then some scans, each in pictures of all sizes.
+fn cases(scans: &[SceneFile]) -> Vec<Case> {
+    let shapes = SHAPES.into_iter().map(|shape| Drawn::Shape(shape, COUNT));
+    let scans = scans.iter().map(|scan| Drawn::Scan(Box::new(scan.clone())));
+    let all = shapes.chain(scans);
+    all.flat_map(|of| ROWS.map(|rows| Case { of: of.clone(), rows })).collect()
+}
 
 /// Formats that the papers' GPUs had, and what they are called.
 pub const FORMATS: [(&str, Formats); 3] = [
@@ -103,9 +106,9 @@ pub struct Measured {
 pub struct Verdict {
     /// Of which claim.
     pub of: &'static Claim,
-    /// What was found, in the order of [`CASES`].
+    /// What was found of each shape in each size, then of each scan in each size.
     pub found: Vec<Measured>,
-    /// In how many cases it holds in each of [`FORMATS`]; none of a claim that is not about pictures.
+    /// In how many cases of shapes it holds in each of [`FORMATS`]; none of a claim that is not about pictures.
     pub stored: Vec<usize>,
 }
 
@@ -117,22 +120,24 @@ pub fn claims() -> Vec<&'static Claim> {
     rooms.into_iter().flatten().collect()
 }
 
-/// Measures claims in every case, in `f32` and, those about pictures, in each of some formats. `progress` is told of
-/// which claim, and how many measurements are done.
+/// Measures claims in every case, in `f32` and, those about pictures of shapes, in each of some formats. `progress` is
+/// told of which claim, and how many measurements are done.
 ///
 /// # Errors
-/// As drawing the scenes.
+/// [`crate::Error::Invalid`] if a scan is not of surfels alone; else as drawing the scenes.
 pub fn verdicts(
     claims: &[&'static Claim],
-    formats: &[(&str, Formats)],
+    (scans, formats): (&[SceneFile], &[(&str, Formats)]),
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Vec<Verdict>> {
     let none = |of: &&'static Claim| Verdict { of, found: Vec::new(), stored: Vec::new() };
     let mut all: Vec<Verdict> = claims.iter().map(none).collect();
-    let count = (CASES.len() * claims.len()) as u64;
+    let cases = cases(scans);
+    let count = (cases.len() * claims.len()) as u64;
     let mut done = 0;
-    for case in CASES {
+    for case in cases {
+        let formats = if matches!(case.of, Drawn::Shape(..)) { formats } else { &[] };
         // What the claims share of a case is made once.
         let mut subject = Subject::new(case, exec)?;
         for verdict in &mut all {
@@ -149,7 +154,7 @@ impl Verdict {
     fn measure(&mut self, subject: &mut Subject<'_>, formats: &[(&str, Formats)]) -> Result<()> {
         subject.formats = Formats::WHOLE;
         let found = (self.of.of)(subject)?;
-        if !found.pictures.is_empty() {
+        if !found.pictures.is_empty() && !formats.is_empty() {
             self.stored.resize(formats.len(), 0);
             for (holds, (_, formats)) in self.stored.iter_mut().zip(formats) {
                 subject.formats = *formats;
@@ -160,10 +165,14 @@ impl Verdict {
         Ok(())
     }
 
-    /// In how many cases it holds.
-    #[must_use]
-    pub fn holds(&self) -> usize {
-        self.found.iter().filter(|found| self.of.holds(found)).count()
+    /// In how many of some cases it holds.
+    fn holds(&self, found: &[Measured]) -> usize {
+        found.iter().filter(|found| self.of.holds(found)).count()
+    }
+
+    /// What was found of shapes, and of scans.
+    fn parts(&self) -> (&[Measured], &[Measured]) {
+        self.found.split_at(SHAPES.len() * ROWS.len())
     }
 }
 

@@ -1,6 +1,6 @@
 //! The page of the claims and its pictures.
 
-use super::{CASES, FORMATS, Verdict};
+use super::{FORMATS, Measured, ROWS, SHAPES, Verdict};
 use crate::frame::Plane;
 use crate::study::atlas::{beside, short};
 use std::fmt::Write;
@@ -13,7 +13,7 @@ const INTRODUCTION: &str = "\
 
 Every claim is a comparison of two numbers: the first is to be at most the second, or at most so many times the second where the
 row says so. Each is measured on nine cases: a sphere, a torus and a cluster of spheres, of 10,000 surfels unless the
-claim is about more, in pictures of 120, 180 and 300 rows. *Holds* tells in how many of the nine. The numbers are the
+claim is about more, in pictures of 120, 180 and 300 rows. *Holds* tells in how many of the nine; scans have a table below. The numbers are the
 pair of each shape at 180 rows. A claim that has no number in its paper is read as weakly as its words allow: better is
 less error. Where the words are *similar*, *slightly* or *hardly*, the limit is of this page, and stands in the row.
 
@@ -22,7 +22,7 @@ GPUs had: half floats with depths of 24 bits, half floats with depths in half fl
 depths of 16. Only the methods draw into them; what they are compared with
 stays the same. A claim that is not about pictures has a dash.
 
-This page is made by `splatref study claims -o docs`. Errors are the same on every machine, and a test holds the page
+This page is made by `splatref study claims bunny.ply igea.ply fandisk.ply -o docs`. Errors are the same on every machine, and a test holds the page
 against them. Rows with *ms* are times of the machine that made the page, on a CPU with two threads; the papers' were
 of GPUs. The pages in the last column have scans, more settings and the papers' own numbers.
 
@@ -38,32 +38,31 @@ pub struct Files {
     pub pictures: Vec<(&'static str, Plane<[f32; 3]>)>,
 }
 
-/// The page of some claims.
+/// The page of some claims, measured of the shapes and of these scans.
 #[must_use]
-pub fn page(verdicts: &[Verdict]) -> Files {
+pub fn page(verdicts: &[Verdict], scans: &[&str]) -> Files {
     let mut text = INTRODUCTION.to_owned();
     let formats = FORMATS.map(|(name, _)| format!("in {name} |")).join(" ");
     let _ = writeln!(
         text,
-        "| claim | from | measured | sphere | torus | cluster | holds | {formats} more |"
+        "| claim | from | measured | {} | holds | {formats} more |",
+        SHAPES.map(|shape| shape.name()).join(" | ")
     );
     let _ = writeln!(text, "|{}", "---|".repeat(8 + FORMATS.len()));
     let mut pictures = Vec::new();
     for verdict in verdicts {
         let super::Claim { id, from, says, measured, more, .. } = verdict.of;
-        let seen = beside(&verdict.found[MIDDLE].pictures);
+        let (shapes, _) = verdict.parts();
+        let seen = beside(&shapes[MIDDLE].pictures);
         let name = match seen {
             Some(_) => format!("[{says}]({PICTURES}/{id}.png)"),
             None => (*says).to_owned(),
         };
-        let pairs = (0..3).map(|shape| {
-            let [first, second] = verdict.found[MIDDLE + 3 * shape].numbers;
-            format!("{}; {}", short(first), short(second))
+        let stored = (0..FORMATS.len()).map(|i| {
+            verdict.stored.get(i).map_or_else(|| "-".into(), |&holds| in_words(holds, shapes.len()))
         });
-        let stored = (0..FORMATS.len())
-            .map(|i| verdict.stored.get(i).map_or_else(|| "-".into(), |holds| in_words(*holds)));
         let stored: Vec<String> = stored.collect();
-        let pairs = pairs.collect::<Vec<_>>().join(" | ");
+        let pairs = pairs(shapes);
         let _ = writeln!(
             text,
             "| {name} | {from} | {measured} | {pairs} | {} | {} | [{more}]({more}) |",
@@ -72,23 +71,57 @@ pub fn page(verdicts: &[Verdict]) -> Files {
         );
         pictures.extend(seen.map(|seen| (*id, seen)));
     }
+    if !scans.is_empty() {
+        of_scans(verdicts, scans, &mut text);
+    }
     Files { text, pictures }
 }
 
-/// The case of a shape whose numbers are shown.
-const MIDDLE: usize = 1;
+const SCANS: &str = "
+## Scans
 
-/// In words.
-#[must_use]
-pub fn outcome(verdict: &Verdict) -> String {
-    in_words(verdict.holds())
+The same claims of scans, as they are: a surfel a triangle, the triangles are the truth. The numbers are in the order of
+the table above, those of 180 rows.
+
+";
+
+/// The table of the scans.
+fn of_scans(verdicts: &[Verdict], scans: &[&str], text: &mut String) {
+    text.push_str(SCANS);
+    let _ = writeln!(text, "| claim | measured | {} | holds |", scans.join(" | "));
+    let _ = writeln!(text, "|{}", "---|".repeat(3 + scans.len()));
+    for verdict in verdicts {
+        let (_, found) = verdict.parts();
+        let super::Claim { id, measured, .. } = verdict.of;
+        let holds = in_words(verdict.holds(found), found.len());
+        let _ = writeln!(text, "| {id} | {measured} | {} | {holds} |", pairs(found));
+    }
 }
 
-fn in_words(holds: usize) -> String {
+/// The pairs of numbers of the middle size, as cells.
+fn pairs(found: &[Measured]) -> String {
+    let of = found.chunks(ROWS.len()).map(|sizes| {
+        let [first, second] = sizes[MIDDLE].numbers;
+        format!("{}; {}", short(first), short(second))
+    });
+    of.collect::<Vec<_>>().join(" | ")
+}
+
+/// The size whose numbers are shown.
+const MIDDLE: usize = 1;
+
+/// In how many of the cases of shapes it holds, in words.
+#[must_use]
+pub fn outcome(verdict: &Verdict) -> String {
+    let (shapes, _) = verdict.parts();
+    in_words(verdict.holds(shapes), shapes.len())
+}
+
+fn in_words(holds: usize, of: usize) -> String {
     match holds {
         0 => "no".into(),
-        all if all == CASES.len() => "yes".into(),
-        some => format!("{some} of {}", CASES.len()),
+        all if all == of => "yes".into(),
+        some => format!("{some} of {of}"),
     }
 }
 

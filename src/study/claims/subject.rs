@@ -1,12 +1,14 @@
 //! A case as a scene: its picture by a method, its true picture, its time.
 
-use super::Case;
+use super::{Case, Drawn};
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Frame, Plane};
 use crate::index::grouping::{Extension, Grouping, Rules};
+use crate::io::scene_file::{CameraChoice, Ready, SceneFile};
 use crate::method::stored::Formats;
 use crate::method::{Method, Session};
 use crate::scene::{Camera, Cloud, Scene, Similarity, Surfels};
+use crate::study::run::truths::Known;
 use crate::study::truth::{Surface, of_surfaces};
 use crate::verify::metrics::{Errors, Metric};
 use std::cell::OnceCell;
@@ -33,25 +35,50 @@ pub(super) fn groups(overlap: f32, count: Option<usize>, extension: Extension) -
 
 impl<'e> Subject<'e> {
     pub(super) fn new(case: Case, exec: &'e Exec) -> Result<Self> {
-        let Case { shape, count, rows } = case;
-        let camera = Camera::new(rows * 4 / 3, rows, shape.default_pose(), shape.default_lens())?;
-        let scene = Scene::lit(shape.name(), shape.surfels(count, 0)?);
+        let size = [case.rows * 4 / 3, case.rows];
+        let (scene, camera) = match &case.of {
+            &Drawn::Shape(shape, count) => {
+                let (pose, lens) = (shape.default_pose(), shape.default_lens());
+                let camera = Camera::new(size[0], size[1], pose, lens)?;
+                (Scene::lit(shape.name(), shape.surfels(count, 0)?), camera)
+            }
+            Drawn::Scan(file) => {
+                let camera = CameraChoice { size: Some(size), ..file.camera.clone() };
+                let file = SceneFile { camera, ..(**file).clone() };
+                let Ready { loaded, camera, .. } = file.ready(exec, &quiet)?;
+                if loaded.scene.objects.is_some() || !loaded.scene.primitives.is_empty() {
+                    let what = format!("{}: claims are of scenes of surfels alone", file.name);
+                    return Err(Error::Invalid(what));
+                }
+                (loaded.scene, camera)
+            }
+        };
         Ok(Self { case, formats: Formats::WHOLE, scene, camera, exec, truth: OnceCell::new() })
     }
 
-    /// The same of another count.
+    /// The same view of other surfels.
+    fn with(&self, surfels: Surfels) -> Self {
+        Self {
+            case: self.case.clone(),
+            scene: Scene { surfels, ..self.scene.clone() },
+            truth: OnceCell::new(),
+            ..*self
+        }
+    }
+
+    /// The same shape of another count; a scan as it is.
     pub(super) fn of_count(&self, count: usize) -> Result<Self> {
-        let same = Self::new(Case { count, ..self.case }, self.exec)?;
-        Ok(Self { formats: self.formats, ..same })
+        Ok(self.with(match self.case.of {
+            Drawn::Shape(shape, _) => shape.surfels(count, 0)?,
+            Drawn::Scan(_) => self.scene.surfels.clone(),
+        }))
     }
 
     /// The same, seen through.
     pub(super) fn transparent(&self) -> Result<Self> {
-        let same = self.of_count(self.case.count)?;
-        let cloud = same.scene.surfels.into_cloud();
+        let cloud = self.scene.surfels.clone().into_cloud();
         let opacity = Some(vec![0.4; cloud.position.len()]);
-        let surfels = Surfels::new(Cloud { opacity, ..cloud })?.0;
-        Ok(Self { scene: Scene::lit(self.case.shape.name(), surfels), ..same })
+        Ok(self.with(Surfels::new(Cloud { opacity, ..cloud })?.0))
     }
 
     pub(super) fn session(&self, method: Method, groups: Option<&Grouping>) -> Result<Session<'_>> {
@@ -81,15 +108,22 @@ impl<'e> Subject<'e> {
         Ok(self.session(method, groups)?.render(&self.camera)?.frame.clone())
     }
 
-    /// The exact picture.
+    /// The true picture: of a shape the exact one.
     pub(super) fn truth(&self) -> Result<&Frame<f32>> {
         if let Some(known) = self.truth.get() {
             return Ok(known);
         }
-        let shape = self.case.shape;
-        let surface = Surface::Shape { shape, place: Similarity::IDENTITY, color: None };
-        let view = (&self.camera, &[][..]);
-        let truth = of_surfaces(&[surface], &self.scene, false, view, self.exec, &quiet)?;
+        let truth = match &self.case.of {
+            &Drawn::Shape(shape, _) => {
+                let surface = Surface::Shape { shape, place: Similarity::IDENTITY, color: None };
+                let view = (&self.camera, &[][..]);
+                of_surfaces(&[surface], &self.scene, false, view, self.exec, &quiet)?
+            }
+            Drawn::Scan(file) => {
+                let known = Known::of(file, &self.scene, self.exec, &quiet)?;
+                known.still(&self.camera, self.exec, &quiet)?
+            }
+        };
         Ok(self.truth.get_or_init(|| truth.frame))
     }
 
