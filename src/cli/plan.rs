@@ -4,6 +4,8 @@ use super::study::loss;
 use super::tried::{Loaded, Tried, truth_in_words};
 use super::{Ended, Ending, output, progress, report, say};
 use splatref::io::replace::write_atomically;
+use splatref::io::scene_file::{GroupChoice, MethodChoice};
+use splatref::setting::Setting;
 use splatref::study::plan::{Budget, Known as Row, choose};
 use splatref::study::report::chart::Loss;
 use splatref::study::sweep::Candidate;
@@ -108,7 +110,7 @@ fn print(args: &Args, budget: Budget, candidates: &[Candidate], rows: &[Row]) ->
     }
     report::line(
         "command",
-        format!("splatref render {}{}", own_options(), candidates[best].options),
+        format!("splatref render {}{}", own_options(&candidates[best]), candidates[best].options),
     );
     if let Some(path) = &args.output {
         let text = candidates[best].file.text(path)?;
@@ -118,32 +120,36 @@ fn print(args: &Args, budget: Budget, candidates: &[Candidate], rows: &[Row]) ->
     Ok(Ending::Good)
 }
 
-/// The options that `render` does not take, or that the plan replaces; each has a value.
-const LEFT: [&str; 7] = ["--error", "--time", "--metric", "--truth", "--method", "--output", "-o"];
+/// The options that `render` does not take; each has a value.
+const LEFT: [&str; 6] = ["--error", "--time", "--metric", "--truth", "--output", "-o"];
 
-/// The options of this command that `render` takes too, and the scene.
-fn own_options() -> String {
-    let mut all = std::env::args().skip(1).peekable();
-    let mut kept = String::new();
-    let mut first = true;
-    while let Some(option) = all.next() {
-        if first && option == "plan" {
-            first = false;
-            continue;
-        }
-        let (name, has_value) = match option.split_once('=') {
-            Some((name, _)) => (name.to_owned(), true),
-            None => (option.clone(), false),
+/// The scene and the options of this command that `render` takes with those of a candidate: not what the
+/// candidate says too, nor what means nothing to its method.
+fn own_options(chosen: &Candidate) -> String {
+    let rows: Vec<_> = MethodChoice::rows().into_iter().chain(GroupChoice::rows()).collect();
+    let replaced: Vec<&str> = chosen.options.split([' ', '=']).collect();
+    let mut all = std::env::args().skip(1);
+    let (mut kept, mut begun) = (String::new(), false);
+    while let Some(word) = all.next() {
+        let (name, with_value) = match word.split_once('=') {
+            Some((name, _)) => (name, true),
+            None => (word.as_str(), false),
         };
-        let attached = option.starts_with("-o") && option.len() > 2;
-        if LEFT.contains(&name.as_str()) || attached {
-            if !has_value && !attached {
+        let attached = word.starts_with("-o") && word.len() > 2;
+        let row = rows.iter().find(|row| name.strip_prefix("--") == Some(&row.option));
+        let means_nothing =
+            row.is_some_and(|row| row.owners.iter().all(|(owner, _)| *owner != chosen.method));
+        let is_said = name.starts_with("--") && replaced.contains(&name);
+        if !begun && word == "plan" {
+            begun = true;
+        } else if means_nothing || is_said || attached || LEFT.contains(&name) {
+            if !with_value && !attached && !row.is_some_and(Setting::is_switch) {
                 all.next();
             }
-            continue;
+        } else {
+            kept.push_str(&quoted(&word));
+            kept.push(' ');
         }
-        kept.push_str(&quoted(&option));
-        kept.push(' ');
     }
     kept
 }

@@ -49,6 +49,27 @@ fn what_is_planned_is_within_the_budget_and_can_be_drawn() {
     assert!(error(line(&similar, "plan ")) <= 0.999, "{similar}");
 }
 
+/// What the plan replaces, or what means nothing to its method, is not in the command.
+#[test]
+fn the_command_draws_what_the_scene_file_draws() {
+    let at = tempfile::tempdir().unwrap();
+    let all: [&[&str]; 3] = [
+        &["--cutoff", "1.5", "--cull=off", "--error", "9"],
+        &["--cutoff", "1.5", "--time", "1000s"],
+        &["--method", "single-pass", "--overlap", "0.5", "--error", "9"],
+    ];
+    for own in all {
+        let said =
+            succeeds(at.path(), &[&SCENE[..], &["rmse"], own, &["-o", "best.toml"]].concat());
+        let command = line(&said, "command ").strip_prefix("splatref ").unwrap();
+        let words: Vec<&str> = command.split(' ').collect();
+        succeeds(at.path(), &[&words[..], &["-o", "a.exr"]].concat());
+        succeeds(at.path(), &["render", "best.toml", "-o", "b.exr"]);
+        let equal = succeeds(at.path(), &["compare", "a.exr", "b.exr"]);
+        assert!(equal.contains("bit for bit"), "{command}: {equal}");
+    }
+}
+
 #[test]
 fn what_nothing_meets_is_said() {
     let at = tempfile::tempdir().unwrap();

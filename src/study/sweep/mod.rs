@@ -3,8 +3,8 @@
 //! A [`Candidate`] is the scene with some options on top, and is called by these options. The
 //! candidates of a scene, in this order, no two alike:
 //!
-//! 1. each method of the table of methods, as the scene has set it if it is the scene's, else with
-//!    its default settings;
+//! 1. each method of the table of methods, with what the scene has set that means something to it, as the
+//!    option `--method` has it;
 //! 2. each of them at every other [level of detail](DETAILS) that the scene has: points in an order
 //!    at other sizes of surfels, shapes of fewer surfels;
 //! 3. each method with one setting at another [value](TRADES), setting by setting, and for each
@@ -23,7 +23,7 @@ mod trades;
 pub use trades::{DETAILS, Details, NOT_TRADED, Of, TRADES, Trade};
 
 use crate::error::{Error, Result};
-use crate::io::scene_file::{GroupChoice, MethodChoice, OutputSettings, SceneFile, Source};
+use crate::io::scene_file::{Choice, GroupChoice, MethodChoice, OutputSettings, SceneFile, Source};
 use crate::method::Method;
 use crate::setting::{Fields, Setting};
 
@@ -73,11 +73,10 @@ pub fn candidates(scene: &SceneFile, only: Option<&str>) -> Result<Vec<Candidate
 /// A method in a scene.
 fn start(scene: &SceneFile, name: &'static str) -> Result<Candidate> {
     let mut file = scene.clone();
-    let own = scene.method.method()?.name() == name;
-    if !own {
-        file.method = MethodChoice { name: Some(name), ..MethodChoice::default() };
-        file.groups = GroupChoice::default();
-    }
+    file.method.replace(name)?;
+    let groups = file.method.method()?.grouping();
+    file.groups.settings =
+        groups.map_or_else(Choice::default, |groups| file.groups.settings.fitting(groups));
     // What else is kept or how is no question of this study.
     file.output = OutputSettings {
         number: scene.output.number,

@@ -1,4 +1,5 @@
 use super::*;
+use crate::setting::Value;
 use std::collections::BTreeSet;
 
 fn shape(name: &str) -> SceneFile {
@@ -89,6 +90,22 @@ fn the_scene_s_method_is_tried_as_the_scene_has_set_it() {
     let outlines: Vec<_> = all.iter().filter(|one| one.options.contains("--outline")).collect();
     let words: Vec<_> = outlines.iter().map(|one| one.options.as_str()).collect();
     assert_eq!(words, ["--method ewa --outline affine", "--method ewa --outline perspective"]);
+}
+
+#[test]
+fn what_the_scene_sets_is_set_in_every_method_that_has_it() {
+    let mut scene = shape("torus");
+    scene.method.settings.push("cutoff", Value::Number(1.0));
+    scene.groups.settings.push("overlap", Value::Number(0.25));
+    let all = candidates(&scene, None).unwrap();
+    let first = |name: &str| all.iter().find(|one| one.method == name).unwrap();
+    for name in ["ewa", "single-pass", "deferred"] {
+        let method = first(name).file.method.method().unwrap();
+        assert!(method.values().contains(&("cutoff", Value::Number(1.0))), "{name}");
+    }
+    assert!(first("pyramid").file.method.settings.is_empty());
+    assert!(first("pyramid").file.groups.settings.is_empty());
+    assert!(first("single-pass").file.groups.settings.has("overlap"));
 }
 
 #[test]
