@@ -115,11 +115,12 @@ fn bounds(distance: f64, cured: bool, _: &Exec) -> Result<Found> {
     let focal = 0.25 * f64::from(SIDE) * distance;
     let camera = ahead(SIDE, focal.at_most(0.25 * f64::from(SIDE) * 4.0))?;
     let focal = f64::from(camera.fx);
-    let (center, _) = tilted(distance);
+    let disc = tilted(distance, DVec3::X);
+    let (center, _) = disc;
     let middle = DVec3::new(center.x, center.y, 0.0) * focal / distance;
     let reach = focal / distance;
-    let rect = visible(&camera, distance);
-    let (error, _) = outside(&camera, distance, |x, y| {
+    let rect = visible(&camera, disc);
+    let (error, _) = outside(&camera, disc, |x, y| {
         let [px, py] = [x, y].map(|v| f64::from(v) + 0.5 - f64::from(SIDE) / 2.0);
         if cured {
             rect.is_some_and(|rect| rect.contains(x, y))
@@ -136,26 +137,25 @@ pub(super) fn ahead(side: u32, focal: f64) -> Result<Camera> {
     Camera::new(side, side, pose, Lens::Focal(focal))
 }
 
-/// Centre and normal of a disc of the radius 1, tilted by 45 degrees, 20 degrees off the axis of [`ahead`].
-pub(super) fn tilted(distance: f64) -> (DVec3, DVec3) {
+/// Centre and normal of a disc of the radius 1 before [`ahead`], tilted by 45 degrees, 20 degrees off the axis;
+/// both away from the axis in the same direction.
+pub(super) fn tilted(distance: f64, side: DVec3) -> (DVec3, DVec3) {
     let (away, tilt) = (20_f64.to_radians(), 45_f64.to_radians());
-    (DVec3::new(distance * tan(away), 0.0, -distance), DVec3::new(sin(tilt), 0.0, cos(tilt)))
+    (side * (distance * tan(away)) - DVec3::Z * distance, side * sin(tilt) + DVec3::Z * cos(tilt))
 }
 
-/// The bounds that this crate has of that disc; none if it is not drawn.
-pub(super) fn visible(camera: &Camera, distance: f64) -> Option<Rect> {
+/// The bounds that this crate has of a disc of the radius 1; none if it is not drawn.
+pub(super) fn visible(camera: &Camera, (center, normal): (DVec3, DVec3)) -> Option<Rect> {
     let kernel = Kernel { outline: Outline::RayCast, low_pass: 0.0, cutoff: 1.0 };
-    let (center, normal) = tilted(distance);
     splat::<f32>(camera, &kernel, (center, normal, 1.0)).ok().map(|splat| splat.bounds)
 }
 
-/// How much of that disc is not held, per mille of its pixels in a picture, and which.
+/// How much of a disc of the radius 1 is not held, per mille of its pixels in a picture, and which.
 pub(super) fn outside(
     camera: &Camera,
-    distance: f64,
+    (center, normal): (DVec3, DVec3),
     held: impl Fn(u32, u32) -> bool,
 ) -> (f64, Plane<[f32; 3]>) {
-    let (center, normal) = tilted(distance);
     let (side, focal) = (camera.width, f64::from(camera.fx));
     let (mut inside, mut outside) = (0_u32, 0_u32);
     let mut picture = Plane::filled(side, side, [0.0; 3]);
