@@ -30,7 +30,7 @@
 //!   x = (h_13 +- sqrt(h_13 h_13 - h_11 h_33)) / h_33       and so for y, with h_23 and h_22
 //! ```
 //!
-//! h_33 < 0 where the disc is before the plane of the eye, t = 0, all of it. Where the disc crosses that plane
+//! `h_33` < 0 where the disc is before the plane of the eye, t = 0, all of it. Where the disc crosses that plane
 //! the rim is a hyperbola, and its two tangents have the gap between its branches between them.
 //!
 //! `Decided:` both formulas are taken from work that quotes them; a test holds both boxes to a sampled rim.
@@ -274,7 +274,8 @@ fn crossing(distance: f64) -> Mapping<f64> {
 
 fn hyperbola(distance: f64, cured: bool, _: &Exec) -> Result<Found> {
     const SIDE: u32 = 240;
-    let camera = ahead(SIDE, 0.5 * f64::from(SIDE))?;
+    // A wide lens, to see beyond the disc.
+    let camera = ahead(SIDE, 0.25 * f64::from(SIDE))?;
     let disc = tilted(distance, askew());
     let rect = visible(&camera, disc);
     let [[x, half_x], [y, half_y]] = crossing(distance).sides();
