@@ -12,6 +12,7 @@
 //! The page of the atlas is `docs/atlas.md`, made by `splatref study failures -o docs`.
 
 mod case;
+mod conics;
 mod footprints;
 mod groups;
 mod layers;
@@ -83,9 +84,10 @@ pub struct Curve {
 /// Every failure.
 #[must_use]
 pub fn failures() -> Vec<&'static Failure> {
-    let rooms: [&[Failure]; 7] = [
+    let rooms: [&[Failure]; 8] = [
         &footprints::FAILURES,
         &numbers::FAILURES,
+        &conics::FAILURES,
         &layers::FAILURES,
         &groups::FAILURES,
         &moving::FAILURES,

@@ -2,7 +2,7 @@
 
 use super::{Failure, Found};
 use crate::error::{Error, Result};
-use crate::frame::Exec;
+use crate::frame::{Exec, Plane, Rect};
 use crate::number::elementary::{cos, sin, tan};
 use crate::number::{Exact, Real, Vector3};
 use crate::scene::{Camera, Lens, Pose};
@@ -42,7 +42,7 @@ pub(super) const FAILURES: [Failure; 2] = [
 /// The tangent of the angle between the view and the thin disc's plane.
 const THIN: f64 = 1.0 / 1024.0;
 
-fn found(error: f64) -> Found {
+pub(super) fn found(error: f64) -> Found {
     Found { error, picture: None, time: None }
 }
 
@@ -111,36 +111,73 @@ fn splat<R: Exact>(
 }
 
 fn bounds(distance: f64, cured: bool, _: &Exec) -> Result<Found> {
-    let pose = Pose { eye: DVec3::ZERO, target: -DVec3::Z, up: DVec3::Y };
     // The disc is about half the picture, wherever it is.
     let focal = 0.25 * f64::from(SIDE) * distance;
-    let camera =
-        Camera::new(SIDE, SIDE, pose, Lens::Focal(focal.at_most(0.25 * f64::from(SIDE) * 4.0)))?;
-    let (away, tilt) = (20_f64.to_radians(), 45_f64.to_radians());
-    let center = DVec3::new(distance * tan(away), 0.0, -distance);
-    let normal = DVec3::new(sin(tilt), 0.0, cos(tilt));
+    let camera = ahead(SIDE, focal.at_most(0.25 * f64::from(SIDE) * 4.0))?;
     let focal = f64::from(camera.fx);
+    let disc = tilted(distance, DVec3::X);
+    let (center, _) = disc;
     let middle = DVec3::new(center.x, center.y, 0.0) * focal / distance;
     let reach = focal / distance;
-    let kernel = Kernel { outline: Outline::RayCast, low_pass: 0.0, cutoff: 1.0 };
-    let rect = splat::<f32>(&camera, &kernel, (center, normal, 1.0)).ok().map(|splat| splat.bounds);
-    let (mut inside, mut outside) = (0_u32, 0_u32);
-    for y in 0..SIDE {
-        for x in 0..SIDE {
-            let [px, py] = [x, y].map(|v| f64::from(v) + 0.5 - f64::from(SIDE) / 2.0);
-            let ray = DVec3::new(px / focal, -py / focal, -1.0);
-            let t = center.dot(normal) / ray.dot(normal);
-            if !(t > 0.0 && (ray * t - center).length() <= 1.0) {
-                continue;
-            }
-            inside += 1;
-            let held = if cured {
-                rect.is_some_and(|rect| rect.contains(x, y))
-            } else {
-                (px - middle.x).abs() <= reach && (py + middle.y).abs() <= reach
-            };
-            outside += u32::from(!held);
+    let rect = visible(&camera, disc);
+    let (error, _) = outside(&camera, disc, |x, y| {
+        let [px, py] = [x, y].map(|v| f64::from(v) + 0.5 - f64::from(SIDE) / 2.0);
+        if cured {
+            rect.is_some_and(|rect| rect.contains(x, y))
+        } else {
+            (px - middle.x).abs() <= reach && (py + middle.y).abs() <= reach
         }
+    });
+    Ok(found(error))
+}
+
+/// A camera in the origin that looks along -z at a square picture.
+pub(super) fn ahead(side: u32, focal: f64) -> Result<Camera> {
+    let pose = Pose { eye: DVec3::ZERO, target: -DVec3::Z, up: DVec3::Y };
+    Camera::new(side, side, pose, Lens::Focal(focal))
+}
+
+/// Centre and normal of a disc of the radius 1 before [`ahead`], tilted by 45 degrees, 20 degrees off the axis;
+/// both away from the axis in the same direction.
+pub(super) fn tilted(distance: f64, side: DVec3) -> (DVec3, DVec3) {
+    let (away, tilt) = (20_f64.to_radians(), 45_f64.to_radians());
+    (side * (distance * tan(away)) - DVec3::Z * distance, side * sin(tilt) + DVec3::Z * cos(tilt))
+}
+
+/// The bounds that this crate has of a disc of the radius 1; none if it is not drawn.
+pub(super) fn visible(camera: &Camera, (center, normal): (DVec3, DVec3)) -> Option<Rect> {
+    let kernel = Kernel { outline: Outline::RayCast, low_pass: 0.0, cutoff: 1.0 };
+    splat::<f32>(camera, &kernel, (center, normal, 1.0)).ok().map(|splat| splat.bounds)
+}
+
+/// How much of a disc of the radius 1 is not held, per mille of its pixels in a picture, and which.
+pub(super) fn outside(
+    camera: &Camera,
+    (center, normal): (DVec3, DVec3),
+    held: impl Fn(u32, u32) -> bool,
+) -> (f64, Plane<[f32; 3]>) {
+    let (side, focal) = (camera.width, f64::from(camera.fx));
+    let (mut inside, mut outside) = (0_u32, 0_u32);
+    let mut picture = Plane::filled(side, side, [0.0; 3]);
+    for (i, pixel) in (0..).zip(picture.values_mut()) {
+        let (x, y) = (i % side, i / side);
+        let [px, py] = [x, y].map(|v| f64::from(v) + 0.5 - f64::from(side) / 2.0);
+        let ray = DVec3::new(px / focal, -py / focal, -1.0);
+        let t = center.dot(normal) / ray.dot(normal);
+        let (disc, held) = (t > 0.0 && (ray * t - center).length() <= 1.0, held(x, y));
+        inside += u32::from(disc);
+        outside += u32::from(disc && !held);
+        *pixel = shown(disc, held);
     }
-    Ok(found(1e3 * f64::from(outside) / f64::from(inside.max(1))))
+    (1e3 * f64::from(outside) / f64::from(inside.max(1)), picture)
+}
+
+/// What a pixel shows: light where a disc is found, red where it is missed, blue where it is not.
+pub(super) fn shown(disc: bool, found: bool) -> [f32; 3] {
+    match (disc, found) {
+        (true, true) => [0.75, 0.75, 0.75],
+        (true, false) => [0.75, 0.0625, 0.0625],
+        (false, true) => [0.0625, 0.125, 0.5],
+        (false, false) => [0.0; 3],
+    }
 }

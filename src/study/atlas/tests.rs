@@ -50,7 +50,15 @@ fn the_page_is_what_is_measured() {
 /// What the page may not stop to say, whatever numbers it has: where it breaks, the cure cures.
 #[test]
 fn cures_cure() {
-    for id in ["ewa-thin", "bounds", "blue-controller", "ewa-grazing", "template-mirror"] {
+    for id in [
+        "ewa-thin",
+        "bounds",
+        "bounds-conic",
+        "bounds-hyperbola",
+        "blue-controller",
+        "ewa-grazing",
+        "template-mirror",
+    ] {
         let failure = failures().into_iter().find(|failure| failure.id == id).unwrap();
         let curve = failure.curve(&exec(), &|_, _| ()).unwrap();
         let at = curve.breaks.unwrap();
