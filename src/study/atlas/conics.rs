@@ -64,7 +64,7 @@ pub(super) const FAILURES: [Failure; 2] = [
     },
     Failure {
         id: "bounds-hyperbola",
-        title: "The box of a disc that crosses the plane of the eye is the gap of a hyperbola",
+        title: "The box of a hyperbola is the gap between its branches",
         why: "A disc tilted by 45 degrees, 20 degrees off the axis. [WHA+07] takes the box from tangents, \
               x = (h_13 +- sqrt(h_13^2 - h_11 h_33)) / h_33 with h_ij = U_i U_j + V_i V_j - p_i p_j. It is exact as long as all of the disc is \
               before the eye. Where the near half is not, below 0.71 radii here, the outline is a hyperbola, and between two \

@@ -39,6 +39,7 @@ fn the_page_is_what_is_measured() {
     }
     assert_eq!(lasting(&files.text), lasting(&kept));
     for (id, chart) in &files.charts {
+        chart.assert_readable();
         let path = docs().join(PICTURES).join(id).with_extension("svg");
         assert_eq!(std::fs::read_to_string(path).unwrap(), chart.svg(), "{id}");
     }
