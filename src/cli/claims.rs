@@ -32,13 +32,13 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args) -> Ended {
     let start = Instant::now();
     let exec = args.exec.exec()?;
-    let scans = args.scans.iter().map(|path| SceneFile::open(path));
+    let scans = args.scans.iter().map(|path| SceneFile::open(path.as_path()));
     let scans = scans.collect::<splatref::Result<Vec<_>>>()?;
     let folder = args.output.join(PICTURES);
     fs::create_dir_all(&folder).map_err(|source| Error::io(&folder, source))?;
     let steps = progress::Steps::new("measuring");
     let verdicts = verdicts(&claims(), (&scans, &FORMATS), &exec, &|what, done, of| {
-        steps.show(what, done, of)
+        steps.show(what, done, of);
     })?;
     steps.show("writing", 0, 1);
     let names: Vec<&str> = scans.iter().map(|scan| scan.name.as_str()).collect();

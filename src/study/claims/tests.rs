@@ -62,6 +62,7 @@ fn the_page_is_what_is_measured() {
 }
 
 #[test]
+#[expect(clippy::print_stdout, reason = "what is skipped is said")]
 #[ignore = "a minute: every picture stage by stage in two more formats; .ci/run runs it"]
 fn the_page_is_what_is_measured_in_every_format() {
     let exec = Exec::new(2, 32).unwrap();

@@ -33,9 +33,8 @@ fn every_value_is_one_that_a_method_takes() {
                 let mut values = method.values();
                 values.extend(start.file.output.values());
                 values.extend(method.grouping().into_iter().flat_map(Fields::values));
-                let set = |(name, set): &(&str, crate::setting::Value)| {
-                    *name == trade.setting && set.text() == *value
-                };
+                let set =
+                    |(name, set): &(&str, Value)| *name == trade.setting && set.text() == *value;
                 values.iter().any(set)
             });
             assert!(others > 0 || is_default, "{} {value}", trade.setting);
