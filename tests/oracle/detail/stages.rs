@@ -1,0 +1,111 @@
+//! What views draw against the oracle's own.
+
+use super::forest::{Forest, forest, wishes};
+use super::view::{Shown, State, model, placed};
+use crate::kit::eye::wide;
+use splatref::frame::Exec;
+use splatref::scene::Objects;
+
+/// The ids of the first so many surfels of objects, by the first split that fits: object by object as
+/// they ascend.
+fn ids(counts: &[u32]) -> Vec<u64> {
+    let even = |c: &u32| *c <= 1 << 20;
+    assert!(counts.len() <= 4095 && counts.iter().all(even), "the cases have no other split");
+    let all = counts.iter().zip(0_u64..);
+    all.flat_map(|(&count, o)| (0..u64::from(count)).map(move |s| (o << 20) + s)).collect()
+}
+
+/// The radius of every surfel that is drawn, in the order of ids, and how often it counts for the median.
+fn radii(objects: &Objects, shown: &[Shown]) -> Vec<f32> {
+    let mut all = Vec::new();
+    for (o, one) in shown.iter().enumerate() {
+        let geometry = objects.geometry(o as u32);
+        let scaled = |r: f32| (f64::from(r) * objects.places()[o].scale) as f32;
+        let own = scaled(geometry.surfels.median_radius());
+        let radius = one.disc.map_or(own, |[radius, _]| radius);
+        all.extend(std::iter::repeat_n(radius, one.count as usize));
+    }
+    all
+}
+
+fn lower_median(mut all: Vec<f32>) -> f32 {
+    all.sort_by(f32::total_cmp);
+    all.get(all.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
+}
+
+pub(crate) fn same(name: &str, objects: &Objects, seen: &Objects, shown: &[Shown]) {
+    let counts: Vec<u32> = shown.iter().map(|s| s.count).collect();
+    let found: Vec<u32> = (0..counts.len() as u32).map(|o| seen.ids().count(o)).collect();
+    assert_eq!(found, counts, "counts of {name}: {shown:?}");
+    for (o, one) in shown.iter().enumerate().filter(|(_, one)| one.count > 0) {
+        let found = seen.disc(o as u32).map(|d| [d.radius, d.side].map(f32::to_bits));
+        assert_eq!(found, one.disc.map(|d| d.map(f32::to_bits)), "discs of {o} of {name}: {one:?}");
+    }
+    assert_eq!(seen.drawn_ids(), ids(&counts), "ids of {name}");
+    let total: u64 = counts.iter().map(|&c| u64::from(c)).sum();
+    assert_eq!(seen.drawn_total(), total, "{name}");
+    let median = lower_median(radii(objects, shown));
+    assert_eq!(seen.median_radius().to_bits(), median.to_bits(), "median of {name}");
+}
+
+/// What is placed: positions and radii of surfels, and corners of primitives.
+pub(crate) fn flat(name: &str, objects: &Objects, seen: &Objects, shown: &[Shown]) {
+    let (surfels, primitives) = seen.flattened(&Exec::sequential()).expect(name);
+    let (mut position, mut radius, mut corners) = (Vec::new(), Vec::new(), Vec::new());
+    for (o, one) in shown.iter().enumerate() {
+        let (geometry, place) = (objects.geometry(o as u32), &objects.places()[o]);
+        let at = |p: glam::Vec3| placed(place, wide(p)).map(|c| (c as f32).to_bits());
+        for i in 0..one.count as usize {
+            position.push(at(geometry.surfels.position()[i]));
+            let own = (f64::from(geometry.surfels.radius()[i]) * place.scale) as f32;
+            radius.push(one.disc.map_or(own, |[r, _]| r).to_bits());
+        }
+        let triangles = &geometry.primitives.triangles;
+        if one.primitives {
+            let all = triangles.corners().iter().flatten();
+            corners.extend(all.map(|&v| at(triangles.vertices().position[v as usize])));
+        }
+    }
+    let found = surfels.position().iter().map(|p| p.to_array().map(f32::to_bits));
+    assert_eq!(found.collect::<Vec<_>>(), position, "positions of {name}");
+    let found = surfels.radius().iter().map(|r| r.to_bits());
+    assert!(found.eq(radius.iter().copied()), "radii of {name}");
+    let found = primitives.iter().flat_map(|p| {
+        let all = p.triangles.corners().iter().flatten();
+        all.map(|&v| p.triangles.vertices().position[v as usize].to_array().map(f32::to_bits))
+    });
+    assert_eq!(found.collect::<Vec<_>>(), corners, "primitives of {name}");
+}
+
+#[test]
+fn views_are_those_of_the_page() {
+    let mut states: Vec<State> = Vec::new();
+    let [mut steps, mut cut, mut beside] = [0; 3];
+    for seed in 0..1500 {
+        let Forest { objects, camera } = forest(seed);
+        for wish in 0..4 {
+            let name = format!("view {wish} of {seed}");
+            let objects = objects.clone().with_refinement(wishes(seed * 4 + wish)).expect(&name);
+            let (shown, step) = model(&objects, &camera);
+            let seen = objects.seen_from(&camera, &Exec::sequential()).expect(&name);
+            same(&name, &objects, &seen, &shown);
+            flat(&name, &objects, &seen, &shown);
+            states.extend(shown.iter().map(|one| one.state));
+            steps += u32::from(step > 0 && step < 2048);
+            cut += u32::from(step == 2048);
+            beside += u32::from(shown.iter().any(|one| one.primitives && one.count > 0));
+        }
+    }
+    let all = [
+        State::Plain,
+        State::Outside,
+        State::Whole,
+        State::Growing,
+        State::Shrinking,
+        State::Gone,
+        State::Beyond,
+    ];
+    let counts = all.map(|s| states.iter().filter(|found| **found == s).count());
+    assert!(counts.iter().all(|c| *c > 200), "{all:?} {counts:?}");
+    assert!(steps > 100 && cut > 20 && beside > 100, "{steps} {cut} {beside}");
+}
