@@ -32,7 +32,7 @@ pub(crate) fn model(points: &[Vec3], normals: &[Vec3]) -> (u32, u32) {
         let mut least = None;
         for j in (0..count).filter(|&j| j != i && alike(normals[i], normals[j])) {
             let d = square(points[i], points[j]);
-            if least.is_none_or(|least| d < least) {
+            if d < f32::INFINITY && least.is_none_or(|least| d < least) {
                 least = Some(d);
             }
         }
@@ -65,7 +65,7 @@ fn normals(dice: &mut Dice, count: usize) -> [(&'static str, Vec<Vec3>); 6] {
 #[test]
 fn estimates_are_those_of_the_page() {
     let mut dice = Dice(21);
-    let [mut none, mut infinite, mut differ] = [0; 3];
+    let [mut none, mut beyond, mut differ] = [0; 3];
     for (name, points) in cases::points() {
         for first in [points.len(), points.len() / 2 + 1, 2] {
             let points = &points[..first.min(points.len())];
@@ -76,13 +76,13 @@ fn estimates_are_those_of_the_page() {
                 let name = format!("{} points of {name}, {kind}", points.len());
                 assert_eq!((found.count, found.distance.to_bits()), truth, "{name}");
                 none += usize::from(found.distance == 0.0);
-                infinite += usize::from(found.distance == f32::INFINITY);
+                beyond += usize::from(points.iter().any(|p| p.x.abs() > 1e25));
                 all.push(truth.1);
             }
             differ += usize::from(all.iter().any(|bits| *bits != all[0]));
         }
     }
-    assert!(none > 10 && infinite > 0 && differ > 20, "{none} {infinite} {differ}");
+    assert!(none > 10 && beyond > 10 && differ > 20, "{none} {beyond} {differ}");
 }
 
 /// Two grids face each other, closer than the points of each: no side counts for the other.

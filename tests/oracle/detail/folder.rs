@@ -155,10 +155,9 @@ impl World {
         for number in 0..total {
             let (tree, first, geometry) = self.tree_of(number);
             let node = &tree[(number - first) as usize];
-            let [child, count] = children(node);
-            let child = if count == 0 { 0 } else { child + first };
+            let [child, count] = children(tree, (number - first) as usize);
             let of = geometry.map_or(NO_NODE, |g| g as u32);
-            bytes.u32(&[shifted(node.parent, first), child, count, of]);
+            bytes.u32(&[shifted(node.parent, first), child + first, count, of]);
             bytes.f32(&node.low);
             bytes.f32(&node.high);
             bytes.u64(&[node.weight]);

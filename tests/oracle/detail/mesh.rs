@@ -128,10 +128,10 @@ impl Mesh {
         bytes.0.extend(self.hash());
         bytes.u32(&[self.tree.len() as u32, u32::from(self.color.is_some())]);
         bytes.u64(&self.flaws());
-        for node in &self.tree {
+        for (number, node) in self.tree.iter().enumerate() {
             let own = self.vertices(node).len() as u32;
             bytes.u32(&[node.parent]);
-            bytes.u32(&children(node));
+            bytes.u32(&children(&self.tree, number));
             bytes.u32(&[node.own.len() as u32, own, 0]);
             bytes.f32(&node.low);
             bytes.f32(&node.high);
@@ -157,9 +157,10 @@ impl Mesh {
     }
 }
 
-/// First child and how many.
-pub(crate) fn children(node: &Node) -> [u32; 2] {
-    [node.children.first().copied().unwrap_or(0), node.children.len() as u32]
+/// First child and how many: a node without children has an empty range where they would be.
+pub(crate) fn children(tree: &[Node], number: usize) -> [u32; 2] {
+    let before: usize = tree[..number].iter().map(|node| node.children.len()).sum();
+    [1 + before as u32, tree[number].children.len() as u32]
 }
 
 /// A number in one tree as one in all.

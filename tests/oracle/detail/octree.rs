@@ -28,11 +28,16 @@ fn axis<T>(of: impl Fn(usize) -> T) -> [T; 3] {
     [of(0), of(1), of(2)]
 }
 
-/// The box around items.
+/// The box around items, without -0.
 fn around(items: &[Item], some: &[u32]) -> [[f32; 3]; 2] {
     let of = |i: &u32| [items[*i as usize].low, items[*i as usize].high].map(|v| v.to_array());
-    let low = axis(|k| some.iter().map(|i| of(i)[0][k]).fold(f32::INFINITY, f32::min));
-    let high = axis(|k| some.iter().map(|i| of(i)[1][k]).fold(f32::NEG_INFINITY, f32::max));
+    let all = |k: usize, side: usize| {
+        let mut all: Vec<f32> = some.iter().map(|i| of(i)[side][k]).collect();
+        all.sort_by(f32::total_cmp);
+        all
+    };
+    let low = axis(|k| all(k, 0)[0] + 0.0);
+    let high = axis(|k| all(k, 1)[some.len() - 1] + 0.0);
     [low, high]
 }
 
@@ -128,7 +133,8 @@ fn same(name: &str, found: &Octree, truth: &[Node]) {
             }
         })
         .collect();
-    let first = found.iter().zip(truth).find(|(a, b)| a != b);
+    let bits = |node: &Node| [node.low, node.high].map(|corner| corner.map(f32::to_bits));
+    let first = found.iter().zip(truth).find(|(a, b)| a != b || bits(a) != bits(b));
     assert_eq!(first, None, "{name}");
     assert_eq!(found.len(), truth.len(), "{name}");
 }

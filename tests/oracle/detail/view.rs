@@ -95,7 +95,7 @@ fn zone(zones: &[[f32; 2]], distance: f64) -> f64 {
 }
 
 /// The corners of the box around the surfels of a geometry and what its primitives use.
-fn corners(objects: &Objects, object: u32) -> [V3; 2] {
+pub(crate) fn corners(objects: &Objects, object: u32) -> [V3; 2] {
     let geometry = objects.geometry(object);
     let triangles = &geometry.primitives.triangles;
     let used = triangles.corners().iter().flatten();
@@ -113,7 +113,7 @@ fn asked(objects: &Objects, object: u32, camera: &Camera) -> Asked {
     let p = eye.point(middle.to_array());
     let t = -p[2];
     let wanted = objects.refinement();
-    let distance = if t <= radius {
+    let distance = if eye.perspective && t <= radius {
         0.0
     } else {
         let far = if eye.perspective { t } else { 1.0 };
@@ -126,7 +126,7 @@ fn asked(objects: &Objects, object: u32, camera: &Camera) -> Asked {
     let closest = [0, 1, 2].map(|k| low[k].max(e[k].min(high[k])));
     let near = (-eye.point(placed(place, closest))[2]).max(eye.near);
     let pixel = if eye.perspective { near } else { 1.0 } / f / place.scale;
-    let margin = 16.0 + f64::from(wanted.surfel_size);
+    let margin = 16.0 + f64::from(wanted.surfel_size) * factor;
     let inside = inside(camera, &eye, p, radius, margin);
     Asked { pixel: pixel * factor, factor, inside }
 }
@@ -184,7 +184,7 @@ fn with_size(objects: &Objects, asked: &[Option<Asked>], size: f64) -> Vec<Shown
             side *= radius / r;
         }
         let k = objects.places()[o as usize].scale;
-        let radius = (radius * k).max(2.0_f64.powi(-100)).min(2.0_f64.powi(100));
+        let within = |v: f64| v.max(2.0_f64.powi(-100)).min(2.0_f64.powi(100)) as f32;
         let state = match fade(o) {
             _ if beyond => State::Beyond,
             fade if fade == 0.0 => State::Whole,
@@ -195,7 +195,7 @@ fn with_size(objects: &Objects, asked: &[Option<Asked>], size: f64) -> Vec<Shown
         Shown {
             count: drawn as u32,
             primitives: to_finer(o, w) > 0.0,
-            disc: Some([radius as f32, side as f32]),
+            disc: Some([within(radius * k), within(side)]),
             state,
         }
     };
@@ -206,8 +206,18 @@ fn spent(shown: &[Shown]) -> u64 {
     shown.iter().filter(|s| s.disc.is_some()).map(|s| u64::from(s.count)).sum()
 }
 
-/// What a camera sees of objects, and which step of the size keeps the budget.
-pub(crate) fn model(objects: &Objects, camera: &Camera) -> (Vec<Shown>, u32) {
+/// The size with which a view asks for so many surfels of an object, if it is in the middle zone.
+pub(crate) fn size_for(objects: &Objects, camera: &Camera, object: u32, share: f32) -> Option<f32> {
+    let estimate = estimate(objects, object)?;
+    let n = objects.geometry(object).surfels.len() as f32;
+    let radius = estimate.distance * (estimate.count as f32 / (share * n)).sqrt();
+    let size = 2.0 * radius / asked(objects, object, camera).pixel as f32;
+    (size > 1e-30 && size <= 4096.0).then_some(size)
+}
+
+/// What a camera sees of objects, how many steps of the size keep the budget, and how many objects are
+/// in it with a part of what those would have.
+pub(crate) fn model(objects: &Objects, camera: &Camera) -> (Vec<Shown>, u32, usize) {
     let all: Vec<Option<Asked>> = (0..objects.objects().len() as u32)
         .map(|o| estimate(objects, o).map(|_| asked(objects, o, camera)))
         .collect();
@@ -215,9 +225,9 @@ pub(crate) fn model(objects: &Objects, camera: &Camera) -> (Vec<Shown>, u32) {
     let mut sizes = vec![f64::from(wanted.surfel_size)];
     (0..2048).for_each(|k| sizes.push(sizes[k] * (65.0 / 64.0)));
     let with = |k: u32| with_size(objects, &all, sizes[k as usize]);
-    let Some(budget) = wanted.budget.map(u64::from) else { return (with(0), 0) };
+    let Some(budget) = wanted.budget.map(u64::from) else { return (with(0), 0, 0) };
     if spent(&with(0)) <= budget {
-        return (with(0), 0);
+        return (with(0), 0, 0);
     }
     let (mut few, mut many) = (2048, 0);
     while few - many > 1 {
@@ -225,10 +235,12 @@ pub(crate) fn model(objects: &Objects, camera: &Camera) -> (Vec<Shown>, u32) {
         if spent(&with(k)) <= budget { few = k } else { many = k }
     }
     let mut shown = with(few);
-    let mut left = budget;
+    let (mut left, mut parts) = (budget, 0);
     for one in shown.iter_mut().filter(|one| one.disc.is_some()) {
-        one.count = u64::from(one.count).min(left) as u32;
-        left -= u64::from(one.count);
+        let count = u64::from(one.count).min(left);
+        parts += usize::from(count > 0 && count < u64::from(one.count));
+        one.count = count as u32;
+        left -= count;
     }
-    (shown, few)
+    (shown, few, parts)
 }
