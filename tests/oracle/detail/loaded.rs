@@ -187,3 +187,17 @@ fn hierarchies_that_are_resumed_have_the_same_bytes() {
         }
     }
 }
+
+/// A single surfel has no distance to another, and is loaded all the same.
+#[test]
+fn nodes_of_one_surfel_are_loaded() {
+    let at = TempDir::new().expect("a folder");
+    let (file, dropped) = objects(&at, 5, 30);
+    let settings = Settings { most: 1, ..settings(Traversal::BottomUp) };
+    let folder = at.path().join("all");
+    made(&file, &folder, &settings, 1);
+    let found = Hierarchy::open(&folder).expect("a folder");
+    let found = found.load(&Exec::sequential(), &|_, _, _| ()).expect("objects");
+    assert!((0..found.objects().len() as u32).any(|o| found.geometry(o).surfels.len() == 1));
+    same(&world(&file, &dropped, &settings), &found);
+}

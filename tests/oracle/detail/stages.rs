@@ -2,9 +2,14 @@
 
 use super::forest::{Forest, forest, wishes};
 use super::view::{Shown, State, corners, model, placed, size_for};
-use crate::kit::eye::{sub, wide};
+use crate::kit::dice::Dice;
+use crate::kit::eye::{dot, sub, wide};
+use crate::kit::scene::{discs, surfels};
+use glam::Vec3;
 use splatref::frame::Exec;
-use splatref::scene::Objects;
+use splatref::scene::{
+    Cloud, Geometry, Motion, Object, Objects, Primitives, Similarity, Triangles, Vertices,
+};
 
 /// The ids of the first so many surfels of objects, by the first split that fits: object by object as
 /// they ascend.
@@ -54,7 +59,7 @@ pub(crate) fn flat(name: &str, objects: &Objects, seen: &Objects, shown: &[Shown
     let (mut position, mut radius, mut corners) = (Vec::new(), Vec::new(), Vec::new());
     for (o, one) in shown.iter().enumerate() {
         let (geometry, place) = (objects.geometry(o as u32), &objects.places()[o]);
-        let at = |p: glam::Vec3| placed(place, wide(p)).map(|c| (c as f32).to_bits());
+        let at = |p: Vec3| placed(place, wide(p)).map(|c| (c as f32).to_bits());
         for i in 0..one.count as usize {
             position.push(at(geometry.surfels.position()[i]));
             let own = (f64::from(geometry.surfels.radius()[i]) * place.scale) as f32;
@@ -128,7 +133,7 @@ fn spheres_are_those_of_the_page() {
             let used = triangles.corners().iter().flatten().map(|&v| v as usize);
             let used = used.map(|v| (triangles.vertices().position[v], 0.0));
             let own = geometry.surfels.position().iter().zip(geometry.surfels.radius());
-            let reach = |(p, r): (glam::Vec3, f32)| {
+            let reach = |(p, r): (Vec3, f32)| {
                 let [x, y, z] = sub(wide(p), middle);
                 (x * x + y * y + z * z).sqrt() + f64::from(r)
             };
@@ -137,5 +142,40 @@ fn spheres_are_those_of_the_page() {
             let (at, found) = objects.sphere(o);
             assert_eq!((at.to_array(), found), (placed(place, middle), radius));
         }
+    }
+}
+
+/// Ellipses reach as far as both half axes together, and vertices as far as their radius.
+#[test]
+fn spheres_hold_ellipses_and_vertices() {
+    for seed in 0..50 {
+        let mut dice = Dice(seed);
+        let mut all = |count: usize| -> Vec<Vec3> {
+            (0..count).map(|_| dice.vector(Vec3::splat(-1.0), Vec3::ONE)).collect()
+        };
+        let (position, vertices, [u, v]) = (all(5), all(6), [(); 2].map(|()| all(5)));
+        let cloud = discs(position.iter().map(|p| (*p, Vec3::Z, 0.125)));
+        let tangents = Some(u.iter().zip(&v).map(|(u, v)| [*u, *v]).collect());
+        let surfels = surfels(Cloud { tangents, ..cloud });
+        let radius: Vec<f32> = vertices.iter().map(|p| p.x.abs()).collect();
+        let direction = vec![Vec3::Y; 6];
+        let mesh = Vertices { position: vertices, direction, radius, color: None };
+        let triangles = Triangles::new(mesh, vec![[0, 1, 2], [4, 5, 1]]).expect("triangles").0;
+        let own = surfels.position().iter().zip(u.iter().zip(&v)).map(|(p, (u, v))| {
+            (wide(*p), (dot(wide(*u), wide(*u)) + dot(wide(*v), wide(*v))).sqrt())
+        });
+        let used = [0, 1, 2, 4, 5]
+            .map(|i| (triangles.vertices().position[i], triangles.vertices().radius[i]));
+        let all: Vec<_> = own.chain(used.map(|(p, r)| (wide(p), f64::from(r)))).collect();
+        let primitives = Primitives { triangles, ..Primitives::default() };
+        let geometry = Geometry { name: String::new(), surfels, primitives, detail: None };
+        let motion = Motion::still(Similarity::IDENTITY);
+        let object = Object { name: String::new(), geometry: 0, motion, color: None };
+        let objects = Objects::new(vec![geometry], vec![object], Vec3::ONE).expect("objects");
+        let [low, high] = corners(&objects, 0);
+        let middle = [0, 1, 2].map(|k| (low[k] + high[k]) / 2.0);
+        let reach = |(p, r): &([f64; 3], f64)| dot(sub(*p, middle), sub(*p, middle)).sqrt() + r;
+        let radius = all.iter().map(reach).fold(0.0, f64::max);
+        assert_eq!(objects.sphere(0), (middle.into(), radius));
     }
 }

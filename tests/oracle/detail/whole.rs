@@ -63,6 +63,7 @@ fn flawed(dice: &mut Dice, n: u32) -> Cloud {
         [a, b, c[2]],
         [a, b, c[3]],
         [a, a, b],
+        [b, a, a],
         [c[0], c[1], a],
         [a, b, line],
         [bad, a, b],
@@ -74,6 +75,13 @@ fn flawed(dice: &mut Dice, n: u32) -> Cloud {
     normals.resize_with(all, || dice.direction());
     let colors = cloud.color.as_mut().expect("colours");
     colors.resize_with(all, || dice.vector(Vec3::ZERO, Vec3::ONE));
+    cloud
+}
+
+/// The same with all of it on a line, but for one triangle far below a pixel.
+fn unseen(mut cloud: Cloud) -> Cloud {
+    cloud.position.iter_mut().skip(1).for_each(|p| *p = Vec3::new(p.x, 0.0, 0.0));
+    cloud.position[0] = Vec3::new(cloud.position[1].x, 1e-6, 0.0);
     cloud
 }
 
@@ -161,6 +169,7 @@ fn meshes_alone_are_those_of_the_page() {
         ("colours", patch(&mut dice, 90, true), 0, 5),
         ("none", patch(&mut dice, 120, false), 0, 5),
         ("flawed", flawed(&mut dice, 80), 1, 3),
+        ("unseen", unseen(patch(&mut dice, 80, true)), 0, 0),
     ];
     for (name, cloud, dropped, least) in all {
         let file = alone(&at, &cloud);
