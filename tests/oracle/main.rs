@@ -16,6 +16,7 @@
 //! - [`template`]: reconstruction with templates, a pixel that asks every centre of every level.
 //! - [`blue`]: discs in squares, every surfel at every pixel: the page again, and rays in world space.
 //! - [`sampler`]: candidates by every pixel of every triangle, orders by every distance to every pick.
+//! - [`detail`]: levels of detail: estimates of orders, prefixes and finer objects, the folders of hierarchies.
 //! - [`composite`]: laws of the operators: bins, groups, over, sums and the epsilon-z test.
 //! - [`bits`]: fast and plain, threads and tiles, to the last bit.
 //! - [`bounds`]: no pixel outside a splat's bounds is inside the splat.
@@ -45,6 +46,7 @@ mod bounds;
 mod composite;
 mod counter;
 mod deferred;
+mod detail;
 mod ewa;
 mod kit;
 mod layered;

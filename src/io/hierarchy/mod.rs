@@ -23,7 +23,7 @@
 //! |---|---|---|
 //! | `plan` | `"splatref hierarchy 1\n"`, 64 hexadecimal digits, `"\n"` | written first: the hash of what is computed |
 //! | `mesh-N` | the tree and the triangles of geometry N, a decimal number | |
-//! | `surfels-N` | the surfels of node N | |
+//! | `surfels-N` | the surfels of node N, if it has some | |
 //! | `index` | all nodes, objects and geometries | written last: the hierarchy is whole |
 //!
 //! **mesh-N**
@@ -40,7 +40,8 @@
 //!                 of each own triangle u32 of its three vertices, counted from 0 in the node
 //! ```
 //!
-//! Nodes are counted from 0 in the geometry. The colours are linear.
+//! Nodes are counted from 0 in the geometry. A node without children has as its first child the number that it would have, see
+//! [`mod@crate::source::hierarchy::octree`]. The colours are linear.
 //!
 //! **surfels-N**
 //!
@@ -79,7 +80,7 @@
 //!   f32 r g b: the colour of what has none, f32 0                         16
 //!   of each node: u32 parent, first child, children, geometry             16
 //!                 f32 low x y z, high x y z                               24
-//!                 u64 triangles here and below, as often as they are shown 8
+//!                 u64 triangles here and below; over objects, as often as they are shown 8
 //!                 u32 own triangles, own vertices, u64 where they begin in the mesh's file     16
 //!                 u32 first object, objects, surfels, p_m, f32 r_m, u32 0                      24
 //!   of each object: u32 number in the scene, geometry, node, 1 if it has a colour + 2 if it moves      16
@@ -89,7 +90,10 @@
 //!                 hash, then the flaws, as in its file                    64
 //! ```
 //!
-//! Here nodes are those of all trees. Objects are in the order of their nodes, in a node as in the scene, then those that move.
+//! Here nodes are those of all trees, and so are their first children, of nodes without children too. Where the own triangles of a node
+//! begin is counted in bytes from the beginning of the file, also if it has none. What a node has none of is 0: of a node over
+//! objects triangles, vertices and where they begin; of a node of a geometry the first object and the objects; of a node without surfels their
+//! number, p_m and r_m. Objects are in the order of their nodes, in a node as in the scene, then those that move.
 //!
 //! # Which hash is of what
 //!

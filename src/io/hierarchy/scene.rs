@@ -8,8 +8,8 @@
 //! neither surfels nor triangles is left out, and so are nodes of geometries that no object shows.
 //!
 //! The objects are first those of the nodes over the objects, by number, `node-N`, then those of each
-//! object of the index, in its order, `object-M.node-N` with M its number in the scene, in the order of nodes. Geometries are
-//! in the order of nodes, each node once.
+//! object of the index, in its order, `object-M.node-N` with M its number in the scene, in the order of nodes; N counts the nodes of
+//! all trees. Geometries are in the order of nodes, each node once.
 //!
 //! The radius of a surfel is that with which all of the node cover, `r_m` sqrt(`p_m` / n).
 //!

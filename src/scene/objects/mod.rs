@@ -216,7 +216,9 @@ impl Objects {
         &self.extents[self.objects[object as usize].geometry].boxes
     }
 
-    /// A sphere around all surfels and primitives of an object: middle and radius, in f64.
+    /// A sphere around all surfels and primitives of an object: middle and radius, in f64. It is that of the
+    /// geometry by the rule of [`super::Scene::bounding_sphere`], whose middle is placed as a point is, and
+    /// whose radius is scaled; nothing is rounded to f32.
     #[must_use]
     pub fn sphere(&self, object: u32) -> (DVec3, f64) {
         let place = &self.places[object as usize];

@@ -3,7 +3,8 @@
 //! **Count.** "We bounded the surfel count for an object by the minimum of 200k surfels and half the complexity of the
 //! approximated object (number of triangles). Objects with a complexity of below 1000 triangles were only approximated in
 //! groups in a higher hierarchy level." With T the triangles of a node and of all below it, each as often as objects show
-//! it, and n the [most](Settings::most):
+//! it (for a node of the tree of a geometry each once, however many objects show the geometry), and n the
+//! [most](Settings::most):
 //!
 //! ```text
 //!   count = 0 if T < 1000, else min(n, floor(T / 2))
@@ -12,25 +13,28 @@
 //! **Pictures.** [`mod@crate::source::candidates`] of squares with the side
 //!
 //! ```text
-//!   side = ceil(s sqrt(count / 200000)), at least 16 and at most s        s: Settings::side; in f64
+//!   side = ceil(s sqrt(count / 200000)), at least 16, then at most s      s: Settings::side; in f64
 //! ```
 //!
-//! Where there are less than 4 candidates for each of the surfels, and the side is less than s, all is drawn again with the side
-//! min(2 side, s).
+//! Where there are less than 4 candidates for each of the surfels (4 count), or none at all, and the side is less than s, all is
+//! drawn again with the side min(2 side, s), and so on.
 //!
 //! `Decided:` the paper draws pictures of 1024 pixels of everything, for 10k to 200k surfels. Here a node of the
 //! paper's bound has that side, and smaller ones have as many candidates for each of their surfels: "a much higher resolution
 //! unnecessarily increases the preprocessing time". The candidates of a sphere are about 11 times its surfels. What is
 //! small in its box, as houses far apart, has larger pictures.
 //!
-//! **Order.** The first `count` of the candidates in the order of the sampler, or fewer if there are fewer.
+//! **Order.** The first `count` of the candidates in the order of the sampler, or fewer if there are fewer. Greedy and
+//! progressive orders start at [`Start::Seed`] of the [seed](Settings::seed); it is that of progressive and random ones too.
 //!
 //! **What is drawn**, of two ways ("in a top-down or bottom-up order"):
 //!
-//! - [`Traversal::TopDown`]: all triangles of the node and below it, which have to fit into memory together.
+//! - [`Traversal::TopDown`]: all triangles of the node and below it, which have to fit into memory together; in the order of
+//!   the other way, as if nothing below had surfels.
 //! - [`Traversal::BottomUp`]: "one can use the already computed surfels of the child nodes instead of the original geometry". The triangles
 //!   that stay in the node, then child after child: its surfels as squares, if it has some, else what is drawn of it by this rule.
 //!   The objects of a node of the scene count as its children, in their order, before its nodes.
+//!   Surfels are those of the file, decoded. They are placed, and rounded to `f32`, before their squares are made.
 //!
 //! Of a child's surfels those are drawn that cover at the resolution of the picture, by the estimate of
 //! [`crate::scene::objects::detail::prefix`]. With P = 2 R / side ([`pixel`]), where R is half the diagonal of the node's box, or 1 if that is 0;

@@ -7,6 +7,8 @@
 //! - *duplicate*: the three places, in any order, are those of a triangle before it.
 //! - *edges of many*: edges, as pairs of different places, of more than two triangles that are not degenerate. A
 //!   mesh with such edges is no manifold.
+//!
+//! A triangle may be both degenerate and a duplicate.
 
 use crate::scene::Triangles;
 use glam::Vec3;

@@ -5,7 +5,7 @@
 //!
 //! ```text
 //!   low, high  the corners of the box around all items
-//!   S          the least power of two, of any exponent, that is no less than an extent of that box; 1 if that is a point
+//!   S          the least power of two, of any exponent, that is no less than any extent of that box; 1 if that is a point
 //!   m, e       of an item: the middle (a + b) / 2, and the greatest component of (b - a) / 2
 //!   grid       of an item, for each axis: floor((m - low) / (S / 2^20)), at most 2^20 - 1
 //!   depth      of an item: the greatest d up to 20 with e <= S / 2^(d + 1)
@@ -26,7 +26,8 @@
 //!
 //! **Numbers.** The root is node 0, and nodes are numbered by levels: the children of node 0, the children of its first child,
 //! of its second, ... Children of a node are neighbours, and have greater numbers than the node.
-//! The items of a node are in ascending order.
+//! The items of a node are in ascending order. A node without children has an empty range of them, which begins where
+//! they would: at 1 plus the number of children of all nodes before it. Boxes of nodes have 0 in the place of -0.
 //!
 //! `Decided:` 20 levels. Cells of the last are a millionth of the scene wide; what falls together there stays together.
 //! `Decided:` a chain of nodes with one child each is one node: they stand for the same items.
@@ -166,7 +167,7 @@ impl Branch {
     }
 }
 
-/// The box around two boxes; 0 is not -0.
+/// The box around two boxes, with 0 in the place of -0.
 #[must_use]
 pub fn around(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> (Vec3, Vec3) {
     let least = |i: usize| if b.0[i] < a.0[i] { b.0[i] } else { a.0[i] } + 0.0;

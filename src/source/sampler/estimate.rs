@@ -17,6 +17,8 @@ pub const COUNT: usize = 1000;
 ///               of k, in f64, rounded to f32 once; 0 if there are none
 /// ```
 ///
+/// A squared distance that exceeds `f32` is not there: `r_m` is finite.
+///
 /// `Decided:` what faces the other way does not count, of which the paper says nothing: the two sides of a wall that is thinner than
 /// the distance of surfels are near to each other, but no side covers the other.
 ///

@@ -1,7 +1,7 @@
 //! Candidates and samplers of \[BJFM19\], from their pages alone, to the last bit.
 
 mod candidates;
-mod cases;
+pub(crate) mod cases;
 mod known;
 mod laws;
 mod orders;

@@ -254,7 +254,7 @@ impl Objects {
     }
 
     /// The lower median of all radii that are drawn; an object without levels of detail has its median radius as
-    /// often as it has surfels.
+    /// often as it has surfels, if it is drawn.
     fn median_of_drawn(&self, exec: &Exec) -> f32 {
         let middle = self.drawn_total().saturating_sub(1) / 2;
         // Radii are positive, so that their bits ascend as they do: first the high half, then the low.

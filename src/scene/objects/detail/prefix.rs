@@ -5,7 +5,7 @@
 //! is s / 2 pixels where the object is nearest, in the coordinates of the geometry. In f64:
 //!
 //! ```text
-//!   d_p  = t / f / k        the width of a pixel where the object is nearest; orthographic: 1 / f / k
+//!   d_p  = (t / f) / k      the width of a pixel where the object is nearest; orthographic: (1 / f) / k
 //!   r    = s d_p / 2        s: the size in pixels that the view chooses
 //!   p(r) = p_m (q q)        q = r_m / r
 //! ```
@@ -13,7 +13,9 @@
 //! f is the greater of fx and fy, k the scale of the object, and `r_m` the [`Estimate::distance`] of a prefix of
 //! `p_m` = [`Estimate::count`] surfels. The object is nearest at the point c of the box around its geometry
 //! that is the closest to the eye e, both in the coordinates of the geometry, `c = max(low, min(e, high))` a
-//! component; t is its depth, in its place, at least that of the near plane.
+//! component; t is its depth, in its place, at least that of the near plane. The box is around the positions of
+//! all surfels and of the vertices that a primitive uses, without their radii. e is that of [`super::tree`]; a
+//! place is that of [`crate::scene::Similarity`], which is not rounded to f32 here.
 //!
 //! `Departs:` the paper prints r = s / (2 `d_p`), with which discs shrink where pixels become wider.
 //!

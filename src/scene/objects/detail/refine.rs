@@ -19,34 +19,41 @@
 //! the finer ones grow, in the second the coarser one shrinks: one of both is always drawn whole. Where one
 //! shrinks while the other grows there are holes halfway, as two prefixes of half the length know nothing of
 //! each other. Primitives are drawn where their weight is greater than 0:
-//! a surface is there or is not. So is an object without a prefix.
+//! a surface is there or is not. So is an object without a prefix, whose finer ones have its weight w.
 //!
 //! **Where nothing is finer** and p(r) exceeds n, all n are drawn, with the radius `r_n` = `r_m` sqrt(`p_m` /
 //! n) with which they cover: nothing more is known of the surface. `Decided:` here discs grow beyond the size
 //! asked for; with a fixed size there would be holes.
 //!
-//! **Size.** s is the [size](Refinement::surfel_size) asked for, times the factor z of the object's zone, and r
-//! = (size (`d_p` z)) / 2. Discs have the radius r k, or `r_n` k, in the world, with the scale k of the object,
-//! between 2^-100 and 2^100, rounded to f32; the side of the [square](crate::scene::Sides) of a surfel is size
-//! z, or (size z) (`r_n` / r), rounded to f32.
+//! **Size.** s is the [size](Refinement::surfel_size) asked for, z the factor of the object's zone, and r =
+//! (size (`d_p` z)) / 2, where size is s, or greater by the budget. Discs have the radius r k, or `r_n` k, in the world, with the scale k of the object,
+//! and the side of the [square](crate::scene::Sides) of a surfel is size z, or (size z) (`r_n` / r). Both are
+//! brought between 2^-100 and 2^100, then rounded to f32.
 //!
 //! **Zones** \[4.4\]: pairs of a distance from the principal point of the camera, in pixels, and a factor of
 //! the size, "interpolate\[d\] \[...\] between zones on a per-object basis": between the pairs (a, from) and
 //! (b, to) at the distance d `from + (to - from) ((d - a) / (b - a))`, in f64; the first factor before the
 //! first distance and the last behind the last; at equal distances the later pair. `Decided:` the distance of
-//! an object is that of the middle of its sphere on the screen, less the sphere's radius there, `f R / t` with
-//! the depth t of the middle (orthographic: `f R`), at least 0; 0 if `t <= R`.
+//! an object is that of the middle of its sphere on the screen, less the sphere's radius there, at least 0. In
+//! f64, with the middle (x, y) at the depth t in view space, and f the greater of fx and fy:
+//!
+//! ```text
+//!   a = (fx x) / t     b = (fy y) / t     max(sqrt(a a + b b) - (f R) / t, 0), but 0 if t <= R
+//!   a = fx x           b = fy y           max(sqrt(a a + b b) - f R, 0), whatever t      orthographic
+//! ```
 //!
 //! **Budget**: at most so many surfels of prefixes are drawn, the best first. Of all surfels that may be
 //! drawn those come first whose prefix has the widest gaps on the screen; so a common greater size takes the
 //! place of the size asked for, the k-th of s, s (65/64), (s (65/64)) (65/64) and so on, up to k = 2048. k is 0
 //! if the objects draw no more than the budget with s; else it is found by halving: `(few, many) = (2048, 0)`,
 //! and while `few - many > 1`, of `k = (few + many) / 2`, rounded down, few becomes k if they draw no more with
-//! it, else many becomes k; k = few. Where objects are so many that they draw more even then, those are left
-//! out that come after the budget in the order of objects.
+//! it, else many becomes k; k = few. Fades follow the greater size, so that finer objects give way to coarser
+//! ones. Where objects draw more even then, those surfels are left out that come after the budget in the order
+//! of objects: one object may keep its first ones. Primitives stay as they are.
 //!
 //! An object with a prefix whose sphere is not in the view frustum, by the test of [`super`] with the margin
-//! 16 + s, draws nothing; its finer objects have the weight that they would have.
+//! 16 + s z, with the s that is asked for and not the budget's, draws neither surfels nor primitives; its finer objects have the weight that they
+//! would have.
 
 use super::prefix::Prefix;
 use super::{Disc, Eye, MARGIN, Shown};

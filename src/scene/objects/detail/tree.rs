@@ -5,7 +5,7 @@
 //! rotation R and translation T, seen by a camera at the eye E with the focal lengths fx and fy, in f64:
 //!
 //! ```text
-//!   e    = transpose(R) (E - T) / k             the eye in the coordinates of the geometry
+//!   e    = (transpose(R) (E - T)) / k           the eye in the coordinates of the geometry, sums (a + b) + c
 //!   s    = f / tau                              f the greater of fx and fy; +inf where tau = 0
 //!   r(p) = |p - e|                              of a node at p, sqrt((dx dx + dy dy) + dz dz)
 //!   r    = 1 / k                                of every node, orthographic

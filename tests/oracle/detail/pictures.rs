@@ -1,0 +1,243 @@
+//! The surfels of a node: what its pictures show, which of their candidates it has, and their bytes.
+
+use super::estimates;
+use super::folder::World;
+use super::mesh::Bytes;
+use super::view::placed;
+use crate::kit::eye::wide;
+use crate::sampler::cases::{alone, mesh};
+use glam::Vec3;
+use splatref::frame::Exec;
+use splatref::io::srgb;
+use splatref::scene::{Cloud, Similarity};
+use splatref::source::candidates::candidates;
+use splatref::source::hierarchy::{Sampler, Traversal};
+use splatref::source::sampler::{Greedy, Progressive, Start, shuffled};
+
+/// The surfels of a node as they are in its file, and their codes.
+pub(crate) struct Surfels {
+    position: Vec<Vec3>,
+    normal: Vec<Vec3>,
+    color: Vec<Vec3>,
+    codes: Vec<([i16; 2], [u8; 3])>,
+    estimate: (u32, f32),
+}
+
+fn sign(v: f64) -> f64 {
+    if v < 0.0 { -1.0 } else { 1.0 }
+}
+
+fn encoded(n: Vec3) -> [i16; 2] {
+    let [x, y, z] = wide(n);
+    let s = (x.abs() + y.abs()) + z.abs();
+    let (mut a, mut b) = (x / s, y / s);
+    if z < 0.0 {
+        (a, b) = ((1.0 - b.abs()) * sign(a), (1.0 - a.abs()) * sign(b));
+    }
+    [a, b].map(|v| (32767.0 * v + 0.5).floor() as i16)
+}
+
+fn decoded(codes: [i16; 2]) -> Vec3 {
+    let [a, b] = codes.map(|code| f64::from(code) / 32767.0);
+    let z = (1.0 - a.abs()) - b.abs();
+    let t = if z < 0.0 { -z } else { 0.0 };
+    let [x, y] = [a - t * sign(a), b - t * sign(b)];
+    let length = ((x * x + y * y) + z * z).sqrt();
+    Vec3::from_array([x, y, z].map(|v| (v / length) as f32 + 0.0))
+}
+
+impl Surfels {
+    fn new(cloud: &Cloud) -> Self {
+        let color = cloud.color.as_ref().expect("colours");
+        let table = srgb::table(255);
+        let code = |c: f32| {
+            let c = f64::from(c).max(0.0).min(1.0);
+            (255.0 * srgb::from_linear(c) + 0.5).floor() as u8
+        };
+        let normals = cloud.normal.as_ref().expect("normals");
+        let codes: Vec<_> = (normals.iter().zip(color))
+            .map(|(n, c)| (encoded(*n), c.to_array().map(code)))
+            .collect();
+        let normal: Vec<Vec3> = codes.iter().map(|(n, _)| decoded(*n)).collect();
+        let light = |code: &[u8; 3]| Vec3::from_array(code.map(|c| table[usize::from(c)]));
+        let color = codes.iter().map(|(_, c)| light(c)).collect();
+        let (count, distance) = estimates::model(&cloud.position, &normal);
+        let estimate = (count, f32::from_bits(distance));
+        Self { position: cloud.position.clone(), normal, color, codes, estimate }
+    }
+
+    /// How many, `p_m` and `r_m`.
+    pub(crate) fn header(&self) -> (u32, u32, f32) {
+        (self.position.len() as u32, self.estimate.0, self.estimate.1)
+    }
+
+    pub(crate) fn file(&self, hash: &[u8; 32], number: u32) -> Vec<u8> {
+        let mut bytes = Bytes::begin("splatref blue 1\n");
+        bytes.0.extend(hash);
+        let (count, p, r) = self.header();
+        bytes.u32(&[number, count, p]);
+        bytes.f32(&[r]);
+        for (position, (normal, color)) in self.position.iter().zip(&self.codes) {
+            bytes.f32(&position.to_array());
+            normal.iter().for_each(|v| bytes.0.extend(v.to_le_bytes()));
+            bytes.0.extend(color);
+            bytes.0.push(255);
+        }
+        bytes.0
+    }
+}
+
+/// What pictures show: positions, normals and colours of corners.
+#[derive(Default)]
+struct Drawn {
+    corners: Vec<[Vec3; 3]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+fn turned(place: &Similarity, n: Vec3) -> Vec3 {
+    let zero = Similarity { scale: 1.0, translation: glam::DVec3::ZERO, ..*place };
+    single(placed(&zero, wide(n)))
+}
+
+fn single(v: [f64; 3]) -> Vec3 {
+    Vec3::from_array(v.map(|c| c as f32))
+}
+
+/// Half axes of a disc of the radius 1, in f64.
+fn axes(n: Vec3) -> [[f64; 3]; 2] {
+    let n = wide(n);
+    let s = n.map(f64::abs);
+    let a = if s[0] <= s[1] && s[0] <= s[2] {
+        [1.0, 0.0, 0.0]
+    } else if s[1] <= s[2] {
+        [0.0, 1.0, 0.0]
+    } else {
+        [0.0, 0.0, 1.0]
+    };
+    let across = |a: [f64; 3], n: [f64; 3]| {
+        [a[1] * n[2] - a[2] * n[1], a[2] * n[0] - a[0] * n[2], a[0] * n[1] - a[1] * n[0]]
+    };
+    let c = across(a, n);
+    let length = ((c[0] * c[0] + c[1] * c[1]) + c[2] * c[2]).sqrt();
+    let u = c.map(|v| v * (1.0 / length));
+    [u, across(n, u)]
+}
+
+/// Where something is shown, and in which colour.
+#[derive(Clone, Copy)]
+struct Shown {
+    place: Similarity,
+    color: Option<Vec3>,
+}
+
+impl World {
+    /// The own triangles of a node of a geometry.
+    fn own(&self, number: u32, shown: Shown, to: &mut Drawn) {
+        let (tree, first, Some(geometry)) = self.tree_of(number) else { return };
+        let mesh = &self.meshes[geometry];
+        for &t in &tree[(number - first) as usize].own {
+            let begin = to.corners.len() as u32;
+            for v in mesh.corners[t as usize].map(|v| v as usize) {
+                let own = mesh.color.as_ref().map_or(self.fill, |all| all[v]);
+                let position = single(placed(&shown.place, wide(mesh.position[v])));
+                let normal = turned(&shown.place, mesh.normal[v]);
+                to.corners.push([position, normal, shown.color.unwrap_or(own)]);
+            }
+            to.triangles.push([begin, begin + 1, begin + 2]);
+        }
+    }
+
+    /// The surfels of a node as squares.
+    fn squares(surfels: &Surfels, shown: Shown, pixel: f64, to: &mut Drawn) {
+        let n = f64::from(surfels.header().0);
+        let (count, distance) = (f64::from(surfels.estimate.0), f64::from(surfels.estimate.1));
+        let k = shown.place.scale;
+        let r = pixel / k;
+        let q = distance / r;
+        let p = n.min((count * (q * q)).ceil()).max(1.0) as usize;
+        let half = (r.max(distance * (count / n).sqrt()) * k) as f32;
+        for i in 0..p {
+            let at = single(placed(&shown.place, wide(surfels.position[i])));
+            let normal = turned(&shown.place, surfels.normal[i]);
+            let [u, v] = axes(normal).map(|a| single(a.map(|c| c * f64::from(half))));
+            let color = shown.color.unwrap_or(surfels.color[i]);
+            let begin = to.corners.len() as u32;
+            let corners = [(at - u) - v, (at + u) - v, (at + u) + v, (at - u) + v];
+            to.corners.extend(corners.map(|corner| [corner, normal, color]));
+            to.triangles.push([begin, begin + 1, begin + 2]);
+            to.triangles.push([begin, begin + 2, begin + 3]);
+        }
+    }
+
+    /// The triangles that stay in a node, and what is drawn of what is below.
+    fn node(&self, number: u32, shown: Shown, pixel: f64, to: &mut Drawn) {
+        self.own(number, shown, to);
+        let (tree, first, geometry) = self.tree_of(number);
+        let node = &tree[(number - first) as usize];
+        let mut below = Vec::new();
+        if geometry.is_none() {
+            for &item in &node.own {
+                let object = &self.objects[self.still[item as usize] as usize];
+                let shown = Shown { place: object.motion.at(0), color: object.color };
+                below.push((self.first(object.geometry), shown));
+            }
+        }
+        below.extend(node.children.iter().map(|child| (child + first, shown)));
+        for (child, shown) in below {
+            let surfels = self.surfels.get(&child);
+            match surfels.filter(|_| self.settings.traversal == Traversal::BottomUp) {
+                Some(surfels) => Self::squares(surfels, shown, pixel, to),
+                None => self.node(child, shown, pixel, to),
+            }
+        }
+    }
+}
+
+/// The candidates of a node with pictures of a side; without any if no triangle covers a pixel.
+fn taken(world: &World, number: u32, side: u32) -> Option<Cloud> {
+    let (tree, first, _) = world.tree_of(number);
+    let node = &tree[(number - first) as usize];
+    let [low, high] = [node.low, node.high].map(|v| v.map(f64::from));
+    let d = [0, 1, 2].map(|k| high[k] - low[k]);
+    let half = ((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]).sqrt() / 2.0;
+    let half = if half == 0.0 { 1.0 } else { half };
+    let pixel = 2.0 * half / f64::from(side);
+    let mut drawn = Drawn::default();
+    let shown = Shown { place: Similarity::IDENTITY, color: None };
+    world.node(number, shown, pixel, &mut drawn);
+    let column = |k: usize| drawn.corners.iter().map(|c| c[k]).collect::<Vec<_>>();
+    let scene = alone(mesh(column(0), column(1), Some(column(2)), drawn.triangles.clone()));
+    let exec = Exec::sequential();
+    let directions = &world.settings.directions;
+    Some(candidates(&scene, directions, side, &exec, &|_, _, _| ()).ok()?.cloud)
+}
+
+/// The surfels of a node, if it has some.
+pub(crate) fn approximate(world: &World, number: u32) -> Option<Surfels> {
+    let count = world.wanted(number);
+    if count == 0 {
+        return None;
+    }
+    let settings = &world.settings;
+    let most = settings.side;
+    let side = (f64::from(most) * (f64::from(count) / 200_000.0).sqrt()).ceil() as u32;
+    let mut side = side.max(16).min(most);
+    let mut cloud = taken(world, number, side);
+    let few =
+        |cloud: &Option<Cloud>| cloud.as_ref().map_or(0, |c| c.position.len()) < 4 * count as usize;
+    while few(&cloud) && side < most {
+        side = (2 * side).min(most);
+        cloud = taken(world, number, side);
+    }
+    let cloud = cloud?;
+    let (points, count) = (&cloud.position, count as usize);
+    let (start, seed) = (Start::Seed(settings.seed), settings.seed);
+    let order = match settings.sampler {
+        Sampler::Greedy => Greedy { start }.define(points, count),
+        Sampler::Progressive(schedule) => {
+            Progressive { start, seed, schedule }.order(points, count, &|_, _, _| ())
+        }
+        Sampler::Random => shuffled(points, seed, count),
+    };
+    Some(Surfels::new(&cloud.some(&order.expect("an order").index)))
+}
