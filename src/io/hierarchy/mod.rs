@@ -93,7 +93,7 @@
 //! Here nodes are those of all trees, and so are their first children, of nodes without children too. Where the own triangles of a node
 //! begin is counted in bytes from the beginning of the file, also if it has none. What a node has none of is 0: of a node over
 //! objects triangles, vertices and where they begin; of a node of a geometry the first object and the objects; of a node without surfels their
-//! number, p_m and r_m. Objects are in the order of their nodes, in a node as in the scene, then those that move.
+//! number, `p_m` and `r_m`. Objects are in the order of their nodes, in a node as in the scene, then those that move.
 //!
 //! # Which hash is of what
 //!
