@@ -23,7 +23,7 @@
 //! |---|---|---|
 //! | `plan` | `"splatref hierarchy 1\n"`, 64 hexadecimal digits, `"\n"` | written first: the hash of what is computed |
 //! | `mesh-N` | the tree and the triangles of geometry N, a decimal number | |
-//! | `surfels-N` | the surfels of node N, if it has some | |
+//! | `surfels-N` | the surfels of node N, if it is approximated | |
 //! | `index` | all nodes, objects and geometries | written last: the hierarchy is whole |
 //!
 //! **mesh-N**
@@ -67,7 +67,9 @@
 //!   (x, y, z) divided by sqrt((x x + y y) + z z), each rounded to f32 once, plus 0
 //! ```
 //!
-//! so that a normal is at most 1e-4 off. Colours are clamped to \[0, 1\], encoded by [`crate::io::srgb`], and rounded as
+//! A node of which no pixel sees anything has a file too, with the count, `p_m` and `r_m` 0, so that nobody looks again.
+//!
+//! A normal is at most 1e-4 off. Colours are clamped to \[0, 1\], encoded by [`crate::io::srgb`], and rounded as
 //! floor(255 c + 1/2). `Decided:` Table 1 has 20 bytes a surfel (494.79 MB for 24.74 M) and does not say which. `Decided:` light above 1 is cut, as
 //! it is in the paper's bytes. What has no colours has that of the scene's material. The estimate is that of the surfels as they are in the file.
 //!

@@ -13,6 +13,10 @@
 //!
 //! The radius of a surfel is that with which all of the node cover, `r_m` sqrt(`p_m` / n).
 //!
+//! `Decided:` where `r_m` is 0, as of a single surfel, nothing is known of how densely the surfels cover. In the place of
+//! `r_m` stands half the diagonal of the node's box, or 1 if that is 0, in f64, rounded to f32: the surfels stand for all of
+//! the node while it is about as small as they are drawn, and give way to what is finer when it is larger.
+//!
 //! `Decided:` objects that move stand where they are in frame 0: a folder has no frames.
 
 use super::index::{NONE, Node};
@@ -22,6 +26,7 @@ use crate::frame::Exec;
 use crate::memory;
 use crate::scene::objects::{Geometry, Object, Objects};
 use crate::scene::{Motion, Primitives, Similarity, Surfels};
+use crate::source::hierarchy::approximate::pixel;
 use glam::Vec3;
 
 /// Bytes of a surfel, a vertex, a triangle with its box, and an object, in a loaded scene.
@@ -106,8 +111,13 @@ impl Hierarchy {
             return Ok(Geometry { name, surfels: Surfels::none(), primitives, detail: None });
         }
         let mut cloud = self.surfels(number, u32::MAX)?;
-        let share = f64::from(node.estimate.count) / f64::from(node.surfels);
-        let radius = (f64::from(node.estimate.distance) * share.sqrt()) as f32;
+        let mut estimate = node.estimate;
+        if estimate.distance == 0.0 {
+            // A picture of two pixels' side: half the diagonal.
+            estimate.distance = pixel(2, (node.low, node.high)) as f32;
+        }
+        let share = f64::from(estimate.count) / f64::from(node.surfels);
+        let radius = (f64::from(estimate.distance) * share.sqrt()) as f32;
         cloud.radius = Some(vec![radius; cloud.position.len()]);
         let (surfels, _) = Surfels::new_or_none(cloud, exec)?;
         if surfels.len() != node.surfels as usize {
@@ -115,7 +125,7 @@ impl Hierarchy {
             let what = format!("{name}: {lost} of {} surfels can be none", node.surfels);
             return Err(Error::format(&self.folder, what));
         }
-        Geometry { name, surfels, primitives, detail: None }.with_prefix(node.estimate)
+        Geometry { name, surfels, primitives, detail: None }.with_prefix(estimate)
     }
 }
 

@@ -89,6 +89,11 @@ impl World {
         geometry.map_or((&self.upper, 0, None), |g| (&self.meshes[g].tree, self.first(g), Some(g)))
     }
 
+    /// The surfels of a node, if it has some.
+    pub(crate) fn surfels_of(&self, number: u32) -> Option<&Surfels> {
+        self.surfels.get(&number).filter(|surfels| surfels.header().0 > 0)
+    }
+
     /// The number of surfels that a node is to have.
     pub(crate) fn wanted(&self, number: u32) -> u32 {
         let (tree, first, geometry) = self.tree_of(number);

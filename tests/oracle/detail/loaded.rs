@@ -29,7 +29,17 @@ impl World {
     fn shows_something(&self, number: u32) -> bool {
         let (tree, first, geometry) = self.tree_of(number);
         let own = !tree[(number - first) as usize].own.is_empty();
-        self.surfels.contains_key(&number) || (geometry.is_some() && own)
+        self.surfels_of(number).is_some() || (geometry.is_some() && own)
+    }
+
+    /// How many surfels a node has, `p_m`, and `r_m` or what stands in its place.
+    fn header(&self, number: u32) -> Option<(u32, u32, f32)> {
+        let (count, p, r) = self.surfels_of(number)?.header();
+        let (tree, first, _) = self.tree_of(number);
+        let node = &tree[(number - first) as usize];
+        let [x, y, z] = [0, 1, 2].map(|k| f64::from(node.high[k]) - f64::from(node.low[k]));
+        let half = (x * x + y * y + z * z).sqrt() / 2.0;
+        Some((count, p, if r == 0.0 { half as f32 } else { r }))
     }
 
     /// The nodes above one in its tree, the nearest first.
@@ -90,7 +100,7 @@ fn same(world: &World, found: &Objects) {
         assert_eq!((found.places()[o as usize], object.color), (shows.place, shows.color));
         let geometry = nodes.binary_search(&shows.node).expect("a node");
         assert_eq!(object.geometry, geometry, "{shows:?}");
-        let header = world.surfels.get(&shows.node).map(super::pictures::Surfels::header);
+        let header = world.header(shows.node);
         let truth = header.map(|(_, count, distance)| Estimate { count, distance });
         assert_eq!(estimate(found, o), truth, "{shows:?}");
     }
@@ -104,7 +114,7 @@ fn same(world: &World, found: &Objects) {
         let all = triangles.corners().iter().flatten();
         let all: Vec<Vec3> = all.map(|&v| triangles.vertices().position[v as usize]).collect();
         assert_eq!(all, own, "triangles of {node}");
-        let header = world.surfels.get(node).map(super::pictures::Surfels::header);
+        let header = world.header(*node);
         assert_eq!(geometry.surfels.len() as u32, header.map_or(0, |h| h.0));
         if let Some((n, p, r)) = header {
             let radius = f64::from(r) * (f64::from(p) / f64::from(n)).sqrt();
@@ -188,16 +198,29 @@ fn hierarchies_that_are_resumed_have_the_same_bytes() {
     }
 }
 
-/// A single surfel has no distance to another, and is loaded all the same.
+/// A single surfel has no distance to another. It is loaded all the same, and where its node is large what is
+/// below the node is seen.
 #[test]
-fn nodes_of_one_surfel_are_loaded() {
+fn nodes_of_one_surfel_are_loaded_and_give_way() {
     let at = TempDir::new().expect("a folder");
     let (file, dropped) = objects(&at, 5, 30);
     let settings = Settings { most: 1, ..settings(Traversal::BottomUp) };
     let folder = at.path().join("all");
     made(&file, &folder, &settings, 1);
+    let exec = Exec::sequential();
     let found = Hierarchy::open(&folder).expect("a folder");
-    let found = found.load(&Exec::sequential(), &|_, _, _| ()).expect("objects");
+    let found = found.load(&exec, &|_, _, _| ()).expect("objects");
     assert!((0..found.objects().len() as u32).any(|o| found.geometry(o).surfels.len() == 1));
     same(&world(&file, &dropped, &settings), &found);
+    let seen = |away: f64| {
+        let pose = Pose { eye: DVec3::new(0.0, 0.0, away), target: DVec3::ZERO, up: DVec3::Y };
+        let camera = Camera::new(80, 60, pose, Lens::Focal(90.0)).expect("a camera");
+        let seen = found.seen_from(&camera, &exec).expect("a view");
+        let triangles = seen.primitives().expect("primitives").iter().map(|p| p.triangles.len());
+        (seen.drawn_total(), triangles.sum::<usize>())
+    };
+    assert!(seen(30.0).1 > 1000, "{:?}", seen(30.0));
+    // The objects in the nodes are one surfel, and those that move are one each, or their few triangles.
+    let (surfels, triangles) = seen(1e5);
+    assert!((1..10).contains(&surfels) && triangles < 1000, "{surfels} {triangles}");
 }

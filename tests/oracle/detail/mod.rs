@@ -9,5 +9,6 @@ mod mesh;
 mod octree;
 mod pictures;
 mod stages;
+mod ties;
 mod view;
 mod whole;

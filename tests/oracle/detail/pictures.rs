@@ -184,7 +184,7 @@ impl World {
         }
         below.extend(node.children.iter().map(|child| (child + first, shown)));
         for (child, shown) in below {
-            let surfels = self.surfels.get(&child);
+            let surfels = self.surfels_of(child);
             match surfels.filter(|_| self.settings.traversal == Traversal::BottomUp) {
                 Some(surfels) => Self::squares(surfels, shown, pixel, to),
                 None => self.node(child, shown, pixel, to),
@@ -212,7 +212,11 @@ fn taken(world: &World, number: u32, side: u32) -> Option<Cloud> {
     Some(candidates(&scene, directions, side, &exec, &|_, _, _| ()).ok()?.cloud)
 }
 
-/// The surfels of a node, if it has some.
+fn nothing() -> Cloud {
+    Cloud { normal: Some(Vec::new()), color: Some(Vec::new()), ..Cloud::default() }
+}
+
+/// The surfels of a node, if it is approximated: none if no pixel sees anything.
 pub(crate) fn approximate(world: &World, number: u32) -> Option<Surfels> {
     let count = world.wanted(number);
     if count == 0 {
@@ -229,7 +233,7 @@ pub(crate) fn approximate(world: &World, number: u32) -> Option<Surfels> {
         side = (2 * side).min(most);
         cloud = taken(world, number, side);
     }
-    let cloud = cloud?;
+    let Some(cloud) = cloud else { return Some(Surfels::new(&nothing())) };
     let (points, count) = (&cloud.position, count as usize);
     let (start, seed) = (Start::Seed(settings.seed), settings.seed);
     let order = match settings.sampler {
