@@ -216,8 +216,8 @@ fn nodes_of_one_surfel_are_loaded_and_give_way() {
         let pose = Pose { eye: DVec3::new(0.0, 0.0, away), target: DVec3::ZERO, up: DVec3::Y };
         let camera = Camera::new(80, 60, pose, Lens::Focal(90.0)).expect("a camera");
         let seen = found.seen_from(&camera, &exec).expect("a view");
-        let triangles = seen.primitives().expect("primitives").iter().map(|p| p.triangles.len());
-        (seen.drawn_total(), triangles.sum::<usize>())
+        let primitives = seen.primitives().expect("primitives");
+        (seen.drawn_total(), primitives.iter().map(|p| p.triangles.len()).sum::<usize>())
     };
     assert!(seen(30.0).1 > 1000, "{:?}", seen(30.0));
     // The objects in the nodes are one surfel, and those that move are one each, or their few triangles.

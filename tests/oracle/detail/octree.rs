@@ -161,7 +161,7 @@ fn items(dice: &mut Dice, kind: usize, count: usize) -> Vec<Item> {
             8 => (Vec3::new(i as f32, 1e6, -1e6), Vec3::ZERO),
             _ => (dice.vector(-s, s) * [1.0, -0.0][dice.below(2)], Vec3::ZERO),
         };
-        let weight = if kind % 2 == 0 { 1 } else { dice.below(20) as u64 };
+        let weight = if kind.is_multiple_of(2) { 1 } else { dice.below(20) as u64 };
         Item { low: middle - reach, high: middle + reach, weight }
     };
     (0..count).map(|i| one(dice, i)).collect()
@@ -201,9 +201,9 @@ fn items_lie_in_the_loose_boxes_of_their_cells() {
         let side = root / 2.0_f64.powi(node.depth as i32);
         for &own in tree.own(number).iter().take(if node.children.is_empty() { 0 } else { 9 }) {
             let item = &items[own as usize];
-            for k in 0..3 {
+            for (k, low) in low.iter().enumerate() {
                 let [a, b] = [item.low[k], item.high[k]].map(f64::from);
-                let cell = (((a + b) / 2.0 - low[k]) / side).floor() * side + low[k];
+                let cell = (((a + b) / 2.0 - low) / side).floor() * side + low;
                 assert!(a > cell - side / 2.0 - 1e-6 && b < cell + side * 1.5 + 1e-6, "{number}");
             }
         }

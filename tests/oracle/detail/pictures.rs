@@ -51,7 +51,7 @@ impl Surfels {
         let color = cloud.color.as_ref().expect("colours");
         let table = srgb::table(255);
         let code = |c: f32| {
-            let c = f64::from(c).max(0.0).min(1.0);
+            let c = f64::from(c).clamp(0.0, 1.0);
             (255.0 * srgb::from_linear(c) + 0.5).floor() as u8
         };
         let normals = cloud.normal.as_ref().expect("normals");

@@ -158,7 +158,7 @@ fn with_size(objects: &Objects, asked: &[Option<Asked>], size: f64) -> Vec<Shown
     let surfels = |o: u32| objects.geometry(o).surfels.len() as u32;
     let better = |o: u32| finer[o as usize] || !objects.geometry(o).primitives.is_empty();
     let fade = |o: u32| match wanted(o) {
-        Some((p, _)) if better(o) => (2.0 * (p / f64::from(surfels(o))) - 1.0).max(0.0).min(1.0),
+        Some((p, _)) if better(o) => (2.0 * (p / f64::from(surfels(o))) - 1.0).clamp(0.0, 1.0),
         Some(_) => 0.0,
         None => 1.0,
     };
@@ -184,10 +184,10 @@ fn with_size(objects: &Objects, asked: &[Option<Asked>], size: f64) -> Vec<Shown
             side *= radius / r;
         }
         let k = objects.places()[o as usize].scale;
-        let within = |v: f64| v.max(2.0_f64.powi(-100)).min(2.0_f64.powi(100)) as f32;
+        let within = |v: f64| v.clamp(2.0_f64.powi(-100), 2.0_f64.powi(100)) as f32;
         let state = match fade(o) {
             _ if beyond => State::Beyond,
-            fade if fade == 0.0 => State::Whole,
+            0.0 => State::Whole,
             fade if fade < 0.5 => State::Growing,
             fade if fade < 1.0 => State::Shrinking,
             _ => State::Gone,
