@@ -3,7 +3,8 @@
 //! `cargo bench --bench plan` prints a Markdown table, and with `--write` puts the table into `docs/plan.md`; an argument
 //! is a pattern that the names of scenes must contain. Scenes are the six shapes, sparse and dense, in pictures
 //! of 320 x 240. Budgets are errors (RMSE), halfway from the least error of a candidate to the median one and at
-//! the median. All candidates are timed by turns, then the plan is made, without what these times tell.
+//! the median. All candidates are timed by turns, those that may be the best more often, then the plan is made, without what
+//! these times tell.
 //!
 //! Regret is the time of what was planned by that of the fastest candidate within the error, both as all were timed,
 //! less 1. A clock that ticks twice gives two times: *again* is the same of the exhaustive choice made from
@@ -16,7 +17,7 @@ use common::report::{Arguments, Table};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::scene_file::{SceneFile, Source};
-use splatref::study::plan::{Budget, Known, choose};
+use splatref::study::plan::{Budget, Known, choose, timed};
 use splatref::study::report::chart::Loss;
 use splatref::study::run::measure::losses;
 use splatref::study::run::truths;
@@ -33,6 +34,7 @@ fn main() -> Result<()> {
         "scene",
         "surfels",
         "candidates",
+        "in small alone",
         "error at most",
         "planned",
         "its error",
@@ -89,20 +91,21 @@ fn scene(shape: &str, count: usize, exec: &Exec) -> Result<Vec<Row>> {
     };
     let errors: Vec<f64> =
         measure(&mut bench, Budget::Error(0.0))?.iter().map(|known| known.loss).collect();
-    let timed = exhaustive(&mut bench, &all, &errors)?;
-    let second = exhaustive(&mut bench, &all, &errors)?;
     let mut sorted = errors.clone();
     sorted.sort_by(f64::total_cmp);
     let (least, median) = (sorted[0], sorted[sorted.len() / 2]);
     let mut rows = Vec::new();
     for most in [f64::midpoint(least, median), median] {
         let budget = Budget::Error(most);
-        let planned = budget.ranked(&measure(&mut bench, budget)?);
+        let timed = exhaustive(&mut bench, &all, (budget, &errors))?;
+        let second = exhaustive(&mut bench, &all, (budget, &errors))?;
+        let known = measure(&mut bench, budget)?;
+        let (planned, small) = (budget.ranked(&known), known.iter().filter(|k| !k.is_whole).count());
         let (planned, best) = (planned[0], budget.ranked(&timed)[0]);
         let regret = |i: usize| 100.0 * (timed[i].time / timed[best].time - 1.0);
         let (regret, again) = (regret(planned), regret(budget.ranked(&second)[0]));
         let cells = format!(
-            "{} | {most:.4} | `{}` | {:.4} | `{}` | {regret:.1} | {again:.1}",
+            "{} | {small} | {most:.4} | `{}` | {:.4} | `{}` | {regret:.1} | {again:.1}",
             all.len(),
             all[planned].options,
             errors[planned],
@@ -113,8 +116,12 @@ fn scene(shape: &str, count: usize, exec: &Exec) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// Every candidate's median time, by turns.
-fn exhaustive(bench: &mut Bench<'_>, all: &[Candidate], errors: &[f64]) -> Result<Vec<Known>> {
+/// Every candidate's median time, by turns. Those that may be the fastest within the error have more turns.
+fn exhaustive(
+    bench: &mut Bench<'_>,
+    all: &[Candidate],
+    (budget, errors): (Budget, &[f64]),
+) -> Result<Vec<Known>> {
     let mut records: Vec<Record> = all.iter().map(Record::of).collect();
     for round in 0..time::ROUNDS {
         for i in time::order(round, all.len()) {
@@ -123,5 +130,9 @@ fn exhaustive(bench: &mut Bench<'_>, all: &[Candidate], errors: &[f64]) -> Resul
     }
     let time = |record: &Record| record.quartiles().map_or(f64::INFINITY, |[_, median, _]| median);
     let both = records.iter().zip(errors);
-    Ok(both.map(|(record, loss)| Known { time: time(record), loss: *loss }).collect())
+    let mut known: Vec<Known> = both
+        .map(|(record, loss)| Known { time: time(record), loss: *loss, is_whole: true })
+        .collect();
+    timed(bench, all, &budget.hopeful(&known), &mut known, &|_, _, _| ())?;
+    Ok(known)
 }

@@ -16,9 +16,10 @@ use std::time::Instant;
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-Every candidate of `splatref study` is drawn at the full size and compared with the true picture; what is
-within the budget is timed by turns. Errors of a smaller picture would be those of another: holes come and
-go with its size.
+Every candidate of `splatref study` is drawn and timed with a quarter of the columns and rows. From the
+fastest on, candidates are drawn at the full size and compared with the true picture, as long as they may be
+the best. What is within the budget is timed by turns. Errors are of the full size alone: holes come and go
+with the size of a picture.
 
 Examples:
   splatref plan bunny.ply --error 0.02
@@ -69,7 +70,8 @@ pub(super) fn run(args: &Args) -> Ended {
     drop(steps);
     report::line("scene", format!("{}, {} x {}", scene.name, camera.width, camera.height));
     report::line("truth", truth_in_words(&known, &truth));
-    report::line("tried", format!("{} candidates", candidates.len()));
+    let small = rows.iter().filter(|row| !row.is_whole).count();
+    report::line("tried", format!("{} candidates, {small} of them in small alone", rows.len()));
     let ended = print(args, budget, &candidates, &rows);
     report::time("total", vec![start.elapsed()]);
     ended
@@ -78,7 +80,7 @@ pub(super) fn run(args: &Args) -> Ended {
 /// What is chosen, how to draw it, and what comes next.
 fn print(args: &Args, budget: Budget, candidates: &[Candidate], rows: &[Row]) -> Ended {
     let in_words = |i: usize| {
-        let Row { time, loss } = rows[i];
+        let Row { time, loss, .. } = rows[i];
         let (time, loss) = (report::short(time), report::short(loss));
         format!("{}: {time} ms, {} {loss}", candidates[i].options, args.metric.title)
     };

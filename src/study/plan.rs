@@ -1,20 +1,36 @@
 //! The cheapest method and settings within a budget, of candidates that were measured.
 //!
-//! [`choose`] draws every candidate at the full size; `Decided:` no small version first, as holes come and go
-//! with the size of a picture. Those within the budget are then timed by turns, but for those whose first time is
-//! more than [`HOPELESS`] times that of the fastest, or the budget.
+//! [`choose`] goes on in three steps:
+//!
+//! 1. **Small**: every candidate is drawn with a quarter of the columns and of the rows, and timed. No error is taken:
+//!    holes come and go with the size of a picture, so that errors of a small one are those of another.
+//! 2. **Whole**: from the fastest small picture to the slowest, candidates are drawn at the full size, timed and
+//!    compared with the truth. A picture takes no less time than a quarter of its columns and rows does. So one is left
+//!    out if its small picture takes more than [`HOPELESS`] times the limit of a time, or the time of the fastest
+//!    whole picture that is within an error so far.
+//! 3. **Timed**: those within the budget are timed by turns, but for those whose whole picture took more than
+//!    [`HOPELESS`] times that of the fastest, or the limit.
 
 use super::report::chart::Loss;
-use super::run::measure::picture_errors;
+use super::run::measure::{picture_errors, second};
 use super::run::{Bench, Record, time};
 use super::sweep::Candidate;
 use super::truth::Truth;
 use crate::error::Result;
 use crate::frame::Exec;
+use crate::scene::Camera;
 use crate::verify::metrics::METRICS;
+use std::time::{Duration, Instant};
 
 /// A first time may be too long by so much. It is never too short by so much.
 pub const HOPELESS: f64 = 2.0;
+/// How many times fewer columns, and rows, a small picture has.
+const SMALLER: u32 = 4;
+/// There are more rounds than [`time::ROUNDS`] while all took less than this: the times of fast pictures differ
+/// most from turn to turn,
+const ENOUGH: Duration = Duration::from_secs(3);
+/// and at most so many.
+pub const MOST_ROUNDS: u64 = 25;
 
 /// Measures candidates against the true picture, and times those that may be the best within a budget.
 ///
@@ -28,28 +44,83 @@ pub fn choose(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Vec<Known>> {
     let metric = METRICS.iter().find(|metric| metric.name == loss.figure);
+    let count = candidates.len() as u64;
     let mut known = Vec::new();
     for (i, candidate) in candidates.iter().enumerate() {
-        progress("measuring", i as u64, candidates.len() as u64);
-        let (errors, time) = picture_errors(bench, candidate, truth, exec)?;
-        let value = metric.and_then(|metric| (metric.of)(&errors));
-        known.push(Known { time, loss: value.map_or(f64::NAN, loss.of) });
+        progress("drawing small pictures", i as u64, count);
+        let mut visit = bench.visit(candidate, &|_, _, _| ())?;
+        let camera = small(&visit.ready.camera);
+        let (time, _) = second(&mut visit, candidate, &camera)?;
+        known.push(Known { time, loss: f64::NAN, is_whole: false });
     }
-    let left = budget.hopeful(&known);
-    let mut records: Vec<Record> = left.iter().map(|&i| Record::of(&candidates[i])).collect();
-    for round in 0..time::ROUNDS {
-        for (done, i) in time::order(round, left.len()).into_iter().enumerate() {
-            let count = left.len() as u64;
-            progress("timing", round * count + done as u64, time::ROUNDS * count);
-            time::turn(bench, &candidates[left[i]], round, &mut records[i].times)?;
+    let mut limit = budget.first_limit();
+    for (done, i) in by_time(&known).into_iter().enumerate() {
+        progress("measuring", done as u64, count);
+        // The first is drawn in any case, so that there is a nearest if nothing is within the budget.
+        if done > 0 && known[i].time > HOPELESS * limit {
+            break;
+        }
+        let (errors, time) = picture_errors(bench, &candidates[i], truth, exec)?;
+        let value = metric.and_then(|metric| (metric.of)(&errors));
+        known[i] = Known { time, loss: value.map_or(f64::NAN, loss.of), is_whole: true };
+        if matches!(budget, Budget::Error(_)) && budget.allows(&known[i]) {
+            limit = limit.min(time);
         }
     }
-    for (&i, record) in left.iter().zip(&records) {
+    timed(bench, candidates, &budget.hopeful(&known), &mut known, progress)?;
+    Ok(known)
+}
+
+/// Times some of the candidates by turns, and replaces what was known of their times by the medians.
+///
+/// # Errors
+/// As [`time::turn`].
+pub fn timed(
+    bench: &mut Bench<'_>,
+    candidates: &[Candidate],
+    of: &[usize],
+    known: &mut [Known],
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<()> {
+    let mut records: Vec<Record> = of.iter().map(|&i| Record::of(&candidates[i])).collect();
+    let start = Instant::now();
+    for round in 0..MOST_ROUNDS {
+        if round >= time::ROUNDS && start.elapsed() >= ENOUGH {
+            break;
+        }
+        for (done, i) in time::order(round, of.len()).into_iter().enumerate() {
+            let count = of.len() as u64;
+            progress("timing", round * count + done as u64, MOST_ROUNDS * count);
+            time::turn(bench, &candidates[of[i]], round, &mut records[i].times)?;
+        }
+    }
+    for (&i, record) in of.iter().zip(&records) {
         if let Some([_, median, _]) = record.quartiles() {
             known[i].time = median;
         }
     }
-    Ok(known)
+    Ok(())
+}
+
+/// The same view in a quarter of the columns and rows, both rounded up.
+fn small(camera: &Camera) -> Camera {
+    let by = SMALLER as f32;
+    Camera {
+        width: camera.width.div_ceil(SMALLER),
+        height: camera.height.div_ceil(SMALLER),
+        fx: camera.fx / by,
+        fy: camera.fy / by,
+        cx: camera.cx / by,
+        cy: camera.cy / by,
+        ..*camera
+    }
+}
+
+/// From the fastest to the slowest; ties to the lower index.
+fn by_time(known: &[Known]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..known.len()).collect();
+    order.sort_by(|&a, &b| known[a].time.total_cmp(&known[b].time).then(a.cmp(&b)));
+    order
 }
 
 /// What may not be exceeded.
@@ -65,10 +136,13 @@ pub enum Budget {
 /// What is known of a candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
-    /// The median time of a picture in ms.
+    /// The median time of a picture in ms; of what was drawn small alone, that of the small picture.
     pub time: f64,
-    /// How far it is from the truth: the less, the better.
+    /// How far it is from the truth: the less, the better. NaN of what was drawn small alone, and where there is no such
+    /// error.
     pub loss: f64,
+    /// Whether it was drawn at the full size.
+    pub is_whole: bool,
 }
 
 impl Budget {
@@ -77,15 +151,24 @@ impl Budget {
     pub fn allows(&self, known: &Known) -> bool {
         match *self {
             Self::Error(most) => known.loss <= most,
-            Self::Time(most) => known.time <= most,
+            Self::Time(most) => known.time <= most && known.is_whole,
+        }
+    }
+
+    /// How long a picture may take, before any is known to be within the budget.
+    const fn first_limit(&self) -> f64 {
+        match *self {
+            Self::Error(_) => f64::INFINITY,
+            Self::Time(most) => most,
         }
     }
 
     /// Those that may be the best, by first times.
-    fn hopeful(&self, all: &[Known]) -> Vec<usize> {
+    #[must_use]
+    pub fn hopeful(&self, all: &[Known]) -> Vec<usize> {
         let may = |known: &Known| match *self {
             Self::Error(_) => self.allows(known),
-            Self::Time(most) => known.time <= HOPELESS * most,
+            Self::Time(most) => known.time <= HOPELESS * most && known.is_whole,
         };
         let times = all.iter().filter(|known| may(known)).map(|known| known.time);
         let fastest =
@@ -114,11 +197,16 @@ impl Budget {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::io::scene_file::{SceneFile, Source};
+    use crate::study::run::measure::losses;
+    use crate::study::run::truths;
+    use crate::study::sweep::candidates;
+    use std::path::Path;
 
     #[test]
     fn the_best_within_the_budget_is_first() {
         let known = [[4.0, 0.1], [2.0, 0.3], [2.0, 0.2], [1.0, 0.5], [9.0, 0.1], [0.5, f64::NAN]];
-        let all = known.map(|[time, loss]| Known { time, loss });
+        let all = known.map(|[time, loss]| Known { time, loss, is_whole: true });
         assert_eq!(Budget::Error(0.3).ranked(&all), [2, 1, 0, 4]);
         assert_eq!(Budget::Error(0.05).ranked(&all), Vec::<usize>::new());
         assert_eq!(Budget::Time(2.0).ranked(&all[..5]), [2, 1, 3]);
@@ -126,5 +214,43 @@ mod tests {
         assert!(!Budget::Error(1.0).allows(&all[5]));
         assert_eq!(Budget::Error(0.3).hopeful(&all), [0, 1, 2], "9 is more than twice 2");
         assert_eq!(Budget::Time(2.0).hopeful(&all[..5]), [0, 1, 2, 3]);
+    }
+    /// Of a whole budget all are drawn whole, of none the first alone; what is drawn small alone is never chosen.
+    #[test]
+    fn small_pictures_say_who_is_drawn_whole() {
+        let mut file = SceneFile::open(Path::new("torus")).unwrap();
+        file.camera.size = Some([34, 27]);
+        let Source::Shape { count, .. } = &mut file.models[0].source else { panic!("a shape") };
+        *count = 300;
+        let (exec, quiet) = (Exec::sequential(), |_: &str, _, _| ());
+        let mut all = candidates(&file, None).unwrap();
+        all.retain(|candidate| !candidate.imitates);
+        let (mut bench, all, _) = Bench::load(all, &exec, &quiet).unwrap();
+        let ready = bench.visit(&all[0], &quiet).unwrap().ready;
+        let camera = ready.camera;
+        assert_eq!(small(&camera).size(), [9, 7]);
+        let truth = truths::Known::of(&file, &ready.loaded.scene, &exec, &quiet).unwrap();
+        let truth = truth.still(&camera, &exec, &quiet).unwrap();
+        let rmse = losses().into_iter().find(|loss| loss.figure == "rmse").unwrap();
+        let mut chosen = |budget| {
+            let known = choose(&mut bench, (&all, &truth), (budget, &rmse), &exec, &quiet).unwrap();
+            let whole = known.iter().filter(|known| known.is_whole).count();
+            assert!(known.iter().all(|known| known.is_whole != known.loss.is_nan()));
+            let ranked = budget.ranked(&known);
+            assert!(ranked.iter().all(|&i| known[i].is_whole), "{budget:?}");
+            (known, ranked, whole)
+        };
+        let (exact, nobody, whole) = chosen(Budget::Error(0.0));
+        assert_eq!((nobody.len(), whole), (0, all.len()));
+        assert_eq!(chosen(Budget::Time(f64::INFINITY)).2, all.len());
+        let (_, nobody, whole) = chosen(Budget::Time(1e-9));
+        assert_eq!((nobody.len(), whole), (0, 1));
+        let mut sorted: Vec<f64> = exact.iter().map(|known| known.loss).collect();
+        sorted.sort_by(f64::total_cmp);
+        let (known, ranked, _) = chosen(Budget::Error(sorted[sorted.len() / 2]));
+        for (now, before) in known.iter().zip(&exact).filter(|(now, _)| now.is_whole) {
+            assert_eq!(now.loss.to_bits(), before.loss.to_bits());
+        }
+        assert!(!ranked.is_empty());
     }
 }

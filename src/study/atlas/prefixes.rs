@@ -58,7 +58,7 @@ pub(super) const FAILURES: [Failure; 5] = [
         why: "A bar seen along it, in discs of 8 px. An object has one prefix, chosen for its nearest point [BJFM19, 6].",
         swept: "length, widths",
         values: &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0],
-        error: "surfels a pixel in the farthest eighth, by those in the nearest",
+        error: "surfels a pixel in the farthest eighth, by the nearest",
         limit: 3.0,
         cure: "the bar as objects as long as it is wide",
         at: long,

@@ -58,7 +58,7 @@ pub(super) const FAILURES: [Failure; 5] = [
               what was gathered before [MOC08, 3.1], so the order decides among ellipses that overlap in depth.",
         swept: "surfels",
         values: &[100.0, 300.0, 1000.0, 3000.0, 10_000.0, 30_000.0],
-        error: "pixels whose normal turns by more than a degree, per mille",
+        error: "normals that turn by more than a degree, per mille",
         limit: 1.0,
         cure: "no setting of the template; `--method ewa`",
         at: mirror,

@@ -1,18 +1,20 @@
 //! The errors of a candidate.
 
-use super::bench::Bench;
+use super::bench::{Bench, Visit};
 use super::cameras;
 use super::record::Measured;
 use super::truths::Truths;
 use crate::error::Result;
 use crate::frame::{Exec, Frame};
 use crate::io::scene_file::{Number, Ready};
+use crate::method::Picture;
 use crate::number::elementary::pow;
-use crate::scene::Objects;
+use crate::scene::{Camera, Objects};
 use crate::study::report::chart::Loss;
 use crate::study::sweep::Candidate;
 use crate::study::truth::Truth;
 use crate::verify::metrics::{Better, Errors, Flicker, METRICS, Metric};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
@@ -61,11 +63,23 @@ pub fn picture_errors(
 ) -> Result<(Errors, f64)> {
     let mut visit = bench.visit(candidate, &|_, _, _| ())?;
     let camera = visit.ready.camera;
-    candidate.file.output.draw(&mut visit.session, &camera)?;
-    let start = Instant::now();
-    let picture = candidate.file.output.draw(&mut visit.session, &camera)?;
-    let time = start.elapsed().as_secs_f64() * 1e3;
+    let (time, picture) = second(&mut visit, candidate, &camera)?;
     Ok((Errors::of(&picture.frame, &truth.frame, exec)?, time))
+}
+
+/// The second of two pictures of a candidate, and how long that took in ms.
+///
+/// # Errors
+/// Of the drawing.
+pub fn second<'v>(
+    visit: &'v mut Visit<'_>,
+    candidate: &Candidate,
+    camera: &Camera,
+) -> Result<(f64, Cow<'v, Picture<f32>>)> {
+    candidate.file.output.draw(&mut visit.session, camera)?;
+    let start = Instant::now();
+    let picture = candidate.file.output.draw(&mut visit.session, camera)?;
+    Ok((start.elapsed().as_secs_f64() * 1e3, picture))
 }
 
 /// Draws a candidate and measures its errors; the picture, too.
