@@ -100,7 +100,8 @@ fn scene(shape: &str, count: usize, exec: &Exec) -> Result<Vec<Row>> {
         let timed = exhaustive(&mut bench, &all, (budget, &errors))?;
         let second = exhaustive(&mut bench, &all, (budget, &errors))?;
         let known = measure(&mut bench, budget)?;
-        let (planned, small) = (budget.ranked(&known), known.iter().filter(|k| !k.is_whole).count());
+        let (planned, small) =
+            (budget.ranked(&known), known.iter().filter(|k| !k.is_whole).count());
         let (planned, best) = (planned[0], budget.ranked(&timed)[0]);
         let regret = |i: usize| 100.0 * (timed[i].time / timed[best].time - 1.0);
         let (regret, again) = (regret(planned), regret(budget.ranked(&second)[0]));
