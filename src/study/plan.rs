@@ -63,8 +63,8 @@ pub fn choose(
         let (errors, time) = picture_errors(bench, &candidates[i], truth, exec)?;
         let value = metric.and_then(|metric| (metric.of)(&errors));
         known[i] = Known { time, loss: value.map_or(f64::NAN, loss.of), is_whole: true };
-        if matches!(budget, Budget::Error(_)) && budget.allows(&known[i]) {
-            limit = limit.min(time);
+        if matches!(budget, Budget::Error(_)) && budget.allows(&known[i]) && time < limit {
+            limit = time;
         }
     }
     timed(bench, candidates, &budget.hopeful(&known), &mut known, progress)?;
