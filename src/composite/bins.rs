@@ -110,6 +110,12 @@ impl<R: Real> DepthBins<R> {
         Self::within(self.bin(t), ratio)
     }
 
+    /// The paper's value of a depth in bins: divided by n.
+    #[inline]
+    pub fn share(&self, z: R) -> R {
+        z / self.count
+    }
+
     /// The Voronoi-enhanced depth in a bin.
     #[inline(always)]
     pub fn within(bin: R, ratio: R) -> R {

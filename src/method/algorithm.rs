@@ -1,7 +1,7 @@
 //! What a method is: the interface that a row of the table of methods implements.
 
 use super::given::Given;
-use super::stored::Buffers;
+use super::stored::{Buffers, DepthKey};
 use super::{Picture, Stage};
 use crate::error::Result;
 use crate::frame::{Exec, Frame, Grid, NamedPlane, Pool, Rect};
@@ -29,13 +29,15 @@ pub struct Job<'a> {
     pub exec: &'a Exec,
     /// How the sums that fragments are blended into are stored.
     pub(super) buffers: Buffers,
+    /// What is compared where the nearest fragment wins.
+    pub(super) key: DepthKey,
 }
 
 impl<'a> Job<'a> {
     /// A picture whose sums are stored as they are.
     #[must_use]
     pub fn new(scene: &'a Scene, index: &'a Index, camera: &'a Camera, exec: &'a Exec) -> Self {
-        Self { scene, index, camera, exec, buffers: Buffers::F32 }
+        Self { scene, index, camera, exec, buffers: Buffers::F32, key: DepthKey::WHOLE }
     }
 
     /// The tiles of the picture.

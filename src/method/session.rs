@@ -8,7 +8,7 @@ pub use needs::Making;
 
 use super::algorithm::Job;
 use super::stage::When;
-use super::stored::{DepthRange, Formats};
+use super::stored::{DepthKey, DepthRange, Formats};
 use super::table::Memory;
 use super::{Method, Picture};
 use crate::error::{Error, Result};
@@ -216,8 +216,9 @@ impl<'a> Session<'a> {
             return Err(Error::Invalid(format!("{what}; give storage = \"f32\"")));
         }
         let mut picture = self.define::<f32>(camera, true)?;
-        let job = Job { buffers: formats.buffers, ..self.job(camera)? };
         let range = DepthRange::new(self.scene, camera);
+        let key = DepthKey::new(formats.depth, range);
+        let job = Job { buffers: formats.buffers, key, ..self.job(camera)? };
         for stage in self.method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
             // A level is made from the last, so that each is as it is stored after as many runs as there are.
             loop {

@@ -9,6 +9,11 @@
 //! - [`DepthBuffer`] rounds planes of depths, those called `Z` or `.Z` after another name.
 //! - A stage that reads what it leaves, level by level, runs until nothing changes, so that each level is
 //!   rounded before the next is made.
+//! - Where fragments are *tested* against a depth buffer, what the buffer holds of them is compared: of fragments whose
+//!   depths round to one the first stays. Those are the tests that a nearest fragment wins (visibility splatting, the
+//!   depth-images of [`mod@super::single_pass`], the pixels of [`mod@super::projection`], the discs of
+//!   [`mod@super::blue`], the indices of [`mod@super::deferred`]), and not those by epsilon, which read a depth in `f32`
+//!   from a buffer. Under the Voronoi depth test the buffer holds z / n of \[ZP06, eq. 10\] and no depth.
 //! - Where fragments are *blended* into a buffer, the buffer is rounded after every one: the sums of
 //!   attribute splatting ([`mod@super::ewa`], [`mod@super::deferred`], and the layers of
 //!   [`mod@super::peeling`]) after every addition, the layers of [`mod@super::transparent`] and
@@ -38,11 +43,13 @@
 //!   computed in more digits than they stored.
 //! - What overflows a half float is the greatest one and not +inf: no plane may hold what follows from infinities.
 //! - `unorm8` of numbers with a unit (pixels, bins, world units) is `f32`: no 8 bits could hold them.
-//! - The shift by epsilon is added in `f32` to what the depth buffer holds. Two fragments whose depths round to one are
-//!   told apart before they are stored: the nearer one is seen.
+//! - The shift by epsilon is added in `f32` to what the depth buffer holds.
+//! - The bins of \[ZP06, eq. 6\] that [`mod@super::transparent`] tests are whole numbers of at most 16 bits, and are told apart
+//!   in every format.
 //! - What `deferred` carries to the next frame is what a frame in `f32` saw.
 
 use super::Stage;
+use crate::composite::bins::DepthBins;
 use crate::composite::over::Blend;
 use crate::frame::{Frame, NamedPlane, Samples};
 use crate::number::{Exact, Real};
@@ -208,21 +215,87 @@ impl DepthRange {
         Self { near, far, perspective }
     }
 
-    fn store(&self, t: f64, format: DepthBuffer) -> f64 {
-        let steps_of = match format {
-            DepthBuffer::F32 => return t,
-            DepthBuffer::F16 => return half(t),
-            DepthBuffer::Unorm24 => 16_777_215.0,
-            DepthBuffer::Unorm16 => 65_535.0,
-        };
-        if !t.is_finite() {
-            return t;
-        }
+    /// What a buffer holds of a depth, as a number that grows with the depth: z in [0, 1] of whole numbers.
+    fn held(&self, t: f64, format: DepthBuffer) -> f64 {
         let Self { near, far, perspective } = *self;
+        if !format.is_whole() || !t.is_finite() {
+            return format.share(t);
+        }
         let z = (t - near) / (far - near);
-        let z = if perspective { z * (far / t) } else { z };
-        let y = steps(if z > 0.0 { z } else { 0.0 }, steps_of);
-        if perspective { (near * far) / (far - y * (far - near)) } else { near + y * (far - near) }
+        format.share(if perspective { z * (far / t) } else { z })
+    }
+
+    /// The depth that a buffer gives back.
+    fn store(&self, t: f64, format: DepthBuffer) -> f64 {
+        let y = self.held(t, format);
+        let Self { near, far, perspective } = *self;
+        if !format.is_whole() || !t.is_finite() {
+            y
+        } else if perspective {
+            (near * far) / (far - y * (far - near))
+        } else {
+            near + y * (far - near)
+        }
+    }
+}
+
+impl DepthBuffer {
+    /// Whether it holds whole numbers.
+    fn is_whole(self) -> bool {
+        matches!(self, Self::Unorm24 | Self::Unorm16)
+    }
+
+    /// What it holds of a number, which is one of [0, 1] if it holds whole numbers; +inf stays.
+    fn share(self, z: f64) -> f64 {
+        let count = match self {
+            Self::F32 => return z,
+            Self::F16 => return half(z),
+            Self::Unorm24 => 16_777_215.0,
+            Self::Unorm16 => 65_535.0,
+        };
+        if z == f64::INFINITY { z } else { steps(if z > 0.0 { z } else { 0.0 }, count) }
+    }
+}
+
+/// What a depth test compares of a fragment: what the buffer holds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DepthKey {
+    format: DepthBuffer,
+    range: DepthRange,
+}
+
+impl DepthKey {
+    /// All is compared as it is.
+    pub(super) const WHOLE: Self = Self {
+        format: DepthBuffer::F32,
+        range: DepthRange { near: 0.0, far: 1.0, perspective: false },
+    };
+
+    /// Of a buffer.
+    pub(super) fn new(format: DepthBuffer, range: DepthRange) -> Self {
+        Self { format, range }
+    }
+
+    /// Of a depth.
+    #[inline]
+    pub(super) fn depth<R: Exact>(&self, t: R) -> f64 {
+        self.range.held(t.to_f64(), self.format)
+    }
+
+    /// Of a nearness, which belongs to the depth `t`.
+    #[inline]
+    pub(super) fn nearness<R: Exact>(&self, w: R, t: impl FnOnce() -> R) -> f64 {
+        if self.format == DepthBuffer::F32 { w.to_f64() } else { -self.depth(t()) }
+    }
+
+    /// Of a Voronoi-enhanced depth in bins.
+    #[inline]
+    pub(super) fn voronoi<R: Exact>(&self, z: R, bins: &DepthBins<R>) -> f64 {
+        if self.format == DepthBuffer::F32 {
+            z.to_f64()
+        } else {
+            self.format.share(bins.share(z).to_f64())
+        }
     }
 }
 

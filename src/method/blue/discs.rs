@@ -87,7 +87,8 @@ pub(super) fn nearest<R: Exact>(job: &Job<'_>, squares: &Squares<R>) -> Tiled<Ke
                 let pixel = (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
                 let kept = &mut pixels[pixel];
                 let holds = square.disc.holds(&fragment, view.near);
-                if holds && decide::before(fragment.t, kept.depth) {
+                let compared = |t| job.key.depth(t);
+                if holds && decide::before(compared(fragment.t), compared(kept.depth)) {
                     let DiscFragment { t, offset } = fragment;
                     let (surfel, back) = (square.surfel, square.back);
                     // Adding 0 turns -0 into +0.

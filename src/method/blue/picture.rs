@@ -54,7 +54,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     let mut target = framebuffer(job.camera, wanted(job, false), pool);
     let tally = fast::render(job, settings, &mut target);
     if let Some(polygons) = Polygons::draw(job, settings)? {
-        polygons.over(&mut target, job.exec);
+        polygons.over(&mut target, job);
     }
     clock.lap("discs");
     Ok(finish(target, Vec::new(), tally, clock, job))
@@ -74,7 +74,7 @@ fn discs<R: Exact>(job: &Job<'_>, settings: &Settings, stages: bool) -> Result<D
     let pixels = kept.map(|kept| shown(job, kept, wanted.color));
     let mut target = resolved::framebuffer(job, &pixels, wanted);
     if let Some(polygons) = Polygons::draw(job, settings)? {
-        polygons.over(&mut target, job.exec);
+        polygons.over(&mut target, job);
     }
     Ok(Drawn { target, kept, tally: squares.tally })
 }

@@ -4,7 +4,7 @@ use super::Settings;
 use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::raster::Snap;
-use crate::frame::{Exec, Framebuffer, Plane};
+use crate::frame::{Framebuffer, Plane};
 use crate::method::algorithm::Job;
 use crate::method::projection::{self, PixelSample};
 use crate::number::Exact;
@@ -25,13 +25,12 @@ impl<R: Exact> Polygons<R> {
         if job.scene.primitives.is_empty() {
             return Ok(None);
         }
-        let drawn =
-            projection::beside(job.scene, job.camera, settings.cull, Snap::default(), job.exec)?;
+        let drawn = projection::beside(job, settings.cull, Snap::default())?;
         Ok(Some(Self { samples: drawn.samples, view: View::new(job.camera) }))
     }
 
     /// Puts triangles into the pixels of which they are nearer than what is there.
-    pub(super) fn over(&self, target: &mut Framebuffer<R>, exec: &Exec) {
+    pub(super) fn over(&self, target: &mut Framebuffer<R>, job: &Job<'_>) {
         let Framebuffer { depth, id, weight, normal, color, .. } = target;
         let rows = depth.rows_mut().zip(id.rows_mut()).zip(weight.rows_mut());
         let mut rows: Vec<_> = (0..)
@@ -44,10 +43,10 @@ impl<R: Exact> Polygons<R> {
         for (row, color) in rows.iter_mut().zip(color.iter_mut().flat_map(Plane::rows_mut)) {
             row.5 = Some(color);
         }
-        exec.ordered(rows, |(y, depth, id, weight, mut normal, mut color)| {
+        job.exec.ordered(rows, |(y, depth, id, weight, mut normal, mut color)| {
             for x in 0..depth.len() {
                 let sample = self.samples.at(x as u32, y);
-                if !decide::before(sample.depth, depth[x]) {
+                if !decide::before(job.key.depth(sample.depth), job.key.depth(depth[x])) {
                     continue;
                 }
                 (depth[x], id[x], weight[x]) = (sample.depth + R::ZERO, sample.id, R::ONE);

@@ -86,7 +86,7 @@ pub fn explain<R: Exact>(
     let part = whole.drawn(selected(&kept), job);
     let third = if settings.second { part.ids() } else { &[] };
     let fresh = whole.part(unseen(&whole, &before, third), job.exec);
-    let depth = both(&visible, &nearest(job, splats, &fresh));
+    let depth = both(job, &visible, &nearest(job, splats, &fresh));
 
     let (x, y) = pixel;
     let at = visible.at(x, y);

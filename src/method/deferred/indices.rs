@@ -38,7 +38,8 @@ pub(super) fn indices<R: Exact>(
     each_centre(job, settings, whole, |id, [x, y], t| {
         let limit = decide::limit(visible.at(x, y).depth, epsilon);
         let pixel = kept.at_mut(x, y);
-        if decide::visible(t, limit) && decide::before(t, pixel.depth) {
+        if decide::visible(t, limit) && decide::before(job.key.depth(t), job.key.depth(pixel.depth))
+        {
             *pixel = Kept { depth: t, id };
         }
     });

@@ -173,7 +173,7 @@ pub(super) fn first<R: Exact>(
     let Some(polygons) = polygons else { return surfels };
     let below =
         Tiled::new(job, |_, rect| pixels(rect).map(|(x, y)| polygons.nearest(x, y)).collect());
-    both(&below, &surfels)
+    both(job, &below, &surfels)
 }
 
 /// Pass 3: the depth of pass 1, with the selected surfels whose flags are not set.
@@ -189,7 +189,7 @@ fn difference<R: Exact>(
         return visible.map(|pixel| *pixel);
     }
     let fresh = whole.part(unseen(whole, before, selected.ids()), job.exec);
-    both(visible, &nearest(job, &settings.splats, &fresh))
+    both(job, visible, &nearest(job, &settings.splats, &fresh))
 }
 
 /// Those of some surfels, in ascending ids, whose flag is not set.

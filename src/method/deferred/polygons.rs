@@ -69,7 +69,7 @@ impl<R: Exact> Polygons<R> {
     ) -> Result<Option<Self>> {
         let Some((scene, paint)) = alone(job, whole)? else { return Ok(None) };
         let (cull, snap) = (settings.splats.cull, Snap::default());
-        let drawn = projection::project::<R>(&scene, job.camera, cull, snap, job.exec)?;
+        let drawn = projection::project::<R>(&Job { scene: &scene, ..*job }, cull, snap)?;
         let paint = paint.map(|color| color.map(R::from_f32));
         Ok(Some(Self { samples: drawn.samples, view: View::new(job.camera), paint }))
     }

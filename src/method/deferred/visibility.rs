@@ -52,12 +52,13 @@ pub(super) fn nearest<R: Exact>(
 
 /// What two passes into one depth buffer leave: the nearer fragment, ties: the lower id.
 pub(super) fn both<R: Exact>(
+    job: &Job<'_>,
     first: &Tiled<Nearest<R>>,
     second: &Tiled<Nearest<R>>,
 ) -> Tiled<Nearest<R>> {
+    let compared = |at: &Nearest<R>| (job.key.nearness(at.nearness, || at.depth), at.id);
     first.with(second, |first, second| {
-        let wins =
-            decide::nearer_or_lower((second.nearness, second.id), (first.nearness, first.id));
+        let wins = decide::nearer_or_lower(compared(second), compared(first));
         if wins { *second } else { *first }
     })
 }

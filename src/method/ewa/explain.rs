@@ -10,7 +10,7 @@ use crate::method::algorithm::Job;
 use crate::method::fragment::TileSplats;
 use crate::method::prepare::Prepared;
 use crate::method::replay::{Decision, Place, Touch, touch};
-use crate::method::stored::Buffers;
+use crate::method::stored::{Buffers, DepthKey};
 use crate::number::Exact;
 use crate::scene::Surfels;
 use std::fmt;
@@ -70,7 +70,7 @@ pub(in crate::method) fn two_passes<R: Exact>(
     let (shared, epsilon) = (tile.shared(), tile.epsilon());
     let candidate =
         |_: usize, w: R| beyond.is_none_or(|limit| decide::beyond(shared.depth(w), limit));
-    let nearest = foremost(tile, candidate);
+    let nearest = foremost(tile, &DepthKey::WHOLE, candidate);
     let sums = sums(tile, (surfels, Buffers::F32), &nearest, candidate)[0];
     let nearest = nearest[0];
 

@@ -5,6 +5,7 @@ use crate::frame::NO_ID;
 use crate::method::algorithm::Job;
 use crate::method::fragment::TileSplats;
 use crate::method::prepare::Prepared;
+use crate::method::stored::DepthKey;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::{Shared, Splat};
@@ -32,20 +33,24 @@ pub(in crate::method) fn visibility<R: Exact>(
     job: &Job<'_>,
     splats: &Prepared<R, Splat<R>>,
 ) -> Tiled<Foremost<R>> {
-    Tiled::new(job, |tile, rect| foremost(&TileSplats::new(splats, tile, rect), |_, _| true))
+    Tiled::new(job, |tile, rect| {
+        foremost(&TileSplats::new(splats, tile, rect), &job.key, |_, _| true)
+    })
 }
 
 /// Of the fragments that are inside and for which `candidate` holds (the pixel, counted row by row,
 /// and the nearness), each pixel keeps the greatest nearness; ties: the lower surfel index.
 pub(in crate::method) fn foremost<R: Exact>(
     tile: &TileSplats<'_, R>,
+    key: &DepthKey,
     candidate: impl Fn(usize, R) -> bool,
 ) -> Vec<Foremost<R>> {
     let shared = tile.shared();
     let mut pixels = vec![Foremost::none(shared); tile.rect.pixels()];
     tile.each_inside(|splat, pixel, _, w| {
         let held = &mut pixels[pixel];
-        if candidate(pixel, w) && decide::nearer(w, held.nearness) {
+        let compared = |w| key.nearness(w, || shared.depth(w));
+        if candidate(pixel, w) && decide::nearer(compared(w), compared(held.nearness)) {
             (held.nearness, held.id) = (w, splat.surfel);
         }
     });

@@ -11,7 +11,7 @@ use crate::method::ewa::normalization::resolve;
 use crate::method::ewa::visibility::{Foremost, foremost};
 use crate::method::fragment::TileSplats;
 use crate::method::prepare::Prepared;
-use crate::method::stored::Buffers;
+use crate::method::stored::{Buffers, DepthKey};
 use crate::method::tiled::pixels;
 use crate::number::{Exact, Vector3};
 use crate::scene::Surfels;
@@ -110,7 +110,7 @@ impl<'a, R: Exact> Peeling<'a, R> {
     ) -> Option<Vec<PeeledLayer<R>>> {
         let shared = splats.shared();
         let beyond = |pixel: usize, w: R| decide::beyond(shared.depth(w), limits[pixel]);
-        let nearest = foremost(splats, beyond);
+        let nearest = foremost(splats, &DepthKey::WHOLE, beyond);
         if nearest.iter().all(|nearest| nearest.id == NO_ID) {
             return None;
         }

@@ -5,9 +5,9 @@ use super::{PixelSample, Projected, SceneProjector};
 use crate::composite::decide;
 use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
-use crate::frame::{Bins, Exec, Plane, Rect};
+use crate::frame::{Bins, Plane, Rect};
+use crate::method::algorithm::Job;
 use crate::number::{Exact, Vector3};
-use crate::scene::{Camera, Scene};
 use crate::splat::{Fate, Tally};
 use std::ops::Range;
 
@@ -32,38 +32,21 @@ impl<R: Exact> DrawnItem<R> {
 ///
 /// # Errors
 /// [`Error::Invalid`] if there are more primitives than ids.
-pub(crate) fn project<R: Exact>(
-    scene: &Scene,
-    camera: &Camera,
-    cull: bool,
-    snap: Snap,
-    exec: &Exec,
-) -> Result<Projected<R>> {
-    from(scene, camera, (cull, snap), exec, 0)
+pub(crate) fn project<R: Exact>(job: &Job<'_>, cull: bool, snap: Snap) -> Result<Projected<R>> {
+    from(job, (cull, snap), 0)
 }
 
 /// The same of what there is beside the surfels: ids are those of the whole scene.
 ///
 /// # Errors
 /// As [`project`].
-pub(crate) fn beside<R: Exact>(
-    scene: &Scene,
-    camera: &Camera,
-    cull: bool,
-    snap: Snap,
-    exec: &Exec,
-) -> Result<Projected<R>> {
-    from(scene, camera, (cull, snap), exec, scene.surfels.len())
+pub(crate) fn beside<R: Exact>(job: &Job<'_>, cull: bool, snap: Snap) -> Result<Projected<R>> {
+    from(job, (cull, snap), job.scene.surfels.len())
 }
 
 /// Projects what has an id from the first on.
-fn from<R: Exact>(
-    scene: &Scene,
-    camera: &Camera,
-    (cull, snap): (bool, Snap),
-    exec: &Exec,
-    first: usize,
-) -> Result<Projected<R>> {
+fn from<R: Exact>(job: &Job<'_>, (cull, snap): (bool, Snap), first: usize) -> Result<Projected<R>> {
+    let Job { scene, camera, .. } = *job;
     let (width, height) = (camera.width, camera.height);
     let samples = Plane::filled(width, height, PixelSample::empty());
     let mut projected = Projected { samples, tally: Tally::default() };
@@ -73,19 +56,19 @@ fn from<R: Exact>(
         return Err(Error::Invalid(what));
     }
     let projector = SceneProjector::new(scene, camera, cull, snap);
-    draw(&projector, exec, first..count, &mut projected);
+    draw(&projector, job, first..count, &mut projected);
     Ok(projected)
 }
 
 /// Draws the primitives of a range of ids over what is there, which has lower ids.
 fn draw<R: Exact>(
     projector: &SceneProjector<'_, R>,
-    exec: &Exec,
+    job: &Job<'_>,
     ids: Range<usize>,
     projected: &mut Projected<R>,
 ) {
-    let [width, height] = projector.size;
-    let grid = exec.grid(width, height);
+    let (exec, grid) = (job.exec, job.grid());
+    let nearer = |t: R, kept: R| decide::before(job.key.depth(t), job.key.depth(kept));
     let size = (ids.len() / 64).min(8192).max(2 * grid.len());
     let ranges = ids.clone().step_by(size).map(|first| first..ids.end.min(first + size));
     let batches = exec.ordered(ranges.collect(), |range: Range<usize>| {
@@ -109,13 +92,13 @@ fn draw<R: Exact>(
                 bins.for_each(tile, |i| match &drawn[i as usize] {
                     DrawnItem::Pixel(at, sample) => {
                         let kept = pixels.at(*at);
-                        if decide::before(sample.depth, kept.depth) {
+                        if nearer(sample.depth, kept.depth) {
                             *kept = *sample;
                         }
                     }
                     DrawnItem::Piece(piece) => piece.for_each(&rect, |at| {
                         let kept = pixels.at([at.x, at.y]);
-                        if decide::before(-at.p.z, kept.depth) {
+                        if nearer(-at.p.z, kept.depth) {
                             *kept = piece.sample(projector, &at);
                         }
                     }),

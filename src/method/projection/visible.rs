@@ -135,6 +135,8 @@ impl<'a, R: Exact> VisibleTriangles<'a, R> {
 mod tests {
     use super::super::project;
     use super::*;
+    use crate::index::Index;
+    use crate::method::algorithm::Job;
     use crate::scene::{Lens, Pose, Primitives, Surfels, Triangles, Vertices};
     use glam::{DVec3, Vec3};
     use proptest::prelude::*;
@@ -160,7 +162,8 @@ mod tests {
 
     fn same<R: Exact>(scene: &Scene, camera: &Camera, snap: Snap) -> Result<usize, TestCaseError> {
         let triangles = VisibleTriangles::<R>::new(scene, camera, snap);
-        let plain = project::<R>(scene, camera, false, snap, &Exec::sequential()).unwrap();
+        let (exec, index) = (Exec::sequential(), Index::default());
+        let plain = project::<R>(&Job::new(scene, &index, camera, &exec), false, snap).unwrap();
         let mut seen = 0;
         for threads in [1, 3] {
             let found = triangles.foremost(&Exec::new(threads, 16).unwrap());

@@ -64,9 +64,9 @@ pub(super) fn explain<R: Exact>(
     settings: &Settings,
     pixel: (u32, u32),
 ) -> Result<PyramidReplay<R>> {
-    let Job { scene, camera, exec, .. } = *job;
+    let exec = job.exec;
     let snap = Snap::new(settings.subpixel_bits)?;
-    let projected = projection::project::<R>(scene, camera, settings.cull, snap, exec)?;
+    let projected = projection::project::<R>(job, settings.cull, snap)?;
     let fine = pull_all(&projected.samples, exec);
     let coarse = push_all(&fine, settings, exec);
     let over = |level: usize| (pixel.0 >> level, pixel.1 >> level);

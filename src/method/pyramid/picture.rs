@@ -27,7 +27,7 @@ pub(super) fn define<R: Exact>(
     let Job { scene, camera, exec, .. } = *job;
     let (has, snap) = (Has::of(scene), Snap::new(settings.subpixel_bits)?);
     let mut clock = Clock::default();
-    let projected = projection::project::<R>(scene, camera, settings.cull, snap, exec)?;
+    let projected = projection::project::<R>(job, settings.cull, snap)?;
     clock.lap("projection");
     let pulled = pull_all(&projected.samples, exec);
     clock.lap("pull");
@@ -51,9 +51,9 @@ pub(super) fn draw(
     levels: &mut CellLevels,
     pool: &mut Pool,
 ) -> Result<Picture<f32>> {
-    let Job { scene, camera, exec, .. } = *job;
+    let Job { scene, camera, .. } = *job;
     let mut target = GBuffer::new(scene, camera, pool);
-    let (tally, laps) = levels.draw(scene, camera, settings, exec, &mut target)?;
+    let (tally, laps) = levels.draw(job, settings, &mut target)?;
     Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 
@@ -108,8 +108,7 @@ pub(super) fn stage<R: Exact>(
     match stage {
         "projection" => {
             let snap = Snap::new(settings.subpixel_bits)?;
-            let Job { scene, camera, exec, .. } = *job;
-            let projected = projection::project::<R>(scene, camera, settings.cull, snap, exec)?;
+            let projected = projection::project::<R>(job, settings.cull, snap)?;
             Ok(projection::planes::write(&projected.samples, levels.has))
         }
         "pull" => levels.pull(),

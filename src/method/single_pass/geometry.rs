@@ -9,6 +9,7 @@ use crate::frame::{NO_ID, Rect};
 use crate::method::algorithm::Job;
 use crate::method::fragment::{TileSplats, facing};
 use crate::method::prepare::Prepared;
+use crate::method::stored::DepthKey;
 use crate::number::{Exact, Real};
 use crate::scene::{Groups, Surfels};
 use crate::splat::{Shared, Splat};
@@ -21,6 +22,7 @@ pub(in crate::method) struct Geometry<'a, R: Exact> {
     pub(in crate::method) splats: Prepared<R, Splat<R>>,
     /// The bins of the Voronoi depth test; none for the plain one.
     bins: Option<DepthBins<R>>,
+    key: DepthKey,
 }
 
 /// What a depth-image keeps at a pixel while it is drawn.
@@ -60,7 +62,13 @@ impl<'a, R: Exact> Geometry<'a, R> {
     pub(in crate::method) fn project(job: &Job<'a>, settings: &Settings) -> Result<Self> {
         let surfels = &job.scene.surfels;
         let (groups, bins) = (job.index.groups()?, settings.bins(surfels, job.camera)?);
-        Ok(Self { surfels, groups, splats: Prepared::splats(job, &settings.splats), bins })
+        Ok(Self {
+            surfels,
+            groups,
+            splats: Prepared::splats(job, &settings.splats),
+            bins,
+            key: job.key,
+        })
     }
 
     /// What the fragments of all splats share.
@@ -112,10 +120,14 @@ impl<'a, R: Exact> Geometry<'a, R> {
     ) -> (R, bool) {
         let shared = self.shared();
         let (z, passes) = match &self.bins {
-            None => (R::ZERO, decide::nearer(nearness, kept.nearness)),
+            None => {
+                let compared = |w| self.key.nearness(w, || shared.depth(w));
+                (R::ZERO, decide::nearer(compared(nearness), compared(kept.nearness)))
+            }
             Some(bins) => {
                 let z = bins.voronoi(shared.depth(nearness), ratio(q, shared.limit));
-                (z, decide::nearer_bin(z, kept.z))
+                let compared = |z| self.key.voronoi(z, bins);
+                (z, decide::nearer_bin(compared(z), compared(kept.z)))
             }
         };
         if passes {

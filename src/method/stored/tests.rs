@@ -1,7 +1,8 @@
 use super::*;
-use crate::frame::{Exec, Frame, Plane};
-use crate::method::{Method, Session, ewa};
-use crate::scene::{Cloud, Lens, Pose, Surfels};
+use crate::frame::{Exec, Frame, NO_ID, Plane};
+use crate::method::single_pass::{BinCount, DepthTest};
+use crate::method::{Method, Session, ewa, single_pass};
+use crate::scene::{Cloud, Groups, Lens, Pose, Surfels};
 use crate::source::Shape;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
@@ -203,4 +204,95 @@ fn an_empty_plane_is_left_alone() {
     let formats = Formats { buffers: Buffers::Unorm8, depth: DepthBuffer::Unorm16 };
     formats.store(&stage, &mut plane, &range(true));
     assert_eq!(plane.scalar("visibility.Z").unwrap().values(), [f32::INFINITY; 2]);
+}
+
+/// Discs of one group at these heights, the colour of each its index.
+fn discs(heights: &[f32], offsets: &[f32]) -> Scene {
+    let count = heights.len();
+    let place = |(z, x): (&f32, &f32)| Vec3::new(*x, 0.0, *z);
+    let cloud = Cloud {
+        position: heights.iter().zip(offsets).map(place).collect(),
+        normal: Some(vec![Vec3::Z; count]),
+        radius: Some(vec![1.0; count]),
+        color: Some((0..count).map(|i| Vec3::splat(i as f32 / 16.0)).collect()),
+        ..Cloud::default()
+    };
+    Scene::unlit("discs", Surfels::new(cloud).unwrap().0)
+}
+
+/// The disc that is seen in the middle, by every index plane that holds the nearest fragment.
+fn winners(scene: &Scene, method: Method, depth: DepthBuffer) -> Vec<u32> {
+    let exec = Exec::new(2, 8).unwrap();
+    let groups = method
+        .grouping()
+        .map(|_| Groups::new(vec![0; scene.surfels.len()], Vec::new(), vec![1.0]).unwrap());
+    let mut session = Session::with_groups(scene, method, groups, &exec).unwrap();
+    let formats = Formats { depth, ..Formats::default() };
+    let frame = session.stored(&front(), formats, true).unwrap().frame;
+    let nearest = |plane: &NamedPlane<f32>| match &plane.samples {
+        Samples::Index(ids) if !plane.name.starts_with("level") => Some(*ids.at(8, 8)),
+        _ => None,
+    };
+    frame.planes.iter().filter_map(nearest).filter(|id| *id != NO_ID).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    /// The depth buffer's whole numbers decide, and of equal ones the first: by the orthographic z of the page.
+    #[test]
+    fn fragments_that_round_to_one_depth_tie(heights in prop::collection::vec(-1e-4_f32..1e-4, 2..6)) {
+        let scene = discs(&heights, &vec![0.0; heights.len()]);
+        // Of discs around the origin the sphere's radius is at least 1, and the eye 4 away.
+        let (center, radius) = scene.bounding_sphere();
+        let (near, far) = (4.0 - center.z - radius, 4.0 - center.z + radius);
+        let far = if far > 2.0 * near { far } else { 2.0 * near };
+        let code = |z: f32, count: f64| {
+            // The depth of the program, in f32: the view matrix of this camera only moves.
+            let t = f64::from(-(z - 4.0));
+            ((t - near) / (far - near) * count + 0.5).floor()
+        };
+        let halves = |z: f32| half(f64::from(-(z - 4.0)));
+        for (depth, key) in [
+            (DepthBuffer::F32, Box::new(|z: f32| f64::from(-(z - 4.0))) as Box<dyn Fn(f32) -> f64>),
+            (DepthBuffer::F16, Box::new(halves)),
+            (DepthBuffer::Unorm24, Box::new(|z| code(z, 16_777_215.0))),
+            (DepthBuffer::Unorm16, Box::new(|z| code(z, 65_535.0))),
+        ] {
+            let mut expected = 0;
+            for i in 1..heights.len() {
+                if key(heights[i]) < key(heights[expected]) {
+                    expected = i;
+                }
+            }
+            for name in ["ewa", "deferred", "single-pass", "pyramid", "template", "blue"] {
+                let mut method = Method::by_name(name).unwrap();
+                if let Method::SinglePass(settings) = &mut method {
+                    settings.depth = DepthTest::Plain;
+                }
+                let found = winners(&scene, method, depth);
+                prop_assert!(!found.is_empty());
+                prop_assert!(found.iter().all(|id| *id == expected as u32), "{name} {depth:?} {found:?} {expected}");
+            }
+        }
+    }
+}
+
+/// z / n of [ZP06, eq. 10]: with as many bins as a buffer has numbers none is left for the ratio, and the first disc of
+/// a bin stays although the second is seen nearer to its centre.
+#[test]
+fn a_voronoi_depth_has_what_the_bins_leave() {
+    let scene = discs(&[0.0, 0.0], &[0.4, 0.1]);
+    let seen = |count, depth| {
+        let bins = DepthTest::Voronoi(BinCount::Count(count));
+        let method = single_pass::Settings { depth: bins, ..single_pass::Settings::default() };
+        let mut found = winners(&scene, method.into(), depth);
+        found.dedup();
+        assert_eq!(found.len(), 1, "{found:?}");
+        found[0]
+    };
+    for depth in [DepthBuffer::F32, DepthBuffer::Unorm24] {
+        assert_eq!(seen(65_535, depth), 1, "{depth:?}");
+    }
+    assert_eq!(seen(65_535, DepthBuffer::Unorm16), 0);
+    assert_eq!(seen(1000, DepthBuffer::Unorm16), 1, "65 numbers a bin");
 }

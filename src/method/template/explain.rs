@@ -72,7 +72,7 @@ pub(super) fn explain<R: Exact>(
 ) -> Result<TemplateReplay<R>> {
     let Job { scene, camera, exec, .. } = *job;
     let snap = Snap::default();
-    let projected = projection::project::<R>(scene, camera, settings.cull, snap, exec)?;
+    let projected = projection::project::<R>(job, settings.cull, snap)?;
     let levels = propagate(&projected.samples, settings, exec);
     let merged = (1..levels.len()).map(|level| {
         let (x, y) = (pixel.0 >> level, pixel.1 >> level);

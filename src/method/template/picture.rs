@@ -26,7 +26,7 @@ pub(super) fn define<R: Exact>(
     let Job { scene, camera, exec, .. } = *job;
     let has = Has::of(scene);
     let mut clock = Clock::default();
-    let projected = projection::project::<R>(scene, camera, settings.cull, Snap::default(), exec)?;
+    let projected = projection::project::<R>(job, settings.cull, Snap::default())?;
     clock.lap("projection");
     let levels = propagate(&projected.samples, settings, exec);
     clock.lap("propagation");
@@ -80,7 +80,7 @@ pub(super) fn stage<R: Exact>(
     match stage {
         "projection" => {
             let snap = Snap::default();
-            let projected = projection::project::<R>(scene, camera, settings.cull, snap, exec)?;
+            let projected = projection::project::<R>(job, settings.cull, snap)?;
             Ok(projection::planes::write(&projected.samples, has))
         }
         "propagation" => propagated(job, settings, given),

@@ -4,6 +4,8 @@ use super::points::{CHUNK, depth, order};
 use super::*;
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, NO_ID};
+use crate::index::Index;
+use crate::method::algorithm::Job;
 use crate::method::projection::project;
 use crate::method::projection::surfels::PointProjector;
 use crate::method::tests::{cameras, scene, surfels};
@@ -44,7 +46,8 @@ fn samples(of: &Surfels, camera: &Camera, cull: bool, points: &mut Points) -> Ve
 fn expected(of: &Surfels, camera: &Camera, cull: bool) -> Vec<String> {
     let exec = Exec::sequential();
     let snap = Snap::new(8).unwrap();
-    let projected = project::<f32>(&scene(of.clone()), camera, cull, snap, &exec).unwrap();
+    let (scene, index) = (scene(of.clone()), Index::default());
+    let projected = project::<f32>(&Job::new(&scene, &index, camera, &exec), cull, snap).unwrap();
     let text = |s: &crate::method::projection::PixelSample<f32>| {
         let normal = [s.normal.x, s.normal.y, s.normal.z];
         let form = (s.depth, s.radius, s.extent, [s.center.x, s.center.y], normal);

@@ -312,7 +312,7 @@ mod tests {
         let index = Index { groups: None, order: None, boxes: None, seen: None };
         let job = Job::new(scene, &index, camera, &exec);
         let all = AllPolygons::<P>::new(&job, scene, cull);
-        let drawn = project::<R>(scene, camera, cull, Snap::default(), &exec).unwrap().samples;
+        let drawn = project::<R>(&job, cull, Snap::default()).unwrap().samples;
         let mut counts = [0; 3];
         for (tile, rect) in job.grid().rects().into_iter().enumerate() {
             for ((_, (x, y)), may) in counted(rect).zip(all.fragments((tile, &rect))) {

@@ -20,12 +20,13 @@ use super::{Cell, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, pyramid};
+use crate::method::algorithm::Job;
 use crate::method::picture::{Clock, Laps};
 use crate::method::projection::fast::{NearestPoints, Points, RowLayout};
 use crate::method::projection::surfels::PointProjector;
 use crate::method::projection::{self, Has, Projected, SampleKind};
 use crate::number::lanes::{LANES, Lanes, each, store, vectorized};
-use crate::scene::{Camera, Scene};
+use crate::scene::Camera;
 use crate::splat::{Tally, View};
 use level::{BACK, CellLevel, FRONT, FURTHER, KIND, NORMAL, RADIUS};
 use push::PushRules;
@@ -47,15 +48,14 @@ impl CellLevels {
     /// As [`super::render`]; camera and settings must have been checked.
     pub(super) fn draw(
         &mut self,
-        scene: &Scene,
-        camera: &Camera,
+        job: &Job<'_>,
         settings: &Settings,
-        exec: &Exec,
         target: &mut GBuffer<f32>,
     ) -> Result<(Tally, Laps)> {
+        let Job { scene, camera, exec, .. } = *job;
         let mut clock = Clock::default();
         self.reshape(camera, Has::of(scene));
-        let tally = self.project(scene, camera, settings, exec)?;
+        let tally = self.project(job, settings)?;
         clock.lap("projection");
         let tubes = self.has.tangent;
         for level in 1..self.levels.len() {
@@ -85,17 +85,12 @@ impl CellLevels {
     }
 
     /// Level 0.
-    fn project(
-        &mut self,
-        scene: &Scene,
-        camera: &Camera,
-        settings: &Settings,
-        exec: &Exec,
-    ) -> Result<Tally> {
+    fn project(&mut self, job: &Job<'_>, settings: &Settings) -> Result<Tally> {
+        let Job { scene, camera, exec, .. } = *job;
         let level = &mut self.levels[0];
         if !scene.primitives.is_empty() {
             let snap = Snap::new(settings.subpixel_bits)?;
-            let projected = projection::project(scene, camera, settings.cull, snap, exec)?;
+            let projected = projection::project(job, settings.cull, snap)?;
             fill(&projected, self.has, level, exec);
             return Ok(projected.tally);
         }

@@ -5,9 +5,9 @@ use super::super::{Occlusion, Weights};
 use super::*;
 use crate::frame::Pool;
 use crate::index::Index;
-use crate::method::algorithm::{Algorithm, Job};
+use crate::method::algorithm::Algorithm;
 use crate::method::tests::{cameras, scene, surfels};
-use crate::scene::{Light, Primitives};
+use crate::scene::{Light, Primitives, Scene};
 
 fn assert_same(scene: Scene, camera: &Camera, settings: &Settings, levels: &mut CellLevels) {
     // With a light, so that normals are there too.
