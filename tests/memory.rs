@@ -216,7 +216,7 @@ fn taken_by_an_order(case: usize) -> u64 {
         0 => Greedy { start }.order(&points, POINTS, &exec, &quiet),
         1 => progressive(Schedule::Paper),
         2 => progressive(Schedule::AsShipped),
-        _ => shuffled(&points, 0, POINTS),
+        _ => shuffled(&points, 0, POINTS, &|_, _, _| ()),
     };
     assert!(order.expect("an order").index.len() > POINTS / 2);
     status("VmHWM").expect("a peak") - before

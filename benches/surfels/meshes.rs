@@ -117,7 +117,7 @@ fn order(sampler: &str, points: &[Vec3], count: usize, exec: &Exec) -> Result<Or
         "greedy" => Greedy { start }.order(points, count, exec, &quiet),
         "progressive" => progressive(Schedule::Paper),
         "as shipped" => progressive(Schedule::AsShipped),
-        _ => shuffled(points, 0, count),
+        _ => shuffled(points, 0, count, &|_, _, _| ()),
     }
 }
 

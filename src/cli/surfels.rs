@@ -378,7 +378,7 @@ impl Args {
             Sampler::Greedy => Greedy { start }.order(points, count, exec, show),
             Sampler::Progressive => progressive(Schedule::Paper),
             Sampler::ProgressiveAsShipped => progressive(Schedule::AsShipped),
-            Sampler::Random => shuffled(points, self.seed, count),
+            Sampler::Random => shuffled(points, self.seed, count, show),
         }
     }
 }

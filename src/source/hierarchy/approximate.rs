@@ -220,7 +220,7 @@ impl Settings {
             Sampler::Progressive(schedule) => {
                 Progressive { start, seed, schedule }.order(points, count, progress)
             }
-            Sampler::Random => shuffled(points, seed, count),
+            Sampler::Random => shuffled(points, seed, count, progress),
         }
     }
 }

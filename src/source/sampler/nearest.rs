@@ -5,9 +5,12 @@
 use super::greedy::squared_distance;
 use glam::{DVec3, Vec3};
 
-/// Cells along the longest side of the box, at first and at most. The number of cells is at most its cube.
+/// Cells along the longest side of the box, at first.
 const FIRST: usize = 4;
-const MOST: usize = 128;
+/// There are at most so many cells for each point that will come: a surface leaves most of them empty. Or
+const CELLS: usize = 16;
+/// if that is less, so many.
+const FEW: usize = 1 << 21;
 /// The end of a list.
 const NONE: u32 = u32::MAX;
 
@@ -16,8 +19,10 @@ pub(super) struct Nearest {
     low: DVec3,
     extent: DVec3,
     points: Vec<Vec3>,
-    /// Cells along the longest side.
+    /// Cells along the longest side. The number of cells is at most its cube,
     fine: usize,
+    /// which is at most this.
+    most: usize,
     side: f64,
     cells: [usize; 3],
     /// The last point of each cell, and for each point the one before it in its cell.
@@ -26,7 +31,7 @@ pub(super) struct Nearest {
 }
 
 impl Nearest {
-    /// None yet, of points that will be in the box around some.
+    /// None yet, of points that will be among some.
     pub(super) fn within(all: &[Vec3]) -> Self {
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for point in all {
@@ -37,6 +42,7 @@ impl Nearest {
             extent: high - low,
             points: Vec::new(),
             fine: FIRST,
+            most: FEW.max(CELLS * all.len()),
             side: 1.0,
             cells: [1; 3],
             last: Vec::new(),
@@ -50,8 +56,9 @@ impl Nearest {
     pub(super) fn add(&mut self, point: Vec3) {
         self.points.push(point);
         // On a surface about one point a cell.
-        if self.points.len() > 2 * self.fine * self.fine && self.fine < MOST {
-            self.fine *= 2;
+        let finer = 2 * self.fine;
+        if 2 * self.points.len() > finer * finer && finer.pow(3) <= self.most {
+            self.fine = finer;
             self.divide();
         } else {
             self.link(self.points.len() - 1);

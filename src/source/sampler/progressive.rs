@@ -55,8 +55,8 @@ const FEWEST: usize = 20;
 const EVERY: u64 = 500;
 /// A near sample: this part of the squared distance of the last one accepted.
 const NEAR: f32 = 1.0 / 16.0;
-/// What a point takes that is picked too, its arrays growing.
-const BYTES: u64 = 80;
+/// What a point takes that is picked too, its arrays growing, and the cells for it.
+const BYTES: u64 = 144;
 
 /// How many samples a round takes, and what becomes of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +66,9 @@ pub enum Schedule {
     /// The authors' program.
     AsShipped,
 }
+
+/// Picks of [`shuffled`] that are told at once.
+const EACH: usize = 1 << 12;
 
 /// The sampler, see the [module](self).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -216,18 +219,30 @@ impl Rest {
 }
 
 /// All points in an order by chance: by ascending [`random::bits`] of the seed and their indices, of equal ones
-/// the lowest index first.
+/// the lowest index first. `progress` is told as by [`Progressive::order`].
 ///
 /// # Errors
 /// As [`super::Greedy::order`].
-pub fn shuffled(points: &[Vec3], seed: u64, count: usize) -> Result<Order> {
+pub fn shuffled(
+    points: &[Vec3],
+    seed: u64,
+    count: usize,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<Order> {
     Start::Seed(seed).of(points)?;
     memory::ask(points.len() as u64 * BYTES, || format!("an order of {} points", points.len()))?;
     let mut keys: Vec<(u64, u32)> =
         (0..points.len() as u32).map(|i| (random::bits(seed, u64::from(i)), i)).collect();
     keys.sort_unstable();
     let mut picks = Picks { points, near: Nearest::within(points), order: Order::default() };
-    keys.iter().take(count).for_each(|&(_, index)| picks.add(index));
+    let count = count.min(keys.len());
+    for (done, &(_, index)) in keys[..count].iter().enumerate() {
+        if done.is_multiple_of(EACH) {
+            progress("picks", done as u64, count as u64);
+        }
+        picks.add(index);
+    }
+    progress("picks", count as u64, count as u64);
     Ok(picks.order)
 }
 

@@ -260,7 +260,7 @@ mod tests {
         assert!((0.9..1.2).contains(&at) && peak > 1.5, "{peak} at {at}");
         assert!(blue.below() < 0.2, "{}", blue.below());
         assert!((mean(&blue, 3.0, 4.0) - 1.0).abs() < 0.1);
-        let white = of(&some(&shuffled(&points, 1, 6000).unwrap().index));
+        let white = of(&some(&shuffled(&points, 1, 6000, &|_, _, _| ()).unwrap().index));
         assert!((white.below() - 1.0).abs() < 0.15, "{}", white.below());
     }
 

@@ -1,13 +1,13 @@
 //! \[ZP06\]: groups, Voronoi depth, transparency.
 
-use super::subject::{Subject, colors, groups};
+use super::subject::{Subject, colors, groups, quiet};
 use super::{Claim, Measured};
 use crate::error::Result;
 use crate::index::grouping::Extension;
 use crate::method::single_pass::{self, BinCount, DepthTest};
 use crate::method::{Method, ewa, peeling, transparent, transparent_hq};
 
-pub(super) const CLAIMS: [Claim; 5] = [
+pub(super) const CLAIMS: [Claim; 7] = [
     Claim {
         id: "zp06-voronoi",
         from: "[ZP06] 5.1, Fig. 9",
@@ -37,6 +37,26 @@ pub(super) const CLAIMS: [Claim; 5] = [
         timed: true,
         more: "zp06.md",
         of: single,
+    },
+    Claim {
+        id: "zp06-cover",
+        from: "[ZP06] 6.3, Fig. 11",
+        says: "there is less surface coverage for K = 8 than for K = 4",
+        measured: "part of the surface that a group covers, mean of groups: K = 8; K = 4",
+        at_most: 1.0,
+        timed: false,
+        more: "zp06.md",
+        of: |subject| by_groups(subject, |covered, _, count| covered / count),
+    },
+    Claim {
+        id: "zp06-overlaps",
+        from: "[ZP06] 6.3, Fig. 11",
+        says: "splats have smaller overlaps for K = 8 than for K = 4",
+        measured: "part of the area of the splats that others of their group cover: K = 8; K = 4",
+        at_most: 1.0,
+        timed: false,
+        more: "zp06.md",
+        of: |subject| by_groups(subject, |covered, splats, _| 1.0 - covered / splats),
     },
     Claim {
         id: "zp06-far",
@@ -97,6 +117,23 @@ fn single(subject: &Subject<'_>) -> Result<Measured> {
     let one = subject.session(single_pass(DepthTest::default()), Some(&grouping))?;
     let numbers = subject.times([one, subject.session(two_passes(), None)?])?;
     Ok(Measured { numbers, pictures: Vec::new() })
+}
+
+/// A number of 8 groups, and of 4: of what all groups cover and the area of all splats, both as parts of the surface, and
+/// of how many groups there may be.
+fn by_groups(subject: &Subject<'_>, of: fn(f64, f64, f64) -> f64) -> Result<Measured> {
+    let surfels = &subject.scene.surfels;
+    let numbers = [8, 4].map(|count| {
+        let (.., extended) =
+            groups(1.0, Some(count), Extension::Enlarge).groups(surfels, subject.exec, &quiet)?;
+        let (area, groups) = extended.map_or((0.0, Vec::new()), |found| (found.area, found.groups));
+        let covered = groups.iter().map(|group| group.before).sum();
+        let square = |radius: &f32| f64::from(*radius) * f64::from(*radius);
+        let splats = surfels.radius().iter().map(square).sum::<f64>() * std::f64::consts::PI;
+        Ok(of(covered, splats / area, count as f64))
+    });
+    let [first, second] = numbers;
+    Ok(Measured { numbers: [first?, second?], pictures: Vec::new() })
 }
 
 /// Algorithms 3 and 2 and peeling of so many layers, each of both sides.

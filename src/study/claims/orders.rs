@@ -74,7 +74,7 @@ fn against_random(subject: &Subject<'_>) -> Result<Measured> {
     let (points, exec) = (points(subject)?, subject.exec);
     let count = points.len() / 20;
     let (first, second) =
-        (progressive().order(&points, count, &quiet)?, shuffled(&points, 0, count)?);
+        (progressive().order(&points, count, &quiet)?, shuffled(&points, 0, count, &quiet)?);
     let numbers = [covering(&points, &first.index, exec)?, covering(&points, &second.index, exec)?];
     Ok(Measured { numbers, pictures: Vec::new() })
 }

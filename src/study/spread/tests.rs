@@ -7,7 +7,7 @@ fn orders(n: usize) -> Vec<Ordered> {
     let exec = Exec::new(2, 32).unwrap();
     let greedy = Greedy { start: Start::Index(0) };
     let greedy = greedy.order(&points, n, &exec, &|_, _, _| ()).unwrap();
-    [("greedy", greedy), ("random", shuffled(&points, 1, n).unwrap())]
+    [("greedy", greedy), ("random", shuffled(&points, 1, n, &|_, _, _| ()).unwrap())]
         .map(|(name, order)| {
             let points = order.index.iter().map(|i| points[*i as usize]).collect();
             Ordered { name: name.into(), points }

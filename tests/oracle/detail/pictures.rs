@@ -241,7 +241,7 @@ pub(crate) fn approximate(world: &World, number: u32) -> Option<Surfels> {
         Sampler::Progressive(schedule) => {
             Progressive { start, seed, schedule }.order(points, count, &|_, _, _| ())
         }
-        Sampler::Random => shuffled(points, seed, count),
+        Sampler::Random => shuffled(points, seed, count, &|_, _, _| ()),
     };
     Some(Surfels::new(&cloud.some(&order.expect("an order").index)))
 }

@@ -162,7 +162,7 @@ fn every_order_is_one() {
         let orders: [&dyn Fn(usize) -> Order; 3] = [
             &|count| random(Schedule::Paper, count),
             &|count| random(Schedule::AsShipped, count),
-            &|count| shuffled(&points, 1, count).expect("an order"),
+            &|count| shuffled(&points, 1, count, &|_, _, _| ()).expect("an order"),
         ];
         for order in orders {
             let all = order(points.len() + 1);

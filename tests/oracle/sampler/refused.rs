@@ -83,8 +83,8 @@ fn samplers_refuse_what_the_page_says() {
             refused(sampler.order(points, 2, &|_, _, _| ()), what);
         }
     }
-    refused(shuffled(&[], 0, 1), "no points");
-    refused(shuffled(&bad, 0, 1), "a point that is none");
+    refused(shuffled(&[], 0, 1, &|_, _, _| ()), "no points");
+    refused(shuffled(&bad, 0, 1, &|_, _, _| ()), "a point that is none");
     refused(quality(&good, &[], &exec), "no index");
     refused(quality(&good, &[0, 3], &exec), "an index of no point");
     refused(quality(&bad, &[0], &exec), "a point that is none");

@@ -165,7 +165,8 @@ fn shuffled_orders_are_those_of_the_page() {
     for (name, points) in cases::points() {
         for seed in [0, 1, u64::MAX] {
             for count in counts(points.len()) {
-                let found = sampler::shuffled(&points, seed, count).expect("an order");
+                let found =
+                    sampler::shuffled(&points, seed, count, &|_, _, _| ()).expect("an order");
                 same(&format!("{name}, {seed}, {count}"), &found, &shuffled(&points, seed, count));
             }
         }

@@ -115,11 +115,11 @@ proptest! {
         seed: u64,
     ) {
         let points = some(&points, false);
-        let order = shuffled(&points, seed, points.len()).unwrap();
+        let order = shuffled(&points, seed, points.len(), &|_, _, _| ()).unwrap();
         let mut all = order.index.clone();
         all.sort_unstable();
         prop_assert!(all.iter().copied().eq(0..points.len() as u32));
-        let part = shuffled(&points, seed, points.len() / 2).unwrap();
+        let part = shuffled(&points, seed, points.len() / 2, &|_, _, _| ()).unwrap();
         prop_assert_eq!(&part.index[..], &order.index[..points.len() / 2]);
         for (i, &index) in order.index.iter().enumerate() {
             prop_assert_eq!(order.distance[i], least(&points, &order.index[..i], index));
@@ -165,7 +165,7 @@ fn samplers_are_as_even_as_the_paper_says() {
         median(&points, &sampler.order(&points, 1_000, &quiet).unwrap().index)
     };
     let minimum = greedy.distance[999].sqrt();
-    let random = median(&points, &shuffled(&points, 1, 1_000).unwrap().index);
+    let random = median(&points, &shuffled(&points, 1, 1_000, &|_, _, _| ()).unwrap().index);
     let (paper, shipped) = (of(Schedule::Paper), of(Schedule::AsShipped));
     assert!(paper > 0.9 * minimum && paper > 1.5 * random, "{paper} {minimum} {random}");
     assert!(shipped > 0.8 * minimum && shipped > 1.4 * random, "{shipped} {minimum} {random}");
