@@ -78,6 +78,10 @@ impl Shift {
 /// The limits that are asked: their doubts, in the order of [`Shifts`].
 pub const LIMITS: [Doubt; 2] = [Doubt::CutOff, Doubt::Epsilon];
 
+/// The places of the cut-off and of epsilon among [`LIMITS`].
+pub(crate) const CUT_OFF: usize = 0;
+pub(crate) const EPSILON: usize = 1;
+
 /// What a picture says of each of [`LIMITS`].
 pub type Shifts = [Shift; LIMITS.len()];
 

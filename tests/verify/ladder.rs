@@ -5,6 +5,7 @@
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;
 use splatref::method::{Method, Session};
+use splatref::scene::{Scene, Surfels};
 use splatref::setting::{Fields, Value};
 use splatref::verify::client::{Client, Rounding};
 use splatref::verify::verdict::Outcome;
@@ -49,5 +50,36 @@ fn an_epsilon_a_little_off_is_wrong() {
             let first = stage.is_none_or(|stage| ["attributes", "compositing"].contains(&stage));
             assert!(first, "{golden}: {epsilon}, {stage:?}");
         }
+    }
+}
+
+/// Discs of `blue` that are cut off at another radius.
+#[test]
+fn a_rim_a_little_off_is_wrong() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden/bjfm19_ladder.toml");
+    let exec = Exec::sequential();
+    let ready = SceneFile::open(&path).unwrap().ready(&exec, &|_, _, _| ()).unwrap();
+    let scene = &ready.loaded.scene;
+    for (factor, promise, right) in [
+        (1.0, Rounding::Ieee, true),
+        (1.0, Rounding::Gpu, true),
+        (1.000_002, Rounding::Ieee, false),
+        (0.999_998, Rounding::Ieee, false),
+        (1.000_05, Rounding::Gpu, false),
+        (0.999_95, Rounding::Gpu, false),
+    ] {
+        let mut cloud = scene.surfels.clone().into_cloud();
+        cloud.radius.iter_mut().flatten().for_each(|radius| *radius *= factor);
+        let other = Scene { surfels: Surfels::new(cloud).unwrap().0, ..scene.clone() };
+        let drawn = Session::new(&other, ready.method, &exec).unwrap();
+        let frame = drawn.define::<f32>(&ready.camera, true).unwrap().frame;
+        let mut client = Client::from(&frame);
+        client.rounding = promise;
+        let session = Session::new(scene, ready.method, &exec).unwrap();
+        let verdict = session.verify(&ready.camera, &client, 0.02).unwrap();
+        let expected = if right { Outcome::Right } else { Outcome::Wrong };
+        assert_eq!(verdict.outcome(), expected, "{factor}, {promise:?}");
+        let stage = verdict.first_wrong().map(|stage| stage.stage);
+        assert!(right || stage == Some("discs"), "{factor}: {stage:?}");
     }
 }

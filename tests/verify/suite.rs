@@ -2,7 +2,7 @@
 //! lawful clients go to both.
 
 use splatref::frame::Exec;
-use splatref::method::{Method, Session};
+use splatref::method::{Method, Session, blue};
 use splatref::scene::{Camera, Scene, Surfels};
 use splatref::source::Shape;
 use splatref::splat::{Epsilon, Kernel, SplatSettings};
@@ -22,7 +22,7 @@ const SUITE: [(&str, usize, Kernel); 7] = [
 
 /// What all scenes say together of the crate in `f32`, as a client whose limit of q is off by twice this
 /// share: surfels are larger, and so is the cut-off, by which their radii are divided.
-fn leaning(off: f32) -> Shifts {
+fn leaning(off: f32, method: fn(SplatSettings) -> Method) -> Shifts {
     let exec = Exec::new(2, 32).unwrap();
     let mut all = Shifts::default();
     for (seed, (name, count, kernel)) in SUITE.into_iter().enumerate() {
@@ -36,11 +36,11 @@ fn leaning(off: f32) -> Shifts {
         let larger = Scene { surfels: Surfels::new(cloud).unwrap().0, ..scene.clone() };
         let mut changed = settings;
         changed.kernel.cutoff *= 1.0 + off;
-        let client = Session::new(&larger, Method::Ewa(changed), &exec).unwrap();
+        let client = Session::new(&larger, method(changed), &exec).unwrap();
         let frame = client.define::<f32>(&camera, false).unwrap().frame;
         let mut client = Client::from(&frame);
         client.rounding = Rounding::Ieee;
-        let session = Session::new(&scene, Method::Ewa(settings), &exec).unwrap();
+        let session = Session::new(&scene, method(settings), &exec).unwrap();
         let verdict = session.verify(&camera, &client, 1.0).unwrap();
         println!("{name}: {:?}", verdict.shifts.map(|shift| (shift.decisions, shift.z())));
         all.iter_mut().zip(&verdict.shifts).for_each(|(all, shift)| all.add(shift));
@@ -51,12 +51,26 @@ fn leaning(off: f32) -> Shifts {
 
 #[test]
 fn a_limit_that_is_a_little_off_leans() {
-    let lawful = leaning(0.0);
+    let lawful = leaning(0.0, Method::Ewa);
     // Few are undecided at epsilon, which is the same of all surfels.
     assert!(lawful[0].decisions > 50, "{lawful:?}");
     assert!(lawful.iter().all(|shift| shift.z().abs() < Shift::REMARK), "{lawful:?}");
     for off in [5e-6, -5e-6] {
-        let [cutoff, _] = leaning(off);
+        let [cutoff, _] = leaning(off, Method::Ewa);
         assert!(cutoff.alarms() && (cutoff.z() > 0.0) == (off > 0.0), "{cutoff:?}");
+    }
+}
+
+/// Of `blue` an id tells whether the nearest disc was cut off; epsilon is none of its limits.
+#[test]
+fn so_does_the_rim_of_discs() {
+    let blue = |_| blue::Settings { cull: true }.into();
+    let [rim, epsilon] = leaning(0.0, blue);
+    assert!(rim.decisions > 20 && epsilon.decisions == 0, "{rim:?}");
+    assert!(rim.z().abs() < Shift::REMARK, "{rim:?}");
+    // Fewer are open than of splats, which lie one over the other.
+    for off in [2e-5, -2e-5] {
+        let [rim, _] = leaning(off, blue);
+        assert!(rim.alarms() && (rim.z() > 0.0) == (off > 0.0), "{rim:?}");
     }
 }

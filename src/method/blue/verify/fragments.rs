@@ -14,6 +14,7 @@ use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Scene;
 use crate::splat::View;
+use crate::verify::shift::{CUT_OFF, Open};
 use std::ops::Range;
 
 /// A fragment that may lie in a pixel.
@@ -28,6 +29,8 @@ pub(super) struct May<P: Profile> {
     pub(super) lies: bool,
     /// Whether its surfel certainly is drawn, somewhere.
     pub(super) drawn: bool,
+    /// Whether it is inside its disc, if that and nothing else is undecided.
+    pub(super) open: Option<Open>,
     /// Whether the back of its surfel is seen.
     pub(super) back: Three,
     /// What a triangle shows; that of a surfel is known.
@@ -103,6 +106,7 @@ impl<'a, P: Profile> Fragments<'a, P> {
                     rim: 0.0,
                     lies: one.lies,
                     drawn: true,
+                    open: None,
                     back: false.into(),
                     triangle: Some(Surface {
                         depth: one.depth,
@@ -135,6 +139,10 @@ impl<'a, P: Profile> Fragments<'a, P> {
         }
         let fragment = disc.at(ray(&self.view, (x, y)), self.view.perspective);
         let holds = disc.holds(&fragment, self.view.near);
+        let sound = fragment.t.is_finite() & fragment.offset.is_finite();
+        let others = within & sound & decide::beyond(fragment.t, self.view.near);
+        let inside = decide::inside(fragment.offset, disc.limit);
+        let open = one.drawn && others.certainly() && inside.decided().is_none();
         let radius = f64::from(self.scene.surfels.radius()[one.surfel as usize]);
         let limit = radius * radius;
         // Within the radius of the centre, but for what is rounded: more than any implementation does.
@@ -149,6 +157,12 @@ impl<'a, P: Profile> Fragments<'a, P> {
             rim: fragment.offset.middle / limit,
             lies: one.drawn && (within & holds).certainly(),
             drawn: one.drawn,
+            open: open.then(|| Open {
+                surfel: one.surfel,
+                limit: Some(CUT_OFF),
+                distance: (disc.limit.middle - fragment.offset.middle) / disc.limit.middle,
+                radius: (disc.limit.radius + fragment.offset.radius) / disc.limit.middle,
+            }),
             back: one.back,
             triangle: None,
         })

@@ -22,6 +22,9 @@
 //! **Shading** from the client's depth, normal, weight and colour; what it has not handed in is that of the
 //! fragment.
 //!
+//! An id tells how the client decided whether a fragment is inside that is in front of all others that may lie in the
+//! pixel: what these decisions say together is a [`crate::verify::shift`] of the cut-off.
+//!
 //! A pixel is undecided if it is not certain what may lie there in front of, or as, what the client has. Which
 //! of two near ties is nearer does not count: the client's word is taken, and what follows from it is judged.
 
@@ -42,6 +45,7 @@ use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::verify::client::{Client, Ties};
+use crate::verify::shift::Told;
 use crate::verify::verdict::{Check, Doubt, Fault, Verdict};
 use fragments::{Fragments, May};
 use planes::{BluePlanes, Says};
@@ -77,6 +81,20 @@ struct Judge<'a, P: Profile> {
     handed: &'a BluePlanes<'a>,
     fragments: Fragments<'a, P>,
     shading: Shading<'a, P>,
+}
+
+/// What an id tells of a fragment whose cut-off alone is undecided: of one that is in front of all others that may lie
+/// there, so that it is seen if it is inside, and only then.
+fn tell<P: Profile>(id: u32, all: &[May<P>], told: &mut Told) {
+    let in_front = |may: &May<P>| {
+        let mut others = all.iter().filter(|other| other.id != may.id);
+        others.all(|other| decide::before(may.depth, other.depth).certainly())
+    };
+    for may in all.iter().filter(|may| in_front(may)) {
+        if let Some(open) = &may.open {
+            told.take(open, id == may.id);
+        }
+    }
 }
 
 /// What a pixel shows.
@@ -119,6 +137,9 @@ impl<'a, P: Profile> Judge<'a, P> {
             let doubts = self.judge_pixel((pixel, at), own, marks);
             counts.covered += u64::from(!own.is_empty());
             counts.undecided += u64::from(doubts & Doubt::OF_SUMS != 0);
+            if let Says::Id(id) = self.handed.says(at) {
+                tell(id, own, &mut counts.told);
+            }
         }
         counts
     }

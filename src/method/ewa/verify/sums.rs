@@ -11,7 +11,7 @@ use crate::method::judged::{Marks, PixelMarks};
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Truth};
 use crate::scene::Surfels;
-use crate::verify::shift::Open;
+use crate::verify::shift::{CUT_OFF, EPSILON, Open};
 use crate::verify::verdict::Doubt;
 
 /// The most undecided fragments of a pixel of which all continuations are followed, 2^n of them.
@@ -98,8 +98,8 @@ impl Asked {
         limits: impl FnOnce() -> [([Ball<P>; 2], Ball<P>); 2],
     ) -> Open {
         let limit = match (self.drawn, self.inside.decided(), self.visible.decided()) {
-            (true, None, Some(_)) => Some(0),
-            (true, Some(_), None) => Some(1),
+            (true, None, Some(_)) => Some(CUT_OFF),
+            (true, Some(_), None) => Some(EPSILON),
             _ => None,
         };
         let share = limit.map(|which| {
