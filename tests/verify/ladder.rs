@@ -30,8 +30,8 @@ fn judged(golden: &str, epsilon: f32, promise: Rounding) -> (Outcome, Option<&'s
     (verdict.outcome(), verdict.first_wrong().map(|stage| stage.stage))
 }
 
-const GOLDENS: [&str; 3] =
-    ["ewa_ladder_affine.toml", "ewa_ladder_raycast.toml", "zp06_ladder.toml"];
+const GOLDENS: [&str; 4] =
+    ["ewa_ladder_affine.toml", "ewa_ladder_raycast.toml", "gbp04_ladder.toml", "zp06_ladder.toml"];
 
 #[test]
 fn an_epsilon_a_little_off_is_wrong() {

@@ -54,7 +54,7 @@ taken! {
         "ewa_perspective_close",
         "ewa_raycast_sheets",
     ];
-    deferred::Settings, Deferred: ["gbp04_detail", "gbp04_motion", "gbp04_without_second"];
+    deferred::Settings, Deferred: ["gbp04_detail", "gbp04_ladder", "gbp04_motion", "gbp04_without_second"];
     single_pass::Settings, SinglePass: [
         "zp06_identity_sphere",
         "zp06_ladder",
