@@ -84,7 +84,7 @@ struct Judge<'a, P: Profile> {
 }
 
 /// What an id tells of a fragment whose cut-off alone is undecided: of one that is in front of all others that may lie
-/// there, so that it is seen if it is inside, and only then.
+/// there, so that it is seen if it is inside, and only then. An empty pixel tells that it is not.
 fn tell<P: Profile>(id: u32, all: &[May<P>], told: &mut Told) {
     let in_front = |may: &May<P>| {
         let mut others = all.iter().filter(|other| other.id != may.id);
@@ -137,8 +137,8 @@ impl<'a, P: Profile> Judge<'a, P> {
             let doubts = self.judge_pixel((pixel, at), own, marks);
             counts.covered += u64::from(!own.is_empty());
             counts.undecided += u64::from(doubts & Doubt::OF_SUMS != 0);
-            if let Says::Id(id) = self.handed.says(at) {
-                tell(id, own, &mut counts.told);
+            if self.handed.id.is_some() {
+                tell(self.handed.id(at), own, &mut counts.told);
             }
         }
         counts

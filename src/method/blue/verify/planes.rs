@@ -18,7 +18,7 @@ pub(super) struct BluePlanes<'a> {
     pub(super) depth: Option<Stored<'a, f64>>,
     normal: Option<Stored<'a, [f64; 3]>>,
     weight: Option<Stored<'a, f64>>,
-    id: Option<Stored<'a, u32>>,
+    pub(super) id: Option<Stored<'a, u32>>,
     shaded: Option<Stored<'a, [f64; 3]>>,
     alpha: Option<Stored<'a, f64>>,
 }
