@@ -5,9 +5,9 @@
 //! template and rule, against EWA in the same size: holes, per mille of the inside, the mean over
 //! the sizes and the worst, and the mean RMSE.
 
-use super::accuracy::measure;
 use super::common::report::Table;
 use super::common::shot::Shot;
+use super::means::measure;
 use super::{Bench, Subject, methods, splatting};
 use splatref::Result;
 use splatref::method::Method;
@@ -35,7 +35,7 @@ impl Bench {
                 let ewa = Shot::of(self.draw(subject, &camera, &splatting())?);
                 for ((_, method), found) in methods.iter().zip(&mut found) {
                     let shot = Shot::of(self.draw(subject, &camera, method)?);
-                    let measures = measure(subject, &shot, &ewa);
+                    let measures = measure(&shot, &ewa);
                     found[0] += measures.holes / HEIGHTS.len() as f64;
                     found[1] = found[1].at_least(measures.holes);
                     found[2] += measures.rmse / HEIGHTS.len() as f64;

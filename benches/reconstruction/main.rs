@@ -1,12 +1,11 @@
 //! The image-space methods, the pyramid \[MKC08\] and the template \[MOC08\], against EWA splatting
-//! and against true pictures: what their papers claim about quality, as numbers.
+//! and against true pictures: what the defaults of both rest on.
 //!
 //! `cargo bench --bench reconstruction` prints Markdown tables, and with `--write` puts them into
-//! `docs/image-space.md`; an argument is a pattern that the names of scenes must contain. With
-//! `--pictures DIR` every picture is kept there as a PNG.
+//! `docs/image-space.md`; an argument is a pattern that the names of scenes must contain.
 //! Pictures have 800 x 600 pixels, `f32`, from the default cameras, lit by the default headlight.
 //! Where the true picture is known it is **lit too**, in f64 by the same shader, so that errors of
-//! normals count as they are seen. Sections: [`accuracy`], [`levels`], [`mirror`], [`stability`], [`reach`]; each states
+//! normals count as they are seen. Sections: [`means`], [`levels`], [`mirror`], [`reach`]; each states
 //! what it measures.
 //!
 //! Scenes are shapes of 10 k and 200 k surfels, some under a parallel camera too, and scans: as
@@ -14,21 +13,19 @@
 //! sqrt(area / count): 7/4, at which a point lies in ten discs, but 1 for 1 M points, where discs
 //! are smaller than pixels.
 
-mod accuracy;
 #[path = "../common/mod.rs"]
 mod common;
-mod falloff;
 mod levels;
+mod means;
 mod mirror;
 mod reach;
-mod stability;
 
 use common::models::{models, resample};
 use common::report::Arguments;
 use common::shot::Shot;
 use splatref::Result;
 use splatref::frame::{Exec, Frame};
-use splatref::io::{png, scene_file};
+use splatref::io::scene_file;
 use splatref::method::pyramid::{self, Occlusion, Weights};
 use splatref::method::template::{self, LevelRule};
 use splatref::method::{Method, Session, ewa};
@@ -48,7 +45,7 @@ struct Subject {
     shape: Option<Shape>,
 }
 
-/// How pictures are made, and where they are kept.
+/// How pictures are made.
 struct Bench {
     arguments: Arguments,
     exec: Exec,
@@ -58,11 +55,9 @@ fn main() -> Result<()> {
     let bench = Bench { arguments: Arguments::parse()?, exec: Exec::new(0, 32)? };
     let mut subjects = shapes(&bench.arguments.pattern)?;
     subjects.extend(bench.scans()?);
-    bench.accuracy(&subjects)?;
+    bench.means(&subjects)?;
     bench.levels(&subjects)?;
     bench.mirror(&subjects)?;
-    bench.falloffs(&subjects)?;
-    bench.stability(&subjects)?;
     bench.reach()
 }
 
@@ -190,12 +185,5 @@ impl Bench {
     /// The true picture of a shape.
     fn truth(&self, subject: &Subject, shape: &Shape, camera: &Camera) -> Result<Shot> {
         Shot::truth(&subject.scene, shape, camera, &self.exec)
-    }
-
-    /// Keeps a picture if that was asked for.
-    fn keep(&self, subject: &Subject, title: &str, shot: &Shot) -> Result<()> {
-        let Some(folder) = &self.arguments.pictures else { return Ok(()) };
-        let name = format!("{}-{title}.png", subject.name).replace([' ', ','], "_");
-        png::write(&folder.join(name), &shot.color, None)
     }
 }

@@ -74,13 +74,18 @@ impl SceneFile {
         };
         let (models, dropped) = (Vec::new(), Dropped::default());
         let mut loaded = Loaded { scene, models, dropped, dropped_primitives: 0 };
-        if let Some(hierarchy) = hierarchy {
-            self.load_hierarchy(&hierarchy, &mut loaded, exec, progress)?;
-            return Ok(loaded);
+        match (hierarchy, objects) {
+            (Some(hierarchy), _) => hierarchy_as_objects(&hierarchy, &mut loaded, exec, progress)?,
+            (None, None) => self.load_models(&mut loaded, exec, progress)?,
+            (None, Some(objects)) => self.load_objects(objects, &mut loaded, exec, progress)?,
         }
-        match objects {
-            None => self.load_models(&mut loaded, exec, progress)?,
-            Some(objects) => self.load_objects(objects, &mut loaded, exec, progress)?,
+        self.refined(loaded)
+    }
+
+    /// The same, asked for the levels of detail that this scene file says.
+    pub(super) fn refined(&self, mut loaded: Loaded) -> Result<Loaded> {
+        if let Some(objects) = loaded.scene.objects.take() {
+            loaded.scene.objects = Some(objects.with_refinement(self.refinement.clone())?);
         }
         Ok(loaded)
     }
@@ -132,26 +137,7 @@ impl SceneFile {
             });
         }
         let objects = Objects::new(geometries, objects, self.material.color)?;
-        loaded.scene.objects = Some(objects.with_refinement(self.refinement.clone())?);
-        Ok(())
-    }
-
-    /// The nodes of a hierarchy as objects.
-    fn load_hierarchy(
-        &self,
-        hierarchy: &Hierarchy,
-        loaded: &mut Loaded,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<()> {
-        let objects = hierarchy.load(exec, progress)?;
-        loaded.models.extend(objects.geometries().iter().map(|geometry| ModelReport {
-            name: geometry.name.clone(),
-            surfels: geometry.surfels.len(),
-            primitives: geometry.primitives.counts(),
-            derived: None,
-        }));
-        loaded.scene.objects = Some(objects.with_refinement(self.refinement.clone())?);
+        loaded.scene.objects = Some(objects);
         Ok(())
     }
 
@@ -170,6 +156,24 @@ impl SceneFile {
         let all = merge(clouds.collect(), self.material.color);
         if alone { Surfels::new_with(all, exec) } else { Surfels::new_or_none(all, exec) }
     }
+}
+
+/// The nodes of a hierarchy as objects.
+fn hierarchy_as_objects(
+    hierarchy: &Hierarchy,
+    loaded: &mut Loaded,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<()> {
+    let objects = hierarchy.load(exec, progress)?;
+    loaded.models.extend(objects.geometries().iter().map(|geometry| ModelReport {
+        name: geometry.name.clone(),
+        surfels: geometry.surfels.len(),
+        primitives: geometry.primitives.counts(),
+        derived: None,
+    }));
+    loaded.scene.objects = Some(objects);
+    Ok(())
 }
 
 impl Loaded {

@@ -41,10 +41,26 @@ impl SceneFile {
     /// [`crate::Error::Invalid`] if a setting is
     /// out of range or not of the method, or if the method cannot draw the scene.
     pub fn ready(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Ready> {
+        self.check_drawing()?;
+        self.ready_of(self.load(exec, progress)?, exec)
+    }
+
+    /// What can be wrong with a frame before anything is loaded.
+    fn check_drawing(&self) -> Result<(Method, Option<Grouping>)> {
         let method = self.method.method()?;
         let grouping = self.grouping(&method)?;
         self.check_frame(self.frame)?;
-        let loaded = self.load(exec, progress)?;
+        Ok((method, grouping))
+    }
+
+    /// The same of what has been loaded, by this scene file or by one that differs in what is asked of objects with
+    /// levels of detail, in how the scene is drawn or in what is left of it.
+    ///
+    /// # Errors
+    /// As [`SceneFile::ready`], but for those of files.
+    pub fn ready_of(&self, loaded: Loaded, exec: &Exec) -> Result<Ready> {
+        let (method, grouping) = self.check_drawing()?;
+        let loaded = self.refined(loaded)?;
         let camera = self.camera(&loaded.scene)?;
         let (frame, motion) = (self.frame, self.camera.motion.clone());
         let motion = motion.map(|motion| (motion, self.lens()));

@@ -86,7 +86,7 @@ pub(super) fn exact(shape: Shape) -> [Surface; 1] {
 }
 
 /// Surfels with light and dark cubes of a side as their colours.
-pub(super) fn checked(surfels: Surfels, side: f64) -> Result<Surfels> {
+pub(in crate::study) fn checked(surfels: Surfels, side: f64) -> Result<Surfels> {
     let cloud = surfels.into_cloud();
     let check = |p: &Vec3| {
         let cell = (p.as_dvec3() / side + 0.25).floor();

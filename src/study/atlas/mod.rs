@@ -25,6 +25,7 @@ mod reconstruction;
 #[cfg(test)]
 mod tests;
 
+pub(super) use case::checked;
 pub use page::{Files, PICTURES, page};
 pub(super) use page::{beside, short};
 

@@ -140,15 +140,20 @@ pub fn verdicts(
     }
     let count = (cases.len() * claims.len()) as u64;
     let mut done = 0;
-    for case in cases {
+    let mut last: Option<Subject<'_>> = None;
+    for (i, case) in cases.into_iter().enumerate() {
         let formats = if matches!(case.of, Drawn::Shape(..)) { formats } else { &[] };
-        // What the claims share of a case is made once.
+        // What the claims share of a case is made once, and what its sizes share too.
         let mut subject = Subject::new(case, exec)?;
+        if let Some(other_size) = last.filter(|_| i % ROWS.len() > 0) {
+            subject.share(&other_size);
+        }
         for verdict in &mut all {
             progress(verdict.of.id, done, count);
             verdict.measure(&mut subject, formats)?;
             done += 1;
         }
+        last = Some(subject);
     }
     Ok(all)
 }

@@ -1,14 +1,17 @@
 //! \[BJFM19\]: prefixes of orders.
 
-use super::subject::{Subject, quiet};
+use super::subject::{Subject, colors, median, quiet};
 use super::{Claim, Measured};
 use crate::error::Result;
-use crate::frame::Exec;
+use crate::frame::{Exec, Frame};
+use crate::method::blue;
+use crate::scene::{Cloud, Primitives, Similarity};
 use crate::source::sampler::{Greedy, Progressive, Schedule, Start, quality, shuffled};
+use crate::study::atlas::orders::{geometry, objects, seen};
 use glam::Vec3;
 use std::time::Instant;
 
-pub(super) const CLAIMS: [Claim; 4] = [
+pub(super) const CLAIMS: [Claim; 6] = [
     Claim {
         id: "bjfm19-random",
         from: "[BJFM19] 3.3, Fig. 3",
@@ -39,6 +42,26 @@ pub(super) const CLAIMS: [Claim; 4] = [
         timed: false,
         more: "bjfm19.md",
         of: quarter,
+    },
+    Claim {
+        id: "bjfm19-covers",
+        from: "[BJFM19] 4.1",
+        says: "the prefix of a surfel size covers every pixel of the object",
+        measured: "holes, per mille: `blue` with discs of 4 px; limit",
+        at_most: 1.0,
+        timed: false,
+        more: "bjfm19.md",
+        of: covers,
+    },
+    Claim {
+        id: "bjfm19-size",
+        from: "[BJFM19] 4.3",
+        says: "the quality of the picture depends on the size of the surfels, smaller is better",
+        measured: "RMSE to the truth: `blue` with discs of 4 px; discs of 8 px",
+        at_most: 1.0,
+        timed: false,
+        more: "bjfm19.md",
+        of: smaller,
     },
     Claim {
         id: "bjfm19-speed",
@@ -99,6 +122,35 @@ fn quarter(subject: &Subject<'_>) -> Result<Measured> {
     Ok(Measured { numbers: [ratio, 1.0], pictures: Vec::new() })
 }
 
+/// The points in the greedy order, as what the view asks of them in discs of a size, pixels.
+fn discs<'e>(subject: &Subject<'e>, size: f32) -> Result<Subject<'e>> {
+    let surfels = subject.of_count(100 * subject.case.rows as usize)?.scene.surfels;
+    let count = surfels.len();
+    let order = EXACT.order(surfels.position(), count, subject.exec, &quiet)?;
+    let cloud = surfels.into_cloud().some(&order.index);
+    let cloud = Cloud { radius: Some(vec![1.0; count]), tangents: None, ..cloud };
+    let objects = objects(geometry(cloud, Primitives::default())?, &[Similarity::IDENTITY])?;
+    Ok(subject.with(seen(&objects, size, &subject.camera, subject.exec)?.surfels))
+}
+
+fn in_discs(subject: &Subject<'_>, size: f32) -> Result<Frame<f32>> {
+    discs(subject, size)?.draw(blue::Settings::default().into(), None)
+}
+
+fn covers(subject: &Subject<'_>) -> Result<Measured> {
+    let (drawn, truth) = (in_discs(subject, 4.0)?, subject.truth()?);
+    let numbers = [subject.error(&drawn, truth, "holes")?, 1.0];
+    Ok(Measured { numbers, pictures: colors(&[&drawn, truth])? })
+}
+
+fn smaller(subject: &Subject<'_>) -> Result<Measured> {
+    let (first, second) = (in_discs(subject, 4.0)?, in_discs(subject, 8.0)?);
+    let truth = subject.truth()?;
+    let error = |frame| subject.error(frame, truth, "rmse");
+    let numbers = [error(&first)?, error(&second)?];
+    Ok(Measured { numbers, pictures: colors(&[&first, &second, truth])? })
+}
+
 fn speed(subject: &Subject<'_>) -> Result<Measured> {
     let (points, exec) = (points(subject)?, subject.exec);
     let count = points.len() / 10;
@@ -111,9 +163,5 @@ fn speed(subject: &Subject<'_>) -> Result<Measured> {
         EXACT.order(&points, count, exec, &quiet)?;
         times[1].push(start.elapsed().as_secs_f64() * 1e3);
     }
-    let numbers = times.map(|mut times| {
-        times.sort_by(f64::total_cmp);
-        times[times.len() / 2]
-    });
-    Ok(Measured { numbers, pictures: Vec::new() })
+    Ok(Measured { numbers: times.map(median), pictures: Vec::new() })
 }

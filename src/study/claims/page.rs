@@ -12,19 +12,20 @@ const INTRODUCTION: &str = "\
 # What the five papers claim, measured
 
 Every claim is a comparison of two numbers: the first is to be at most the second, or at most so many times the second where the
-row says so. Each is measured on nine cases: a sphere, a torus and a cluster of spheres, of 10,000 surfels unless the
+row says so; the second may be a limit. Each is measured on nine cases: a sphere, a torus and a cluster of spheres, of 10,000 surfels unless the
 claim is about more, in pictures of 120, 180 and 300 rows. *Holds* tells in how many of the nine; scans have a table below. The numbers are the
 pair of each shape at 180 rows. A claim that has no number in its paper is read as weakly as its words allow: better is
-less error. Where the words are *similar*, *slightly* or *hardly*, the limit is of this page, and stands in the row.
+less error. Where the words are *similar*, *slightly* or *hardly*, the limit is of this page, and stands in the row. A pixel is
+*inside* if it and its neighbours are covered, and *visibly off* if R, G or B differs by more than 8/255 as sRGB.
 
 The numbers and *holds* are of buffers in `f32`. The columns after it judge the claim once more with buffers that the papers'
 GPUs had: half floats with depths of 24 bits, half floats with depths in half floats as [MOC08, 4] has them, and 8 bits with
 depths of 16. Only the methods draw into them; what they are compared with
-stays the same. A claim that is not about pictures has a dash.
+stays the same. A claim that is not about single pictures has a dash.
 
 This page is made by `splatref study claims bunny.ply igea.ply fandisk.ply -o docs`. Errors are the same on every machine, and a test holds the page
 against them. Rows with *ms* are times of the machine that made the page, on a CPU with two threads; the papers' were
-of GPUs. The pages in the last column have scans, more settings and the papers' own numbers.
+of GPUs. The pages in the last column have more settings, and the times that the papers print.
 
 ";
 

@@ -3,15 +3,17 @@
 use super::{Case, Drawn};
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Frame, Plane};
-use crate::index::grouping::{Extension, Grouping, Rules};
+use crate::index::grouping::{Extended, Extension, Grouping, Rules};
 use crate::io::scene_file::{CameraChoice, Ready, SceneFile};
 use crate::method::stored::Formats;
 use crate::method::{Method, Session};
-use crate::scene::{Camera, Cloud, Scene, Similarity, Surfels};
+use crate::scene::{Camera, Cloud, Groups, Scene, Similarity, Surfels};
+use crate::study::run::cameras::shifted;
 use crate::study::run::truths::Known;
 use crate::study::truth::{Surface, of_surfaces};
-use crate::verify::metrics::{Errors, Metric};
-use std::cell::OnceCell;
+use crate::verify::metrics::{Errors, Flicker, Metric};
+use std::cell::{OnceCell, RefCell};
+use std::rc::Rc;
 use std::time::Instant;
 
 /// Progress that nobody sees.
@@ -26,6 +28,30 @@ pub(super) struct Subject<'e> {
     pub(super) camera: Camera,
     pub(super) exec: &'e Exec,
     truth: OnceCell<Frame<f32>>,
+    /// Pictures that a claim has asked for: another may ask, too.
+    pictures: Kept<(Method, Option<Grouping>, Formats), Frame<f32>>,
+    /// Groups of the surfels, of any opacity.
+    groups: Rc<Kept<Grouping, Grouped>>,
+}
+
+/// What has been made, by what it was made of.
+type Kept<K, V> = RefCell<Vec<(K, V)>>;
+
+/// Groups, and how they were extended.
+type Grouped = (Groups, Option<Extended>);
+
+/// What is kept of something, or what is made of it now.
+fn kept<K: PartialEq, V: Clone>(
+    all: &Kept<K, V>,
+    of: K,
+    make: impl FnOnce() -> Result<V>,
+) -> Result<V> {
+    if let Some((_, value)) = all.borrow().iter().find(|(key, _)| *key == of) {
+        return Ok(value.clone());
+    }
+    let made = make()?;
+    all.borrow_mut().push((of, made.clone()));
+    Ok(made)
 }
 
 /// Groups of the overlap c; a given number of them, or as many as that takes.
@@ -53,15 +79,24 @@ impl<'e> Subject<'e> {
                 (loaded.scene, camera)
             }
         };
-        Ok(Self { case, formats: Formats::WHOLE, scene, camera, exec, truth: OnceCell::new() })
+        let (truth, pictures, groups) = Default::default();
+        let formats = Formats::WHOLE;
+        Ok(Self { case, formats, scene, camera, exec, truth, pictures, groups })
+    }
+
+    /// Takes the groups of the same surfels in another size of the picture.
+    pub(super) fn share(&mut self, other: &Self) {
+        self.groups = Rc::clone(&other.groups);
     }
 
     /// The same view of other surfels.
-    fn with(&self, surfels: Surfels) -> Self {
+    pub(super) fn with(&self, surfels: Surfels) -> Self {
         Self {
             case: self.case.clone(),
             scene: Scene { surfels, ..self.scene.clone() },
             truth: OnceCell::new(),
+            pictures: Kept::default(),
+            groups: Rc::default(),
             ..*self
         }
     }
@@ -78,14 +113,23 @@ impl<'e> Subject<'e> {
     pub(super) fn transparent(&self) -> Result<Self> {
         let cloud = self.scene.surfels.clone().into_cloud();
         let opacity = Some(vec![0.4; cloud.position.len()]);
-        Ok(self.with(Surfels::new(Cloud { opacity, ..cloud })?.0))
+        let groups = Rc::clone(&self.groups);
+        Ok(Self { groups, ..self.with(Surfels::new(Cloud { opacity, ..cloud })?.0) })
+    }
+
+    /// The groups of the surfels.
+    pub(super) fn groups(&self, grouping: &Grouping) -> Result<Grouped> {
+        kept(&self.groups, *grouping, || {
+            let found = grouping.groups(&self.scene.surfels, self.exec, &quiet)?;
+            Ok((found.0, found.2))
+        })
     }
 
     pub(super) fn session(&self, method: Method, groups: Option<&Grouping>) -> Result<Session<'_>> {
         match groups {
             None => Session::new(&self.scene, method, self.exec),
             Some(grouping) => {
-                let (groups, ..) = grouping.groups(&self.scene.surfels, self.exec, &quiet)?;
+                let (groups, _) = self.groups(grouping)?;
                 Session::with_groups(&self.scene, method, Some(groups), self.exec)
             }
         }
@@ -96,7 +140,9 @@ impl<'e> Subject<'e> {
         if self.formats.keep_all() {
             return self.reference(method, groups);
         }
-        Ok(self.session(method, groups)?.stored(&self.camera, self.formats, false)?.frame)
+        kept(&self.pictures, (method, groups.copied(), self.formats), || {
+            Ok(self.session(method, groups)?.stored(&self.camera, self.formats, false)?.frame)
+        })
     }
 
     /// The picture in `f32`, which others are compared with.
@@ -105,7 +151,9 @@ impl<'e> Subject<'e> {
         method: Method,
         groups: Option<&Grouping>,
     ) -> Result<Frame<f32>> {
-        Ok(self.session(method, groups)?.render(&self.camera)?.frame.clone())
+        kept(&self.pictures, (method, groups.copied(), Formats::WHOLE), || {
+            Ok(self.session(method, groups)?.render(&self.camera)?.frame.clone())
+        })
     }
 
     /// The true picture: of a shape the exact one.
@@ -134,6 +182,35 @@ impl<'e> Subject<'e> {
         error.ok_or_else(|| Error::Invalid(format!("{name}: the true picture is empty")))
     }
 
+    /// How much a session's pictures change from one of eight to another, the scene moved by eighths of a
+    /// pixel: the [flicker](mod@crate::verify::metrics::flicker) beside black.
+    pub(super) fn flicker(&self, mut session: Session<'_>) -> Result<f64> {
+        let cameras = shifted(&self.camera);
+        let [width, height] = self.camera.size();
+        let mut flicker = Flicker::new(width, height, cameras.len())?;
+        let black = Plane::filled(width, height, [0.0; 3]);
+        for camera in &cameras {
+            flicker.push(session.render(camera)?.frame.color("")?, &black)?;
+        }
+        Ok(flicker.spectrum(self.exec)?.flicker)
+    }
+
+    /// What some stages take of a picture, and what others take: medians of nine, in ms.
+    pub(super) fn laps(&self, session: &mut Session<'_>, stages: [&[&str]; 2]) -> Result<[f64; 2]> {
+        let mut times = [Vec::new(), Vec::new()];
+        for turn in 0..10 {
+            let laps = &session.render(&self.camera)?.timings;
+            for (names, times) in stages.iter().zip(&mut times) {
+                let of = laps.iter().filter(|(name, _)| names.contains(name));
+                // The first one fills what is kept.
+                if turn > 0 {
+                    times.push(of.map(|(_, time)| time.as_secs_f64() * 1e3).sum::<f64>());
+                }
+            }
+        }
+        Ok(times.map(median))
+    }
+
     /// The medians of times of one picture by each of two sessions, of nine by turns, in ms.
     pub(super) fn times(&self, mut sessions: [Session<'_>; 2]) -> Result<[f64; 2]> {
         let mut times = [Vec::new(), Vec::new()];
@@ -147,11 +224,14 @@ impl<'e> Subject<'e> {
                 }
             }
         }
-        Ok(times.map(|mut times| {
-            times.sort_by(f64::total_cmp);
-            times[times.len() / 2]
-        }))
+        Ok(times.map(median))
     }
+}
+
+/// The median of an odd number of times.
+pub(super) fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
 }
 
 /// The colours of pictures.

@@ -3,9 +3,10 @@
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::grouping::Grouping;
-use crate::io::scene_file::{GroupChoice, MethodChoice, OutputSettings, Ready, SceneFile};
+use crate::io::scene_file::{GroupChoice, Loaded, MethodChoice, OutputSettings, Ready, SceneFile};
 use crate::method::{Method, Session};
 use crate::scene::Groups;
+use crate::scene::objects::detail::refine::Refinement;
 use crate::study::sweep::Candidate;
 use std::time::{Duration, Instant};
 
@@ -13,6 +14,8 @@ use std::time::{Duration, Instant};
 #[derive(Debug)]
 pub struct Bench<'e> {
     exec: &'e Exec,
+    /// Scenes of objects as they were read, which candidates at several levels of detail share.
+    files: Vec<(SceneFile, Loaded)>,
     loads: Vec<Load>,
     groups: Vec<Grouped>,
 }
@@ -68,7 +71,7 @@ impl<'e> Bench<'e> {
         exec: &'e Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<(Self, Vec<Candidate>, Vec<LeftOut>)> {
-        let mut bench = Self { exec, loads: Vec::new(), groups: Vec::new() };
+        let mut bench = Self { exec, files: Vec::new(), loads: Vec::new(), groups: Vec::new() };
         let (mut kept, mut left_out, mut first) = (Vec::new(), Vec::<LeftOut>::new(), None);
         for candidate in candidates {
             match bench.scene(&candidate, progress) {
@@ -106,9 +109,24 @@ impl<'e> Bench<'e> {
             method.check_scene(&self.loads[found].ready.loaded.scene)?;
             return Ok(found);
         }
-        let ready = candidate.file.ready(self.exec, progress)?;
+        let ready = if is_flat {
+            candidate.file.ready(self.exec, progress)?
+        } else {
+            candidate.file.ready_of(self.file(&plain, progress)?, self.exec)?
+        };
         self.loads.push(Load { key: (plain, objects), ready });
         Ok(self.loads.len() - 1)
+    }
+
+    /// What a scene of objects is made of, read once whatever is asked of its levels of detail; geometries are shared.
+    fn file(&mut self, plain: &SceneFile, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
+        let all = SceneFile { refinement: Refinement::default(), ..plain.clone() };
+        if let Some((_, loaded)) = self.files.iter().find(|(file, _)| *file == all) {
+            return Ok(loaded.clone());
+        }
+        let loaded = all.load(self.exec, progress)?;
+        self.files.push((all, loaded.clone()));
+        Ok(loaded)
     }
 
     /// A session of a candidate that is loaded.
@@ -154,5 +172,33 @@ impl<'e> Bench<'e> {
             }
         };
         Ok(Some(&self.groups[found].groups))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::sweep::candidates;
+    use std::path::Path;
+
+    fn quiet(_: &str, _: u64, _: u64) {}
+
+    #[test]
+    fn levels_of_detail_share_what_is_read() {
+        let exec = Exec::new(2, 32).unwrap();
+        let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden/bjfm19_prefixes.toml");
+        let file = SceneFile::open(&golden).unwrap();
+        let all = candidates(&file, None).unwrap();
+        let (mut bench, kept, _) = Bench::load(all, &exec, &quiet).unwrap();
+        assert_eq!(bench.files.len(), 1, "one file, whatever is asked of it");
+        let (mut least, mut most) = (usize::MAX, 0);
+        for candidate in kept.iter().filter(|one| one.method == "pyramid") {
+            let found = bench.visit(candidate, &quiet).unwrap().ready.clone();
+            let alone = candidate.file.ready(&exec, &quiet).unwrap();
+            assert_eq!(found.identity().unwrap(), alone.identity().unwrap(), "{candidate:?}");
+            let surfels = found.loaded.scene.surfels.len();
+            (least, most) = (least.min(surfels), most.max(surfels));
+        }
+        assert!(least < most, "sizes draw other prefixes: {least} to {most}");
     }
 }

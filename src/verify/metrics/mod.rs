@@ -4,6 +4,7 @@
 //! - [`mod@ssim`]: their structure \[WBSS04\].
 //! - [`mod@flip`]: how visible the difference is \[ANA+20\].
 //! - [`mod@coverage`]: holes and spill, by regions of what is covered.
+//! - [`mod@visible`]: pixels inside that are visibly off.
 //! - [`mod@outline`]: the length of the silhouette.
 //! - [`mod@depth`], [`mod@normal`]: the surface in the pixels that both cover.
 //! - [`mod@flicker`]: errors of a sequence that are not constant, and their spectrum.
@@ -27,6 +28,7 @@ pub mod outline;
 pub mod rmse;
 pub mod ssim;
 mod summary;
+pub mod visible;
 
 pub use coverage::{Coverage, Region, coverage, regions};
 pub use depth::{DepthError, depth};
@@ -38,6 +40,7 @@ pub use outline::outline;
 pub use rmse::{psnr, rmse};
 pub use ssim::ssim;
 pub use summary::{Summary, summary};
+pub use visible::visible;
 
 use crate::error::{Error, Result};
 use crate::frame::Plane;
