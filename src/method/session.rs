@@ -189,9 +189,13 @@ impl<'a> Session<'a> {
     /// # Errors
     /// As [`Session::render`].
     pub fn define<R: Exact>(&self, camera: &Camera, stages: bool) -> Result<Picture<R>> {
-        let job = self.job(camera)?;
-        self.ask(camera, Making::Define { number: size_of::<R>() as u64, stages })?;
-        let mut picture = self.method.define(&job, stages)?;
+        self.defined(&self.job(camera)?, stages)
+    }
+
+    /// The picture of a job by the definition.
+    fn defined<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+        self.ask(job.camera, Making::Define { number: size_of::<R>() as u64, stages })?;
+        let mut picture = self.method.define(job, stages)?;
         if let Some(names) = self.names() {
             names.name(&mut picture.frame);
         }
@@ -210,15 +214,14 @@ impl<'a> Session<'a> {
         formats: Formats,
         stages: bool,
     ) -> Result<Picture<f32>> {
-        if matches!(self.method, Method::Peeling(_)) {
-            let what =
-                "peeling has no buffers of other formats: it is the truth of the other methods";
-            return Err(Error::Invalid(format!("{what}; give storage = \"f32\"")));
-        }
-        let mut picture = self.define::<f32>(camera, true)?;
         let range = DepthRange::new(self.scene, camera);
         let key = DepthKey::new(formats.depth, range);
         let job = Job { buffers: formats.buffers, key, ..self.job(camera)? };
+        if matches!(self.method, Method::Peeling(_)) {
+            // All layers are one stage, which rounds each of them itself.
+            return self.defined(&job, stages);
+        }
+        let mut picture = self.define::<f32>(camera, true)?;
         for stage in self.method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
             // A level is made from the last, so that each is as it is stored after as many runs as there are.
             loop {

@@ -15,9 +15,10 @@
 //!   [`mod@super::blue`], the indices of [`mod@super::deferred`]), and not those by epsilon, which read a depth in `f32`
 //!   from a buffer. Under the Voronoi depth test the buffer holds z / n of \[ZP06, eq. 10\] and no depth.
 //! - Where fragments are *blended* into a buffer, the buffer is rounded after every one: the sums of
-//!   attribute splatting ([`mod@super::ewa`], [`mod@super::deferred`], and the layers of
+//!   attribute splatting ([`mod@super::ewa`], [`mod@super::deferred`], and each layer of
 //!   [`mod@super::peeling`]) after every addition, the layers of [`mod@super::transparent`] and
-//!   [`mod@super::transparent_hq`] after every one that is laid over those before.
+//!   [`mod@super::transparent_hq`] after every one that is laid over those before, and those of [`mod@super::peeling`]
+//!   after every one that is laid under them.
 //! - Diagnostics that no buffer holds (`margin`, `voronoi`) are left as they are.
 //!
 //! # Rounding
@@ -46,11 +47,14 @@
 //! - The shift by epsilon is added in `f32` to what the depth buffer holds.
 //! - The bins of \[ZP06, eq. 6\] that [`mod@super::transparent`] tests are whole numbers of at most 16 bits, and are told apart
 //!   in every format.
+//! - A layer of `peeling` begins at the depth that the buffer holds, and the next one beyond that depth and epsilon. Where a
+//!   step of the buffer is more than epsilon a fragment may be in no layer or in several.
 //! - What `deferred` carries to the next frame is what a frame in `f32` saw.
 
 use super::Stage;
 use crate::composite::bins::DepthBins;
 use crate::composite::over::Blend;
+use crate::composite::under::Under;
 use crate::frame::{Frame, NamedPlane, Samples};
 use crate::number::{Exact, Real};
 use crate::scene::{Camera, Projection, Scene};
@@ -188,6 +192,12 @@ impl Buffers {
         }
     }
 
+    /// Layers that were blended from the front.
+    #[inline]
+    pub(super) fn under<R: Exact>(self, Under { color, alpha, through }: Under<R>) -> Under<R> {
+        Under { color: self.color(color), alpha: self.sum(alpha), through: self.sum(through) }
+    }
+
     /// Layers that were blended.
     #[inline]
     pub(super) fn blend<R: Exact>(self, Blend { color, alpha }: Blend<R>) -> Blend<R> {
@@ -280,6 +290,15 @@ impl DepthKey {
     #[inline]
     pub(super) fn depth<R: Exact>(&self, t: R) -> f64 {
         self.range.held(t.to_f64(), self.format)
+    }
+
+    /// The depth that the buffer gives back.
+    #[inline]
+    pub(super) fn stored<R: Exact>(&self, t: R) -> R {
+        if self.format == DepthBuffer::F32 {
+            return t;
+        }
+        R::from_f32(self.range.store(t.to_f64(), self.format) as f32)
     }
 
     /// Of a nearness, which belongs to the depth `t`.

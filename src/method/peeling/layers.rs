@@ -27,6 +27,9 @@ pub(super) struct Peeling<'a, R: Exact> {
     shader: Shader<R>,
     /// The colour of surfels that have none.
     own: [R; 3],
+    /// How sums, layers and what is blended are stored, and depths.
+    buffers: Buffers,
+    key: DepthKey,
 }
 
 /// One layer at one pixel.
@@ -75,7 +78,8 @@ impl<'a, R: Exact> Peeling<'a, R> {
         let shader = Shader::new(View::new(job.camera), &scene.lights, scene.material);
         let own = scene.material.color.to_array().map(R::from_f32);
         let splats = Prepared::splats(job, &settings.splats);
-        Self { surfels: &scene.surfels, splats, shader, own }
+        let Job { buffers, key, .. } = *job;
+        Self { surfels: &scene.surfels, splats, shader, own, buffers, key }
     }
 
     /// Peels at most `most` layers off the pixels of a tile, and keeps the first `keep` of them.
@@ -92,6 +96,7 @@ impl<'a, R: Exact> Peeling<'a, R> {
             let Some(layer) = layer else { break };
             for (pixel, layer) in pixels.iter_mut().zip(&layer) {
                 pixel.add(layer, self.splats.epsilon);
+                pixel.blend = self.buffers.under(pixel.blend);
             }
             if kept.len() < keep {
                 kept.push(layer);
@@ -110,11 +115,12 @@ impl<'a, R: Exact> Peeling<'a, R> {
     ) -> Option<Vec<PeeledLayer<R>>> {
         let shared = splats.shared();
         let beyond = |pixel: usize, w: R| decide::beyond(shared.depth(w), limits[pixel]);
-        let nearest = foremost(splats, &DepthKey::WHOLE, beyond);
+        let mut nearest = foremost(splats, &self.key, beyond);
+        nearest.iter_mut().for_each(|nearest| nearest.depth = self.key.stored(nearest.depth));
         if nearest.iter().all(|nearest| nearest.id == NO_ID) {
             return None;
         }
-        let sums = sums(splats, (self.surfels, Buffers::F32), &nearest, beyond);
+        let sums = sums(splats, (self.surfels, self.buffers), &nearest, beyond);
         let found = pixels(splats.rect).zip(nearest.iter().zip(&sums));
         Some(found.map(|(at, (nearest, sums))| self.resolve(nearest, sums, at)).collect())
     }
@@ -130,8 +136,10 @@ impl<'a, R: Exact> Peeling<'a, R> {
         let [nx, ny, nz] = average.normal;
         let surface = if self.surfels.color().is_some() { average.color } else { self.own };
         let [alpha, ..] = sum::average([sums.opacity; 3], sums.weight);
+        let alpha = self.buffers.sum(alpha);
         let form = (Vector3::new(nx, ny, nz), Vector3::ZERO);
         let color = self.shader.pixel((x as usize, y as usize), nearest.depth, form, surface);
+        let color = self.buffers.color(color);
         PeeledLayer { depth: nearest.depth, id: nearest.id, count: sums.count, alpha, color }
     }
 }

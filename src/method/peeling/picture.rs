@@ -26,7 +26,10 @@ pub(super) fn define<R: Exact>(
     let keep = if stages { settings.layers.min(STAGES) as usize } else { 0 };
     let peeled = peel(job, &peeling, settings, keep, &mut clock);
     let mut left = peeled.layer_planes();
-    left.extend(planes::shown(shown(job, &peeled.pixels.map(|pixel| pixel.blend))));
+    let (color, alpha) = shown(job, &peeled.pixels.map(|pixel| pixel.blend));
+    let (color, alpha) =
+        (color.map(|color| job.buffers.color(*color)), alpha.map(|alpha| job.buffers.sum(*alpha)));
+    left.extend(planes::shown((color, alpha)));
     left.extend(planes::pixels(&peeled.pixels));
     let (frame, timings) = (job.frame(left), clock.into_laps());
     Ok(Picture { frame, tally: peeling.splats.tally, timings, seen: None })
