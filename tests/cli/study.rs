@@ -138,7 +138,7 @@ fn one_failure_of_the_atlas() {
     assert!(said.contains("bounds               breaks at 2 (distance, radii)"), "{said}");
     let page = fs::read_to_string(at.path().join("a/atlas.md")).unwrap();
     assert!(page.contains("## bounds\n") && !page.contains("## ewa-thin"));
-    assert_eq!(names(&at.path().join("a/atlas")), ["bounds.svg"]);
+    assert_eq!(names(&at.path().join("a/atlas")), ["bounds.png", "bounds.svg"]);
     let said = fails(at.path(), &["study", "failures", "--only", "nothing"], 2);
     assert!(said.contains("give one of ewa-grazing, "), "{said}");
     for others in [&["study", "torus", "failures"][..], &["study", "--metric", "flip", "failures"]]

@@ -16,7 +16,8 @@ pub(super) const FAILURES: [Failure; 3] = [
         why: "A disc seen nearly edge-on, turned by 45 degrees. Its covariance with the low-pass filter is [[a, b], [b, c]], and the \
               textbook's q = (c dx^2 - 2 b dx dy + a dy^2) / (a c - b^2): where the ellipse is long and thin a c and b^2 \
               agree in more and more digits of f32. What is measured is the greatest error of q at 64 points of the \
-              ellipse, as a part of q in f64.",
+              ellipse, as a part of the textbook's q in f64. Pictures: the ellipse stretched to a circle, light where q is right to 0.001 and red where \
+              it is not; around it blue and black.",
         swept: "radius, px",
         values: &[1.0, 4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0],
         error: "relative error of q",
@@ -66,32 +67,46 @@ fn thin(radius: f64, cured: bool, _: &Exec) -> Result<Found> {
     let side = f64::from(SIDE);
     let pose = Pose { eye: DVec3::Z * 1e4, target: DVec3::ZERO, up: DVec3::Y };
     let camera = Camera::new(SIDE, SIDE, pose, Lens::Orthographic(side))?;
-    let kernel = Kernel::DEFAULT;
-    let (single, double) = (
-        splat::<f32>(&camera, &kernel, (DVec3::ZERO, normal, radius))?.footprint,
-        splat::<f64>(&camera, &kernel, (DVec3::ZERO, normal, radius))?.footprint,
-    );
+    // A disc of radius r is of variance r^2: the textbook's.
+    let kernel = Kernel { cutoff: 1.0, ..Kernel::DEFAULT };
+    let splat = splat::<f32>(&camera, &kernel, (DVec3::ZERO, normal, radius))?.footprint;
     let low_pass = f64::from(kernel.low_pass);
     let [longer, shorter] = [radius, radius * THIN * long].map(|r| (r * r + low_pass).sqrt());
+    // q at a point of the ellipse's axes, in f32 and in f64; both the same point: what f32 holds.
+    let both = |u: f64, v: f64| {
+        let (u, v) = (longer * u * half, shorter * v * half);
+        let (dx, dy) = ((u + v) as f32, (u - v) as f32);
+        let axes = [radius * half, radius * half * THIN * long].map(|v| v as f32);
+        let double = textbook(axes.map(f64::from), low_pass, [dx.into(), dy.into()]);
+        // The raster's y goes down.
+        let single =
+            if cured { splat.form(dx, -dy) } else { textbook(axes, kernel.low_pass, [dx, dy]) };
+        [single.into(), double]
+    };
+    let error = |[single, double]: [f64; 2]| ((single - double) / double).abs();
     let errors = (0..64).map(|i| {
         let angle = std::f64::consts::TAU * f64::from(i) / 64.0;
-        let (u, v) = (longer * cos(angle) * half, shorter * sin(angle) * half);
-        // Both the same point: what f32 holds.
-        let (dx, dy) = ((u + v) as f32, (u - v) as f32);
-        let [single, double] = if cured {
-            [single.form(dx, dy).to_f64(), double.form(dx.into(), dy.into())]
-        } else {
-            let axes = [radius * half, radius * half * THIN * long].map(|v| v as f32);
-            let wide = axes.map(f64::from);
-            let single = textbook(axes, kernel.low_pass, [dx, dy]);
-            [single.into(), textbook(wide, low_pass, [dx.into(), dy.into()])]
-        };
-        ((single - double) / double).abs()
+        error(both(cos(angle), sin(angle)))
     });
     // What is no number is as wrong as can be.
     let known = errors.map(|error| if error.is_nan() { f64::INFINITY } else { error });
-    Ok(found(known.fold(0.0, Real::at_least)))
+    let picture = Plane::from_values(
+        SEEN,
+        SEEN,
+        (0..SEEN * SEEN)
+            .map(|i| {
+                let [u, v] = [i % SEEN, i / SEEN]
+                    .map(|k| 3.0 * (f64::from(k) + 0.5) / f64::from(SEEN) - 1.5);
+                let both = both(u, v);
+                shown(both[1] <= 1.0, error(both) <= 0.001)
+            })
+            .collect(),
+    );
+    Ok(Found { picture: Some(picture), ..found(known.fold(0.0, Real::at_least)) })
 }
+
+/// The side of the picture of the thin ellipse, stretched to a circle.
+const SEEN: u32 = 180;
 
 /// q of a covariance of the half axes a (1, 1) and b (1, -1) and the low-pass filter, by its determinant.
 fn textbook<R: Real>([a, b]: [R; 2], low_pass: R, [dx, dy]: [R; 2]) -> R {
