@@ -65,7 +65,7 @@ impl Case {
         let errors = Errors::of(&frame, truth, exec)?;
         let error = (Metric::named(metric)?.of)(&errors)
             .ok_or_else(|| Error::Invalid(format!("{metric}: the true picture is empty")))?;
-        Ok(Found { error, picture: Some(frame.color("")?.clone()), time: Some(time) })
+        Ok(Found { error, picture: frame.color("")?.clone(), time: Some(time) })
     }
 
     /// The picture against that of the exact shape.

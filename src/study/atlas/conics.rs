@@ -35,7 +35,7 @@
 //!
 //! `Decided:` both formulas are taken from work that quotes them; a test holds both boxes to a sampled rim.
 
-use super::numbers::{ahead, found, outside, shown, tilted, visible};
+use super::numbers::{ahead, outside, shown, tilted, visible};
 use super::{Failure, Found};
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Plane};
@@ -228,7 +228,7 @@ fn conic(distance: f64, cured: bool, _: &Exec) -> Result<Found> {
         let drawn = sides.map(|_| drawn);
         paint(&mut picture, k, &truth, |x, y| drawn.is_some_and(|conic| conic.holds(x, y)));
     }
-    Ok(Found { picture: Some(picture), ..found(most) })
+    Ok(Found { error: most, picture, time: None })
 }
 
 /// How far a side of a box is off, at most, as a part of half the true one.
@@ -289,7 +289,7 @@ fn hyperbola(distance: f64, cured: bool, _: &Exec) -> Result<Found> {
             (px - x).abs() <= half_x && (py - y).abs() <= half_y
         }
     });
-    Ok(Found { picture: Some(picture), ..found(error) })
+    Ok(Found { error, picture, time: None })
 }
 
 #[cfg(test)]

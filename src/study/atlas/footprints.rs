@@ -113,7 +113,7 @@ fn one_disc(center: DVec3, degrees: f64, outline: Outline, exec: &Exec) -> Resul
         wrong += u32::from(inside != (*alpha > 0.0));
     }
     let error = 1e3 * f64::from(wrong) / f64::from(disc.max(1));
-    Ok(Found { error, picture: Some(frame.color("")?.clone()), time: Some(time) })
+    Ok(Found { error, picture: frame.color("")?.clone(), time: Some(time) })
 }
 
 fn near(radii: f64, cured: bool, exec: &Exec) -> Result<Found> {
@@ -129,7 +129,7 @@ fn near(radii: f64, cured: bool, exec: &Exec) -> Result<Found> {
     let both = frame.scalar("A")?.values().iter().zip(truth.scalar("A")?.values());
     let wrong = both.filter(|(found, truth)| (**found > 0.0) != (**truth > 0.0)).count();
     let error = 1e3 * wrong as f64 / truth.scalar("A")?.values().len() as f64;
-    Ok(Found { error, picture: Some(frame.color("")?.clone()), time: Some(time) })
+    Ok(Found { error, picture: frame.color("")?.clone(), time: Some(time) })
 }
 
 fn minify(pixels: f64, cured: bool, exec: &Exec) -> Result<Found> {

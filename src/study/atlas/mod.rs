@@ -61,9 +61,9 @@ pub struct Failure {
 pub struct Found {
     /// The error.
     pub error: f64,
-    /// The picture, linear RGB; none where the error is of no picture.
-    pub picture: Option<Plane<[f32; 3]>>,
-    /// How long a picture took.
+    /// The picture, linear RGB: of the scene, or of what goes wrong.
+    pub picture: Plane<[f32; 3]>,
+    /// How long a picture of the scene took; none where the error is of no method's picture.
     pub time: Option<Duration>,
 }
 
@@ -78,7 +78,8 @@ pub struct Curve {
     pub cured: Vec<f64>,
     /// The index of the first value at which it is broken; none if it never is.
     pub breaks: Option<usize>,
-    /// Pictures just before it breaks, where it is broken, and there with the cure.
+    /// Pictures just before it breaks, where it is broken, and there with the cure; if it never is, the last
+    /// as it is and with the cure.
     pub pictures: Vec<Plane<[f32; 3]>>,
 }
 
@@ -114,10 +115,11 @@ impl Failure {
         }
         let [plain, cured] = sweeps;
         let breaks = plain.iter().position(|found| found.error > self.limit);
-        let shown = breaks.map_or([None; 3], |at| {
-            [at.checked_sub(1).map(|before| &plain[before]), Some(&plain[at]), Some(&cured[at])]
-        });
-        let pictures = shown.into_iter().flatten().filter_map(|found| found.picture.clone());
+        let shown = match breaks {
+            Some(at) => [at.checked_sub(1).map(|i| &plain[i]), Some(&plain[at]), Some(&cured[at])],
+            None => [plain.last(), cured.last(), None],
+        };
+        let pictures = shown.into_iter().flatten().map(|found| found.picture.clone());
         Ok(Curve {
             of: self,
             breaks,

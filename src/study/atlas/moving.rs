@@ -71,7 +71,7 @@ fn turn(degrees: f64, cured: bool, exec: &Exec) -> Result<Found> {
     let truth = Session::new(&flat, splats.into(), exec)?.render(&camera)?.frame.clone();
     let errors = Errors::of(&frame, &truth, exec)?;
     let error = (Metric::named("rmse")?.of)(&errors).unwrap_or(0.0);
-    Ok(Found { error, picture: Some(frame.color("")?.clone()), time })
+    Ok(Found { error, picture: frame.color("")?.clone(), time })
 }
 
 /// A sphere that is turned by some degrees about +y after [`REST`], before a sheet.
@@ -127,7 +127,8 @@ fn dense(wanted: f64, cured: bool, exec: &Exec) -> Result<Found> {
         Session::new(&plain, ewa::Settings::default().into(), exec)?,
     ];
     let mut before: Option<[Plane<[f32; 3]>; 2]> = None;
-    let (mut sum, mut time, mut picture) = (0.0, Duration::ZERO, None);
+    let (mut sum, mut time) = (0.0, Duration::ZERO);
+    let mut picture = Plane::filled(SIDE, SIDE, [0.0; 3]);
     let [frames, ahead] = FRAMES;
     for frame in 0..=frames + ahead {
         let camera = towards(frame)?;
@@ -140,7 +141,7 @@ fn dense(wanted: f64, cured: bool, exec: &Exec) -> Result<Found> {
             let [found, full] = [change(&a, &both[0]), change(&b, &both[1])];
             sum += rmse(found.as_flattened(), full.as_flattened());
         }
-        (before, picture) = (Some(both), Some(found));
+        (before, picture) = (Some(both), found);
     }
     Ok(Found { error: sum / f64::from(frames), picture, time: Some(time) })
 }

@@ -55,10 +55,6 @@ pub(super) const FAILURES: [Failure; 3] = [
 /// The tangent of the angle between the view and the thin disc's plane.
 const THIN: f64 = 1.0 / 1024.0;
 
-pub(super) fn found(error: f64) -> Found {
-    Found { error, picture: None, time: None }
-}
-
 fn thin(radius: f64, cured: bool, _: &Exec) -> Result<Found> {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let long = 1.0 / (1.0 + THIN * THIN).sqrt();
@@ -102,7 +98,7 @@ fn thin(radius: f64, cured: bool, _: &Exec) -> Result<Found> {
             })
             .collect(),
     );
-    Ok(Found { picture: Some(picture), ..found(known.fold(0.0, Real::at_least)) })
+    Ok(Found { error: known.fold(0.0, Real::at_least), picture, time: None })
 }
 
 /// The side of the picture of the thin ellipse, stretched to a circle.
@@ -177,7 +173,7 @@ fn beyond_the_square(
             (px - middle.x).abs() <= reach && (py + middle.y).abs() <= reach
         }
     });
-    Found { picture: Some(picture), ..found(error) }
+    Found { error, picture, time: None }
 }
 
 /// Where the middle of a pixel is beside the axis, in pixels.

@@ -74,9 +74,8 @@ fn entry(text: &mut String, curve: &Curve, cost: Option<f64>) {
         let _ = writeln!(text, "{COST} {cost:.1} times as long.");
     }
     let _ = writeln!(text, "\n![{title}: the error over the sweep]({PICTURES}/{id}.svg)");
-    if !curve.pictures.is_empty() {
-        let _ = writeln!(text, "\n![{title}: before, broken, cured]({PICTURES}/{id}.png)");
-    }
+    let shown = if curve.breaks.is_some() { "before, broken, cured" } else { "the last, cured" };
+    let _ = writeln!(text, "\n![{title}: {shown}]({PICTURES}/{id}.png)");
 }
 
 /// A number with three digits that count.

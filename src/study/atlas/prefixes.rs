@@ -4,7 +4,7 @@ use super::case::{Case, SIZE, quiet};
 use super::orders::{geometry, mesh, objects, order, order_along, seen, torus};
 use super::{Failure, Found};
 use crate::error::Result;
-use crate::frame::Exec;
+use crate::frame::{Exec, Plane};
 use crate::method::blue::{self, controller::Controller};
 use crate::method::{Method, ewa};
 use crate::number::elementary::{cos, sin};
@@ -67,7 +67,8 @@ pub(super) const FAILURES: [Failure; 5] = [
         id: "blue-controller",
         title: "The frame-time controller swings",
         why: "Frames that take four times as long from one moment on, their times known some frames late. Each late time is answered \
-              again by a step of the size [BJFM19, 4.3].",
+              again by a step of the size [BJFM19, 4.3]. Pictures: the sizes of the last 100 frames, a column each, light \
+              up to the size; the height of the picture is the largest size there may be.",
         swept: "frames until a time is known",
         values: &[0.0, 1.0, 2.0, 3.0, 4.0, 6.0],
         error: "largest size by smallest, of the last 100 of 1,000 frames",
@@ -147,7 +148,7 @@ fn long(length: f64, cured: bool, exec: &Exec) -> Result<Found> {
     let error = density(false) / density(true);
     let case = Case { scene, camera, method: blue(), grouping: None };
     let (frame, time) = case.draw(exec)?;
-    Ok(Found { error, picture: Some(frame.color("")?.clone()), time: Some(time) })
+    Ok(Found { error, picture: frame.color("")?.clone(), time: Some(time) })
 }
 
 /// Surfels that take `s^-2` of the target's time at the size 1.25, and from frame 0 on four times as long.
@@ -167,7 +168,20 @@ fn swing(late: f64, cured: bool, _: &Exec) -> Result<Found> {
     let ends = last.iter().fold([f32::INFINITY, 0.0], |[least, most], &size| {
         [if size < least { size } else { least }, if size > most { size } else { most }]
     });
-    Ok(Found { error: f64::from(ends[1]) / f64::from(ends[0]), picture: None, time: None })
+    let error = f64::from(ends[1]) / f64::from(ends[0]);
+    Ok(Found { error, picture: columns(last, controller.sizes[1]), time: None })
+}
+
+/// Sizes as columns of light two pixels wide, as high as the picture where a size is `most`.
+fn columns(sizes: &[f32], most: f32) -> Plane<[f32; 3]> {
+    const HIGH: u32 = 96;
+    let row = |y: u32| {
+        sizes.iter().flat_map(move |size| {
+            let lit = (HIGH - y) as f32 <= size / most * HIGH as f32;
+            [[if lit { 1.0 } else { 0.0 }; 3]; 2]
+        })
+    };
+    Plane::from_values(2 * sizes.len() as u32, HIGH, (0..HIGH).flat_map(row).collect())
 }
 
 fn paddles(aspect: f64, cured: bool, exec: &Exec) -> Result<Found> {

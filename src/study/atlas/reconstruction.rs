@@ -108,7 +108,7 @@ fn shift(by: f64, cured: bool, exec: &Exec) -> Result<Found> {
         let all = change(before[k].color("")?, after[k].color("")?);
         Ok((0..all.len()).filter(still).flat_map(|i| all[i]).collect())
     };
-    let picture = Some(after[0].color("")?.clone());
+    let picture = after[0].color("")?.clone();
     Ok(Found { error: rmse(&change(0)?, &change(1)?), picture, time: Some(time) })
 }
 
@@ -147,7 +147,7 @@ fn mirror(surfels: f64, cured: bool, exec: &Exec) -> Result<Found> {
     case.camera.view_from_world = mirror * case.camera.view_from_world * mirror;
     let mirrored = case.draw(exec)?.0;
     let error = turned(&upright, &mirrored)?;
-    Ok(Found { error, picture: Some(upright.color("")?.clone()), time: Some(time) })
+    Ok(Found { error, picture: upright.color("")?.clone(), time: Some(time) })
 }
 
 /// Pixels whose normals, mirrored back, differ by more than a degree, or that one picture alone covers, per mille of
