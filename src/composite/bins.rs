@@ -10,7 +10,8 @@
 //!   ratio         = d_i / r_i, the distance from the splat's centre as a part of its radius
 //! ```
 //!
-//! in this order of operations. `Departs:` at the rim of a splat the ratio is 1 and eq. 10 gives
+//! in this order of operations. Bins may be [moved](DepthBins::moved) towards the eye by a part of a bin; the part is
+//! then added to `((t - d_min) / (d_max - d_min)) n` before that is rounded down. `Departs:` at the rim of a splat the ratio is 1 and eq. 10 gives
 //! the value of the next bin's centre; the ratio therefore ends at 255/256, which added to a bin up
 //! to [`MAX_BINS`] is exact in `f32`.
 //!
@@ -74,6 +75,8 @@ pub struct DepthBins<R> {
     nearest: R,
     extent: R,
     count: R,
+    /// By what part of a bin the bins are moved towards the eye, if they are.
+    shift: Option<R>,
 }
 
 impl<R: Real> DepthBins<R> {
@@ -83,7 +86,14 @@ impl<R: Real> DepthBins<R> {
         let nearest = R::from_f32(range.nearest);
         // At most 65,535, so exact.
         let count = R::from_f32(range.count as f32);
-        Self { nearest, extent: R::from_f32(range.farthest) - nearest, count }
+        Self { nearest, extent: R::from_f32(range.farthest) - nearest, count, shift: None }
+    }
+
+    /// The same bins moved towards the eye by this part of a bin, at least 0 and less than 1. The first and
+    /// the last reach beyond the range as before.
+    #[must_use]
+    pub fn moved(self, shift: f32) -> Self {
+        Self { shift: Some(R::from_f32(shift)), ..self }
     }
 
     /// The bin of a depth, an integer in [0, n]: the low-precision depth \[ZP06, eq. 6\], times n.
@@ -92,10 +102,14 @@ impl<R: Real> DepthBins<R> {
         self.bin_of(self.position(t))
     }
 
-    /// The depth in bins from the nearest, before it is rounded down.
+    /// The depth in bins from where the first begins, before it is rounded down.
     #[inline(always)]
     pub fn position(&self, t: R) -> R {
-        ((t - self.nearest) / self.extent) * self.count
+        let position = ((t - self.nearest) / self.extent) * self.count;
+        match self.shift {
+            Some(shift) => position + shift,
+            None => position,
+        }
     }
 
     /// The bin of a position.

@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use splatref::frame::Exec;
 use splatref::method::ewa::Settings as Splats;
 use splatref::method::single_pass::{BinCount, DepthTest};
-use splatref::method::transparent::{self, Holes};
+use splatref::method::transparent::{self, BinEdges, Holes};
 use splatref::method::{Method, peeling, transparent_hq};
 use splatref::scene::{Camera, Cloud, Groups, Lens, Light};
 use splatref::splat::Epsilon;
@@ -83,7 +83,8 @@ fn methods(splats: Splats, dice: &mut Dice) -> [Method; 3] {
         _ => BinCount::Count(1 + dice.below(65_535) as u32),
     };
     let holes = [Holes::Skipped, Holes::Background][dice.below(2)];
-    let layers = transparent::Settings { splats, bins: bins(dice), holes };
+    let bin_edges = [BinEdges::Staggered, BinEdges::Common][dice.below(2)];
+    let layers = transparent::Settings { splats, bins: bins(dice), bin_edges, holes };
     let nearest = [DepthTest::Plain, DepthTest::Voronoi(bins(dice))][dice.below(2)];
     let hq = transparent_hq::Settings { layers, nearest, refraction: None };
     let most = [1, 2, 5, 64, 256][dice.below(5)];
@@ -130,6 +131,7 @@ fn counts_that_end_have_the_bits_of_the_definition() {
         let layers = transparent::Settings {
             splats,
             bins: BinCount::Count(65_535),
+            bin_edges: BinEdges::Staggered,
             holes: Holes::Background,
         };
         let hq = transparent_hq::Settings { layers, ..Default::default() };

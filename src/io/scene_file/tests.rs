@@ -84,7 +84,7 @@ fn the_example_says_what_it_says() {
     let bins = BinCount::Count(256);
     let refraction = Refraction { ratio: [0.66, 0.67, 0.68], layers: BendingLayers::Multiple };
     let layers =
-        transparent::Settings { splats: settings, bins, holes: transparent::Holes::Skipped };
+        transparent::Settings { splats: settings, bins, ..transparent::Settings::default() };
     let expected = transparent_hq::Settings {
         layers,
         nearest: DepthTest::Voronoi(bins),

@@ -83,8 +83,8 @@ impl<R: Exact> GroupLayers<R> {
 #[derive(Debug)]
 pub(in crate::method) struct Blending<R: Exact> {
     prepared: Prepared<R, GroupSplat<R>>,
-    pub(super) bins: DepthBins<R>,
-    groups: usize,
+    /// Of each group.
+    pub(super) bins: Vec<DepthBins<R>>,
     buffers: Buffers,
 }
 
@@ -92,18 +92,17 @@ pub(in crate::method) struct Blending<R: Exact> {
 pub(super) struct Ground<R: Exact> {
     /// Every surfel in each of its groups, from back to front.
     pub(super) items: Vec<Item>,
-    pub(super) bins: DepthBins<R>,
+    /// The bins of each group.
+    pub(super) bins: Vec<DepthBins<R>>,
     pub(super) shader: Shader<R>,
 }
 
 impl<R: Exact> Ground<R> {
     pub(super) fn new(job: &Job<'_>, settings: &Settings) -> Result<Self> {
         let Job { scene, index, camera, .. } = *job;
-        let epsilon = settings.splats.epsilon.resolve(&scene.surfels);
-        let bins = settings.bins.resolve(&scene.surfels, camera, epsilon)?;
         Ok(Self {
             items: index.back_to_front(camera)?,
-            bins: DepthBins::new(&bins),
+            bins: settings.bins(job, index.groups()?.len())?,
             shader: Shader::new(View::new(camera), &scene.lights, scene.material),
         })
     }
@@ -136,7 +135,7 @@ impl<R: Exact> Blending<R> {
             },
             |drawn: &GroupSplat<R>| drawn.splat.bounds,
         );
-        Ok(Self { prepared, bins, groups: groups.len(), buffers: job.buffers })
+        Ok(Self { prepared, bins, buffers: job.buffers })
     }
 
     /// What became of the surfels, each counted once in each of its groups.
@@ -156,7 +155,7 @@ impl<R: Exact> Blending<R> {
 
     /// How many groups there are.
     pub(super) fn groups(&self) -> usize {
-        self.groups
+        self.bins.len()
     }
 
     /// The geometry pass over some pixels of a tile: the image of each group, row by row.
@@ -170,15 +169,16 @@ impl<R: Exact> Blending<R> {
         stays: impl Fn(usize, R) -> bool,
     ) -> Vec<Vec<GroupLayers<R>>> {
         let shared = self.shared();
-        let mut images = vec![vec![GroupLayers::EMPTY; rect.pixels()]; self.groups];
+        let mut images = vec![vec![GroupLayers::EMPTY; rect.pixels()]; self.groups()];
         self.prepared.for_each(tile, |drawn| {
-            let image = &mut images[usize::from(drawn.group)];
+            let group = usize::from(drawn.group);
+            let (image, bins) = (&mut images[group], &self.bins[group]);
             each_inside(shared, &drawn.splat, &rect, |i, _, nearness| {
                 let depth = shared.depth(nearness);
                 if !stays(i, depth) {
                     return;
                 }
-                let bin = self.bins.bin(depth);
+                let bin = bins.bin(depth);
                 if image[i].is_behind(bin) {
                     image[i].add(drawn, bin, depth);
                     image[i].blend = self.buffers.blend(image[i].blend);

@@ -111,7 +111,7 @@ fn geometry_pass<R: Exact>(
         if let Some(limit) = beyond {
             seen.decide(|| Decision::beyond(shared.depth(w), limit, ["behind ", "masked "]));
         }
-        let bin = blending.bins.bin(seen.t);
+        let bin = blending.bins[usize::from(drawn.group)].bin(seen.t);
         seen.decide(|| {
             let (held, words) = (layers.bin, ["blended", "dropped"]);
             Decision::new("bin", [bin, held], layers.is_behind(bin), ["< ", ">="], words)

@@ -11,7 +11,8 @@
 //! 2. **Shading.** `Decided:` (blended fragments cannot be shaded later) each surfel is shaded
 //!    once, by [`crate::shade::phong`] at its centre with the normal of the side that is seen.
 //! 3. **Geometry pass.** For each fragment that is inside (q <= k^2; the kernel's weight plays no
-//!    part, section 3.3), with its bin of low-precision depth (eq. 6, [`crate::composite::bins`]):
+//!    part, section 3.3), with its bin of low-precision depth (eq. 6, [`crate::composite::bins`]; the bins of
+//!    the group, see below):
 //!    it passes if `bin < bin of the pixel`, at first +inf. Then the pixel takes its bin, and
 //!    blends ([`crate::composite::over`]) its shaded colour by alpha; alpha is added to the pixel's
 //!    sum of opacities (section 5.2.3), and one to its count of layers. `Departs:` an opaque
@@ -23,6 +24,13 @@
 //!    opacities, hidden part, count of layers; each is a sum in the order of the groups, divided
 //!    once by the count of the groups that [`Holes`] takes. The sums begin at 0. The average of no
 //!    group is 0.
+//!
+//! **Bins of a group.** `Decided:` eq. 6 with an n has one set of bins; \[ZP06\] does not say that all images
+//! have to share it. By default the bins of group k of K are [moved](crate::composite::bins) towards the eye by k/K
+//! of a bin, those of group 0 not at all; k/K is a quotient of the whole numbers in `f32`, the same for every number
+//! type. The arcs of a group, where fragments of a layer fall on either side of an edge, then lie elsewhere than those of
+//! the other groups, and the average has each with 1/K of its strength. So which group has which number matters, and with one bin a group
+//! may have two. [`BinEdges::Common`] moves none. (`docs/zp06.md` has what is off by both.)
 //!
 //! # The nearest surfel
 //!
@@ -42,7 +50,7 @@
 //! # What it gets wrong
 //!
 //! - Two fragments of one layer and one group that fall on either side of a bin's edge are blended
-//!   as two layers: darker arcs, the more of them the more bins there are.
+//!   as two layers: darker arcs, the more of them the more bins there are, fainter where edges are staggered.
 //! - Two layers in one bin are one layer: the one that is drawn first, the farther, is seen.
 //! - A group that does not cover a layer leaves holes in it, see [`crate::index::grouping`] for the
 //!   extensions that close them, and [`Holes`].
@@ -63,7 +71,7 @@ pub(super) mod planes;
 mod settings;
 pub mod verify;
 
-pub use settings::{Holes, Settings};
+pub use settings::{BinEdges, Holes, Settings};
 
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};

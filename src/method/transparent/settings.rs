@@ -1,7 +1,10 @@
 //! What is computed.
 
+use crate::composite::bins::DepthBins;
 use crate::error::Result;
+use crate::method::algorithm::Job;
 use crate::method::single_pass::BinCount;
+use crate::number::Real;
 use crate::setting::{Field, Fields, Slot, Visit, Words};
 use crate::splat::SplatSettings;
 
@@ -12,8 +15,20 @@ pub struct Settings {
     pub splats: SplatSettings,
     /// The bins of the low-precision depth.
     pub bins: BinCount,
+    /// Where the bins of each group begin.
+    pub bin_edges: BinEdges,
     /// What a group that has nothing at a pixel gives to the average.
     pub holes: Holes,
+}
+
+/// Where the depth bins of each group begin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BinEdges {
+    /// `Decided:` those of group k of K are moved towards the eye by k/K of a bin.
+    #[default]
+    Staggered,
+    /// At the nearest depth in all groups, as \[ZP06, eq. 6\] has it.
+    Common,
 }
 
 /// What a group that has no fragment at a pixel gives to the average.
@@ -31,6 +46,7 @@ impl Default for Settings {
         Self {
             splats: SplatSettings::BOTH_SIDES,
             bins: BinCount::default(),
+            bin_edges: BinEdges::default(),
             holes: Holes::default(),
         }
     }
@@ -41,9 +57,17 @@ impl Fields for Settings {
         self.splats.fields(each);
         self.bins.field(each);
         let help =
+            "where the bins of each group begin: staggered from group to group, or common to all";
+        each(Field::new("bin_edges", help, Slot::Word(&mut self.bin_edges)));
+        let help =
             "what a group without fragments gives to the average: nothing, or the background";
         each(Field::new("holes", help, Slot::Word(&mut self.holes)));
     }
+}
+
+impl Words for BinEdges {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("staggered", Self::Staggered), ("common", Self::Common)];
 }
 
 impl Words for Holes {
@@ -59,5 +83,22 @@ impl Settings {
     pub fn check(&self) -> Result<()> {
         self.splats.check()?;
         self.bins.check()
+    }
+
+    /// The bins of each of the groups of a picture.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] as [`BinCount::resolve`].
+    pub(super) fn bins<R: Real>(&self, job: &Job<'_>, groups: usize) -> Result<Vec<DepthBins<R>>> {
+        let surfels = &job.scene.surfels;
+        let epsilon = self.splats.epsilon.resolve(surfels);
+        let bins = DepthBins::new(&self.bins.resolve(surfels, job.camera, epsilon)?);
+        Ok((0..groups)
+            .map(|group| match self.bin_edges {
+                // Group 0 is not moved: no sum that would be rounded.
+                BinEdges::Staggered if group > 0 => bins.moved(group as f32 / groups as f32),
+                _ => bins,
+            })
+            .collect())
     }
 }

@@ -5,7 +5,7 @@ use super::{Claim, Measured};
 use crate::error::Result;
 use crate::index::grouping::{Extension, Grouping};
 use crate::method::single_pass::{self, BinCount, DepthTest};
-use crate::method::transparent::Holes;
+use crate::method::transparent::{BinEdges, Holes};
 use crate::method::{Method, ewa, peeling, transparent, transparent_hq};
 use crate::verify::metrics::visible;
 
@@ -219,13 +219,21 @@ fn by_groups(subject: &Subject<'_>, of: fn(f64, f64, f64) -> f64) -> Result<Meas
     Ok(Measured { numbers: [first?, second?], pictures: Vec::new() })
 }
 
+/// The bins of all groups begin where those of the paper do.
+const AS_PUBLISHED: transparent::Settings = transparent::Settings {
+    splats: ewa::Settings::BOTH_SIDES,
+    bins: BinCount::Epsilon,
+    bin_edges: BinEdges::Common,
+    holes: Holes::Skipped,
+};
+
 /// Algorithms 3 and 2 and peeling of so many layers, each of both sides.
 fn transparencies(count: u32) -> [Method; 3] {
     let splats = ewa::Settings::BOTH_SIDES;
-    let layers = transparent::Settings { splats, ..transparent::Settings::default() };
     [
-        transparent_hq::Settings { layers, ..transparent_hq::Settings::default() }.into(),
-        layers.into(),
+        transparent_hq::Settings { layers: AS_PUBLISHED, ..transparent_hq::Settings::default() }
+            .into(),
+        AS_PUBLISHED.into(),
         peeling::Settings { splats, layers: count }.into(),
     ]
 }
@@ -251,8 +259,7 @@ fn layers(subject: &Subject<'_>) -> Result<Measured> {
 
 fn holes(subject: &Subject<'_>) -> Result<Measured> {
     let drawn = [Holes::Background, Holes::Skipped].map(|holes| {
-        let splats = ewa::Settings::BOTH_SIDES;
-        let method = transparent::Settings { splats, holes, ..transparent::Settings::default() };
+        let method = transparent::Settings { holes, ..AS_PUBLISHED };
         (method.into(), groups(1.0, Some(4), ADDED))
     });
     to_peeling(subject, drawn)

@@ -21,7 +21,8 @@ less error. Where the words are *similar*, *slightly* or *hardly*, the limit is 
 The numbers and *holds* are of buffers in `f32`. The columns after it judge the claim once more with buffers that the papers'
 GPUs had: half floats with depths of 24 bits, half floats with depths in half floats as [MOC08, 4] has them, and 8 bits with
 depths of 16. Only the methods draw into them; what they are compared with
-stays the same. A claim that is not about single pictures has a dash.
+stays the same. A claim that is not about single pictures has a dash. Algorithms 2 and 3 of [ZP06] have the bins of its
+equation 6 in all groups, `--bin-edges common`.
 
 This page is made by `splatref study claims bunny.ply igea.ply fandisk.ply -o docs`. Errors are the same on every machine, and a test holds the page
 against them. Rows with *ms* are times of the machine that made the page, on a CPU with two threads; the papers' were

@@ -75,6 +75,7 @@ pub const NOT_TRADED: &[(&str, &str)] = &[
     ("cull", "says which surfaces are shown"),
     ("share", "leaves objects out that a person can see"),
     ("bins", "a picture of one frame shows no difference but arcs"),
+    ("bin_edges", "says how arcs are spread over groups, at no cost"),
     ("refraction", "says what the surface is made of"),
     ("bends", "says what the surface is made of"),
     ("occluded", "differs where a surface lies just behind another"),

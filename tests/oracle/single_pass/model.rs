@@ -70,17 +70,17 @@ impl Algorithm1<'_> {
     fn order(&self, f: &Fragment) -> [f64; 2] {
         let slack = self.oracle.slack(f);
         let Some(range) = &self.range else { return [f.value.t - slack, f.value.t + slack] };
-        let [low, high] = self.bins(range, f);
+        let [low, high] = self.bins(range, 0.0, f);
         let [near, far] = self.ratios(f, self.oracle.guard);
         let rounding = self.oracle.guard * self.oracle.step * (high + 1.0);
         [low + near - rounding, high + far + rounding]
     }
 
     /// The bins that a fragment may fall into, eq. 6.
-    pub(crate) fn bins(&self, range: &Range, f: &Fragment) -> [f64; 2] {
+    pub(crate) fn bins(&self, range: &Range, shift: f64, f: &Fragment) -> [f64; 2] {
         let (nearest, farthest) = (f64::from(range.nearest), f64::from(range.farthest));
         let (extent, n) = (farthest - nearest, f64::from(range.count));
-        let position = (f.value.t - nearest) / extent * n;
+        let position = (f.value.t - nearest) / extent * n + shift;
         let error = self.oracle.slack(f) / extent * n;
         let error = error + self.oracle.guard * self.oracle.step * position.abs();
         [position - error, position + error].map(|p| p.floor().clamp(0.0, n))
@@ -96,7 +96,7 @@ impl Algorithm1<'_> {
 
     /// The Voronoi-enhanced depth of a fragment, if its bin is certain.
     fn voronoi(&self, range: &Range, f: &Fragment) -> Option<Entry> {
-        let [low, high] = self.bins(range, f);
+        let [low, high] = self.bins(range, 0.0, f);
         let [near, far] = self.ratios(f, 1.0);
         let [ratio, _] = self.ratios(f, 0.0);
         let z = low + ratio;

@@ -10,7 +10,7 @@ use splatref::composite::bins::Range;
 use splatref::frame::Plane;
 use splatref::method::ewa::Settings as Splats;
 use splatref::method::single_pass::{BinCount, DepthTest};
-use splatref::method::transparent::Holes;
+use splatref::method::transparent::{BinEdges, Holes};
 use splatref::scene::environment::Map;
 use splatref::scene::{Cloud, Environment, Groups};
 use splatref::shade::optics::{BendingLayers, Refraction};
@@ -95,6 +95,7 @@ pub(crate) fn case(number: usize) -> Case<Settings> {
     let settings = Settings {
         splats,
         bins: lot(&mut dice),
+        bin_edges: [BinEdges::Staggered, BinEdges::Common][number / 2 % 2],
         holes: [Holes::Skipped, Holes::Background][dice.below(2)],
         nearest,
         refraction: bent.then_some(Refraction { ratio, layers }),

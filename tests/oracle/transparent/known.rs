@@ -10,7 +10,7 @@ use splatref::frame::Frame;
 use splatref::method::ewa;
 use splatref::method::peeling;
 use splatref::method::single_pass::{BinCount, DepthTest};
-use splatref::method::transparent::Holes;
+use splatref::method::transparent::{BinEdges, Holes};
 use splatref::number::Exact;
 use splatref::scene::Groups;
 use splatref::scene::{Camera, Cloud, Lens, Light, Phong, Scene};
@@ -201,6 +201,43 @@ fn many_bins_tear_a_layer() {
             assert_eq!(value(&frame, "A", i), [expected; 3], "{bins:?}");
             assert_eq!(value(&frame, "layers", i), [count; 3], "{bins:?}");
         }
+    }
+}
+
+/// The same two discs in each of four groups before a third, by the edges of the bins: those that are staggered
+/// lie between the two in some groups, by chance of the depth in none to four; common ones in all groups or in none.
+#[test]
+fn staggered_edges_tear_a_layer_in_some_groups() {
+    const DEPTHS: [f32; 3] = [5.0, 5.0 + 1.0 / 64.0, 6.0];
+    let layers = DEPTHS.map(|depth| sheet(depth, [1.0; 3], 0.5));
+    let (given, camera) = (sheets(&layers, 4), camera(true));
+    for edges in [BinEdges::Staggered, BinEdges::Common] {
+        let mut seen = [false; 5];
+        for n in 40..1200 {
+            let bins = BinCount::Count(n);
+            let range = bins.resolve(&given.0.surfels, &camera, 1.0).expect("few bins");
+            let [low, high] = [range.nearest, range.farthest].map(f64::from);
+            let shift = |k: usize| if edges == BinEdges::Common { 0.0 } else { k as f64 / 4.0 };
+            let at = |t: f32, k| (f64::from(t) - low) / (high - low) * f64::from(n) + shift(k);
+            let positions = (0..4).flat_map(|k| DEPTHS.map(|t| at(t, k)));
+            if positions.into_iter().any(|p| (p - p.round()).abs() < 1e-9) {
+                continue;
+            }
+            let torn = (0..4).filter(|&k| at(DEPTHS[0], k).floor() < at(DEPTHS[1], k).floor());
+            let torn = torn.count();
+            if std::mem::replace(&mut seen[torn], true) {
+                continue;
+            }
+            let settings = Settings { bins, bin_edges: edges, ..settings(0, None) };
+            let frame = render::<f64>(&given, &camera, &settings);
+            // Three sheets of an opacity of a half where the first two are told apart, else two.
+            let expected = (0.875 * torn as f64 + 0.75 * (4 - torn) as f64) / 4.0;
+            for i in 0..PIXELS {
+                assert_eq!(value(&frame, "A", i), [expected; 3], "{n} {edges:?}, torn in {torn}");
+            }
+        }
+        let all = edges == BinEdges::Staggered;
+        assert_eq!(seen, [true, all, all, all, true], "{edges:?}");
     }
 }
 

@@ -11,7 +11,7 @@ use glam::Vec3;
 use splatref::composite::bins::DepthBins;
 use splatref::frame::{Frame, NO_ID, Plane, Samples};
 use splatref::method::single_pass::{self, BinCount};
-use splatref::method::transparent::Holes;
+use splatref::method::transparent::{BinEdges, Holes};
 use splatref::number::Exact;
 use splatref::scene::Groups;
 use splatref::scene::environment::Map;
@@ -157,10 +157,12 @@ fn an_opacity_of_0_is_not_seen() {
     }
 }
 
+/// But for the edges of their bins, if these are staggered: they go by the number of the group.
 #[test]
 fn the_names_of_the_groups_do_not_matter() {
     fn check<R: Exact>(number: usize, part: f64) {
         let mut subject = cases::case(number);
+        subject.settings.bin_edges = BinEdges::Common;
         let before = render::<R>(&subject, true);
         let (old, count) = (subject.groups().clone(), subject.groups().len());
         let mut dice = Dice(number as u64);
@@ -246,7 +248,7 @@ fn holes_are_skipped_or_dark() {
     }
 }
 
-/// One bin holds every depth but the farthest: each group keeps the first that it draws.
+/// One bin holds every depth but the farthest, if no edges are moved: each group keeps the first that it draws.
 #[test]
 fn in_one_bin_there_is_one_layer() {
     for number in 0..SCENES {
@@ -254,6 +256,7 @@ fn in_one_bin_there_is_one_layer() {
         subject.settings.nearest = None;
         subject.settings.refraction = None;
         subject.settings.bins = BinCount::Count(1);
+        subject.settings.bin_edges = BinEdges::Common;
         // Enlarged surfels leave the bins.
         subject.groups = Some(groups(subject.groups().own().to_vec(), subject.groups().len()));
         let frame = render::<f64>(&subject, true);

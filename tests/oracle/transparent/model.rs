@@ -11,7 +11,7 @@ use crate::kit::eye::{Eye, V3, cross, dot, scaled, wide};
 use crate::single_pass::model::Algorithm1;
 use crate::transparent::Settings;
 use splatref::composite::bins::Range;
-use splatref::method::transparent::Holes;
+use splatref::method::transparent::{BinEdges, Holes};
 use splatref::scene::Groups;
 use splatref::scene::{Camera, Surfels};
 use splatref::splat::Outline;
@@ -246,6 +246,14 @@ impl<'a> Transparent<'a> {
         truth
     }
 
+    /// By what part of a bin the bins of a group lie nearer: a quotient in `f32`, as the page says.
+    fn shift(&self, group: usize) -> f64 {
+        match self.settings.bin_edges {
+            BinEdges::Staggered => f64::from(group as f32 / self.one.count as f32),
+            BinEdges::Common => 0.0,
+        }
+    }
+
     /// One fragment into the image of its group.
     fn draw<'b>(&self, drawn: &'b Drawn, f: Fragment, truth: &mut Truth, all: &mut Vec<Seen<'b>>) {
         let oracle = &self.one.oracle;
@@ -273,7 +281,7 @@ impl<'a> Transparent<'a> {
         if f.value.q > oracle.limit() {
             return;
         }
-        let [bin, other] = self.one.bins(&self.range, &f);
+        let [bin, other] = self.one.bins(&self.range, self.shift(drawn.group), &f);
         truth.ambiguous |= bin != other;
         let image = &mut truth.images[drawn.group];
         if bin < image.bin {

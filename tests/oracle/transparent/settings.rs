@@ -1,7 +1,7 @@
 //! The settings of Algorithms 2 and 3 as one type: a test varies both.
 
 use splatref::method::single_pass::{BinCount, DepthTest};
-use splatref::method::transparent::Holes;
+use splatref::method::transparent::{BinEdges, Holes};
 use splatref::method::{Method, transparent, transparent_hq};
 use splatref::shade::optics::Refraction;
 use splatref::splat::SplatSettings;
@@ -11,6 +11,7 @@ use splatref::splat::SplatSettings;
 pub(crate) struct Settings {
     pub(crate) splats: SplatSettings,
     pub(crate) bins: BinCount,
+    pub(crate) bin_edges: BinEdges,
     pub(crate) holes: Holes,
     pub(crate) nearest: Option<DepthTest>,
     /// Of Algorithm 3.
@@ -24,8 +25,9 @@ impl Default for Settings {
 }
 
 impl From<transparent::Settings> for Settings {
-    fn from(transparent::Settings { splats, bins, holes }: transparent::Settings) -> Self {
-        Self { splats, bins, holes, nearest: None, refraction: None }
+    fn from(settings: transparent::Settings) -> Self {
+        let transparent::Settings { splats, bins, bin_edges, holes } = settings;
+        Self { splats, bins, bin_edges, holes, nearest: None, refraction: None }
     }
 }
 
@@ -38,8 +40,8 @@ impl From<transparent_hq::Settings> for Settings {
 
 impl From<Settings> for Method {
     fn from(settings: Settings) -> Self {
-        let Settings { splats, bins, holes, nearest, refraction } = settings;
-        let layers = transparent::Settings { splats, bins, holes };
+        let Settings { splats, bins, bin_edges, holes, nearest, refraction } = settings;
+        let layers = transparent::Settings { splats, bins, bin_edges, holes };
         match nearest {
             None => layers.into(),
             Some(nearest) => transparent_hq::Settings { layers, nearest, refraction }.into(),

@@ -69,11 +69,10 @@ impl FastBlending {
     ) {
         let shared = &self.prepared.shared;
         let blocks = (average, corner, nearest);
-        let groups = (self.holes, self.groups);
         if shared.ray_cast {
-            blend::<true, BEHIND>(blocks, splats, list, (shared, &self.bins), groups);
+            blend::<true, BEHIND>(blocks, splats, list, (shared, &self.bins), self.holes);
         } else {
-            blend::<false, BEHIND>(blocks, splats, list, (shared, &self.bins), groups);
+            blend::<false, BEHIND>(blocks, splats, list, (shared, &self.bins), self.holes);
         }
     }
 }
@@ -83,12 +82,12 @@ vectorized!(
         (average, corner, nearest): (&mut AverageBlock, (u32, u32), &Nearest),
         splats: &[Record<Layer>],
         list: &[u32],
-        (shared, bins): (&Shared<f32>, &DepthBins<f32>),
-        (holes, groups): (Holes, usize),
+        (shared, bins): (&Shared<f32>, &[DepthBins<f32>]),
+        holes: Holes,
     ) {
-        let (shared, bins) = (*shared, *bins);
+        let shared = *shared;
         let mut layers = LayersBlock::EMPTY;
-        let mut group = None;
+        let (mut group, mut own) = (None, bins[0]);
         for &index in list {
             let splat = &splats[index as usize];
             if group != Some(splat.attributes.group) {
@@ -97,6 +96,7 @@ vectorized!(
                     layers = LayersBlock::EMPTY;
                 }
                 group = Some(splat.attributes.group);
+                own = bins[usize::from(splat.attributes.group)];
             }
             let (q, w) = fragments::<RAY_CAST>(&shared, &splat.footprint, corner);
             let mut left = inside(&q, &w, shared.limit);
@@ -105,13 +105,13 @@ vectorized!(
                 left = each(|i| if left[i] >= before[i] { f32::NAN } else { left[i] });
             }
             if any(&mask(|i| !left[i].is_nan())) {
-                layers.meet::<BEHIND>(splat, &left, &shared, &bins);
+                layers.meet::<BEHIND>(splat, &left, &shared, &own);
             }
         }
         if group.is_some() {
             average.add::<BEHIND>(&layers);
         }
-        average.divide::<BEHIND>(holes, groups);
+        average.divide::<BEHIND>(holes, bins.len());
     }
 );
 

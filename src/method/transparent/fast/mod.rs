@@ -28,9 +28,9 @@ use std::time::Instant;
 /// The splats of all groups, projected, shaded and sorted into tiles.
 pub(in crate::method) struct FastBlending {
     pub(in crate::method) prepared: Prepared<f32, Record<Layer>>,
-    bins: DepthBins<f32>,
+    /// Of each group.
+    bins: Vec<DepthBins<f32>>,
     holes: Holes,
-    groups: usize,
 }
 
 /// The picture.
@@ -80,7 +80,7 @@ impl FastBlending {
         }
         let grid = BlockGrid::new(rect);
         let own: Vec<u8> = splats.iter().map(|splat| splat.attributes.group).collect();
-        let (order, _) = sorted(&own, self.groups);
+        let (order, _) = sorted(&own, self.bins.len());
         let shared = &self.prepared.shared;
         let lists = BlockLists::new(&splats, order.iter().copied(), &grid, shared);
         let mut averages = vec![AverageBlock::EMPTY; grid.len()];

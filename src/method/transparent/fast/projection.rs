@@ -50,7 +50,7 @@ impl FastBlending {
             },
             Record::bounds,
         );
-        Ok(Self { prepared, bins, holes: settings.holes, groups: groups.len() })
+        Ok(Self { prepared, bins, holes: settings.holes })
     }
 }
 

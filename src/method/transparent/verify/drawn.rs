@@ -30,8 +30,8 @@ struct Drawing<P: Profile> {
 /// What may be drawn in a picture.
 pub(super) struct GroupDrawings<P: Profile> {
     prepared: Prepared<Ball<P>, Drawing<P>>,
-    bins: DepthBins<Ball<P>>,
-    groups: usize,
+    /// Of each group.
+    bins: Vec<DepthBins<Ball<P>>>,
 }
 
 /// A fragment that may be inside.
@@ -69,8 +69,7 @@ impl<P: Profile> GroupDrawings<P> {
     pub(super) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
         let (scene, groups) = (job.scene, job.index.groups()?);
         let surfels = &scene.surfels;
-        let epsilon = settings.splats.epsilon.resolve(surfels);
-        let bins = DepthBins::new(&settings.bins.resolve(surfels, job.camera, epsilon)?);
+        let bins = settings.bins(job, groups.len())?;
         let items = job.index.back_to_front(job.camera)?;
         let shader = Shader::new(View::new(job.camera), &scene.lights, scene.material);
         let picture = job.picture();
@@ -94,12 +93,12 @@ impl<P: Profile> GroupDrawings<P> {
             },
             |drawing: &Drawing<P>| drawing.splat.bounds,
         );
-        Ok(Self { prepared, bins, groups: groups.len() })
+        Ok(Self { prepared, bins })
     }
 
     /// How many groups there are.
     pub(super) fn groups(&self) -> usize {
-        self.groups
+        self.bins.len()
     }
 
     /// The fragments of a row of pixels in a tile that may be inside.
@@ -117,16 +116,16 @@ impl<P: Profile> GroupDrawings<P> {
                         certain: *certain,
                         inside,
                         t,
-                        bins: bin_ends(&self.bins, t),
+                        bins: bin_ends(&self.bins[usize::from(*group)], t),
                         color: *color,
                         alpha: *alpha,
                     };
-                    all.push((column * self.groups + usize::from(*group), drawn));
+                    all.push((column * self.groups() + usize::from(*group), drawn));
                 }
             });
         });
         // Those of a place stay in their order.
         all.sort_by_key(|(place, _)| *place);
-        RowDrawings { groups: self.groups, all }
+        RowDrawings { groups: self.groups(), all }
     }
 }

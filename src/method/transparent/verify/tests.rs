@@ -5,7 +5,7 @@ use crate::method::tests::verdicts::{
     Slip, assert_environment_found, assert_found, assert_right, assert_right_in_doubles, camera,
     transparent,
 };
-use crate::method::transparent::{Holes, Settings};
+use crate::method::transparent::{BinEdges, Holes, Settings};
 use crate::scene::{Lens, Scene};
 use crate::source::Shape;
 use crate::splat::{Epsilon, Kernel, Outline, SplatSettings};
@@ -13,7 +13,9 @@ use crate::splat::{Epsilon, Kernel, Outline, SplatSettings};
 fn settings(kernel: Kernel, bins: u32, holes: Holes) -> Settings {
     let splats =
         SplatSettings { kernel, epsilon: Epsilon::World(0.1), ..SplatSettings::BOTH_SIDES };
-    Settings { splats, bins: BinCount::Count(bins), holes }
+    // To the letter of the paper in both, or in none.
+    let bin_edges = if holes == Holes::Background { BinEdges::Common } else { BinEdges::Staggered };
+    Settings { splats, bins: BinCount::Count(bins), bin_edges, holes }
 }
 
 #[test]
