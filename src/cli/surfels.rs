@@ -29,7 +29,7 @@ are what is seen from outside, a pixel each, with normals, and with the colours,
 
 A name without an extension is a folder. It takes the hierarchy of a mesh or of a scene: the
 triangles of each part, and surfels of every part of 1000 triangles or more, half as many and
-200000 at most, or --count. Stopped in the middle, the same command goes on.
+200000 at most, or --count; all of it is opaque. Stopped in the middle, the same command goes on.
 
 Examples:
   splatref surfels city.toml -o city

@@ -3,6 +3,7 @@
 use super::*;
 use crate::frame::Frame;
 use crate::io::scene_file::Ready;
+use crate::number::Real;
 use crate::scene::objects::outline::{Bounds, Needed};
 use crate::scene::{Objects, Primitives, Surfels};
 use glam::DVec3;
@@ -158,7 +159,7 @@ fn bounds_are_those_of_each_node_and_are_not_needed() {
         }
         let middle = (low.as_dvec3() + high.as_dvec3()) / 2.0;
         let reach = all.iter().map(|(p, r)| (p.as_dvec3() - middle).length() + f64::from(*r));
-        assert_eq!(radius, reach.fold(0.0, f64::max));
+        assert_eq!(radius, reach.fold(0.0, Real::at_least));
     }
     let file = scene(&at, VIEWS[2], "blue");
     let expected = read(&file).unwrap().0;
