@@ -19,7 +19,8 @@ use std::time::Instant;
 #[derive(clap::Args)]
 #[command(after_help = "\
 Every prefix of the points that are written is spread over all of them. Of a mesh the points
-are what is seen from outside, a pixel each. The samplers:
+are what is seen from outside, a pixel each, with normals, and with the colours, opacities and
+--properties of the vertices around it. The samplers:
   greedy                  each point is the one farthest from all before it, ties to the lower
                           index; exact
   progressive             each point is the farthest of some by chance, as the paper has it
@@ -28,12 +29,13 @@ are what is seen from outside, a pixel each. The samplers:
 
 A name without an extension is a folder. It takes the hierarchy of a mesh or of a scene: the
 triangles of each part, and surfels of every part of 1000 triangles or more, half as many and
-200000 at most, or --count. Stopped in the middle, the same command goes on.
+200000 at most, or --count; all of it is opaque. Stopped in the middle, the same command goes on.
 
 Examples:
   splatref surfels city.toml -o city
   splatref surfels sheet.ply -o blue.ply --distance geodesic --average-colors 20000
   splatref surfels bunny.ply -o blue.ply --count 100000
+  splatref surfels car.ply -o blue.ply --properties roughness,metallic
   splatref surfels scan.ply -o blue.ply --sampler greedy --start 3 --count 10000")]
 pub(super) struct Args {
     /// A .ply or .obj of points or of a mesh; for a folder a scene .toml, too
@@ -59,7 +61,7 @@ pub(super) struct Args {
     /// Along the surface: how far neighbours are at most, in world units [default: of a mesh, two pixels]
     #[arg(long, value_name = "LENGTH")]
     reach: Option<f32>,
-    /// Colours of the first N points: means over what is nearest to them [default: their own]
+    /// Colours of the first N points: means over what is nearest to them; all else stays their own
     #[arg(long, value_name = "N")]
     average_colors: Option<usize>,
     /// Of a mesh: the side of the picture of each direction, in pixels [default: 1024]
@@ -71,6 +73,9 @@ pub(super) struct Args {
     /// Of a mesh: its texture, a .png or an .exr, in the place of its colours [default: that of the file]
     #[arg(long, value_name = "FILE")]
     texture: Option<PathBuf>,
+    /// Further numbers of the vertices of a PLY that the points keep, by name, as roughness,metallic
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    properties: Vec<String>,
     /// Of a folder: what parts are approximated of [default: bottom-up]
     #[arg(long, value_enum)]
     traversal: Option<Way>,
@@ -129,7 +134,8 @@ pub(super) fn run(args: &Args) -> Ended {
     let exec = Exec::new(args.threads, 32)?;
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let cloud = read_model(&args.points, &exec)?;
+    let mut cloud = read_model(&args.points, &exec)?;
+    cloud.properties = ply::properties(&args.points, &args.properties)?;
     let mesh = !cloud.triangles.is_empty();
     let of_file = |error: Error| match error {
         Error::Invalid(what) => Error::format(&args.points, what),
@@ -176,6 +182,7 @@ impl Args {
             (self.reach.is_some(), "--reach"),
             (self.average_colors.is_some(), "--average-colors"),
             (self.texture.is_some(), "--texture"),
+            (!self.properties.is_empty(), "--properties"),
         ];
         if let Some((_, option)) = refused.iter().find(|(given, _)| *given) {
             let what = format!("{option} is not for a folder; remove it, or give a name in .ply");
@@ -274,6 +281,9 @@ impl Args {
         }
         if !matches!(FileKind::of(&self.output), Ok(FileKind::Ply)) {
             return refused(&self.output, "points go into a PLY; give a name in .ply");
+        }
+        if !self.properties.is_empty() && !matches!(FileKind::of(&self.points), Ok(FileKind::Ply)) {
+            return refused(&self.points, "--properties are of a .ply; remove them");
         }
         output::check_folder(&self.output)?;
         output::check_other(&self.output, &self.points)

@@ -11,7 +11,7 @@ use crate::frame::{Frame, Pool};
 use crate::index::grouping::Grouping;
 use crate::number::Exact;
 use crate::number::ball::Profile;
-use crate::scene::{Camera, Primitives, Scene};
+use crate::scene::{Camera, Objects, Primitives, Scene};
 use crate::setting::{Fields, Visit};
 use crate::splat::SplatSettings;
 use crate::verify::client::Client;
@@ -262,7 +262,9 @@ impl Method {
         });
         let all = || objects.clone().chain([&scene.primitives]);
         let lines = all().any(|one| !one.ribbons.is_empty() || !one.tubes.is_empty());
-        let draws = |method: &Self| match (lines, all().all(Primitives::is_empty)) {
+        let unread = scene.objects.as_ref().is_some_and(Objects::have_primitives);
+        let nothing = all().all(Primitives::is_empty) && !unread;
+        let draws = |method: &Self| match (lines, nothing) {
             (true, _) => method.draws_primitives(),
             (false, nothing) => nothing || method.draws_polygons(),
         };

@@ -3,6 +3,15 @@
 use super::{Coordinates, Groups, Mipmap, Paint};
 use glam::{DVec3, Vec3};
 
+/// A number of each point under a name, as `roughness`: what somebody shades with.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Property {
+    /// What it is called in the file.
+    pub name: String,
+    /// In the order of the points.
+    pub values: Vec<f32>,
+}
+
 /// Points, with whatever else their file gave.
 ///
 /// Every array that is there has the length of `position`. Values are unchecked: NaN, zero normals
@@ -27,6 +36,8 @@ pub struct Cloud {
     pub tangent: Option<Vec<Vec3>>,
     /// Groups of the points.
     pub groups: Option<Groups>,
+    /// Further numbers of the points, of which splatting knows nothing but their names.
+    pub properties: Vec<Property>,
     /// Where points or corners are in a texture.
     pub coordinates: Option<Coordinates>,
     /// The names of the textures that the file gives, in the order of their first use; an empty one is of polygons without.
@@ -58,6 +69,7 @@ impl Cloud {
             }),
             tangent: self.tangent.as_ref().map(|all| at(all, indices)),
             groups: self.groups.as_ref().map(|groups| groups.some(indices)),
+            properties: self.properties.iter().map(|one| one.some(indices)).collect(),
             coordinates: match &self.coordinates {
                 Some(Coordinates::Points(all)) => Some(Coordinates::Points(at(all, indices))),
                 Some(Coordinates::Corners(_)) | None => None,
@@ -88,6 +100,7 @@ impl Cloud {
         marked(&mut self.opacity, keep);
         marked(&mut self.tangents, keep);
         marked(&mut self.tangent, keep);
+        marked(self.properties.iter_mut().map(|one| &mut one.values), keep);
         self.mipmap = self.mipmap.take().map(|mipmap| mipmap.retain(keep));
         self.groups = self.groups.take().map(|groups| groups.retain(keep));
         match &mut self.coordinates {
@@ -100,6 +113,12 @@ impl Cloud {
         }
         corners(&mut self.triangles, &index);
         corners(&mut self.edges, &index);
+    }
+}
+
+impl Property {
+    fn some(&self, indices: &[u32]) -> Self {
+        Self { name: self.name.clone(), values: at(&self.values, indices) }
     }
 }
 

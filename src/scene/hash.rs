@@ -30,7 +30,8 @@ impl Scene {
     ///     each (u32)
     ///   objects: nothing if there are none; else a byte 4, then
     ///     u64 count of geometries, each: surfels and primitives as above, primitives also if there
-    ///       are none
+    ///       are none; of a hierarchy in a folder, of which a view reads what it needs, the count
+    ///       and the hash of the hierarchy (32 bytes)
     ///     the colour of objects without one (3 f32)
     ///     u64 count of objects, each: geometry (u64), colour (3 f32) after a byte 1, or a byte 0
     ///       alone; rotation row by row, scale and translation in the frame (13 f64)
@@ -157,9 +158,13 @@ impl Hasher {
 
     fn objects(&mut self, objects: &Objects) {
         self.count(objects.geometries().len());
-        for geometry in objects.geometries() {
-            self.surfels(&geometry.surfels);
-            self.primitives(&geometry.primitives);
+        match objects.source() {
+            // What is read of them depends on the view.
+            Some(source) => self.0.update(source),
+            None => objects.geometries().iter().for_each(|geometry| {
+                self.surfels(&geometry.surfels);
+                self.primitives(&geometry.primitives);
+            }),
         }
         self.floats(objects.fill().to_array());
         self.count(objects.objects().len());

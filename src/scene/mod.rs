@@ -38,7 +38,7 @@ pub mod transform;
 
 pub use boxes::Boxes;
 pub use camera::{Camera, CameraMotion, Lens, Pose, Projection};
-pub use cloud::Cloud;
+pub use cloud::{Cloud, Property};
 pub use coordinates::Coordinates;
 pub use environment::Environment;
 pub use groups::Groups;

@@ -6,8 +6,8 @@ use crate::scene::indexed::Indexed;
 use crate::scene::{Cloud, Mipmap, Primitives, Vertices};
 use glam::Vec3;
 
-/// Joins complete clouds, with normals and radii, in their order; triangles, edges, texture coordinates and the
-/// tangents of tubes are left out, and so are the groups of several, which know nothing of each
+/// Joins complete clouds, with normals and radii, in their order; triangles, edges, texture coordinates, the
+/// tangents of tubes and further properties are left out, and so are the groups of several, which know nothing of each
 /// other.
 ///
 /// What only some of them have is filled in for the others: colour by `color`, opacity by 1, the
@@ -23,7 +23,8 @@ pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
         // The usual case, without a copy.
         let one = clouds.remove(0);
         let (tangent, coordinates) = (None, None);
-        return Cloud { tangent, coordinates, triangles: vec![], edges: vec![], ..one };
+        let (properties, triangles, edges) = (vec![], vec![], vec![]);
+        return Cloud { tangent, coordinates, properties, triangles, edges, ..one };
     }
     let mut all = Cloud {
         normal: Some(Vec::new()),

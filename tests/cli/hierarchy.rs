@@ -101,9 +101,32 @@ fn a_folder_is_rendered_as_a_scene() {
     assert!(line.contains("--opacity is of models"), "{line}");
     let line = fails(at.path(), &["surfels", "out", "-o", "again"], 2);
     assert!(line.contains("is a hierarchy already"), "{line}");
-    fs::remove_file(at.path().join("out").join("surfels-0")).unwrap();
-    let line = fails(at.path(), &render("out", "d.exr"), 1);
-    assert!(line.contains("surfels-0"), "{line}");
+}
+
+/// A view from afar needs the files of the root alone, and one that is missing is a line.
+#[test]
+fn a_view_reads_what_it_draws() {
+    let (at, mut options) = given();
+    options.push("out");
+    succeeds(at.path(), &options);
+    let options = ["--method", "blue", "--size", "96x64", "-o"];
+    let render = |size, picture| {
+        [&["render", "out", "--surfel-size", size][..], &options, &[picture]].concat()
+    };
+    succeeds(at.path(), &render("16", "all.exr"));
+    let out = at.path().join("out");
+    for name in names(&out) {
+        if !["index", "bounds", "surfels-0"].contains(&name.as_str()) {
+            fs::remove_file(out.join(name)).unwrap();
+        }
+    }
+    succeeds(at.path(), &render("16", "few.exr"));
+    succeeds(at.path(), &["compare", "all.exr", "few.exr"]);
+    let line = fails(at.path(), &render("0.01", "near.exr"), 1);
+    assert!(line.contains("out/mesh-0: ") && line.lines().count() == 1, "{line}");
+    fs::remove_file(out.join("surfels-0")).unwrap();
+    let line = fails(at.path(), &render("16", "none.exr"), 1);
+    assert!(line.contains("out/surfels-0: ") && line.lines().count() == 1, "{line}");
 }
 
 /// Killed again and again, and not always gently, it gets to the end.

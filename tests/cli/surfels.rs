@@ -4,7 +4,7 @@ use super::*;
 use glam::{Vec2, Vec3};
 use splatref::frame::{Frame, Plane, Samples};
 use splatref::io::{exr, ply};
-use splatref::scene::{Cloud, Coordinates, Groups, Mipmap};
+use splatref::scene::{Cloud, Coordinates, Groups, Mipmap, Property};
 use splatref::source::sampler::{Greedy, Start};
 use tempfile::TempDir;
 
@@ -95,6 +95,74 @@ fn a_mesh_becomes_points_on_what_is_seen_of_it() {
             assert!((color - size).abs().max_element() < 0.02, "{color} at {p}");
         }
     }
+}
+
+/// Opacity and what is named go with the points, through the order and the means of colours.
+#[test]
+fn opacities_and_properties_go_with_the_points() {
+    let at = TempDir::new().unwrap();
+    let mut mesh = octahedron();
+    let height = |p: &Vec3| p.y / 2.0 + 0.5;
+    mesh.opacity = Some(mesh.position.iter().map(height).collect());
+    let property = |name: &str, of: fn(&Vec3) -> f32| Property {
+        name: name.into(),
+        values: mesh.position.iter().map(of).collect(),
+    };
+    mesh.properties = vec![
+        property("roughness", |p| 7.0 * p.x),
+        property("time", |p| p.z),
+        property("metallic", |p| p.z),
+    ];
+    ply::write(&at.path().join("mesh.ply"), &mesh).unwrap();
+    let surfels = ["surfels", "mesh.ply", "-o", "out.ply", "--side", "90", "--count", "600"];
+    let named = ["--properties", "metallic,roughness", "--average-colors", "300"];
+    succeeds(at.path(), &[&surfels[..], &named].concat());
+    let path = at.path().join("out.ply");
+    let cloud = ply::read(&path).unwrap();
+    let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
+    let properties = ply::properties(&path, &names(&["roughness", "metallic"])).unwrap();
+    let opacity = cloud.opacity.unwrap();
+    assert_eq!(cloud.position.len(), 600);
+    for (i, p) in cloud.position.iter().enumerate() {
+        // On a face all of them are linear in the place, but for |y|, which opacity has nothing of.
+        assert!((opacity[i] - height(p)).abs() < 1e-5, "{} at {p}", opacity[i]);
+        assert!((properties[0].values[i] - 7.0 * p.x).abs() < 1e-5);
+        assert!((properties[1].values[i] - p.z).abs() < 1e-5);
+    }
+    assert!(ply::properties(&path, &names(&["time"])).is_err(), "which nobody named");
+
+    // Points alone keep what is named, each its own.
+    let again =
+        ["surfels", "out.ply", "-o", "again.ply", "--properties", "metallic", "--count", "50"];
+    succeeds(at.path(), &again);
+    let path = at.path().join("again.ply");
+    let (again, metallic) =
+        (ply::read(&path).unwrap(), ply::properties(&path, &names(&["metallic"])).unwrap());
+    for (i, p) in again.position.iter().enumerate() {
+        let old = cloud.position.iter().position(|q| q == p).unwrap();
+        assert_eq!(
+            (again.opacity.as_ref().unwrap()[i], metallic[0].values[i]),
+            (opacity[old], properties[1].values[old])
+        );
+    }
+
+    // Transparent methods draw them: what is above is seen through less than what is below.
+    let render =
+        ["render", "out.ply", "-o", "out.exr", "--method", "transparent", "--size", "40x40"];
+    succeeds(at.path(), &render);
+    let line = fails(at.path(), &[&surfels[..], &["--properties", "gloss"]].concat(), 1);
+    assert!(line.contains("mesh.ply: element vertex has no property `gloss`"), "{line}");
+    let line = fails(at.path(), &["surfels", "mesh.obj", "-o", "out.ply", "--properties", "a"], 2);
+    assert!(line.contains("--properties are of a .ply"), "{line}");
+    let line = fails(at.path(), &["surfels", "mesh.ply", "-o", "folder", "--properties", "a"], 2);
+    assert!(line.contains("--properties is not for a folder"), "{line}");
+    mesh.opacity = Some(vec![f32::NAN; mesh.position.len()]);
+    ply::write(&at.path().join("mesh.ply"), &mesh).unwrap();
+    let line = fails(at.path(), &surfels, 1);
+    assert!(
+        line.contains("none of its 16 triangles has corners with an opacity in [0, 1]"),
+        "{line}"
+    );
 }
 
 /// Every method draws a prefix as the file of so many points.

@@ -177,8 +177,9 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// Writes the index, once all nodes are made.
+    /// Writes the bounds and the index, once all nodes are made.
     pub(super) fn finish(self) -> Result<Built> {
+        self.hierarchy.write_bounds(self.exec, self.progress)?;
         let bytes = self.hierarchy.index.bytes();
         write_atomically(&self.hierarchy.folder.join("index"), |to| to.write_all(&bytes))?;
         Ok(self.built)

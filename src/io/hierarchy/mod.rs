@@ -1,7 +1,8 @@
 //! Hierarchies of surfel approximations as folders \[BJFM19, 3.4\].
 //!
 //! What is in them is defined by [`crate::source::hierarchy`]. [`build()`] makes a folder, and goes on with one that was
-//! begun; [`Hierarchy`] reads it: the index at once, surfels and triangles a node at a time.
+//! begun; [`Hierarchy`] reads it: the index at once, surfels and triangles a node at a time, of a view
+//! only those of the nodes that it [draws](Hierarchy::needed_by).
 //!
 //! # The tree
 //!
@@ -24,6 +25,7 @@
 //! | `plan` | `"splatref hierarchy 1\n"`, 64 hexadecimal digits, `"\n"` | written first: the hash of what is computed |
 //! | `mesh-N` | the tree and the triangles of geometry N, a decimal number | |
 //! | `surfels-N` | the surfels of node N, if it is approximated | |
+//! | `bounds` | what bounds the surfels and the triangles of each node | written before the index; not needed |
 //! | `index` | all nodes, objects and geometries | written last: the hierarchy is whole |
 //!
 //! **mesh-N**
@@ -97,6 +99,21 @@
 //! objects triangles, vertices and where they begin; of a node of a geometry the first object and the objects; of a node without surfels their
 //! number, `p_m` and `r_m`. Objects are in the order of their nodes, in a node as in the scene, then those that move.
 //!
+//! **bounds**
+//!
+//! ```text
+//!   "splatref ball 1\n"                     16 bytes
+//!   hash of the hierarchy                   32
+//!   u32 nodes, 0                            8
+//!   of each node: f32 low x y z, high x y z 24
+//!                 f64 radius                8
+//! ```
+//!
+//! The box is that of [`Scene::bounds`](crate::scene::Scene::bounds) around the node's surfels, as they are in the file, and its own triangles, not those
+//! below; the radius is that of [`Scene::bounding_sphere`](crate::scene::Scene::bounding_sphere) around both, surfels having the radius
+//! `r_m` sqrt(`p_m` / n) with which all of a node cover. A node that has neither has 0. No number is -0. `Decided:` a file of its own: the index is what it was, and
+//! where the bounds are missing, as in folders of earlier versions, the same numbers are computed from all other files.
+//!
 //! # Which hash is of what
 //!
 //! - `plan`: `"splatref hierarchy 1\n"`; the settings (u32 most, side; u8 sampler: 0 greedy, 1 the paper's, 2 as shipped, 3 random; u8 1 if
@@ -117,7 +134,16 @@
 //! A geometry at a time is in memory as a whole, while its tree is made; the readers of meshes do not read parts of files.
 //! Afterwards what is in memory is what one node is approximated of: bottom-up a number of surfels that is bounded by its
 //! surface at the resolution of its pictures and its own triangles, top-down all its triangles.
+//!
+//! A view has the index in memory, 88 bytes a node, what shows each node in each of its places, and of the files
+//! [what it draws](Hierarchy::needed_by).
+//!
+//! # Opacity
+//!
+//! `Decided:` surfels of a hierarchy are opaque, as those of the paper are, and so are the triangles of its meshes: opacities
+//! of vertices are not read. A model with an opacity of its own is refused.
 
+mod bounds;
 mod build;
 mod bytes;
 mod gather;
@@ -130,6 +156,7 @@ mod scene;
 mod surfels;
 #[cfg(test)]
 mod tests;
+mod view;
 
 pub use crate::source::hierarchy::BOUND;
 pub use build::{Built, build};

@@ -18,12 +18,16 @@
 //! the node while it is about as small as they are drawn, and give way to what is finer when it is larger.
 //!
 //! `Decided:` objects that move stand where they are in frame 0: a folder has no frames.
+//!
+//! [`Hierarchy::load`] reads all of it, [`Hierarchy::outlined`] what a view draws.
 
 use super::index::{NONE, Node};
 use super::read::Hierarchy;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
+use crate::scene::objects::detail::prefix::Estimate;
+use crate::scene::objects::outline::Needed;
 use crate::scene::objects::{Geometry, Object, Objects};
 use crate::scene::{Motion, Primitives, Similarity, Surfels};
 use crate::source::hierarchy::approximate::pixel;
@@ -36,11 +40,11 @@ const OF_A_TRIANGLE: u64 = 48;
 const OF_AN_OBJECT: u64 = 768;
 
 /// Objects in the making: what shows each node of the tree that is gone through.
-struct Showing {
+pub(super) struct Showing {
     /// Of each node the geometry that has its surfels and triangles, if it has some.
     geometry: Vec<Option<usize>>,
-    objects: Vec<Object>,
-    coarser: Vec<Option<u32>>,
+    pub(super) objects: Vec<Object>,
+    pub(super) coarser: Vec<Option<u32>>,
 }
 
 impl Hierarchy {
@@ -51,19 +55,41 @@ impl Hierarchy {
     /// As [`Hierarchy::surfels`] and [`Hierarchy::triangles`]; [`Error::Invalid`] as [`Objects::new`], if there is
     /// nothing to show, or if the process may not hold it.
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Objects> {
-        self.ask()?;
-        let (mut geometries, mut of_node) = (Vec::new(), Vec::with_capacity(self.nodes().len()));
-        let shown = self.shown();
-        for (number, node) in (0..).zip(self.nodes()) {
-            progress("loading", u64::from(number), self.nodes().len() as u64);
-            let has = shown[number as usize] && (node.surfels > 0 || node.triangles > 0);
-            of_node.push(has.then_some(geometries.len()));
-            if has {
-                geometries.push(self.geometry(number, node, exec)?);
-            }
+        let has = self.has();
+        self.ask(has.iter().map(|&number| {
+            let node = &self.nodes()[number as usize];
+            (node, Needed { surfels: node.surfels, primitives: true })
+        }))?;
+        let mut geometries = Vec::with_capacity(has.len());
+        for (done, &number) in (0..).zip(&has) {
+            progress("loading", done, has.len() as u64);
+            geometries.push(self.geometry(number, exec)?);
         }
-        let (objects, coarser) = (Vec::new(), Vec::new());
-        let mut showing = Showing { geometry: of_node, objects, coarser };
+        let Showing { objects, coarser, .. } = self.showing(&has);
+        let all = Objects::new(geometries, objects, self.fill())?.with_source(self.index.hash);
+        all.with_coarser(coarser)
+    }
+
+    /// The nodes that have something and are shown somewhere, in their order.
+    pub(super) fn has(&self) -> Vec<u32> {
+        let shown = self.shown();
+        let has = |number: &u32| {
+            let node = &self.nodes()[*number as usize];
+            shown[*number as usize] && (node.surfels > 0 || node.triangles > 0)
+        };
+        (0..self.nodes().len() as u32).filter(has).collect()
+    }
+
+    /// The nodes that are the geometries of [`Hierarchy::load`], in their order.
+    pub(in crate::io) fn shown_nodes(&self) -> impl Iterator<Item = &Node> {
+        self.has().into_iter().map(|number| &self.nodes()[number as usize])
+    }
+
+    /// What shows the nodes that have something: the objects, and of which each is a finer one.
+    pub(super) fn showing(&self, has: &[u32]) -> Showing {
+        let mut geometry = vec![None; self.nodes().len()];
+        has.iter().enumerate().for_each(|(i, &number)| geometry[number as usize] = Some(i));
+        let mut showing = Showing { geometry, objects: Vec::new(), coarser: Vec::new() };
         let of_scene = Shown { name: String::new(), place: Similarity::IDENTITY, color: None };
         let upper = showing.tree(self, 0..self.upper(), &of_scene, None);
         for object in self.objects() {
@@ -73,7 +99,7 @@ impl Hierarchy {
             let nodes = self.geometries()[object.geometry as usize].nodes.clone();
             showing.tree(self, nodes, &shown, above);
         }
-        Objects::new(geometries, showing.objects, self.fill())?.with_coarser(showing.coarser)
+        showing
     }
 
     /// Whether each node is shown somewhere.
@@ -87,14 +113,14 @@ impl Hierarchy {
         shown
     }
 
-    /// Asks for the memory of all of it.
-    fn ask(&self) -> Result<()> {
-        let bytes = |node: &Node| {
-            u64::from(node.surfels) * OF_A_SURFEL
-                + u64::from(node.vertices) * OF_A_VERTEX
-                + u64::from(node.triangles) * OF_A_TRIANGLE
+    /// Asks for the memory of so much of some nodes, and of what shows all nodes.
+    pub(super) fn ask<'a>(&self, needed: impl Iterator<Item = (&'a Node, Needed)>) -> Result<()> {
+        let bytes = |(node, needed): (&Node, Needed)| {
+            let primitives =
+                u64::from(node.vertices) * OF_A_VERTEX + u64::from(node.triangles) * OF_A_TRIANGLE;
+            u64::from(needed.surfels) * OF_A_SURFEL + if needed.primitives { primitives } else { 0 }
         };
-        let nodes: u64 = self.nodes().iter().map(bytes).sum();
+        let nodes: u64 = needed.map(bytes).sum();
         let of = |geometry: u32| self.geometries()[geometry as usize].nodes.len() as u64;
         let objects = self.objects().iter().map(|object| of(object.geometry));
         let objects = objects.sum::<u64>() + u64::from(self.upper());
@@ -104,29 +130,62 @@ impl Hierarchy {
     }
 
     /// The surfels and the own triangles of a node.
-    fn geometry(&self, number: u32, node: &Node, exec: &Exec) -> Result<Geometry> {
-        let primitives = Primitives { triangles: self.triangles(number)?, ..Primitives::default() };
-        let name = format!("node-{number}");
-        if node.surfels == 0 {
-            return Ok(Geometry { name, surfels: Surfels::none(), primitives, detail: None });
+    fn geometry(&self, number: u32, exec: &Exec) -> Result<Geometry> {
+        let node = &self.nodes()[number as usize];
+        let all = Needed { surfels: node.surfels, primitives: true };
+        let (surfels, primitives) = self.read(number, all, exec)?;
+        let geometry = Geometry { name: name(number), surfels, primitives, detail: None };
+        if node.surfels == 0 { Ok(geometry) } else { geometry.with_prefix(estimate(node)) }
+    }
+
+    /// So much of a node.
+    pub(super) fn read(
+        &self,
+        number: u32,
+        needed: Needed,
+        exec: &Exec,
+    ) -> Result<(Surfels, Primitives)> {
+        let node = &self.nodes()[number as usize];
+        let mut primitives = Primitives::default();
+        if needed.primitives {
+            primitives.triangles = self.triangles(number)?;
         }
-        let mut cloud = self.surfels(number, u32::MAX)?;
-        let mut estimate = node.estimate;
-        if estimate.distance == 0.0 {
-            // A picture of two pixels' side: half the diagonal.
-            estimate.distance = pixel(2, (node.low, node.high)) as f32;
+        if needed.surfels == 0 {
+            return Ok((Surfels::none(), primitives));
         }
-        let share = f64::from(estimate.count) / f64::from(node.surfels);
-        let radius = (f64::from(estimate.distance) * share.sqrt()) as f32;
-        cloud.radius = Some(vec![radius; cloud.position.len()]);
+        let mut cloud = self.surfels(number, needed.surfels)?;
+        let count = cloud.position.len();
+        cloud.radius = Some(vec![radius(node); count]);
         let (surfels, _) = Surfels::new_or_none(cloud, exec)?;
-        if surfels.len() != node.surfels as usize {
-            let lost = node.surfels as usize - surfels.len();
-            let what = format!("{name}: {lost} of {} surfels can be none", node.surfels);
+        if surfels.len() != count {
+            let lost = count - surfels.len();
+            let what = format!("{}: {lost} of {count} surfels can be none", name(number));
             return Err(Error::format(&self.folder, what));
         }
-        Geometry { name, surfels, primitives, detail: None }.with_prefix(estimate)
+        Ok((surfels, primitives))
     }
+}
+
+/// What a node is called.
+pub(super) fn name(number: u32) -> String {
+    format!("node-{number}")
+}
+
+/// How densely the surfels of a node cover, see the [module](self).
+pub(super) fn estimate(node: &Node) -> Estimate {
+    let mut estimate = node.estimate;
+    if estimate.distance == 0.0 {
+        // A picture of two pixels' side: half the diagonal.
+        estimate.distance = pixel(2, (node.low, node.high)) as f32;
+    }
+    estimate
+}
+
+/// The radius of the surfels of a node, see the [module](self).
+pub(super) fn radius(node: &Node) -> f32 {
+    let Estimate { count, distance } = estimate(node);
+    let share = f64::from(count) / f64::from(node.surfels);
+    (f64::from(distance) * share.sqrt()) as f32
 }
 
 /// Where a tree is shown.
@@ -159,7 +218,7 @@ impl Showing {
             nearest.push(Some(self.objects.len() as u32));
             self.coarser.push(over);
             self.objects.push(Object {
-                name: format!("{}node-{number}", shown.name),
+                name: format!("{}{}", shown.name, name(number)),
                 geometry,
                 motion: Motion::still(shown.place),
                 color: shown.color,

@@ -2,6 +2,7 @@ mod damaged;
 mod laws;
 mod loaded;
 mod resumed;
+mod view;
 
 use super::build::Work;
 use super::*;

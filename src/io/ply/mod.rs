@@ -1,7 +1,8 @@
 //! PLY: point clouds and meshes, in and out.
 //!
 //! Read are ascii and binary files of both byte orders, with LF or CR LF in the header. What a
-//! [`Cloud`] has no room for (other elements, other properties, comments) is skipped. A line `comment TextureFile
+//! [`Cloud`] has no room for (other elements, other properties, comments) is skipped; [`properties`] reads further
+//! properties of vertices by their names. A line `comment TextureFile
 //! NAME` of the header, which many programs write, names a texture, see [`crate::io::texture`].
 //!
 //! | element | properties | types | |
@@ -48,6 +49,7 @@ mod faces;
 mod groups;
 mod header;
 mod numbers;
+mod properties;
 mod rows;
 mod slabs;
 #[cfg(test)]
@@ -57,6 +59,7 @@ mod vertices;
 mod write;
 
 pub(in crate::io) use numbers::numbers;
+pub use properties::properties;
 pub use write::write;
 
 use crate::error::{Error, Result};

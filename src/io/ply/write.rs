@@ -10,14 +10,16 @@ use std::path::Path;
 /// Writes a cloud as binary little-endian PLY, whole or not at all.
 ///
 /// Vertices are floats: `x y z`, then what there is of `nx ny nz`, `radius`, `red green blue`
-/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`, `tx ty tz`, `u v`, `mip1_red mip1_green mip1_blue` and so
+/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`, `tx ty tz`, `u v`, the further
+/// [properties](Cloud::properties) under their names, `mip1_red mip1_green mip1_blue` and so
 /// for each level (linear); then, if there are groups,
 /// `uchar group` and, if surfels were added to some, `list uchar uchar also`. Triangles follow as
 /// `face` with `list uchar uint vertex_indices` and, if there are texture coordinates of corners, `list uchar float
 /// texcoord`, edges as `edge` with `uint vertex1 vertex2`, and
 /// last, if they do not tell by themselves how many groups there are or if radii are scaled, the
 /// element `group` with `float scale`. The names of textures are written as `comment TextureFile`, but for those that are empty or
-/// have a line break. [`super::read`] gives the same cloud back, bit for bit; the texture itself is not written.
+/// have a line break. [`super::read`] gives the same cloud back, bit for bit, but for the further properties, which
+/// [`super::properties`] gives; the texture itself is not written.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the arrays of the cloud differ in length; [`crate::Error::Io`] as
@@ -49,6 +51,7 @@ pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
         if let Some(Coordinates::Points(all)) = &cloud.coordinates {
             put(&all[i].to_array())?;
         }
+        cloud.properties.iter().try_for_each(|one| put(&[one.values[i]]))?;
         let levels = cloud.mipmap.iter().flat_map(|mipmap| mipmap.of(i));
         levels.into_iter().try_for_each(|color| put(&color.to_array()))?;
         if let Some(groups) = groups {
@@ -87,13 +90,15 @@ fn header(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
         (cloud.tangent.is_some(), "tx ty tz"),
         (matches!(cloud.coordinates, Some(Coordinates::Points(_))), "u v"),
     ];
+    let properties = cloud.properties.iter().map(|one| one.name.as_str());
     writeln!(out, "ply\nformat binary_little_endian 1.0")?;
     let is_line = |name: &&String| !(name.is_empty() || name.contains(['\n', '\r']));
     for name in cloud.textures.iter().filter(is_line) {
         writeln!(out, "comment TextureFile {name}")?;
     }
     writeln!(out, "element vertex {}", cloud.position.len())?;
-    for name in names.iter().filter(|n| n.0).flat_map(|n| n.1.split(' ')) {
+    let names = names.iter().filter(|n| n.0).flat_map(|n| n.1.split(' '));
+    for name in names.chain(properties) {
         writeln!(out, "property float {name}")?;
     }
     for level in 1..=cloud.mipmap.as_ref().map_or(0, Mipmap::levels) {

@@ -24,6 +24,8 @@ pub struct Loaded {
     pub dropped: Dropped,
     /// Triangles and edges of all models that became no primitive, where they should have.
     pub dropped_primitives: u64,
+    /// What views read of the geometries of objects, if they read what they need.
+    pub(super) unread: Option<Hierarchy>,
 }
 
 /// What became of a model.
@@ -56,6 +58,16 @@ impl SceneFile {
     /// if one that is not drawn as points was given an opacity, or mipmaps, or one in one colour or drawn as lines a texture; as [`mipmap::build`], and if
     /// mipmaps are asked for of a model in one colour.
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
+        self.load_for(false, exec, progress)
+    }
+
+    /// [`SceneFile::load`]; of a hierarchy nothing but outlines if it is for a `view`, which reads what it needs.
+    pub(super) fn load_for(
+        &self,
+        view: bool,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Loaded> {
         self.all_models().try_for_each(check_draw)?;
         let hierarchy = self.hierarchy.as_deref().map(Hierarchy::open).transpose()?;
         // What is wrong with objects is said before large files are read.
@@ -73,9 +85,9 @@ impl SceneFile {
             ..Scene::unlit(&self.name, Surfels::none())
         };
         let (models, dropped) = (Vec::new(), Dropped::default());
-        let mut loaded = Loaded { scene, models, dropped, dropped_primitives: 0 };
+        let mut loaded = Loaded { scene, models, dropped, dropped_primitives: 0, unread: None };
         match (hierarchy, objects) {
-            (Some(hierarchy), _) => hierarchy_as_objects(&hierarchy, &mut loaded, exec, progress)?,
+            (Some(hierarchy), _) => of_hierarchy(hierarchy, view, &mut loaded, exec, progress)?,
             (None, None) => self.load_models(&mut loaded, exec, progress)?,
             (None, Some(objects)) => self.load_objects(objects, &mut loaded, exec, progress)?,
         }
@@ -158,21 +170,30 @@ impl SceneFile {
     }
 }
 
-/// The nodes of a hierarchy as objects.
-fn hierarchy_as_objects(
-    hierarchy: &Hierarchy,
+/// The nodes of a hierarchy as objects; for a view not read yet.
+fn of_hierarchy(
+    hierarchy: Hierarchy,
+    view: bool,
     loaded: &mut Loaded,
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<()> {
-    let objects = hierarchy.load(exec, progress)?;
-    loaded.models.extend(objects.geometries().iter().map(|geometry| ModelReport {
-        name: geometry.name.clone(),
-        surfels: geometry.surfels.len(),
-        primitives: geometry.primitives.counts(),
-        derived: None,
+    let objects = match view {
+        true => hierarchy.outlined(exec, progress)?,
+        false => hierarchy.load(exec, progress)?,
+    };
+    let counts = hierarchy.shown_nodes();
+    loaded.models.extend(objects.geometries().iter().zip(counts).map(|(geometry, node)| {
+        let triangles = node.triangles as usize;
+        ModelReport {
+            name: geometry.name.clone(),
+            surfels: node.surfels as usize,
+            primitives: Counts { triangles, ..Counts::default() },
+            derived: None,
+        }
     }));
     loaded.scene.objects = Some(objects);
+    loaded.unread = view.then_some(hierarchy);
     Ok(())
 }
 

@@ -32,7 +32,7 @@ pub struct Ready {
 
 impl SceneFile {
     /// Loads the scene in the frame that is pictured and resolves camera and method. What is wrong
-    /// with the settings is said before much is read.
+    /// with the settings is said before much is read. Of a hierarchy that is read which the camera draws, in each frame anew.
     ///
     /// `progress` is told the name of a step, how much of it is done, and of how much.
     ///
@@ -42,7 +42,7 @@ impl SceneFile {
     /// out of range or not of the method, or if the method cannot draw the scene.
     pub fn ready(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Ready> {
         self.check_drawing()?;
-        self.ready_of(self.load(exec, progress)?, exec)
+        self.placed(self.load_for(true, exec, progress)?, exec, progress)
     }
 
     /// What can be wrong with a frame before anything is loaded.
@@ -59,13 +59,22 @@ impl SceneFile {
     /// # Errors
     /// As [`SceneFile::ready`], but for those of files.
     pub fn ready_of(&self, loaded: Loaded, exec: &Exec) -> Result<Ready> {
+        self.placed(loaded, exec, &|_, _, _| ())
+    }
+
+    fn placed(
+        &self,
+        loaded: Loaded,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Ready> {
         let (method, grouping) = self.check_drawing()?;
         let loaded = self.refined(loaded)?;
         let camera = self.camera(&loaded.scene)?;
         let (frame, motion) = (self.frame, self.camera.motion.clone());
         let motion = motion.map(|motion| (motion, self.lens()));
         let mut ready = Ready { loaded, camera, method, grouping, frame, motion };
-        ready.place(exec)?;
+        ready.place(exec, progress)?;
         Ok(ready)
     }
 }
@@ -79,7 +88,7 @@ impl Ready {
         self.camera = self.camera_at(frame)?;
         self.frame = frame;
         if !self.is_still() {
-            self.place(exec)?;
+            self.place(exec, &|_, _, _| ())?;
         }
         Ok(self)
     }
@@ -152,12 +161,17 @@ impl Ready {
 
     /// Puts the objects in their places of the frame, as the camera sees them. What a method is given of them is decided here:
     /// the objects, or all their surfels.
-    fn place(&mut self, exec: &Exec) -> Result<()> {
-        let scene = &mut self.loaded.scene;
-        if let Some(objects) = &scene.objects {
-            scene.objects = Some(objects.at(self.frame)?.seen_from(&self.camera, exec)?);
+    fn place(&mut self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<()> {
+        let Loaded { scene, unread, .. } = &mut self.loaded;
+        if let Some(objects) = scene.objects.take() {
             // Those of the last frame make room.
             (scene.surfels, scene.primitives) = (Surfels::none(), Primitives::default());
+            let view = objects.at(self.frame)?.seen_from(&self.camera, exec)?;
+            drop(objects);
+            scene.objects = Some(match unread {
+                Some(hierarchy) => hierarchy.needed_by(view, exec, progress)?,
+                None => view,
+            });
             if !self.method.draws_objects() {
                 *scene = flatten(scene, exec)?;
             }

@@ -4,6 +4,7 @@
 //! - [`ids`]: an object and a surfel in one number.
 //! - [`motion`]: where an object is in a frame.
 //! - [`detail`]: which surfels of an object a view draws, of a geometry with levels of detail.
+//! - [`outline`]: objects whose geometries are read when a view needs them.
 //! - `place`: surfels of objects in their places.
 //!
 //! A surfel of an object is that of its geometry, placed by [`Similarity::apply`] with the object's
@@ -25,6 +26,7 @@
 pub mod detail;
 pub mod ids;
 pub mod motion;
+pub mod outline;
 mod place;
 
 use super::{Boxes, Primitives, Similarity, Surfels};
@@ -82,6 +84,8 @@ pub struct Objects {
     shown: Arc<[Shown]>,
     median_radius: f32,
     bounding_sphere: (DVec3, f64),
+    /// The hash of what geometries are read from, if they are known by that.
+    source: Option<[u8; 32]>,
 }
 
 impl Objects {
@@ -91,15 +95,24 @@ impl Objects {
     /// [`Error::Invalid`] if there is no object, if one has a geometry that does not exist, if its
     /// surfels leave the range of f32, or as [`Ids::new`].
     pub fn new(geometries: Vec<Geometry>, objects: Vec<Object>, fill: Vec3) -> Result<Self> {
+        let extents = geometries.iter().map(Extent::new).collect();
+        Self::assembled(geometries, extents, objects, fill)
+    }
+
+    fn assembled(
+        geometries: Vec<Geometry>,
+        extents: Vec<Extent>,
+        objects: Vec<Object>,
+        fill: Vec3,
+    ) -> Result<Self> {
         if objects.is_empty() {
             return Err(Error::Invalid("the scene has no objects".into()));
         }
         if let Some(object) = objects.iter().find(|object| object.geometry >= geometries.len()) {
             return Err(Error::Invalid(format!("{} has no geometry", object.name)));
         }
-        let extents = geometries.iter().map(Extent::new).collect();
         let mut still = Self {
-            extents,
+            extents: extents.into(),
             geometries: geometries.into(),
             objects: objects.into(),
             ids: Arc::new(Ids::none()),
@@ -111,6 +124,7 @@ impl Objects {
             shown: Arc::new([]),
             median_radius: 0.0,
             bounding_sphere: (DVec3::ZERO, 0.0),
+            source: None,
         };
         still.ids = Arc::new(still.ids_of_all()?);
         still.at(0)
@@ -118,7 +132,7 @@ impl Objects {
 
     /// Ids for all surfels of all objects.
     fn ids_of_all(&self) -> Result<Ids> {
-        let count = |object: &Object| self.geometries[object.geometry].surfels.len() as u32;
+        let count = |object: &Object| self.extents[object.geometry].count;
         let counts = self.objects.iter().map(count).collect();
         Ids::new(counts, |object| self.objects[object].name.clone())
     }
@@ -130,8 +144,11 @@ impl Objects {
     /// [`Error::Invalid`] if surfels of an object leave the range of f32 there, and as [`Ids::new`].
     pub fn at(&self, frame: u32) -> Result<Self> {
         let places: Vec<_> = self.objects.iter().map(|object| object.motion.at(frame)).collect();
-        let shown = self.objects.iter().map(|object| &self.geometries[object.geometry]);
-        let shown = shown.map(Shown::at_rest).collect();
+        let at_rest = |object: &Object| {
+            let all = self.extents[object.geometry].count;
+            Shown::at_rest(&self.geometries[object.geometry], all)
+        };
+        let shown = self.objects.iter().map(at_rest).collect();
         let mut moved = Self { frame, places, shown, ..self.clone() };
         if self.have_detail() {
             moved.ids = Arc::new(self.ids_of_all()?);
@@ -210,6 +227,11 @@ impl Objects {
         &self.geometries[self.objects[object as usize].geometry]
     }
 
+    /// How many surfels the geometry of an object has, read or not.
+    pub(super) fn count_of_all(&self, object: u32) -> u32 {
+        self.extents[self.objects[object as usize].geometry].count
+    }
+
     /// The boxes of the surfels of an object, in the coordinates of its geometry.
     #[must_use]
     pub fn boxes(&self, object: u32) -> &Boxes {
@@ -229,8 +251,7 @@ impl Objects {
     /// Whether there are primitives in an object.
     #[must_use]
     pub fn have_primitives(&self) -> bool {
-        let has = |object: &Object| !self.geometries[object.geometry].primitives.is_empty();
-        self.objects.iter().any(has)
+        self.objects.iter().any(|object| self.extents[object.geometry].primitives)
     }
 
     /// A sphere around everything: the middle of the box around the objects' spheres, and the
@@ -255,7 +276,7 @@ impl Objects {
 
     fn median_of_medians(&self) -> f32 {
         let of = |(object, place): (&Object, &Similarity)| {
-            let (count, median) = self.geometries[object.geometry].at_rest();
+            let (count, median) = self.extents[object.geometry].at_rest;
             // The median of radii that are scaled is the median, scaled: rounding keeps their order.
             ((f64::from(median) * place.scale) as f32, u64::from(count))
         };

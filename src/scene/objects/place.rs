@@ -25,7 +25,16 @@ pub(super) struct Extent {
     /// Around surfels and primitives: middle and radius.
     pub(super) sphere: (DVec3, f64),
     /// The least of all radii and half axes.
-    least: f64,
+    pub(super) least: f64,
+    /// How many surfels there are, read or not.
+    pub(super) count: u32,
+    /// How many are drawn where no camera is known, and their median radius.
+    pub(super) at_rest: (u32, f32),
+    /// What surfels have.
+    pub(super) has: Has,
+    /// Whether there are primitives, and some with colours.
+    pub(super) primitives: bool,
+    pub(super) colored: bool,
 }
 
 impl Extent {
@@ -41,7 +50,20 @@ impl Extent {
             Some(detail) => detail.sphere(),
             None => bounds::sphere(surfels, &geometry.primitives),
         };
-        Self { boxes: Boxes::new(surfels), sphere, least }
+        Self {
+            boxes: Boxes::new(surfels),
+            sphere,
+            least,
+            count: surfels.len() as u32,
+            at_rest: geometry.at_rest(),
+            has: [
+                surfels.color().is_some(),
+                surfels.opacity().is_some(),
+                surfels.tangents().is_some(),
+            ],
+            primitives: !geometry.primitives.is_empty(),
+            colored: geometry.primitives.colored(),
+        }
     }
 
     /// Whether surfels stay surfels in a place.
@@ -145,7 +167,7 @@ impl Objects {
 
     /// Whether an object has primitives with colours.
     fn have_colored_primitives(&self) -> bool {
-        self.objects.iter().any(|object| self.geometries[object.geometry].primitives.colored())
+        self.objects.iter().any(|object| self.extents[object.geometry].colored)
     }
 
     /// Whether some surfels or primitives have colours, which all surfels have then.
@@ -155,15 +177,9 @@ impl Objects {
 
     /// Whether some surfels have colours, opacities and half axes.
     fn has(&self) -> Has {
-        let of = |has: fn(&Surfels) -> bool| {
-            self.objects.iter().any(|object| has(&self.geometries[object.geometry].surfels))
-        };
+        let of = |i: usize| self.objects.iter().any(|object| self.extents[object.geometry].has[i]);
         let colored = self.objects.iter().any(|object| object.color.is_some());
-        [
-            colored || of(|surfels| surfels.color().is_some()) || self.have_colored_primitives(),
-            of(|surfels| surfels.opacity().is_some()),
-            of(|surfels| surfels.tangents().is_some()),
-        ]
+        [colored || of(0) || self.have_colored_primitives(), of(1), of(2)]
     }
 
     /// The levels of prefiltered colours of the geometry that has the most; 0 if none has any.

@@ -1,8 +1,8 @@
 //! Candidates: what of a mesh is seen from outside, as points \[BJFM19, 3.1\].
 //!
 //! The triangles are drawn into one picture for each of some directions, "orthographic \[...\] directed to the
-//! center of the node", and every covered pixel becomes a candidate: position, normal and colour of what is
-//! nearest there. The samplers choose among the candidates. What no direction sees has none.
+//! center of the node", and every covered pixel becomes a candidate: position, normal, colour, opacity and further
+//! properties of what is nearest there. The samplers choose among the candidates. What no direction sees has none.
 //!
 //! **Camera** of a direction d, all in f64, in the terms of [`crate::scene::camera`]. With low and high the
 //! corners of the box around the triangles' vertices ([`Scene::bounds`]) and n the side of the picture in pixels:
@@ -37,11 +37,25 @@
 //! within the outline of a disc in the triangle's plane, whose radius is the side of a pixel: with the terms of
 //! [`crate::source::derive`], the matrix (S (1 / A)) times the square of that side.
 //!
+//! **Opacity and further properties** of a mesh ([`of_cloud`]), which are numbers of its points ("further properties can be captured
+//! in additional buffers, like PBR material parameters" \[BJFM19, 3.1\]), are interpolated as every attribute, in
+//! `f32`, from those at the corners a:
+//!
+//! ```text
+//!   property = ((c_0 a_0 + c_1 a_1) + c_2 a_2) + 0          opacity = 1 if the same of it is > 1
+//! ```
+//!
+//! A triangle with a corner whose opacity is not in [0, 1], or of which a property is not finite, is dropped and counted,
+//! and is no part of the mesh: derived normals know nothing of it.
+//!
 //! **Order**: by direction, row, column. A candidate whose normal is null, where opposite normals of corners
-//! cancel, or whose colour is not finite is dropped and counted.
+//! cancel, or whose colour or a property of which is not finite is dropped and counted.
 //!
 //! # Decided
 //!
+//! - Opacity is a property like others: a picture shows what is nearest, however transparent it is. The paper's
+//!   scenes are opaque ("if they \[...\] only produce opaque surfaces"), and what lies behind a transparent surface is a surface
+//!   of its own, which other directions may see. Triangles of a [`Scene`] have none: polygons are drawn opaque.
 //! - The position is that on the triangle, as the position buffer of \[BJFM19\] has it, and not the point of the
 //!   pixel's centre at the sample's depth: corners are snapped, so that this lies beside a steep triangle.
 //! - [`Directions::Cube`] unless somebody asks for [`Directions::Box`], which is the paper's. From the corners
@@ -54,6 +68,7 @@
 //! - Lines have no area and give no candidates; a scene that has nothing else is refused.
 
 mod painted;
+mod properties;
 
 pub use painted::of_cloud;
 
@@ -67,6 +82,7 @@ use crate::scene::{Camera, Cloud, Lens, Primitives, Scene, Surfels};
 use crate::source::merge::join;
 use glam::{DMat4, DVec3, DVec4, Vec3};
 use painted::Painting;
+use properties::Properties;
 use std::borrow::Cow;
 
 /// The side of a picture in pixels, unless somebody asks for another one: the paper's.
@@ -86,7 +102,7 @@ pub enum Directions {
 /// The candidates of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidates {
-    /// Positions and normals, colours if the mesh has some.
+    /// Positions and normals; colours, opacities and further properties if the mesh has some.
     pub cloud: Cloud,
     /// How many each direction gave.
     pub counts: Vec<u32>,
@@ -112,13 +128,20 @@ pub fn candidates(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Candidates> {
     let scene = mesh(scene)?;
-    gather(&Mesh { scene: &scene, painting: None }, directions, side, exec, progress)
+    gather(
+        &Mesh { scene: &scene, painting: None, properties: &Properties::default() },
+        directions,
+        side,
+        exec,
+        progress,
+    )
 }
 
-/// Triangles alone, and their texture.
+/// Triangles alone, their texture, and what else their vertices have.
 struct Mesh<'a> {
     scene: &'a Scene,
     painting: Option<&'a Painting>,
+    properties: &'a Properties,
 }
 
 fn gather(
@@ -139,7 +162,7 @@ fn gather(
         cloud: Cloud {
             normal: Some(Vec::new()),
             color: colored.then(Vec::new),
-            ..Cloud::default()
+            ..mesh.properties.of_none()
         },
         counts: Vec::new(),
         pixel: 2.0 * radius / f64::from(side),
@@ -209,7 +232,7 @@ impl Directions {
 
 /// Bytes of a pixel of the pictures of one direction, and of a candidate while its array grows.
 const OF_A_PIXEL: u64 = (SHARES + 1) as u64 * size_of::<Foremost<f32>>() as u64;
-const OF_A_CANDIDATE: u64 = 2 * 36 + 44;
+const OF_A_CANDIDATE: u64 = 2 * 36 + 60;
 /// Bytes of a vertex that is placed.
 const OF_A_VERTEX: u64 = 20;
 
@@ -219,15 +242,21 @@ impl Candidates {
         let pixels = u64::from(camera.width) * u64::from(camera.height);
         let vertices = mesh.scene.primitives.triangles.vertices().position.len() as u64;
         // Every pixel may be covered.
-        memory::ask(pixels * (OF_A_PIXEL + OF_A_CANDIDATE) + vertices * OF_A_VERTEX, || {
+        let of_a_pixel = OF_A_PIXEL + OF_A_CANDIDATE + 8 * mesh.properties.count();
+        memory::ask(pixels * of_a_pixel + vertices * OF_A_VERTEX, || {
             format!("a picture of {pixels} pixels for candidates")
         })?;
         let before = self.cloud.position.len();
-        for (normal, position, color) in seen(mesh, self.pixel, camera, exec) {
-            if normal == Vec3::ZERO || !color.is_finite() {
+        let mut numbers = Vec::new();
+        for Seen { normal, position, color, id, weights } in seen(mesh, self.pixel, camera, exec) {
+            let corners = mesh.scene.primitives.triangles.corners()[id as usize];
+            mesh.properties.at(corners, weights, &mut numbers);
+            let finite = color.is_finite() && numbers.iter().all(|number| number.is_finite());
+            if normal == Vec3::ZERO || !finite {
                 self.dropped += 1;
                 continue;
             }
+            properties::push(&mut self.cloud, &numbers);
             self.cloud.position.push(position);
             self.cloud.normal.iter_mut().for_each(|all| all.push(normal));
             self.cloud.color.iter_mut().for_each(|all| all.push(color));
@@ -241,8 +270,18 @@ impl Candidates {
     }
 }
 
-/// Normal, position and colour at each covered pixel of this side, in the order of the pixels.
-fn seen(mesh: &Mesh<'_>, side: f64, camera: &Camera, exec: &Exec) -> Vec<(Vec3, Vec3, Vec3)> {
+/// What is nearest at a covered pixel.
+struct Seen {
+    normal: Vec3,
+    position: Vec3,
+    color: Vec3,
+    /// The triangle, and the weights of its corners.
+    id: u32,
+    weights: [f32; 3],
+}
+
+/// What is seen at each covered pixel of this side, in the order of the pixels.
+fn seen(mesh: &Mesh<'_>, side: f64, camera: &Camera, exec: &Exec) -> Vec<Seen> {
     let columns = camera.width as usize;
     let visible = VisibleTriangles::<f32>::new(mesh.scene, camera, Snap::default());
     let foremost = visible.foremost(exec);
@@ -260,7 +299,7 @@ fn seen(mesh: &Mesh<'_>, side: f64, camera: &Camera, exec: &Exec) -> Vec<(Vec3, 
         let position = ((a * w[0] + b * w[1]) + c * w[2]) + Vec3::ZERO;
         let color = mesh.painting.map(|painting| painting.color(id, w, side));
         let color = color.unwrap_or(Vec3::from_array(sample.color));
-        (turned(&view, sample.normal), position, color)
+        Seen { normal: turned(&view, sample.normal), position, color, id, weights: w }
     });
     all
 }

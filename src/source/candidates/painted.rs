@@ -1,6 +1,6 @@
 //! Meshes with a texture.
 
-use super::{Candidates, Directions, Mesh};
+use super::{Candidates, Directions, Mesh, Properties};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
@@ -10,7 +10,8 @@ use crate::source::derive::{self, Derived, stretch};
 use glam::{DVec2, Vec2, Vec3};
 
 /// The candidates of the triangles of a cloud, drawn as [`derive::polygons`], in the colours of its texture if that has been
-/// [read](Cloud::paint), else in those of its points; and what was derived and dropped on the way.
+/// [read](Cloud::paint), else in those of its points, with the opacities and [further properties](Cloud::properties) of
+/// these; and what was derived and dropped on the way.
 ///
 /// A triangle of which a texture coordinate is not finite is dropped and counted.
 ///
@@ -30,6 +31,7 @@ pub fn of_cloud(
         let bytes = size_of::<Painted>() as u64 + 2 * 12 + 24;
         memory::ask(before as u64 * bytes, || format!("the texture of {before} triangles"))?;
     }
+    let properties = Properties::take(&mut cloud)?;
     let lifted = lift(&mut cloud)?;
     let dropped = (before - cloud.triangles.len()) as u64;
     let (triangles, mut derived) = derive::polygons(cloud, exec, progress)?;
@@ -47,7 +49,7 @@ pub fn of_cloud(
     });
     let primitives = Primitives { triangles, ..Primitives::default() };
     let scene = Scene { primitives, ..Scene::unlit("mesh", Surfels::none()) };
-    let mesh = Mesh { scene: &scene, painting: painting.as_ref() };
+    let mesh = Mesh { scene: &scene, painting: painting.as_ref(), properties: &properties };
     Ok((super::gather(&mesh, directions, side, exec, progress)?, derived))
 }
 

@@ -34,6 +34,10 @@ impl Cloud {
                 return Err(Error::Invalid(format!("{n} positions, but {length} {what}")));
             }
         }
+        if let Some(one) = self.properties.iter().find(|one| one.values.len() != n) {
+            let what = format!("{n} positions, but {} of {}", one.values.len(), one.name);
+            return Err(Error::Invalid(what));
+        }
         let triangles = self.triangles.len();
         if let Some(length) = of_triangles.filter(|&length| length != triangles) {
             let what = format!("{triangles} triangles, but texture coordinates of {length}");

@@ -24,6 +24,8 @@
 //!   factor of 2. Older ones have larger cells: a prefix of P picks has means over the cells of P, P/2, P/4 ...
 //!   picks, of P/2, P/4, P/8 ... of them. No pick changes its colour as the prefix grows.
 //! - The mean is that of linear light, of what is seen of the mesh: candidates, not of area.
+//! - Only colours are averaged. Opacities, normals and further properties are those of the pick: a mean of opacities or of
+//!   roughness is not what a mean of the light would be, and that is defined by whoever shades with them.
 //! - Distances are straight: a cell reaches through a wall that is thinner than the cell.
 
 use super::greedy::Order;

@@ -148,6 +148,40 @@ impl World {
         all
     }
 
+    /// What bounds the surfels and the own triangles of each node.
+    fn bounds(&self, hash: &[u8; 32]) -> Vec<u8> {
+        let mut bytes = Bytes::begin("splatref ball 1\n");
+        bytes.0.extend(hash);
+        let total = self.first(self.meshes.len());
+        bytes.u32(&[total, 0]);
+        for number in 0..total {
+            let (tree, first, geometry) = self.tree_of(number);
+            let node = &tree[(number - first) as usize];
+            let own = geometry.map_or(Vec::new(), |g| {
+                let mesh = &self.meshes[g];
+                let at = |&v: &u32| (mesh.position[v as usize], 0.0);
+                mesh.vertices(node).iter().map(at).collect()
+            });
+            let around = [node.low, node.high].map(Vec3::from);
+            let discs = self.surfels.get(&number).map(|surfels| surfels.discs(around));
+            let all: Vec<(Vec3, f32)> = discs.unwrap_or_default().into_iter().chain(own).collect();
+            let corner = |better: fn(f32, f32) -> f32| {
+                let of = |k: usize| all.iter().map(|(p, _)| p[k]).reduce(better);
+                [0, 1, 2].map(|k| of(k).unwrap_or(0.0) + 0.0)
+            };
+            let (low, high) = (corner(f32::min), corner(f32::max));
+            let middle = [0, 1, 2].map(|k| (f64::from(low[k]) + f64::from(high[k])) / 2.0);
+            let reach = |(p, r): &(Vec3, f32)| {
+                let d = [0, 1, 2].map(|k| f64::from(p[k]) - middle[k]);
+                ((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]).sqrt() + f64::from(*r)
+            };
+            bytes.f32(&low);
+            bytes.f32(&high);
+            bytes.f64(&[all.iter().map(reach).fold(0.0, f64::max)]);
+        }
+        bytes.0
+    }
+
     fn index(&self, hash: &[u8; 32], begins: &[Vec<u64>]) -> Vec<u8> {
         let mut bytes = Bytes::begin("splatref tree 1\n");
         bytes.0.extend(hash);
@@ -224,6 +258,7 @@ impl World {
         for (number, surfels) in &self.surfels {
             all.insert(format!("surfels-{number}"), surfels.file(&hash, *number));
         }
+        all.insert("bounds".into(), self.bounds(&hash));
         all.insert("index".into(), self.index(&hash, &begins));
         all
     }

@@ -87,6 +87,19 @@ impl Surfels {
     }
 }
 
+impl Surfels {
+    /// Where they are, and their radius, in a node with this box.
+    pub(crate) fn discs(&self, [low, high]: [Vec3; 2]) -> Vec<(Vec3, f32)> {
+        let (p_m, r_m) = self.estimate;
+        let d = [0, 1, 2].map(|k| f64::from(high[k]) - f64::from(low[k]));
+        let half = ((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]).sqrt() / 2.0;
+        let unknown = if half > 0.0 { half as f32 } else { 1.0 };
+        let r_m = f64::from(if r_m == 0.0 { unknown } else { r_m });
+        let share = f64::from(p_m) / self.position.len() as f64;
+        self.position.iter().map(|p| (*p, (r_m * share.sqrt()) as f32)).collect()
+    }
+}
+
 /// What pictures show: positions, normals and colours of corners.
 #[derive(Default)]
 struct Drawn {

@@ -9,6 +9,8 @@ pub(crate) struct Triangle {
     position: [Vec3; 3],
     direction: [Vec3; 3],
     color: Option<[Vec3; 3]>,
+    /// Of each further number of the vertices those of its corners, the opacity first, if there is one.
+    pub(crate) numbers: Vec<[f32; 3]>,
 }
 
 /// What the candidates are, as bits.
@@ -17,6 +19,8 @@ pub(crate) struct Seen {
     pub(crate) position: Vec<[u32; 3]>,
     pub(crate) normal: Vec<[u32; 3]>,
     pub(crate) color: Option<Vec<[u32; 3]>>,
+    /// Of each candidate.
+    pub(crate) numbers: Vec<Vec<u32>>,
     pub(crate) counts: Vec<u32>,
     pub(crate) pixel: u64,
     pub(crate) dropped: u64,
@@ -56,6 +60,7 @@ fn parts(list: &Triangles, place: Option<&Similarity>, color: Option<Vec3>) -> V
             (None, Some(own)) => Some(corners.map(|i| own[i as usize])),
             (None, None) => None,
         },
+        numbers: Vec::new(),
     });
     each.collect()
 }
@@ -273,6 +278,11 @@ pub(crate) fn candidates(triangles: &[Triangle], directions: &[DVec3], side: u32
             let triangle = &triangles[id];
             seen.position.push(bits(&(mixed(c, triangle.position) + Vec3::ZERO)));
             seen.normal.push(bits(&view.world(normal)));
+            // Only an opacity of these cases can come close to 1.
+            let number = |a: &[f32; 3]| {
+                (((c[0] * a[0] + c[1] * a[1]) + c[2] * a[2]) + 0.0).min(1.0).to_bits()
+            };
+            seen.numbers.push(triangle.numbers.iter().map(number).collect());
             if let (Some(all), Some(color)) = (&mut seen.color, triangle.color) {
                 all.push(bits(&mixed(c, color)));
             }

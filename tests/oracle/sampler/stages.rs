@@ -6,8 +6,8 @@ use crate::sampler::cases;
 use crate::sampler::orders::{self, Picks, Random, greedy, shuffled};
 use glam::{DVec3, Vec3};
 use splatref::frame::Exec;
-use splatref::scene::Scene;
-use splatref::source::candidates::{Candidates, Directions, candidates};
+use splatref::scene::{Cloud, Property, Scene, Vertices};
+use splatref::source::candidates::{Candidates, Directions, candidates, of_cloud};
 use splatref::source::sampler::{self, Greedy, Order, Progressive, Schedule, Start, quality};
 
 pub(crate) fn taken(scene: &Scene, directions: &Directions, side: u32, exec: &Exec) -> Candidates {
@@ -17,13 +17,18 @@ pub(crate) fn taken(scene: &Scene, directions: &Directions, side: u32, exec: &Ex
 /// As bits; a cloud of candidates has nothing else.
 pub(crate) fn seen(found: &Candidates) -> Seen {
     let cloud = &found.cloud;
-    assert!(cloud.radius.is_none() && cloud.opacity.is_none() && cloud.tangents.is_none());
+    assert!(cloud.radius.is_none() && cloud.tangents.is_none());
     assert!(cloud.triangles.is_empty() && cloud.edges.is_empty() && cloud.groups.is_none());
     let all = |list: &[Vec3]| list.iter().map(bits).collect::<Vec<_>>();
+    let numbers = |i: usize| {
+        let further = cloud.properties.iter().map(|one| &one.values);
+        cloud.opacity.iter().chain(further).map(|all| all[i].to_bits()).collect()
+    };
     Seen {
         position: all(&cloud.position),
         normal: all(cloud.normal.as_deref().expect("normals")),
         color: cloud.color.as_deref().map(all),
+        numbers: (0..cloud.position.len()).map(numbers).collect(),
         counts: found.counts.clone(),
         pixel: found.pixel.to_bits(),
         dropped: found.dropped,
@@ -52,7 +57,7 @@ fn differ(name: &str, found: &Seen, truth: &Seen) {
     let none = (None, 0);
     assert_eq!(first(&found.position, &truth.position), none, "positions of {name}");
     assert_eq!(first(&found.normal, &truth.normal), none, "normals of {name}");
-    assert!(found == truth, "colours of {name}");
+    assert!(found == truth, "colours or numbers of {name}");
 }
 
 /// Every candidate of every mesh, bit for bit.
@@ -75,6 +80,47 @@ fn candidates_are_those_of_the_page() {
             let found = found.expect(&name);
             differ(&name, &seen(&found), &truth);
         }
+    }
+}
+
+/// Opacities and further numbers of the vertices of every mesh that is in a file.
+#[test]
+fn numbers_of_vertices_are_those_of_the_page() {
+    let mut dice = Dice(77);
+    for mesh in cases::meshes() {
+        let list = &mesh.scene.primitives.triangles;
+        if mesh.scene.objects.is_some() || list.is_empty() {
+            continue;
+        }
+        let Vertices { position, direction, color, .. } = list.vertices().clone();
+        let mut random =
+            |low, high| position.iter().map(|_| dice.within(low, high)).collect::<Vec<f32>>();
+        let (opacity, gloss) = (random(0.0, 1.0), random(-3.0, 0.75));
+        // Many vertices are opaque.
+        let opacity: Vec<f32> = opacity.iter().map(|o| if *o > 0.5 { 1.0 } else { *o }).collect();
+        let mut triangles = own::triangles(&mesh.scene);
+        for (triangle, corners) in triangles.iter_mut().zip(list.corners()) {
+            triangle.numbers =
+                [&opacity, &gloss].map(|all| corners.map(|i| all[i as usize])).into();
+        }
+        let directions = cases::directions();
+        let truth = own::candidates(&triangles, &directions, mesh.side);
+        let cloud = Cloud {
+            opacity: Some(opacity),
+            properties: vec![Property { name: "gloss".into(), values: gloss }],
+            triangles: list.corners().to_vec(),
+            normal: Some(direction),
+            position,
+            color,
+            ..Cloud::default()
+        };
+        let (directions, exec) = (Directions::These(directions), Exec::sequential());
+        let found = of_cloud(cloud, &directions, mesh.side, &exec, &|_, _, _| ());
+        if truth.position.is_empty() {
+            assert!(found.is_err(), "{}", mesh.name);
+            continue;
+        }
+        differ(mesh.name, &seen(&found.expect(mesh.name).0), &truth);
     }
 }
 

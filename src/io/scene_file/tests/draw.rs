@@ -165,7 +165,7 @@ fn models_of_all_kinds_are_joined() {
         + &model("draw = \"polygons\"\ncolor = [1, 0, 0]\n")
         + &model("draw = \"points\"\n")
         + "[material]\ncolor = [0, 0, 1]\n";
-    let Loaded { scene, models, dropped, dropped_primitives } = loaded(&ply(&[], ""), &all);
+    let Loaded { scene, models, dropped, dropped_primitives, .. } = loaded(&ply(&[], ""), &all);
     assert_eq!((scene.surfels.len(), scene.primitives.counts()), (105, counts(8, 0, 2)));
     let each: Vec<_> = models.iter().map(|model| (model.surfels, model.primitives)).collect();
     let none = counts(0, 0, 0);

@@ -129,9 +129,8 @@ impl Shown {
     }
 
     /// All that an object has, before a camera is known.
-    pub(super) fn at_rest(geometry: &Geometry) -> Self {
-        let mask = geometry.tree().map(Tree::leaves);
-        Self { count: geometry.surfels.len() as u32, mask, ..Self::default() }
+    pub(super) fn at_rest(geometry: &Geometry, all: u32) -> Self {
+        Self { count: all, mask: geometry.tree().map(Tree::leaves), ..Self::default() }
     }
 }
 
@@ -185,7 +184,7 @@ impl Objects {
         }
         let shown = self.refined(&Eye::new(camera), exec);
         let counts = shown.iter().map(|shown| shown.count).collect();
-        let all = (0..self.objects.len() as u32).map(|o| self.geometry(o).surfels.len() as u32);
+        let all = (0..self.objects.len() as u32).map(|object| self.count_of_all(object));
         let ids = Ids::first(counts, all.collect(), |object| self.objects[object].name.clone())?;
         let mut seen = Self { ids: Arc::new(ids), shown: shown.into(), ..self.clone() };
         seen.median_radius = seen.median_of_drawn(exec);

@@ -26,6 +26,7 @@ use super::{Detail, Eye};
 use crate::error::{Error, Result};
 use crate::number::Real;
 use crate::scene::objects::Geometry;
+use crate::scene::objects::outline::Bounds;
 use crate::scene::{Projection, Similarity, bounds};
 use glam::DVec3;
 
@@ -52,6 +53,16 @@ pub struct Prefix {
 }
 
 impl Prefix {
+    /// That of a geometry of which no more is known.
+    pub(in crate::scene::objects) fn outlined(
+        count: u32,
+        estimate: Estimate,
+        bounds: &Bounds,
+    ) -> Self {
+        let (corners, sphere) = bounds.corners_and_sphere();
+        Self { estimate, count, corners, sphere }
+    }
+
     /// How densely the order covers.
     #[must_use]
     pub fn estimate(&self) -> Estimate {

@@ -249,7 +249,7 @@ impl Objects {
             let seen = asked[at].seen;
             match &geometry.detail {
                 _ if weight == 0.0 => Shown::nothing(),
-                None => Shown { count: geometry.surfels.len() as u32, ..Shown::default() },
+                None => Shown { count: self.count_of_all(object), ..Shown::default() },
                 Some(_) if !seen => Shown::nothing(),
                 Some(Detail::Tree(tree)) => {
                     let (count, mask) = tree.drawn(geometry, &self.places[at], eye);
@@ -354,7 +354,7 @@ impl Objects {
     fn has_finer(&self, object: u32) -> bool {
         let forest = self.forest.as_ref();
         forest.is_some_and(|forest| forest.has_finer[object as usize])
-            || !self.geometry(object).primitives.is_empty()
+            || self.extents[self.objects[object as usize].geometry].primitives
     }
 
     /// The discs of an object with a prefix.

@@ -1,0 +1,94 @@
+//! The file of bounds, see the [module](super): what bounds the surfels and the triangles of each node.
+
+use super::bytes::{Hash, Reader, Writer};
+use super::read::Hierarchy;
+use crate::error::{Error, Result};
+use crate::frame::Exec;
+use crate::io::replace::write_atomically;
+use crate::io::{Reason, input};
+use crate::scene::objects::outline::{Bounds, Needed};
+use std::io::Write;
+
+const MAGIC: &[u8; 16] = b"splatref ball 1\n";
+const HEADER: u64 = 56;
+const OF_A_NODE: u64 = 32;
+/// The name of the file.
+const FILE: &str = "bounds";
+
+impl Hierarchy {
+    /// The bounds of all nodes: those of the file, or of the nodes, which are read one at a time.
+    pub(super) fn bounds(
+        &self,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Vec<Bounds>> {
+        let path = self.folder.join(FILE);
+        if !path.exists() {
+            return self.bounds_of_nodes(exec, progress);
+        }
+        let bytes = input::bytes(&path).map_err(|source| Error::io(&path, source))?;
+        let nodes = self.nodes().len();
+        parse(&bytes, nodes, &self.index.hash).map_err(|what| Error::format(&path, what))
+    }
+
+    /// Writes the bounds of all nodes.
+    pub(super) fn write_bounds(
+        &self,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<()> {
+        let mut to = Writer::default();
+        to.bytes(MAGIC);
+        to.bytes(&self.index.hash);
+        to.words(&[self.nodes().len() as u32, 0]);
+        for Bounds { low, high, radius } in self.bounds_of_nodes(exec, progress)? {
+            to.vector(low);
+            to.vector(high);
+            to.double(radius);
+        }
+        write_atomically(&self.folder.join(FILE), |file| file.write_all(&to.0))
+    }
+
+    fn bounds_of_nodes(
+        &self,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Vec<Bounds>> {
+        let nodes = self.nodes();
+        let each = (0..).zip(nodes).map(|(number, node)| {
+            progress("bounds", u64::from(number), nodes.len() as u64);
+            let all = Needed { surfels: node.surfels, primitives: true };
+            self.read(number, all, exec)
+                .map(|(surfels, primitives)| Bounds::of(&surfels, &primitives))
+        });
+        each.collect()
+    }
+}
+
+fn parse(bytes: &[u8], nodes: usize, hash: &Hash) -> Reason<Vec<Bounds>> {
+    let mut rest = Reader(bytes);
+    if &rest.take::<16>()? != MAGIC {
+        return Err("these are no bounds of a hierarchy of splatref".into());
+    }
+    if &rest.take::<32>()? != hash {
+        return Err("the bounds are of another hierarchy than the index".into());
+    }
+    let [count, _] = rest.words()?;
+    let length = HEADER + nodes as u64 * OF_A_NODE;
+    if count as usize != nodes || bytes.len() as u64 != length {
+        let found = bytes.len();
+        return Err(format!(
+            "bounds of {count} nodes in {found} bytes, but the index has {nodes}, which take {length}"
+        ));
+    }
+    let one = |number: usize| {
+        let (low, high) = (rest.vector()?, rest.vector()?);
+        let radius = rest.scale()?;
+        let boxed = low.is_finite() && high.is_finite() && low.cmple(high).all();
+        if !(boxed && (0.0..f64::INFINITY).contains(&radius)) {
+            return Err(format!("the bounds of node {number} are none"));
+        }
+        Ok(Bounds { low, high, radius })
+    };
+    (0..nodes).map(one).collect()
+}

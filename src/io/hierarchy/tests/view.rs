@@ -1,0 +1,193 @@
+//! What a view reads, against the view of all that there is.
+
+use super::*;
+use crate::frame::Frame;
+use crate::io::scene_file::Ready;
+use crate::number::Real;
+use crate::scene::objects::outline::{Bounds, Needed};
+use crate::scene::{Objects, Primitives, Surfels};
+use glam::DVec3;
+
+/// Views from the distance of the eye, with discs of a size: from coarse to the triangles themselves, from afar and amid.
+const VIEWS: [(f64, f32); 6] =
+    [(60.0, 9.0), (60.0, 3.0), (40.0, 1.0), (12.0, 2.0), (3.0, 4.0), (40.0, 1e-3)];
+
+fn scene(at: &TempDir, (eye, surfel_size): (f64, f32), method: &'static str) -> SceneFile {
+    let mut file = SceneFile::open(at.path().join("out")).unwrap();
+    file.method.name = Some(method);
+    file.refinement.surfel_size = surfel_size;
+    file.camera.size = Some([120, 80]);
+    file.camera.eye = Some(DVec3::new(4.0, 5.0, eye));
+    file.camera.target = Some(DVec3::new(4.0, 5.0, 0.0));
+    file
+}
+
+fn picture(ready: &Ready) -> Frame<f32> {
+    let exec = Exec::sequential();
+    let (mut session, _) = ready.session(&exec, &quiet).unwrap();
+    session.render(&ready.camera).unwrap().frame.clone()
+}
+
+/// A folder whose files are read as the view needs them, and the view.
+fn read(file: &SceneFile) -> Result<(Frame<f32>, Objects)> {
+    let ready = file.ready(&Exec::sequential(), &quiet)?;
+    Ok((picture(&ready), ready.loaded.scene.objects.clone().unwrap()))
+}
+
+/// The same of all that is in the folder.
+fn whole(file: &SceneFile) -> (Frame<f32>, Objects) {
+    let exec = Exec::sequential();
+    let ready = file.ready_of(file.load(&exec, &quiet).unwrap(), &exec).unwrap();
+    (picture(&ready), ready.loaded.scene.objects.clone().unwrap())
+}
+
+fn made() -> TempDir {
+    let at = given();
+    make(&at, "scene.toml", "out", &quick(Traversal::BottomUp)).unwrap();
+    at
+}
+
+/// How many surfels and triangles are in memory.
+fn held(objects: &Objects) -> (usize, usize) {
+    let each = objects.geometries().iter();
+    let each = each.map(|one| (one.surfels.len(), one.primitives.triangles.len()));
+    each.fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1))
+}
+
+#[test]
+fn a_view_of_what_it_needs_is_the_view_of_all() {
+    let at = made();
+    for method in ["blue", "pyramid", "deferred"] {
+        let mut least = (usize::MAX, usize::MAX);
+        for view in VIEWS {
+            for budget in [None, Some(300)] {
+                let mut file = scene(&at, view, method);
+                file.refinement.budget = budget;
+                let (all, objects) = whole(&file);
+                let (some, needed) = read(&file).unwrap();
+                assert!(some == all, "{method} of {view:?} with {budget:?}");
+                assert_eq!(needed.drawn_total(), objects.drawn_total());
+                assert_eq!(needed.bounding_sphere(), objects.bounding_sphere());
+                assert_eq!(needed.median_radius(), objects.median_radius());
+                let ids = |of: &Objects| of.ids().clone();
+                assert_eq!(ids(&needed), ids(&objects));
+                // No more is in memory than one of the objects draws.
+                let (surfels, triangles) = held(&needed);
+                assert!(surfels as u64 <= needed.drawn_total(), "{view:?}");
+                assert!((surfels, triangles) <= held(&objects));
+                least = (least.0.min(surfels), least.1.min(triangles));
+            }
+        }
+        assert!(least.0 == 0 && least.1 == 0, "a view has no surfels, and one no triangles");
+    }
+}
+
+/// The files of nodes that a view from afar does not draw may be anything, or nothing.
+#[test]
+fn what_no_view_draws_is_not_read() {
+    let at = made();
+    let out = at.path().join("out");
+    let file = scene(&at, VIEWS[0], "blue");
+    let expected = whole(&file).0;
+    for name in bytes(&out).into_keys() {
+        match name.as_str() {
+            "index" | "bounds" | "surfels-0" => {}
+            name if name.starts_with("mesh-") => fs::remove_file(out.join(name)).unwrap(),
+            name => fs::write(out.join(name), "of something else").unwrap(),
+        }
+    }
+    let (found, objects) = read(&file).unwrap();
+    assert!(found == expected);
+    assert_eq!(objects.needed().iter().filter(|one| **one != Needed::default()).count(), 1);
+    // Closer by it draws more, and says what is missing.
+    let line = read(&scene(&at, VIEWS[3], "blue")).unwrap_err().to_string();
+    assert!(line.contains("out/surfels-") || line.contains("out/mesh-"), "{line}");
+    assert_eq!(line.lines().count(), 1);
+    fs::remove_file(out.join("surfels-0")).unwrap();
+    let line = read(&file).unwrap_err().to_string();
+    assert!(line.contains("out/surfels-0: ") && line.lines().count() == 1, "{line}");
+}
+
+/// A camera that comes closer: each frame reads what it draws.
+#[test]
+fn frames_read_what_they_need() {
+    let at = made();
+    let exec = Exec::sequential();
+    let text = "hierarchy = \"out\"\n[camera]\nsize = [90, 60]\nkeys = [\n\
+                { frame = 0, eye = [4, 5, 60], target = [4, 5, 0] },\n\
+                { frame = 3, eye = [4, 5, 8], target = [4, 5, 0] }]\n\
+                [method]\nname = \"deferred\"\n";
+    fs::write(at.path().join("walk.toml"), text).unwrap();
+    let file = SceneFile::open(at.path().join("walk.toml")).unwrap();
+    let mut needed = file.ready(&exec, &quiet).unwrap();
+    let mut all = file.ready_of(file.load(&exec, &quiet).unwrap(), &exec).unwrap();
+    let mut sizes = Vec::new();
+    let identity = needed.identity().unwrap();
+    for frame in [0, 1, 2, 3, 0] {
+        needed = needed.at(frame, &exec).unwrap();
+        all = all.at(frame, &exec).unwrap();
+        assert!(picture(&needed) == picture(&all), "{frame}");
+        let identities = [&needed, &all].map(|ready| ready.identity().unwrap());
+        assert_eq!(identities, [identity.clone(), identity.clone()], "whatever is read");
+        sizes.push(held(needed.loaded.scene.objects.as_ref().unwrap()));
+    }
+    assert!(sizes[0] != sizes[3] && sizes[0] == sizes[4], "{sizes:?}");
+}
+
+#[test]
+fn bounds_are_those_of_each_node_and_are_not_needed() {
+    let at = made();
+    let out = at.path().join("out");
+    let exec = Exec::sequential();
+    let hierarchy = Hierarchy::open(&out).unwrap();
+    let bounds = hierarchy.bounds(&exec, &quiet).unwrap();
+    let loaded = hierarchy.load(&exec, &quiet).unwrap();
+    for geometry in loaded.geometries() {
+        let node: usize = geometry.name.rsplit("node-").next().unwrap().parse().unwrap();
+        let Bounds { low, high, radius } = bounds[node];
+        // By hand: every surfel and every corner, in any order.
+        let Primitives { triangles, .. } = &geometry.primitives;
+        let corners = triangles.corners().iter().flatten();
+        let corners = corners.map(|&i| (triangles.vertices().position[i as usize], 0.0));
+        let surfels: &Surfels = &geometry.surfels;
+        let all = surfels.position().iter().copied().zip(surfels.radius().iter().copied());
+        let all: Vec<(Vec3, f32)> = all.chain(corners).collect();
+        for axis in 0..3 {
+            let mut along: Vec<f32> = all.iter().map(|(p, _)| p[axis]).collect();
+            along.sort_by(f32::total_cmp);
+            assert_eq!((low[axis], high[axis]), (along[0], along[along.len() - 1]));
+        }
+        let middle = (low.as_dvec3() + high.as_dvec3()) / 2.0;
+        let reach = all.iter().map(|(p, r)| (p.as_dvec3() - middle).length() + f64::from(*r));
+        assert_eq!(radius, reach.fold(0.0, Real::at_least));
+    }
+    let file = scene(&at, VIEWS[2], "blue");
+    let expected = read(&file).unwrap().0;
+    let whole = fs::read(out.join("bounds")).unwrap();
+    fs::remove_file(out.join("bounds")).unwrap();
+    assert!(read(&file).unwrap().0 == expected, "as folders of earlier versions are");
+    let told = |bytes: &[u8]| {
+        fs::write(out.join("bounds"), bytes).unwrap();
+        read(&file).unwrap_err().to_string()
+    };
+    for end in [0, 20, 55, 56, whole.len() - 1] {
+        assert!(told(&whole[..end]).contains("out/bounds: "), "{end}");
+    }
+    let changed = |at: usize, value: u8| {
+        let mut bytes = whole.clone();
+        bytes[at] = value;
+        bytes
+    };
+    assert!(told(&changed(0, 0)).contains("no bounds of a hierarchy"));
+    assert!(told(&changed(20, whole[20] ^ 1)).contains("of another hierarchy"));
+    // The radius of node 0 below 0, and the highest byte of its low x not finite.
+    for (at, value) in [(56 + 31, 0xc0), (56 + 3, 0xff)] {
+        let mut bytes = changed(at, value);
+        bytes[56 + 2] |= if at == 56 + 3 { 0x80 } else { 0 };
+        assert!(told(&bytes).contains("the bounds of node 0 are none"), "{at}");
+    }
+    fs::write(out.join("bounds"), &whole).unwrap();
+    assert!(read(&file).unwrap().0 == expected);
+    make(&at, "scene.toml", "out", &quick(Traversal::BottomUp)).unwrap();
+    assert_eq!(fs::read(out.join("bounds")).unwrap(), whole, "made again it is the same");
+}
