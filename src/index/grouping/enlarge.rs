@@ -20,11 +20,7 @@ pub(super) struct Enlarged {
 
 /// Iterates eq. 9 for a group, `target` being A divided by pi, and `at_1` what [`Scales::area`] is
 /// at scale 1.
-pub(super) fn enlarged(
-    group: &mut Scales<'_>,
-    at_1: (f64, f64),
-    target: f64,
-) -> Result<Enlarged> {
+pub(super) fn enlarged(group: &mut Scales<'_>, at_1: (f64, f64), target: f64) -> Result<Enlarged> {
     let mut scale = 1.0;
     for step in 0..MAX_STEPS {
         let (area, sum) = if step == 0 { at_1 } else { group.area(scale)? };
