@@ -136,8 +136,8 @@ impl DiscTree {
                     continue;
                 }
                 let near = part.near(&self.blocks[block], i % DISCS, factor);
-                'rest: for (&other, near) in blocks.iter().zip(near.chunks_exact(DISCS)) {
-                    let mut near = u64::from_le_bytes([0, 1, 2, 3, 4, 5, 6, 7].map(|l| near[l]));
+                'rest: for (&other, near) in blocks.iter().zip(near.as_chunks::<DISCS>().0) {
+                    let mut near = u64::from_le_bytes(*near);
                     while near != 0 {
                         let j = other as usize * DISCS + near.trailing_zeros() as usize / 8;
                         if j != i && !visit(i, j) {

@@ -1,10 +1,8 @@
 //! Extension (2): the radii of a group are enlarged until it covers the surface \[ZP06, section
 //! 4.2.2\].
 
-use super::clipped::{area, by_lower};
-use super::disc_tree::DiscTree;
+use super::scales::Scales;
 use crate::error::Result;
-use crate::frame::Exec;
 
 /// The most that radii are multiplied by.
 pub const MAX_SCALE: f32 = 8.0;
@@ -20,12 +18,12 @@ pub(super) struct Enlarged {
     pub(super) converged: bool,
 }
 
-/// Iterates eq. 9 for a group, `target` being A divided by pi.
-pub(super) fn enlarged(tree: &DiscTree, target: f64, exec: &Exec) -> Result<Enlarged> {
+/// Iterates eq. 9 for a group, `target` being A divided by pi, and `at_1` what [`Scales::area`] is
+/// at scale 1.
+pub(super) fn enlarged(group: &mut Scales<'_>, at_1: (f64, f64), target: f64) -> Result<Enlarged> {
     let mut scale = 1.0;
-    for _ in 0..MAX_STEPS {
-        let covered = by_lower(tree, scale, exec, &|_, _| ())?;
-        let (area, sum) = area(tree, &covered);
+    for step in 0..MAX_STEPS {
+        let (area, sum) = if step == 0 { at_1 } else { group.area(scale)? };
         let square = scale * scale;
         let next = ((target + square * (sum - area)) / sum).sqrt();
         if !(next < f64::from(MAX_SCALE)) {

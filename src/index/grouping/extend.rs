@@ -4,6 +4,7 @@ use super::clipped::{area, by_lower};
 use super::disc_tree::DiscTree;
 use super::graph::Graph;
 use super::overlaps::Overlaps;
+use super::scales::Scales;
 use super::{add, enlarge};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
@@ -163,11 +164,13 @@ impl Work<'_> {
             (self.progress)("extending groups", k as u64, groups.len() as u64);
             let own = (0_u32..).zip(groups.own()).filter(|g| usize::from(*g.1) == k).map(|g| g.0);
             let tree = DiscTree::new(self.surfels, own, self.exec);
-            let covered = |scale: f64| -> Result<f64> {
-                let (area, _) = area(&tree, &by_lower(&tree, scale, self.exec, &|_, _| ())?);
-                Ok(scale * scale * area / target)
+            let mut scales = Scales::new(&tree, self.exec);
+            let at_1 = if enlarge {
+                scales.area(1.0)?
+            } else {
+                area(&tree, &by_lower(&tree, 1.0, self.exec, &|_, _| ())?)
             };
-            let before = covered(1.0)?;
+            let before = at_1.0 / target;
             let mut coverage = GroupCoverage {
                 surfels: tree.surfel.len() as u64,
                 scale: 1.0,
@@ -178,9 +181,10 @@ impl Work<'_> {
             if enlarge && tree.surfel.is_empty() {
                 coverage.converged = false;
             } else if enlarge {
-                let enlarged = enlarge::enlarged(&tree, target, self.exec)?;
+                let enlarged = enlarge::enlarged(&mut scales, at_1, target)?;
                 (coverage.scale, coverage.converged) = (enlarged.scale, enlarged.converged);
-                coverage.after = covered(enlarged.scale.into())?;
+                let scale = f64::from(enlarged.scale);
+                coverage.after = scale * scale * scales.area(scale)?.0 / target;
             }
             coverages.push(coverage);
         }

@@ -170,12 +170,11 @@ fn relaxed(surfels: &Surfels, tree: &DiscTree, rules: &Rules, i: usize, j: usize
     if rules.opposite && cosine < 0.0 {
         return true;
     }
+    let Some(rule) = &rules.coplanar else { return false };
     let [i, j] = [i, j].map(|place| tree.surfel[place] as usize);
-    rules.coplanar.is_some_and(|rule| {
-        cosine >= f64::from(rule.cosine)
-            && within_planes(surfels, &rule, i, j)
-            && of_one_color(surfels, &rule, i, j)
-    })
+    cosine >= f64::from(rule.cosine)
+        && within_planes(surfels, rule, i, j)
+        && of_one_color(surfels, rule, i, j)
 }
 
 fn within_planes(surfels: &Surfels, rule: &Coplanar, i: usize, j: usize) -> bool {

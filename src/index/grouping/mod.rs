@@ -117,6 +117,7 @@ mod extend;
 mod graph;
 mod overlaps;
 mod rules;
+mod scales;
 mod settle;
 #[cfg(test)]
 mod tests;
