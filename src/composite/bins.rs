@@ -105,7 +105,18 @@ impl<R: Real> DepthBins<R> {
     /// The depth in bins from where the first begins, before it is rounded down.
     #[inline(always)]
     pub fn position(&self, t: R) -> R {
-        let position = ((t - self.nearest) / self.extent) * self.count;
+        self.moving(self.unmoved(t))
+    }
+
+    /// The same of bins that are not moved.
+    #[inline(always)]
+    pub fn unmoved(&self, t: R) -> R {
+        ((t - self.nearest) / self.extent) * self.count
+    }
+
+    /// The position in these bins of one in the same bins before they were moved.
+    #[inline(always)]
+    pub fn moving(&self, position: R) -> R {
         match self.shift {
             Some(shift) => position + shift,
             None => position,

@@ -1,12 +1,14 @@
 //! What is built once from a scene and asked for every view.
 //!
 //! - [`grouping`]: groups of surfels that do not overlap, so that a group shares one depth-image.
+//! - [`members`]: surfels in the order of a tree, with all groups of each.
 //! - [`mipmap`]: prefiltered colours of surfels.
 //! - [`order`]: surfels from back to front.
 //! - [`seen`]: which surfels the frame before saw.
 //! - [`sequential`]: levels of detail as a list.
 
 pub mod grouping;
+pub mod members;
 pub mod mipmap;
 pub mod order;
 pub(crate) mod point_tree;
@@ -15,6 +17,7 @@ pub mod sequential;
 
 use crate::error::{Error, Result};
 use crate::scene::{Boxes, Camera, Groups, Surfels};
+use members::Members;
 use order::BackToFront;
 use seen::Seen;
 
@@ -40,6 +43,8 @@ pub struct Index {
     pub boxes: Option<Boxes>,
     /// What the frame before saw; none before the first.
     pub seen: Option<Seen>,
+    /// The surfels in the order of the tree behind `order`, if there are groups too.
+    pub members: Option<Members>,
 }
 
 impl Index {
@@ -57,6 +62,14 @@ impl Index {
     /// [`Error::Invalid`] if there is none.
     pub fn order(&self) -> Result<&BackToFront> {
         self.order.as_ref().ok_or_else(|| missing("an order from back to front"))
+    }
+
+    /// The surfels in the order of the tree, with their groups.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there are none.
+    pub(crate) fn members(&self) -> Result<&Members> {
+        self.members.as_ref().ok_or_else(|| missing("groups in an order from back to front"))
     }
 
     /// Every surfel in each of its groups, from back to front: what blending draws.

@@ -78,33 +78,92 @@ impl BackToFront {
     /// The indices of all surfels, each once, the farthest first.
     #[must_use]
     pub fn walk(&self, camera: &Camera) -> Vec<u32> {
-        let eye = match camera.projection {
-            Projection::Perspective => camera.eye().to_array(),
-            Projection::Orthographic => {
-                let towards = camera.view_from_world.row(2).truncate().to_array();
-                towards.map(|c| if c > 0.0 { f64::INFINITY } else { f64::NEG_INFINITY })
-            }
-        };
-        let mut order = Vec::with_capacity(self.tree.entries().len());
-        self.visit(0..self.tree.entries().len(), eye, &mut order);
+        let (entries, eye) = (self.tree.entries(), eye(camera));
+        let mut order = Vec::with_capacity(entries.len());
+        self.visit(0..entries.len(), eye, &mut |place| order.push(entries[place].id));
         order
     }
 
-    /// Appends the surfels of a range.
-    fn visit(&self, range: Range<usize>, eye: [f64; 3], order: &mut Vec<u32>) {
-        let entries = self.tree.entries();
-        if range.len() <= 1 {
-            order.extend(entries[range].iter().map(|entry| entry.id));
+    /// The order of a view in parts that follow one another, each of a subtree of at most `most`
+    /// surfels or of a single one: what threads walk apart.
+    pub(crate) fn parts(&self, camera: &Camera, most: usize) -> Vec<Part> {
+        let mut parts = Vec::new();
+        self.divide(0..self.tree.entries().len(), eye(camera), most.max(1), &mut parts);
+        parts
+    }
+
+    /// Calls `visit` for the place in the tree of each surfel of a part, the farthest first.
+    pub(crate) fn walk_part(&self, part: &Part, mut visit: impl FnMut(usize)) {
+        self.visit(part.places.clone(), part.eye, &mut visit);
+    }
+
+    /// The index of the surfel at a place in the tree.
+    pub(crate) fn index(&self, place: usize) -> u32 {
+        self.tree.entries()[place].id
+    }
+
+    /// The indices of the surfels in the order of the tree.
+    pub(crate) fn indices(&self) -> impl ExactSizeIterator<Item = u32> {
+        self.tree.entries().iter().map(|entry| entry.id)
+    }
+
+    /// Appends the parts of a range.
+    fn divide(&self, range: Range<usize>, eye: [f64; 3], most: usize, parts: &mut Vec<Part>) {
+        if range.len() <= most {
+            parts.extend((!range.is_empty()).then_some(Part { places: range, eye }));
             return;
         }
-        let (middle, axis) = self.tree.node(&range);
-        let own = entries[middle];
+        let (far, own, near) = self.halves(&range, eye);
+        self.divide(far, eye, most, parts);
+        parts.push(Part { places: own..own + 1, eye });
+        self.divide(near, eye, most, parts);
+    }
+
+    /// Calls `visit` for the places of a range.
+    fn visit(&self, range: Range<usize>, eye: [f64; 3], visit: &mut impl FnMut(usize)) {
+        if range.len() <= 1 {
+            range.for_each(visit);
+            return;
+        }
+        let (far, own, near) = self.halves(&range, eye);
+        self.visit(far, eye, visit);
+        visit(own);
+        self.visit(near, eye, visit);
+    }
+
+    /// The far half of a node, its own surfel, and the near half.
+    fn halves(&self, range: &Range<usize>, eye: [f64; 3]) -> (Range<usize>, usize, Range<usize>) {
+        let (middle, axis) = self.tree.node(range);
         let (low, high) = (range.start..middle, middle + 1..range.end);
-        let high_is_near = eye[axis] > f64::from(own.point[axis]);
-        let (far, near) = if high_is_near { (low, high) } else { (high, low) };
-        self.visit(far, eye, order);
-        order.push(own.id);
-        self.visit(near, eye, order);
+        let high_is_near = eye[axis] > f64::from(self.tree.entries()[middle].point[axis]);
+        if high_is_near { (low, middle, high) } else { (high, middle, low) }
+    }
+}
+
+/// Surfels that follow one another in the order of a view, see [`BackToFront::parts`].
+#[derive(Clone, Debug)]
+pub(crate) struct Part {
+    /// Where they are in the tree.
+    places: Range<usize>,
+    /// What the order is decided by.
+    eye: [f64; 3],
+}
+
+impl Part {
+    /// How many surfels there are.
+    pub(crate) fn len(&self) -> usize {
+        self.places.len()
+    }
+}
+
+/// The coordinates that planes are compared with.
+fn eye(camera: &Camera) -> [f64; 3] {
+    match camera.projection {
+        Projection::Perspective => camera.eye().to_array(),
+        Projection::Orthographic => {
+            let towards = camera.view_from_world.row(2).truncate().to_array();
+            towards.map(|c| if c > 0.0 { f64::INFINITY } else { f64::NEG_INFINITY })
+        }
     }
 }
 

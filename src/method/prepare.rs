@@ -29,16 +29,29 @@ impl<R: Real, S: Send> Prepared<R, S> {
         project: impl Fn(&Projector<R>, Range<usize>, &mut Vec<S>) -> Tally + Sync + Send,
         bounds: impl Fn(&S) -> Rect + Sync + Send,
     ) -> Self {
+        let size = batch_size(job, count);
+        let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
+        let projected = |projector: &Projector<R>, range: Range<usize>, splats: &mut Vec<S>| {
+            splats.reserve_exact(range.len());
+            project(projector, range, splats)
+        };
+        Self::of_batches(job, settings, ranges.collect(), projected, bounds)
+    }
+
+    /// Projects the items of some batches and sorts the splats into tiles; the order of the items is
+    /// that of the batches. `project` and `bounds` are as in [`Prepared::new`].
+    pub(super) fn of_batches<B: Send>(
+        job: &Job<'_>,
+        settings: &SplatSettings,
+        batches: Vec<B>,
+        project: impl Fn(&Projector<R>, B, &mut Vec<S>) -> Tally + Sync + Send,
+        bounds: impl Fn(&S) -> Rect + Sync + Send,
+    ) -> Self {
         let (view, grid) = (View::new(job.camera), job.grid());
         let projector = Projector::new(view, &settings.kernel, settings.cull);
-        // Many batches, so that threads end together, of at most 8192 surfels, which fit the cache;
-        // but of two items for each tile, so that the starts of its bins take about 2 bytes an item;
-        // where tiles are so many that this would be all, four batches.
-        let size = (count / 64).min(8192).max(2 * grid.len()).min(count.div_ceil(4).max(1));
-        let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
-        let results = job.exec.ordered(ranges.collect(), |range: Range<usize>| {
-            let mut splats = Vec::with_capacity(range.len());
-            let tally = project(&projector, range, &mut splats);
+        let results = job.exec.ordered(batches, |batch| {
+            let mut splats = Vec::new();
+            let tally = project(&projector, batch, &mut splats);
             let bins = Bins::new(&grid, splats.len(), |i| bounds(&splats[i]));
             ((splats, bins), tally)
         });
@@ -83,6 +96,14 @@ impl<R: Real, S: Send> Prepared<R, S> {
             });
         }
     }
+}
+
+/// How many of `count` items a batch has.
+pub(super) fn batch_size(job: &Job<'_>, count: usize) -> usize {
+    // Many batches, so that threads end together, of at most 8192 surfels, which fit the cache; but of
+    // two items for each tile, so that the starts of its bins take about 2 bytes an item; where tiles
+    // are so many that this would be all, four batches.
+    (count / 64).min(8192).max(2 * job.grid().len()).min(count.div_ceil(4).max(1))
 }
 
 impl<R: Exact> Prepared<R, Splat<R>> {

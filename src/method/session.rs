@@ -15,6 +15,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Exec, Frame, NamedPlane, Pool};
 use crate::index::Index;
 use crate::index::grouping::{Extended, Grouping, GroupingReport};
+use crate::index::members::Members;
 use crate::index::order::BackToFront;
 use crate::index::seen::Seen;
 use crate::number::Exact;
@@ -113,10 +114,13 @@ impl<'a> Session<'a> {
         let order = method.needs_order().then(|| BackToFront::new(&scene.surfels, exec));
         let alone = method.draws_objects() && scene.objects.is_none();
         let boxes = alone.then(|| Boxes::new(&scene.surfels));
-        let index = Index { groups, order, boxes, seen: None };
+        let mut index = Index { groups, order, boxes, ..Index::default() };
         index.check(&scene.surfels)?;
         if method.grouping().is_some() {
             index.groups()?;
+        }
+        if let (Some(groups), Some(order)) = (&index.groups, &index.order) {
+            index.members = Some(Members::new(&scene.surfels, groups, order, exec)?);
         }
         let (memory, pool) = (method.memory(), Pool::default());
         Ok(Self { scene, method, exec, index, memory, pool, picture: None })

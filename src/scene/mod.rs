@@ -42,6 +42,7 @@ pub use cloud::{Cloud, Property};
 pub use coordinates::Coordinates;
 pub use environment::Environment;
 pub use groups::Groups;
+pub(crate) use groups::MAX_GROUPS;
 pub use indexed::{Counts, Polylines, Primitives, Triangles, Vertices};
 pub use light::{Light, Phong};
 pub use mipmap::Mipmap;

@@ -173,19 +173,39 @@ impl Surfels {
     pub fn some(&self, indices: &[u64], exec: &Exec) -> Self {
         let indices = indices.iter().map(|&i| i as usize).filter(|&i| i < self.len());
         let indices: Vec<usize> = indices.collect();
+        let mipmap = self.mipmap.as_ref().map(|mipmap| mipmap.some(&indices));
+        self.picked(&indices, mipmap, exec)
+    }
+
+    /// All surfels in another order, without their mipmaps and groups. Median radius and bounding sphere
+    /// stay as they are.
+    pub(crate) fn reordered(&self, order: impl Iterator<Item = u32>, exec: &Exec) -> Self {
+        let order: Vec<usize> = order.map(|surfel| surfel as usize).collect();
+        self.picked(&order, None, exec)
+    }
+
+    /// What [`Self::reordered`] takes in bytes, what it works with included.
+    pub(crate) fn bytes_reordered(&self) -> u64 {
+        let of = |there: bool, bytes| if there { bytes } else { 0 };
+        let more = of(self.color.is_some(), 12) + of(self.opacity.is_some(), 4);
+        self.len() as u64 * (8 + 28 + more + of(self.tangents.is_some(), 24))
+    }
+
+    /// The surfels of these indices, which exist.
+    fn picked(&self, indices: &[usize], mipmap: Option<Mipmap>, exec: &Exec) -> Self {
         fn of<T: Copy + Send + Sync>(values: &[T], indices: &[usize], exec: &Exec) -> Vec<T> {
             let mut some = Vec::with_capacity(indices.len());
             exec.extend(&mut some, indices.len(), |i| values[indices[i]]);
             some
         }
         let arrays = Arrays {
-            position: of(&self.position, &indices, exec),
-            normal: of(&self.normal, &indices, exec),
-            radius: of(&self.radius, &indices, exec),
-            color: self.color.as_ref().map(|color| of(color, &indices, exec)),
-            opacity: self.opacity.as_ref().map(|opacity| of(opacity, &indices, exec)),
-            tangents: self.tangents.as_ref().map(|tangents| of(tangents, &indices, exec)),
-            mipmap: self.mipmap.as_ref().map(|mipmap| mipmap.some(&indices)),
+            position: of(&self.position, indices, exec),
+            normal: of(&self.normal, indices, exec),
+            radius: of(&self.radius, indices, exec),
+            color: self.color.as_ref().map(|color| of(color, indices, exec)),
+            opacity: self.opacity.as_ref().map(|opacity| of(opacity, indices, exec)),
+            tangents: self.tangents.as_ref().map(|tangents| of(tangents, indices, exec)),
+            mipmap,
         };
         arrays.into_surfels(self.median_radius, self.bounding_sphere)
     }

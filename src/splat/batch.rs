@@ -90,28 +90,39 @@ pub fn splats_f32(
     }
     let lanes = range.start..range.end - range.len() % LANES;
     let rest = lanes.end..range.end;
-    let tally = in_lanes(projector, surfels, lanes, |i| (i, 1.0), &mut |_, splat| draw(splat));
+    let item = |i: usize| Enlarged { surfel: i as u32, scale: 1.0, times: 1 };
+    let tally = in_lanes(projector, surfels, lanes, item, &mut |_, splat| draw(splat));
     tally.plus(&splats(projector, surfels, rest, draw))
 }
 
-/// Calls `draw` for each visible splat of a list, with its place in the list: of surfels, each with
-/// the factor by which it is enlarged. Affine discs in lanes, to the same bits.
+/// A surfel that is projected once.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Enlarged {
+    /// Its index.
+    pub(crate) surfel: u32,
+    /// What its radius, or tangents, are multiplied by.
+    pub(crate) scale: f32,
+    /// As how many it counts in a [`Tally`].
+    pub(crate) times: u32,
+}
+
+/// Calls `draw` for each visible splat of a list, with its place in the list. Affine discs in lanes, to
+/// the same bits.
 pub(crate) fn enlarged_f32(
     projector: &Projector<f32>,
     surfels: &Surfels,
-    list: &[(u32, f32)],
+    list: &[Enlarged],
     mut draw: impl FnMut(usize, Splat<f32>),
 ) -> Tally {
     let in_lanes_to = match (projector.outline, surfels.tangents()) {
         (Outline::Affine, None) => list.len() - list.len() % LANES,
         _ => 0,
     };
-    let item = |i: usize| (list[i].0 as usize, list[i].1);
-    let mut tally = in_lanes(projector, surfels, 0..in_lanes_to, item, &mut draw);
-    for (place, &(surfel, scale)) in list.iter().enumerate().skip(in_lanes_to) {
+    let mut tally = in_lanes(projector, surfels, 0..in_lanes_to, |i| list[i], &mut draw);
+    for (place, &Enlarged { surfel, scale, times }) in list.iter().enumerate().skip(in_lanes_to) {
         let (splat, reasons) = project(projector, &enlarged(surfels, surfel, scale), surfel);
         let fate = reasons.fate();
-        tally.count(fate);
+        (0..times).for_each(|_| tally.count(fate));
         if fate == Fate::Visible {
             draw(place, splat);
         }
@@ -131,12 +142,11 @@ pub(crate) fn enlarged<R: Real>(surfels: &Surfels, surfel: u32, scale: f32) -> D
 
 vectorized!(
     /// [`LANES`] splats at a time: gathered into arrays, projected in one straight loop, scattered.
-    /// `item` gives the surfel of a splat, and what its radius is multiplied by.
     fn in_lanes(
         projector: &Projector<f32>,
         surfels: &Surfels,
         range: Range<usize>,
-        item: impl Fn(usize) -> (usize, f32),
+        item: impl Fn(usize) -> Enlarged,
         draw: &mut impl FnMut(usize, Splat<f32>),
     ) -> Tally {
         let projector = *projector;
@@ -146,7 +156,8 @@ vectorized!(
             let mut input = [[0.0_f32; LANES]; 7];
             let (positions, normals) = (surfels.position(), surfels.normal());
             for i in 0..LANES {
-                let (surfel, scale) = item(first + i);
+                let Enlarged { surfel, scale, .. } = item(first + i);
+                let surfel = surfel as usize;
                 let (p, n) = (positions[surfel], normals[surfel]);
                 let values = [p.x, p.y, p.z, n.x, n.y, n.z, surfels.radius()[surfel] * scale];
                 for (lanes, value) in input.iter_mut().zip(values) {
@@ -166,9 +177,10 @@ vectorized!(
             }
             // -- The visible ones
             for i in 0..LANES {
-                counts[fates[i] as usize & 7] += 1;
+                let Enlarged { surfel, times, .. } = item(first + i);
+                counts[fates[i] as usize & 7] += u64::from(times);
                 if fates[i] == Fate::Visible as u32 {
-                    draw(first + i, splats.get(i, item(first + i).0 as u32));
+                    draw(first + i, splats.get(i, surfel));
                 }
             }
         }

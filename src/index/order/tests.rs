@@ -227,3 +227,21 @@ fn threads_leave_no_trace() {
     let high_is_near = |axis: usize, plane: f64| eye[axis] > plane;
     check(&points, (0..points.len()).collect(), &ranks, &high_is_near).unwrap();
 }
+
+proptest! {
+    #[test]
+    fn parts_follow_one_another_as_the_walk_does(
+        points in points(),
+        eye in [-2.0..2.0, -2.0..2.0, -2.0..2.0],
+        most in 1..40_usize,
+    ) {
+        let order = BackToFront::new(&surfels(&points), &Exec::sequential());
+        let view = perspective(DVec3::from_array(eye));
+        let mut joined = Vec::new();
+        for part in order.parts(&view, most) {
+            prop_assert!((1..=most).contains(&part.len()));
+            order.walk_part(&part, |place| joined.push(order.index(place)));
+        }
+        prop_assert_eq!(joined, order.walk(&view));
+    }
+}

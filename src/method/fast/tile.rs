@@ -152,11 +152,16 @@ impl Tile {
         rect: Rect,
     ) {
         prepared.gather_f32(index, &rect, &mut self.splats);
+        self.empty(rect, prepared.shared.empty());
+    }
+
+    /// Becomes a tile of these pixels for the splats that it has: its empty blocks, of this nearness.
+    pub(in crate::method) fn empty(&mut self, rect: Rect, nearness: f32) {
         self.grid = BlockGrid::new(rect);
         let count = if self.splats.is_empty() { 0 } else { self.grid.len() };
         let zero = [0.0; LANES];
         let empty = PixelBlock {
-            nearest: [prepared.shared.empty(); LANES],
+            nearest: [nearness; LANES],
             id: [NO_ID; LANES],
             least: zero,
             weight: zero,

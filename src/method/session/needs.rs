@@ -31,7 +31,7 @@ impl Session<'_> {
         if making == Making::Verdict {
             let cells = if self.has_levels() { OF_JUDGED_CELLS } else { 0 };
             let a_pixel = OF_A_JUDGED_PIXEL + cells + self.planes(camera, 8);
-            let judged = pixels * a_pixel + self.items(pixels) * OF_A_JUDGED_SPLAT;
+            let judged = pixels * a_pixel + self.items(pixels, making) * OF_A_JUDGED_SPLAT;
             if !self.method.draws_objects() {
                 return judged;
             }
@@ -48,14 +48,17 @@ impl Session<'_> {
         let a_pixel = fast.unwrap_or(number * OF_A_PIXEL + 2 * kept);
         let mut rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
         let balls = if kept > 0 && rows.any(|row| row.name == "margin") { OF_A_BALL } else { 0 };
-        pixels * a_pixel + self.items(pixels) * (number * OF_A_SPLAT + balls)
+        pixels * a_pixel + self.items(pixels, making) * (number * OF_A_SPLAT + balls)
     }
 
     /// How many items are drawn at the most; of a method that selects surfels as many as it may select:
     /// what it draws of an earlier frame it asks for when it knows.
-    fn items(&self, pixels: u64) -> u64 {
+    fn items(&self, pixels: u64, making: Making) -> u64 {
         if self.method.draws_objects() {
             return self.surfels().min(pixels);
+        }
+        if let (Making::Render, Some(members)) = (making, &self.index.members) {
+            return members.splats() as u64;
         }
         let items = self.index.order.as_ref().map_or(self.scene.surfels.len(), |_| {
             // A surfel is drawn once in each of its groups.

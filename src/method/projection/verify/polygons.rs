@@ -309,7 +309,7 @@ mod tests {
         cull: bool,
     ) -> [usize; 3] {
         let exec = Exec::new(1, 16).unwrap();
-        let index = Index { groups: None, order: None, boxes: None, seen: None };
+        let index = Index::default();
         let job = Job::new(scene, &index, camera, &exec);
         let all = AllPolygons::<P>::new(&job, scene, cull);
         let drawn = project::<R>(&job, cull, Snap::default()).unwrap().samples;

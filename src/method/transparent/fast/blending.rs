@@ -2,10 +2,11 @@
 
 use super::FastBlending;
 use super::averaging::AverageBlock;
-use super::projection::Layer;
+use super::projection::{Blended, Layer};
 use crate::composite::bins::DepthBins;
 use crate::composite::decide;
 use crate::frame::NO_ID;
+use crate::index::members::Set;
 use crate::method::fast::fragments::{fragments, inside};
 use crate::method::fast::tile::Record;
 use crate::method::transparent::Holes;
@@ -35,7 +36,7 @@ pub(super) struct LayersBlock {
 
 impl LayersBlock {
     /// No fragment.
-    const EMPTY: Self = Self {
+    pub(super) const EMPTY: Self = Self {
         bin: [f32::INFINITY; LANES],
         color: [[0.0; LANES]; 3],
         alpha: [0.0; LANES],
@@ -56,85 +57,93 @@ impl Nearest {
     pub(super) const NONE: Self = Self([f32::INFINITY; LANES]);
 }
 
-impl FastBlending {
+impl<A: Blended> FastBlending<A> {
     /// Blends the layers of each group at the pixels of a block, whose first is `corner`, and
-    /// averages the groups. `list` has splats of the tile, group by group and from back to front.
+    /// averages the groups. `list` has splats of the tile from back to front; `images`, which have any
+    /// values, are of as many groups as there are.
     pub(super) fn blend<const BEHIND: bool>(
         &self,
-        average: &mut AverageBlock,
-        splats: &[Record<Layer>],
+        (average, images): (&mut AverageBlock, &mut [LayersBlock]),
+        splats: &[Record<A>],
         list: &[u32],
         corner: (u32, u32),
         nearest: &Nearest,
     ) {
         let shared = &self.prepared.shared;
-        let blocks = (average, corner, nearest);
+        let blocks = (average, images, corner, nearest);
+        let with = (shared, self.bins.as_slice(), self.holes);
         if shared.ray_cast {
-            blend::<true, BEHIND>(blocks, splats, list, (shared, &self.bins), self.holes);
+            blend::<true, BEHIND, A>(blocks, splats, list, with);
         } else {
-            blend::<false, BEHIND>(blocks, splats, list, (shared, &self.bins), self.holes);
+            blend::<false, BEHIND, A>(blocks, splats, list, with);
         }
     }
 }
 
 vectorized!(
-    fn blend<const RAY_CAST: bool, const BEHIND: bool>(
-        (average, corner, nearest): (&mut AverageBlock, (u32, u32), &Nearest),
-        splats: &[Record<Layer>],
+    fn blend<const RAY_CAST: bool, const BEHIND: bool, A: Blended>(
+        (average, images, corner, nearest): (
+            &mut AverageBlock,
+            &mut [LayersBlock],
+            (u32, u32),
+            &Nearest,
+        ),
+        splats: &[Record<A>],
         list: &[u32],
-        (shared, bins): (&Shared<f32>, &[DepthBins<f32>]),
-        holes: Holes,
+        (shared, bins, holes): (&Shared<f32>, &[DepthBins<f32>], Holes),
     ) {
         let shared = *shared;
-        let mut layers = LayersBlock::EMPTY;
-        let (mut group, mut own) = (None, bins[0]);
+        let common = bins[0];
+        let groups = images.len();
+        // The groups that have a fragment: the images of the others are of an earlier block.
+        let mut there: Set = 0;
         for &index in list {
             let splat = &splats[index as usize];
-            if group != Some(splat.attributes.group) {
-                if group.is_some() {
-                    average.add::<BEHIND>(&layers);
-                    layers = LayersBlock::EMPTY;
-                }
-                group = Some(splat.attributes.group);
-                own = bins[usize::from(splat.attributes.group)];
-            }
             let (q, w) = fragments::<RAY_CAST>(&shared, &splat.footprint, corner);
             let mut left = inside(&q, &w, shared.limit);
             if BEHIND {
                 let before = nearest.0;
                 left = each(|i| if left[i] >= before[i] { f32::NAN } else { left[i] });
             }
-            if any(&mask(|i| !left[i].is_nan())) {
-                layers.meet::<BEHIND>(splat, &left, &shared, &own);
+            if !any(&mask(|i| !left[i].is_nan())) {
+                continue;
+            }
+            let (mut place, mut depth) = ([0.0; LANES], [0.0; LANES]);
+            for i in 0..LANES {
+                depth[i] = shared.depth(left[i]);
+                // NaN, which fails, outside.
+                place[i] = common.unmoved(depth[i]);
+            }
+            let layer = splat.attributes.as_ref();
+            let mut rest = layer.groups;
+            while rest != 0 {
+                let group = rest.trailing_zeros() as usize;
+                let (image, own) = (&mut images[group], bins[group]);
+                let bin = each(|i| own.bin_of(own.moving(place[i])));
+                if there >> group & 1 == 0 {
+                    there |= 1 << group;
+                    *image = LayersBlock::EMPTY;
+                }
+                image.meet::<BEHIND>(layer, splat.surfel, &bin, &depth);
+                rest &= rest - 1;
             }
         }
-        if group.is_some() {
-            average.add::<BEHIND>(&layers);
+        while there != 0 {
+            average.add::<BEHIND>(&images[there.trailing_zeros() as usize]);
+            there &= there - 1;
         }
-        average.divide::<BEHIND>(holes, bins.len());
+        average.divide::<BEHIND>(holes, groups);
     }
 );
 
 impl LayersBlock {
-    /// The depth test against the fragments of a splat, of which NaN are none, and the blending of
-    /// those that pass.
+    /// The depth test against the fragments of a splat, whose bins are NaN where there are none, and
+    /// the blending of those that pass.
     #[inline(always)]
-    fn meet<const TOTALS: bool>(
-        &mut self,
-        splat: &Record<Layer>,
-        nearness: &Lanes,
-        shared: &Shared<f32>,
-        bins: &DepthBins<f32>,
-    ) {
+    fn meet<const TOTALS: bool>(&mut self, layer: &Layer, surfel: u32, bin: &Lanes, depth: &Lanes) {
         let before = *self;
-        let (mut bin, mut depth) = ([0.0; LANES], [0.0; LANES]);
-        for i in 0..LANES {
-            depth[i] = shared.depth(nearness[i]);
-            // NaN, which fails, outside.
-            bin[i] = bins.bin(depth[i]);
-        }
         let passes = mask(|i| bin[i] < before.bin[i]);
-        let Layer { color: [r, g, b], alpha, .. } = splat.attributes;
+        let Layer { color: [r, g, b], alpha, .. } = *layer;
         let [red, green, blue] = &before.color;
         self.color = [
             over(&passes, alpha, alpha * r, red),
@@ -153,9 +162,9 @@ impl LayersBlock {
         }
         let count = each(|i| if before.count[i] < 255.0 { before.count[i] + 1.0 } else { 255.0 });
         self.count = select(&passes, &count, &before.count);
-        self.bin = select(&passes, &bin, &before.bin);
-        self.depth = select(&passes, &depth, &before.depth);
-        self.id = select_u32(&passes, &[splat.surfel; LANES], &before.id);
+        self.bin = select(&passes, bin, &before.bin);
+        self.depth = select(&passes, depth, &before.depth);
+        self.id = select_u32(&passes, &[surfel; LANES], &before.id);
     }
 }
 

@@ -1,8 +1,9 @@
 //! The fast path for `f32`: the bits of the definition, from another layout, see [`crate::method`].
 //!
-//! In a tile the splats are sorted by group, back to front within each. Then block after block is
-//! finished: the layers of one group are blended, the group is added to the average, and the next
-//! group begins with the same numbers. So no image of a group is kept at all.
+//! A surfel is projected once for all groups that draw it with the same radius, and so are its
+//! fragments computed once. Block after block is finished: a fragment is blended into the images of its
+//! groups, which the nearest cache holds, and then the groups are averaged, in their order. So no image
+//! of a group is kept at all.
 
 mod averaging;
 mod blending;
@@ -10,24 +11,26 @@ mod projection;
 
 pub(in crate::method) use averaging::AverageBlock;
 pub(in crate::method) use blending::Nearest;
+pub(in crate::method) use projection::LayerOfSurface;
 
 use super::{Holes, Settings, planes};
 use crate::composite::bins::DepthBins;
 use crate::error::Result;
-use crate::frame::{Pool, Rect};
+use crate::frame::Pool;
+use crate::index::members::Set;
 use crate::method::algorithm::Job;
-use crate::method::fast::groups::sorted;
 use crate::method::fast::layered::{LayeredBlock, LayeredPlanes};
 use crate::method::fast::lists::BlockLists;
 use crate::method::fast::tile::{BlockGrid, Record};
 use crate::method::picture::{Clock, Picture};
 use crate::method::prepare::Prepared;
-use projection::Layer;
+use blending::LayersBlock;
+use projection::{Blended, Layer};
 use std::time::Instant;
 
-/// The splats of all groups, projected, shaded and sorted into tiles.
-pub(in crate::method) struct FastBlending {
-    pub(in crate::method) prepared: Prepared<f32, Record<Layer>>,
+/// The splats of all groups as records with `A`, projected, shaded and sorted into tiles.
+pub(in crate::method) struct FastBlending<A> {
+    pub(in crate::method) prepared: Prepared<f32, Record<A>>,
     /// Of each group.
     bins: Vec<DepthBins<f32>>,
     holes: Holes,
@@ -36,20 +39,23 @@ pub(in crate::method) struct FastBlending {
 /// The picture.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
     let mut clock = Clock::default();
-    let blending = FastBlending::project(job, settings)?;
+    let blending = FastBlending::<Layer>::project(job, settings, Set::count_ones)?;
     clock.lap("projection");
     let (size, grid) = (job.camera.size(), job.grid());
     let mut target = LayeredPlanes::new(size, pool.scalar(size), pool);
     let times = job.exec.ordered(target.strips(&grid, job.exec), |mut pixels| {
         let start = Instant::now();
+        let mut splats = Vec::new();
         for (index, rect) in pixels.depth.strip.tiles() {
-            match blending.averages::<false>(index, rect, |_| Nearest::NONE) {
-                Some(averages) => {
-                    let blocks: Vec<_> = averages.iter().map(AverageBlock::layers).collect();
-                    pixels.store(&rect, &blocks, |layers| layers);
-                }
-                None => pixels.clear(&rect, 0.0),
+            blending.prepared.gather_f32(index, &rect, &mut splats);
+            if splats.is_empty() {
+                pixels.clear(&rect, 0.0);
+                continue;
             }
+            let grid = BlockGrid::new(rect);
+            let averages = blending.averages::<false>(&splats, &grid, |_| Nearest::NONE);
+            let blocks: Vec<_> = averages.iter().map(AverageBlock::layers).collect();
+            pixels.store(&rect, &blocks, |layers| layers);
         }
         [start.elapsed()]
     });
@@ -59,37 +65,30 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     left.extend(planes::nearest_planes(depth, id, layers));
     clock.lap("averaging");
     let (frame, timings) = (job.frame(left), clock.into_laps());
-    Ok(Picture { frame, tally: blending.prepared.tally, timings, seen: None })
+    Ok(Picture { frame, tally: blending.tally(), timings, seen: None })
 }
 
-impl FastBlending {
-    /// Both passes over a tile: the average of its blocks; none if it has no splats.
+impl<A: Blended> FastBlending<A> {
+    /// Both passes over the splats of a tile: the average of its blocks.
     ///
     /// With `BEHIND`, fragments that are not strictly beyond the nearest layer of a block are
     /// dropped, and the sums of opacities are there.
     pub(in crate::method) fn averages<const BEHIND: bool>(
         &self,
-        tile: usize,
-        rect: Rect,
+        splats: &[Record<A>],
+        grid: &BlockGrid,
         nearest: impl Fn(usize) -> Nearest,
-    ) -> Option<Vec<AverageBlock>> {
-        let mut splats = Vec::new();
-        self.prepared.gather_f32(tile, &rect, &mut splats);
-        if splats.is_empty() {
-            return None;
-        }
-        let grid = BlockGrid::new(rect);
-        let own: Vec<u8> = splats.iter().map(|splat| splat.attributes.group).collect();
-        let (order, _) = sorted(&own, self.bins.len());
-        let shared = &self.prepared.shared;
-        let lists = BlockLists::new(&splats, order.iter().copied(), &grid, shared);
+    ) -> Vec<AverageBlock> {
+        let order = 0..splats.len() as u32;
+        let lists = BlockLists::new(splats, order, grid, &self.prepared.shared);
         let mut averages = vec![AverageBlock::EMPTY; grid.len()];
+        let mut images = vec![LayersBlock::EMPTY; self.bins.len()];
         for (block, list) in lists.blocks() {
             let (average, corner) = (&mut averages[block], grid.corner(block));
             let nearest = nearest(block);
-            self.blend::<BEHIND>(average, &splats, list, corner, &nearest);
+            self.blend::<BEHIND>((average, &mut images), splats, list, corner, &nearest);
         }
-        Some(averages)
+        averages
     }
 }
 

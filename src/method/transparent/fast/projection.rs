@@ -2,66 +2,165 @@
 
 use super::FastBlending;
 use crate::error::Result;
-use crate::index::Item;
+use crate::index::members::Set;
+use crate::index::order::Part;
 use crate::method::algorithm::Job;
-use crate::method::fast::tile::Record;
+use crate::method::fast::tile::{Record, Surface};
 use crate::method::fragment::facing;
-use crate::method::prepare::Prepared;
+use crate::method::prepare::{Prepared, batch_size};
 use crate::method::transparent::Settings;
-use crate::method::transparent::blending::Ground;
 use crate::number::Vector3;
 use crate::number::lanes::{LANES, Lanes, components, put_vector, vectorized};
-use crate::scene::Scene;
+use crate::scene::Surfels;
 use crate::shade::phong::Shader;
-use crate::splat::batch;
+use crate::splat::batch::Enlarged;
+use crate::splat::{Splat, Tally, View, batch};
+use glam::Vec3;
 
-/// What is blended where a splat is one of a group.
+/// What is blended where a splat is one of some groups.
 #[derive(Clone, Copy)]
 pub(in crate::method) struct Layer {
     /// Shaded at the centre.
     pub(super) color: [f32; 3],
     pub(super) alpha: f32,
-    pub(super) group: u8,
+    /// The groups that draw it.
+    pub(super) groups: Set,
     /// Whether the back of the surfel is seen.
     back: bool,
 }
 
-impl FastBlending {
-    /// Every surfel in each of its groups, from back to front.
-    pub(in crate::method) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
-        let (scene, groups) = (job.scene, job.index.groups()?);
-        let surfels = &scene.surfels;
-        let Ground { items, bins, shader } = Ground::new(job, settings)?;
-        let prepared = Prepared::new(
+/// What a record has of a splat that is blended.
+pub(in crate::method) trait Blended:
+    AsRef<Layer> + AsMut<Layer> + Copy + Send + Sync
+{
+    /// The layer that it is, and what else is kept of the splat.
+    fn new(layer: Layer, splat: &Splat<f32>, surfels: &Surfels) -> Self;
+}
+
+impl AsRef<Self> for Layer {
+    fn as_ref(&self) -> &Self {
+        self
+    }
+}
+
+impl AsMut<Self> for Layer {
+    fn as_mut(&mut self) -> &mut Self {
+        self
+    }
+}
+
+impl Blended for Layer {
+    #[inline(always)]
+    fn new(layer: Layer, _: &Splat<f32>, _: &Surfels) -> Self {
+        layer
+    }
+}
+
+/// A splat that is blended, and averaged in a nearest layer.
+#[derive(Clone, Copy)]
+pub(in crate::method) struct LayerOfSurface {
+    layer: Layer,
+    pub(in crate::method) surface: Surface,
+}
+
+impl AsRef<Layer> for LayerOfSurface {
+    fn as_ref(&self) -> &Layer {
+        &self.layer
+    }
+}
+
+impl AsMut<Layer> for LayerOfSurface {
+    fn as_mut(&mut self) -> &mut Layer {
+        &mut self.layer
+    }
+}
+
+impl Blended for LayerOfSurface {
+    #[inline(always)]
+    fn new(layer: Layer, splat: &Splat<f32>, surfels: &Surfels) -> Self {
+        Self { layer, surface: Surface::new(splat, surfels.normal(), surfels.color()) }
+    }
+}
+
+impl<A: Blended> FastBlending<A> {
+    /// Every surfel from back to front, once for all groups that draw it alike; `times` tells as how many
+    /// a surfel that some groups draw is counted.
+    pub(in crate::method) fn project(
+        job: &Job<'_>,
+        settings: &Settings,
+        times: impl Fn(Set) -> u32 + Sync + Send,
+    ) -> Result<Self> {
+        let Job { scene, index, camera, .. } = *job;
+        let (groups, order, members) = (index.groups()?, index.order()?, index.members()?);
+        let bins = settings.bins(job, groups.len())?;
+        let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
+        // Until their layers are shaded, surfels are known by their places in the tree.
+        let surfels = &members.surfels;
+        let size = batch_size(job, surfels.len());
+        let prepared = Prepared::of_batches(
             job,
             &settings.splats,
-            items.len(),
-            |projector, range, records: &mut Vec<Record<Layer>>| {
-                let items = &items[range];
-                let enlarged = |item: &Item| (item.surfel, groups.scale()[usize::from(item.group)]);
-                let list: Vec<_> = items.iter().map(enlarged).collect();
+            batches(order.parts(camera, size.div_ceil(2)), size),
+            |projector, parts: Vec<Part>, records: &mut Vec<Record<A>>| {
+                let count = parts.iter().map(Part::len).sum();
+                let (mut list, mut sets) = (Vec::with_capacity(count), Vec::with_capacity(count));
+                for part in &parts {
+                    order.walk_part(part, |place| {
+                        members.each_scale(place, |scale, groups| {
+                            let (surfel, times) = (place as u32, times(groups));
+                            list.push(Enlarged { surfel, scale, times });
+                            sets.push(groups);
+                        });
+                    });
+                }
+                records.reserve_exact(list.len());
                 let tally = batch::enlarged_f32(projector, surfels, &list, |place, splat| {
-                    let (group, back) = (items[place].group, splat.back);
-                    let (color, alpha) = ([0.0; 3], opacity(scene, splat.surfel));
-                    records.push(Record::new(&splat, Layer { color, alpha, group, back }));
+                    let alpha = surfels.opacity().map_or(1.0, |all| all[splat.surfel as usize]);
+                    let (groups, back) = (sets[place], splat.back);
+                    let layer = Layer { color: [0.0; 3], alpha, groups, back };
+                    records.push(Record::new(&splat, A::new(layer, &splat, surfels)));
                 });
-                shade(records, scene, &shader);
+                shade(records, surfels, scene.material.color, &shader);
+                for record in records {
+                    record.surfel = order.index(record.surfel as usize);
+                }
                 tally
             },
             Record::bounds,
         );
         Ok(Self { prepared, bins, holes: settings.holes })
     }
+
+    /// What became of the surfels.
+    pub(in crate::method) fn tally(&self) -> Tally {
+        self.prepared.tally
+    }
 }
 
-fn opacity(scene: &Scene, surfel: u32) -> f32 {
-    scene.surfels.opacity().map_or(1.0, |all| all[surfel as usize])
+/// Parts that follow one another, together of `size` surfels or a few more.
+fn batches(parts: Vec<Part>, size: usize) -> Vec<Vec<Part>> {
+    let mut batches = Vec::new();
+    let (mut batch, mut count) = (Vec::new(), 0);
+    for part in parts {
+        count += part.len();
+        batch.push(part);
+        if count >= size {
+            batches.push(std::mem::take(&mut batch));
+            count = 0;
+        }
+    }
+    batches.extend((!batch.is_empty()).then_some(batch));
+    batches
 }
 
 vectorized!(
-    /// Shades the splats, each at its centre.
-    fn shade(records: &mut [Record<Layer>], scene: &Scene, shader: &Shader<f32>) {
-        let surfels = &scene.surfels;
+    /// Shades the splats, each at its centre; `own` is the colour of surfels that have none.
+    fn shade<A: Blended>(
+        records: &mut [Record<A>],
+        surfels: &Surfels,
+        own: Vec3,
+        shader: &Shader<f32>,
+    ) {
         let (positions, normals) = (surfels.position(), surfels.normal());
         for records in records.chunks_mut(LANES) {
             // Lanes without a splat show the null vector in black.
@@ -70,15 +169,16 @@ vectorized!(
                 (zero, zero, zero);
             for (i, record) in records.iter().enumerate() {
                 let surfel = record.surfel as usize;
-                let [x, y, z] = facing(normals[surfel].to_array(), record.attributes.back);
-                let color = surfels.color().map_or(scene.material.color, |colors| colors[surfel]);
+                let back = record.attributes.as_ref().back;
+                let [x, y, z] = facing(normals[surfel].to_array(), back);
+                let color = surfels.color().map_or(own, |colors| colors[surfel]);
                 put_vector(&mut position, i, Vector3::from_glam(positions[surfel]));
                 put_vector(&mut normal, i, Vector3::new(x, y, z));
                 put_vector(&mut surface, i, Vector3::from_glam(color));
             }
             let color = shader.surfels(&position, &normal, &surface);
             for (i, record) in records.iter_mut().enumerate() {
-                record.attributes.color = components(&color, i);
+                record.attributes.as_mut().color = components(&color, i);
             }
         }
     }

@@ -10,17 +10,18 @@ use crate::method::transparent_hq::compositing::Through;
 use crate::method::transparent_hq::nearest::{FrontLayer, MASK};
 use crate::number::lanes::{LANES, components, each, vectorized};
 
-/// What the blocks of a tile show before the environment; no `others`: nothing is behind.
+/// A block of the nearest layer, what it shows, and what is behind it.
+type Behind<'a> = ((&'a PixelBlock, &'a FrontBlock), &'a AverageBlock);
+
+/// What the blocks of a tile show before the environment.
 pub(super) fn compositing(
     through: &Through<'_, f32>,
     tile: &Tile,
     fronts: &[FrontBlock],
-    others: Option<&[AverageBlock]>,
+    others: &[AverageBlock],
 ) -> Vec<LayeredBlock> {
-    let nothing = AverageBlock::EMPTY;
-    let blocks = tile.blocks.iter().zip(fronts).enumerate();
-    let shown = |(index, (nearest, front)): (usize, (&PixelBlock, &FrontBlock))| {
-        let others = others.map_or(&nothing, |others| &others[index]);
+    let blocks = tile.blocks.iter().zip(fronts).zip(others).enumerate();
+    let shown = |(index, ((nearest, front), others)): (usize, Behind<'_>)| {
         let mut block = over(nearest, front, others);
         if through.bends() {
             refract(through, &mut block, tile.grid.corner(index), (nearest, front, others));

@@ -1,8 +1,10 @@
 //! The fast path for `f32`: the bits of the definition, from the fast paths of both its parts, a
-//! tile after the other, see [`crate::method`].
+//! tile after the other, see [`crate::method`]. A splat is projected, sorted into tiles and gathered
+//! once for both, if no group enlarges it.
 
 mod compositing;
 mod nearest;
+mod projection;
 
 use super::compositing::Through;
 use super::{Settings, picture, planes};
@@ -12,19 +14,20 @@ use crate::method::algorithm::Job;
 use crate::method::fast::layered::LayeredPlanes;
 use crate::method::fast::store::{clear_plane, interleaved, row, store_plane};
 use crate::method::picture::{Clock, Picture};
-use crate::method::transparent::fast::{FastBlending, Nearest};
+use crate::method::transparent::fast::Nearest;
 use crate::method::transparent::planes as layers;
 use crate::scene::Environment;
 use compositing::compositing;
 use nearest::FastNearest;
+use projection::Splats;
 use std::time::{Duration, Instant};
 
 /// The picture.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
     picture::check(job, settings)?;
     let mut clock = Clock::default();
-    let nearest = FastNearest::project(job, settings)?;
-    let blending = FastBlending::project(job, &settings.layers)?;
+    let nearest = FastNearest::new(job, settings)?;
+    let splats = Splats::project(job, settings)?;
     clock.lap("projection");
     let through = Through::new(job, settings, Environment::radiance);
     let (size, grid) = (job.camera.size(), job.grid());
@@ -35,23 +38,26 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     let jobs = target.strips(&grid, job.exec).into_iter().zip(beside).collect();
     let times = job.exec.ordered(jobs, |(mut pixels, (mut normal, mut weight))| {
         let mut times = [Duration::ZERO; 4];
+        let (mut layers, mut blocks) = (Vec::new(), nearest.tile());
         for (index, rect) in pixels.depth.strip.tiles() {
             let start = Instant::now();
-            let Some((mut blocks, mut images)) = nearest.geometry(index, rect) else {
+            splats.gather(index, rect, &mut layers, &mut blocks);
+            if blocks.splats.is_empty() {
                 // Where there is no nearest layer nothing is seen.
                 pixels.clear(&rect, 0.0);
                 clear_plane(&rect, &mut normal, [0.0; 3]);
                 clear_plane(&rect, &mut weight, 0.0);
                 times[0] += start.elapsed();
                 continue;
-            };
+            }
+            let mut images = nearest.geometry(&blocks);
             let drawn = Instant::now();
             let fronts = nearest.resolve(&mut blocks, &mut images);
             let resolved = Instant::now();
             let band = |block: usize| Nearest(blocks.blocks[block].least);
-            let others = blending.averages::<true>(index, rect, band);
+            let others = splats.blending.averages::<true>(&layers, &blocks.grid, band);
             let blended = Instant::now();
-            let shown = compositing(&through, &blocks, &fronts, others.as_deref());
+            let shown = compositing(&through, &blocks, &fronts, &others);
             pixels.store(&rect, &shown, |layers| layers);
             store_plane(&rect, &blocks.blocks, &mut normal, |b, i| interleaved(&b.normal, i));
             store_plane(&rect, &blocks.blocks, &mut weight, |b, i| row(&b.weight, i));
@@ -67,5 +73,5 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     left.extend(planes::nearest_planes(depth, normal, weight, id));
     clock.lap("compositing");
     let (frame, timings) = (job.frame(left), clock.into_laps());
-    Ok(Picture { frame, tally: nearest.prepared.tally, timings, seen: None })
+    Ok(Picture { frame, tally: splats.tally(), timings, seen: None })
 }

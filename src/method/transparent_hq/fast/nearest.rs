@@ -3,25 +3,24 @@
 use crate::composite::bins::DepthBins;
 use crate::composite::sum;
 use crate::error::Result;
-use crate::frame::Rect;
 use crate::method::algorithm::Job;
-use crate::method::fast::prepare;
-use crate::method::fast::tile::{PixelBlock, ROW, Record, Tile};
-use crate::method::prepare::Prepared;
+use crate::method::fast::tile::{PixelBlock, ROW, Tile};
+use crate::method::single_pass;
 use crate::method::single_pass::fast::images::GroupImages;
 use crate::method::transparent_hq::Settings;
-use crate::method::transparent_hq::nearest::single_pass;
+use crate::method::transparent_hq::nearest::single_pass as of;
 use crate::number::Real;
 use crate::number::lanes::{LANES, Lanes, vectorized};
 use crate::scene::{Groups, Scene};
 use crate::shade::phong::Shader;
-use crate::splat::View;
+use crate::splat::{Shared, View};
 
-/// The splats of the nearest layer, projected and sorted into tiles.
+/// What the nearest layer is drawn with.
 pub(super) struct FastNearest<'a> {
     scene: &'a Scene,
     groups: &'a Groups,
-    pub(super) prepared: Prepared<f32, Record>,
+    shared: Shared<f32>,
+    epsilon: f32,
     /// The bins of the Voronoi depth test; none for the plain one.
     bins: Option<DepthBins<f32>>,
     shader: Shader<f32>,
@@ -38,35 +37,38 @@ pub(super) struct FrontBlock {
 }
 
 impl<'a> FastNearest<'a> {
-    /// Projection.
-    pub(super) fn project(job: &Job<'a>, settings: &Settings) -> Result<Self> {
-        let (scene, settings) = (job.scene, single_pass(settings));
+    /// What is known before anything is projected.
+    pub(super) fn new(job: &Job<'a>, settings: &Settings) -> Result<Self> {
+        let (scene, settings) = (job.scene, of(settings));
+        let single_pass::Settings { splats, .. } = settings;
         let (groups, bins) = (job.index.groups()?, settings.bins(&scene.surfels, job.camera)?);
-        let prepared = prepare(job, &settings.splats);
-        let shader = Shader::new(View::new(job.camera), &scene.lights, scene.material);
-        Ok(Self { scene, groups, prepared, bins, shader })
+        let view = View::new(job.camera);
+        let shared = Shared::new(&view, &splats.kernel);
+        let epsilon = splats.epsilon.resolve(&scene.surfels);
+        let shader = Shader::new(view, &scene.lights, scene.material);
+        Ok(Self { scene, groups, shared, epsilon, bins, shader })
     }
 
-    /// The geometry pass over a tile; none if it has no splats.
-    pub(super) fn geometry(&self, index: usize, rect: Rect) -> Option<(Tile, GroupImages)> {
-        let (surfels, shared) = (&self.scene.surfels, &self.prepared.shared);
-        let mut tile = Tile::new([true, surfels.color().is_some()]);
-        tile.gather(&self.prepared, index, rect);
-        if tile.splats.is_empty() {
-            return None;
-        }
+    /// A tile that uses memory again.
+    pub(super) fn tile(&self) -> Tile {
+        Tile::new([true, self.scene.surfels.color().is_some()])
+    }
+
+    /// The geometry pass over a tile that has splats.
+    pub(super) fn geometry(&self, tile: &Tile) -> GroupImages {
+        let (surfels, shared) = (&self.scene.surfels, &self.shared);
         let opacity = |surfel: u32| surfels.opacity().map_or(1.0, |all| all[surfel as usize]);
-        let mut images = GroupImages::new(&tile, self.groups, shared.empty(), Some(opacity));
-        images.draw(&tile, shared, self.bins.as_ref());
-        Some((tile, images))
+        let mut images = GroupImages::new(tile, self.groups, shared.empty(), Some(opacity));
+        images.draw(tile, shared, self.bins.as_ref());
+        images
     }
 
     /// The compositing pass, normalization and shading: leaves depth, surfel, weight and normal in
     /// the blocks of the tile, and the least nearness that is within epsilon.
     pub(super) fn resolve(&self, tile: &mut Tile, images: &mut GroupImages) -> Vec<FrontBlock> {
-        let shared = &self.prepared.shared;
+        let shared = &self.shared;
         images.nearest(tile);
-        tile.limits(shared, self.prepared.epsilon);
+        tile.limits(shared, self.epsilon);
         images.composite(tile, shared);
         tile.normalize(shared);
         let (grid, material) = (tile.grid, self.scene.material.color.to_array());
