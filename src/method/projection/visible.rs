@@ -62,11 +62,14 @@ impl<'a, R: Exact> VisibleTriangles<'a, R> {
     /// What [`super::project`] keeps of a triangle at a pixel, and the weights c of the corners there, see
     /// [`super::primitives`]; none if the triangle does not cover it.
     pub(crate) fn sample(&self, id: u32, pixel: (u32, u32)) -> Option<(PixelSample<R>, [R; 3])> {
-        let mut found = None;
-        // Of the pieces of a clipped triangle one covers the pixel.
+        let (mut nearest, mut found) = (R::INFINITY, None);
+        // Corners that are moved to the grid can turn a piece of a clipped triangle over another one.
         pieces(&self.projector, id as usize, |piece: Piece<R>| {
             piece.for_each(&Rect::pixel(pixel), |at| {
-                found = Some((piece.sample(&self.projector, &at), at.c));
+                if found.is_none() || decide::before(-at.p.z, nearest) {
+                    nearest = -at.p.z;
+                    found = Some((piece.sample(&self.projector, &at), at.c));
+                }
             });
         });
         found
