@@ -88,32 +88,14 @@ pub(in crate::method) struct Blending<R: Exact> {
     buffers: Buffers,
 }
 
-/// What is known before anything is projected.
-pub(super) struct Ground<R: Exact> {
-    /// Every surfel in each of its groups, from back to front.
-    pub(super) items: Vec<Item>,
-    /// The bins of each group.
-    pub(super) bins: Vec<DepthBins<R>>,
-    pub(super) shader: Shader<R>,
-}
-
-impl<R: Exact> Ground<R> {
-    pub(super) fn new(job: &Job<'_>, settings: &Settings) -> Result<Self> {
-        let Job { scene, index, camera, .. } = *job;
-        Ok(Self {
-            items: index.back_to_front(camera)?,
-            bins: settings.bins(job, index.groups()?.len())?,
-            shader: Shader::new(View::new(camera), &scene.lights, scene.material),
-        })
-    }
-}
-
 impl<R: Exact> Blending<R> {
     /// Order, projection and shading.
     pub(in crate::method) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
         let (scene, groups) = (job.scene, job.index.groups()?);
         let surfels = &scene.surfels;
-        let Ground { items, bins, shader } = Ground::new(job, settings)?;
+        let (items, bins) =
+            (job.index.back_to_front(job.camera)?, settings.bins(job, groups.len())?);
+        let shader = Shader::new(View::new(job.camera), &scene.lights, scene.material);
         let prepared = Prepared::new(
             job,
             &settings.splats,
