@@ -146,7 +146,7 @@
 //! | layer | one of the surfaces that a ray passes through |
 //! | opacity | alpha, the part of the light from behind that a surfel blocks |
 //! | plane | one quantity for every pixel |
-//! | tile, bin | a square of pixels that one thread owns; the list of its splats |
+//! | tile, strip, bin | a square of pixels that one thread owns; the same of a fast path, 64 pixels wide if tiles are smaller; the list of its splats |
 //! | ball | all values that a right implementation may have: a midpoint and a radius |
 //! | client | another renderer, whose planes are judged |
 //! | certificate | what shows that a fragment may be the nearest: it may be there, and nothing certainly is nearer |

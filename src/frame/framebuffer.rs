@@ -1,6 +1,6 @@
 //! The framebuffer: depth, stencil and floating accumulation.
 
-use super::tile::StripMut;
+use super::tile::TileMut;
 use super::{Exec, Grid, NO_ID, Plane};
 use crate::number::Real;
 
@@ -42,19 +42,19 @@ pub struct Framebuffer<R> {
     pub margin: Option<Plane<R>>,
 }
 
-/// One strip of the planes that a fast path writes.
+/// One tile of the planes that a fast path writes.
 #[derive(Debug)]
-pub struct FramebufferStrip<'a, R> {
+pub struct FramebufferTile<'a, R> {
     /// See [`Framebuffer::depth`].
-    pub depth: StripMut<'a, R>,
+    pub depth: TileMut<'a, R>,
     /// See [`Framebuffer::id`].
-    pub id: StripMut<'a, u32>,
+    pub id: TileMut<'a, u32>,
     /// See [`Framebuffer::weight`].
-    pub weight: StripMut<'a, R>,
+    pub weight: TileMut<'a, R>,
     /// See [`Framebuffer::normal`].
-    pub normal: Option<StripMut<'a, [R; 3]>>,
+    pub normal: Option<TileMut<'a, [R; 3]>>,
     /// See [`Framebuffer::color`].
-    pub color: Option<StripMut<'a, [R; 3]>>,
+    pub color: Option<TileMut<'a, [R; 3]>>,
 }
 
 impl<R: Real> Framebuffer<R> {
@@ -75,16 +75,16 @@ impl<R: Real> Framebuffer<R> {
         }
     }
 
-    /// The strips, row by row.
-    pub fn strips(&mut self, grid: &Grid, exec: &Exec) -> Vec<FramebufferStrip<'_, R>> {
+    /// The tiles, row by row.
+    pub fn cut(&mut self, grid: &Grid, exec: &Exec) -> Vec<FramebufferTile<'_, R>> {
         let depth = grid.cut(&mut self.depth, exec);
         let mut id = grid.cut(&mut self.id, exec).into_iter();
         let mut weight = grid.cut(&mut self.weight, exec).into_iter();
         let cut = |plane| grid.cut(plane, exec).into_iter();
         let mut normal = self.normal.as_mut().map(cut);
         let mut color = self.color.as_mut().map(cut);
-        let strips = depth.into_iter().filter_map(|depth| {
-            Some(FramebufferStrip {
+        let tiles = depth.into_iter().filter_map(|depth| {
+            Some(FramebufferTile {
                 depth,
                 id: id.next()?,
                 weight: weight.next()?,
@@ -92,6 +92,6 @@ impl<R: Real> Framebuffer<R> {
                 color: color.as_mut().and_then(Iterator::next),
             })
         });
-        strips.collect()
+        tiles.collect()
     }
 }

@@ -55,8 +55,7 @@ impl Exec {
     /// The tiles of a picture.
     #[must_use]
     pub fn grid(&self, width: u32, height: u32) -> Grid {
-        let tile = self.tile;
-        Grid { width, height, tile, columns: width.div_ceil(tile), rows: height.div_ceil(tile) }
+        Grid::new([width, height], [self.tile; 2])
     }
 
     /// Runs every job, in parallel, and returns the results in the order of the jobs.
@@ -155,13 +154,13 @@ fn each(pool: &rayon::ThreadPool, count: usize, run: &(dyn Fn(usize) + Sync)) {
     pool.install(|| (0..count).into_par_iter().for_each(run));
 }
 
-/// The division of a picture into square tiles; those at the right and lower edge may be cut.
+/// The division of a picture into tiles; those at the right and lower edge may be cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
     width: u32,
     height: u32,
-    /// Side of a tile in pixels.
-    pub tile: u32,
+    /// Width and height of a tile in pixels, powers of two.
+    pub side: [u32; 2],
     /// Tiles in a row.
     pub columns: u32,
     /// Rows of tiles.
@@ -169,6 +168,20 @@ pub struct Grid {
 }
 
 impl Grid {
+    fn new([width, height]: [u32; 2], side: [u32; 2]) -> Self {
+        let [columns, rows] = [width.div_ceil(side[0]), height.div_ceil(side[1])];
+        Self { width, height, side, columns, rows }
+    }
+
+    /// The same picture in strips, the tiles of the fast paths: as high as a tile, and at least 64
+    /// pixels wide. What a strip costs, and what a splat costs in each strip that the splat touches,
+    /// is shared by as many pixels, however small the tiles are.
+    #[must_use]
+    pub fn strips(&self) -> Self {
+        let [wide, high] = self.side;
+        Self::new([self.width, self.height], [wide.max(STRIP), high])
+    }
+
     /// Whether a pixel is in the picture.
     #[must_use]
     pub fn holds(&self, x: u32, y: u32) -> bool {
@@ -190,8 +203,9 @@ impl Grid {
     /// The pixels of the tile at a column and row of tiles.
     #[must_use]
     pub fn rect(&self, column: u32, row: u32) -> Rect {
-        let (x0, y0) = (column * self.tile, row * self.tile);
-        Rect { x0, y0, x1: self.width.min(x0 + self.tile), y1: self.height.min(y0 + self.tile) }
+        let [wide, high] = self.side;
+        let (x0, y0) = (column * wide, row * high);
+        Rect { x0, y0, x1: self.width.min(x0 + wide), y1: self.height.min(y0 + high) }
     }
 
     /// Width and height of the picture in pixels.
@@ -203,7 +217,7 @@ impl Grid {
     /// The tile of a pixel, and the place of the pixel in its tile, both counted row by row.
     #[must_use]
     pub fn place(&self, x: u32, y: u32) -> (usize, usize) {
-        let (column, row) = (x / self.tile, y / self.tile);
+        let (column, row) = (x / self.side[0], y / self.side[1]);
         let Rect { x0, y0, x1, .. } = self.rect(column, row);
         let tile = (row * self.columns + column) as usize;
         (tile, ((y - y0) * (x1 - x0) + (x - x0)) as usize)
@@ -232,41 +246,22 @@ impl Grid {
         plane
     }
 
-    /// The strips of the picture, row by row.
-    #[must_use]
-    pub fn strips(&self) -> Vec<Strip> {
-        let step = self.strip();
-        let starts = (0..self.rows).flat_map(|row| {
-            (0..self.columns).step_by(step as usize).map(move |column| (column, row))
-        });
-        let strip = |(column, row)| {
-            let last = self.columns.min(column + step) - 1;
-            let rect = Rect { x1: self.rect(last, row).x1, ..self.rect(column, row) };
-            let first = (row * self.columns + column) as usize;
-            Strip { first, rect, tile: self.tile }
-        };
-        starts.map(strip).collect()
-    }
-
-    /// Tiles of a strip.
-    fn strip(&self) -> u32 {
-        (STRIP / self.tile).max(1)
-    }
-
-    /// A plane cut into its strips, disjoint and writable.
-    pub fn cut<'a, T: Send>(&self, plane: &'a mut Plane<T>, exec: &Exec) -> Vec<StripMut<'a, T>> {
-        let (width, strips) = (self.width.max(1) as usize, self.strips());
-        let rows = strips.chunk_by(|a, b| a.rect.y0 == b.rect.y0);
-        let bands = plane.values_mut().chunks_mut(width * self.tile as usize);
-        // A strip is many short rows: cutting them out is work enough to be shared.
-        let cut = exec.ordered(rows.zip(bands).collect(), |(strips, band)| {
-            let empty =
-                |&strip: &Strip| StripMut { strip, rows: Vec::with_capacity(self.tile as usize) };
-            let mut cut: Vec<_> = strips.iter().map(empty).collect();
+    /// A plane cut into its tiles, disjoint and writable, row by row.
+    pub fn cut<'a, T: Send>(&self, plane: &'a mut Plane<T>, exec: &Exec) -> Vec<TileMut<'a, T>> {
+        let (width, high) = (self.width.max(1) as usize, self.side[1] as usize);
+        let bands = (0..).zip(plane.values_mut().chunks_mut(width * high));
+        // A tile is many short rows: cutting them out is work enough to be shared.
+        let cut = exec.ordered(bands.collect(), |(row, band): (u32, &'a mut [T])| {
+            let empty = |column| TileMut {
+                index: (row * self.columns + column) as usize,
+                rect: self.rect(column, row),
+                rows: Vec::with_capacity(high),
+            };
+            let mut cut: Vec<_> = (0..self.columns).map(empty).collect();
             for mut row in band.chunks_mut(width) {
-                for strip in &mut cut {
-                    let (part, rest) = row.split_at_mut(strip.strip.rect.columns());
-                    strip.rows.push(part);
+                for tile in &mut cut {
+                    let (part, rest) = row.split_at_mut(tile.rect.columns());
+                    tile.rows.push(part);
                     row = rest;
                 }
             }
@@ -276,50 +271,29 @@ impl Grid {
     }
 }
 
-/// The least width of a strip in pixels, if the picture is as wide: what a job costs is shared by
-/// as many pixels, however small the tiles are.
+/// The least width of a strip in pixels, if the picture is as wide.
 const STRIP: u32 = 64;
 
-/// Neighbouring tiles of one row of tiles: what one job draws.
-#[derive(Clone, Copy, Debug)]
-pub struct Strip {
-    /// The number of its first tile, counted row by row.
-    first: usize,
-    /// The pixels of all its tiles.
-    pub rect: Rect,
-    tile: u32,
-}
-
-impl Strip {
-    /// The tiles from left to right: number and pixels.
-    pub fn tiles(self) -> impl Iterator<Item = (usize, Rect)> {
-        let Self { first, rect, tile } = self;
-        let starts = (rect.x0..rect.x1).step_by(tile as usize);
-        let pixels = starts.map(move |x0| Rect { x0, x1: rect.x1.min(x0 + tile), ..rect });
-        (first..).zip(pixels)
-    }
-}
-
-/// The pixels of one strip of a plane, writable.
+/// The pixels of one tile of a plane, writable.
 #[derive(Debug)]
-pub struct StripMut<'a, T> {
+pub struct TileMut<'a, T> {
+    /// Its number, counted row by row.
+    pub index: usize,
     /// Where it is.
-    pub strip: Strip,
+    pub rect: Rect,
     rows: Vec<&'a mut [T]>,
 }
 
-impl<T> StripMut<'_, T> {
-    /// A row of one of its tiles, counted from the top.
-    #[inline(always)]
-    pub fn row(&mut self, tile: &Rect, y: usize) -> &mut [T] {
-        let first = (tile.x0 - self.strip.rect.x0) as usize;
-        &mut self.rows[y][first..first + tile.columns()]
+impl<T> TileMut<'_, T> {
+    /// Its rows, from the top.
+    pub fn rows(&mut self) -> impl Iterator<Item = &mut [T]> {
+        self.rows.iter_mut().map(|row| &mut **row)
     }
 
     /// The value at a column and row of the picture.
     #[inline(always)]
     pub fn at(&mut self, [x, y]: [u32; 2]) -> &mut T {
-        let Rect { x0, y0, .. } = self.strip.rect;
+        let Rect { x0, y0, .. } = self.rect;
         &mut self.rows[(y - y0) as usize][(x - x0) as usize]
     }
 }
@@ -329,27 +303,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tiles_partition_the_picture() {
+    fn tiles_and_strips_partition_the_picture() {
         let exec = Exec::new(3, 16).unwrap();
         for (width, height) in [(1, 1), (16, 16), (17, 33), (64, 5), (100, 1), (129, 20)] {
-            let grid = exec.grid(width, height);
-            let mut plane = Plane::filled(width, height, 0_u32);
-            let written = exec.ordered(grid.cut(&mut plane, &exec), |mut pixels| {
-                let tiles: Vec<_> = pixels.strip.tiles().collect();
-                for (_, rect) in &tiles {
-                    for y in rect.y0..rect.y1 {
-                        let row = pixels.row(rect, (y - rect.y0) as usize);
-                        for (x, value) in (rect.x0..rect.x1).zip(row) {
+            let tiles = exec.grid(width, height);
+            for grid in [tiles, tiles.strips()] {
+                let mut plane = Plane::filled(width, height, 0_u32);
+                let written = exec.ordered(grid.cut(&mut plane, &exec), |mut tile| {
+                    let Rect { x0, y0, x1, .. } = tile.rect;
+                    for (y, row) in (y0..).zip(tile.rows()) {
+                        for (x, value) in (x0..x1).zip(row) {
                             *value += 1 + x + width * y;
                         }
                     }
-                }
-                tiles
-            });
-            let tiles: Vec<_> = grid.rects().into_iter().enumerate().collect();
-            assert_eq!(written.concat(), tiles, "results come in the order of the jobs");
-            let expected: Vec<_> = (1..=width * height).collect();
-            assert_eq!(plane.values(), expected, "each pixel written once: {width} x {height}");
+                    (tile.index, tile.rect)
+                });
+                let rects: Vec<_> = grid.rects().into_iter().enumerate().collect();
+                assert_eq!(written, rects, "results come in the order of the jobs");
+                let expected: Vec<_> = (1..=width * height).collect();
+                assert_eq!(plane.values(), expected, "each pixel once: {width} x {height}");
+            }
         }
     }
 

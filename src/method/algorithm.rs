@@ -45,6 +45,11 @@ impl<'a> Job<'a> {
         self.exec.grid(self.camera.width, self.camera.height)
     }
 
+    /// The tiles of the fast paths.
+    pub(super) fn strips(&self) -> Grid {
+        self.grid().strips()
+    }
+
     /// All pixels of the picture.
     pub(super) fn picture(&self) -> Rect {
         Rect { x0: 0, y0: 0, x1: self.camera.width, y1: self.camera.height }

@@ -1,7 +1,7 @@
 //! Projection and binning: what every method does first.
 
 use super::algorithm::Job;
-use crate::frame::{Bins, Rect};
+use crate::frame::{Bins, Grid, Rect};
 use crate::number::{Exact, Real};
 use crate::splat::SplatSettings;
 use crate::splat::{Projector, Shared, Splat, Tally, View, batch};
@@ -23,36 +23,36 @@ impl<R: Real, S: Send> Prepared<R, S> {
     ///
     /// `project` makes the records of a range of items; `bounds` gives the pixels of a record.
     pub(super) fn new(
-        job: &Job<'_>,
+        (job, grid): (&Job<'_>, &Grid),
         settings: &SplatSettings,
         count: usize,
         project: impl Fn(&Projector<R>, Range<usize>, &mut Vec<S>) -> Tally + Sync + Send,
         bounds: impl Fn(&S) -> Rect + Sync + Send,
     ) -> Self {
-        let size = batch_size(job, count);
+        let size = batch_size(grid, count);
         let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
         let projected = |projector: &Projector<R>, range: Range<usize>, splats: &mut Vec<S>| {
             splats.reserve_exact(range.len());
             project(projector, range, splats)
         };
-        Self::of_batches(job, settings, ranges.collect(), projected, bounds)
+        Self::of_batches((job, grid), settings, ranges.collect(), projected, bounds)
     }
 
     /// Projects the items of some batches and sorts the splats into tiles; the order of the items is
     /// that of the batches. `project` and `bounds` are as in [`Prepared::new`].
     pub(super) fn of_batches<B: Send>(
-        job: &Job<'_>,
+        (job, grid): (&Job<'_>, &Grid),
         settings: &SplatSettings,
         batches: Vec<B>,
         project: impl Fn(&Projector<R>, B, &mut Vec<S>) -> Tally + Sync + Send,
         bounds: impl Fn(&S) -> Rect + Sync + Send,
     ) -> Self {
-        let (view, grid) = (View::new(job.camera), job.grid());
+        let view = View::new(job.camera);
         let projector = Projector::new(view, &settings.kernel, settings.cull);
         let results = job.exec.ordered(batches, |batch| {
             let mut splats = Vec::new();
             let tally = project(&projector, batch, &mut splats);
-            let bins = Bins::new(&grid, splats.len(), |i| bounds(&splats[i]));
+            let bins = Bins::new(grid, splats.len(), |i| bounds(&splats[i]));
             ((splats, bins), tally)
         });
         let tally = results.iter().fold(Tally::default(), |sum, (_, tally)| sum.plus(tally));
@@ -99,11 +99,11 @@ impl<R: Real, S: Send> Prepared<R, S> {
 }
 
 /// How many of `count` items a batch has.
-pub(super) fn batch_size(job: &Job<'_>, count: usize) -> usize {
+pub(super) fn batch_size(grid: &Grid, count: usize) -> usize {
     // Many batches, so that threads end together, of at most 8192 surfels, which fit the cache; but of
     // two items for each tile, so that the starts of its bins take about 2 bytes an item; where tiles
     // are so many that this would be all, four batches.
-    (count / 64).min(8192).max(2 * job.grid().len()).min(count.div_ceil(4).max(1))
+    (count / 64).min(8192).max(2 * grid.len()).min(count.div_ceil(4).max(1))
 }
 
 impl<R: Exact> Prepared<R, Splat<R>> {
@@ -111,7 +111,7 @@ impl<R: Exact> Prepared<R, Splat<R>> {
     pub(super) fn splats(job: &Job<'_>, settings: &SplatSettings) -> Self {
         let surfels = &job.scene.surfels;
         Self::new(
-            job,
+            (job, &job.grid()),
             settings,
             surfels.len(),
             |projector, range, splats| {

@@ -1,7 +1,8 @@
 //! Surfels as squares on the screen, see the page of [`super`].
 
-use crate::frame::{Bins, Rect};
+use crate::frame::{Bins, Grid, Rect};
 use crate::method::algorithm::Job;
+use crate::method::prepare::batch_size;
 use crate::method::projection::surfels::PointProjector;
 use crate::number::{Exact, Real, Vector3};
 use crate::scene::{Sides, Surfels};
@@ -147,7 +148,7 @@ impl<R: Exact> Squares<R> {
     /// Every surfel that is drawn.
     pub(super) fn new(job: &Job<'_>, cull: bool) -> Self {
         let projector = SquareProjector::new(job, cull);
-        Self::of(job, |range, squares| {
+        Self::of((job, &job.grid()), |range, squares| {
             let mut tally = Tally::default();
             squares.extend(range.filter_map(|i| projector.drawn(i, &mut tally)));
             tally
@@ -156,17 +157,16 @@ impl<R: Exact> Squares<R> {
 
     /// The same, where `project` makes the squares of a range of surfels.
     pub(super) fn of(
-        job: &Job<'_>,
+        (job, grid): (&Job<'_>, &Grid),
         project: impl Fn(Range<usize>, &mut Vec<Square<R>>) -> Tally + Sync + Send,
     ) -> Self {
-        let (grid, count) = (job.grid(), job.scene.surfels.len());
-        // As many batches as the splats of the other methods have.
-        let size = (count / 64).min(8192).max(2 * grid.len()).min(count.div_ceil(4).max(1));
+        let count = job.scene.surfels.len();
+        let size = batch_size(grid, count);
         let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
         let results = job.exec.ordered(ranges.collect(), |range: Range<usize>| {
             let mut squares = Vec::with_capacity(range.len());
             let tally = project(range, &mut squares);
-            let bins = Bins::new(&grid, squares.len(), |i| squares[i].bounds);
+            let bins = Bins::new(grid, squares.len(), |i| squares[i].bounds);
             ((squares, bins), tally)
         });
         let tally = results.iter().fold(Tally::default(), |sum, (_, tally)| sum.plus(tally));

@@ -42,7 +42,7 @@ pub(in crate::method) fn project_into<P: Profile, S: Send>(
     let picture = job.picture();
     let common = Projector::new(View::new(job.camera), &settings.kernel, settings.cull);
     Prepared::new(
-        job,
+        (job, &job.grid()),
         settings,
         surfels.len(),
         |projector, range, splats| {

@@ -1,8 +1,8 @@
 //! Pictures of transparent layers: the planes that they have, and the blocks of a tile.
 
-use super::store::{clear_plane, interleaved, row, store_plane};
-use crate::frame::{Exec, Grid, NO_ID, Plane, Pool, Rect, StripMut};
-use crate::number::lanes::{LANES, Lanes};
+use super::store::{clear_plane, store_plane};
+use crate::frame::{Exec, Grid, NO_ID, Plane, Pool, TileMut};
+use crate::number::lanes::{LANES, Lanes, components};
 
 /// What the layers of the pixels of a block come to.
 #[derive(Clone, Copy)]
@@ -39,13 +39,13 @@ pub(in crate::method) struct LayeredPlanes<L> {
     pub(in crate::method) layers: Plane<L>,
 }
 
-/// One strip of them, writable.
-pub(in crate::method) struct LayeredStrip<'a, L> {
-    color: StripMut<'a, [f32; 3]>,
-    alpha: StripMut<'a, f32>,
-    pub(in crate::method) depth: StripMut<'a, f32>,
-    id: StripMut<'a, u32>,
-    layers: StripMut<'a, L>,
+/// One tile of them, writable.
+pub(in crate::method) struct LayeredTile<'a, L> {
+    color: TileMut<'a, [f32; 3]>,
+    alpha: TileMut<'a, f32>,
+    pub(in crate::method) depth: TileMut<'a, f32>,
+    id: TileMut<'a, u32>,
+    layers: TileMut<'a, L>,
 }
 
 impl<L: Send> LayeredPlanes<L> {
@@ -60,12 +60,8 @@ impl<L: Send> LayeredPlanes<L> {
         }
     }
 
-    /// The strips, row by row.
-    pub(in crate::method) fn strips(
-        &mut self,
-        grid: &Grid,
-        exec: &Exec,
-    ) -> Vec<LayeredStrip<'_, L>> {
+    /// The tiles, row by row.
+    pub(in crate::method) fn cut(&mut self, grid: &Grid, exec: &Exec) -> Vec<LayeredTile<'_, L>> {
         let color = grid.cut(&mut self.color, exec).into_iter();
         let alpha = grid.cut(&mut self.alpha, exec);
         let depth = grid.cut(&mut self.depth, exec);
@@ -73,7 +69,7 @@ impl<L: Send> LayeredPlanes<L> {
         let layers = grid.cut(&mut self.layers, exec);
         let planes = color.zip(alpha).zip(depth).zip(id).zip(layers);
         planes
-            .map(|((((color, alpha), depth), id), layers)| LayeredStrip {
+            .map(|((((color, alpha), depth), id), layers)| LayeredTile {
                 color,
                 alpha,
                 depth,
@@ -84,27 +80,22 @@ impl<L: Send> LayeredPlanes<L> {
     }
 }
 
-impl<L: Copy> LayeredStrip<'_, L> {
+impl<L: Copy> LayeredTile<'_, L> {
     /// Writes a tile without splats.
-    pub(in crate::method) fn clear(&mut self, rect: &Rect, none: L) {
-        clear_plane(rect, &mut self.color, [0.0; 3]);
-        clear_plane(rect, &mut self.alpha, 0.0);
-        clear_plane(rect, &mut self.depth, f32::INFINITY);
-        clear_plane(rect, &mut self.id, NO_ID);
-        clear_plane(rect, &mut self.layers, none);
+    pub(in crate::method) fn clear(&mut self, none: L) {
+        clear_plane(&mut self.color, [0.0; 3]);
+        clear_plane(&mut self.alpha, 0.0);
+        clear_plane(&mut self.depth, f32::INFINITY);
+        clear_plane(&mut self.id, NO_ID);
+        clear_plane(&mut self.layers, none);
     }
 
     /// Copies the blocks of a tile into its rows.
-    pub(in crate::method) fn store(
-        &mut self,
-        rect: &Rect,
-        blocks: &[LayeredBlock],
-        layers: impl Fn(f32) -> L,
-    ) {
-        store_plane(rect, blocks, &mut self.color, |block, i| interleaved(&block.color, i));
-        store_plane(rect, blocks, &mut self.alpha, |block, i| row(&block.alpha, i));
-        store_plane(rect, blocks, &mut self.depth, |block, i| row(&block.depth, i));
-        store_plane(rect, blocks, &mut self.id, |block, i| row(&block.id, i));
-        store_plane(rect, blocks, &mut self.layers, |block, i| row(&block.layers, i).map(&layers));
+    pub(in crate::method) fn store(&mut self, blocks: &[LayeredBlock], layers: impl Fn(f32) -> L) {
+        store_plane(blocks, &mut self.color, |block, i| components(&block.color, i));
+        store_plane(blocks, &mut self.alpha, |block, i| block.alpha[i]);
+        store_plane(blocks, &mut self.depth, |block, i| block.depth[i]);
+        store_plane(blocks, &mut self.id, |block, i| block.id[i]);
+        store_plane(blocks, &mut self.layers, |block, i| layers(block.layers[i]));
     }
 }

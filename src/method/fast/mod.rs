@@ -22,7 +22,7 @@ pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, 
     let surfels = &job.scene.surfels;
     let colors = surfels.color();
     Prepared::new(
-        job,
+        (job, &job.strips()),
         settings,
         surfels.len(),
         |projector, range, records| {
@@ -34,8 +34,7 @@ pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, 
     )
 }
 
-/// The times of the stages of the tiles of a strip; whatever is done between two laps belongs to the
-/// second.
+/// The times of the stages of a tile; whatever is done between two laps belongs to the second.
 pub(super) struct Stopwatch<const N: usize> {
     last: Instant,
     times: [Duration; N],
@@ -62,19 +61,17 @@ pub(super) fn draw<const N: usize>(
     stages: impl Fn(&mut Tile, &mut Stopwatch<N>) + Sync + Send,
 ) -> [Duration; N] {
     let start = Instant::now();
-    let times = job.exec.ordered(target.strips(&job.grid(), job.exec), |mut pixels| {
+    let times = job.exec.ordered(target.cut(&job.strips(), job.exec), |mut pixels| {
         let mut watch = Stopwatch { last: Instant::now(), times: [Duration::ZERO; N] };
         let mut tile = Tile::new([pixels.normal.is_some(), pixels.color.is_some()]);
-        for (index, rect) in pixels.depth.strip.tiles() {
-            tile.gather(prepared, index, rect);
-            if tile.splats.is_empty() {
-                store::clear(&rect, &mut pixels);
-                watch.lap(0);
-            } else {
-                stages(&mut tile, &mut watch);
-                store::store(&tile, &mut pixels);
-                watch.lap(N - 1);
-            }
+        tile.gather(prepared, pixels.depth.index, pixels.depth.rect);
+        if tile.splats.is_empty() {
+            store::clear(&mut pixels);
+            watch.lap(0);
+        } else {
+            stages(&mut tile, &mut watch);
+            store::store(&tile, &mut pixels);
+            watch.lap(N - 1);
         }
         watch.times
     });

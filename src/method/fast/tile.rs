@@ -71,14 +71,16 @@ impl<A> Record<A> {
             footprint: splat.footprint,
             surfel: splat.surfel,
             // Pictures have at most 65,536 pixels a side, so the last pixel fits.
-            bounds: [x0, x1 - 1, y0, y1 - 1].map(|pixel| pixel as u16),
+            bounds: [x0 as u16, (x1 - 1) as u16, y0 as u16, (y1 - 1) as u16],
             attributes,
         }
     }
 
+    #[inline(always)]
     pub(in crate::method) fn bounds(&self) -> Rect {
-        let [x0, x1, y0, y1] = self.bounds.map(u32::from);
-        Rect { x0, y0, x1: x1 + 1, y1: y1 + 1 }
+        let [x0, x1, y0, y1] = self.bounds;
+        let (x0, y0) = (u32::from(x0), u32::from(y0));
+        Rect { x0, y0, x1: u32::from(x1) + 1, y1: u32::from(y1) + 1 }
     }
 
     /// The blocks of a tile that it may touch: columns and rows, the ends exclusive.

@@ -67,7 +67,7 @@ fn draw<R: Exact>(
     ids: Range<usize>,
     projected: &mut Projected<R>,
 ) {
-    let (exec, grid) = (job.exec, job.grid());
+    let (exec, grid) = (job.exec, job.strips());
     let nearer = |t: R, kept: R| decide::before(job.key.depth(t), job.key.depth(kept));
     let size = (ids.len() / 64).min(8192).max(2 * grid.len());
     let ranges = ids.clone().step_by(size).map(|first| first..ids.end.min(first + size));
@@ -87,23 +87,22 @@ fn draw<R: Exact>(
     let Projected { samples, tally } = projected;
     *tally = batches.iter().fold(*tally, |sum, (_, tally)| sum.plus(tally));
     exec.ordered(grid.cut(samples, exec), |mut pixels| {
-        for (tile, rect) in pixels.strip.tiles() {
-            for ((drawn, bins), _) in &batches {
-                bins.for_each(tile, |i| match &drawn[i as usize] {
-                    DrawnItem::Pixel(at, sample) => {
-                        let kept = pixels.at(*at);
-                        if nearer(sample.depth, kept.depth) {
-                            *kept = *sample;
-                        }
+        let rect = pixels.rect;
+        for ((drawn, bins), _) in &batches {
+            bins.for_each(pixels.index, |i| match &drawn[i as usize] {
+                DrawnItem::Pixel(at, sample) => {
+                    let kept = pixels.at(*at);
+                    if nearer(sample.depth, kept.depth) {
+                        *kept = *sample;
                     }
-                    DrawnItem::Piece(piece) => piece.for_each(&rect, |at| {
-                        let kept = pixels.at([at.x, at.y]);
-                        if nearer(-at.p.z, kept.depth) {
-                            *kept = piece.sample(projector, &at);
-                        }
-                    }),
-                });
-            }
+                }
+                DrawnItem::Piece(piece) => piece.for_each(&rect, |at| {
+                    let kept = pixels.at([at.x, at.y]);
+                    if nearer(-at.p.z, kept.depth) {
+                        *kept = piece.sample(projector, &at);
+                    }
+                }),
+            });
         }
     });
 }

@@ -32,7 +32,7 @@ pub fn of_surfaces(
     let mut all: Vec<(usize, Rect)> = grid.rects().into_iter().enumerate().collect();
     // Some at a time, so that progress is seen and what they leave is put away.
     let some = SOME.max(4 * exec.threads());
-    ask(camera, shifts.len(), grid.tile, exec)?;
+    ask(camera, shifts.len(), grid.side, exec)?;
     let caster = Caster::new(surfaces, scene, cull, camera, exec)?;
     let mut planes = Planes::new(camera, shifts.len() + 1);
     let (count, mut done) = (all.len() as u64, 0);
@@ -58,11 +58,11 @@ pub(super) const STEP: &str = "the true picture";
 const SOME: usize = 64;
 
 /// Whether the process may hold the planes, and the samples of the tiles that are worked on at once.
-fn ask(camera: &Camera, shifts: usize, tile: u32, exec: &Exec) -> Result<()> {
+fn ask(camera: &Camera, shifts: usize, [wide, high]: [u32; 2], exec: &Exec) -> Result<()> {
     let pixels = u64::from(camera.width) * u64::from(camera.height);
     let planes = pixels * (32 + 12 * shifts as u64);
-    let side = u64::from(SAMPLES * (tile + 1));
-    let samples = exec.threads() as u64 * side * side * OF_A_SAMPLE;
+    let samples = u64::from(SAMPLES * (wide + 1)) * u64::from(SAMPLES * (high + 1));
+    let samples = exec.threads() as u64 * samples * OF_A_SAMPLE;
     memory::ask(planes + samples, || {
         format!("the true picture of {} x {} pixels", camera.width, camera.height)
     })

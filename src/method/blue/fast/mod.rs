@@ -25,15 +25,15 @@ use tile::TileOfDiscs;
 pub(super) fn render(job: &Job<'_>, settings: &Settings, target: &mut Framebuffer<f32>) -> Tally {
     assert_eq!([target.width, target.height], job.camera.size(), "framebuffer size");
     let projector = SquareProjector::new(job, settings.cull);
-    let squares = Squares::of(job, |range, squares| place::squares(&projector, range, squares));
+    let strips = job.strips();
+    let squares =
+        Squares::of((job, &strips), |range, squares| place::squares(&projector, range, squares));
     let view = View::new(job.camera);
-    job.exec.ordered(target.strips(&job.grid(), job.exec), |mut pixels| {
+    job.exec.ordered(target.cut(&strips, job.exec), |mut pixels| {
         let mut tile = TileOfDiscs::default();
-        for (index, rect) in pixels.depth.strip.tiles() {
-            tile.gather(&squares, index, rect);
-            tile.draw(&view);
-            tile.store(job.scene, &mut pixels);
-        }
+        tile.gather(&squares, pixels.depth.index, pixels.depth.rect);
+        tile.draw(&view);
+        tile.store(job.scene, &mut pixels);
     });
     squares.tally
 }

@@ -1,7 +1,7 @@
 //! The discs of a tile.
 
 use crate::composite::decide;
-use crate::frame::{FramebufferStrip, NO_ID, Rect};
+use crate::frame::{FramebufferTile, NO_ID, Rect, TileMut};
 use crate::method::blue::discs::{DiscFragment, column, row};
 use crate::method::blue::squares::{Square, Squares};
 use crate::method::fast::store::clear;
@@ -68,47 +68,40 @@ impl TileOfDiscs {
     }
 
     /// Writes what the pixels show.
-    pub(super) fn store(&self, scene: &Scene, pixels: &mut FramebufferStrip<'_, f32>) {
+    pub(super) fn store(&self, scene: &Scene, pixels: &mut FramebufferTile<'_, f32>) {
         let rect = &self.rect;
         if self.squares.is_empty() {
-            return clear(rect, pixels);
+            return clear(pixels);
         }
         let (columns, stride) = (rect.columns(), self.stride());
-        for y in 0..rect.rows() {
-            pixels.depth.row(rect, y).copy_from_slice(&self.depth[y * stride..][..columns]);
-            let discs = &self.disc[y * stride..][..columns];
-            fill(pixels.id.row(rect, y), discs, |disc| self.seen(disc, NO_ID, |s| s.surfel));
-            fill(pixels.weight.row(rect, y), discs, |disc| self.seen(disc, 0.0, |_| 1.0));
-            if let Some(normal) = &mut pixels.normal {
-                let own = scene.surfels.normal();
-                let of = |square: &Square<f32>| {
-                    positive(facing(own[square.surfel as usize].to_array(), square.back))
-                };
-                fill(normal.row(rect, y), discs, |disc| self.seen(disc, [0.0; 3], of));
-            }
-            if let Some(color) = &mut pixels.color {
-                let own = scene.surfels.color();
-                let of = |square: &Square<f32>| {
-                    let color = own.map_or(scene.material.color, |own| own[square.surfel as usize]);
-                    positive(color.to_array())
-                };
-                fill(color.row(rect, y), discs, |disc| self.seen(disc, [0.0; 3], of));
-            }
+        for (own, row) in self.depth.chunks(stride).zip(pixels.depth.rows()) {
+            row.copy_from_slice(&own[..columns]);
+        }
+        self.fill(&mut pixels.id, NO_ID, |square| square.surfel);
+        self.fill(&mut pixels.weight, 0.0, |_| 1.0);
+        if let Some(normal) = &mut pixels.normal {
+            let own = scene.surfels.normal();
+            self.fill(normal, [0.0; 3], |square| {
+                positive(facing(own[square.surfel as usize].to_array(), square.back))
+            });
+        }
+        if let Some(color) = &mut pixels.color {
+            let own = scene.surfels.color();
+            self.fill(color, [0.0; 3], |square| {
+                let color = own.map_or(scene.material.color, |own| own[square.surfel as usize]);
+                positive(color.to_array())
+            });
         }
     }
 
-    /// What a pixel shows of a disc of the list, or of none.
+    /// Fills the rows of a plane from what the pixels show: `of` a disc, or `none`.
     #[inline(always)]
-    fn seen<T>(&self, disc: u32, none: T, of: impl Fn(&Square<f32>) -> T) -> T {
-        if disc == NO_ID { none } else { of(&self.squares[disc as usize]) }
-    }
-}
-
-/// Fills a row of pixels from those of the discs there.
-#[inline(always)]
-fn fill<T>(row: &mut [T], discs: &[u32], of: impl Fn(u32) -> T) {
-    for (pixel, &disc) in row.iter_mut().zip(discs) {
-        *pixel = of(disc);
+    fn fill<T: Copy>(&self, plane: &mut TileMut<'_, T>, none: T, of: impl Fn(&Square<f32>) -> T) {
+        for (discs, row) in self.disc.chunks(self.stride()).zip(plane.rows()) {
+            for (pixel, &disc) in row.iter_mut().zip(discs) {
+                *pixel = if disc == NO_ID { none } else { of(&self.squares[disc as usize]) };
+            }
+        }
     }
 }
 

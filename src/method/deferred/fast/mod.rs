@@ -58,7 +58,7 @@ pub(super) fn render(
 
     let prepared = prepare(&selected_job, splats);
     let shared = &prepared.shared;
-    let grid = job.grid();
+    let grid = job.strips();
     let passes = draw::<3>(&selected_job, &prepared, target, |tile, watch| {
         first.load(&ranks, tile);
         let index = grid.place(tile.grid.rect.x0, tile.grid.rect.y0).0;

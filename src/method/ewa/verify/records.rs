@@ -28,7 +28,7 @@ pub(super) fn project<P: Profile>(
     let surfels = &job.scene.surfels;
     let picture = job.picture();
     Prepared::new(
-        job,
+        (job, &job.grid()),
         settings,
         records.len(),
         |projector, range, splats| {

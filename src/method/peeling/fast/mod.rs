@@ -43,15 +43,13 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Pictu
     let mut clock = Clock::default();
     let peeling = FastPeeling::project(job, settings);
     clock.lap("projection");
-    let (size, grid) = (job.camera.size(), job.grid());
+    let (size, grid) = (job.camera.size(), job.strips());
     let mut target = LayeredPlanes::new(size, pool.count(size), pool);
-    let times = job.exec.ordered(target.strips(&grid, job.exec), |mut pixels| {
+    let times = job.exec.ordered(target.cut(&grid, job.exec), |mut pixels| {
         let start = Instant::now();
-        for (index, rect) in pixels.depth.strip.tiles() {
-            match peeling.tile(index, rect) {
-                Some(blocks) => pixels.store(&rect, &blocks, |layers| layers as u8),
-                None => pixels.clear(&rect, 0),
-            }
+        match peeling.tile(pixels.depth.index, pixels.depth.rect) {
+            Some(blocks) => pixels.store(&blocks, |layers| layers as u8),
+            None => pixels.clear(0),
         }
         [start.elapsed()]
     });

@@ -41,21 +41,19 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     let mut clock = Clock::default();
     let blending = FastBlending::<Layer>::project(job, settings, Set::count_ones)?;
     clock.lap("projection");
-    let (size, grid) = (job.camera.size(), job.grid());
+    let (size, grid) = (job.camera.size(), job.strips());
     let mut target = LayeredPlanes::new(size, pool.scalar(size), pool);
-    let times = job.exec.ordered(target.strips(&grid, job.exec), |mut pixels| {
+    let times = job.exec.ordered(target.cut(&grid, job.exec), |mut pixels| {
         let start = Instant::now();
         let mut splats = Vec::new();
-        for (index, rect) in pixels.depth.strip.tiles() {
-            blending.prepared.gather_f32(index, &rect, &mut splats);
-            if splats.is_empty() {
-                pixels.clear(&rect, 0.0);
-                continue;
-            }
-            let grid = BlockGrid::new(rect);
+        blending.prepared.gather_f32(pixels.depth.index, &pixels.depth.rect, &mut splats);
+        if splats.is_empty() {
+            pixels.clear(0.0);
+        } else {
+            let grid = BlockGrid::new(pixels.depth.rect);
             let averages = blending.averages::<false>(&splats, &grid, |_| Nearest::NONE);
             let blocks: Vec<_> = averages.iter().map(AverageBlock::layers).collect();
-            pixels.store(&rect, &blocks, |layers| layers);
+            pixels.store(&blocks, |layers| layers);
         }
         [start.elapsed()]
     });

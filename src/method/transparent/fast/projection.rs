@@ -96,9 +96,10 @@ impl<A: Blended> FastBlending<A> {
         let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
         // Until their layers are shaded, surfels are known by their places in the tree.
         let surfels = &members.surfels;
-        let size = batch_size(job, surfels.len());
+        let grid = job.strips();
+        let size = batch_size(&grid, surfels.len());
         let prepared = Prepared::of_batches(
-            job,
+            (job, &grid),
             &settings.splats,
             batches(order.parts(camera, size.div_ceil(2)), size),
             |projector, parts: Vec<Part>, records: &mut Vec<Record<A>>| {

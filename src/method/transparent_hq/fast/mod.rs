@@ -12,10 +12,11 @@ use crate::error::Result;
 use crate::frame::Pool;
 use crate::method::algorithm::Job;
 use crate::method::fast::layered::LayeredPlanes;
-use crate::method::fast::store::{clear_plane, interleaved, row, store_plane};
+use crate::method::fast::store::{clear_plane, store_plane};
 use crate::method::picture::{Clock, Picture};
 use crate::method::transparent::fast::Nearest;
 use crate::method::transparent::planes as layers;
+use crate::number::lanes::components;
 use crate::scene::Environment;
 use compositing::compositing;
 use nearest::FastNearest;
@@ -30,41 +31,35 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     let splats = Splats::project(job, settings)?;
     clock.lap("projection");
     let through = Through::new(job, settings, Environment::radiance);
-    let (size, grid) = (job.camera.size(), job.grid());
+    let (size, grid) = (job.camera.size(), job.strips());
     let mut target = LayeredPlanes::new(size, pool.scalar(size), pool);
     let (mut normal, mut weight) = (pool.triple(size), pool.scalar(size));
     let normals = grid.cut(&mut normal, job.exec).into_iter();
     let beside = normals.zip(grid.cut(&mut weight, job.exec));
-    let jobs = target.strips(&grid, job.exec).into_iter().zip(beside).collect();
+    let jobs = target.cut(&grid, job.exec).into_iter().zip(beside).collect();
     let times = job.exec.ordered(jobs, |(mut pixels, (mut normal, mut weight))| {
-        let mut times = [Duration::ZERO; 4];
         let (mut layers, mut blocks) = (Vec::new(), nearest.tile());
-        for (index, rect) in pixels.depth.strip.tiles() {
-            let start = Instant::now();
-            splats.gather(index, rect, &mut layers, &mut blocks);
-            if blocks.splats.is_empty() {
-                // Where there is no nearest layer nothing is seen.
-                pixels.clear(&rect, 0.0);
-                clear_plane(&rect, &mut normal, [0.0; 3]);
-                clear_plane(&rect, &mut weight, 0.0);
-                times[0] += start.elapsed();
-                continue;
-            }
-            let mut images = nearest.geometry(&blocks);
-            let drawn = Instant::now();
-            let fronts = nearest.resolve(&mut blocks, &mut images);
-            let resolved = Instant::now();
-            let band = |block: usize| Nearest(blocks.blocks[block].least);
-            let others = splats.blending.averages::<true>(&layers, &blocks.grid, band);
-            let blended = Instant::now();
-            let shown = compositing(&through, &blocks, &fronts, &others);
-            pixels.store(&rect, &shown, |layers| layers);
-            store_plane(&rect, &blocks.blocks, &mut normal, |b, i| interleaved(&b.normal, i));
-            store_plane(&rect, &blocks.blocks, &mut weight, |b, i| row(&b.weight, i));
-            let laps = [drawn - start, resolved - drawn, blended - resolved, blended.elapsed()];
-            times.iter_mut().zip(laps).for_each(|(sum, lap)| *sum += lap);
+        let start = Instant::now();
+        splats.gather(pixels.depth.index, pixels.depth.rect, &mut layers, &mut blocks);
+        if blocks.splats.is_empty() {
+            // Where there is no nearest layer nothing is seen.
+            pixels.clear(0.0);
+            clear_plane(&mut normal, [0.0; 3]);
+            clear_plane(&mut weight, 0.0);
+            return [start.elapsed(), Duration::ZERO, Duration::ZERO, Duration::ZERO];
         }
-        times
+        let mut images = nearest.geometry(&blocks);
+        let drawn = Instant::now();
+        let fronts = nearest.resolve(&mut blocks, &mut images);
+        let resolved = Instant::now();
+        let band = |block: usize| Nearest(blocks.blocks[block].least);
+        let others = splats.blending.averages::<true>(&layers, &blocks.grid, band);
+        let blended = Instant::now();
+        let shown = compositing(&through, &blocks, &fronts, &others);
+        pixels.store(&shown, |layers| layers);
+        store_plane(&blocks.blocks, &mut normal, |block, i| components(&block.normal, i));
+        store_plane(&blocks.blocks, &mut weight, |block, i| block.weight[i]);
+        [drawn - start, resolved - drawn, blended - resolved, blended.elapsed()]
     });
     clock.shares(["geometry", "nearest", "blending", "compositing"], &times);
     let LayeredPlanes { color, alpha, depth, id, layers: counts } = target;
