@@ -32,16 +32,20 @@ pub(super) fn add(
     let (n, count) = (tree.surfel.len(), groups.len());
     let mut own = Vec::new();
     exec.extend(&mut own, n, |place| groups.own()[tree.surfel[place] as usize]);
-    // What all that are lower cover, and what those of the same group do.
+    let members = Members { overlaps, own: &own, most };
+    // What all that are lower cover, what those of the same group do, and what each group of the
+    // first batch covers of the others.
     let show = |done, of| progress("measuring the surface", done, of);
-    let sets = |i, j| u32::from(overlaps.lower(i, j)) * (1 | u32::from(own[i] == own[j]) << 1);
-    let covered = overlaps.covered::<2>(sets, &show);
-    let target = areas(tree, 1, |_| 0, |place| covered[place][0])[0].0;
+    let sets = |i: usize, j: usize| {
+        let lower = u32::from(overlaps.lower(i, j)) * (1 | u32::from(own[i] == own[j]) << 1);
+        lower | members.of_others(0, i, j) << 2
+    };
+    let measured = overlaps.covered::<{ 2 + BATCH }>(sets, &show);
+    let target = areas(tree, 1, |_| 0, |place| measured[place][0])[0].0;
     let group = |surfel: usize| groups.own()[surfel].into();
-    let before = areas(tree, count, group, |place| covered[place][1]);
-    drop(covered);
+    let before = areas(tree, count, group, |place| measured[place][1]);
 
-    let groups = Members { overlaps, own: &own, most };
+    let groups = members;
     let mut coverages = Vec::new();
     let mut added = vec![0_u64; n];
     for first in (0..count).step_by(BATCH) {
@@ -50,7 +54,13 @@ pub(super) fn add(
             let here = (part * of + done) * batch.len() as u64;
             progress("extending groups", 2 * of * first as u64 + here, 2 * of * count as u64);
         };
-        let members = groups.extended(batch.clone(), &|done, of| show(0, done, of));
+        let members = if first == 0 {
+            groups.extended(batch.clone(), |place, set| measured[place][2 + set])
+        } else {
+            let sets = |i: usize, j: usize| groups.of_others(first, i, j);
+            let covered = overlaps.covered::<BATCH>(sets, &|done, of| show(0, done, of));
+            groups.extended(batch.clone(), |place, set| covered[place][set])
+        };
         for (place, members) in members.iter().enumerate() {
             let further = members & !groups.own(first, place);
             if further != 0 {
@@ -87,23 +97,32 @@ struct Members<'a> {
 
 impl Members<'_> {
     /// The bit of the group of a place, of those groups from `first` on.
+    #[inline(always)]
     fn own(&self, first: usize, place: usize) -> u32 {
         let group = usize::from(self.own[place]).wrapping_sub(first);
         if group < BATCH { 1 << group } else { 0 }
     }
 
-    /// For each place a bit for each group of a batch that it is in, or is added to.
-    fn extended(&self, batch: Range<usize>, progress: &dyn Fn(u64, u64)) -> Vec<u32> {
+    /// The bit of the group of a place j, if that at i is in another group.
+    #[inline(always)]
+    fn of_others(&self, first: usize, i: usize, j: usize) -> u32 {
+        self.own(first, j) & !self.own(first, i)
+    }
+
+    /// For each place a bit for each group of a batch that it is in, or is added to; of the samples of a
+    /// place, `covered` tells those that a group of the batch covers to begin with.
+    fn extended(
+        &self,
+        batch: Range<usize>,
+        covered: impl Fn(usize, usize) -> u64 + Sync + Send,
+    ) -> Vec<u32> {
         let Overlaps { exec, .. } = *self.overlaps;
         let (n, first) = (self.own.len(), batch.start);
-        let own = |place| self.own(first, place);
-        let sets = |i, j| own(j) & !own(i);
-        let covered = self.overlaps.covered::<BATCH>(sets, progress);
         let mut members = Vec::new();
-        exec.extend(&mut members, n, own);
+        exec.extend(&mut members, n, |place| self.own(first, place));
         for group in batch {
             let set = group - first;
-            let added = self.added(group as u8, |place| covered[place][set]);
+            let added = self.added(group as u8, |place| covered(place, set));
             for (members, added) in members.iter_mut().zip(added) {
                 *members |= u32::from(added) << set;
             }

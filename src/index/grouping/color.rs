@@ -1,6 +1,7 @@
 //! Largest First colouring \[Lei79\]: from the graph to groups.
 
 use super::disc_tree::DiscTree;
+use super::graded::Graded;
 use super::graph::{Graph, conflicts};
 use super::rules::Rules;
 use super::settle::{Open, settle};
@@ -8,8 +9,12 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::scene::groups::{MAX_GROUPS, check_count};
 use crate::scene::{Groups, Surfels};
+use std::cell::OnceCell;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU32};
+
+/// c is tried in multiples of one in so many.
+pub(super) const STEPS: u8 = 64;
 
 /// What [`group`] found: a row of Table 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +46,7 @@ pub fn group(
 ) -> Result<(Groups, GroupingReport)> {
     rules.check()?;
     let tree = DiscTree::of_all(surfels, exec, progress)?;
-    Coloring { surfels, tree: &tree, rules, exec, progress }.group(None)
+    Coloring { surfels, tree: &tree, rules, exec, progress }.group()
 }
 
 /// As [`group`], with the largest c that gives at most `count` groups, as the [module](super)
@@ -74,11 +79,10 @@ pub(super) struct Coloring<'a> {
 }
 
 impl Coloring<'_> {
-    /// The groups at the c of the rules. `overlaps` is the graph of all pairs that are near by 1, if
-    /// there is one.
-    pub(super) fn group(&self, overlaps: Option<&Graph>) -> Result<(Groups, GroupingReport)> {
+    /// The groups at the c of the rules.
+    pub(super) fn group(&self) -> Result<(Groups, GroupingReport)> {
         let overlap = self.rules.overlap;
-        let graph = self.graph(overlap, overlaps)?;
+        let graph = self.graph(overlap)?;
         let (color, report) =
             self.color(&graph, overlap, usize::MAX).expect("as many colours as it takes");
         if report.groups > MAX_GROUPS {
@@ -91,7 +95,8 @@ impl Coloring<'_> {
         Ok((groups(self.tree, &color, report.groups)?, report))
     }
 
-    /// The groups at the largest c that gives at most `count`.
+    /// The groups at the largest c that gives at most `count`. `overlaps` is the graph of all pairs
+    /// that are near by 1, if there is one.
     pub(super) fn group_into(
         &self,
         count: usize,
@@ -99,15 +104,25 @@ impl Coloring<'_> {
     ) -> Result<(Groups, GroupingReport)> {
         // What is above the c of the rules does not fit. The graph of a c that does not has the
         // edges of every smaller one.
-        let (mut fits, mut fails) = (0, (64.0 * self.rules.overlap) as u16 + 1);
-        let (mut best, mut wider) = (None, None);
+        let (mut fits, mut fails) = (0, (f32::from(STEPS) * self.rules.overlap) as u8 + 1);
+        let (mut best, wider) = (None, OnceCell::new());
+        let mut graded = overlaps.map(|graph| self.graded(graph)).transpose()?;
         while fails - fits > 1 {
-            let middle = u16::midpoint(fits, fails);
-            let overlap = f32::from(middle) / 64.0;
-            let graph = self.graph(overlap, wider.as_ref().or(overlaps)).ok();
+            let middle = u8::midpoint(fits, fails);
+            let overlap = f32::from(middle) / f32::from(STEPS);
+            let graph = match &graded {
+                Some(graded) => graded.upto(middle, self.tree, self.exec, self.progress),
+                None => self.graph(overlap),
+            };
+            let graph = graph.ok();
             match graph.as_ref().and_then(|graph| self.color(graph, overlap, count)) {
                 Some(found) => (fits, best) = (middle, Some(found)),
-                None => (fails, wider) = (middle, graph.or(wider)),
+                None => {
+                    fails = middle;
+                    if let (None, Some(graph)) = (&graded, graph) {
+                        graded = Some(self.graded(wider.get_or_init(|| graph))?);
+                    }
+                }
             }
         }
         // c = 0 has no edges, and so fits.
@@ -118,9 +133,14 @@ impl Coloring<'_> {
         Ok((groups(self.tree, &color, report.groups)?, report))
     }
 
-    fn graph(&self, overlap: f32, wider: Option<&Graph>) -> Result<Graph> {
+    fn graph(&self, overlap: f32) -> Result<Graph> {
         let Self { surfels, tree, rules, exec, progress } = *self;
-        conflicts(surfels, tree, rules, overlap, wider, exec, progress)
+        conflicts(surfels, tree, rules, overlap, exec, progress)
+    }
+
+    fn graded<'a>(&self, graph: &'a Graph) -> Result<Graded<'a>> {
+        let Self { surfels, tree, rules, exec, progress } = *self;
+        Graded::new(graph, surfels, tree, rules, exec, progress)
     }
 
     /// The colour of every place; none if it takes more than `most`.

@@ -70,34 +70,8 @@ impl Graph {
         Self::of_rows(tree, rows, exec, progress)
     }
 
-    /// Of the edges (i, j) that `keep(i)(j)` keeps.
-    pub(super) fn kept<F: Fn(usize) -> bool>(
-        &self,
-        tree: &DiscTree,
-        keep: impl Fn(usize) -> F + Sync,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Self> {
-        let rows = |blocks: Range<usize>| {
-            let places = tree.places(blocks.start).start..tree.places(blocks.end - 1).end;
-            // Written where the next one goes, kept or not: whether it is cannot be foreseen.
-            let mut neighbour = vec![0; self.start[places.end] - self.start[places.start] + 1];
-            let (mut degree, mut end) = (Vec::with_capacity(places.len()), 0);
-            for i in places {
-                let (before, keep) = (end, keep(i));
-                for &j in self.of(i) {
-                    neighbour[end] = j;
-                    end += usize::from(keep(j as usize));
-                }
-                degree.push((end - before) as u32);
-            }
-            neighbour.truncate(end);
-            Ok((degree, neighbour))
-        };
-        Self::of_rows(tree, rows, exec, progress)
-    }
-
-    fn of_rows(
+    /// Of rows that are made of some blocks at a time.
+    pub(super) fn of_rows(
         tree: &DiscTree,
         rows: impl Fn(Range<usize>) -> Result<Rows> + Sync + Send,
         exec: &Exec,
@@ -124,6 +98,12 @@ impl Graph {
         &self.neighbour[self.start[place]..self.start[place + 1]]
     }
 
+    /// Where all neighbours of some places are, counted from the first of the first place on.
+    #[inline]
+    pub(super) fn entries(&self, places: Range<usize>) -> Range<usize> {
+        self.start[places.start]..self.start[places.end]
+    }
+
     pub(super) fn degree(&self, place: usize) -> u32 {
         (self.start[place + 1] - self.start[place]) as u32
     }
@@ -134,35 +114,28 @@ impl Graph {
     }
 }
 
-/// The graph of some rules, at their c or another; of the edges of a graph with a larger c, if there
-/// is one, which has all of these and maybe some that the rules take away.
+/// The graph of some rules, at their c or another.
 pub(super) fn conflicts(
     surfels: &Surfels,
     tree: &DiscTree,
     rules: &Rules,
     overlap: f32,
-    wider: Option<&Graph>,
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Graph> {
-    let factor = f64::from(overlap);
     let keep = |i: usize, j: usize| !relaxed(surfels, tree, rules, i, j);
-    match wider {
-        None => Graph::new(tree, factor, keep, exec, progress),
-        Some(wider) => {
-            let keep = |i: usize| {
-                let disc = tree.discs[i];
-                let keep = &keep;
-                move |j: usize| disc.is_near(&tree.discs[j], factor) && keep(i, j)
-            };
-            wider.kept(tree, keep, exec, progress)
-        }
-    }
+    Graph::new(tree, f64::from(overlap), keep, exec, progress)
 }
 
 /// Whether modification 1 or 2 takes the edge of two places away.
 #[inline(always)]
-fn relaxed(surfels: &Surfels, tree: &DiscTree, rules: &Rules, i: usize, j: usize) -> bool {
+pub(super) fn relaxed(
+    surfels: &Surfels,
+    tree: &DiscTree,
+    rules: &Rules,
+    i: usize,
+    j: usize,
+) -> bool {
     if !rules.opposite && rules.coplanar.is_none() {
         return false;
     }

@@ -114,6 +114,7 @@ mod disc;
 mod disc_tree;
 mod enlarge;
 mod extend;
+mod graded;
 mod graph;
 mod overlaps;
 mod rules;
@@ -200,7 +201,7 @@ impl Grouping {
         let wider = overlaps.as_ref().ok().and_then(Option::as_ref);
         let coloring = Coloring { surfels, tree: &tree, rules: &self.rules, exec, progress };
         let (groups, report) = match self.count {
-            None => coloring.group(wider)?,
+            None => coloring.group()?,
             Some(count) => coloring.group_into(count, wider)?,
         };
         if self.extension == Extension::None {

@@ -55,11 +55,13 @@ vectorized!(
                 }
                 let samples = samples.get_or_insert_with(|| tree.samples(i));
                 let mask = samples.covered_by(&tree.discs[j as usize]);
-                for (set, all) in masks.iter_mut().enumerate() {
-                    if sets >> set & 1 == 1 {
-                        *all |= mask;
-                        open &= !(u32::from(*all == u64::MAX) << set);
-                    }
+                let mut left = sets;
+                while left != 0 {
+                    let set = left.trailing_zeros();
+                    let all: &mut u64 = &mut masks[set as usize];
+                    *all |= mask;
+                    open &= !(u32::from(*all == u64::MAX) << set);
+                    left &= left - 1;
                 }
                 if open == 0 {
                     break;

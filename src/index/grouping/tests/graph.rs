@@ -1,7 +1,8 @@
 //! The graph and its colouring.
 
 use super::super::disc_tree::DiscTree;
-use super::super::graph::conflicts;
+use super::super::graded::Graded;
+use super::super::graph::{Graph, conflicts};
 use super::*;
 use crate::scene::groups::MAX_GROUPS;
 use crate::source::Shape;
@@ -54,7 +55,7 @@ proptest! {
     fn the_graph_is_that_of_the_definition(surfels in scene(), rules in rules()) {
         let tree = DiscTree::new(&surfels, 0..surfels.len() as u32, &Exec::sequential());
         let exec = Exec::sequential();
-        let graph = conflicts(&surfels, &tree, &rules, rules.overlap, None, &exec, &silent).unwrap();
+        let graph = conflicts(&surfels, &tree, &rules, rules.overlap, &exec, &silent).unwrap();
         let mut found = vec![Vec::new(); surfels.len()];
         for (place, &surfel) in tree.surfel.iter().enumerate() {
             let neighbours = graph.of(place).iter().map(|&j| tree.surfel[j as usize] as usize);
@@ -62,6 +63,25 @@ proptest! {
             found[surfel as usize].sort_unstable();
         }
         prop_assert_eq!(found, definition(&surfels, &rules));
+    }
+
+    #[test]
+    fn graded_edges_make_the_graph_of_each_c(surfels in scene(), rules in rules()) {
+        let exec = Exec::sequential();
+        let tree = DiscTree::new(&surfels, 0..surfels.len() as u32, &exec);
+        let all = Graph::new(&tree, 1.0, |_, _| true, &exec, &silent).unwrap();
+        let graded = Graded::new(&all, &surfels, &tree, &rules, &exec, &silent).unwrap();
+        for step in 0..=64 {
+            let graph = graded.upto(step, &tree, &exec, &silent).unwrap();
+            let own = conflicts(&surfels, &tree, &rules, f32::from(step) / 64.0, &exec, &silent);
+            let own = own.unwrap();
+            for place in 0..surfels.len() {
+                let [mut a, mut b] = [&graph, &own].map(|graph| graph.of(place).to_vec());
+                a.sort_unstable();
+                b.sort_unstable();
+                prop_assert_eq!(a, b, "c = {}/64", step);
+            }
+        }
     }
 
     #[test]
