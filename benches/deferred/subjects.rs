@@ -185,6 +185,7 @@ pub(crate) fn landscape(forest: &Subject, exec: &Exec) -> Result<(Scene, Camera)
         direction: vec![Vec3::Y; 4],
         radius: vec![0.0; 4],
         color: Some(vec![Vec3::new(0.1, 0.16, 0.05); 4]),
+        ..Vertices::default()
     };
     let triangles = Triangles::new(vertices, vec![[0, 1, 2], [0, 2, 3]])?.0;
     let primitives = Primitives { triangles, ..Primitives::default() };

@@ -66,7 +66,7 @@ fn repeated<const N: usize>(one: &Indexed<N>, count: u32) -> Result<Indexed<N>> 
         let middle = (count.min(5) - 1) as f32 / 2.0;
         let away = Vec3::new(((i % 5) as f32 - middle) * 2.2, 0.0, (i / 5) as f32 * -2.2);
         let (own, own_corners) = one.clone().into_parts();
-        let splatref::scene::Vertices { position, direction, radius, color } = &mut vertices;
+        let splatref::scene::Vertices { position, direction, radius, color, .. } = &mut vertices;
         let first = position.len() as u32;
         position.extend(own.position.iter().map(|p| *p + away));
         direction.extend(own.direction);

@@ -72,6 +72,7 @@ fn tube(radius: f32) -> Result<Primitives> {
         radius: vec![radius; position.len()],
         position,
         color: None,
+        ..Vertices::default()
     };
     let segments = (0..10).map(|i| [i, i + 1]).collect();
     Ok(Primitives { tubes: Polylines::new(vertices, segments)?.0, ..Primitives::default() })
@@ -93,7 +94,7 @@ fn cylinder(radius: f32) -> Result<Primitives> {
         let next = (i + 1) % SIDES;
         [[i, SIDES + i, next], [next, SIDES + i, SIDES + next]]
     });
-    let vertices = Vertices { position, direction, radius, color: None };
+    let vertices = Vertices { position, direction, radius, color: None, ..Vertices::default() };
     let triangles = Triangles::new(vertices, corners.collect())?.0;
     Ok(Primitives { triangles, ..Primitives::default() })
 }

@@ -7,7 +7,7 @@ use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::hierarchy::{Built, Hierarchy, NONE, Object, build};
 use splatref::io::scene_file::SceneFile;
-use splatref::source::hierarchy::{Flaws, Settings};
+use splatref::source::hierarchy::{Flaws, Numbers, Settings};
 use std::path::Path;
 use std::time::Instant;
 
@@ -72,7 +72,14 @@ fn sizes(hierarchy: &Hierarchy) {
     let upper = lods.iter().filter(|node| node.geometry == NONE).count();
     line("approximations", format!("{}, {upper} of them of several objects", lods.len()));
     let surfels: u64 = lods.iter().map(|node| u64::from(node.surfels)).sum();
-    line("surfels", format!("{surfels}, {} bytes", 20 * surfels));
+    let Numbers { opacity, properties } = hierarchy.numbers();
+    let bytes = (20 + 4 * properties.len() as u64) * surfels;
+    line("surfels", format!("{surfels}, {bytes} bytes"));
+    let further = properties.iter().map(|name| name.escape_debug().to_string());
+    let all: Vec<_> = opacity.then(|| "opacities".into()).into_iter().chain(further).collect();
+    if !all.is_empty() {
+        line("  with", all.join(", "));
+    }
 }
 
 /// What is wrong with meshes, if something is.

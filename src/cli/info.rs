@@ -90,7 +90,7 @@ fn scene(path: &Path) -> Result<()> {
     }
     let steps = progress::Steps::new("loading");
     let loaded: Loaded =
-        file.load(&Exec::new(0, 32)?, &|what, done, of| steps.show(what, done, of))?;
+        file.load_outlined(&Exec::new(0, 32)?, &|what, done, of| steps.show(what, done, of))?;
     drop(steps);
     report::scene(&loaded);
     line("  sha256", loaded.scene.sha256());

@@ -1,13 +1,16 @@
-//! `splatref surfels`: points, or what is seen of a mesh, in a progressive order, into a PLY; of a whole scene into a folder.
+//! `splatref surfels`: points, or what is seen of a mesh or a scene, in a progressive order, into a PLY; of a whole scene into a folder.
+
+mod given;
 
 use super::{Ended, Ending, hierarchy, output, progress, report};
 use clap::ValueEnum;
+use given::Given;
 use glam::Vec3;
 use splatref::frame::Exec;
-use splatref::io::scene_file::{FileKind, read_model};
-use splatref::io::{ply, texture};
+use splatref::io::ply;
+use splatref::io::scene_file::FileKind;
 use splatref::scene::{Camera, Cloud};
-use splatref::source::candidates::{self, Candidates, Directions};
+use splatref::source::candidates::{self, Directions};
 use splatref::source::hierarchy::{self as approximations, MOST, Settings, Traversal};
 use splatref::source::sampler::{
     Graph, Greedy, Order, Progressive, Schedule, Start, averaged, shuffled,
@@ -29,7 +32,7 @@ are what is seen from outside, a pixel each, with normals, and with the colours,
 
 A name without an extension is a folder. It takes the hierarchy of a mesh or of a scene: the
 triangles of each part, and surfels of every part of 1000 triangles or more, half as many and
-200000 at most, or --count; all of it is opaque. Stopped in the middle, the same command goes on.
+200000 at most, or --count; surfels keep opacities and --properties. Stopped in the middle, the same command goes on.
 
 Examples:
   splatref surfels city.toml -o city
@@ -38,7 +41,7 @@ Examples:
   splatref surfels car.ply -o blue.ply --properties roughness,metallic
   splatref surfels scan.ply -o blue.ply --sampler greedy --start 3 --count 10000")]
 pub(super) struct Args {
-    /// A .ply or .obj of points or of a mesh; for a folder a scene .toml, too
+    /// A .ply or .obj of points or of a mesh, or a scene .toml of meshes
     points: PathBuf,
     /// Where the points go in their order, with all that the file has of them; or a hierarchy
     #[arg(short, long, value_name = "FILE.ply|FOLDER")]
@@ -134,20 +137,12 @@ pub(super) fn run(args: &Args) -> Ended {
     let exec = Exec::new(args.threads, 32)?;
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let mut cloud = read_model(&args.points, &exec)?;
-    cloud.properties = ply::properties(&args.points, &args.properties)?;
-    let mesh = !cloud.triangles.is_empty();
     let of_file = |error: Error| match error {
         Error::Invalid(what) => Error::format(&args.points, what),
         other => other,
     };
-    let (cloud, pixel) = if mesh {
-        let found = args.candidates(cloud, &exec, &show).map_err(of_file)?;
-        (found.cloud, Some(found.pixel))
-    } else {
-        args.points_alone(&cloud)?;
-        (cloud, None)
-    };
+    let Given { cloud, pixel } = args.given(&exec, &show).map_err(of_file)?;
+    let mesh = pixel.is_some();
     let all = cloud.position.len();
     args.lacks(&cloud, mesh)?;
     let start = Instant::now();
@@ -182,7 +177,6 @@ impl Args {
             (self.reach.is_some(), "--reach"),
             (self.average_colors.is_some(), "--average-colors"),
             (self.texture.is_some(), "--texture"),
-            (!self.properties.is_empty(), "--properties"),
         ];
         if let Some((_, option)) = refused.iter().find(|(given, _)| *given) {
             let what = format!("{option} is not for a folder; remove it, or give a name in .ply");
@@ -203,6 +197,7 @@ impl Args {
                 Sampler::Random => approximations::Sampler::Random,
             },
             seed: self.seed,
+            properties: self.properties.clone(),
             traversal: match self.traversal {
                 None | Some(Way::BottomUp) => Traversal::BottomUp,
                 Some(Way::TopDown) => Traversal::TopDown,
@@ -276,36 +271,22 @@ impl Args {
             return Err(Error::Usage("--sampler random has no --start: remove one of them".into()));
         }
         let refused = |path: &Path, what| Err(Error::Usage(format!("{}: {what}", path.display())));
-        if !matches!(FileKind::of(&self.points), Ok(FileKind::Ply | FileKind::Obj)) {
-            return refused(&self.points, "points or a mesh are read from a .ply or an .obj");
+        let scene = matches!(FileKind::of(&self.points), Ok(FileKind::Toml));
+        if !(scene || matches!(FileKind::of(&self.points), Ok(FileKind::Ply | FileKind::Obj))) {
+            let what = "points or a mesh are read from a .ply or an .obj, a scene from a .toml";
+            return refused(&self.points, what);
+        }
+        if scene && self.texture.is_some() {
+            return refused(&self.points, "--texture is of one mesh; a scene names its textures");
         }
         if !matches!(FileKind::of(&self.output), Ok(FileKind::Ply)) {
             return refused(&self.output, "points go into a PLY; give a name in .ply");
         }
-        if !self.properties.is_empty() && !matches!(FileKind::of(&self.points), Ok(FileKind::Ply)) {
+        if !self.properties.is_empty() && matches!(FileKind::of(&self.points), Ok(FileKind::Obj)) {
             return refused(&self.points, "--properties are of a .ply; remove them");
         }
         output::check_folder(&self.output)?;
         output::check_other(&self.output, &self.points)
-    }
-
-    /// Whether a file without triangles has no more than points, and no option is for a mesh.
-    fn points_alone(&self, cloud: &Cloud) -> Result<()> {
-        let invalid = |what: String| Err(Error::format(&self.points, what));
-        if !cloud.edges.is_empty() {
-            let edges = cloud.edges.len();
-            return invalid(format!("the file has {edges} edges, but lines are not put in order"));
-        }
-        if self.texture.is_some() {
-            return invalid("--texture is for a mesh, but the file has no triangles".into());
-        }
-        match (self.side, self.directions) {
-            (None, None) => Ok(()),
-            (Some(_), _) => invalid("--side is for a mesh, but the file has no triangles".into()),
-            (_, Some(_)) => {
-                invalid("--directions is for a mesh, but the file has no triangles".into())
-            }
-        }
     }
 
     /// Whether the points have what the options need.
@@ -321,23 +302,6 @@ impl Args {
             return Ok(());
         };
         Err(Error::format(&self.points, what))
-    }
-
-    /// What is seen of a mesh.
-    fn candidates(
-        &self,
-        mut mesh: Cloud,
-        exec: &Exec,
-        show: &dyn Fn(&str, u64, u64),
-    ) -> Result<Candidates> {
-        texture::paint(&mut mesh, &self.points, self.texture.as_deref(), 0, exec)?;
-        let directions = self.directions();
-        let side = self.side.unwrap_or(candidates::SIDE);
-        let (found, derived) = candidates::of_cloud(mesh, &directions, side, exec, show)?;
-        if derived.dropped_primitives > 0 {
-            report::line("dropped", format!("{} triangles", derived.dropped_primitives));
-        }
-        Ok(found)
     }
 
     /// The neighbours along the surface, if distances are to go that way.

@@ -58,6 +58,7 @@ mod tests {
             direction: vec![Vec3::Z; n],
             radius: vec![radius; n],
             color: None,
+            ..Vertices::default()
         }
     }
 

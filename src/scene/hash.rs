@@ -295,6 +295,7 @@ mod tests {
             direction: vec![Vec3::Z; 2],
             radius: vec![0.5, 0.25],
             color: None,
+            ..Vertices::default()
         };
         // Vertices without a primitive are none, so that nothing is hashed for them.
         with.primitives.tubes = Polylines::new(vertices.clone(), vec![]).unwrap().0;

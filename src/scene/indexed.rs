@@ -1,5 +1,6 @@
 //! Triangles and polylines: vertices with attributes, and what joins them.
 
+use super::cloud::Property;
 use super::degenerate::unit;
 use super::light::is_color;
 use crate::error::{Error, Result};
@@ -17,13 +18,18 @@ pub struct Vertices {
     pub radius: Vec<f32>,
     /// Linear RGB, not premultiplied.
     pub color: Option<Vec<Vec3>>,
+    /// Opacity in \[0, 1\]. Primitives are drawn opaque: this and the properties are for those who choose
+    /// [candidates](mod@crate::source::candidates) among what is seen of triangles.
+    pub opacity: Option<Vec<f32>>,
+    /// Further numbers of the vertices.
+    pub properties: Vec<Property>,
 }
 
 /// Primitives of `N` corners over checked vertices; there may be none.
 ///
 /// Guarantees, kept by construction: arrays of one length, and for every vertex that a primitive
 /// uses: position finite; direction of length 1 within 2^-20; radius finite and >= 0; colour in
-/// [0, [`super::light::MAX_RADIANCE`]] and not -0. Corners may coincide: such a segment is a point, such a triangle covers nothing. Edges
+/// [0, [`super::light::MAX_RADIANCE`]] and not -0; opacity in [0, 1]; properties finite. Corners may coincide: such a segment is a point, such a triangle covers nothing. Edges
 /// may have any number of triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Indexed<const N: usize> {
@@ -59,8 +65,11 @@ impl<const N: usize> Indexed<N> {
             ("directions", vertices.direction.len()),
             ("radii", vertices.radius.len()),
             ("colours", vertices.color.as_ref().map_or(n, Vec::len)),
+            ("opacities", vertices.opacity.as_ref().map_or(n, Vec::len)),
         ];
-        for (what, length) in lengths {
+        let properties = vertices.properties.iter();
+        let properties = properties.map(|one| (one.name.as_str(), one.values.len()));
+        for (what, length) in lengths.into_iter().chain(properties) {
             if length != n {
                 return Err(Error::Invalid(format!("{n} vertices, but {length} {what}")));
             }
@@ -74,19 +83,20 @@ impl<const N: usize> Indexed<N> {
         if let Some(corner) = corners.iter().flatten().find(|&&corner| corner as usize >= n) {
             return Err(Error::Invalid(format!("there is no vertex {corner}, only {n}")));
         }
-        let sound: Vec<bool> = (0..n)
+        let drawable: Vec<bool> = (0..n)
             .map(|i| {
                 vertices.position[i].is_finite()
                     && unit(&mut vertices.direction[i])
                     && vertices.radius[i] >= 0.0
                     && vertices.radius[i].is_finite()
                     && vertices.color.as_ref().is_none_or(|color| is_color(color[i]))
+                    && sound(vertices.opacity.as_deref(), &vertices.properties, i)
             })
             .collect();
         // -0 becomes 0.
         vertices.color.iter_mut().flatten().for_each(|color| *color += Vec3::ZERO);
         let before = corners.len();
-        corners.retain(|corners| corners.iter().all(|&corner| sound[corner as usize]));
+        corners.retain(|corners| corners.iter().all(|&corner| drawable[corner as usize]));
         let dropped = (before - corners.len()) as u64;
         Ok((Self { vertices, corners }, dropped))
     }
@@ -138,6 +148,12 @@ impl<const N: usize> Indexed<N> {
     pub fn into_parts(self) -> (Vertices, Vec<[u32; N]>) {
         (self.vertices, self.corners)
     }
+}
+
+/// Whether a point's opacity is in [0, 1] and its properties are finite, if it has some.
+pub(crate) fn sound(opacity: Option<&[f32]>, properties: &[Property], point: usize) -> bool {
+    opacity.is_none_or(|all| (0.0..=1.0).contains(&all[point]))
+        && properties.iter().all(|one| one.values[point].is_finite())
 }
 
 /// How many primitives there are of each kind.
@@ -218,7 +234,7 @@ mod tests {
             position: (0..n).map(|i| Vec3::X * i as f32).collect(),
             direction: vec![3.0 * Vec3::Z; n],
             radius: vec![0.0; n],
-            color: None,
+            ..Vertices::default()
         }
     }
 
@@ -230,6 +246,16 @@ mod tests {
         bad.radius[3] = -1.0;
         bad.radius[4] = f32::INFINITY;
         let corners = vec![[0, 1], [0, 5], [2, 5], [0, 0], [3, 0], [4, 4]];
+        for wrong in [f32::NAN, -0.25, 1.5] {
+            let opacity = Some(vec![1.0, 1.0, 0.5, 0.0, wrong, 1.0]);
+            let veiled = Vertices { opacity, ..vertices(6) };
+            let (lines, dropped) = Polylines::new(veiled, corners.clone()).unwrap();
+            assert_eq!((lines.len(), dropped), (5, 1), "{wrong}");
+        }
+        let heat =
+            Property { name: "heat".into(), values: vec![0.0, f32::INFINITY, -7.0, 0.0, 0.0, 0.0] };
+        let hot = Vertices { properties: vec![heat], ..vertices(6) };
+        assert_eq!(Polylines::new(hot, corners.clone()).unwrap().1, 1);
         let (lines, dropped) = Polylines::new(bad, corners).unwrap();
         assert_eq!((lines.corners(), dropped), ([[0, 5], [0, 0]].as_slice(), 4));
         assert_eq!(lines.vertices().direction[0], Vec3::Z, "made a unit vector");
@@ -244,5 +270,9 @@ mod tests {
         assert_eq!(error.to_string(), "3 vertices, but 2 radii");
         let few = Vertices { color: Some(vec![]), ..vertices(3) };
         assert!(Triangles::new(few, vec![]).is_err());
+        let heat = Property { name: "heat".into(), values: vec![0.0] };
+        let few = Vertices { properties: vec![heat], ..vertices(3) };
+        let error = Triangles::new(few, vec![]).unwrap_err();
+        assert_eq!(error.to_string(), "3 vertices, but 1 heat");
     }
 }

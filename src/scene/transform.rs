@@ -180,6 +180,7 @@ mod tests {
             direction: vec![Vec3::X],
             radius: vec![0.5],
             color: None,
+            ..Vertices::default()
         };
         moved.apply_to_vertices(&mut vertices);
         assert_eq!(vertices.position, cloud.position);

@@ -1,9 +1,9 @@
 //! Several models as one: their clouds, and their primitives.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::scene::cloud::half_axes;
 use crate::scene::indexed::Indexed;
-use crate::scene::{Cloud, Mipmap, Primitives, Vertices};
+use crate::scene::{Cloud, Mipmap, Primitives, Property, Vertices};
 use glam::Vec3;
 
 /// Joins complete clouds, with normals and radii, in their order; triangles, edges, texture coordinates, the
@@ -59,10 +59,12 @@ pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
 }
 
 /// Joins primitives kind by kind, in their order. Where only some of a kind have colours, the
-/// others get `color`.
+/// others get `color`; where only some have opacities, the others get 1. `Decided:` nothing stands for a further property:
+/// nobody knows what 0 of it would mean.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] as [`Indexed::new`], if there are too many.
+/// [`crate::Error::Invalid`] as [`Indexed::new`], if there are too many, or if the vertices of some do not have the properties, in
+/// their order, that others have.
 pub fn join(models: Vec<Primitives>, color: Vec3) -> Result<Primitives> {
     let (mut triangles, mut ribbons, mut tubes) = (Vec::new(), Vec::new(), Vec::new());
     for model in models {
@@ -81,20 +83,45 @@ fn join_kind<const N: usize>(mut parts: Vec<Indexed<N>>, color: Vec3) -> Result<
         return Ok(parts.remove(0));
     }
     let colored = parts.iter().any(|part| part.vertices().color.is_some());
-    let mut all = Vertices { color: colored.then(Vec::new), ..Vertices::default() };
+    let veiled = parts.iter().any(|part| part.vertices().opacity.is_some());
+    let mut all = Vertices {
+        color: colored.then(Vec::new),
+        opacity: veiled.then(Vec::new),
+        properties: of_all(&parts)?,
+        ..Vertices::default()
+    };
     let mut joined = Vec::new();
     for part in parts {
         let (vertices, corners) = part.into_parts();
         // What does not fit is refused below, by the count of the vertices.
         let first = all.position.len() as u32;
         joined.extend(corners.into_iter().map(|corners| corners.map(|i| first.wrapping_add(i))));
-        append(&mut all.color, vertices.color, vertices.position.len(), color);
+        let n = vertices.position.len();
+        append(&mut all.color, vertices.color, n, color);
+        append(&mut all.opacity, vertices.opacity, n, 1.0);
+        let properties = all.properties.iter_mut().zip(vertices.properties);
+        properties.for_each(|(to, from)| to.values.extend(from.values));
         all.position.extend(vertices.position);
         all.direction.extend(vertices.direction);
         all.radius.extend(vertices.radius);
     }
     // Nothing is dropped: each part has been checked.
     Ok(Indexed::new(all, joined)?.0)
+}
+
+/// The properties that the vertices of each part have, without values.
+fn of_all<const N: usize>(parts: &[Indexed<N>]) -> Result<Vec<Property>> {
+    let names = |part: &Indexed<N>| {
+        let all = part.vertices().properties.iter();
+        all.map(|one| one.name.clone()).collect::<Vec<_>>()
+    };
+    let first = parts.first().map(names).unwrap_or_default();
+    if let Some(other) = parts.iter().map(names).find(|names| *names != first) {
+        let [a, b] = [first, other].map(|names| names.join(", "));
+        let what = format!("vertices have the properties [{a}] here and [{b}] there");
+        return Err(Error::Invalid(what));
+    }
+    Ok(first.into_iter().map(|name| Property { name, values: Vec::new() }).collect())
 }
 
 /// Appends the values, or `n` times the one that stands for them, if there is anything to fill.
@@ -175,6 +202,7 @@ mod tests {
                 direction: vec![Vec3::Z; 2],
                 radius: vec![x; 2],
                 color: color.map(|color| vec![color; 2]),
+                ..Vertices::default()
             };
             Indexed::new(vertices, vec![[0, 1]]).unwrap().0
         };
@@ -196,6 +224,32 @@ mod tests {
         assert_eq!((all.tubes, all.triangles.len()), (line(3.0, None), 0));
         assert_eq!(join(vec![ribbons.clone()], Vec3::Y).unwrap(), ribbons, "one stays as it is");
         assert_eq!(join(vec![], Vec3::Y).unwrap(), Primitives::default());
+    }
+
+    #[test]
+    fn opacities_are_filled_in_and_properties_are_not() {
+        let part = |opacity: Option<f32>, names: &[&str]| {
+            let property = |name: &&str| Property { name: (*name).into(), values: vec![3.0; 2] };
+            let vertices = Vertices {
+                position: vec![Vec3::ZERO; 2],
+                direction: vec![Vec3::Z; 2],
+                radius: vec![0.0; 2],
+                opacity: opacity.map(|opacity| vec![opacity; 2]),
+                properties: names.iter().map(property).collect(),
+                ..Vertices::default()
+            };
+            let tubes = Indexed::new(vertices, vec![[0, 1]]).unwrap().0;
+            Primitives { tubes, ..Primitives::default() }
+        };
+        let all = join(vec![part(None, &["a", "b"]), part(Some(0.25), &["a", "b"])], Vec3::Y);
+        let all = all.unwrap().tubes.into_parts().0;
+        assert_eq!(all.opacity, Some(vec![1.0, 1.0, 0.25, 0.25]));
+        assert_eq!(all.properties.iter().map(|one| one.values.len()).collect::<Vec<_>>(), [4, 4]);
+        for other in [&["b", "a"][..], &["a"], &[]] {
+            let line = join(vec![part(None, &["a", "b"]), part(None, other)], Vec3::Y).unwrap_err();
+            let what = format!("[a, b] here and [{}] there", other.join(", "));
+            assert!(line.to_string().ends_with(&what), "{line}");
+        }
     }
 
     #[test]

@@ -2,9 +2,11 @@
 
 use super::*;
 use glam::Vec3;
+use splatref::frame::Exec;
 use splatref::io::hierarchy::Hierarchy;
 use splatref::io::ply;
-use splatref::scene::Cloud;
+use splatref::io::scene_file::SceneFile;
+use splatref::scene::{Cloud, Property};
 use std::collections::BTreeMap;
 use tempfile::TempDir;
 
@@ -225,4 +227,137 @@ fn options_that_a_folder_has_no_use_for_are_refused() {
     let line = fails(at.path(), &["surfels", "hills.ply", "-o", "file"], 1);
     assert!(line.contains("file: "), "{line}");
     assert_eq!(names(at.path()), ["file", "hills.ply", "scene.toml"]);
+}
+
+/// A scene of two hills: one with opacities, the other in a place of its own without; both with a roughness. Each
+/// number is linear in the place, so that it is known wherever a surfel is.
+fn veiled() -> TempDir {
+    let at = TempDir::new().unwrap();
+    let flat = |mesh: &mut Cloud| mesh.position.iter_mut().for_each(|p| p.y = 0.0);
+    let rough = |mesh: &Cloud| {
+        let values = mesh.position.iter().map(|p| 3.0 * p.z - 1.0).collect();
+        vec![Property { name: "roughness".into(), values }]
+    };
+    let mut mesh = hills(72);
+    flat(&mut mesh);
+    mesh.properties = rough(&mesh);
+    ply::write(&at.path().join("opaque.ply"), &mesh).unwrap();
+    mesh.opacity = Some(mesh.position.iter().map(|p| 0.25 + p.x / 2.0).collect());
+    ply::write(&at.path().join("veiled.ply"), &mesh).unwrap();
+    let scene = "\
+[[geometry]]
+name = \"veiled\"
+file = \"veiled.ply\"
+[[geometry]]
+name = \"opaque\"
+file = \"opaque.ply\"
+[[object]]
+of = \"veiled\"
+[[object]]
+of = \"opaque\"
+transform = { translate = [2, 0, 0] }
+";
+    fs::write(at.path().join("scene.toml"), scene).unwrap();
+    at
+}
+
+/// Whether points have the numbers of where they are.
+fn check_numbers(cloud: &Cloud, roughness: &[f32], most_off: f32) {
+    let opacity = cloud.opacity.as_ref().unwrap();
+    assert!(cloud.position.len() > 100);
+    let far = cloud.position.iter().filter(|p| p.x >= 1.5).count();
+    assert!(far > 50 && far < cloud.position.len() - 50, "{far} of the other object");
+    for (i, p) in cloud.position.iter().enumerate() {
+        let expected = if p.x >= 1.5 { 1.0 } else { 0.25 + p.x / 2.0 };
+        assert!((opacity[i] - expected).abs() < most_off, "{} at {p}", opacity[i]);
+        assert!(
+            (roughness[i] - (3.0 * p.z - 1.0)).abs() < 6.0 * most_off,
+            "{} at {p}",
+            roughness[i]
+        );
+    }
+}
+
+#[test]
+fn scenes_give_their_opacities_and_properties_to_points() {
+    let at = veiled();
+    let options = ["--side", "256", "--count", "400", "--properties", "roughness", "-o"];
+    let surfels =
+        |scene: &'static str, to: &'static str| [&["surfels", scene][..], &options, &[to]].concat();
+    let said = succeeds(at.path(), &surfels("scene.toml", "out.ply"));
+    assert!(said.contains("greedy, 400 of them"), "{said}");
+    let path = at.path().join("out.ply");
+    let roughness = ply::properties(&path, &["roughness".into()]).unwrap();
+    check_numbers(&ply::read(&path).unwrap(), &roughness[0].values, 1e-5);
+
+    let said = succeeds(at.path(), &surfels("scene.toml", "out"));
+    assert!(said.contains("opacities, roughness"), "{said}");
+    let said = succeeds(at.path(), &["info", "out"]);
+    assert!(said.contains("opacities, roughness"), "{said}");
+    // The root stands for both objects, by the surfels of both: a square of a surfel has one number.
+    let hierarchy = Hierarchy::open(&at.path().join("out")).unwrap();
+    let cloud = hierarchy.surfels(0, u32::MAX).unwrap();
+    check_numbers(&cloud, &cloud.properties[0].values, 0.06);
+    ply::write(&at.path().join("root.ply"), &cloud).unwrap();
+    let said = succeeds(at.path(), &["info", "root.ply"]);
+    assert!(said.contains("opacities"), "{said}");
+
+    // Methods that draw triangles draw all of it opaque.
+    let bare = veiled();
+    let mut scene = fs::read_to_string(bare.path().join("scene.toml")).unwrap();
+    scene = scene.replace("veiled.ply", "opaque.ply");
+    fs::write(bare.path().join("scene.toml"), scene).unwrap();
+    succeeds(bare.path(), &surfels("scene.toml", "out"));
+    let render = ["render", "out", "--method", "blue", "--size", "96x64", "-o", "a.exr"];
+    succeeds(at.path(), &render);
+    succeeds(bare.path(), &render);
+    let other = bare.path().join("a.exr").display().to_string();
+    succeeds(at.path(), &["compare", "a.exr", &other]);
+
+    let mut other = hills(9);
+    other.opacity = Some(vec![0.5; other.position.len()]);
+    ply::write(&at.path().join("opaque.ply"), &other).unwrap();
+    for to in ["new.ply", "new"] {
+        let line = fails(at.path(), &surfels("scene.toml", to), 1);
+        let what = "opaque.ply: element vertex has no property `roughness`";
+        assert!(line.contains(what) && !at.path().join(to).exists(), "{line}");
+    }
+    let line = fails(at.path(), &surfels("out", "again.ply"), 2);
+    assert!(line.lines().count() == 1, "{line}");
+    fs::write(at.path().join("all.toml"), "hierarchy = \"out\"\n").unwrap();
+    let line = fails(at.path(), &surfels("all.toml", "again.ply"), 1);
+    assert!(line.contains("a hierarchy has its surfels already"), "{line}");
+    fs::write(at.path().join("tree.toml"), "[[model]]\nshape = \"tree\"\n").unwrap();
+    let line = fails(at.path(), &surfels("tree.toml", "tree.ply"), 2);
+    assert!(line.contains("tree: there is no property roughness"), "{line}");
+}
+
+/// What a folder holds is told of its index alone; of a scene that shows it of the bounds, too.
+#[test]
+fn info_reads_the_index_alone() {
+    let (at, mut options) = given();
+    options.push("out");
+    succeeds(at.path(), &options);
+    fs::write(at.path().join("all.toml"), "hierarchy = \"out\"\n[method]\nname = \"blue\"\n")
+        .unwrap();
+    let [all, scene] = ["out", "all.toml"].map(|name| succeeds(at.path(), &["info", name]));
+    let loaded = SceneFile::read(&at.path().join("all.toml")).unwrap();
+    let loaded = loaded.load(&Exec::sequential(), &|_, _, _| ()).unwrap();
+    assert!(scene.contains(&loaded.scene.sha256()), "{scene}");
+    let objects = loaded.scene.objects.unwrap();
+    let found = format!("{} surfels and nodes", objects.drawn_total());
+    assert!(scene.contains(&found), "{found} in {scene}");
+    let out = at.path().join("out");
+    for name in names(&out) {
+        if !["index", "bounds"].contains(&name.as_str()) {
+            fs::remove_file(out.join(name)).unwrap();
+        }
+    }
+    assert_eq!(succeeds(at.path(), &["info", "all.toml"]), scene);
+    for name in names(&out) {
+        if name != "index" {
+            fs::remove_file(out.join(name)).unwrap();
+        }
+    }
+    assert_eq!(succeeds(at.path(), &["info", "out"]), all);
 }

@@ -154,8 +154,9 @@ fn opacities_and_properties_go_with_the_points() {
     assert!(line.contains("mesh.ply: element vertex has no property `gloss`"), "{line}");
     let line = fails(at.path(), &["surfels", "mesh.obj", "-o", "out.ply", "--properties", "a"], 2);
     assert!(line.contains("--properties are of a .ply"), "{line}");
-    let line = fails(at.path(), &["surfels", "mesh.ply", "-o", "folder", "--properties", "a"], 2);
-    assert!(line.contains("--properties is not for a folder"), "{line}");
+    let line = fails(at.path(), &["surfels", "mesh.ply", "-o", "folder", "--properties", "a"], 1);
+    assert!(line.contains("mesh.ply: element vertex has no property `a`"), "{line}");
+    assert!(!at.path().join("folder").exists(), "nothing is begun");
     mesh.opacity = Some(vec![f32::NAN; mesh.position.len()]);
     ply::write(&at.path().join("mesh.ply"), &mesh).unwrap();
     let line = fails(at.path(), &surfels, 1);

@@ -5,6 +5,7 @@
 //! - [`cases`]: the scenes.
 //! - [`verdicts`]: no lawful habit is called wrong, and every bug is found.
 //! - [`ladder`]: scenes whose decisions lie beside their limits.
+//! - [`nodes`]: a hierarchy whose choices lie beside their limits, and clients that choose.
 //! - [`suite`]: limits that lean, over several scenes.
 //! - [`groups`]: the same of the method `single-pass`.
 //! - [`image_space`]: the same of the methods `template` and `pyramid`.
@@ -17,5 +18,6 @@ mod client_is_right;
 mod groups;
 mod image_space;
 mod ladder;
+mod nodes;
 mod suite;
 mod verdicts;

@@ -9,7 +9,7 @@ use super::{mesh, surfels};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::replace::write_atomically;
-use crate::io::scene_file::{Draw, Model, SceneFile, Source};
+use crate::io::scene_file::{Model, SceneFile, Source, check_properties};
 use crate::scene::Camera;
 use crate::source::hierarchy::{Flaws, Settings, Traversal, approximate};
 use std::io::Write;
@@ -34,7 +34,7 @@ pub struct Built {
 /// `progress` is told the name of a step, how much of it is done, and of how much: of "surfels" how many.
 ///
 /// # Errors
-/// Those of [`SceneFile::load`] of a model without triangles, or with an opacity below 1; [`Error::Usage`] if no surfel or no
+/// Those of [`SceneFile::load_polygons`]; [`Error::Usage`] if no surfel or no
 /// picture is asked for; [`Error::Format`] if the folder is of something else; [`Error::Io`] if it cannot be written
 /// to; as [`crate::source::candidates::candidates`], and if the process may not hold what one node needs.
 pub fn build(
@@ -90,7 +90,10 @@ impl<'a> Work<'a> {
             .map(|model| (model.source.name(), model))
             .chain(file.geometries.iter().map(|one| (one.name.clone(), &one.model)))
             .collect();
-        models.iter().try_for_each(|(name, model)| check(name, model))?;
+        for (name, model) in &models {
+            check(name, model)?;
+            check_properties(model, &settings.properties)?;
+        }
         let objects = file.objects()?;
         let fill = file.material.color;
         let plan = plan::hash(settings, fill, &objects, models.len());
@@ -99,8 +102,9 @@ impl<'a> Work<'a> {
         let mut built = Built { geometries: Vec::new(), nodes: 0, found: 0, unseen: 0 };
         for (number, (name, model)) in (0..).zip(models) {
             progress("geometries", u64::from(number), file.all_models().count() as u64);
-            let header = geometry(file, model, (folder, number), exec, progress)
-                .map_err(|error| named(&name, error))?;
+            let header =
+                geometry(file, model, (folder, number), &settings.properties, exec, progress)
+                    .map_err(|error| named(&name, error))?;
             let triangles = header.nodes.first().map_or(0, |root| root.below);
             built.geometries.push((name, triangles, header.flaws));
             geometries.push(header);
@@ -108,7 +112,8 @@ impl<'a> Work<'a> {
         let hashes: Vec<Hash> = geometries.iter().map(|one| one.hash).collect();
         let mut layout = Layout::over(&objects, &geometries, settings)?;
         geometries.into_iter().for_each(|header| layout.append(header, settings));
-        let (index, wanted) = layout.finish(plan::of_all(&plan, &hashes), fill);
+        let (index, wanted) =
+            layout.finish(plan::of_all(&plan, &hashes), fill, settings.properties.clone());
         built.nodes = wanted.iter().filter(|count| **count > 0).count() as u32;
         Ok(Self {
             hierarchy: Hierarchy { folder: folder.to_owned(), index },
@@ -136,7 +141,8 @@ impl<'a> Work<'a> {
         let Hierarchy { folder, index } = &self.hierarchy;
         let hash = index.hash;
         (self.progress)("surfels", self.surfels, self.total);
-        let mut header = surfels::header(folder, &hash, node)?;
+        let further = self.settings.properties.len();
+        let mut header = surfels::header(folder, &hash, node, further)?;
         if header.is_some() {
             self.built.found += 1;
         } else {
@@ -150,7 +156,7 @@ impl<'a> Work<'a> {
             };
             let cloud = approximate(&drawn, count, self.settings, self.exec, &picks)?;
             surfels::write(folder, &hash, node, &cloud)?;
-            header = surfels::header(folder, &hash, node)?;
+            header = surfels::header(folder, &hash, node, further)?;
         }
         let Some(header) = header else {
             let what = "it was replaced by another hierarchy while this one was made";
@@ -200,9 +206,6 @@ fn named(name: &str, error: Error) -> Error {
 fn check(name: &str, model: &Model) -> Result<()> {
     let what = match &model.source {
         Source::Shape { .. } => "a shape has surfels of its own and no triangles to approximate",
-        Source::File { .. } | Source::Tree { .. } if model.opacity.is_some_and(|o| o < 1.0) => {
-            "surfels of a hierarchy are opaque; remove the opacity"
-        }
         Source::File { prefix: Some(_), .. } => "a prefix is of points, which are not approximated",
         Source::File { .. } if model.progressive => "progressive points are not approximated",
         Source::File { .. } | Source::Tree { .. } => return Ok(()),
@@ -215,18 +218,18 @@ fn geometry(
     file: &SceneFile,
     model: &Model,
     (folder, number): (&Path, u32),
+    properties: &[String],
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<mesh::Header> {
-    let model = Model { draw: Draw::Polygons, opacity: None, mipmaps: None, ..model.clone() };
     let alone = SceneFile {
-        models: vec![model],
+        models: vec![model.clone()],
         geometries: Vec::new(),
         objects: Vec::new(),
         environment: None,
         ..file.clone()
     };
-    let loaded = alone.load(exec, progress)?;
+    let loaded = alone.load_polygons(properties, exec, progress)?;
     let triangles = &loaded.scene.primitives.triangles;
     let hash = mesh::hash(triangles);
     if let Ok(Some(header)) = mesh::read(folder, number) {

@@ -31,6 +31,12 @@ impl Writer {
         v.to_array().into_iter().for_each(|float| self.float(float));
     }
 
+    /// The length, then the bytes.
+    pub(super) fn text(&mut self, text: &str) {
+        self.words(&[text.len() as u32]);
+        self.bytes(text.as_bytes());
+    }
+
     pub(super) fn double(&mut self, double: f64) {
         self.bytes(&double.to_le_bytes());
     }
@@ -44,6 +50,12 @@ impl Reader<'_> {
         let (first, rest) = self.0.split_first_chunk::<N>().ok_or("the file ends too early")?;
         self.0 = rest;
         Ok(*first)
+    }
+
+    pub(super) fn text(&mut self, length: u32) -> Reason<String> {
+        let split = self.0.split_at_checked(length as usize).ok_or("the file ends too early")?;
+        self.0 = split.1;
+        String::from_utf8(split.0.to_vec()).map_err(|_| "a name is no UTF-8".into())
     }
 
     pub(super) fn word(&mut self) -> Reason<u32> {

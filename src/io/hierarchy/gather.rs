@@ -44,7 +44,7 @@ pub(super) fn gather(
         bottom_up: traversal == Traversal::BottomUp,
         pixel: pixel(side, (low, high)),
         upper: geometry == NONE,
-        all: Gathered::default(),
+        all: Gathered::new(&hierarchy.numbers()),
         parts: BTreeMap::new(),
         surfels: BTreeMap::new(),
     };
@@ -111,10 +111,11 @@ impl Gather<'_> {
             [p, n, shown.color.unwrap_or(color[i])]
         };
         let squares: Vec<[Vec3; 3]> = (0..count as usize).map(placed).collect();
+        self.all.squares(&squares, cloud, (half * scale) as f32)?;
         if !self.upper {
             self.surfels.remove(&node);
         }
-        self.all.squares(&squares, (half * scale) as f32)
+        Ok(())
     }
 
     /// The own triangles of a node, kept where objects may show them again.

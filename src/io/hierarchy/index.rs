@@ -1,6 +1,7 @@
 //! The index of a hierarchy, see the [module](super).
 
 use super::bytes::{Hash, Reader, Writer};
+use super::mesh::Kind;
 use super::surfels;
 use crate::io::Reason;
 use crate::scene::Similarity;
@@ -69,8 +70,8 @@ pub struct Object {
 pub struct Geometry {
     /// The nodes of its tree, the root first.
     pub nodes: Range<u32>,
-    /// Whether its triangles have colours.
-    pub colored: bool,
+    /// What its vertices have.
+    pub kind: Kind,
     /// What is wrong with it.
     pub flaws: Flaws,
     pub(super) hash: Hash,
@@ -86,6 +87,8 @@ pub(super) struct Index {
     pub(super) nodes: Vec<Node>,
     pub(super) objects: Vec<Object>,
     pub(super) geometries: Vec<Geometry>,
+    /// The names of further properties of vertices and surfels.
+    pub(super) properties: Vec<String>,
 }
 
 impl Index {
@@ -97,7 +100,7 @@ impl Index {
         let [nodes, objects, geometries] = counts.map(|count| count as u32);
         to.words(&[nodes, self.upper, objects, geometries]);
         to.vector(self.fill);
-        to.float(0.0);
+        to.words(&[self.properties.len() as u32]);
         for node in &self.nodes {
             let Range { start, end } = node.children;
             to.words(&[node.parent, start, end - start, node.geometry]);
@@ -120,10 +123,11 @@ impl Index {
         }
         for geometry in &self.geometries {
             let Range { start, end } = geometry.nodes;
-            to.words(&[start, end - start, u32::from(geometry.colored), 0]);
+            to.words(&[start, end - start, geometry.kind.word(), 0]);
             to.bytes(&geometry.hash);
             flaws(&mut to, geometry.flaws);
         }
+        self.properties.iter().for_each(|name| to.text(name));
         to.0
     }
 
@@ -135,10 +139,11 @@ impl Index {
         let hash = rest.take::<32>()?;
         let [nodes, upper, objects, geometries] = rest.words()?;
         let fill = rest.vector()?;
-        rest.word()?;
+        let properties = rest.word()?;
         let [n, o, g] = [nodes, objects, geometries].map(u64::from);
         let length = HEADER + n * OF_A_NODE + o * OF_AN_OBJECT + g * OF_A_GEOMETRY;
-        if length != bytes.len() as u64 {
+        let long = if properties == 0 { length } else { length.max(bytes.len() as u64) };
+        if long != bytes.len() as u64 {
             return Err(format!(
                 "{nodes} nodes, {objects} objects and {geometries} geometries take {length} bytes, but the \
                  file has {}",
@@ -149,7 +154,12 @@ impl Index {
         let objects = (0..objects).map(|_| object(&mut rest)).collect::<Reason<Vec<_>>>()?;
         let geometries =
             (0..geometries).map(|_| geometry(&mut rest)).collect::<Reason<Vec<_>>>()?;
-        let index = Self { hash, fill, upper, nodes, objects, geometries };
+        let mut name = || rest.word().and_then(|length| rest.text(length));
+        let properties = (0..properties).map(|_| name()).collect::<Reason<Vec<_>>>()?;
+        if !rest.0.is_empty() {
+            return Err(format!("{} bytes are left after all names", rest.0.len()));
+        }
+        let index = Self { hash, fill, upper, nodes, objects, geometries, properties };
         index.check()?;
         Ok(index)
     }
@@ -158,6 +168,10 @@ impl Index {
     fn check(&self) -> Reason<()> {
         if !is_color(self.fill) {
             return Err("the colour of what has none is none".into());
+        }
+        let further = |one: &Geometry| one.kind.properties as usize;
+        if self.geometries.iter().any(|one| further(one) != self.properties.len()) {
+            return Err("a geometry does not have the properties of all".into());
         }
         self.check_trees()?;
         for (i, node) in self.nodes.iter().enumerate() {
@@ -306,11 +320,7 @@ fn object(from: &mut Reader<'_>) -> Reason<Object> {
 }
 
 fn geometry(from: &mut Reader<'_>) -> Reason<Geometry> {
-    let [first, nodes, colored, _] = from.words()?;
-    let hash = from.take()?;
-    let flaws = read_flaws(from)?;
-    if colored > 1 {
-        return Err(format!("{colored} is neither with nor without colours"));
-    }
-    Ok(Geometry { nodes: range(first, nodes)?, colored: colored == 1, flaws, hash })
+    let [first, nodes, kind, _] = from.words()?;
+    let (hash, flaws) = (from.take()?, read_flaws(from)?);
+    Ok(Geometry { nodes: range(first, nodes)?, kind: Kind::of_word(kind), flaws, hash })
 }

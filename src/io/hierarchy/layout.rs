@@ -50,9 +50,9 @@ impl Layout {
     /// Appends the tree of a geometry.
     pub(super) fn append(&mut self, header: Header, settings: &Settings) {
         let first = self.nodes.len() as u32;
-        let Header { hash, colored, flaws, nodes } = header;
+        let Header { hash, kind, flaws, nodes } = header;
         let of = first..first + nodes.len() as u32;
-        self.geometries.push(Geometry { nodes: of, colored, flaws, hash });
+        self.geometries.push(Geometry { nodes: of, kind, flaws, hash });
         for mut node in nodes {
             node.parent = if node.parent == NONE { NONE } else { node.parent + first };
             node.children = node.children.start + first..node.children.end + first;
@@ -61,9 +61,14 @@ impl Layout {
         }
     }
 
-    pub(super) fn finish(self, hash: Hash, fill: Vec3) -> (Index, Vec<u32>) {
+    pub(super) fn finish(
+        self,
+        hash: Hash,
+        fill: Vec3,
+        properties: Vec<String>,
+    ) -> (Index, Vec<u32>) {
         let Self { upper, nodes, objects, geometries, wanted } = self;
-        (Index { hash, fill, upper, nodes, objects, geometries }, wanted)
+        (Index { hash, fill, upper, nodes, objects, geometries, properties }, wanted)
     }
 }
 

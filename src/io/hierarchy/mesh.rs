@@ -6,10 +6,10 @@ use crate::error::{Error, Result};
 use crate::io::replace::write_atomically;
 use crate::io::{Reason, input};
 use crate::memory;
-use crate::scene::Triangles;
 use crate::scene::objects::detail::prefix::Estimate;
+use crate::scene::{Property, Triangles, Vertices};
 use crate::source::hierarchy::parts::tree;
-use crate::source::hierarchy::{BOUND, Flaws, Part};
+use crate::source::hierarchy::{BOUND, Flaws, Numbers, Part};
 use sha2::{Digest, Sha256};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -17,16 +17,50 @@ use std::path::{Path, PathBuf};
 const MAGIC: &[u8; 16] = b"splatref mesh 1\n";
 const HEADER: u64 = 88;
 const OF_A_NODE: u64 = 56;
-/// Bytes of a triangle, and of a vertex without and with a colour.
+/// Bytes of a triangle, of place and normal of a vertex, of its colour, and of any other number.
 const TRIANGLE: u64 = 12;
-const VERTEX: [u64; 2] = [24, 36];
+const VERTEX: u64 = 24;
+const COLOR: u64 = 12;
+const NUMBER: u64 = 4;
 /// Bytes of the largest of both in memory, beside those of the file.
 const IN_MEMORY: u64 = 2;
+
+/// What the vertices of a geometry have beside places and normals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Kind {
+    /// Colours.
+    pub colored: bool,
+    /// Opacities.
+    pub veiled: bool,
+    /// So many further properties.
+    pub properties: u32,
+}
+
+impl Kind {
+    fn of(vertices: &Vertices) -> Self {
+        let (colored, veiled) = (vertices.color.is_some(), vertices.opacity.is_some());
+        Self { colored, veiled, properties: vertices.properties.len() as u32 }
+    }
+
+    pub(super) fn word(self) -> u32 {
+        u32::from(self.colored) + 2 * u32::from(self.veiled) + 4 * self.properties
+    }
+
+    pub(super) fn of_word(word: u32) -> Self {
+        Self { colored: word & 1 == 1, veiled: word & 2 == 2, properties: word / 4 }
+    }
+
+    /// The bytes of a vertex.
+    fn vertex(self) -> u64 {
+        let numbers = u64::from(self.veiled) + u64::from(self.properties);
+        VERTEX + COLOR * u64::from(self.colored) + NUMBER * numbers
+    }
+}
 
 /// What a file says of its geometry, but for its triangles.
 pub(super) struct Header {
     pub(super) hash: Hash,
-    pub(super) colored: bool,
+    pub(super) kind: Kind,
     pub(super) flaws: Flaws,
     /// By their numbers in the geometry; without surfels.
     pub(super) nodes: Vec<Node>,
@@ -61,6 +95,17 @@ pub(super) fn hash(triangles: &Triangles) -> Hash {
     for corners in triangles.corners() {
         update(&|to| to.words(corners));
     }
+    if let Some(opacity) = &vertices.opacity {
+        update(&|to| to.bytes(&[1]));
+        opacity.iter().for_each(|&one| update(&|to| to.float(one)));
+    }
+    for Property { name, values } in &vertices.properties {
+        update(&|to| {
+            to.bytes(&[2]);
+            to.text(name);
+        });
+        values.iter().for_each(|&one| update(&|to| to.float(one)));
+    }
     hash.finalize().into()
 }
 
@@ -74,11 +119,10 @@ pub(super) fn write(
 ) -> Result<()> {
     let tree = tree(triangles, BOUND)?;
     let flaws = Flaws::of(triangles, dropped);
-    let colored = triangles.vertices().color.is_some();
     let mut header = Writer::default();
     header.bytes(MAGIC);
     header.bytes(hash);
-    header.words(&[tree.nodes.len() as u32, u32::from(colored)]);
+    header.words(&[tree.nodes.len() as u32, Kind::of(triangles.vertices()).word()]);
     index::flaws(&mut header, flaws);
     for (number, node) in (0..).zip(&tree.nodes) {
         let own = tree.own(number);
@@ -107,13 +151,16 @@ fn block(part: &Part) -> Vec<u8> {
         if let Some(color) = &part.color {
             to.vector(color[i]);
         }
+        part.opacity.iter().for_each(|opacity| to.float(opacity[i]));
+        part.properties.iter().for_each(|one| to.float(one.values[i]));
     }
     part.triangles.iter().for_each(|corners| to.words(corners));
     to.0
 }
 
-fn size(node: &Node, colored: bool) -> u64 {
-    u64::from(node.vertices) * VERTEX[usize::from(colored)] + u64::from(node.triangles) * TRIANGLE
+fn size(node: &Node, kind: Kind) -> u64 {
+    let vertices = u64::from(node.vertices).saturating_mul(kind.vertex());
+    vertices.saturating_add(u64::from(node.triangles) * TRIANGLE)
 }
 
 /// The header of the file of a geometry, if there is a file; its nodes have the number of the geometry.
@@ -135,7 +182,7 @@ pub(super) fn read(folder: &Path, geometry: u32) -> Result<Option<Header>> {
         return Err(format(what));
     }
     let bytes = input::rest(file, records).map_err(io)?;
-    header.nodes = records_of(&bytes, nodes, geometry, header.colored, length).map_err(format)?;
+    header.nodes = records_of(&bytes, nodes, geometry, header.kind, length).map_err(format)?;
     Ok(Some(header))
 }
 
@@ -144,16 +191,16 @@ fn beginning(rest: &mut Reader<'_>) -> Reason<(Header, u32)> {
         return Err("this is no geometry of a hierarchy".into());
     }
     let hash = rest.take()?;
-    let [nodes, colored] = rest.words()?;
+    let [nodes, kind] = rest.words()?;
     let flaws = index::read_flaws(rest)?;
-    Ok((Header { hash, colored: colored == 1, flaws, nodes: Vec::new() }, nodes))
+    Ok((Header { hash, kind: Kind::of_word(kind), flaws, nodes: Vec::new() }, nodes))
 }
 
 fn records_of(
     bytes: &[u8],
     nodes: u32,
     geometry: u32,
-    colored: bool,
+    kind: Kind,
     length: u64,
 ) -> Reason<Vec<Node>> {
     let mut rest = Reader(bytes);
@@ -176,7 +223,7 @@ fn records_of(
             surfels: 0,
             estimate: Estimate { count: 0, distance: 0.0 },
         };
-        offset = offset.saturating_add(size(&node, colored));
+        offset = offset.saturating_add(size(&node, kind));
         all.push(node);
     }
     if offset != length {
@@ -186,9 +233,21 @@ fn records_of(
 }
 
 /// The triangles of a node, as the index says.
-pub(super) fn part(folder: &Path, hash: &Hash, node: &Node, colored: bool) -> Result<Part> {
+pub(super) fn part(
+    folder: &Path,
+    hash: &Hash,
+    node: &Node,
+    kind: Kind,
+    numbers: &Numbers,
+) -> Result<Part> {
+    let part = Part {
+        color: kind.colored.then(Vec::new),
+        opacity: kind.veiled.then(Vec::new),
+        properties: numbers.of_none(),
+        ..Part::default()
+    };
     if node.triangles == 0 || node.geometry == NONE {
-        return Ok(Part { color: colored.then(Vec::new), ..Part::default() });
+        return Ok(part);
     }
     let path = path(folder, node.geometry);
     let io = |source| Error::io(&path, source);
@@ -197,30 +256,35 @@ pub(super) fn part(folder: &Path, hash: &Hash, node: &Node, colored: bool) -> Re
     file.read_exact(&mut start).map_err(io)?;
     let format = |what: String| Error::format(&path, what);
     let (header, _) = beginning(&mut Reader(&start)).map_err(format)?;
-    if header.hash != *hash || header.colored != colored {
+    if header.hash != *hash || header.kind != kind {
         return Err(format("the geometry is not that of the index".into()));
     }
-    let bytes = size(node, colored);
+    let bytes = size(node, kind);
     if node.offset.checked_add(bytes).is_none_or(|end| end > length) {
         return Err(format("the triangles of a node lie beyond the end of the file".into()));
     }
-    memory::ask(bytes * IN_MEMORY, || format!("{} triangles", node.triangles))?;
+    memory::ask(bytes.saturating_mul(IN_MEMORY), || format!("{} triangles", node.triangles))?;
     file.seek(SeekFrom::Start(node.offset)).map_err(io)?;
     let bytes = input::rest(file, bytes).map_err(io)?;
-    if (bytes.len() as u64) < size(node, colored) {
+    if (bytes.len() as u64) < size(node, kind) {
         return Err(io(io::ErrorKind::UnexpectedEof.into()));
     }
-    parse(&bytes, node, colored).map_err(format)
+    parse(&bytes, node, part).map_err(format)
 }
 
-fn parse(bytes: &[u8], node: &Node, colored: bool) -> Reason<Part> {
+fn parse(bytes: &[u8], node: &Node, mut part: Part) -> Reason<Part> {
     let mut rest = Reader(bytes);
-    let mut part = Part { color: colored.then(Vec::new), ..Part::default() };
     for _ in 0..node.vertices {
         part.position.push(rest.vector()?);
         part.normal.push(rest.vector()?);
         if let Some(color) = &mut part.color {
             color.push(rest.vector()?);
+        }
+        if let Some(opacity) = &mut part.opacity {
+            opacity.push(rest.float()?);
+        }
+        for one in &mut part.properties {
+            one.values.push(rest.float()?);
         }
     }
     for _ in 0..node.triangles {

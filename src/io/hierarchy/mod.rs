@@ -33,17 +33,19 @@
 //! ```text
 //!   "splatref mesh 1\n"                     16 bytes
 //!   hash of the geometry                    32
-//!   u32 nodes, u32 1 if there are colours   8
+//!   u32 nodes, u32 kind                     8
 //!   u64 dropped, degenerate, duplicate triangles, edges of many           32, see source::hierarchy::Flaws
 //!   of each node: u32 parent, first child, children, own triangles, own vertices, 0     24
 //!                 f32 low x y z, high x y z                                             24
 //!                 u64 triangles here and below                                           8
-//!   of each node: of each own vertex f32 position x y z, normal x y z, then colour r g b if there are colours
+//!   of each node: of each own vertex f32 position x y z, normal x y z, then what the kind says:
+//!                   colour r g b, opacity, further properties in the order of the index
 //!                 of each own triangle u32 of its three vertices, counted from 0 in the node
 //! ```
 //!
 //! Nodes are counted from 0 in the geometry. A node without children has as its first child the number that it would have, see
-//! [`mod@crate::source::hierarchy::octree`]. The colours are linear.
+//! [`mod@crate::source::hierarchy::octree`]. The colours are linear. The kind is 1 if vertices have colours, plus 2 if they have
+//! opacities, plus 4 times the number of further properties.
 //!
 //! **surfels-N**
 //!
@@ -51,10 +53,11 @@
 //!   "splatref blue 1\n"                     16 bytes
 //!   hash of the hierarchy                   32
 //!   u32 node, u32 count, u32 p_m, f32 r_m   16, see scene::objects::detail::prefix::Estimate
-//!   count times, in the order:              20, the bytes of a surfel in the paper's Table 1
+//!   count times, in the order:              20, the bytes of a surfel in the paper's Table 1, without further properties
 //!     f32 position x y z                    12
 //!     i16 u, v: the normal                  4
-//!     u8 red, green, blue, 255              4, sRGB
+//!     u8 red, green, blue, opacity          4, sRGB
+//!     f32 of each further property          4 each, in the order of the index
 //! ```
 //!
 //! The codes of a unit normal, in f64, and the normal of codes, where sign is 1 for 0:
@@ -72,7 +75,8 @@
 //! A node of which no pixel sees anything has a file too, with the count, `p_m` and `r_m` 0, so that nobody looks again.
 //!
 //! A normal is at most 1e-4 off. Colours are clamped to \[0, 1\], encoded by [`crate::io::srgb`], and rounded as
-//! floor(255 c + 1/2). `Decided:` Table 1 has 20 bytes a surfel (494.79 MB for 24.74 M) and does not say which. `Decided:` light above 1 is cut, as
+//! floor(255 c + 1/2). An opacity o is floor(255 o + 1/2), and where a vertex of a geometry has one, code / 255 is that of a surfel, rounded to f32
+//! once; else the code is 255, and surfels have none. `Decided:` Table 1 has 20 bytes a surfel (494.79 MB for 24.74 M) and does not say which. `Decided:` light above 1 is cut, as
 //! it is in the paper's bytes. What has no colours has that of the scene's material. The estimate is that of the surfels as they are in the file.
 //!
 //! **index**
@@ -81,7 +85,7 @@
 //!   "splatref tree 1\n"                     16 bytes
 //!   hash of the hierarchy                   32
 //!   u32 nodes, of these over objects, objects, geometries                 16
-//!   f32 r g b: the colour of what has none, f32 0                         16
+//!   f32 r g b: the colour of what has none, u32 further properties        16
 //!   of each node: u32 parent, first child, children, geometry             16
 //!                 f32 low x y z, high x y z                               24
 //!                 u64 triangles here and below; over objects, as often as they are shown 8
@@ -90,8 +94,9 @@
 //!   of each object: u32 number in the scene, geometry, node, 1 if it has a colour + 2 if it moves      16
 //!                 f32 r g b of its colour or 0, f32 0                                                  16
 //!                 f64 rotation by columns, scale, translation x y z, in frame 0                       104
-//!   of each geometry: u32 first node, nodes, 1 if it has colours, 0       16
+//!   of each geometry: u32 first node, nodes, kind, 0                      16
 //!                 hash, then the flaws, as in its file                    64
+//!   of each further property: u32 bytes of its name, the name in UTF-8
 //! ```
 //!
 //! Here nodes are those of all trees, and so are their first children, of nodes without children too. Where the own triangles of a node
@@ -118,8 +123,10 @@
 //!
 //! - `plan`: `"splatref hierarchy 1\n"`; the settings (u32 most, side; u8 sampler: 0 greedy, 1 the paper's, 2 as shipped, 3 random; u8 1 if
 //!   bottom-up; u64 seed; u32 directions: 0 cube, 1 box, else 2 + their number and f64 x y z of each); the f32 colour of what has none; u64 geometries; u64 objects, of each
-//!   u64 geometry, u64 keys, of each key u32 frame and f64 rotation by columns, scale, translation; u8 1 and f32 r g b of its colour, or u8 0.
-//! - a geometry: u64 vertices, of each f32 position and normal; u8 1 and f32 colours of all, or u8 0; u64 triangles, of each u32 x 3.
+//!   u64 geometry, u64 keys, of each key u32 frame and f64 rotation by columns, scale, translation; u8 1 and f32 r g b of its colour, or u8 0; of each further property u32 bytes of its name, the
+//!   name.
+//! - a geometry: u64 vertices, of each f32 position and normal; u8 1 and f32 colours of all, or u8 0; u64 triangles, of each u32 x 3;
+//!   if there are opacities u8 1 and f32 of each vertex; of each further property u8 2, u32 bytes of its name, the name, f32 of each vertex.
 //! - the hierarchy: the hash of `plan`, those of the geometries.
 //!
 //! # Interruption
@@ -138,10 +145,20 @@
 //! A view has the index in memory, 88 bytes a node, what shows each node in each of its places, and of the files
 //! [what it draws](Hierarchy::needed_by).
 //!
-//! # Opacity
+//! # Opacities and further properties
 //!
-//! `Decided:` surfels of a hierarchy are opaque, as those of the paper are, and so are the triangles of its meshes: opacities
-//! of vertices are not read. A model with an opacity of its own is refused.
+//! Vertices of meshes have the opacities of their files, or that of their model, and the further properties that
+//! [settings](crate::source::hierarchy::Settings::properties) name. [Candidates](mod@crate::source::candidates) have what the vertices around them have, and so have surfels, those of
+//! surfels below too. A triangle with a corner whose opacity is not in [0, 1], or of which a property is not finite, is dropped.
+//!
+//! `Decided:` every method that draws triangles draws them, and discs, opaque, as the paper's are: what a folder shows does not depend on its
+//! opacities. They are for whoever draws [`Hierarchy::surfels`] and [`Hierarchy::triangles`] in another way.
+//!
+//! `Decided:` a geometry of which every vertex has the opacity 1 has no opacities, so that four channels of colour in a mesh cost
+//! nothing. In a hierarchy with opacities vertices without have 1.
+//!
+//! `Decided:` where a mesh lacks a property that is named the hierarchy is refused, and the line names the file: no number
+//! can stand for a roughness that nobody measured.
 
 mod bounds;
 mod build;
@@ -161,4 +178,5 @@ mod view;
 pub use crate::source::hierarchy::BOUND;
 pub use build::{Built, build};
 pub use index::{Geometry, NONE, Node, Object};
+pub use mesh::Kind;
 pub use read::Hierarchy;

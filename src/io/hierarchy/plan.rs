@@ -19,7 +19,7 @@ const MAGIC: &str = "splatref hierarchy 1\n";
 
 /// The hash of what is computed of the geometries.
 pub(super) fn hash(settings: &Settings, fill: Vec3, objects: &[Object], geometries: usize) -> Hash {
-    let Settings { most, side, directions, sampler, seed, traversal } = settings;
+    let Settings { most, side, directions, sampler, seed, traversal, properties } = settings;
     let mut to = Writer::default();
     to.bytes(MAGIC.as_bytes());
     to.words(&[*most, *side]);
@@ -52,6 +52,7 @@ pub(super) fn hash(settings: &Settings, fill: Vec3, objects: &[Object], geometri
         to.bytes(&[u8::from(object.color.is_some())]);
         object.color.iter().for_each(|color| to.vector(*color));
     }
+    properties.iter().for_each(|name| to.text(name));
     Sha256::digest(&to.0).into()
 }
 

@@ -6,7 +6,7 @@ use super::surfels::{self, Header};
 use crate::error::{Error, Result};
 use crate::io::input;
 use crate::scene::{Cloud, Triangles, Vertices};
-use crate::source::hierarchy::Part;
+use crate::source::hierarchy::{Numbers, Part};
 use glam::Vec3;
 use std::path::{Path, PathBuf};
 
@@ -69,7 +69,15 @@ impl Hierarchy {
         self.index.fill
     }
 
-    /// The first `most` surfels of a node, or all: positions, normals and colours in their order. No more is read.
+    /// What vertices and surfels have beside normals and colours.
+    #[must_use]
+    pub fn numbers(&self) -> Numbers {
+        let opacity = self.index.geometries.iter().any(|one| one.kind.veiled);
+        Numbers { opacity, properties: self.index.properties.clone() }
+    }
+
+    /// The first `most` surfels of a node, or all: positions, normals, colours and [numbers](Hierarchy::numbers) in their
+    /// order. No more is read.
     ///
     /// # Errors
     /// [`Error::Io`] if they cannot be read, [`Error::Format`] if they are not what the index says, or if
@@ -80,18 +88,21 @@ impl Hierarchy {
             return Ok(Cloud::default());
         }
         let header = Header { node, count, estimate };
-        surfels::read(&self.folder, &self.index.hash, &header, most)
+        surfels::read(&self.folder, &self.index.hash, &header, &self.numbers(), most)
     }
 
-    /// The own triangles of a node, in the coordinates of its geometry; radii are 0. A node over the objects has none.
+    /// The own triangles of a node, in the coordinates of its geometry, with all that vertices have; radii are 0. A node
+    /// over the objects has none.
     ///
     /// # Errors
     /// As [`Hierarchy::surfels`].
     pub fn triangles(&self, node: u32) -> Result<Triangles> {
-        let Part { position, normal, color, triangles } = self.part(node)?;
-        let radius = vec![0.0; position.len()];
-        let vertices = Vertices { position, direction: normal, radius, color };
-        Ok(Triangles::new(vertices, triangles)?.0)
+        joined(self.part(node)?)
+    }
+
+    /// The same as they are drawn, opaque.
+    pub(super) fn drawn_triangles(&self, node: u32) -> Result<Triangles> {
+        joined(Part { opacity: None, properties: Vec::new(), ..self.part(node)? })
     }
 
     pub(super) fn part(&self, node: u32) -> Result<Part> {
@@ -99,8 +110,8 @@ impl Hierarchy {
         if node.geometry == NONE {
             return Ok(Part::default());
         }
-        let Geometry { hash, colored, .. } = &self.index.geometries[node.geometry as usize];
-        mesh::part(&self.folder, hash, node, *colored)
+        let Geometry { hash, kind, .. } = &self.index.geometries[node.geometry as usize];
+        mesh::part(&self.folder, hash, node, *kind, &self.numbers())
     }
 
     fn node(&self, node: u32) -> Result<&Node> {
@@ -109,4 +120,11 @@ impl Hierarchy {
             .get(node as usize)
             .ok_or_else(|| Error::Invalid(format!("there is no node {node}, only {}", nodes.len())))
     }
+}
+
+fn joined(part: Part) -> Result<Triangles> {
+    let Part { position, normal, color, opacity, properties, triangles } = part;
+    let radius = vec![0.0; position.len()];
+    let vertices = Vertices { position, direction: normal, radius, color, opacity, properties };
+    Ok(Triangles::new(vertices, triangles)?.0)
 }

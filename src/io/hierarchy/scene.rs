@@ -148,7 +148,7 @@ impl Hierarchy {
         let node = &self.nodes()[number as usize];
         let mut primitives = Primitives::default();
         if needed.primitives {
-            primitives.triangles = self.triangles(number)?;
+            primitives.triangles = self.drawn_triangles(number)?;
         }
         if needed.surfels == 0 {
             return Ok((Surfels::none(), primitives));

@@ -7,6 +7,7 @@ use crate::io::{Reason, input, srgb};
 use crate::memory;
 use crate::scene::Cloud;
 use crate::scene::objects::detail::prefix::Estimate;
+use crate::source::hierarchy::Numbers;
 use crate::source::sampler::estimate;
 use glam::{DVec3, Vec3};
 use std::fs::File;
@@ -15,9 +16,15 @@ use std::path::{Path, PathBuf};
 
 const MAGIC: &[u8; 16] = b"splatref blue 1\n";
 const HEADER: u64 = 64;
-/// Bytes of a surfel, and of one in memory beside them.
+/// Bytes of a surfel without further properties, of a property, and of both in memory beside them.
 const BYTES: u64 = 20;
-const IN_MEMORY: u64 = BYTES + 36;
+const PROPERTY: u64 = 4;
+const IN_MEMORY: [u64; 2] = [BYTES + 40, 2 * PROPERTY];
+
+/// The bytes of a surfel with so many further properties.
+pub(super) fn size(further: usize) -> u64 {
+    BYTES + PROPERTY * further as u64
+}
 
 /// What the header of a file says.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,16 +39,18 @@ pub(super) fn path(folder: &Path, node: u32) -> PathBuf {
     folder.join(format!("surfels-{node}"))
 }
 
-/// Writes the surfels of a node: positions, normals and colours.
+/// Writes the surfels of a node: positions, normals, colours, and opacities and properties if there are some.
 pub(super) fn write(folder: &Path, hash: &Hash, node: u32, cloud: &Cloud) -> Result<()> {
     let count = cloud.position.len();
-    let mut body = Writer(Vec::with_capacity(count * BYTES as usize));
+    let mut body = Writer(Vec::with_capacity(count * size(cloud.properties.len()) as usize));
     let (normal, color) = (cloud.normal.as_deref(), cloud.color.as_deref());
     let (normal, color) = (normal.unwrap_or_default(), color.unwrap_or_default());
-    for ((p, n), c) in cloud.position.iter().zip(normal).zip(color) {
+    for (i, ((p, n), c)) in cloud.position.iter().zip(normal).zip(color).enumerate() {
         body.vector(*p);
         encode_normal(*n).iter().for_each(|code| body.bytes(&code.to_le_bytes()));
         body.bytes(&encode_color(*c));
+        body.bytes(&[encode_opacity(cloud.opacity.as_ref().map_or(1.0, |all| all[i]))]);
+        cloud.properties.iter().for_each(|one| body.float(one.values[i]));
     }
     // Of the normals as they will be read.
     let normals: Vec<Vec3> = normal.iter().map(|n| decode_normal(encode_normal(*n))).collect();
@@ -57,8 +66,13 @@ pub(super) fn write(folder: &Path, hash: &Hash, node: u32, cloud: &Cloud) -> Res
     })
 }
 
-/// What the header says, if there is a whole file of this hierarchy and this node.
-pub(super) fn header(folder: &Path, hash: &Hash, node: u32) -> Result<Option<Header>> {
+/// What the header says, if there is a whole file of this hierarchy and this node, with so many further properties.
+pub(super) fn header(
+    folder: &Path,
+    hash: &Hash,
+    node: u32,
+    further: usize,
+) -> Result<Option<Header>> {
     let path = path(folder, node);
     if !path.exists() {
         return Ok(None);
@@ -69,10 +83,10 @@ pub(super) fn header(folder: &Path, hash: &Hash, node: u32) -> Result<Option<Hea
         return Ok(None);
     }
     file.read_exact(&mut bytes).map_err(|source| Error::io(&path, source))?;
-    Ok(parse(&bytes, length, hash).ok().filter(|header| header.node == node))
+    Ok(parse(&bytes, (length, size(further)), hash).ok().filter(|header| header.node == node))
 }
 
-fn parse(bytes: &[u8; HEADER as usize], length: u64, hash: &Hash) -> Reason<Header> {
+fn parse(bytes: &[u8; HEADER as usize], (length, size): (u64, u64), hash: &Hash) -> Reason<Header> {
     let mut rest = Reader(bytes);
     if &rest.take::<16>()? != MAGIC {
         return Err("these are no surfels of a hierarchy".into());
@@ -82,7 +96,7 @@ fn parse(bytes: &[u8; HEADER as usize], length: u64, hash: &Hash) -> Reason<Head
     }
     let [node, count, p_m] = rest.words()?;
     let estimate = Estimate { count: p_m, distance: rest.float()? };
-    let expected = HEADER + u64::from(count) * BYTES;
+    let expected = HEADER.saturating_add(u64::from(count).saturating_mul(size));
     if length != expected {
         return Err(format!("{count} surfels take {expected} bytes, but the file has {length}"));
     }
@@ -100,7 +114,13 @@ pub(super) fn check(estimate: Estimate, count: u32) -> Reason<()> {
 }
 
 /// The first `most` surfels of a node, or all, of which the index says what the header says.
-pub(super) fn read(folder: &Path, hash: &Hash, expected: &Header, most: u32) -> Result<Cloud> {
+pub(super) fn read(
+    folder: &Path,
+    hash: &Hash,
+    expected: &Header,
+    numbers: &Numbers,
+    most: u32,
+) -> Result<Cloud> {
     let path = path(folder, expected.node);
     let io = |source| Error::io(&path, source);
     let (mut file, length) = input::open(&path).map_err(io)?;
@@ -109,37 +129,47 @@ pub(super) fn read(folder: &Path, hash: &Hash, expected: &Header, most: u32) -> 
         return Err(Error::format(&path, format!("the file ends too early, after {length} bytes")));
     }
     file.read_exact(&mut bytes).map_err(io)?;
-    let found = parse(&bytes, length, hash).map_err(|what| Error::format(&path, what))?;
+    let size = size(numbers.properties.len());
+    let found = parse(&bytes, (length, size), hash).map_err(|what| Error::format(&path, what))?;
     if found != *expected {
         return Err(Error::format(&path, "the surfels are not those of the index"));
     }
-    body(file, found.count.min(most)).map_err(|error| match error {
+    body(file, found.count.min(most), numbers).map_err(|error| match error {
         Error::Io { source, .. } => io(source),
         Error::Invalid(what) => Error::format(&path, what),
         other => other,
     })
 }
 
-fn body(mut file: File, count: u32) -> Result<Cloud> {
-    memory::ask(u64::from(count) * IN_MEMORY, || format!("{count} surfels"))?;
-    let mut bytes = vec![0; count as usize * BYTES as usize];
+fn body(mut file: File, count: u32, numbers: &Numbers) -> Result<Cloud> {
+    let further = numbers.properties.len();
+    let in_memory = IN_MEMORY[0] + IN_MEMORY[1] * further as u64;
+    memory::ask(u64::from(count) * in_memory, || format!("{count} surfels"))?;
+    let size = size(further) as usize;
+    let mut bytes = vec![0; count as usize * size];
     file.read_exact(&mut bytes).map_err(|source| Error::io(Path::new(""), source))?;
     let table = srgb::table(255);
     let count = count as usize;
     let [mut position, mut normal, mut color] = [(); 3].map(|()| Vec::with_capacity(count));
-    for surfel in bytes.chunks_exact(BYTES as usize) {
+    let (mut opacity, mut properties) = (numbers.opacity.then(Vec::new), numbers.of_none());
+    for surfel in bytes.chunks_exact(size) {
         let mut rest = Reader(surfel);
         position.push(rest.vector().map_err(Error::Invalid)?);
         let [u, v] = [rest.take(), rest.take()].map(|code| code.map(i16::from_le_bytes));
         normal.push(decode_normal([u.map_err(Error::Invalid)?, v.map_err(Error::Invalid)?]));
-        let [r, g, b, _] =
-            rest.take().map_err(Error::Invalid)?.map(|code| table[usize::from(code)]);
+        let [r, g, b] = rest.take().map_err(Error::Invalid)?.map(|code| table[usize::from(code)]);
         color.push(Vec3::new(r, g, b));
+        let [code] = rest.take().map_err(Error::Invalid)?;
+        opacity.iter_mut().for_each(|all| all.push(decode_opacity(code)));
+        for one in &mut properties {
+            one.values.push(rest.float().map_err(Error::Invalid)?);
+        }
     }
     if let Some(at) = position.iter().position(|p: &Vec3| !p.is_finite()) {
         return Err(Error::Invalid(format!("surfel {at} has no finite position")));
     }
-    Ok(Cloud { position, normal: Some(normal), color: Some(color), ..Cloud::default() })
+    let (normal, color) = (Some(normal), Some(color));
+    Ok(Cloud { position, normal, color, opacity, properties, ..Cloud::default() })
 }
 
 fn sign(v: f64) -> f64 {
@@ -165,14 +195,22 @@ fn decode_normal(codes: [i16; 2]) -> Vec3 {
     (DVec3::new(x, y, z) / length).as_vec3() + Vec3::ZERO
 }
 
-fn encode_color(color: Vec3) -> [u8; 4] {
+fn encode_color(color: Vec3) -> [u8; 3] {
     let code = |v: f32| {
         let v = f64::from(v);
         let v = if v > 1.0 { 1.0 } else { v };
         // Numbers below 0 become 0.
         (255.0 * srgb::from_linear(v) + 0.5).floor() as u8
     };
-    [code(color.x), code(color.y), code(color.z), 255]
+    [code(color.x), code(color.y), code(color.z)]
+}
+
+fn encode_opacity(opacity: f32) -> u8 {
+    (255.0 * f64::from(opacity) + 0.5).floor() as u8
+}
+
+fn decode_opacity(code: u8) -> f32 {
+    (f64::from(code) / 255.0) as f32
 }
 
 #[cfg(test)]
@@ -214,8 +252,10 @@ mod tests {
         let table = srgb::table(255);
         for code in 0..=255_u8 {
             let value = table[usize::from(code)];
-            assert_eq!(encode_color(Vec3::splat(value)), [code, code, code, 255]);
+            assert_eq!(encode_color(Vec3::splat(value)), [code, code, code]);
+            assert_eq!(encode_opacity(decode_opacity(code)), code);
         }
-        assert_eq!(encode_color(Vec3::new(7.0, 0.0, 1.0)), [255, 0, 255, 255]);
+        assert_eq!(encode_color(Vec3::new(7.0, 0.0, 1.0)), [255, 0, 255]);
+        assert_eq!([0.0, 0.5, 1.0].map(encode_opacity), [0, 128, 255]);
     }
 }

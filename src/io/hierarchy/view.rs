@@ -26,13 +26,15 @@ impl Hierarchy {
         let has = self.has();
         self.ask(std::iter::empty())?;
         let bounds = self.bounds(exec, progress)?;
+        let numbers = self.numbers();
         let outline = |&number: &u32| {
             let node = &self.nodes()[number as usize];
-            let colored = || self.geometries()[node.geometry as usize].colored;
+            let colored = || self.geometries()[node.geometry as usize].kind.colored;
             Outline {
                 name: name(number),
                 surfels: (node.surfels > 0).then(|| (node.surfels, estimate(node))),
                 radius: if node.surfels > 0 { radius(node) } else { 0.0 },
+                opacity: numbers.opacity,
                 primitives: (node.triangles > 0).then(colored),
                 bounds: bounds[number as usize],
             }

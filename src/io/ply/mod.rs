@@ -59,6 +59,7 @@ mod vertices;
 mod write;
 
 pub(in crate::io) use numbers::numbers;
+pub(in crate::io) use properties::check_properties;
 pub use properties::properties;
 pub use write::write;
 

@@ -1,6 +1,6 @@
 //! Further numbers of the vertices, by their names.
 
-use super::header::{self, PropertyKind, quote};
+use super::header::{self, PlyHeader, PropertyKind, quote};
 use super::values::{BodyValues, Event};
 use super::vertices::{Layout, PropertyUse};
 use super::{ask, groups, vertex};
@@ -23,18 +23,28 @@ pub fn properties(path: &Path, names: &[String]) -> Result<Vec<Property>> {
     if names.is_empty() {
         return Ok(Vec::new());
     }
-    let io = |source| Error::io(path, source);
-    let (file, length) = input::open(path).map_err(io)?;
-    let bytes = input::rest(file, length).map_err(io)?;
-    read(&bytes, names).map_err(|what| Error::format(path, what))
+    read(&whole(path)?, names).map_err(|what| Error::format(path, what))
 }
 
-/// The properties of these names in the bytes of a file.
-pub(super) fn read(bytes: &[u8], names: &[String]) -> Reason<Vec<Property>> {
-    let header = header::parse(bytes)?;
-    let vertices = vertex(&header)?;
+/// Whether [`properties`] finds all of these names in the header of a file.
+///
+/// # Errors
+/// As [`properties`].
+pub(in crate::io) fn check_properties(path: &Path, names: &[String]) -> Result<()> {
+    let places = header::parse(&whole(path)?).and_then(|header| places(&header, names));
+    places.map(|_| ()).map_err(|what| Error::format(path, what))
+}
+
+fn whole(path: &Path) -> Result<Vec<u8>> {
+    let io = |source| Error::io(path, source);
+    let (file, length) = input::open(path).map_err(io)?;
+    input::rest(file, length).map_err(io)
+}
+
+/// Of each property of the vertices the place among those that are asked for.
+fn places(header: &PlyHeader, names: &[String]) -> Reason<Vec<Option<usize>>> {
+    let vertices = vertex(header)?;
     let layout = Layout::new(vertices, &groups::Reader::new(vertices))?;
-    // Of each property of the file the place among those that are asked for.
     let mut places = vec![None; vertices.properties.len()];
     for (place, name) in names.iter().enumerate() {
         let at = vertices.properties.iter().position(|property| property.name == *name);
@@ -50,6 +60,13 @@ pub(super) fn read(bytes: &[u8], names: &[String]) -> Reason<Vec<Property>> {
             return wrong("is named twice");
         }
     }
+    Ok(places)
+}
+
+/// The properties of these names in the bytes of a file.
+pub(super) fn read(bytes: &[u8], names: &[String]) -> Reason<Vec<Property>> {
+    let header = header::parse(bytes)?;
+    let (vertices, places) = (vertex(&header)?, places(&header, names)?);
     let vertex_bytes = vertices.count.min(bytes.len() as u64) * names.len() as u64 * BYTES;
     ask(&header, bytes.len() as u64, vertex_bytes)?;
     let mut values = BodyValues::new(bytes, &header);

@@ -1,16 +1,15 @@
 //! From a [`SceneFile`] to surfels and primitives.
 
-use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, read_model, stem};
-use crate::error::{Error, Result};
+use super::model::{ModelParts, Purpose, check_draw, prefiltered, read};
+use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, stem};
+use crate::error::Result;
 use crate::frame::Exec;
-use crate::index::mipmap;
+use crate::io::environment;
 use crate::io::hierarchy::Hierarchy;
-use crate::io::{environment, texture};
 use crate::scene::{Cloud, Counts, Dropped, Environment, Geometry, Object, Objects};
-use crate::scene::{Primitives, Scene, Similarity, Surfels};
-use crate::source::derive::{self, Derive, Derived};
+use crate::scene::{Primitives, Scene, Similarity, Surfels, Vertices};
+use crate::source::derive::Derived;
 use crate::source::merge::{join, merge};
-use crate::source::plant;
 use crate::source::sampler::estimate;
 
 /// A scene and how it came about.
@@ -48,27 +47,56 @@ impl SceneFile {
     /// A scene of objects has no surfels yet: [`SceneFile::ready`] gives those of a frame to methods
     /// that draw surfels, and [`flatten`](crate::source::flatten()) to anybody.
     ///
-    /// `progress` as in [`derive::surfels`].
+    /// `progress` as in [`crate::source::derive::surfels`].
     ///
     /// # Errors
-    /// Those of [`environment::read`], [`read_model`], [`texture::paint`], [`crate::source::Shape::surfels`],
-    /// [`plant::apple_tree`], and of [`derive::surfels`] and its like for polygons and lines, the
-    /// file named; of [tables](super::places) and [`Objects::new`]; [`Error::Invalid`] if neither a
+    /// Those of [`environment::read`], [`read_model`](super::read_model), [`crate::io::texture::paint`], [`crate::source::Shape::surfels`],
+    /// [`crate::source::plant::apple_tree`], and of [`crate::source::derive::surfels`] and its like for polygons and lines, the
+    /// file named; of [tables](super::places) and [`Objects::new`]; [`crate::Error::Invalid`] if neither a
     /// surfel nor a primitive is left or there are too many, if a model cannot be drawn as it says, or
-    /// if one that is not drawn as points was given an opacity, or mipmaps, or one in one colour or drawn as lines a texture; as [`mipmap::build`], and if
+    /// if one that is not drawn as points was given an opacity, or mipmaps, or one in one colour or drawn as lines a texture; as [`crate::index::mipmap::build`], and if
     /// mipmaps are asked for of a model in one colour.
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
-        self.load_for(false, exec, progress)
+        self.load_for(Purpose::Scene, exec, progress)
     }
 
-    /// [`SceneFile::load`]; of a hierarchy nothing but outlines if it is for a `view`, which reads what it needs.
-    pub(super) fn load_for(
+    /// [`SceneFile::load`] for those who ask what there is: of a hierarchy the index and the bounds are read, and no file of
+    /// a node. Everything but surfels and primitives of its geometries is that of [`SceneFile::load`].
+    ///
+    /// # Errors
+    /// As [`SceneFile::load`], and as [`Hierarchy::outlined`].
+    pub fn load_outlined(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
+        self.load_for(Purpose::View, exec, progress)
+    }
+
+    /// [`SceneFile::load`] for those who choose [candidates](mod@crate::source::candidates): every model is drawn as polygons, in its place and its
+    /// colour, with the opacities of its vertices and with these [further properties](crate::io::ply::properties).
+    /// An opacity of the model stands in the place of the file's. Where all are 1 there are none.
+    ///
+    /// # Errors
+    /// As [`SceneFile::load`] of models drawn as polygons; [`crate::Error::Usage`] if there are properties, but a model is no
+    /// PLY; [`crate::Error::Format`] as [`crate::io::ply::properties`], of a PLY that lacks one.
+    pub fn load_polygons(
         &self,
-        view: bool,
+        properties: &[String],
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Loaded> {
-        self.all_models().try_for_each(check_draw)?;
+        let mut file = self.clone();
+        for model in file.all_models_mut() {
+            (model.draw, model.mipmaps) = (Draw::Polygons, None);
+        }
+        file.load_for(Purpose::Candidates(properties), exec, progress)
+    }
+
+    /// [`SceneFile::load`] for some purpose.
+    pub(super) fn load_for(
+        &self,
+        purpose: Purpose<'_>,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Loaded> {
+        self.all_models().try_for_each(|model| check_draw(model, purpose))?;
         let hierarchy = self.hierarchy.as_deref().map(Hierarchy::open).transpose()?;
         // What is wrong with objects is said before large files are read.
         let placed = self.has_objects() && hierarchy.is_none();
@@ -87,9 +115,14 @@ impl SceneFile {
         let (models, dropped) = (Vec::new(), Dropped::default());
         let mut loaded = Loaded { scene, models, dropped, dropped_primitives: 0, unread: None };
         match (hierarchy, objects) {
-            (Some(hierarchy), _) => of_hierarchy(hierarchy, view, &mut loaded, exec, progress)?,
-            (None, None) => self.load_models(&mut loaded, exec, progress)?,
-            (None, Some(objects)) => self.load_objects(objects, &mut loaded, exec, progress)?,
+            (Some(hierarchy), _) => {
+                let view = purpose == Purpose::View;
+                of_hierarchy(hierarchy, view, &mut loaded, exec, progress)?;
+            }
+            (None, None) => self.load_models(&mut loaded, purpose, exec, progress)?,
+            (None, Some(objects)) => {
+                self.load_objects(objects, &mut loaded, purpose, exec, progress)?;
+            }
         }
         self.refined(loaded)
     }
@@ -106,12 +139,14 @@ impl SceneFile {
     fn load_models(
         &self,
         loaded: &mut Loaded,
+        purpose: Purpose<'_>,
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<()> {
         let (mut parts, mut primitives) = (Vec::new(), Vec::new());
         for model in &self.models {
-            let (surfels, more) = loaded.read(model, model.source.name(), exec, progress)?;
+            let (surfels, more) =
+                loaded.read(model, model.source.name(), purpose, exec, progress)?;
             if !surfels.is_empty() {
                 parts.push((model, surfels));
             }
@@ -129,6 +164,7 @@ impl SceneFile {
         &self,
         objects: Vec<Object>,
         loaded: &mut Loaded,
+        purpose: Purpose<'_>,
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<()> {
@@ -137,7 +173,8 @@ impl SceneFile {
         let named = named.map(|one| (one.name.clone(), &one.model, one.detail));
         let mut geometries = Vec::new();
         for (name, model, detail) in own.chain(named) {
-            let (surfels, primitives) = loaded.read(model, name.clone(), exec, progress)?;
+            let (surfels, primitives) =
+                loaded.read(model, name.clone(), purpose, exec, progress)?;
             let parts = if surfels.is_empty() { vec![] } else { vec![(model, surfels)] };
             let (surfels, lost) = self.join_surfels(parts, primitives.is_empty(), exec)?;
             loaded.dropped += lost;
@@ -203,10 +240,12 @@ impl Loaded {
         &mut self,
         model: &Model,
         name: String,
+        purpose: Purpose<'_>,
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<(Surfels, Primitives)> {
-        let ModelParts { surfels, primitives, derived, painted } = read(model, exec, progress)?;
+        let ModelParts { surfels, primitives, derived, painted } =
+            read(model, purpose, exec, progress)?;
         let surfels = if painted { surfels } else { prefiltered(surfels, model, exec, progress)? };
         let counts = primitives.counts();
         self.models.push(ModelReport { name, surfels: surfels.len(), primitives: counts, derived });
@@ -214,6 +253,9 @@ impl Loaded {
         let (primitives, lost) = primitives.map(|vertices| {
             if let Some(color) = model.color {
                 vertices.color = Some(vec![color; vertices.position.len()]);
+            }
+            if let Purpose::Candidates(_) = purpose {
+                veil(vertices, model.opacity);
             }
             model.transform.apply_to_vertices(vertices);
         })?;
@@ -226,180 +268,18 @@ impl Loaded {
     }
 }
 
+/// Gives vertices an opacity, if there is one for all of them, and takes what is opaque the array.
+fn veil(vertices: &mut Vertices, opacity: Option<f32>) {
+    if let Some(opacity) = opacity {
+        vertices.opacity = Some(vec![opacity; vertices.position.len()]);
+    }
+    vertices.opacity = vertices.opacity.take().filter(|all| all.iter().any(|&one| one != 1.0));
+}
+
 /// A geometry whose surfels are in an order.
 fn in_order(geometry: Geometry) -> Result<Geometry> {
     let estimate = estimate(geometry.surfels.position(), geometry.surfels.normal());
     geometry.with_prefix(estimate)
-}
-
-/// A model where its file has it.
-struct ModelParts {
-    surfels: Surfels,
-    primitives: Primitives,
-    derived: Option<Derived>,
-    /// Whether colours, of all levels that are asked for, are those of a texture.
-    painted: bool,
-}
-
-impl ModelParts {
-    fn new(surfels: Surfels, primitives: Primitives, derived: Derived) -> Self {
-        Self { surfels, primitives, derived: Some(derived), painted: false }
-    }
-}
-
-/// Whether a model has the colours of a texture, if there is one.
-fn shows_texture(model: &Model) -> bool {
-    model.color.is_none() && !matches!(model.draw, Draw::Ribbons | Draw::Tubes)
-}
-
-/// Whether a model can be drawn as it says, and may have its opacity and its texture.
-fn check_draw(model: &Model) -> Result<()> {
-    model.draw.check(&model.source).map_err(Error::Invalid)?;
-    if model.progressive && !matches!(model.source, Source::File { .. }) {
-        let name = model.source.name();
-        let what = format!("{name}: what is progressive are points of a file, in an order");
-        return Err(Error::Invalid(what));
-    }
-    if matches!(model.source, Source::File { texture: Some(_), .. }) && !shows_texture(model) {
-        let what = match model.color {
-            Some(_) => "a model in one colour".to_owned(),
-            None => format!("what is drawn as {}", model.draw.word()),
-        };
-        let name = model.source.name();
-        return Err(Error::Invalid(format!("{name}: {what} has no texture; remove one of them")));
-    }
-    let surfels = !matches!(model.draw, Draw::Polygons | Draw::Ribbons | Draw::Tubes | Draw::Lines);
-    if model.mipmaps.is_some_and(|levels| levels > 0) && (!surfels || model.color.is_some()) {
-        let name = model.source.name();
-        let what = if surfels {
-            "a model in one colour has the same at every level".to_owned()
-        } else {
-            format!("what is drawn as {} has no surfels", model.draw.word())
-        };
-        return Err(Error::Invalid(format!("{name}: {what}; remove the mipmaps")));
-    }
-    if model.opacity.is_some() && !matches!(model.draw, Draw::Surfels | Draw::Points | Draw::Facets)
-    {
-        let (name, word) = (model.source.name(), model.draw.word());
-        let what = format!("{name}: what is drawn as {word} is opaque; remove the opacity");
-        return Err(Error::Invalid(what));
-    }
-    Ok(())
-}
-
-fn read(model: &Model, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<ModelParts> {
-    match &model.source {
-        Source::File { path, radius, prefix, texture } => {
-            let mut cloud = read_model(path, exec)?;
-            if shows_texture(model) {
-                let levels = model.mipmaps.unwrap_or(0);
-                texture::paint(&mut cloud, path, texture.as_deref(), levels, exec)?;
-            }
-            let painted = cloud.paint.is_some();
-            let options = Derive { radius: *radius };
-            let parts = first(cloud, *prefix, model.progressive)
-                .and_then(|cloud| of_file(cloud, &model.draw, &options, exec, progress));
-            parts.map(|parts| ModelParts { painted, ..parts }).map_err(|error| match error {
-                Error::Invalid(what) => Error::format(path, what),
-                other => other,
-            })
-        }
-        Source::Shape { shape, count, seed } => Ok(ModelParts {
-            surfels: shape.surfels(*count, *seed)?,
-            primitives: Primitives::default(),
-            derived: None,
-            painted: false,
-        }),
-        Source::Tree { leaves, seed } => {
-            let tree = plant::apple_tree(*leaves, *seed)?;
-            let primitives =
-                if model.draw == Draw::Polygons { tree.polygons() } else { tree.lines() }?;
-            let surfels = Surfels::none();
-            Ok(ModelParts { surfels, primitives, derived: None, painted: false })
-        }
-    }
-}
-
-/// The first so many points of a file, or all, which are in an order if a prefix is drawn.
-fn first(cloud: Cloud, prefix: Option<usize>, progressive: bool) -> Result<Cloud> {
-    let Some(count) = prefix.or(progressive.then_some(usize::MAX)) else { return Ok(cloud) };
-    if !(cloud.triangles.is_empty() && cloud.edges.is_empty()) {
-        let what = "a prefix is of points, but the file has triangles or edges; \"splatref surfels\" puts what \
-                    is seen of triangles in order";
-        return Err(Error::Invalid(what.into()));
-    }
-    if count >= cloud.position.len() {
-        return Ok(cloud);
-    }
-    Ok(cloud.some(&(0..count as u32).collect::<Vec<_>>()))
-}
-
-fn of_file(
-    cloud: Cloud,
-    draw: &Draw,
-    options: &Derive,
-    exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
-) -> Result<ModelParts> {
-    let none = Primitives::default();
-    Ok(match draw {
-        Draw::Surfels => {
-            let (surfels, derived) = derive::facets_or_surfels(cloud, options, exec, progress)?;
-            ModelParts::new(surfels, none, derived)
-        }
-        Draw::Points => {
-            let (surfels, derived) = derive::surfels(cloud, options, exec, progress)?;
-            ModelParts::new(surfels, none, derived)
-        }
-        Draw::Facets => {
-            let (surfels, derived) = derive::facets(cloud, exec, progress)?;
-            ModelParts::new(surfels, none, derived)
-        }
-        Draw::Polygons => {
-            let (triangles, derived) = derive::polygons(cloud, exec, progress)?;
-            ModelParts::new(Surfels::none(), Primitives { triangles, ..none }, derived)
-        }
-        Draw::Hybrid(half) => {
-            let (surfels, triangles, derived) =
-                derive::hybrid(cloud, half, options, exec, progress)?;
-            ModelParts::new(surfels, Primitives { triangles, ..none }, derived)
-        }
-        Draw::Ribbons => {
-            let (ribbons, derived) = derive::ribbons(cloud, options)?;
-            ModelParts::new(Surfels::none(), Primitives { ribbons, ..none }, derived)
-        }
-        Draw::Tubes => {
-            let (tubes, derived) = derive::tubes(cloud, options)?;
-            ModelParts::new(Surfels::none(), Primitives { tubes, ..none }, derived)
-        }
-        // Refused before any file is read.
-        Draw::Lines => return Err(Error::Invalid("only a tree is drawn as lines".into())),
-    })
-}
-
-/// The surfels of a model with the mipmaps that it asks for.
-fn prefiltered(
-    surfels: Surfels,
-    model: &Model,
-    exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
-) -> Result<Surfels> {
-    let made = match model.mipmaps {
-        None => return Ok(surfels),
-        Some(0) => None,
-        Some(_) if surfels.is_empty() => return Ok(surfels),
-        Some(levels) => {
-            let made = mipmap::build(&surfels, levels, exec, progress);
-            Some(made.map_err(|error| match (error, &model.source) {
-                (Error::Invalid(what), Source::File { path, .. }) => Error::format(path, what),
-                (Error::Invalid(what), other) => {
-                    Error::Invalid(format!("{}: {what}", other.name()))
-                }
-                (other, _) => other,
-            })?)
-        }
-    };
-    surfels.with_mipmap(made)
 }
 
 /// Whether the surfels of a model are what its source gives.

@@ -43,6 +43,7 @@
 mod choice;
 mod draw;
 mod load;
+mod model;
 mod objects;
 mod open;
 pub mod places;
@@ -54,6 +55,7 @@ mod text;
 pub use choice::{Choice, GroupChoice, MethodChoice, Number, OutputSettings};
 pub use draw::Draw;
 pub use load::{Loaded, ModelReport};
+pub(in crate::io) use model::check_properties;
 pub use objects::{Geometry, MOST_FRAMES, ObjectChoice, Places};
 pub use open::{FileKind, TREE, read_model, shapes};
 pub use ready::Ready;

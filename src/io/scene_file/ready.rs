@@ -1,5 +1,6 @@
 //! From a scene file to a session.
 
+use super::model::Purpose;
 use super::{Loaded, Number, OutputSettings, SceneFile};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
@@ -42,7 +43,7 @@ impl SceneFile {
     /// out of range or not of the method, or if the method cannot draw the scene.
     pub fn ready(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Ready> {
         self.check_drawing()?;
-        self.placed(self.load_for(true, exec, progress)?, exec, progress)
+        self.placed(self.load_for(Purpose::View, exec, progress)?, exec, progress)
     }
 
     /// What can be wrong with a frame before anything is loaded.

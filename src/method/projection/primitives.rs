@@ -309,7 +309,7 @@ mod tests {
     fn segment(direction: [Vec3; 2]) -> Indexed<2> {
         let position = vec![-Vec3::X, Vec3::X];
         let (direction, radius) = (direction.to_vec(), vec![0.125; 2]);
-        let vertices = Vertices { position, direction, radius, color: None };
+        let vertices = Vertices { position, direction, radius, color: None, ..Vertices::default() };
         Indexed::new(vertices, vec![[0, 1]]).unwrap().0
     }
 

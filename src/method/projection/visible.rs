@@ -153,6 +153,7 @@ mod tests {
             direction: (0..n).map(|i| Vec3::new(1.0, i as f32, 2.0).normalize()).collect(),
             radius: vec![0.0; n],
             color: Some((0..n).map(|i| Vec3::splat(i as f32 / 64.0)).collect()),
+            ..Vertices::default()
         };
         // Shared corners, triangles twice, and some without area.
         let n = n as u32;

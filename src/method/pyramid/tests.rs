@@ -23,6 +23,7 @@ pub(super) fn indexed<const N: usize>(count: u32, seed: u64) -> Indexed<N> {
         direction: points.normal().to_vec(),
         radius: points.radius().to_vec(),
         color: points.color().map(<[Vec3]>::to_vec),
+        ..Vertices::default()
     };
     let corners = (0..count).map(|i| std::array::from_fn(|k| (i + k as u32) % count)).collect();
     Indexed::new(vertices, corners).unwrap().0

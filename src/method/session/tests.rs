@@ -26,6 +26,7 @@ fn primitives_are_refused_by_methods_that_draw_surfels_alone() {
         direction: vec![Vec3::ONE; 3],
         radius: vec![0.0; 3],
         color: None,
+        ..Vertices::default()
     };
     scene.primitives.triangles = Triangles::new(vertices, vec![[0, 1, 2]]).unwrap().0;
     let exec = Exec::sequential();

@@ -136,6 +136,7 @@ fn scenes() -> Vec<Scene> {
             direction: vec![Vec3::Z; 2],
             radius: vec![0.125; 2],
             color: color.map(|color| vec![color; 2]),
+            ..Vertices::default()
         };
         Indexed::new(vertices, vec![[0, 1]]).unwrap().0
     };

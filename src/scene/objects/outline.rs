@@ -43,7 +43,7 @@ impl Bounds {
 }
 
 /// What views ask of a geometry that has not been read: of surfels in an order, all of one radius, with colours, and
-/// without opacities, half axes and prefiltered colours; and of primitives.
+/// without half axes and prefiltered colours; and of primitives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     /// What it is called.
@@ -52,6 +52,8 @@ pub struct Outline {
     pub surfels: Option<(u32, Estimate)>,
     /// The radius of each.
     pub radius: f32,
+    /// Whether they have opacities.
+    pub opacity: bool,
     /// Whether there are primitives; if so, whether they have colours.
     pub primitives: Option<bool>,
     /// What bounds all of it.
@@ -77,7 +79,7 @@ impl Extent {
             least: if some { f64::from(outline.radius) } else { f64::INFINITY },
             count,
             at_rest: (count, if some { outline.radius } else { 0.0 }),
-            has: [some, false, false],
+            has: [some, some && outline.opacity, false],
             primitives: outline.primitives.is_some(),
             colored: outline.primitives == Some(true),
         }

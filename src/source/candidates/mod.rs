@@ -37,16 +37,16 @@
 //! within the outline of a disc in the triangle's plane, whose radius is the side of a pixel: with the terms of
 //! [`crate::source::derive`], the matrix (S (1 / A)) times the square of that side.
 //!
-//! **Opacity and further properties** of a mesh ([`of_cloud`]), which are numbers of its points ("further properties can be captured
-//! in additional buffers, like PBR material parameters" \[BJFM19, 3.1\]), are interpolated as every attribute, in
+//! **Opacity and further properties** of the [vertices](crate::scene::Vertices) ("further properties can be captured
+//! in additional buffers, like PBR material parameters" \[BJFM19, 3.1\]) are interpolated as every attribute, in
 //! `f32`, from those at the corners a:
 //!
 //! ```text
 //!   property = ((c_0 a_0 + c_1 a_1) + c_2 a_2) + 0          opacity = 1 if the same of it is > 1
 //! ```
 //!
-//! A triangle with a corner whose opacity is not in [0, 1], or of which a property is not finite, is dropped and counted,
-//! and is no part of the mesh: derived normals know nothing of it.
+//! Of objects some of which have opacities the others have 1; a property is one of all of them, or none of one
+//! ([`join`]). A triangle with a corner whose opacity is not in [0, 1], or of which a property is not finite, is no triangle.
 //!
 //! **Order**: by direction, row, column. A candidate whose normal is null, where opposite normals of corners
 //! cancel, or whose colour or a property of which is not finite is dropped and counted.
@@ -55,7 +55,7 @@
 //!
 //! - Opacity is a property like others: a picture shows what is nearest, however transparent it is. The paper's
 //!   scenes are opaque ("if they \[...\] only produce opaque surfaces"), and what lies behind a transparent surface is a surface
-//!   of its own, which other directions may see. Triangles of a [`Scene`] have none: polygons are drawn opaque.
+//!   of its own, which other directions may see.
 //! - The position is that on the triangle, as the position buffer of \[BJFM19\] has it, and not the point of the
 //!   pixel's centre at the sample's depth: corners are snapped, so that this lies beside a steep triangle.
 //! - [`Directions::Cube`] unless somebody asks for [`Directions::Box`], which is the paper's. From the corners
@@ -116,7 +116,7 @@ pub struct Candidates {
 /// name of the step, how many directions are done, and of how many.
 ///
 /// # Errors
-/// [`Error::Invalid`] if the scene has no triangles or none of them covers a pixel's centre, if there is no
+/// [`Error::Invalid`] as [`join`], if the scene has no triangles or none of them covers a pixel's centre, if there is no
 /// direction or one is null or not finite, or so short or long that its square rounds to 0 or exceeds f64, as
 /// [`Camera::new`] (no direction is within about 1e-6 of the y axis without being on it), if there are 2^32 - 1
 /// candidates or more, or if the process may not hold them.
@@ -128,20 +128,13 @@ pub fn candidates(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Candidates> {
     let scene = mesh(scene)?;
-    gather(
-        &Mesh { scene: &scene, painting: None, properties: &Properties::default() },
-        directions,
-        side,
-        exec,
-        progress,
-    )
+    gather(&Mesh { scene: &scene, painting: None }, directions, side, exec, progress)
 }
 
-/// Triangles alone, their texture, and what else their vertices have.
+/// Triangles alone, and their texture.
 struct Mesh<'a> {
     scene: &'a Scene,
     painting: Option<&'a Painting>,
-    properties: &'a Properties,
 }
 
 fn gather(
@@ -162,7 +155,7 @@ fn gather(
         cloud: Cloud {
             normal: Some(Vec::new()),
             color: colored.then(Vec::new),
-            ..mesh.properties.of_none()
+            ..Properties::of(mesh.scene).of_none()
         },
         counts: Vec::new(),
         pixel: 2.0 * radius / f64::from(side),
@@ -242,7 +235,8 @@ impl Candidates {
         let pixels = u64::from(camera.width) * u64::from(camera.height);
         let vertices = mesh.scene.primitives.triangles.vertices().position.len() as u64;
         // Every pixel may be covered.
-        let of_a_pixel = OF_A_PIXEL + OF_A_CANDIDATE + 8 * mesh.properties.count();
+        let properties = Properties::of(mesh.scene);
+        let of_a_pixel = OF_A_PIXEL + OF_A_CANDIDATE + 8 * properties.count();
         memory::ask(pixels * of_a_pixel + vertices * OF_A_VERTEX, || {
             format!("a picture of {pixels} pixels for candidates")
         })?;
@@ -250,7 +244,7 @@ impl Candidates {
         let mut numbers = Vec::new();
         for Seen { normal, position, color, id, weights } in seen(mesh, self.pixel, camera, exec) {
             let corners = mesh.scene.primitives.triangles.corners()[id as usize];
-            mesh.properties.at(corners, weights, &mut numbers);
+            properties.at(corners, weights, &mut numbers);
             let finite = color.is_finite() && numbers.iter().all(|number| number.is_finite());
             if normal == Vec3::ZERO || !finite {
                 self.dropped += 1;

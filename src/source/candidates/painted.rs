@@ -1,6 +1,6 @@
 //! Meshes with a texture.
 
-use super::{Candidates, Directions, Mesh, Properties};
+use super::{Candidates, Directions, Mesh};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
@@ -31,7 +31,8 @@ pub fn of_cloud(
         let bytes = size_of::<Painted>() as u64 + 2 * 12 + 24;
         memory::ask(before as u64 * bytes, || format!("the texture of {before} triangles"))?;
     }
-    let properties = Properties::take(&mut cloud)?;
+    // Before corners are noted, whose points have their numbers then.
+    derive::drop_unsound(&mut cloud)?;
     let lifted = lift(&mut cloud)?;
     let dropped = (before - cloud.triangles.len()) as u64;
     let (triangles, mut derived) = derive::polygons(cloud, exec, progress)?;
@@ -49,7 +50,7 @@ pub fn of_cloud(
     });
     let primitives = Primitives { triangles, ..Primitives::default() };
     let scene = Scene { primitives, ..Scene::unlit("mesh", Surfels::none()) };
-    let mesh = Mesh { scene: &scene, painting: painting.as_ref(), properties: &properties };
+    let mesh = Mesh { scene: &scene, painting: painting.as_ref() };
     Ok((super::gather(&mesh, directions, side, exec, progress)?, derived))
 }
 

@@ -18,6 +18,7 @@ fn soup(corners: &[[Vec3; 3]]) -> Scene {
         radius: vec![0.0; position.len()],
         color: None,
         position,
+        ..Vertices::default()
     };
     let indices = (0..corners.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let (triangles, dropped) = Triangles::new(vertices, indices).unwrap();

@@ -145,6 +145,7 @@ mod tests;
 mod texture;
 
 pub use facets::{facets, facets_or_surfels};
+pub(in crate::source) use primitives::drop_unsound;
 pub use primitives::{hybrid, polygons, ribbons, tubes};
 pub(in crate::source) use texture::stretch;
 

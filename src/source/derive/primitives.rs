@@ -5,7 +5,7 @@ use super::{
 };
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::scene::indexed::Indexed;
+use crate::scene::indexed::{self, Indexed};
 use crate::scene::{Cloud, Dropped, Polylines, Surfels, Triangles, Vertices};
 use crate::source::hybrid::{HalfSpace, split};
 use glam::{DVec3, Vec3};
@@ -13,11 +13,13 @@ use std::cell::OnceCell;
 
 /// The triangles of a cloud as polygons, which reach no farther than themselves: every radius is 0.
 ///
-/// Normals that are missing are derived as those of surfels, see the module, and so are colours of a texture.
+/// Normals that are missing are derived as those of surfels, see the module, and so are colours of a texture. Vertices keep
+/// opacities and [properties](Cloud::properties). A triangle with a corner whose opacity is not in [0, 1], or of which a property is not finite, is dropped
+/// and counted, and is no part of the mesh: derived normals know nothing of it.
 ///
 /// # Errors
 /// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if each has a corner
-/// that is degenerate.
+/// that is degenerate or of unsound numbers.
 pub fn polygons(
     mut cloud: Cloud,
     exec: &Exec,
@@ -26,6 +28,7 @@ pub fn polygons(
     some_triangles(&cloud)?;
     let before = cloud.triangles.len();
     cloud.check()?;
+    drop_unsound(&mut cloud)?;
     drop_nowhere(&mut cloud)?;
     let (normal, normals) = match cloud.normal.take() {
         Some(normal) => (normal, Origin::File),
@@ -63,7 +66,7 @@ pub fn hybrid(
     derived.dropped += dropped;
     let corners = std::mem::take(&mut mesh.triangles);
     let (normal, radius) = (mesh.normal.take(), mesh.radius.take());
-    let vertices = vertices(mesh, normal.unwrap_or_default(), radius.unwrap_or_default());
+    let vertices = vertices(bare(mesh), normal.unwrap_or_default(), radius.unwrap_or_default());
     let (triangles, degenerate) = Triangles::new(vertices, corners)?;
     derived.dropped_primitives = nowhere + degenerate;
     if surfels.is_empty() && triangles.is_empty() {
@@ -86,7 +89,7 @@ pub fn ribbons(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived
         return Err(Error::Invalid("ribbons need normals; give nx, ny and nz".into()));
     };
     let edges = std::mem::take(&mut cloud.edges);
-    finish(before, cloud, (normal, Origin::File), radius, edges)
+    finish(before, bare(cloud), (normal, Origin::File), radius, edges)
 }
 
 /// The edges of a cloud as tubes. Radii must be given, or be asked for.
@@ -110,7 +113,7 @@ pub fn tubes(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived)>
         None => (tangents(&cloud.position, &cloud.edges), Origin::Edges),
     };
     let edges = std::mem::take(&mut cloud.edges);
-    finish(before, cloud, tangent, radius, edges)
+    finish(before, bare(cloud), tangent, radius, edges)
 }
 
 /// Whether there are triangles.
@@ -160,7 +163,36 @@ fn finish<const N: usize>(
 }
 
 fn vertices(cloud: Cloud, direction: Vec<Vec3>, radius: Vec<f32>) -> Vertices {
-    Vertices { position: cloud.position, direction, radius, color: cloud.color }
+    let Cloud { position, color, opacity, properties, .. } = cloud;
+    Vertices { position, direction, radius, color, opacity, properties }
+}
+
+/// The same without what only candidates need.
+fn bare(cloud: Cloud) -> Cloud {
+    Cloud { opacity: None, properties: Vec::new(), ..cloud }
+}
+
+/// Drops points whose opacity is not in [0, 1], or of which a property is not finite, and their triangles.
+///
+/// # Errors
+/// [`Error::Invalid`] if there were triangles and none is left.
+pub(in crate::source) fn drop_unsound(cloud: &mut Cloud) -> Result<()> {
+    if cloud.opacity.is_none() && cloud.properties.is_empty() {
+        return Ok(());
+    }
+    let before = cloud.triangles.len();
+    let sound = |i| indexed::sound(cloud.opacity.as_deref(), &cloud.properties, i);
+    let keep: Vec<bool> = (0..cloud.position.len()).map(sound).collect();
+    if keep.contains(&false) {
+        cloud.retain(&keep);
+    }
+    if cloud.triangles.is_empty() && before > 0 {
+        let what = format!(
+            "none of its {before} triangles has corners with an opacity in [0, 1] and finite properties"
+        );
+        return Err(Error::Invalid(format!("the scene is empty: {what}")));
+    }
+    Ok(())
 }
 
 /// See [`tubes`]; null at vertices without an edge.

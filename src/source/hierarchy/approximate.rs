@@ -34,7 +34,7 @@
 //! - [`Traversal::BottomUp`]: "one can use the already computed surfels of the child nodes instead of the original geometry". The triangles
 //!   that stay in the node, then child after child: its surfels as squares, if it has some, else what is drawn of it by this rule.
 //!   The objects of a node of the scene count as its children, in their order, before its nodes.
-//!   Surfels are those of the file, decoded. They are placed, and rounded to `f32`, before their squares are made.
+//!   Surfels are those of the file, decoded; every corner of a square has the opacity and the properties of its surfel. They are placed, and rounded to `f32`, before their squares are made.
 //!
 //! Of a child's surfels those are drawn that cover at the resolution of the picture, by the estimate of
 //! [`crate::scene::objects::detail::prefix`]. With P = 2 R / side ([`pixel`]), where R is half the diagonal of the node's box, or 1 if that is 0;
@@ -104,6 +104,8 @@ pub struct Settings {
     pub seed: u64,
     /// What is drawn.
     pub traversal: Traversal,
+    /// Further properties of the vertices that surfels have, by their names.
+    pub properties: Vec<String>,
 }
 
 impl Default for Settings {
@@ -115,6 +117,7 @@ impl Default for Settings {
             sampler: Sampler::Greedy,
             seed: 0,
             traversal: Traversal::BottomUp,
+            properties: Vec::new(),
         }
     }
 }
@@ -155,7 +158,7 @@ pub fn drawn(estimate: Estimate, count: u32, pixel: f64) -> (u32, f64) {
     ((covering as u32).min(count).max(1), if all > pixel { all } else { pixel })
 }
 
-/// The surfels of a node: positions, normals and colours in their order; none if no triangle covers a pixel's centre.
+/// The surfels of a node: positions, normals, colours, and opacities and properties if vertices have some, in their order; none if no triangle covers a pixel's centre.
 /// `drawn` gives the triangles that pictures of a side show.
 ///
 /// # Errors
@@ -257,7 +260,7 @@ mod tests {
     fn soup(position: Vec<Vec3>) -> Triangles {
         let n = position.len();
         let (direction, radius) = (vec![Vec3::Z; n], vec![0.0; n]);
-        let vertices = Vertices { position, direction, radius, color: None };
+        let vertices = Vertices { position, direction, radius, color: None, ..Vertices::default() };
         Triangles::new(vertices, vec![[0, 1, 2]]).unwrap().0
     }
 

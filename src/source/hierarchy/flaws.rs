@@ -107,7 +107,7 @@ mod tests {
         ];
         let n = position.len();
         let (direction, radius) = (vec![Vec3::Z; n], vec![0.0; n]);
-        let vertices = Vertices { position, direction, radius, color: None };
+        let vertices = Vertices { position, direction, radius, color: None, ..Vertices::default() };
         let flaws = |corners: &[[u32; 3]]| {
             let (triangles, dropped) = Triangles::new(vertices.clone(), corners.to_vec()).unwrap();
             Flaws::of(&triangles, dropped)

@@ -13,7 +13,7 @@ pub mod parts;
 pub use approximate::{MOST, Sampler, Settings, Traversal, approximate};
 pub use flaws::Flaws;
 pub use octree::{Octree, octree};
-pub use parts::Part;
+pub use parts::{Numbers, Part};
 
 /// Triangles of a node that is divided no further. The paper's example is "each subtree that consists of more than 10k
 /// triangles".

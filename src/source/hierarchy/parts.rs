@@ -3,8 +3,26 @@
 use super::octree::{Item, Octree, octree};
 use crate::error::Result;
 use crate::memory;
-use crate::scene::{Similarity, Triangles, Vertices};
+use crate::scene::{Cloud, Property, Similarity, Triangles, Vertices};
 use glam::Vec3;
+
+/// What vertices and surfels have beside normals and colours.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Numbers {
+    /// Whether some have opacities; then all surfels have, and vertices without have 1.
+    pub opacity: bool,
+    /// The names of further properties, which all have.
+    pub properties: Vec<String>,
+}
+
+impl Numbers {
+    /// Arrays for the properties.
+    #[must_use]
+    pub fn of_none(&self) -> Vec<Property> {
+        let empty = |name: &String| Property { name: name.clone(), values: Vec::new() };
+        self.properties.iter().map(empty).collect()
+    }
+}
 
 /// The triangles of a node, with the vertices that they use.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,6 +33,10 @@ pub struct Part {
     pub normal: Vec<Vec3>,
     /// Linear RGB, if the geometry has colours.
     pub color: Option<Vec<Vec3>>,
+    /// Opacities, if the geometry has some.
+    pub opacity: Option<Vec<f32>>,
+    /// Further properties.
+    pub properties: Vec<Property>,
     /// Triangles as indices into `position`.
     pub triangles: Vec<[u32; 3]>,
 }
@@ -62,19 +84,26 @@ impl Part {
         let corners = some.iter().map(|&i| triangles.corners()[i as usize]);
         let used = Self::vertices_of(triangles, some);
         let all = triangles.vertices();
-        let at = |values: &[Vec3]| used.iter().map(|&i| values[i as usize]).collect::<Vec<_>>();
         let new = |old: u32| used.partition_point(|&i| i < old) as u32;
+        let property =
+            |one: &Property| Property { name: one.name.clone(), values: at(&one.values, &used) };
         Self {
-            position: at(&all.position),
-            normal: at(&all.direction),
-            color: all.color.as_deref().map(at),
+            position: at(&all.position, &used),
+            normal: at(&all.direction, &used),
+            color: all.color.as_ref().map(|all| at(all, &used)),
+            opacity: all.opacity.as_ref().map(|all| at(all, &used)),
+            properties: all.properties.iter().map(property).collect(),
             triangles: corners.map(|corners| corners.map(new)).collect(),
         }
     }
 }
 
-/// Triangles from several places, all with colours.
-#[derive(Debug, Default)]
+fn at<T: Copy>(values: &[T], indices: &[u32]) -> Vec<T> {
+    indices.iter().map(|&i| values[i as usize]).collect()
+}
+
+/// Triangles from several places, all with colours and with the same numbers.
+#[derive(Debug)]
 pub struct Gathered {
     vertices: Vertices,
     corners: Vec<[u32; 3]>,
@@ -82,10 +111,23 @@ pub struct Gathered {
 
 /// Bytes of a vertex and of a triangle while they are gathered, their arrays growing.
 const OF_A_VERTEX: u64 = 2 * 40;
+const OF_A_NUMBER: u64 = 2 * 4;
 const OF_CORNERS: u64 = 2 * 12;
 
 impl Gathered {
-    /// Adds those of a part in a place, in one colour if one is given; `fill` is that of parts without.
+    /// None yet, for vertices with these numbers.
+    #[must_use]
+    pub fn new(numbers: &Numbers) -> Self {
+        let vertices = Vertices {
+            color: Some(Vec::new()),
+            opacity: numbers.opacity.then(Vec::new),
+            properties: numbers.of_none(),
+            ..Vertices::default()
+        };
+        Self { vertices, corners: Vec::new() }
+    }
+
+    /// Adds those of a part in a place, in one colour if one is given; `fill` is that of parts without, and 1 the opacity.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if the process may not hold them.
@@ -106,24 +148,33 @@ impl Gathered {
             direction: part.normal,
             radius: vec![0.0; n],
             color: Some(colors),
+            opacity: part.opacity,
+            properties: part.properties,
         };
         place.apply_to_vertices(&mut vertices);
         self.add(vertices, &part.triangles)
     }
 
-    /// Adds surfels as squares: of the half axes u and v ([`crate::scene::cloud::half_axes`]) of a disc of the radius
+    /// Adds surfels as squares with the numbers of the first points of a cloud: of the half axes u and v ([`crate::scene::cloud::half_axes`]) of a disc of the radius
     /// `half`, the corners are ((p - u) - v), ((p + u) - v), ((p + u) + v), ((p - u) + v) in `f32`, and the triangles
     /// 0 1 2 and 0 2 3 of them.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if the process may not hold them.
-    pub fn squares(&mut self, surfels: &[[Vec3; 3]], half: f32) -> Result<()> {
+    pub fn squares(&mut self, surfels: &[[Vec3; 3]], numbers: &Cloud, half: f32) -> Result<()> {
         let n = 4 * surfels.len();
+        let four = |all: &[f32]| {
+            all[..surfels.len()].iter().flat_map(|&number| [number; 4]).collect::<Vec<_>>()
+        };
+        let property =
+            |one: &Property| Property { name: one.name.clone(), values: four(&one.values) };
         let mut vertices = Vertices {
             position: Vec::with_capacity(n),
             direction: Vec::with_capacity(n),
             radius: vec![0.0; n],
             color: Some(Vec::with_capacity(n)),
+            opacity: numbers.opacity.as_deref().map(four),
+            properties: numbers.properties.iter().map(property).collect(),
         };
         let mut corners = Vec::with_capacity(2 * surfels.len());
         for &[p, normal, color] in surfels {
@@ -139,7 +190,8 @@ impl Gathered {
 
     fn add(&mut self, vertices: Vertices, corners: &[[u32; 3]]) -> Result<()> {
         let (n, more) = (vertices.position.len() as u64, corners.len() as u64);
-        memory::ask(n * OF_A_VERTEX + more * OF_CORNERS, || {
+        let numbers = 1 + self.vertices.properties.len() as u64;
+        memory::ask(n * (OF_A_VERTEX + numbers * OF_A_NUMBER) + more * OF_CORNERS, || {
             format!("{} triangles of a subtree", more + self.corners.len() as u64)
         })?;
         // What does not fit is refused in the end, by the count of the vertices.
@@ -150,7 +202,12 @@ impl Gathered {
         self.vertices.direction.extend(vertices.direction);
         self.vertices.radius.extend(vertices.radius);
         let colors = vertices.color.unwrap_or_default();
-        self.vertices.color.get_or_insert_default().extend(colors);
+        self.vertices.color.iter_mut().for_each(|all| all.extend(&colors));
+        if let Some(all) = &mut self.vertices.opacity {
+            all.extend(vertices.opacity.unwrap_or_else(|| vec![1.0; n as usize]));
+        }
+        let properties = self.vertices.properties.iter_mut().zip(vertices.properties);
+        properties.for_each(|(to, from)| to.values.extend(from.values));
         Ok(())
     }
 
@@ -171,8 +228,13 @@ mod tests {
     fn soup(corners: Vec<[u32; 3]>, position: Vec<Vec3>, colored: bool) -> Triangles {
         let n = position.len();
         let color = colored.then(|| (0..n).map(|i| Vec3::splat(i as f32)).collect());
-        let vertices =
-            Vertices { position, direction: vec![Vec3::Z; n], radius: vec![0.0; n], color };
+        let vertices = Vertices {
+            position,
+            direction: vec![Vec3::Z; n],
+            radius: vec![0.0; n],
+            color,
+            ..Vertices::default()
+        };
         Triangles::new(vertices, corners).unwrap().0
     }
 
@@ -194,7 +256,7 @@ mod tests {
             let corners = corners.iter().map(|c| c.map(|i| (i % n) as u32)).collect();
             let mesh = soup(corners, position.into_iter().map(Vec3::from_array).collect(), colored);
             let tree = tree(&mesh, bound).unwrap();
-            let mut all = Gathered::default();
+            let mut all = Gathered::new(&Numbers::default());
             for node in 0..tree.nodes.len() as u32 {
                 let part = Part::of(&mesh, tree.own(node));
                 prop_assert_eq!(part.color.is_some(), colored);
@@ -213,9 +275,15 @@ mod tests {
 
     #[test]
     fn squares_face_as_their_surfels() {
-        let mut all = Gathered::default();
+        let mut all = Gathered::new(&Numbers { opacity: true, properties: vec!["heat".into()] });
         let normal = Vec3::new(0.6, 0.0, 0.8);
-        all.squares(&[[Vec3::ONE, normal, Vec3::X]], 0.5).unwrap();
+        let heat = |values| Property { name: "heat".into(), values };
+        let numbers = Cloud {
+            opacity: Some(vec![0.25, 0.75]),
+            properties: vec![heat(vec![7.0, 8.0])],
+            ..Cloud::default()
+        };
+        all.squares(&[[Vec3::ONE, normal, Vec3::X]], &numbers, 0.5).unwrap();
         let all = all.finish().unwrap();
         let position = &all.vertices().position;
         for corners in all.corners() {
@@ -225,5 +293,7 @@ mod tests {
             assert!(((a - Vec3::ONE).length() - 0.5_f32.sqrt()).abs() < 1e-6);
         }
         assert_eq!(all.vertices().direction, [normal; 4]);
+        assert_eq!(all.vertices().opacity, Some(vec![0.25; 4]), "those of the first");
+        assert_eq!(all.vertices().properties, [heat(vec![7.0; 4])]);
     }
 }

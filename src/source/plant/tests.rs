@@ -4,8 +4,13 @@ use crate::number::{elementary, random};
 /// A mesh whose normals are +z.
 fn mesh(position: Vec<Vec3>, corners: Vec<[u32; 3]>) -> Triangles {
     let n = position.len();
-    let vertices =
-        Vertices { position, direction: vec![Vec3::Z; n], radius: vec![0.0; n], color: None };
+    let vertices = Vertices {
+        position,
+        direction: vec![Vec3::Z; n],
+        radius: vec![0.0; n],
+        color: None,
+        ..Vertices::default()
+    };
     Triangles::new(vertices, corners).unwrap().0
 }
 
@@ -30,6 +35,7 @@ fn shuffled(mesh: &Triangles, seed: u64) -> Triangles {
         direction: of.iter().map(|&i| from.direction[i]).collect(),
         radius: of.iter().map(|&i| from.radius[i]).collect(),
         color: from.color.as_ref().map(|color| of.iter().map(|&i| color[i]).collect()),
+        ..Vertices::default()
     };
     let corners = order(mesh.len(), seed + 1).into_iter().map(|i| {
         let mut corners = mesh.corners()[i].map(|corner| to[corner as usize]);
@@ -203,7 +209,7 @@ fn a_known_leaf_becomes_its_ribbon() {
         let (ribbon, rest) = ribbons(&leaf).unwrap();
         assert_eq!((dropped, rest), (0, vec![]));
         assert_eq!(ribbon.corners(), [[0, 1], [1, 2], [2, 3]]);
-        let Vertices { position, direction, radius, color } = ribbon.vertices();
+        let Vertices { position, direction, radius, color, .. } = ribbon.vertices();
         let middle = [Vec3::new(0.0, 0.0, 0.5), Vec3::new(-0.25, 2.0, 0.5)];
         assert_eq!(*position, [Vec3::NEG_Y, middle[0], middle[1], 3.0 * Vec3::Y]);
         let half = 0.5_f64.sqrt() as f32;

@@ -189,7 +189,7 @@ fn ring(count: u32, sign: f32) -> Result<Case> {
         position: (0..count).map(at).collect(),
         direction: (0..count).map(|i| along(i) * if i % 2 == 0 { 1.0 } else { sign }).collect(),
         radius: vec![0.125; count as usize],
-        color: None,
+        ..Vertices::default()
     };
     let (tubes, _) = Polylines::new(vertices, (1..count).map(|i| [i - 1, i]).collect())?;
     let primitives = Primitives { tubes, ..Primitives::default() };

@@ -38,8 +38,13 @@ fn mesh(triangles: &[[[f32; 3]; 3]]) -> Surface {
     }
     let n = position.len();
     let corners = (0..n as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    let vertices =
-        Vertices { position, direction, radius: vec![0.0; n], color: Some(vec![Vec3::ONE; n]) };
+    let vertices = Vertices {
+        position,
+        direction,
+        radius: vec![0.0; n],
+        color: Some(vec![Vec3::ONE; n]),
+        ..Vertices::default()
+    };
     Surface::Triangles(Triangles::new(vertices, corners).unwrap().0)
 }
 
@@ -66,6 +71,7 @@ fn globe(n: u32) -> Surface {
         radius: vec![0.0; position.len()],
         color: None,
         position,
+        ..Vertices::default()
     };
     Surface::Triangles(Triangles::new(vertices, corners.collect()).unwrap().0)
 }

@@ -56,6 +56,7 @@ fn triangles(dice: &mut Dice, count: usize) -> Primitives {
         radius: vec![0.0; corners],
         color: (dice.below(2) == 0)
             .then(|| (0..corners).map(|_| dice.vector(Vec3::ZERO, Vec3::ONE)).collect()),
+        ..Vertices::default()
     };
     let all = (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let triangles = Triangles::new(vertices, all).expect("triangles").0;

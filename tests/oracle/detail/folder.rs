@@ -77,6 +77,11 @@ impl World {
         all
     }
 
+    /// Whether some vertices have opacities.
+    pub(crate) fn veiled(&self) -> bool {
+        self.meshes.iter().any(|mesh| mesh.opacity.is_some())
+    }
+
     /// The number of the first node of a geometry.
     pub(crate) fn first(&self, geometry: usize) -> u32 {
         let before = self.meshes[..geometry].iter().map(|mesh| mesh.tree.len()).sum::<usize>();
@@ -134,6 +139,7 @@ impl World {
             }
             colored(&mut bytes, object.color);
         }
+        settings.properties.iter().for_each(|name| bytes.name(name));
         bytes.hash()
     }
 
@@ -189,7 +195,7 @@ impl World {
         let of = [self.upper.len(), self.objects.len(), self.meshes.len()].map(|n| n as u32);
         bytes.u32(&[total, of[0], of[1], of[2]]);
         bytes.f32(&self.fill.to_array());
-        bytes.f32(&[0.0]);
+        bytes.u32(&[self.settings.properties.len() as u32]);
         let mut objects = 0;
         for number in 0..total {
             let (tree, first, geometry) = self.tree_of(number);
@@ -234,10 +240,11 @@ impl World {
         }
         for (g, mesh) in self.meshes.iter().enumerate() {
             let nodes = mesh.tree.len() as u32;
-            bytes.u32(&[self.first(g), nodes, u32::from(mesh.color.is_some()), 0]);
+            bytes.u32(&[self.first(g), nodes, mesh.kind(), 0]);
             bytes.0.extend(mesh.hash());
             bytes.u64(&mesh.flaws());
         }
+        self.settings.properties.iter().for_each(|name| bytes.name(name));
     }
 
     /// All files by their names.
@@ -256,7 +263,10 @@ impl World {
             begins.push(begin);
         }
         for (number, surfels) in &self.surfels {
-            all.insert(format!("surfels-{number}"), surfels.file(&hash, *number));
+            all.insert(
+                format!("surfels-{number}"),
+                surfels.file(&hash, *number, self.settings.properties.len()),
+            );
         }
         all.insert("bounds".into(), self.bounds(&hash));
         all.insert("index".into(), self.index(&hash, &begins));

@@ -5,13 +5,16 @@ use super::stages;
 use super::view::{State, estimate, model, size_for};
 use super::whole::{files, made, objects, world};
 use crate::kit::dice::Dice;
+use crate::kit::scene::scene;
 use glam::{DVec3, Vec3};
+use splatref::SceneFile;
 use splatref::frame::Exec;
 use splatref::io::hierarchy::Hierarchy;
 use splatref::scene::objects::detail::prefix::Estimate;
 use splatref::scene::objects::detail::refine::Refinement;
-use splatref::scene::{Camera, Lens, Objects, Pose, Similarity};
+use splatref::scene::{Camera, Lens, Objects, Pose, Scene, Similarity, Surfels};
 use splatref::source::hierarchy::{Settings, Traversal};
+use std::path::Path;
 use tempfile::TempDir;
 
 /// An object of the page: its name, the number of the node that it shows, the object that it is a
@@ -223,4 +226,23 @@ fn nodes_of_one_surfel_are_loaded_and_give_way() {
     // The objects in the nodes are one surfel, and those that move are one each, or their few triangles.
     let (surfels, triangles) = seen(1e5);
     assert!((1..10).contains(&surfels) && triangles < 1000, "{surfels} {triangles}");
+}
+
+/// The folder of a golden, whose every choice lies beside a limit.
+#[test]
+fn the_golden_of_nodes_draws_what_the_page_says() {
+    let exec = Exec::sequential();
+    let file = SceneFile::read(Path::new("golden/bjfm19_nodes.toml")).expect("a scene file");
+    let found = Hierarchy::open(Path::new("golden/nodes")).expect("a folder");
+    let objects = found.load(&exec, &|_, _, _| ()).expect("objects");
+    let objects = objects.with_refinement(file.refinement.clone()).expect("wishes");
+    let scene = Scene { objects: Some(objects.clone()), ..scene(Surfels::none()) };
+    let camera = file.camera(&scene).expect("a camera");
+    let (shown, ..) = model(&objects, &camera);
+    let seen = objects.seen_from(&camera, &exec).expect("a view");
+    stages::same("nodes", &objects, &seen, &shown);
+    stages::flat("nodes", &objects, &seen, &shown);
+    for state in [State::Whole, State::Growing, State::Shrinking, State::Gone] {
+        assert!(shown.iter().any(|one| one.state == state), "{state:?}");
+    }
 }

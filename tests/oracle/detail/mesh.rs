@@ -4,7 +4,7 @@ use super::octree::{self, Node};
 use crate::kit::eye::{cross, sub, wide};
 use glam::Vec3;
 use sha2::{Digest, Sha256};
-use splatref::scene::Triangles;
+use splatref::scene::{Property, Triangles};
 use splatref::source::hierarchy::octree::{Item, NO_NODE};
 use std::collections::BTreeMap;
 
@@ -33,6 +33,11 @@ impl Bytes {
         all.iter().for_each(|v| self.0.extend(v.to_le_bytes()));
     }
 
+    pub(crate) fn name(&mut self, name: &str) {
+        self.u32(&[name.len() as u32]);
+        self.0.extend(name.as_bytes());
+    }
+
     pub(crate) fn hash(&self) -> [u8; 32] {
         Sha256::digest(&self.0).into()
     }
@@ -43,6 +48,8 @@ pub(crate) struct Mesh {
     pub(crate) position: Vec<Vec3>,
     pub(crate) normal: Vec<Vec3>,
     pub(crate) color: Option<Vec<Vec3>>,
+    pub(crate) opacity: Option<Vec<f32>>,
+    pub(crate) properties: Vec<Property>,
     pub(crate) corners: Vec<[u32; 3]>,
     /// Triangles that were dropped.
     pub(crate) dropped: u64,
@@ -65,6 +72,8 @@ impl Mesh {
             position: vertices.position.clone(),
             normal: vertices.direction.clone(),
             color: vertices.color.clone(),
+            opacity: vertices.opacity.clone(),
+            properties: vertices.properties.clone(),
             corners: triangles.corners().to_vec(),
             dropped,
             tree: octree::model(&items, bound),
@@ -82,7 +91,22 @@ impl Mesh {
         self.color.iter().flatten().for_each(|c| bytes.f32(&c.to_array()));
         bytes.u64(&[self.corners.len() as u64]);
         self.corners.iter().for_each(|c| bytes.u32(c));
+        if let Some(all) = &self.opacity {
+            bytes.0.push(1);
+            bytes.f32(all);
+        }
+        for one in &self.properties {
+            bytes.0.push(2);
+            bytes.name(&one.name);
+            bytes.f32(&one.values);
+        }
         bytes.hash()
+    }
+
+    /// What its vertices have.
+    pub(crate) fn kind(&self) -> u32 {
+        let has = [self.color.is_some(), self.opacity.is_some()].map(u32::from);
+        has[0] + 2 * has[1] + 4 * self.properties.len() as u32
     }
 
     /// Dropped, degenerate and duplicate triangles, and edges of more than two.
@@ -126,7 +150,7 @@ impl Mesh {
     pub(crate) fn file(&self) -> (Vec<u8>, Vec<u64>) {
         let mut bytes = Bytes::begin("splatref mesh 1\n");
         bytes.0.extend(self.hash());
-        bytes.u32(&[self.tree.len() as u32, u32::from(self.color.is_some())]);
+        bytes.u32(&[self.tree.len() as u32, self.kind()]);
         bytes.u64(&self.flaws());
         for (number, node) in self.tree.iter().enumerate() {
             let own = self.vertices(node).len() as u32;
@@ -147,6 +171,8 @@ impl Mesh {
                 if let Some(colors) = &self.color {
                     bytes.f32(&colors[v as usize].to_array());
                 }
+                self.opacity.iter().for_each(|all| bytes.f32(&[all[v as usize]]));
+                self.properties.iter().for_each(|one| bytes.f32(&[one.values[v as usize]]));
             }
             for &t in &node.own {
                 let at = |v| vertices.iter().position(|own| *own == v).expect("a vertex") as u32;

@@ -6,6 +6,7 @@ mod folder;
 mod forest;
 mod loaded;
 mod mesh;
+mod numbers;
 mod octree;
 mod pictures;
 mod stages;

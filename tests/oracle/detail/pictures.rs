@@ -5,11 +5,11 @@ use super::folder::World;
 use super::mesh::Bytes;
 use super::view::placed;
 use crate::kit::eye::wide;
-use crate::sampler::cases::{alone, mesh};
+use crate::sampler::cases::alone;
 use glam::Vec3;
 use splatref::frame::Exec;
 use splatref::io::srgb;
-use splatref::scene::{Cloud, Similarity};
+use splatref::scene::{Cloud, Property, Similarity, Triangles, Vertices};
 use splatref::source::candidates::candidates;
 use splatref::source::hierarchy::{Sampler, Traversal};
 use splatref::source::sampler::{Greedy, Progressive, Start, shuffled};
@@ -19,7 +19,9 @@ pub(crate) struct Surfels {
     position: Vec<Vec3>,
     normal: Vec<Vec3>,
     color: Vec<Vec3>,
-    codes: Vec<([i16; 2], [u8; 3])>,
+    codes: Vec<([i16; 2], [u8; 4])>,
+    /// Of each surfel the opacity, if there are some, and the further properties.
+    numbers: Vec<Vec<f32>>,
     estimate: (u32, f32),
 }
 
@@ -55,15 +57,33 @@ impl Surfels {
             (255.0 * srgb::from_linear(c) + 0.5).floor() as u8
         };
         let normals = cloud.normal.as_ref().expect("normals");
-        let codes: Vec<_> = (normals.iter().zip(color))
-            .map(|(n, c)| (encoded(*n), c.to_array().map(code)))
+        let veil = |i: usize| {
+            let code = |all: &Vec<f32>| (255.0 * f64::from(all[i]) + 0.5).floor() as u8;
+            cloud.opacity.as_ref().map_or(255, code)
+        };
+        let codes: Vec<_> = (normals.iter().zip(color).enumerate())
+            .map(|(i, (n, c))| {
+                let [r, g, b] = c.to_array().map(code);
+                (encoded(*n), [r, g, b, veil(i)])
+            })
             .collect();
         let normal: Vec<Vec3> = codes.iter().map(|(n, _)| decoded(*n)).collect();
-        let light = |code: &[u8; 3]| Vec3::from_array(code.map(|c| table[usize::from(c)]));
+        let light =
+            |[r, g, b, _]: &[u8; 4]| Vec3::from_array([r, g, b].map(|c| table[usize::from(*c)]));
+        let numbers = |i: usize| {
+            let opacity = (f64::from(codes[i].1[3]) / 255.0) as f32;
+            let first = cloud.opacity.as_ref().map(|_| opacity);
+            first.into_iter().chain(cloud.properties.iter().map(|one| one.values[i])).collect()
+        };
+        let numbers = (0..codes.len()).map(numbers).collect();
         let color = codes.iter().map(|(_, c)| light(c)).collect();
         let (count, distance) = estimates::model(&cloud.position, &normal);
         let estimate = (count, f32::from_bits(distance));
-        Self { position: cloud.position.clone(), normal, color, codes, estimate }
+        Self { position: cloud.position.clone(), normal, color, codes, numbers, estimate }
+    }
+
+    pub(crate) fn numbers(&self) -> &[Vec<f32>] {
+        &self.numbers
     }
 
     /// How many, `p_m` and `r_m`.
@@ -71,17 +91,20 @@ impl Surfels {
         (self.position.len() as u32, self.estimate.0, self.estimate.1)
     }
 
-    pub(crate) fn file(&self, hash: &[u8; 32], number: u32) -> Vec<u8> {
+    /// The bytes of its file, with so many further properties.
+    pub(crate) fn file(&self, hash: &[u8; 32], number: u32, further: usize) -> Vec<u8> {
         let mut bytes = Bytes::begin("splatref blue 1\n");
         bytes.0.extend(hash);
         let (count, p, r) = self.header();
         bytes.u32(&[number, count, p]);
         bytes.f32(&[r]);
-        for (position, (normal, color)) in self.position.iter().zip(&self.codes) {
+        let further = |numbers: &[f32]| numbers[numbers.len() - further..].to_vec();
+        let all = self.position.iter().zip(&self.codes).zip(&self.numbers);
+        for ((position, (normal, color)), numbers) in all {
             bytes.f32(&position.to_array());
             normal.iter().for_each(|v| bytes.0.extend(v.to_le_bytes()));
             bytes.0.extend(color);
-            bytes.0.push(255);
+            bytes.f32(&further(numbers));
         }
         bytes.0
     }
@@ -100,10 +123,11 @@ impl Surfels {
     }
 }
 
-/// What pictures show: positions, normals and colours of corners.
+/// What pictures show: positions, normals and colours of corners, and their numbers.
 #[derive(Default)]
 struct Drawn {
     corners: Vec<[Vec3; 3]>,
+    numbers: Vec<Vec<f32>>,
     triangles: Vec<[u32; 3]>,
 }
 
@@ -155,6 +179,9 @@ impl World {
                 let position = single(placed(&shown.place, wide(mesh.position[v])));
                 let normal = turned(&shown.place, mesh.normal[v]);
                 to.corners.push([position, normal, shown.color.unwrap_or(own)]);
+                let veil = || mesh.opacity.as_ref().map_or(1.0, |all| all[v]);
+                let further = mesh.properties.iter().map(|one| one.values[v]);
+                to.numbers.push(self.veiled().then(veil).into_iter().chain(further).collect());
             }
             to.triangles.push([begin, begin + 1, begin + 2]);
         }
@@ -177,6 +204,7 @@ impl World {
             let begin = to.corners.len() as u32;
             let corners = [(at - u) - v, (at + u) - v, (at + u) + v, (at - u) + v];
             to.corners.extend(corners.map(|corner| [corner, normal, color]));
+            to.numbers.extend([(); 4].map(|()| surfels.numbers[i].clone()));
             to.triangles.push([begin, begin + 1, begin + 2]);
             to.triangles.push([begin, begin + 2, begin + 3]);
         }
@@ -219,7 +247,19 @@ fn taken(world: &World, number: u32, side: u32) -> Option<Cloud> {
     let shown = Shown { place: Similarity::IDENTITY, color: None };
     world.node(number, shown, pixel, &mut drawn);
     let column = |k: usize| drawn.corners.iter().map(|c| c[k]).collect::<Vec<_>>();
-    let scene = alone(mesh(column(0), column(1), Some(column(2)), drawn.triangles.clone()));
+    let number = |k: usize| drawn.numbers.iter().map(|all| all[k]).collect::<Vec<f32>>();
+    let veiled = usize::from(world.veiled());
+    let property =
+        |(k, name): (usize, &String)| Property { name: name.clone(), values: number(veiled + k) };
+    let vertices = Vertices {
+        position: column(0),
+        direction: column(1),
+        radius: vec![0.0; drawn.corners.len()],
+        color: Some(column(2)),
+        opacity: world.veiled().then(|| number(0)),
+        properties: world.settings.properties.iter().enumerate().map(property).collect(),
+    };
+    let scene = alone(Triangles::new(vertices, drawn.triangles.clone()).expect("triangles").0);
     let exec = Exec::sequential();
     let directions = &world.settings.directions;
     Some(candidates(&scene, directions, side, &exec, &|_, _, _| ()).ok()?.cloud)

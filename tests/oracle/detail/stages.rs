@@ -159,7 +159,8 @@ fn spheres_hold_ellipses_and_vertices() {
         let surfels = surfels(Cloud { tangents, ..cloud });
         let radius: Vec<f32> = vertices.iter().map(|p| p.x.abs()).collect();
         let direction = vec![Vec3::Y; 6];
-        let mesh = Vertices { position: vertices, direction, radius, color: None };
+        let mesh =
+            Vertices { position: vertices, direction, radius, color: None, ..Vertices::default() };
         let triangles = Triangles::new(mesh, vec![[0, 1, 2], [4, 5, 1]]).expect("triangles").0;
         let own = surfels.position().iter().zip(u.iter().zip(&v)).map(|(p, (u, v))| {
             (wide(*p), (dot(wide(*u), wide(*u)) + dot(wide(*v), wide(*v))).sqrt())

@@ -90,7 +90,8 @@ fn unseen(mut cloud: Cloud) -> Cloud {
 
 /// What is loaded of a scene: its geometries and objects.
 pub(crate) fn world(file: &SceneFile, dropped: &[u64], settings: &Settings) -> World {
-    let loaded = file.load(&Exec::sequential(), &|_, _, _| ()).expect("a scene");
+    let (exec, quiet) = (Exec::sequential(), |_: &str, _, _| ());
+    let loaded = file.load_polygons(&settings.properties, &exec, &quiet).expect("a scene");
     assert_eq!(loaded.dropped_primitives, dropped.iter().sum::<u64>());
     let fill = file.material.color;
     let one = |triangles, dropped| Mesh::new(triangles, dropped, BOUND);
@@ -198,7 +199,9 @@ fn settings_are_those_of_the_page() {
     for (seed, (sampler, directions, most, side)) in (0..).zip(samplers) {
         for traversal in [Traversal::BottomUp, Traversal::TopDown] {
             let directions = directions.clone();
-            let settings = Settings { most, side, directions, sampler, seed, traversal };
+            let properties = Vec::new();
+            let settings =
+                Settings { most, side, directions, sampler, seed, traversal, properties };
             let count = check(&format!("{settings:?}"), &file, &[1], &settings);
             assert!(count > 1, "{settings:?}");
         }

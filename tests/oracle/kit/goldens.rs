@@ -74,7 +74,13 @@ taken! {
         "mkc08_odd_size_box",
         "mkc08_sphere",
     ];
-    blue::Settings, Blue: ["bjfm19_budget", "bjfm19_ladder", "bjfm19_points", "bjfm19_prefixes"];
+    blue::Settings, Blue: [
+        "bjfm19_budget",
+        "bjfm19_ladder",
+        "bjfm19_nodes",
+        "bjfm19_points",
+        "bjfm19_prefixes",
+    ];
     template::Settings, Template: [
         "moc08_covering_3",
         "moc08_f64_7",

@@ -107,6 +107,7 @@ fn vertices(dice: &mut Dice, points: Vec<Vec3>, most: f32, colored: bool) -> Ver
         direction: (0..count).map(|_| dice.direction()).collect(),
         radius: (0..count).map(|_| radius(dice)).collect(),
         color: colored.then(|| (0..count).map(|_| dice.vector(Vec3::ZERO, Vec3::ONE)).collect()),
+        ..Vertices::default()
     }
 }
 

@@ -200,6 +200,7 @@ fn pyramid_line_keeps_its_first_visit() {
         direction: vec![Vec3::Z; 2],
         radius: vec![0.25; 2],
         color: Some(vec![Vec3::ZERO, Vec3::new(15.0, 30.0, 60.0)]),
+        ..Vertices::default()
     };
     for corners in [[0, 1], [1, 0]] {
         let ribbons = Indexed::new(vertices.clone(), vec![corners]).expect("a line").0;
@@ -221,6 +222,7 @@ fn pyramid_directions_that_cancel() {
         direction: vec![Vec3::Z, -Vec3::Z],
         radius: vec![2.0; 2],
         color: None,
+        ..Vertices::default()
     };
     let line = Indexed::new(vertices, vec![[0, 1]]).expect("a line").0;
     let ribbon = with(Primitives { ribbons: line.clone(), ..Primitives::default() });
@@ -251,6 +253,7 @@ fn pyramid_the_sign_of_a_tangent_means_nothing() {
             direction: angles.iter().zip(signs).map(|(a, sign)| along(a) * sign).collect(),
             radius: vec![4.0; angles.len()],
             color: None,
+            ..Vertices::default()
         };
         let edges = (1..24).map(|i| [i - 1, i]).collect();
         let tubes = Indexed::new(vertices, edges).expect("an arc").0;

@@ -33,23 +33,38 @@ pub(crate) fn bits(v: &Vec3) -> [u32; 3] {
 /// The triangles of a scene, or those of its objects in the order of the objects.
 pub(crate) fn triangles(scene: &Scene) -> Vec<Triangle> {
     let Some(objects) = &scene.objects else {
-        return parts(&scene.primitives.triangles, None, None);
+        let list = &scene.primitives.triangles;
+        return parts(list, None, None, list.vertices().opacity.is_some());
     };
     let all = objects.objects();
     let colored = all.iter().any(|o| {
         let vertices = objects.geometries()[o.geometry].primitives.triangles.vertices();
         o.color.is_some() || vertices.color.is_some()
     });
+    let veiled = all.iter().any(|o| {
+        let list = &objects.geometries()[o.geometry].primitives.triangles;
+        list.vertices().opacity.is_some()
+    });
     let each = all.iter().zip(objects.places()).flat_map(|(o, place)| {
         let list = &objects.geometries()[o.geometry].primitives.triangles;
         let fill = if list.vertices().color.is_none() { Some(objects.fill()) } else { None };
-        parts(list, Some(place), o.color.or(fill).filter(|_| colored))
+        parts(list, Some(place), o.color.or(fill).filter(|_| colored), veiled)
     });
     each.collect()
 }
 
-fn parts(list: &Triangles, place: Option<&Similarity>, color: Option<Vec3>) -> Vec<Triangle> {
-    let Vertices { position, direction, color: own, .. } = list.vertices();
+fn parts(
+    list: &Triangles,
+    place: Option<&Similarity>,
+    color: Option<Vec3>,
+    veiled: bool,
+) -> Vec<Triangle> {
+    let Vertices { position, direction, color: own, opacity, properties, .. } = list.vertices();
+    let numbers = |corners: &[u32; 3]| {
+        let at = |all: &Vec<f32>| corners.map(|i| all[i as usize]);
+        let first = veiled.then(|| opacity.as_ref().map_or([1.0; 3], at));
+        first.into_iter().chain(properties.iter().map(|one| at(&one.values))).collect()
+    };
     let point = |i: u32| place.map_or(position[i as usize], |s| s.point(position[i as usize]));
     let turn = |i: u32| place.map_or(direction[i as usize], |s| s.turned(direction[i as usize]));
     let each = list.corners().iter().map(|corners| Triangle {
@@ -60,7 +75,7 @@ fn parts(list: &Triangles, place: Option<&Similarity>, color: Option<Vec3>) -> V
             (None, Some(own)) => Some(corners.map(|i| own[i as usize])),
             (None, None) => None,
         },
-        numbers: Vec::new(),
+        numbers: numbers(corners),
     });
     each.collect()
 }

@@ -25,7 +25,7 @@ pub(crate) fn mesh(
     corners: Vec<[u32; 3]>,
 ) -> Triangles {
     let radius = vec![0.0; position.len()];
-    let vertices = Vertices { position, direction, radius, color };
+    let vertices = Vertices { position, direction, radius, color, ..Vertices::default() };
     let (triangles, dropped) = Triangles::new(vertices, corners).expect("triangles");
     assert_eq!(dropped, 0);
     triangles

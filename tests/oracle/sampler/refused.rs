@@ -39,6 +39,7 @@ fn candidates_refuse_what_the_page_says() {
         direction: vec![Vec3::Z; 2],
         radius: vec![0.1; 2],
         color: None,
+        ..Vertices::default()
     };
     let ribbons = Polylines::new(vertices, vec![[0, 1]]).expect("a ribbon").0;
     let lines = Primitives { ribbons, ..Primitives::default() };

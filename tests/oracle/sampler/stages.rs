@@ -6,7 +6,7 @@ use crate::sampler::cases;
 use crate::sampler::orders::{self, Picks, Random, greedy, shuffled};
 use glam::{DVec3, Vec3};
 use splatref::frame::Exec;
-use splatref::scene::{Cloud, Property, Scene, Vertices};
+use splatref::scene::{Cloud, Geometry, Objects, Primitives, Property, Scene, Triangles, Vertices};
 use splatref::source::candidates::{Candidates, Directions, candidates, of_cloud};
 use splatref::source::sampler::{self, Greedy, Order, Progressive, Schedule, Start, quality};
 
@@ -122,6 +122,45 @@ fn numbers_of_vertices_are_those_of_the_page() {
         }
         differ(mesh.name, &seen(&found.expect(mesh.name).0), &truth);
     }
+}
+
+/// The same geometry, whose vertices have numbers.
+fn with_numbers(dice: &mut Dice, geometry: &Geometry, veiled: bool) -> Geometry {
+    let Geometry { name, surfels, primitives, .. } = geometry.clone();
+    let (vertices, corners) = primitives.triangles.into_parts();
+    let mut random = |high| vertices.position.iter().map(|_| dice.within(0.0, high)).collect();
+    let properties =
+        ["heat", "gloss"].map(|name| Property { name: name.into(), values: random(0.75) });
+    let opacity = veiled.then(|| random(1.0));
+    let vertices = Vertices { opacity, properties: properties.into(), ..vertices };
+    let triangles = Triangles::new(vertices, corners).expect("triangles").0;
+    let primitives = Primitives { triangles, ..Primitives::default() };
+    Geometry { name, surfels, primitives, detail: None }
+}
+
+/// Those of objects, of which some have opacities and some have none.
+#[test]
+fn numbers_of_objects_are_those_of_the_page() {
+    let mut dice = Dice(78);
+    let mut count = 0;
+    for mesh in cases::meshes() {
+        let Some(objects) = &mesh.scene.objects else { continue };
+        for veiled in [[false; 2], [true, false], [false, true], [true; 2]] {
+            let all = objects.geometries().iter().zip(veiled);
+            let all = all.map(|(one, veiled)| with_numbers(&mut dice, one, veiled)).collect();
+            let objects = Objects::new(all, objects.objects().to_vec(), objects.fill());
+            let scene = Scene { objects: objects.ok(), ..mesh.scene.clone() };
+            let directions = cases::directions();
+            let truth = own::candidates(&own::triangles(&scene), &directions, mesh.side);
+            let (directions, exec) = (Directions::These(directions), Exec::sequential());
+            let found = candidates(&scene, &directions, mesh.side, &exec, &|_, _, _| ());
+            let found = found.expect(mesh.name);
+            assert_eq!(found.cloud.opacity.is_some(), veiled.contains(&true), "{}", mesh.name);
+            differ(&format!("{} {veiled:?}", mesh.name), &seen(&found), &truth);
+            count += 1;
+        }
+    }
+    assert_eq!(count, 16);
 }
 
 fn same(name: &str, found: &Order, truth: &Picks) {

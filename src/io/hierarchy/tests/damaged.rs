@@ -2,26 +2,38 @@
 
 use super::super::index::Index;
 use super::*;
+use crate::scene::Property;
 use proptest::prelude::*;
 
-fn whole() -> TempDir {
+/// A hierarchy, with opacities and properties or without.
+fn whole(numbers: bool) -> TempDir {
     let at = TempDir::new().unwrap();
-    ply::write(&at.path().join("mesh.ply"), &sphere(75, true)).unwrap();
-    let settings = Settings { most: 50, side: 200, ..Settings::default() };
+    let mut mesh = sphere(75, true);
+    let mut settings = Settings { most: 50, side: 200, ..Settings::default() };
+    if numbers {
+        let values: Vec<f32> = mesh.position.iter().map(|p| p.x.abs()).collect();
+        mesh.opacity = Some(values.clone());
+        mesh.properties = vec![Property { name: "heat".into(), values }];
+        settings.properties = vec!["heat".into()];
+    }
+    ply::write(&at.path().join("mesh.ply"), &mesh).unwrap();
     make(&at, "mesh.ply", "out", &settings).unwrap();
     at
 }
 
 #[test]
 fn an_index_comes_back_as_it_is_and_no_beginning_of_one_does() {
-    let at = whole();
-    let bytes = fs::read(at.path().join("out/index")).unwrap();
-    let index = Index::parse(&bytes).unwrap();
-    assert_eq!(index.bytes(), bytes);
-    for end in 0..bytes.len() {
-        Index::parse(&bytes[..end]).unwrap_err();
+    let mut bytes = Vec::new();
+    for numbers in [true, false] {
+        let at = whole(numbers);
+        bytes = fs::read(at.path().join("out/index")).unwrap();
+        let index = Index::parse(&bytes).unwrap();
+        assert_eq!(index.bytes(), bytes);
+        for end in 0..bytes.len() {
+            Index::parse(&bytes[..end]).unwrap_err();
+        }
+        Index::parse(&[&bytes[..], &[0]].concat()).unwrap_err();
     }
-    Index::parse(&[&bytes[..], &[0]].concat()).unwrap_err();
     // 2^32 - 1 nodes, which would take 378 GB.
     let mut many = bytes;
     many[48..52].copy_from_slice(&[0xff; 4]);
@@ -37,7 +49,7 @@ proptest! {
     fn no_index_makes_it_panic(flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6)) {
         thread_local! {
             static WHOLE: (TempDir, Vec<u8>) = {
-                let at = whole();
+                let at = whole(true);
                 let bytes = fs::read(at.path().join("out/index")).unwrap();
                 (at, bytes)
             };
@@ -65,7 +77,7 @@ proptest! {
         flips in prop::collection::vec((0_usize..300, any::<u8>()), 0..4),
     ) {
         thread_local! {
-            static WHOLE: TempDir = whole();
+            static WHOLE: TempDir = whole(true);
         }
         WHOLE.with(|at| {
             let path = at.path().join("out").join(name);
@@ -83,7 +95,7 @@ proptest! {
 
 #[test]
 fn what_is_missing_or_of_another_is_told_in_a_line() {
-    let at = whole();
+    let at = whole(false);
     let out = at.path().join("out");
     let hierarchy = Hierarchy::open(&out).unwrap();
     let told = |node: u32| hierarchy.surfels(node, 9).unwrap_err().to_string();

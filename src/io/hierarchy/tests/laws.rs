@@ -74,7 +74,7 @@ fn objects_share_geometries_and_are_approximated_in_groups() {
     make(&at, "scene.toml", "out", &settings).unwrap();
     let hierarchy = Hierarchy::open(&at.path().join("out")).unwrap();
     let [ball, pea] = hierarchy.geometries() else { panic!("two geometries") };
-    assert_eq!((ball.colored, pea.colored, pea.nodes.len()), (true, false, 1));
+    assert_eq!((ball.kind.colored, pea.kind.colored, pea.nodes.len()), (true, false, 1));
     assert_eq!(hierarchy.nodes()[pea.nodes.start as usize].surfels, 0, "450 triangles");
     let root = &hierarchy.nodes()[0];
     assert_eq!((root.below, root.surfels), (2 * 12_800 + 3 * 450, 700));
@@ -186,7 +186,6 @@ fn what_cannot_be_approximated_is_refused() {
     assert!(line.contains("there are no triangles"), "{line}");
     for (text, what) in [
         ("[[model]]\nshape = \"torus\"\n", "no triangles to approximate"),
-        ("[[model]]\nfile = \"points.ply\"\nopacity = 0.5\n", "remove the opacity"),
         ("[[model]]\nfile = \"points.ply\"\nprefix = 5\n", "a prefix is of points"),
     ] {
         fs::write(at.path().join("bad.toml"), text).unwrap();

@@ -87,6 +87,7 @@ pub(in crate::method::blue) fn triangle(color: bool) -> Primitives {
         direction: vec![Vec3::Z; 3],
         radius: vec![0.0; 3],
         color: color.then(|| vec![Vec3::X, Vec3::Y, Vec3::Z]),
+        ..Vertices::default()
     };
     let triangles = Triangles::new(vertices, vec![[0, 1, 2], [0, 1, 2]]).unwrap().0;
     Primitives { triangles, ..Primitives::default() }

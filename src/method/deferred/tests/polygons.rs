@@ -13,6 +13,7 @@ fn square(depth: f32, color: Option<Vec3>) -> Primitives {
         direction: vec![Vec3::Z; 4],
         radius: vec![0.0; 4],
         color: color.map(|color| vec![color; 4]),
+        ..Vertices::default()
     };
     let triangles = Triangles::new(vertices, vec![[0, 1, 3], [0, 3, 2]]).unwrap().0;
     Primitives { triangles, ..Primitives::default() }

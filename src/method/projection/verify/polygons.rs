@@ -281,6 +281,7 @@ mod tests {
             direction: (0..total).map(|i| point(20_000 + i).normalize()).collect(),
             radius: vec![0.0; total as usize],
             color: Some((0..total).map(|i| point(30_000 + i).abs()).collect()),
+            ..Vertices::default()
         };
         let corners = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let triangles = Triangles::new(vertices, corners).unwrap().0;

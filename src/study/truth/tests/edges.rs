@@ -49,7 +49,7 @@ fn rock(seed: u64, n: i32) -> Triangles {
     };
     let position: Vec<Vec3> = (0..).zip(&places).map(put).collect();
     let (direction, radius) = (vec![Vec3::Z; position.len()], vec![0.0; position.len()]);
-    let vertices = Vertices { position, direction, radius, color: None };
+    let vertices = Vertices { position, direction, radius, color: None, ..Vertices::default() };
     Triangles::new(vertices, corners).unwrap().0
 }
 
@@ -166,6 +166,7 @@ fn samples_on_an_edge_are_of_the_first_triangle() {
             direction: direction.clone(),
             radius: radius.clone(),
             color: None,
+            ..Vertices::default()
         };
         let both = Triangles::new(vertices.clone(), corners.clone()).unwrap().0;
         let unlit = lights("square", vec![]);

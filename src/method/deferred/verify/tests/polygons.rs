@@ -12,6 +12,7 @@ fn square(reach: f32, color: Option<Vec3>) -> Primitives {
         direction: vec![Vec3::Z; 4],
         radius: vec![0.0; 4],
         color: color.map(|color| (1..5_u16).map(|i| color * f32::from(i)).collect()),
+        ..Vertices::default()
     };
     let triangles = Triangles::new(vertices, vec![[0, 1, 3], [0, 3, 2]]).unwrap().0;
     Primitives { triangles, ..Primitives::default() }

@@ -160,6 +160,7 @@ fn surfaces_themselves_are_drawn_close_by() {
         direction: vec![Vec3::Z; 3],
         radius: vec![0.0; 3],
         color: None,
+        ..Vertices::default()
     };
     let (triangles, _) = Triangles::new(vertices, vec![[0, 1, 2]]).unwrap();
     let primitives = Primitives { triangles, ..Primitives::default() };

@@ -1,0 +1,95 @@
+//! What the points are chosen of: those of a file, or what is seen of a mesh or of a scene.
+
+use super::{Args, report};
+use splatref::frame::Exec;
+use splatref::io::scene_file::{FileKind, SceneFile, read_model};
+use splatref::io::{ply, texture};
+use splatref::scene::Cloud;
+use splatref::source::candidates::{self, Candidates, Directions, candidates};
+use splatref::{Error, Result};
+
+/// Points, and the side of a pixel of the pictures that they are from, if they are.
+pub(super) struct Given {
+    pub(super) cloud: Cloud,
+    pub(super) pixel: Option<f64>,
+}
+
+impl From<Candidates> for Given {
+    fn from(found: Candidates) -> Self {
+        Self { cloud: found.cloud, pixel: Some(found.pixel) }
+    }
+}
+
+impl Args {
+    /// What the input gives.
+    pub(super) fn given(&self, exec: &Exec, show: &dyn Fn(&str, u64, u64)) -> Result<Given> {
+        if FileKind::of(&self.points)? == FileKind::Toml {
+            return self.scene(exec, show).map(Given::from);
+        }
+        let mut cloud = read_model(&self.points, exec)?;
+        cloud.properties = ply::properties(&self.points, &self.properties)?;
+        if !cloud.triangles.is_empty() {
+            return self.candidates(cloud, exec, show).map(Given::from);
+        }
+        self.points_alone(&cloud)?;
+        Ok(Given { cloud, pixel: None })
+    }
+
+    /// What is seen of a scene, in its first frame.
+    fn scene(&self, exec: &Exec, show: &dyn Fn(&str, u64, u64)) -> Result<Candidates> {
+        let file = SceneFile::open(&self.points)?;
+        if file.hierarchy.is_some() {
+            let what = "a hierarchy has its surfels already; name a mesh or a scene";
+            return Err(Error::Invalid(what.into()));
+        }
+        let loaded = file.load_polygons(&self.properties, exec, show)?;
+        dropped(loaded.dropped_primitives);
+        let (directions, side) = self.pictures();
+        candidates(&loaded.scene, &directions, side, exec, show)
+    }
+
+    /// From where pictures are taken, and how large.
+    fn pictures(&self) -> (Directions, u32) {
+        (self.directions(), self.side.unwrap_or(candidates::SIDE))
+    }
+
+    /// Whether a file without triangles has no more than points, and no option is for a mesh.
+    fn points_alone(&self, cloud: &Cloud) -> Result<()> {
+        let invalid = |what: String| Err(Error::format(&self.points, what));
+        if !cloud.edges.is_empty() {
+            let edges = cloud.edges.len();
+            return invalid(format!("the file has {edges} edges, but lines are not put in order"));
+        }
+        if self.texture.is_some() {
+            return invalid("--texture is for a mesh, but the file has no triangles".into());
+        }
+        match (self.side, self.directions) {
+            (None, None) => Ok(()),
+            (Some(_), _) => invalid("--side is for a mesh, but the file has no triangles".into()),
+            (_, Some(_)) => {
+                invalid("--directions is for a mesh, but the file has no triangles".into())
+            }
+        }
+    }
+
+    /// What is seen of a mesh.
+    fn candidates(
+        &self,
+        mut mesh: Cloud,
+        exec: &Exec,
+        show: &dyn Fn(&str, u64, u64),
+    ) -> Result<Candidates> {
+        texture::paint(&mut mesh, &self.points, self.texture.as_deref(), 0, exec)?;
+        let (directions, side) = self.pictures();
+        let (found, derived) = candidates::of_cloud(mesh, &directions, side, exec, show)?;
+        dropped(derived.dropped_primitives);
+        Ok(found)
+    }
+}
+
+/// Says how many triangles were none.
+fn dropped(triangles: u64) {
+    if triangles > 0 {
+        report::line("dropped", format!("{triangles} triangles"));
+    }
+}

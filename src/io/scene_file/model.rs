@@ -1,0 +1,229 @@
+//! One model: its surfels and primitives where its file has them.
+
+use super::{Draw, FileKind, Model, Source, read_model};
+use crate::error::{Error, Result};
+use crate::frame::Exec;
+use crate::index::mipmap;
+use crate::io::{ply, texture};
+use crate::scene::{Cloud, Primitives, Surfels};
+use crate::source::derive::{self, Derive, Derived};
+use crate::source::plant;
+use std::path::Path;
+
+/// A model where its file has it.
+pub(super) struct ModelParts {
+    pub(super) surfels: Surfels,
+    pub(super) primitives: Primitives,
+    pub(super) derived: Option<Derived>,
+    /// Whether colours, of all levels that are asked for, are those of a texture.
+    pub(super) painted: bool,
+}
+
+impl ModelParts {
+    fn new(surfels: Surfels, primitives: Primitives, derived: Derived) -> Self {
+        Self { surfels, primitives, derived: Some(derived), painted: false }
+    }
+}
+
+/// Whether a model has the colours of a texture, if there is one.
+fn shows_texture(model: &Model) -> bool {
+    model.color.is_none() && !matches!(model.draw, Draw::Ribbons | Draw::Tubes)
+}
+
+/// What a scene is loaded for.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Purpose<'a> {
+    /// To be drawn, whole.
+    Scene,
+    /// To be drawn by views, of which each reads what it needs of a hierarchy.
+    View,
+    /// Vertices of polygons keep their opacities and these properties.
+    Candidates(&'a [String]),
+}
+
+/// Whether a model can be drawn as it says, and may have its opacity and its texture.
+pub(super) fn check_draw(model: &Model, purpose: Purpose<'_>) -> Result<()> {
+    model.draw.check(&model.source).map_err(Error::Invalid)?;
+    if model.progressive && !matches!(model.source, Source::File { .. }) {
+        let name = model.source.name();
+        let what = format!("{name}: what is progressive are points of a file, in an order");
+        return Err(Error::Invalid(what));
+    }
+    if matches!(model.source, Source::File { texture: Some(_), .. }) && !shows_texture(model) {
+        let what = match model.color {
+            Some(_) => "a model in one colour".to_owned(),
+            None => format!("what is drawn as {}", model.draw.word()),
+        };
+        let name = model.source.name();
+        return Err(Error::Invalid(format!("{name}: {what} has no texture; remove one of them")));
+    }
+    let surfels = !matches!(model.draw, Draw::Polygons | Draw::Ribbons | Draw::Tubes | Draw::Lines);
+    if model.mipmaps.is_some_and(|levels| levels > 0) && (!surfels || model.color.is_some()) {
+        let name = model.source.name();
+        let what = if surfels {
+            "a model in one colour has the same at every level".to_owned()
+        } else {
+            format!("what is drawn as {} has no surfels", model.draw.word())
+        };
+        return Err(Error::Invalid(format!("{name}: {what}; remove the mipmaps")));
+    }
+    let veiled = matches!(model.draw, Draw::Surfels | Draw::Points | Draw::Facets)
+        || matches!(purpose, Purpose::Candidates(_));
+    if model.opacity.is_some() && !veiled {
+        let (name, word) = (model.source.name(), model.draw.word());
+        let what = format!("{name}: what is drawn as {word} is opaque; remove the opacity");
+        return Err(Error::Invalid(what));
+    }
+    Ok(())
+}
+
+pub(super) fn read(
+    model: &Model,
+    purpose: Purpose<'_>,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<ModelParts> {
+    let further = if let Purpose::Candidates(names) = purpose { names } else { &[] };
+    ply_of(model, further)?;
+    match &model.source {
+        Source::File { path, radius, prefix, texture } => {
+            let mut cloud = read_model(path, exec)?;
+            cloud.properties = ply::properties(path, further)?;
+            if model.draw == Draw::Polygons && !matches!(purpose, Purpose::Candidates(_)) {
+                // They are drawn opaque.
+                cloud.opacity = None;
+            }
+            if shows_texture(model) {
+                let levels = model.mipmaps.unwrap_or(0);
+                texture::paint(&mut cloud, path, texture.as_deref(), levels, exec)?;
+            }
+            let painted = cloud.paint.is_some();
+            let options = Derive { radius: *radius };
+            let parts = first(cloud, *prefix, model.progressive)
+                .and_then(|cloud| of_file(cloud, &model.draw, &options, exec, progress));
+            parts.map(|parts| ModelParts { painted, ..parts }).map_err(|error| match error {
+                Error::Invalid(what) => Error::format(path, what),
+                other => other,
+            })
+        }
+        Source::Shape { shape, count, seed } => Ok(ModelParts {
+            surfels: shape.surfels(*count, *seed)?,
+            primitives: Primitives::default(),
+            derived: None,
+            painted: false,
+        }),
+        Source::Tree { leaves, seed } => {
+            let tree = plant::apple_tree(*leaves, *seed)?;
+            let primitives =
+                if model.draw == Draw::Polygons { tree.polygons() } else { tree.lines() }?;
+            let surfels = Surfels::none();
+            Ok(ModelParts { surfels, primitives, derived: None, painted: false })
+        }
+    }
+}
+
+/// Whether the vertices of a model have these properties, as far as its headers tell.
+///
+/// # Errors
+/// [`Error::Usage`] if there are names, but the model is no PLY; [`Error::Format`] as [`ply::properties`].
+pub(in crate::io) fn check_properties(model: &Model, names: &[String]) -> Result<()> {
+    match ply_of(model, names)? {
+        Some(path) => ply::check_properties(path, names),
+        None => Ok(()),
+    }
+}
+
+/// The PLY that a model is of, if there are names of properties.
+fn ply_of<'a>(model: &'a Model, names: &[String]) -> Result<Option<&'a Path>> {
+    let Some(first) = names.first() else { return Ok(None) };
+    match &model.source {
+        Source::File { path, .. } if FileKind::of(path)? == FileKind::Ply => Ok(Some(path)),
+        source => Err(Error::Usage(format!(
+            "{}: there is no property {}, which only vertices of a .ply have",
+            source.name(),
+            first.escape_debug()
+        ))),
+    }
+}
+
+/// The first so many points of a file, or all, which are in an order if a prefix is drawn.
+fn first(cloud: Cloud, prefix: Option<usize>, progressive: bool) -> Result<Cloud> {
+    let Some(count) = prefix.or(progressive.then_some(usize::MAX)) else { return Ok(cloud) };
+    if !(cloud.triangles.is_empty() && cloud.edges.is_empty()) {
+        let what = "a prefix is of points, but the file has triangles or edges; \"splatref surfels\" puts what \
+                    is seen of triangles in order";
+        return Err(Error::Invalid(what.into()));
+    }
+    if count >= cloud.position.len() {
+        return Ok(cloud);
+    }
+    Ok(cloud.some(&(0..count as u32).collect::<Vec<_>>()))
+}
+
+fn of_file(
+    cloud: Cloud,
+    draw: &Draw,
+    options: &Derive,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<ModelParts> {
+    let none = Primitives::default();
+    Ok(match draw {
+        Draw::Surfels => {
+            let (surfels, derived) = derive::facets_or_surfels(cloud, options, exec, progress)?;
+            ModelParts::new(surfels, none, derived)
+        }
+        Draw::Points => {
+            let (surfels, derived) = derive::surfels(cloud, options, exec, progress)?;
+            ModelParts::new(surfels, none, derived)
+        }
+        Draw::Facets => {
+            let (surfels, derived) = derive::facets(cloud, exec, progress)?;
+            ModelParts::new(surfels, none, derived)
+        }
+        Draw::Polygons => {
+            let (triangles, derived) = derive::polygons(cloud, exec, progress)?;
+            ModelParts::new(Surfels::none(), Primitives { triangles, ..none }, derived)
+        }
+        Draw::Hybrid(half) => {
+            let (surfels, triangles, derived) =
+                derive::hybrid(cloud, half, options, exec, progress)?;
+            ModelParts::new(surfels, Primitives { triangles, ..none }, derived)
+        }
+        Draw::Ribbons => {
+            let (ribbons, derived) = derive::ribbons(cloud, options)?;
+            ModelParts::new(Surfels::none(), Primitives { ribbons, ..none }, derived)
+        }
+        Draw::Tubes => {
+            let (tubes, derived) = derive::tubes(cloud, options)?;
+            ModelParts::new(Surfels::none(), Primitives { tubes, ..none }, derived)
+        }
+        // Refused before any file is read.
+        Draw::Lines => return Err(Error::Invalid("only a tree is drawn as lines".into())),
+    })
+}
+
+/// The surfels of a model with the mipmaps that it asks for.
+pub(super) fn prefiltered(
+    surfels: Surfels,
+    model: &Model,
+    exec: &Exec,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<Surfels> {
+    let made = match model.mipmaps {
+        None => return Ok(surfels),
+        Some(0) => None,
+        Some(_) if surfels.is_empty() => return Ok(surfels),
+        Some(levels) => {
+            let made = mipmap::build(&surfels, levels, exec, progress);
+            Some(made.map_err(|error| match (error, &model.source) {
+                (Error::Invalid(what), Source::File { path, .. }) => Error::format(path, what),
+                (Error::Invalid(what), other) => {
+                    Error::Invalid(format!("{}: {what}", other.name()))
+                }
+                (other, _) => other,
+            })?)
+        }
+    };
+    surfels.with_mipmap(made)
+}
