@@ -29,18 +29,53 @@ const APART: f64 = 3.5;
 /// Objects of which all triangles are drawn at a time.
 const SOME: usize = 20;
 
-pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
-    let ring = mesh(ring()?);
-    let order = order(&ring, (&Directions::Cube, 1024), 48_000, exec)?;
-    let geometry = geometry(order, ring.primitives.clone())?;
-    let places: Vec<Similarity> = (0..RANK * RANK)
-        .map(|i| {
-            let at = |k: i32| APART * (f64::from(k) - f64::from(RANK - 1) / 2.0);
-            let translation = DVec3::new(at(i % RANK), 0.0, at(i / RANK));
-            Similarity { translation, ..Similarity::IDENTITY }
-        })
-        .collect();
-    let all = objects(geometry, &places)?;
+/// The scene: a ring, where it stands, and all of it as objects.
+pub(crate) struct Rings {
+    ring: Scene,
+    places: Vec<Similarity>,
+    pub(crate) all: Objects,
+}
+
+impl Rings {
+    pub(crate) fn new(exec: &Exec) -> Result<Self> {
+        let ring = mesh(ring()?);
+        let order = order(&ring, (&Directions::Cube, 1024), 48_000, exec)?;
+        let geometry = geometry(order, ring.primitives.clone())?;
+        let places: Vec<Similarity> = (0..RANK * RANK)
+            .map(|i| {
+                let at = |k: i32| APART * (f64::from(k) - f64::from(RANK - 1) / 2.0);
+                let translation = DVec3::new(at(i % RANK), 0.0, at(i / RANK));
+                Similarity { translation, ..Similarity::IDENTITY }
+            })
+            .collect();
+        let all = objects(geometry, &places)?;
+        Ok(Self { ring, places, all })
+    }
+
+    /// How many triangles all objects have.
+    pub(crate) fn triangles(&self) -> usize {
+        self.ring.primitives.len() * self.places.len()
+    }
+
+    /// The picture of all triangles.
+    pub(crate) fn truth(&self, camera: &Camera, exec: &Exec) -> Result<Frame<f32>> {
+        truth(&self.ring, &self.places, camera, exec)
+    }
+}
+
+/// A camera by the name of its view.
+pub(crate) fn view(name: &str, [width, height]: [u32; 2]) -> Result<Camera> {
+    let (eye, target) = match name {
+        "overview" => ([20.0, 25.0, 75.0], [0.0, 0.0, 5.0]),
+        "ground" => ([1.7, 1.5, 30.0], [0.0, 0.0, 5.0]),
+        // Between four rings, low above the plain.
+        _ => ([0.0, 0.7, 7.0], [0.6, 0.1, 0.0]),
+    };
+    let pose = Pose { eye: eye.into(), target: target.into(), up: DVec3::Y };
+    Camera::new(width, height, pose, Lens::FieldOfView(45.0))
+}
+
+pub(crate) fn table(rings: &Rings, arguments: &Arguments, exec: &Exec) -> Result<()> {
     let mut table = Table::new(&[
         "view",
         "picture",
@@ -52,20 +87,20 @@ pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
         "SSIM",
         "holes, %",
     ]);
-    for (view, eye) in [("overview", [20.0, 25.0, 75.0]), ("ground", [1.7, 1.5, 30.0])] {
+    for name in ["overview", "ground"] {
         for [width, height] in PICTURES {
-            let pose = Pose { eye: eye.into(), target: DVec3::new(0.0, 0.0, 5.0), up: DVec3::Y };
-            let camera = Camera::new(width, height, pose, Lens::FieldOfView(45.0))?;
+            let camera = view(name, [width, height])?;
             let start = Instant::now();
-            let truth = truth(&ring, &places, &camera, exec)?;
+            let truth = rings.truth(&camera, exec)?;
             let time = 1e3 * start.elapsed().as_secs_f64();
-            let triangles = ring.primitives.len() * places.len();
-            let picture = format!("{view} | {width} x {height}");
+            let picture = format!("{name} | {width} x {height}");
             table.row(&format!(
-                "{picture} | all triangles | 0 | {triangles} | - | {time:.0} | 1 | 0"
+                "{picture} | all triangles | 0 | {} | - | {time:.0} | 1 | 0",
+                rings.triangles()
             ));
             for size in SIZES {
-                table.row(&format!("{picture} | {}", of_size(&all, size, &camera, &truth, exec)?));
+                let cells = of_size(&rings.all, size, &camera, &truth, exec)?;
+                table.row(&format!("{picture} | {cells}"));
             }
         }
     }

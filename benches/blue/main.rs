@@ -2,17 +2,19 @@
 //! instanced scene of 100 million triangles.
 //!
 //! `cargo bench --bench blue` prints Markdown, and with `--write` puts the tables into `docs/bjfm19.md`; an
-//! argument is a part of `holes`, `failures` or `instances`, which are measured alone then. Scans are those in the folder that
+//! argument is a part of `holes`, `failures`, `figures` or `instances`, which are measured alone then. Scans are those in the folder that
 //! `SPLATREF_MODELS` names (`../shared/models` if that is not set).
 
 #[path = "../common/mod.rs"]
 mod common;
 mod covering;
 mod failures;
+mod figures;
 mod instanced;
 mod scene;
 
 use common::report::{Arguments, Table};
+use instanced::Rings;
 use splatref::Result;
 use splatref::frame::Exec;
 
@@ -25,8 +27,12 @@ fn main() -> Result<()> {
     if "failures".contains(&arguments.pattern) {
         failures(&arguments, &exec)?;
     }
+    if "figures".contains(&arguments.pattern) {
+        figures::prefixes(&arguments, &exec)?;
+        figures::views(&Rings::new(&exec)?, &arguments, &exec)?;
+    }
     if "instances".contains(&arguments.pattern) {
-        instanced::table(&arguments, &exec)?;
+        instanced::table(&Rings::new(&exec)?, &arguments, &exec)?;
     }
     Ok(())
 }

@@ -4,6 +4,7 @@
 //! - [`chart`]: a chart as an SVG.
 //! - [`mesh`]: a mesh as it is.
 //! - [`models`]: scans, and denser samplings of their surfaces.
+//! - [`plant`]: meshes of 12 million triangles.
 //! - [`report`]: arguments, and tables on stdout and in `docs/`.
 //! - [`shot`]: the planes that are measured, drawn or true.
 //! - [`sphere`]: random surfels on a sphere, the workloads of speed.
@@ -14,6 +15,7 @@ pub(crate) mod block;
 pub(crate) mod chart;
 pub(crate) mod mesh;
 pub(crate) mod models;
+pub(crate) mod plant;
 pub(crate) mod report;
 pub(crate) mod shot;
 pub(crate) mod sphere;

@@ -1,6 +1,8 @@
 //! What every bench takes and leaves: its arguments, and Markdown tables on stdout and in `docs/`.
 
 use super::block;
+use splatref::frame::Plane;
+use splatref::io::png;
 use splatref::io::replace::write_atomically;
 use splatref::{Error, Result};
 use std::io::Write;
@@ -68,6 +70,13 @@ impl Arguments {
             return Ok(());
         }
         write_atomically(&docs(name), |file| file.write_all(text.as_bytes()))
+    }
+
+    /// With `--pictures`, makes a picture of linear colours there.
+    pub(crate) fn picture(&self, name: &str, color: &Plane<[f32; 3]>) -> Result<()> {
+        let Some(folder) = &self.pictures else { return Ok(()) };
+        std::fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+        png::write(&folder.join(name), color, None)
     }
 }
 

@@ -14,14 +14,12 @@
 use super::bars::{Bar, svg};
 use super::common::report::{Arguments, Table, machine};
 use super::subjects::{FOREST, Subject, drawn, landscape, subjects};
+use splatref::Result;
 use splatref::frame::{Exec, NO_ID};
 use splatref::index::seen::Seen;
-use splatref::io::png;
 use splatref::method::{Method, Session, deferred};
 use splatref::scene::Scene;
 use splatref::source::flatten;
-use splatref::{Error, Result};
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Frames before the first that counts.
@@ -107,8 +105,8 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
         ));
         rows.extend(passes(&subject, &[&without, &with, &single], settings, exec)?);
         let name = subject.name;
-        if let (FOREST, Some(folder)) = (name, &arguments.pictures) {
-            picture(&subject, folder, exec)?;
+        if name == FOREST && arguments.pictures.is_some() {
+            picture(&subject, arguments, exec)?;
         }
         bars.push(Bar { name: format!("{name}, without"), parts: without.passes.to_vec() });
         bars.push(Bar { name: format!("{name}, with"), parts: with.passes.to_vec() });
@@ -125,14 +123,13 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
 }
 
 /// The forest on its ground, as the second frame shows it.
-fn picture(forest: &Subject, folder: &Path, exec: &Exec) -> Result<()> {
+fn picture(forest: &Subject, arguments: &Arguments, exec: &Exec) -> Result<()> {
     let (scene, camera) = landscape(forest, exec)?;
     let settings = deferred::Settings { splats: forest.splats, ..Default::default() };
     let mut session = Session::new(&scene, settings.into(), exec)?;
     session.render(&camera)?;
     let frame = &session.render(&camera)?.frame;
-    std::fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
-    png::write(&folder.join("gbp04-forest.png"), frame.color("")?, None)
+    arguments.picture("gbp04-forest.png", frame.color("")?)
 }
 
 /// The rows of a scene: without selection, with it, and how many primitives that is.

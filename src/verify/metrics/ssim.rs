@@ -31,6 +31,17 @@ const C2: f64 = 0.03 * 0.03;
 /// [WBSS04]: https://doi.org/10.1109/TIP.2003.819861
 #[must_use]
 pub fn ssim(a: &[f32], b: &[f32], width: usize) -> Option<f64> {
+    let map = ssim_map(a, b, width)?;
+    Some(map.iter().sum::<f64>() / map.len() as f64)
+}
+
+/// The similarity at each position of the window, of which [`ssim`] is the mean: `width - 10` values a row and
+/// ten rows less than the planes have, the first that of the window whose centre is the pixel (5, 5).
+///
+/// # Panics
+/// As [`ssim`].
+#[must_use]
+pub fn ssim_map(a: &[f32], b: &[f32], width: usize) -> Option<Vec<f64>> {
     assert_eq!(a.len(), b.len(), "planes of one size");
     let height = a.len().checked_div(width)?;
     assert_eq!(a.len(), width * height, "whole rows");
@@ -41,7 +52,7 @@ pub fn ssim(a: &[f32], b: &[f32], width: usize) -> Option<f64> {
     let columns = width + 1 - WINDOW;
     // The window is a product: rows are blurred along x once, and the last 11 of them along y.
     let mut blurred = vec![[const { Vec::<f64>::new() }; 5]; WINDOW];
-    let mut sum = 0.0;
+    let mut map = Vec::with_capacity(columns * (height + 1 - WINDOW));
     for (y, (row_a, row_b)) in a.chunks_exact(width).zip(b.chunks_exact(width)).enumerate() {
         blurred[y % WINDOW] = moments(row_a, row_b).map(|row| blur_row(&row, &weights));
         if y + 1 >= WINDOW {
@@ -51,12 +62,11 @@ pub fn ssim(a: &[f32], b: &[f32], width: usize) -> Option<f64> {
             let [m_a, m_b, m_aa, m_bb, m_ab] = std::array::from_fn(|moment| {
                 blur_columns(rows.map(|row| row[moment].as_slice()), &weights)
             });
-            for x in 0..columns {
-                sum += similarity([m_a[x], m_b[x], m_aa[x], m_bb[x], m_ab[x]]);
-            }
+            let at = |x: usize| similarity([m_a[x], m_b[x], m_aa[x], m_bb[x], m_ab[x]]);
+            map.extend((0..columns).map(at));
         }
     }
-    Some(sum / (columns * (height + 1 - WINDOW)) as f64)
+    Some(map)
 }
 
 /// The weights of one axis of the window; their sum is 1.
@@ -147,6 +157,12 @@ mod tests {
         let found = ssim(&[0.25; 169], &[0.75; 169], 13).unwrap();
         assert!((found - (2.0 * p * q + C1) / (p * p + q * q + C1)).abs() < 1e-12);
         assert_eq!(rmse(&[0.25; 169], &[0.75; 169]), 0.5);
+        // Only windows that hold the pixel that differs are less similar; it is in the first one's corner.
+        let mut b = a.clone();
+        b[0] += 0.5;
+        let map = ssim_map(&a, &b, 20).unwrap();
+        assert_eq!(map.len(), 10 * 5);
+        assert!(map[0] < 1.0 && map[1..].iter().all(|&one| one == 1.0), "{map:?}");
         // Too small in one direction, or empty.
         assert_eq!(ssim(&[0.0; 110], &[0.0; 110], 10), None);
         assert_eq!(ssim(&[0.0; 110], &[0.0; 110], 11), None);
