@@ -1,10 +1,10 @@
 //! What every bench takes and leaves: its arguments, and Markdown tables on stdout and in `docs/`.
 
 use super::block;
-use splatref::frame::Plane;
-use splatref::io::png;
 use splatref::io::replace::write_atomically;
 use splatref::{Error, Result};
+#[cfg(feature = "cli")]
+use splatref::{frame::Plane, io::png};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -72,7 +72,8 @@ impl Arguments {
         write_atomically(&docs(name), |file| file.write_all(text.as_bytes()))
     }
 
-    /// With `--pictures`, makes a picture of linear colours there.
+    /// With `--pictures`, makes a picture of linear colours there. PNG is a part of the program.
+    #[cfg(feature = "cli")]
     pub(crate) fn picture(&self, name: &str, color: &Plane<[f32; 3]>) -> Result<()> {
         let Some(folder) = &self.pictures else { return Ok(()) };
         std::fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
