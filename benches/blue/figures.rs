@@ -2,13 +2,14 @@
 
 use super::common::plant::pipes;
 use super::common::report::{Arguments, Table};
-use super::instanced::{Rings, view};
+use super::instanced::{CLOSE, OVERVIEW, Rings};
 use super::scene::{against, blue, draw, percent};
 use glam::DVec3;
 use splatref::Result;
-use splatref::frame::{Exec, Frame, Plane, Samples};
-use splatref::scene::{Camera, Lens, Pose, Primitives, Scene, Similarity};
+use splatref::frame::{Exec, Frame, NO_ID, Plane, Samples};
+use splatref::scene::{Camera, Lens, Pose, Primitives, Similarity};
 use splatref::source::candidates::{Directions, SIDE};
+use splatref::study::atlas::beside;
 use splatref::study::atlas::orders::{geometry, mesh, objects, order, seen};
 use splatref::verify::metrics::ssim_map;
 use std::time::Instant;
@@ -18,12 +19,10 @@ const PREFIXES: [usize; 4] = [100, 1000, 10_000, 100_000];
 /// The side of a large picture in Fig. 4, in pixels, and how wide discs are where a prefix is meant to be seen.
 const LARGE: u32 = 400;
 const MEANT: f32 = 2.0;
-/// Rows and columns between pictures, in pixels.
-const GAP: u32 = 4;
-/// The picture of Fig. 7, the width of its discs, and those of Fig. 8.
+/// The picture of Fig. 7 and 8, the width of discs in both, and the widths that are measured.
 const VIEW: [u32; 2] = [640, 360];
 const SIZE: f32 = 2.0;
-const SIZES: [f32; 4] = [1.0, 2.0, 4.0, 8.0];
+const SIZES: [f32; 4] = [1.0, SIZE, 4.0, 8.0];
 
 type Color = Plane<[f32; 3]>;
 
@@ -31,52 +30,45 @@ type Color = Plane<[f32; 3]>;
 pub(crate) fn prefixes(arguments: &Arguments, exec: &Exec) -> Result<()> {
     let pipes = mesh(pipes()?);
     let all = order(&pipes, (&Directions::Cube, SIDE), PREFIXES[3], exec)?;
+    let prefix = |count: usize| {
+        let some: Vec<u32> = (0..count as u32).collect();
+        objects(geometry(all.some(&some), Primitives::default())?, &[Similarity::IDENTITY])
+    };
     let camera = |side: u32| {
         let (eye, target) = (DVec3::new(2.2, 1.8, 2.9), DVec3::splat(0.55));
         Camera::new(side, side, Pose { eye, target, up: DVec3::Y }, Lens::FieldOfView(40.0))
     };
-    let of = |count: usize, size: f32, side: u32| -> Result<Scene> {
-        let some: Vec<u32> = (0..count as u32).collect();
-        let prefix = geometry(all.some(&some), Primitives::default())?;
-        seen(&objects(prefix, &[Similarity::IDENTITY])?, size, &camera(side)?, exec)
-    };
     // What discs of 64 px ask for in a small picture; the number goes with the square of pixels over size.
-    let asked = of(PREFIXES[3], 64.0, 64)?.surfels.len();
+    let asked = seen(&prefix(PREFIXES[3])?, 64.0, &camera(64)?, exec)?.surfels.len();
     let (mut large, mut small) = (Vec::new(), Vec::new());
     for count in PREFIXES {
+        let prefix = prefix(count)?;
         let side = (f64::from(MEANT) * (count as f64 / asked as f64).sqrt()).round() as u32;
         println!("Fig. 4: {count} surfels, {side} x {side} pixels");
-        large.push(color(draw(&of(count, MEANT, LARGE)?, blue(), &camera(LARGE)?, exec)?));
-        small.push(color(draw(&of(count, MEANT, side)?, blue(), &camera(side)?, exec)?));
-    }
-    large.push(color(draw(&pipes, blue(), &camera(LARGE)?, exec)?));
-    let below = small.iter().map(Plane::height).max().unwrap_or(0);
-    let mut page = Plane::filled(5 * LARGE + 4 * GAP, LARGE + GAP + below, [1.0; 3]);
-    for (i, (large, small)) in large.iter().zip(small.iter().map(Some).chain([None])).enumerate() {
-        let left = i as u32 * (LARGE + GAP);
-        place(&mut page, large, [left, 0]);
-        if let Some(small) = small {
-            place(&mut page, small, [left, LARGE + GAP]);
+        for (side, pictures) in [(LARGE, &mut large), (side, &mut small)] {
+            let camera = camera(side)?;
+            let scene = seen(&prefix, MEANT, &camera, exec)?;
+            pictures.push(draw(&scene, blue(), &camera, exec)?.color("")?.clone());
         }
     }
-    arguments.picture("bjfm19-prefixes.png", &page)
+    large.push(draw(&pipes, blue(), &camera(LARGE)?, exec)?.color("")?.clone());
+    keep(arguments, "bjfm19-prefixes.png", &large)?;
+    keep(arguments, "bjfm19-prefixes-meant.png", &small)
 }
 
-/// Fig. 7: a view of discs, that of all triangles, and the similarity of both; Fig. 8: a view from close by.
-pub(crate) fn views(rings: &Rings, arguments: &Arguments, exec: &Exec) -> Result<()> {
-    let [width, height] = VIEW;
-    let camera = view("overview", VIEW)?;
+/// Fig. 7: a view of discs, that of all triangles, and the similarity of both.
+pub(crate) fn similar(rings: &Rings, arguments: &Arguments, exec: &Exec) -> Result<()> {
+    let camera = OVERVIEW.camera(VIEW)?;
     let truth = rings.truth(&camera, exec)?;
     let found = draw(&seen(&rings.all, SIZE, &camera, exec)?, blue(), &camera, exec)?;
-    let [found, truth] = [found, truth].map(color);
-    let map = similarity(&found, &truth);
-    let mut page = Plane::filled(width, 3 * height + 2 * GAP, [1.0; 3]);
-    for (i, part) in (0..).zip([&found, &truth, &map]) {
-        place(&mut page, part, [0, i * (height + GAP)]);
-    }
-    arguments.picture("bjfm19-view.png", &page)?;
+    let [found, truth] = [found.color("")?, truth.color("")?];
+    let all = [found.clone(), truth.clone(), similarity(found, truth)];
+    keep(arguments, "bjfm19-view.png", &all)
+}
 
-    let camera = view("close", VIEW)?;
+/// Fig. 8: a view from close by.
+pub(crate) fn close(rings: &Rings, arguments: &Arguments, exec: &Exec) -> Result<()> {
+    let camera = CLOSE.camera(VIEW)?;
     let start = Instant::now();
     let truth = rings.truth(&camera, exec)?;
     let time = 1e3 * start.elapsed().as_secs_f64();
@@ -103,8 +95,8 @@ pub(crate) fn views(rings: &Rings, arguments: &Arguments, exec: &Exec) -> Result
             percent(triangles, seen),
             percent(covered.holes, covered.interior)
         ));
-        if size == SIZES[1] {
-            arguments.picture("bjfm19-close.png", &color(found))?;
+        if size == SIZE {
+            arguments.picture("bjfm19-close.png", found.color("")?)?;
         }
     }
     table.publish_times(arguments, "bjfm19.md", "close")
@@ -113,7 +105,7 @@ pub(crate) fn views(rings: &Rings, arguments: &Arguments, exec: &Exec) -> Result
 /// Pixels that show a triangle, and those that show anything.
 fn of_triangles(frame: &Frame<f32>, surfels: usize) -> (u64, u64) {
     let Some(Samples::Index(ids)) = frame.plane("id") else { return (0, 0) };
-    let seen = ids.values().iter().filter(|&&id| id != u32::MAX);
+    let seen = ids.values().iter().filter(|&&id| id != NO_ID);
     seen.fold((0, 0), |(triangles, all), &id| {
         (triangles + u64::from(id as usize >= surfels), all + 1)
     })
@@ -136,19 +128,7 @@ fn similarity(a: &Color, b: &Color) -> Color {
     mean
 }
 
-fn color(frame: Frame<f32>) -> Color {
-    let found = frame.planes.into_iter().find(|plane| plane.name.is_empty());
-    match found.map(|plane| plane.samples) {
-        Some(Samples::Color(color)) => color,
-        _ => Plane::filled(1, 1, [0.0; 3]),
-    }
-}
-
-/// Puts a picture into a larger one.
-fn place(page: &mut Color, part: &Color, [left, top]: [u32; 2]) {
-    let (into, width) = (page.width() as usize, part.width() as usize);
-    for (y, row) in part.values().chunks_exact(width).enumerate() {
-        let first = (top as usize + y) * into + left as usize;
-        page.values_mut()[first..first + width].copy_from_slice(row);
-    }
+/// Pictures side by side.
+fn keep(arguments: &Arguments, name: &str, pictures: &[Color]) -> Result<()> {
+    beside(pictures).map_or(Ok(()), |page| arguments.picture(name, &page))
 }

@@ -57,22 +57,47 @@ impl Rings {
         self.ring.primitives.len() * self.places.len()
     }
 
-    /// The picture of all triangles.
+    /// The picture of all triangles, of some objects at a time: of each pixel the nearest.
     pub(crate) fn truth(&self, camera: &Camera, exec: &Exec) -> Result<Frame<f32>> {
-        truth(&self.ring, &self.places, camera, exec)
+        let mut nearest: Option<Frame<f32>> = None;
+        for some in self.places.chunks(SOME) {
+            let geometry = Geometry {
+                name: "ring".into(),
+                surfels: Surfels::none(),
+                primitives: self.ring.primitives.clone(),
+                detail: None,
+            };
+            let objects = Some(objects(geometry, some)?);
+            let flat = flatten(&Scene { objects, ..Scene::lit("ring", Surfels::none()) }, exec)?;
+            let frame = draw(&flat, blue(), camera, exec)?;
+            match &mut nearest {
+                None => nearest = Some(frame),
+                Some(nearest) => merge(nearest, frame),
+            }
+        }
+        nearest.ok_or_else(|| splatref::Error::Invalid("no objects".into()))
     }
 }
 
-/// A camera by the name of its view.
-pub(crate) fn view(name: &str, [width, height]: [u32; 2]) -> Result<Camera> {
-    let (eye, target) = match name {
-        "overview" => ([20.0, 25.0, 75.0], [0.0, 0.0, 5.0]),
-        "ground" => ([1.7, 1.5, 30.0], [0.0, 0.0, 5.0]),
-        // Between four rings, low above the plain.
-        _ => ([0.0, 0.7, 7.0], [0.6, 0.1, 0.0]),
-    };
-    let pose = Pose { eye: eye.into(), target: target.into(), up: DVec3::Y };
-    Camera::new(width, height, pose, Lens::FieldOfView(45.0))
+/// Where somebody stands, and looks to.
+pub(crate) struct View {
+    name: &'static str,
+    eye: [f64; 3],
+    target: [f64; 3],
+}
+
+pub(crate) const OVERVIEW: View =
+    View { name: "overview", eye: [20.0, 25.0, 75.0], target: [0.0, 0.0, 5.0] };
+const GROUND: View = View { name: "ground", eye: [1.7, 1.5, 30.0], target: [0.0, 0.0, 5.0] };
+/// Between four rings, low above the plain.
+pub(crate) const CLOSE: View =
+    View { name: "close", eye: [0.0, 0.7, 7.0], target: [0.6, 0.1, 0.0] };
+
+impl View {
+    pub(crate) fn camera(&self, [width, height]: [u32; 2]) -> Result<Camera> {
+        let pose = Pose { eye: self.eye.into(), target: self.target.into(), up: DVec3::Y };
+        Camera::new(width, height, pose, Lens::FieldOfView(45.0))
+    }
 }
 
 pub(crate) fn table(rings: &Rings, arguments: &Arguments, exec: &Exec) -> Result<()> {
@@ -87,13 +112,13 @@ pub(crate) fn table(rings: &Rings, arguments: &Arguments, exec: &Exec) -> Result
         "SSIM",
         "holes, %",
     ]);
-    for name in ["overview", "ground"] {
+    for view in [OVERVIEW, GROUND] {
         for [width, height] in PICTURES {
-            let camera = view(name, [width, height])?;
+            let camera = view.camera([width, height])?;
             let start = Instant::now();
             let truth = rings.truth(&camera, exec)?;
             let time = 1e3 * start.elapsed().as_secs_f64();
-            let picture = format!("{name} | {width} x {height}");
+            let picture = format!("{} | {width} x {height}", view.name);
             table.row(&format!(
                 "{picture} | all triangles | 0 | {} | - | {time:.0} | 1 | 0",
                 rings.triangles()
@@ -129,27 +154,6 @@ fn of_size(
         similar.unwrap_or(f64::NAN),
         percent(covered.holes, covered.interior)
     ))
-}
-
-/// All triangles, some objects at a time: of each pixel the nearest.
-fn truth(ring: &Scene, places: &[Similarity], camera: &Camera, exec: &Exec) -> Result<Frame<f32>> {
-    let mut nearest: Option<Frame<f32>> = None;
-    for some in places.chunks(SOME) {
-        let geometry = Geometry {
-            name: "ring".into(),
-            surfels: Surfels::none(),
-            primitives: ring.primitives.clone(),
-            detail: None,
-        };
-        let objects = Some(objects(geometry, some)?);
-        let flat = flatten(&Scene { objects, ..Scene::lit("ring", Surfels::none()) }, exec)?;
-        let frame = draw(&flat, blue(), camera, exec)?;
-        match &mut nearest {
-            None => nearest = Some(frame),
-            Some(nearest) => merge(nearest, frame),
-        }
-    }
-    nearest.ok_or_else(|| splatref::Error::Invalid("no objects".into()))
 }
 
 /// Takes the pixels at which another frame is nearer.

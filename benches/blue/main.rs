@@ -2,8 +2,9 @@
 //! instanced scene of 100 million triangles.
 //!
 //! `cargo bench --bench blue` prints Markdown, and with `--write` puts the tables into `docs/bjfm19.md`; an
-//! argument is a part of `holes`, `failures`, `figures` or `instances`, which are measured alone then. Scans are those in the folder that
-//! `SPLATREF_MODELS` names (`../shared/models` if that is not set).
+//! argument is a part of `holes`, `failures`, `figures` or `instances`, which are measured alone then; with
+//! `--pictures DIR` the figures are kept. Scans are those in the folder that `SPLATREF_MODELS` names
+//! (`../shared/models` if that is not set).
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -27,12 +28,20 @@ fn main() -> Result<()> {
     if "failures".contains(&arguments.pattern) {
         failures(&arguments, &exec)?;
     }
-    if "figures".contains(&arguments.pattern) {
+    let [figures, instances] =
+        ["figures", "instances"].map(|part| part.contains(&arguments.pattern));
+    if figures {
         figures::prefixes(&arguments, &exec)?;
-        figures::views(&Rings::new(&exec)?, &arguments, &exec)?;
     }
-    if "instances".contains(&arguments.pattern) {
-        instanced::table(&Rings::new(&exec)?, &arguments, &exec)?;
+    if figures || instances {
+        let rings = Rings::new(&exec)?;
+        if figures {
+            figures::similar(&rings, &arguments, &exec)?;
+            figures::close(&rings, &arguments, &exec)?;
+        }
+        if instances {
+            instanced::table(&rings, &arguments, &exec)?;
+        }
     }
     Ok(())
 }

@@ -26,8 +26,8 @@ mod reconstruction;
 mod tests;
 
 pub(super) use case::checked;
-pub use page::{Files, PICTURES, page};
-pub(super) use page::{beside, short};
+pub(super) use page::short;
+pub use page::{Files, PICTURES, beside, page};
 
 use crate::error::Result;
 use crate::frame::{Exec, Plane};

@@ -97,7 +97,8 @@ fn chart(curve: &Curve) -> Drawing {
 }
 
 /// Pictures side by side, a white gap between them; none of none.
-pub(in crate::study) fn beside(pictures: &[Plane<[f32; 3]>]) -> Option<Plane<[f32; 3]>> {
+#[must_use]
+pub fn beside(pictures: &[Plane<[f32; 3]>]) -> Option<Plane<[f32; 3]>> {
     const GAP: u32 = 6;
     let high = pictures.iter().map(Plane::height).max()?;
     let wide: u32 = pictures.iter().map(|picture| picture.width() + GAP).sum::<u32>() - GAP;

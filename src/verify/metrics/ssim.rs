@@ -31,8 +31,12 @@ const C2: f64 = 0.03 * 0.03;
 /// [WBSS04]: https://doi.org/10.1109/TIP.2003.819861
 #[must_use]
 pub fn ssim(a: &[f32], b: &[f32], width: usize) -> Option<f64> {
-    let map = ssim_map(a, b, width)?;
-    Some(map.iter().sum::<f64>() / map.len() as f64)
+    let (mut sum, mut count) = (0.0, 0_usize);
+    each_similarity(a, b, width, |one| {
+        sum += one;
+        count += 1;
+    });
+    (count > 0).then(|| sum / count as f64)
 }
 
 /// The similarity at each position of the window, of which [`ssim`] is the mean: `width - 10` values a row and
@@ -42,17 +46,23 @@ pub fn ssim(a: &[f32], b: &[f32], width: usize) -> Option<f64> {
 /// As [`ssim`].
 #[must_use]
 pub fn ssim_map(a: &[f32], b: &[f32], width: usize) -> Option<Vec<f64>> {
+    let mut map = Vec::new();
+    each_similarity(a, b, width, |one| map.push(one));
+    (!map.is_empty()).then_some(map)
+}
+
+/// Runs `visit` for the similarity at each position of the window, row by row; for none if it does not fit.
+fn each_similarity(a: &[f32], b: &[f32], width: usize, mut visit: impl FnMut(f64)) {
     assert_eq!(a.len(), b.len(), "planes of one size");
-    let height = a.len().checked_div(width)?;
+    let Some(height) = a.len().checked_div(width) else { return };
     assert_eq!(a.len(), width * height, "whole rows");
     if width < WINDOW || height < WINDOW {
-        return None;
+        return;
     }
     let weights = gaussian();
     let columns = width + 1 - WINDOW;
     // The window is a product: rows are blurred along x once, and the last 11 of them along y.
     let mut blurred = vec![[const { Vec::<f64>::new() }; 5]; WINDOW];
-    let mut map = Vec::with_capacity(columns * (height + 1 - WINDOW));
     for (y, (row_a, row_b)) in a.chunks_exact(width).zip(b.chunks_exact(width)).enumerate() {
         blurred[y % WINDOW] = moments(row_a, row_b).map(|row| blur_row(&row, &weights));
         if y + 1 >= WINDOW {
@@ -62,11 +72,11 @@ pub fn ssim_map(a: &[f32], b: &[f32], width: usize) -> Option<Vec<f64>> {
             let [m_a, m_b, m_aa, m_bb, m_ab] = std::array::from_fn(|moment| {
                 blur_columns(rows.map(|row| row[moment].as_slice()), &weights)
             });
-            let at = |x: usize| similarity([m_a[x], m_b[x], m_aa[x], m_bb[x], m_ab[x]]);
-            map.extend((0..columns).map(at));
+            for x in 0..columns {
+                visit(similarity([m_a[x], m_b[x], m_aa[x], m_bb[x], m_ab[x]]));
+            }
         }
     }
-    Some(map)
 }
 
 /// The weights of one axis of the window; their sum is 1.
@@ -167,6 +177,7 @@ mod tests {
         assert_eq!(ssim(&[0.0; 110], &[0.0; 110], 10), None);
         assert_eq!(ssim(&[0.0; 110], &[0.0; 110], 11), None);
         assert_eq!(ssim(&[], &[], 0), None);
+        assert_eq!(ssim_map(&[0.0; 110], &[0.0; 110], 10), None);
         assert!(rmse(&[1.0, f32::NAN], &[1.0, 1.0]).is_nan());
     }
 }
