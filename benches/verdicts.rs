@@ -38,6 +38,7 @@ fn main() -> Result<()> {
         "f64 picture, s",
         "`ieee`, s",
         "`gpu`, s",
+        "`ieee` / f64",
         "`gpu` / f64",
         "undecided `ieee`",
         "`gpu`",
@@ -115,9 +116,10 @@ fn measure(row: &Row, exec: &Exec) -> Result<String> {
     let times = [median(&mut ieee.1), median(&mut gpu.1)];
     let [width, height] = camera.size();
     Ok(format!(
-        "{name} | {width} x {height} | {picture:.2} | {:.2} | {:.2} | {:.1} | {:.3} % | {:.3} % | {:.3} %",
+        "{name} | {width} x {height} | {picture:.2} | {:.2} | {:.2} | {:.1} | {:.1} | {:.3} % | {:.3} % | {:.3} %",
         times[0],
         times[1],
+        times[0] / picture,
         times[1] / picture,
         ieee.2,
         gpu.2,

@@ -69,6 +69,7 @@ impl<T> Plane<T> {
     ///
     /// # Panics
     /// If the pixel lies outside.
+    #[inline]
     #[must_use]
     pub fn at(&self, x: u32, y: u32) -> &T {
         assert!(x < self.width && y < self.height, "pixel ({x}, {y}) outside the plane");

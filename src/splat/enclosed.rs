@@ -11,9 +11,10 @@
 use super::{Footprint, Projector, Reasons, Splat};
 use crate::frame::Rect;
 use crate::number::ball::{BallLanes, Common, Profile, Three};
-use crate::number::lanes::{LANES, vectorized};
+use crate::number::lanes::{LANES, each, vectorized};
 use crate::number::{Ball, Real, Truth, Vector2, Vector3};
 use crate::scene::Surfels;
+use std::marker::PhantomData;
 use std::ops::Range;
 
 /// What is known of a surfel: it certainly is not drawn, or certainly is and as this splat, or neither.
@@ -34,38 +35,84 @@ vectorized!(
     ) {
         let projector = *projector;
         let picture = [projector.view.width, projector.view.height].map(|n| n.middle as u32);
-        for first in range.step_by(LANES) {
-            // -- The discs
-            let mut input = [[0.0_f32; LANES]; 7];
-            let (positions, normals) = (surfels.position(), surfels.normal());
-            for i in 0..LANES {
-                let (p, n) = (positions[first + i], normals[first + i]);
-                let values = [p.x, p.y, p.z, n.x, n.y, n.z, surfels.radius()[first + i]];
-                for (lanes, value) in input.iter_mut().zip(values) {
-                    lanes[i] = value;
-                }
-            }
+        for some in seen(&projector, surfels, range).chunks(LANES) {
+            // The last lanes may be one surfel again.
+            let indices = each(|i| some[i.min(some.len() - 1)]);
+            let discs = Discs::<P>::new(surfels, &indices);
             // -- Their projections
             let mut splats = SplatLanes::<Common<P>>::new();
             for i in 0..LANES {
-                let number = |field: usize| Ball::from_f32(input[field][i]);
-                let position = Vector3::new(number(0), number(1), number(2));
-                let normal = Vector3::new(number(3), number(4), number(5));
-                let (f, b, truths, reasons) = projector.affine_disc(position, normal, number(6));
+                let (position, normal, radius) = discs.get(i);
+                let (f, b, truths, reasons) = projector.affine_disc(position, normal, radius);
                 splats.known[i] = known(&f, &b, picture, truths[1], &reasons);
                 splats.put(i, &f, &b, truths[0]);
             }
             // -- Those that may be drawn
-            for i in 0..LANES {
+            for (i, &surfel) in some.iter().enumerate() {
                 match splats.known[i] {
                     DROPPED => {}
-                    DRAWN => draw(first + i, Some(splats.get(i, (first + i) as u32))),
-                    _ => draw(first + i, None),
+                    DRAWN => draw(surfel, Some(splats.get(i, surfel as u32))),
+                    _ => draw(surfel, None),
                 }
             }
         }
     }
 );
+
+/// The surfels of a range, whose length is a multiple of [`LANES`], that do not certainly lie where they
+/// cannot be seen, nor are turned away: a shape is made of these alone.
+#[inline(always)]
+fn seen<P: Profile>(
+    projector: &Projector<Ball<Common<P>>>,
+    surfels: &Surfels,
+    range: Range<usize>,
+) -> Vec<usize> {
+    let mut seen = Vec::with_capacity(range.len());
+    for first in range.step_by(LANES) {
+        let discs = Discs::<P>::new(surfels, &each(|i| first + i));
+        let mut unseen = [0_u32; LANES];
+        for i in 0..LANES {
+            let (position, normal, radius) = discs.get(i);
+            let placed = projector.place(position, normal);
+            unseen[i] = u32::from(projector.unseen(&placed, radius).any().certainly());
+        }
+        seen.extend((0..LANES).filter(|i| unseen[*i] == 0).map(|i| first + i));
+    }
+    seen
+}
+
+/// [`LANES`] discs, each of their numbers a vector.
+struct Discs<P: Profile> {
+    numbers: [[f32; LANES]; 7],
+    profile: PhantomData<P>,
+}
+
+impl<P: Profile> Discs<P> {
+    #[inline(always)]
+    fn new(surfels: &Surfels, indices: &[usize; LANES]) -> Self {
+        let mut numbers = [[0.0; LANES]; 7];
+        let (positions, normals) = (surfels.position(), surfels.normal());
+        for i in 0..LANES {
+            let surfel = indices[i];
+            let (p, n) = (positions[surfel], normals[surfel]);
+            let values = [p.x, p.y, p.z, n.x, n.y, n.z, surfels.radius()[surfel]];
+            for (lanes, value) in numbers.iter_mut().zip(values) {
+                lanes[i] = value;
+            }
+        }
+        Self { numbers, profile: PhantomData }
+    }
+
+    /// Position, normal and radius.
+    #[inline(always)]
+    fn get(&self, i: usize) -> (Vector3<Place<P>>, Vector3<Place<P>>, Place<P>) {
+        let n = |field: usize| Ball::from_f32(self.numbers[field][i]);
+        (Vector3::new(n(0), n(1), n(2)), Vector3::new(n(3), n(4), n(5)), n(6))
+    }
+}
+
+/// A number of a disc.
+type Place<P> = Ball<Common<P>>;
 
 /// What is known of a surfel.
 #[inline(always)]

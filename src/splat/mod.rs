@@ -147,6 +147,28 @@ pub struct Footprint<R> {
     pub amplitude: R,
 }
 
+/// What the fragments of a splat in one column of pixels share.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Column<R> {
+    dx: R,
+    /// ux dx.
+    u: R,
+    /// w0 + wx dx.
+    w: R,
+}
+
+/// What the fragments of a splat in one row of pixels share.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row<R> {
+    dy: R,
+    /// uy dy.
+    u: R,
+    /// v v.
+    v: R,
+    /// wy dy.
+    w: R,
+}
+
 /// What the fragments of every splat of a picture share.
 #[derive(Clone, Copy, Debug)]
 pub struct Shared<R> {
@@ -243,6 +265,29 @@ impl<R: Real> Footprint<R> {
         let form = self.form(dx, dy);
         let w = self.plane(dx, dy);
         let q = if shared.ray_cast { ray_cast(shared, form, w, dx, dy) } else { form };
+        (q, w.clamped(self.w_far, self.w_near))
+    }
+
+    /// What all fragments of a column share, at dx from the centre.
+    #[inline(always)]
+    pub(crate) fn column(&self, dx: R) -> Column<R> {
+        Column { dx, u: self.ux * dx, w: self.w0 + self.wx * dx }
+    }
+
+    /// What all fragments of a row share, at dy from the centre.
+    #[inline(always)]
+    pub(crate) fn row(&self, dy: R) -> Row<R> {
+        let v = self.vy * dy;
+        Row { dy, u: self.uy * dy, v: v * v, w: self.wy * dy }
+    }
+
+    /// [`Footprint::fragment`], bit for bit, where a column and a row cross.
+    #[inline(always)]
+    pub(crate) fn crossing(&self, shared: &Shared<R>, column: &Column<R>, row: &Row<R>) -> (R, R) {
+        let u = column.u + row.u;
+        let form = u * u + row.v;
+        let w = column.w + row.w;
+        let q = if shared.ray_cast { ray_cast(shared, form, w, column.dx, row.dy) } else { form };
         (q, w.clamped(self.w_far, self.w_near))
     }
 

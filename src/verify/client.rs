@@ -108,7 +108,7 @@ impl<T> Stored<'_, T> {
 
 impl Stored<'_, f64> {
     /// The number at a pixel, as far as it is known.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn ball<P: Profile>(&self, (x, y): (u32, u32)) -> Ball<P> {
         let value = *self.plane.at(x, y);
         known(value, self.storage.radius(value))
@@ -117,7 +117,7 @@ impl Stored<'_, f64> {
 
 impl Stored<'_, [f64; 3]> {
     /// The numbers at a pixel, as far as they are known.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn balls<P: Profile>(&self, (x, y): (u32, u32)) -> [Ball<P>; 3] {
         let [a, b, c] = *self.plane.at(x, y);
         // Written out, as the map of an array goes through memory.
@@ -131,7 +131,7 @@ impl Stored<'_, [f64; 3]> {
 
 /// A stored number with the radius that its storage gives; of NaN nothing is known, and what is below the
 /// normal numbers may be read as 0.
-#[inline]
+#[inline(always)]
 fn known<P: Profile>(value: f64, radius: f64) -> Ball<P> {
     let size = value.abs();
     let flushed = P::FLUSHES && size < f64::from(f32::MIN_POSITIVE) && radius < size;

@@ -17,8 +17,11 @@
 //!   x / y          (|m| s + |n| r) / (|n| (|n| - s))        unbounded unless |n| > s
 //!   sqrt x         r / (sqrt m + sqrt(m - r))               NaN is possible unless m >= r
 //!                  of a sum of squares otherwise max(sqrt m, sqrt(m + r) - sqrt m)
-//!   e^x            (e^(m + r) - e^m) + 2^-50 e^(m + r)
-//!   x^y            max(x^y - (m - r)^y, (m + r)^y - x^y) + 2^-50 (m + r)^y    y >= 0 exact, x >= 0
+//!   e^x            e^m (r + r r) + 2^-50 e^m (1 + r + r r)             r <= 1, where e^r - 1 <= r + r r
+//!                  else (e^(m + r) - e^m) + 2^-50 e^(m + r)
+//!   x^y            m^y (z + z z + 2 z r/m) + 2^-50 m^y (1 + z + z z)   y >= 0 exact, x >= 0; z = y r/m <= 1
+//!                                                                      and r/m <= 1/2
+//!                  else max(m^y - (m - r)^y, (m + r)^y - m^y) + 2^-50 (m + r)^y
 //!                  of another y >= 0 what holds the powers of both of its ends
 //!   floor x        max(floor m - floor(m - r), floor(m + r) - floor m)
 //!   -x, |x|        r
@@ -67,11 +70,13 @@ mod profile;
 #[cfg(test)]
 mod tests;
 mod three;
+mod totals;
 
 pub(crate) use lanes::BallLanes;
 pub(crate) use profile::Common;
 pub use profile::{Gpu, Ieee, Profile, SumTerms};
 pub use three::{PixelRange, Three};
+pub(crate) use totals::Totals;
 
 use super::Real;
 use arithmetic::is_exact;
@@ -314,8 +319,7 @@ impl<P: Profile> Real for Ball<P> {
         if is_exact::<P>(middle, self.radius) {
             return Self::exact(middle);
         }
-        let most = Real::exp(self.high());
-        let spread = (most - middle) + most / 1_125_899_906_842_624.0;
+        let spread = powers::exponential(middle, self.radius * SLACK, self.high());
         // The argument that costs most is the greatest of the ball.
         let units = P::exponential(self.middle.abs() + self.radius);
         Self::rounded(middle, spread, units, P::TINY)
@@ -337,8 +341,8 @@ impl<P: Profile> Real for Ball<P> {
         }
         // A number below 0 is one that is 0 but for its radius.
         let bases = ends.map(|end| larger(end, 0.0));
-        let [least, most] = bases.map(|base| base.pow(exponent.middle));
-        let spread = larger(middle - least, most - middle) + most / 1_125_899_906_842_624.0;
+        let spread =
+            powers::power(middle, (self.middle, self.radius * SLACK), bases, exponent.middle);
         Self::rounded(middle, spread, P::power(bases, exponent.middle), P::TINY)
     }
 

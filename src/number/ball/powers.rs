@@ -1,7 +1,42 @@
-//! Powers of an exponent that is not exact.
+//! What the operands' errors can make of powers.
 
 use super::{Ball, Profile, SLACK, larger};
 use crate::number::Real;
+
+/// More than what the functions of [`elementary`](crate::number::elementary) lose of their result.
+const LOST: f64 = 1.0 / 1_125_899_906_842_624.0;
+
+/// The spread of e^x, of which `middle` is e^m, for numbers up to `reach` from m, the greatest `high`.
+#[inline(always)]
+pub(super) fn exponential(middle: f64, reach: f64, high: f64) -> f64 {
+    // A comparison that NaN fails.
+    if reach <= 1.0 {
+        let more = reach + reach * reach;
+        middle * more + middle * (1.0 + more) * LOST
+    } else {
+        let most = Real::exp(high);
+        (most - middle) + most * LOST
+    }
+}
+
+/// The spread of x^y, of which `middle` is m^y, for numbers up to `reach` from m, the least and the greatest
+/// `ends`, none below 0.
+///
+/// With x = m (1 + e), (1 + e)^y <= `e^(y e)` bounds from above; from below Bernoulli's inequality does if
+/// y >= 1, else the slope of the power at 1 - |e|.
+#[inline(always)]
+pub(super) fn power(middle: f64, (m, reach): (f64, f64), ends: [f64; 2], y: f64) -> f64 {
+    let part = reach / m;
+    let z = y * part;
+    // Comparisons that NaN fails.
+    if (0.0..=0.5).contains(&part) && z <= 1.0 {
+        let more = z + z * z;
+        middle * (more + 2.0 * z * part) + middle * (1.0 + more) * LOST
+    } else {
+        let [least, most] = ends.map(|end| end.pow(y));
+        larger(middle - least, most - middle) + most * LOST
+    }
+}
 
 /// x^y, between the powers of both ends of y: a power is monotonic in its exponent.
 pub(super) fn between<P: Profile>(base: Ball<P>, exponent: Ball<P>) -> Ball<P> {

@@ -35,6 +35,13 @@ pub trait Profile: Copy + Send + Sync + 'static {
     fn power(bases: [f64; 2], exponent: f64) -> f64;
     /// The sum of bounded terms, of midpoint `middle`; its radius counts if the sum is bounded too.
     fn sum(middle: f64, terms: [&Ball<Self>; 2]) -> Ball<Self>;
+    /// Whether the terms of a sum may be added in any order.
+    const ADDS_IN_ANY_ORDER: bool = false;
+    /// If so, the sum of midpoint `middle` of some terms that are no sums: the magnitude of all, their
+    /// number, and the radius that they bring along. Its radius counts if every sum of the first is bounded.
+    fn total(middle: f64, _terms: [f64; 3]) -> Ball<Self> {
+        Ball::new(middle, f64::NAN)
+    }
     /// The terms of one of two sums: number by number, as a choice between wholes is no vector.
     fn choose(truth: bool, yes: Self::Terms, no: Self::Terms) -> Self::Terms;
 }
@@ -124,6 +131,18 @@ impl SumTerms {
         let one = Self { magnitude: middle.abs() + radius, additions: 0.0, radius };
         Gpu::choose(terms.additions == 0.0, one, terms)
     }
+
+    /// The sum of these terms, with one addition or more.
+    #[inline(always)]
+    fn ball(self, middle: f64) -> Ball<Gpu> {
+        let radius = if self.additions == 1.0 {
+            Ball::<Gpu>::reach(middle, self.radius, 2.0, Gpu::TINY)
+        } else {
+            let lost = 2.0 * self.additions * super::U * self.magnitude;
+            Ball::<Gpu>::reach(middle, self.radius + lost, 0.0, self.additions * Gpu::TINY)
+        };
+        Ball { middle, radius, terms: self }
+    }
 }
 
 /// The least normal `f32`, 2^-126.
@@ -152,7 +171,14 @@ impl Profile for Gpu {
             let logarithm = elementary::ln(base) / std::f64::consts::LN_2;
             (exponent * logarithm).abs().at_most(150.0)
         };
-        let argument = argument(bases[0]).at_least(argument(bases[1]));
+        // The least and the greatest base; of bases on one side of 1 that farther from 1 has the larger.
+        let argument = if bases[1] <= 1.0 {
+            argument(bases[0])
+        } else if bases[0] >= 1.0 {
+            argument(bases[1])
+        } else {
+            argument(bases[0]).at_least(argument(bases[1]))
+        };
         // The logarithm is 3 ulp or 2^-21 = 8 u off, times the exponent; the product 2 u.
         let lost = 8.0 * exponent + 8.0 * argument;
         Self::exponential(argument) + lost
@@ -165,13 +191,14 @@ impl Profile for Gpu {
             additions: a.additions + b.additions + 1.0,
             radius: a.radius + b.radius,
         };
-        let radius = if terms.additions == 1.0 {
-            Ball::<Self>::reach(middle, terms.radius, 2.0, Self::TINY)
-        } else {
-            let lost = 2.0 * terms.additions * super::U * terms.magnitude;
-            Ball::<Self>::reach(middle, terms.radius + lost, 0.0, terms.additions * Self::TINY)
-        };
-        Ball { middle, radius, terms }
+        terms.ball(middle)
+    }
+    const ADDS_IN_ANY_ORDER: bool = true;
+    #[inline(always)]
+    fn total(middle: f64, [magnitude, additions, radius]: [f64; 3]) -> Ball<Self> {
+        // Each term is an addition, the first one to 0.
+        let terms = SumTerms { magnitude, additions, radius };
+        if additions == 0.0 { Ball::new(middle, 0.0) } else { terms.ball(middle) }
     }
     #[inline(always)]
     fn choose(truth: bool, yes: SumTerms, no: SumTerms) -> SumTerms {
@@ -211,6 +238,11 @@ impl<P: Profile> Profile for Common<P> {
     #[inline(always)]
     fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {
         P::sum(middle, [&a.rounding_as(), &b.rounding_as()]).rounding_as()
+    }
+    const ADDS_IN_ANY_ORDER: bool = P::ADDS_IN_ANY_ORDER;
+    #[inline(always)]
+    fn total(middle: f64, terms: [f64; 3]) -> Ball<Self> {
+        P::total(middle, terms).rounding_as()
     }
     #[inline(always)]
     fn choose(truth: bool, yes: P::Terms, no: P::Terms) -> P::Terms {

@@ -117,7 +117,8 @@ impl<R: Real> Shader<R> {
         }
         let v = self.towards_eye(p);
         let answer = Answer::<R>::new(&self.material);
-        let mut color = surface.map(|s| answer.ambient * s);
+        let [r, g, b] = surface;
+        let mut color = [answer.ambient * r, answer.ambient * g, answer.ambient * b];
         for (place, light) in &self.lights {
             let l = place.from(p);
             let (n, cosine) = towards(l);
@@ -132,7 +133,9 @@ impl<R: Real> Shader<R> {
                     R::ZERO
                 };
                 let more = answer.add(color, *light, cosine, surface, highlight);
-                color = std::array::from_fn(|c| R::select(faces, more[c], color[c]));
+                // Not by `map`, which is not inlined where numbers are balls.
+                let chosen = |c: usize| R::select(faces, more[c], color[c]);
+                color = [chosen(0), chosen(1), chosen(2)];
             }
         }
         color
@@ -324,6 +327,7 @@ impl<R: Real> Answer<R> {
         highlight: R,
     ) -> [R; 3] {
         let body = self.diffuse * cosine;
-        std::array::from_fn(|c| color[c] + light[c] * (body * surface[c] + highlight))
+        let part = |c: usize| color[c] + light[c] * (body * surface[c] + highlight);
+        [part(0), part(1), part(2)]
     }
 }

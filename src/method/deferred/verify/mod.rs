@@ -335,16 +335,17 @@ impl<P: Profile> Rest<'_, P> {
             sums::continuations(&self.chosen, self.surfels, &nearest, (tile, &rect), &mut rest[0]);
         let (mut covered, mut told) = (0, Told::default());
         for (pixel, at) in counted(rect) {
+            let sums = sums.of(pixel);
             let others = beside.others(pixel);
             let shown = self.shown((tile, at), nearest[pixel], others, &mut rest[1]);
-            let certain = matches!(sums[pixel], Continuations::One(_));
+            let certain = matches!(sums, Continuations::One(_));
             covered += u64::from(shown.depth.middle.is_finite() || !certain);
             if !others.is_empty() {
-                self.judge_beside((pixel, at), &beside, &shown, &sums[pixel], rest);
+                self.judge_beside((pixel, at), &beside, &shown, &sums, rest);
                 continue;
             }
-            let taken = self.pixels.judge((pixel, at), &shown, &sums[pixel], rest);
-            if let (Continuations::Several(_, open), Some(taken)) = (&sums[pixel], taken) {
+            let taken = self.pixels.judge((pixel, at), &shown, &sums, rest);
+            if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
                 told.take_all(open, taken);
             }
         }

@@ -11,7 +11,7 @@ use crate::method::tiled::pixels;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
-use crate::splat::{Shared, fragment};
+use crate::splat::{Shared, Splat, fragment};
 use crate::verify::client::Ties;
 use crate::verify::verdict::{Doubt, Fault};
 
@@ -136,15 +136,30 @@ fn claims<P: Profile>(
         })
         .collect();
     let shared = &splats.shared;
-    splats.for_each(tile, |SwiftSplat { possible: PossibleSplat { splat, .. }, .. }| {
-        each_pixel(splat, rect, |pixel, at| {
-            let claim = &mut claims[pixel];
-            if claim.nearest.id.map_or(handed.depth.is_some(), |id| id == splat.surfel) {
-                let (q, w) = fragment(shared, &splat.footprint, at);
-                claim.meet(shared, q, w, handed.depth.is_some());
+    let has_depth = handed.depth.is_some();
+    let mut meet = |splat: &Splat<Ball<P>>, pixel: usize, at| {
+        let (q, w) = fragment(shared, &splat.footprint, at);
+        claims[pixel].meet(shared, q, w, has_depth);
+    };
+    if let Some(ids) = handed.id {
+        // The pixels of each surfel, which are few of those in its bounds.
+        let shown =
+            pixels(*rect).enumerate().map(|(pixel, at)| (*ids.plane.at(at.0, at.1), pixel, at));
+        let mut shown: Vec<_> = shown.filter(|(id, ..)| *id != NO_ID).collect();
+        shown.sort_unstable();
+        splats.for_each(tile, |SwiftSplat { possible: PossibleSplat { splat, .. }, .. }| {
+            let first = shown.partition_point(|(id, ..)| *id < splat.surfel);
+            let own = shown[first..].iter().take_while(|(id, ..)| *id == splat.surfel);
+            let bounds = &splat.bounds;
+            for &(_, pixel, at) in own.filter(|(.., at)| bounds.contains(at.0, at.1)) {
+                meet(splat, pixel, at);
             }
         });
-    });
+    } else if has_depth {
+        splats.for_each(tile, |SwiftSplat { possible: PossibleSplat { splat, .. }, .. }| {
+            each_pixel(splat, rect, |pixel, at| meet(splat, pixel, at));
+        });
+    }
     claims
 }
 

@@ -121,11 +121,12 @@ impl<'a, P: Profile> Judge<'a, P> {
         let sums = sums::continuations(splats, surfels, &limits, (tile, &rect), &mut rest[0]);
         let (mut covered, mut told) = (0, Told::default());
         for (pixel, at) in counted(rect) {
-            let taken = pixels.judge((pixel, at), &nearest[pixel], &sums[pixel], rest);
-            if let (Continuations::Several(_, open), Some(taken)) = (&sums[pixel], taken) {
+            let sums = sums.of(pixel);
+            let taken = pixels.judge((pixel, at), &nearest[pixel], &sums, rest);
+            if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
                 told.take_all(open, taken);
             }
-            let certain = matches!(sums[pixel], Continuations::One(_));
+            let certain = matches!(sums, Continuations::One(_));
             covered += u64::from(nearest[pixel].depth.middle.is_finite() || !certain);
         }
         Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS), told }

@@ -18,6 +18,7 @@ use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::verify::client::Storage;
+use std::borrow::Cow;
 
 /// The stages after visibility, by their place among the marks.
 const ATTRIBUTES: usize = 0;
@@ -104,6 +105,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             return (input(opacity, at), inputs(color, at));
         }
         let of = |sums: Option<&Sums<Ball<P>>>| {
+            let stored = sums.map(|sums| self.stored(sums));
+            let sums = stored.as_deref();
             let averages = self.averages(at, sums);
             (self.opacity(at, sums), self.color(at, self.depth(at, nearest, sums), &averages))
         };
@@ -134,7 +137,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         report: &mut Report<'_>,
     ) {
         if let Some(sums) = sums {
-            self.check_sums(at, sums, report);
+            self.check_sums(at, &self.stored(sums), report);
         }
         let (handed, Surface { depth, normal, color, .. }) = (self.handed, *surface);
         if let (Some(plane), true) = (&handed.color, self.colored) {
@@ -171,6 +174,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         sums: Option<&Sums<Ball<P>>>,
         report: &mut Report<'_>,
     ) {
+        let stored = sums.map(|sums| self.stored(sums));
+        let sums = stored.as_deref();
         if let Some(sums) = sums {
             self.check_sums(at, sums, report);
         }
@@ -184,34 +189,33 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
         if let Some(plane) = &handed.alpha {
             let weight =
-                handed.weight_copy.map_or_else(|| self.weight(at, sums), |plane| plane.ball(at));
+                handed.weight_copy.map_or_else(|| self.weight_of(at, sums), |plane| plane.ball(at));
             number(SHADING, plane, at, self.shading.alpha(weight), report);
         }
     }
 
     /// Sums as the client may have stored them between two additions, each of which rounds a sum that
     /// is at most this large.
-    fn stored(&self, sums: &Sums<Ball<P>>) -> Sums<Ball<P>> {
+    fn stored<'s>(&self, sums: &'s Sums<Ball<P>>) -> Cow<'s, Sums<Ball<P>>> {
         if self.handed.accumulator == Storage::Single {
-            return *sums;
+            return Cow::Borrowed(sums);
         }
         let heaviest = sums.weight.middle + sums.weight.radius;
         let lost = |largest: f64| {
             f64::from(sums.count) * self.handed.accumulator.radius(heaviest * largest)
         };
-        Sums {
+        Cow::Owned(Sums {
             weight: widened(sums.weight, lost(1.0)),
             normal: sums.normal.map(|part| widened(part, lost(1.0))),
             color: sums.color.map(|part| widened(part, lost(self.brightest))),
             opacity: widened(sums.opacity, lost(1.0)),
             count: sums.count,
-        }
+        })
     }
 
-    /// The sums of the attribute pass.
-    fn check_sums(&self, at: (u32, u32), sums: &Sums<Ball<P>>, report: &mut Report<'_>) {
+    /// The sums of the attribute pass, as stored.
+    fn check_sums(&self, at: (u32, u32), truth: &Sums<Ball<P>>, report: &mut Report<'_>) {
         let Handed { weight, normal_sum, color_sum, count, mask, .. } = self.handed;
-        let truth = self.stored(sums);
         if let Some(plane) = weight {
             number(ATTRIBUTES, plane, at, truth.weight, report);
         }
@@ -222,10 +226,10 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             triple(ATTRIBUTES, (plane, Holds::Color), at, truth.color, report);
         }
         if let Some(plane) = count {
-            whole(ATTRIBUTES, plane, at, sums.count, report);
+            whole(ATTRIBUTES, plane, at, truth.count, report);
         }
         if let Some(plane) = mask {
-            whole(ATTRIBUTES, plane, at, u8::from(sums.count > 0), report);
+            whole(ATTRIBUTES, plane, at, u8::from(truth.count > 0), report);
         }
     }
 
@@ -235,23 +239,27 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         at: (u32, u32),
         sums: Option<&Sums<Ball<P>>>,
     ) -> Ball<P> {
-        let own = || sums.map_or_else(anything, |sums| self.stored(sums).weight);
+        self.weight_of(at, sums.map(|sums| self.stored(sums)).as_deref())
+    }
+
+    /// The same of sums as stored, as all sums below are.
+    fn weight_of(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
+        let own = || sums.map_or_else(anything, |sums| sums.weight);
         self.handed.weight.map_or_else(own, |plane| plane.ball(at))
     }
 
     /// The averages of the client's sums, else of these; of none, they are any.
     fn averages(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Averages<P> {
-        let unknown = Sums {
-            weight: anything(),
-            normal: [anything(); 3],
-            color: [anything(); 3],
-            opacity: anything(),
-            count: 0,
+        let weight = self.weight_of(at, sums);
+        let unknown = [anything(); 3];
+        let normal = match &self.handed.normal_sum {
+            Some(plane) => plane.balls(at),
+            None => sums.map_or(unknown, |sums| sums.normal),
         };
-        let own = sums.map_or(unknown, |sums| self.stored(sums));
-        let weight = self.weight(at, sums);
-        let normal = self.handed.normal_sum.map_or(own.normal, |plane| plane.balls(at));
-        let color = self.handed.color_sum.map_or(own.color, |plane| plane.balls(at));
+        let color = match &self.handed.color_sum {
+            Some(plane) => plane.balls(at),
+            None => sums.map_or(unknown, |sums| sums.color),
+        };
         let some = weight.gt(Ball::ZERO).possibly();
         Averages {
             normal: if some { sum::direction(normal, weight) } else { self.nowhere },
@@ -261,8 +269,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
 
     /// The opacity of a layer.
     fn opacity(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
-        let own = sums.map_or_else(anything, |sums| self.stored(sums).opacity);
-        let [opacity, ..] = sum::average([own; 3], self.weight(at, sums));
+        let own = sums.map_or_else(anything, |sums| sums.opacity);
+        let [opacity, ..] = sum::average([own; 3], self.weight_of(at, sums));
         opacity.at_most(Ball::ONE)
     }
 
@@ -316,7 +324,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         sums: Option<&Sums<Ball<P>>>,
         report: &mut Report<'_>,
     ) {
-        let some = self.weight(at, sums).gt(Ball::ZERO);
+        let some = self.weight_of(at, sums).gt(Ball::ZERO);
         if let Some(copy) = &self.handed.depth_copy {
             let empty = *copy.plane.at(at.0, at.1) == f64::INFINITY;
             let shown = some.decided().unwrap_or(!empty);
@@ -336,7 +344,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     /// The depth that is shaded.
     fn depth(&self, at: (u32, u32), nearest: &Nearest<P>, sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
         let own = if self.handed.weightless {
-            match self.weight(at, sums).gt(Ball::ZERO).decided() {
+            match self.weight_of(at, sums).gt(Ball::ZERO).decided() {
                 Some(true) => nearest.depth,
                 Some(false) => Ball::INFINITY,
                 None => anything(),

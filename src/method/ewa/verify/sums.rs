@@ -5,11 +5,13 @@ use super::certificate::Nearest;
 use super::swift::{SwiftSplats, each_fragment, least_nearness};
 use crate::composite::decide;
 use crate::frame::Rect;
+use crate::frame::stencil::{Outcome, Stencil};
 use crate::method::ewa::attributes::Sums;
 use crate::method::ewa::possible::PossibleSplat;
+use crate::method::fragment::facing;
 use crate::method::judged::{Marks, PixelMarks};
-use crate::number::ball::{Profile, Three};
-use crate::number::{Ball, Truth};
+use crate::number::ball::{Common, Profile, Three, Totals};
+use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::verify::shift::{CUT_OFF, EPSILON, Open};
 use crate::verify::verdict::Doubt;
@@ -43,37 +45,101 @@ struct Part<P: Profile> {
 }
 
 /// The sums of each pixel of a tile, given the nearest fragments.
-pub(in crate::method) fn continuations<P: Profile>(
+pub(in crate::method) fn continuations<'a, P: Profile>(
     splats: &SwiftSplats<P>,
-    surfels: &Surfels,
+    surfels: &'a Surfels,
     nearest: &[Nearest<P>],
     (tile, rect): (usize, &Rect),
     marks: &mut Marks,
-) -> Vec<Continuations<P>> {
-    let mut sums = vec![(Sums::NONE, 0_u32); rect.pixels()];
+) -> TileSums<'a, P> {
+    let mut sums = AllSums::new(surfels, rect.pixels());
     let limits = limits(splats, nearest);
     each_part(splats, (nearest, &limits), (tile, rect), |pixel, part, asked| {
-        let (sums, undecided) = &mut sums[pixel];
         if part.open.is_none() {
-            sums.add_opaque(surfels, (part.surfel, part.back), part.weight);
+            sums.add(surfels, pixel, &part);
         } else {
-            *undecided += 1;
+            sums.undecided[pixel] += 1;
             asked.mark(&mut marks.at(pixel));
         }
         marks.at(pixel).doubt(Doubt::Side, part.back.decided().is_none());
     });
-    let parts = undecided_parts(splats, (nearest, limits), (tile, rect), &sums);
-    let of_pixel = |pixel, undecided| match undecided {
-        0 => None,
-        1..=MOST => Some(several(surfels, &parts, pixel, undecided)),
-        _ => Some(Continuations::Many),
+    let followed = |pixel: usize| match sums.undecided[pixel] {
+        0 => sums.of(pixel).is_none(),
+        n => n <= MOST,
     };
-    sums.into_iter()
-        .enumerate()
-        .map(|(pixel, (sums, undecided))| {
-            of_pixel(pixel, undecided).unwrap_or(Continuations::One(sums))
-        })
-        .collect()
+    let parts = parts(splats, (nearest, limits), (tile, rect), followed);
+    TileSums { surfels, sums, parts }
+}
+
+/// What the sums of the pixels of a tile may be.
+pub(in crate::method) struct TileSums<'a, P: Profile> {
+    surfels: &'a Surfels,
+    sums: AllSums<P>,
+    parts: Fragments<P>,
+}
+
+impl<P: Profile> TileSums<'_, P> {
+    /// Those of a pixel.
+    pub(in crate::method) fn of(&self, pixel: usize) -> Continuations<P> {
+        match self.sums.undecided[pixel] {
+            0 => {
+                let plain = || chosen(self.surfels, of_one(&self.parts, pixel), 0);
+                Continuations::One(self.sums.of(pixel).unwrap_or_else(plain))
+            }
+            n @ 1..=MOST => several(self.surfels, of_one(&self.parts, pixel), n),
+            _ => Continuations::Many,
+        }
+    }
+}
+
+/// The sums of the pixels of a tile, and how many fragments are undecided.
+struct AllSums<P: Profile> {
+    /// Weight and normal.
+    weighted: Vec<Totals<P, 4>>,
+    /// The colour, if there are colours.
+    color: Vec<Totals<P, 3>>,
+    count: Vec<u8>,
+    undecided: Vec<u32>,
+}
+
+impl<P: Profile> AllSums<P> {
+    fn new(surfels: &Surfels, pixels: usize) -> Self {
+        let colored = if surfels.color().is_some() { pixels } else { 0 };
+        Self {
+            weighted: vec![Totals::NONE; pixels],
+            color: vec![Totals::NONE; colored],
+            count: vec![0; pixels],
+            undecided: vec![0; pixels],
+        }
+    }
+
+    /// What [`Sums::add_opaque`] does.
+    #[inline(always)]
+    fn add(&mut self, surfels: &Surfels, pixel: usize, part: &Part<P>) {
+        let i = part.surfel as usize;
+        let weight: Ball<Common<P>> = part.weight.rounding_as();
+        let number = |value: f32| Ball::<Common<P>>::from_f32(value);
+        let normal = surfels.normal()[i];
+        let [x, y, z] = facing([number(normal.x), number(normal.y), number(normal.z)], part.back);
+        self.weighted[pixel].add([weight, weight * x, weight * y, weight * z]);
+        if let Some(colors) = surfels.color() {
+            let color = colors[i];
+            let [r, g, b] = [number(color.x), number(color.y), number(color.z)];
+            self.color[pixel].add([weight * r, weight * g, weight * b]);
+        }
+        self.count[pixel] = Stencil::COUNT.update(self.count[pixel], Outcome::Pass);
+    }
+
+    /// The sums of a pixel, if they are known.
+    fn of(&self, pixel: usize) -> Option<Sums<Ball<P>>> {
+        let [weight, x, y, z] = self.weighted[pixel].balls()?;
+        let color = match self.color.get(pixel) {
+            Some(color) => color.balls()?,
+            None => Sums::NONE.color,
+        };
+        let count = self.count[pixel];
+        Some(Sums { weight, normal: [x, y, z], color, count, ..Sums::NONE })
+    }
 }
 
 /// The decisions on a fragment.
@@ -168,25 +234,22 @@ fn each_part<P: Profile>(
     );
 }
 
-/// All fragments of the pixels with an undecided one, as far as they are followed.
-fn undecided_parts<P: Profile>(
+/// All fragments of the pixels that are followed.
+fn parts<P: Profile>(
     splats: &SwiftSplats<P>,
     (nearest, mut limits): (&[Nearest<P>], Vec<Limit<P>>),
-    tile: (usize, &Rect),
-    sums: &[(Sums<Ball<P>>, u32)],
+    (tile, rect): (usize, &Rect),
+    followed: impl Fn(usize) -> bool,
 ) -> Fragments<P> {
     let mut parts = Vec::new();
-    let followed = |pixel: usize| (1..=MOST).contains(&sums[pixel].1);
-    if (0..sums.len()).any(followed) {
+    if (0..limits.len()).any(&followed) {
         for (pixel, limit) in limits.iter_mut().enumerate() {
             if !followed(pixel) {
                 limit.least = f64::INFINITY;
             }
         }
-        each_part(splats, (nearest, &limits), tile, |pixel, part, _| {
-            if followed(pixel) {
-                parts.push((pixel, part));
-            }
+        each_part(splats, (nearest, &limits), (tile, rect), |pixel, part, _| {
+            parts.push((pixel, part));
         });
         // Those of a pixel stay in their order.
         parts.sort_by_key(|(pixel, _)| *pixel);
@@ -194,26 +257,84 @@ fn undecided_parts<P: Profile>(
     parts
 }
 
+/// Those of one pixel.
+fn of_one<P: Profile>(parts: &Fragments<P>, pixel: usize) -> &[(usize, Part<P>)] {
+    let first = parts.partition_point(|(at, _)| *at < pixel);
+    let count = parts[first..].partition_point(|(at, _)| *at == pixel);
+    &parts[first..first + count]
+}
+
 /// The sums of a pixel with each choice of its undecided fragments.
 fn several<P: Profile>(
     surfels: &Surfels,
-    parts: &Fragments<P>,
-    pixel: usize,
+    parts: &[(usize, Part<P>)],
     undecided: u32,
 ) -> Continuations<P> {
-    let first = parts.partition_point(|(at, _)| *at < pixel);
-    let parts = parts[first..].iter().take_while(|(at, _)| *at == pixel);
-    let all = (0..1_u32 << undecided).map(|choice| {
-        let (mut sums, mut bit) = (Sums::NONE, 0);
-        for (_, part) in parts.clone() {
-            let taken = part.open.is_none() || choice >> bit & 1 == 1;
-            bit += u32::from(part.open.is_some());
-            if taken {
-                sums.add_opaque(surfels, (part.surfel, part.back), part.weight);
+    let all = (0..1_u32 << undecided).map(|choice| chosen(surfels, parts, choice));
+    let open = parts.iter().filter_map(|(_, part)| part.open);
+    Continuations::Several(all.collect(), open.collect())
+}
+
+/// The sums of a pixel that take undecided fragment i if bit i is set.
+fn chosen<P: Profile>(surfels: &Surfels, parts: &[(usize, Part<P>)], choice: u32) -> Sums<Ball<P>> {
+    let (mut sums, mut bit) = (Sums::NONE, 0);
+    for (_, part) in parts {
+        let taken = part.open.is_none() || choice >> bit & 1 == 1;
+        bit += u32::from(part.open.is_some());
+        if taken {
+            sums.add_opaque(surfels, (part.surfel, part.back), part.weight);
+        }
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::Method;
+    use crate::method::algorithm::Job;
+    use crate::method::ewa::verify::swift;
+    use crate::method::ewa::verify::tests::each_scene;
+    use crate::number::ball::{Gpu, Ieee};
+    use crate::splat::SplatSettings;
+
+    /// The sums of all pixels without an undecided fragment against those that are added up one by one; how
+    /// many are of several fragments, and known.
+    fn compare<P: Profile>(job: &Job<'_>, settings: &SplatSettings) -> usize {
+        let (surfels, splats) = (&job.scene.surfels, swift::project::<P>(job, settings));
+        let mut found = 0;
+        for (tile, rect) in job.grid().rects().into_iter().enumerate() {
+            let at_3 = Nearest { depth: Ball::exact(3.0), id: None };
+            let nearest = vec![at_3; rect.pixels()];
+            let mut marks = Marks::new(rect);
+            let sums = continuations(&splats, surfels, &nearest, (tile, &rect), &mut marks);
+            let limits = limits(&splats, &nearest);
+            let all = parts(&splats, (&nearest, limits), (tile, &rect), |_| true);
+            for pixel in 0..rect.pixels() {
+                let Continuations::One(own) = sums.of(pixel) else { continue };
+                let plain = chosen(surfels, of_one(&all, pixel), 0);
+                assert_eq!(own.count, plain.count);
+                let numbers = |sums: &Sums<Ball<P>>| {
+                    let Sums { weight, normal: [x, y, z], color: [r, g, b], .. } = *sums;
+                    [weight, x, y, z, r, g, b].map(|n| [n.middle, n.radius].map(f64::to_bits))
+                };
+                assert_eq!(numbers(&own), numbers(&plain));
+                found += usize::from(own.count > 1 && sums.sums.of(pixel).is_some());
             }
         }
-        sums
-    });
-    let open = parts.clone().filter_map(|(_, part)| part.open);
-    Continuations::Several(all.collect(), open.collect())
+        found
+    }
+
+    #[test]
+    fn totals_are_the_sums_of_the_definition() {
+        let mut found = [0; 2];
+        each_scene(|session, camera| {
+            let Method::Ewa(settings) = *session.method() else { return };
+            session.with_job(camera, |job| {
+                found[0] += compare::<Ieee>(job, &settings);
+                found[1] += compare::<Gpu>(job, &settings);
+            });
+        });
+        assert!(found.iter().all(|n| *n > 1000), "{found:?}");
+    }
 }

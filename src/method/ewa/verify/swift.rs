@@ -13,7 +13,7 @@ use crate::method::fragment::each_pixel;
 use crate::method::prepare::Prepared;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
-use crate::splat::{Footprint, Shared, Splat, fragment};
+use crate::splat::{Footprint, Shared, Splat};
 
 /// More than what the few operations round that are not in the bounds.
 const ROUNDINGS: f64 = 16.0 / 16_777_216.0;
@@ -74,7 +74,7 @@ pub(in crate::method) fn project_part<P: Profile>(
 }
 
 /// Runs `visit` for the fragments of the pixels of a rectangle in a tile that are not certainly
-/// outside, nor certainly of a nearness below `least` of their pixel.
+/// outside, nor certainly of a nearness below `least` of their pixel; +inf is above all.
 #[inline(always)]
 pub(super) fn each_fragment<P: Profile>(
     splats: &SwiftSplats<P>,
@@ -84,17 +84,37 @@ pub(super) fn each_fragment<P: Profile>(
 ) {
     let shared = &splats.shared;
     let limit = shared.limit.middle + shared.limit.radius;
+    let (mut asked, mut columns) = (Vec::new(), Vec::new());
     splats.for_each(tile, |SwiftSplat { possible, swift }| {
-        each_pixel(&possible.splat, rect, |pixel, at| {
-            let asked = swift.as_ref().is_none_or(|swift| {
+        let PossibleSplat { splat, .. } = possible;
+        asked.clear();
+        each_pixel(splat, rect, |pixel, at| {
+            let least = least(pixel);
+            // Comparisons that NaN fails.
+            let fails = |swift: &Swift| {
                 let (q, w) = swift.fragment(shared, at);
-                !(q > limit || w < least(pixel))
-            });
-            if asked {
-                let (q, w) = fragment(shared, &possible.splat.footprint, at);
-                visit(possible, pixel, q, w);
+                q > limit || w < least
+            };
+            if !(least == f64::INFINITY || swift.as_ref().is_some_and(fails)) {
+                asked.push((pixel, at));
             }
         });
+        if asked.is_empty() {
+            return;
+        }
+        // What fragments share is computed once.
+        let f = &splat.footprint;
+        let offset = |at: u32, center: Ball<P>| Ball::from_f32(at as f32 + 0.5) - center;
+        let Rect { x0, x1, .. } = splat.bounds.intersection(rect);
+        columns.clear();
+        columns.extend((x0..x1).map(|x| f.column(offset(x, f.center.x))));
+        for in_row in asked.chunk_by(|a, b| a.1.1 == b.1.1) {
+            let row = f.row(offset(in_row[0].1.1, f.center.y));
+            for &(pixel, (x, _)) in in_row {
+                let (q, w) = f.crossing(shared, &columns[(x - x0) as usize], &row);
+                visit(possible, pixel, q, w);
+            }
+        }
     });
 }
 
@@ -117,15 +137,16 @@ impl Swift {
         let Splat { footprint: f, bounds, .. } = splat;
         let x = widest([bounds.x0, bounds.x1 - 1], f.center.x);
         let y = widest([bounds.y0, bounds.y1 - 1], f.center.y);
-        let [ux, uy, vy] = [f.ux, f.uy, f.vy].map(Ball::magnitude);
-        let [w0, wx, wy] = [f.w0, f.wx, f.wy].map(Ball::magnitude);
+        // Not by `map`, which is not inlined.
+        let (ux, uy, vy) = (f.ux.magnitude(), f.uy.magnitude(), f.vy.magnitude());
+        let (w0, wx, wy) = (f.w0.magnitude(), f.wx.magnitude(), f.wy.magnitude());
         let swift = Self {
             footprint: f.map(|number| number.middle),
             u: (ux * x + uy * y).radius,
             v: (vy * y).radius,
             w: ((w0 + wx * x) + wy * y).radius,
             offset: x.radius.at_least(y.radius),
-            range: [f.w_far, f.w_near].map(|w| w.middle + w.radius),
+            range: [f.w_far.middle + f.w_far.radius, f.w_near.middle + f.w_near.radius],
         };
         let sum = swift.u + swift.v + swift.w + swift.offset + swift.range[0] + swift.range[1];
         sum.is_finite().then_some(swift)
@@ -174,7 +195,8 @@ fn square(value: f64) -> f64 {
 
 /// The greatest offset of two columns, or rows, from a centre, with the greatest radius.
 fn widest<P: Profile>(ends: [u32; 2], center: Ball<P>) -> Ball<P> {
-    let [a, b] = ends.map(|end| Ball::from_f32(end as f32 + 0.5) - center);
+    let offset = |end: u32| Ball::from_f32(end as f32 + 0.5) - center;
+    let (a, b) = (offset(ends[0]), offset(ends[1]));
     Ball::new(a.middle.abs().at_least(b.middle.abs()), a.radius.at_least(b.radius))
 }
 
@@ -186,6 +208,7 @@ mod tests {
     use crate::method::ewa::verify::tests::each_scene;
     use crate::number::Truth;
     use crate::number::ball::{Gpu, Ieee};
+    use crate::splat::fragment;
 
     /// Every fragment of a scene's splats against its bounds; how many fragments, and how many the
     /// bounds leave out.
@@ -204,6 +227,11 @@ mod tests {
                     assert!((f.vy * dy).radius <= swift.v);
                     assert!(f.plane(dx, dy).radius <= swift.w);
                     let (q, w) = fragment(shared, f, at);
+                    let crossing = f.crossing(shared, &f.column(dx), &f.row(dy));
+                    for (a, b) in [(crossing.0, q), (crossing.1, w)] {
+                        assert_eq!(a.middle.to_bits(), b.middle.to_bits());
+                        assert_eq!(a.radius.to_bits(), b.radius.to_bits());
+                    }
                     let (least, most) = swift.fragment(shared, at);
                     assert!(least <= q.middle && most >= w.middle);
                     let limit = shared.limit.middle;

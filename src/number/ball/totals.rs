@@ -1,0 +1,118 @@
+//! Sums of products that are added up one after the other, side by side.
+
+use super::{Ball, Common, Profile, common};
+
+/// N sums of as many terms each: every one the ball that `+` makes of the same terms from 0 on, bit for
+/// bit, or unknown.
+///
+/// Terms are no sums themselves. What [`Common`] balls do not know makes a sum unknown.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Totals<P: Profile, const N: usize> {
+    middle: [f64; N],
+    /// Of a profile that adds terms in any order the radii that the terms brought along, else the sum's.
+    radius: [f64; N],
+    /// The size of the terms, of such a profile.
+    magnitude: [f64; N],
+    terms: f64,
+    profile: std::marker::PhantomData<P>,
+}
+
+impl<P: Profile, const N: usize> Totals<P, N> {
+    /// No term.
+    pub(crate) const NONE: Self = Self {
+        middle: [0.0; N],
+        radius: [0.0; N],
+        magnitude: [0.0; N],
+        terms: 0.0,
+        profile: std::marker::PhantomData,
+    };
+
+    /// Adds a term to each.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, terms: [Ball<Common<P>>; N]) {
+        let Self { middle, radius, magnitude, .. } = *self;
+        for (i, term) in terms.into_iter().enumerate() {
+            if P::ADDS_IN_ANY_ORDER {
+                self.middle[i] = middle[i] + term.middle;
+                self.radius[i] = radius[i] + term.radius;
+                self.magnitude[i] = magnitude[i] + (term.middle.abs() + term.radius);
+            } else {
+                let sum = common::sum(Ball::new(middle[i], radius[i]), term);
+                (self.middle[i], self.radius[i]) = (sum.middle, sum.radius);
+            }
+        }
+        self.terms += 1.0;
+    }
+
+    /// The sums; none if one of them is unknown.
+    #[inline(always)]
+    pub(crate) fn balls(&self) -> Option<[Ball<P>; N]> {
+        let mut balls = [Ball::exact(0.0); N];
+        for (i, ball) in balls.iter_mut().enumerate() {
+            let (middle, radius) = (self.middle[i], self.radius[i]);
+            *ball = if P::ADDS_IN_ANY_ORDER {
+                P::total(middle, [self.magnitude[i], self.terms, radius])
+            } else {
+                Ball::new(middle, radius)
+            };
+        }
+        // No sum of the first terms was larger. Comparisons that NaN fails.
+        let bounded = |i: usize| {
+            let most = if P::ADDS_IN_ANY_ORDER { 2.0 * self.magnitude[i] } else { 0.0 };
+            most + balls[i].radius <= f64::from(f32::MAX)
+        };
+        (0..N).all(bounded).then_some(balls)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Gpu, Ieee};
+    use super::*;
+
+    /// Sums of these terms against those of `+`; how many are known.
+    fn compare<P: Profile>(terms: &[[Ball<P>; 2]]) -> usize {
+        let (mut totals, mut plain) = (Totals::<P, 2>::NONE, [Ball::exact(0.0); 2]);
+        let mut known = 0;
+        for term in terms {
+            totals.add(term.map(Ball::rounding_as));
+            plain = [plain[0] + term[0], plain[1] + term[1]];
+            let Some(balls) = totals.balls() else { continue };
+            known += 1;
+            for (own, plain) in balls.into_iter().zip(plain) {
+                // And what follows of its terms.
+                for (a, b) in [(own, plain), (own + Ball::exact(0.3), plain + Ball::exact(0.3))] {
+                    assert_eq!(a.middle.to_bits(), b.middle.to_bits());
+                    assert_eq!(a.radius.to_bits(), b.radius.to_bits(), "{a:?} is not {b:?}");
+                }
+            }
+        }
+        known
+    }
+
+    fn compare_all<P: Profile>() {
+        let products: Vec<[Ball<P>; 2]> = (1..40)
+            .map(|i| {
+                let weight =
+                    Ball::<P>::exact(f64::from(i) * 0.013) * Ball::exact(f64::from(0.7_f32));
+                let part = f64::from(i % 5) - 2.0;
+                [weight, weight * Ball::exact(part / 3.0)]
+            })
+            .collect();
+        assert_eq!(compare(&products), products.len());
+        assert_eq!(compare::<P>(&[]), 0);
+        // What is exact stays exact where operations round to nearest.
+        assert_eq!(compare(&[[Ball::<P>::exact(0.5); 2], [Ball::exact(0.25); 2]]), 2);
+        let large = Ball::exact(f64::from(f32::MAX));
+        assert!(compare(&[[Ball::<P>::exact(1.0), large], [Ball::exact(1.0), large]]) < 2);
+        let unbounded = Ball::new(1.0, f64::INFINITY);
+        let odd = [[Ball::<P>::exact(1.0), unbounded], [Ball::exact(1.0), Ball::exact(1.0)]];
+        assert_eq!(compare(&odd), 0);
+    }
+
+    #[test]
+    fn totals_are_sums() {
+        compare_all::<Ieee>();
+        compare_all::<Gpu>();
+    }
+}
