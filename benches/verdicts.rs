@@ -20,7 +20,7 @@ use splatref::verify::verdict::{Outcome, Verdict};
 use splatref::{Error, Result};
 use std::time::{Duration, Instant};
 
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 9;
 
 /// A scene and a size of its picture.
 struct Row {

@@ -5,6 +5,7 @@ use super::replay::Place;
 use super::tiled::pixels;
 use crate::error::Result;
 use crate::frame::{Grid, Plane, Rect};
+use crate::number::Real;
 use crate::verify::shift::Told;
 use crate::verify::verdict::{Cause, Causes, Check, Doubt, Fault, Finding, Judged, Verdict};
 
@@ -136,6 +137,12 @@ impl PixelMarks<'_> {
                 *worst = Some(Finding { pixel, fault, error });
             }
         }
+    }
+
+    /// The same of an error of at most 1: nothing is wrong.
+    pub(super) fn right(&mut self, error: f64) {
+        let at = &mut self.marks.found[self.pixel];
+        at.error = at.error.at_least(error as f32);
     }
 
     /// A decision that may be either way.

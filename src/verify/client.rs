@@ -132,7 +132,7 @@ impl Stored<'_, [f64; 3]> {
 /// A stored number with the radius that its storage gives; of NaN nothing is known, and what is below the
 /// normal numbers may be read as 0.
 #[inline(always)]
-fn known<P: Profile>(value: f64, radius: f64) -> Ball<P> {
+pub(crate) fn known<P: Profile>(value: f64, radius: f64) -> Ball<P> {
     let size = value.abs();
     let flushed = P::FLUSHES && size < f64::from(f32::MIN_POSITIVE) && radius < size;
     let radius = if flushed { size } else { radius };

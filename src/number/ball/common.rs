@@ -35,7 +35,7 @@ pub(super) fn product<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
     // 0 times what is bounded, of which NaN is not.
     let zero = (a.is_zero() | b.is_zero()) & (spread == 0.0);
     let exact = is_exact::<P>(middle, r + s) | zero;
-    result(middle, Ball::<P>::reach(middle, spread, P::PRODUCT, P::TINY), exact, middle != 0.0)
+    result(middle, Ball::<P>::reach(middle, spread, P::PRODUCT, P::TINY), exact, true)
 }
 
 #[inline(always)]
@@ -44,9 +44,11 @@ pub(super) fn quotient<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
     let middle = m / n;
     let spread = (m.abs() * s + n.abs() * r) / (n.abs() * (n.abs() - s));
     let divides = !b.may_be_zero() & (n.abs() + s <= P::LARGEST_DIVISOR);
-    let exact = is_exact::<P>(middle, r + s);
+    // 0 divided by what is bounded.
+    let zero = divides & a.is_zero() & n.is_finite();
+    let exact = is_exact::<P>(middle, r + s) | zero;
     let radius = Ball::<P>::reach(middle, spread, P::QUOTIENT, P::TINY);
-    result(middle, radius, exact, divides & (middle != 0.0))
+    result(middle, radius, exact, divides)
 }
 
 /// The square root of what is not below 0.

@@ -4,6 +4,7 @@ use super::{Ball, Profile};
 use crate::number::lanes::LANES;
 
 /// A ball for each lane, each of its parts a vector.
+#[derive(Clone, Copy)]
 pub(crate) struct BallLanes<P: Profile> {
     middle: [f64; LANES],
     radius: [f64; LANES],

@@ -153,6 +153,16 @@ impl<P: Profile> Ball<P> {
         }
     }
 
+    /// [`Ball::misfit`] without a branch, so that a loop over it becomes vectors; NaN where a radius is not
+    /// finite and the midpoints differ.
+    #[inline(always)]
+    pub(crate) fn misfit_of_bounded(self, found: Self) -> f64 {
+        let reach = self.radius + found.radius;
+        let error = (self.middle - found.middle).abs() / (reach * SLACK);
+        let error = if reach.is_finite() { error } else { f64::NAN };
+        if self.middle == found.middle { 0.0 } else { error }
+    }
+
     /// The ball of the absolute value, as a sum of the same terms.
     #[inline(always)]
     pub(crate) fn magnitude(self) -> Self {

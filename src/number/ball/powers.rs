@@ -52,3 +52,39 @@ pub(super) fn between<P: Profile>(base: Ball<P>, exponent: Ball<P>) -> Ball<P> {
     });
     Ball::new(middle, larger(a, b) * SLACK)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Holds a spread against the ends of the interval, of which both differences are 2^-51 of the largest off
+    /// at most; where little is left out, that is little.
+    fn hold(spread: f64, [least, middle, most]: [f64; 3], close: bool) {
+        let exact = larger(middle - least, most - middle);
+        let error = most / 2_251_799_813_685_248.0;
+        assert!(spread >= exact - error, "{spread} of {exact}");
+        assert!(!close || spread <= 1.2 * exact + 4.0 * error, "{spread} of {exact}");
+    }
+
+    #[test]
+    fn spreads_hold_both_ends() {
+        for i in 0..60 {
+            let part = 0.7_f64.pow(f64::from(i));
+            for m in [-80.0, -1.5, 0.0, 2.0, 60.0] {
+                let ends = [m - part, m, m + part].map(Real::exp);
+                hold(exponential(ends[1], part, m + part), ends, part < 0.1);
+            }
+            for y in [0.0, 0.3, 1.0, 2.5, 32.0, 500.0] {
+                for m in [1e-4, 0.9, 1.0, 7.0] {
+                    let reach = m * part;
+                    let ends = [m - reach, m + reach];
+                    let powers = [ends[0], m, ends[1]].map(|x: f64| x.pow(y));
+                    if powers[2] < 1e30 {
+                        let spread = power(powers[1], (m, reach), ends, y);
+                        hold(spread, powers, part < 0.05 && y * part < 0.05);
+                    }
+                }
+            }
+        }
+    }
+}

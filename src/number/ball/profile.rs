@@ -211,8 +211,7 @@ impl Profile for Gpu {
 }
 
 /// Rounds as `P`, without a branch, so that a loop over balls becomes vectors: nothing is known of a result
-/// that is not bounded or whose case is rare (0 times a ball, 0 divided by one, a choice that is
-/// undecided). Its radius is NaN, which is sound; every other ball is that of `P`, bit for bit. What
+/// that is not bounded, of an infinite operand, or of a choice that is undecided. Its radius is NaN, which is sound; every other ball is that of `P`, bit for bit. What
 /// was decided is what `P` decides, as nothing decides of NaN.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Common<P>(PhantomData<P>);

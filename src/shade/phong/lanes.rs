@@ -4,10 +4,11 @@
 //! definition becomes a choice between two results; only the powers differ, see [`Exact::powers`].
 
 use super::{Answer, Form, Shader, mirrored};
+use crate::number::ball::{BallLanes, Common, Profile};
 use crate::number::lanes::{
     LANES, Lanes, any, components, mask, put_vector, transposed, vector, vectorized,
 };
-use crate::number::{Exact, Vector3};
+use crate::number::{Ball, Exact, Real, Vector3};
 
 /// One row of the picture.
 pub(super) struct ShadedRow<'a, R> {
@@ -153,6 +154,70 @@ impl<R: Exact> Shader<R> {
         let form = |i| Form { normal: turned(i), tangent: Vector3::ZERO };
         lit(self, points, form, surface)
     }
+}
+
+impl<P: Profile> Shader<Ball<Common<P>>> {
+    /// [`Shader::surface`] of several pixels: of each colour what common balls know.
+    #[inline(always)]
+    pub(crate) fn surfaces(
+        &self,
+        at: &[(u32, u32); LANES],
+        depth: &BallLanes<Common<P>>,
+        normal: &[BallLanes<Common<P>>; 3],
+        surface: &[BallLanes<Common<P>>; 3],
+    ) -> [BallLanes<Common<P>>; 3] {
+        if self.lights.is_empty() {
+            return *surface;
+        }
+        let answer = Answer::<Ball<Common<P>>>::new(&self.material);
+        let zero = [BallLanes::ZERO; 3];
+        let (mut points, mut eyes, mut normals, mut color) = (zero, zero, zero, zero);
+        for (i, &(x, y)) in at.iter().enumerate() {
+            let p = self.position(x as usize, y as usize, depth.get(i));
+            put_balls(&mut points, i, p);
+            put_balls(&mut eyes, i, self.towards_eye(p));
+            put_balls(&mut normals, i, self.view.direction(balls(normal, i)));
+            let own = balls(surface, i);
+            put_balls(&mut color, i, own * answer.ambient);
+        }
+        for (place, light) in &self.lights {
+            let (mut cosines, mut gloss) = (BallLanes::ZERO, BallLanes::ZERO);
+            for i in 0..LANES {
+                let (l, n) = (place.from(balls(&points, i)), balls(&normals, i));
+                let cosine = n.dot(l);
+                gloss.put(i, mirrored(n, cosine, l, balls(&eyes, i)));
+                cosines.put(i, cosine);
+            }
+            let mut highlights = BallLanes::ZERO;
+            for i in 0..LANES {
+                highlights.put(i, answer.highlight(cosines.get(i), gloss.get(i)));
+            }
+            for i in 0..LANES {
+                let (before, own) = (balls(&color, i), balls(surface, i));
+                let (cosine, faces) = (cosines.get(i), cosines.get(i).gt(Ball::ZERO));
+                let before = [before.x, before.y, before.z];
+                let own = [own.x, own.y, own.z];
+                let after = answer.add(before, *light, cosine, own, highlights.get(i));
+                let chosen = |c: usize| Ball::select(faces, after[c], before[c]);
+                put_balls(&mut color, i, Vector3::new(chosen(0), chosen(1), chosen(2)));
+            }
+        }
+        color
+    }
+}
+
+/// The vector of a lane.
+#[inline(always)]
+fn balls<P: Profile>(lanes: &[BallLanes<P>; 3], i: usize) -> Vector3<Ball<P>> {
+    Vector3::new(lanes[0].get(i), lanes[1].get(i), lanes[2].get(i))
+}
+
+/// Replaces the vector of a lane.
+#[inline(always)]
+fn put_balls<P: Profile>(lanes: &mut [BallLanes<P>; 3], i: usize, v: Vector3<Ball<P>>) {
+    lanes[0].put(i, v.x);
+    lanes[1].put(i, v.y);
+    lanes[2].put(i, v.z);
 }
 
 /// The colours of these points in view space, before the lights of a scene.

@@ -125,13 +125,7 @@ impl<R: Real> Shader<R> {
             let faces = cosine.gt(R::ZERO);
             if faces.possibly() {
                 let mirrored = mirrored(n, cosine, l, v);
-                let shines = mirrored.gt(R::ZERO) & answer.specular.gt(R::ZERO);
-                let highlight = if shines.possibly() {
-                    let power = mirrored.at_least(R::ZERO).pow(answer.shininess);
-                    R::select(shines, answer.specular * power, R::ZERO)
-                } else {
-                    R::ZERO
-                };
+                let highlight = answer.highlight(cosine, mirrored);
                 let more = answer.add(color, *light, cosine, surface, highlight);
                 // Not by `map`, which is not inlined where numbers are balls.
                 let chosen = |c: usize| R::select(faces, more[c], color[c]);
@@ -172,6 +166,19 @@ impl<R: Real> Shader<R> {
     pub fn surfel(&self, p: Vector3<R>, n: Vector3<R>, surface: [R; 3]) -> [R; 3] {
         let normal = self.view.direction(n);
         self.lit(self.view.point(p), |l| (normal, normal.dot(l)), surface)
+    }
+
+    /// The same in the numbers of another arithmetic, of the same view.
+    pub(crate) fn map<S: Real>(&self, view: View<S>, number: impl Fn(R) -> S) -> Shader<S> {
+        let vector = |v: Vector3<R>| Vector3::new(number(v.x), number(v.y), number(v.z));
+        let light = |(place, light): &(PlacedLight<R>, [R; 3])| {
+            let place = match *place {
+                PlacedLight::Towards(l) => PlacedLight::Towards(vector(l)),
+                PlacedLight::At(position) => PlacedLight::At(vector(position)),
+            };
+            (place, light.map(&number))
+        };
+        Shader { view, lights: self.lights.iter().map(light).collect(), material: self.material }
     }
 
     /// The colour of surfaces in a scene without colours.
@@ -313,6 +320,18 @@ impl<R: Real> Answer<R> {
             diffuse: R::from_f32(material.diffuse),
             specular: R::from_f32(material.specular),
             shininess: R::from_f32(material.shininess),
+        }
+    }
+
+    /// specular (r . v)^shininess, if r . v is above 0 and the light, under this n . l, may add something.
+    #[inline(always)]
+    fn highlight(&self, cosine: R, mirrored: R) -> R {
+        let shines = mirrored.gt(R::ZERO) & self.specular.gt(R::ZERO);
+        if (shines & cosine.gt(R::ZERO)).possibly() {
+            let power = mirrored.at_least(R::ZERO).pow(self.shininess);
+            R::select(shines, self.specular * power, R::ZERO)
+        } else {
+            R::ZERO
         }
     }
 

@@ -41,6 +41,7 @@ pub(in crate::method) mod certificate;
 pub(in crate::method) mod handed;
 pub(in crate::method) mod pixel;
 mod records;
+mod right;
 pub(in crate::method) mod sums;
 pub(in crate::method) mod swift;
 #[cfg(test)]
@@ -52,6 +53,7 @@ use crate::frame::Rect;
 use crate::method::algorithm::Job;
 use crate::method::judged::{self, Counts, Marks, counted};
 use crate::number::ball::Profile;
+use crate::number::lanes::LANES;
 use crate::scene::Surfels;
 use crate::verify::client::Client;
 use crate::verify::shift::Told;
@@ -59,6 +61,7 @@ use crate::verify::verdict::{Check, Doubt, Verdict};
 use band::Bands;
 use handed::Handed;
 use pixel::PixelJudge;
+use right::RightPixels;
 use sums::Continuations;
 use swift::SwiftSplats;
 
@@ -99,6 +102,7 @@ struct Judge<'a, P: Profile> {
     splats: SwiftSplats<P>,
     bands: Bands<'a, P>,
     pixels: PixelJudge<'a, P>,
+    right: Option<RightPixels<'a, P>>,
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
@@ -109,25 +113,38 @@ impl<'a, P: Profile> Judge<'a, P> {
         };
         let bands = Bands::new(job, handed.band, splats.epsilon);
         let pixels = PixelJudge::new(job, handed);
-        Self { surfels: &job.scene.surfels, handed, splats, bands, pixels }
+        let right = RightPixels::new(job, handed);
+        Self { surfels: &job.scene.surfels, handed, splats, bands, pixels, right }
     }
 
     /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
-        let Self { surfels, handed, splats, bands, pixels } = self;
+        let Self { surfels, handed, splats, bands, pixels, right } = self;
         let [first, rest @ ..] = marks;
         let nearest = certificate::judge(splats, (handed, surfels), (tile, &rect), first);
         let limits = bands.moved(&nearest, &rect);
         let sums = sums::continuations(splats, surfels, &limits, (tile, &rect), &mut rest[0]);
         let (mut covered, mut told) = (0, Told::default());
-        for (pixel, at) in counted(rect) {
-            let sums = sums.of(pixel);
-            let taken = pixels.judge((pixel, at), &nearest[pixel], &sums, rest);
-            if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
-                told.take_all(open, taken);
+        let all: Vec<_> = counted(rect).collect();
+        let right = right.as_ref().filter(|_| !rest[0].logs());
+        for some in all.chunks(LANES) {
+            let errors = right.map(|right| right.errors(some, &nearest, &sums));
+            for (i, &(pixel, at)) in some.iter().enumerate() {
+                if let Some(errors) = errors.and_then(|errors| errors[i]) {
+                    for (marks, error) in rest.iter_mut().zip(errors) {
+                        marks.at(pixel).right(error);
+                    }
+                    covered += u64::from(nearest[pixel].depth.middle.is_finite());
+                    continue;
+                }
+                let sums = sums.of(pixel);
+                let taken = pixels.judge((pixel, at), &nearest[pixel], &sums, rest);
+                if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
+                    told.take_all(open, taken);
+                }
+                let certain = matches!(sums, Continuations::One(_));
+                covered += u64::from(nearest[pixel].depth.middle.is_finite() || !certain);
             }
-            let certain = matches!(sums, Continuations::One(_));
-            covered += u64::from(nearest[pixel].depth.middle.is_finite() || !certain);
         }
         Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS), told }
     }

@@ -21,9 +21,9 @@ use crate::verify::client::Storage;
 use std::borrow::Cow;
 
 /// The stages after visibility, by their place among the marks.
-const ATTRIBUTES: usize = 0;
-const NORMALIZATION: usize = 1;
-const SHADING: usize = 2;
+pub(super) const ATTRIBUTES: usize = 0;
+pub(super) const NORMALIZATION: usize = 1;
+pub(super) const SHADING: usize = 2;
 
 /// What all pixels share.
 pub(in crate::method) struct PixelJudge<'a, P: Profile> {

@@ -79,6 +79,11 @@ pub(in crate::method) struct TileSums<'a, P: Profile> {
 }
 
 impl<P: Profile> TileSums<'_, P> {
+    /// The sums of a pixel without an undecided fragment, if totals know them.
+    pub(in crate::method) fn known(&self, pixel: usize) -> Option<Sums<Ball<P>>> {
+        if self.sums.undecided[pixel] == 0 { self.sums.of(pixel) } else { None }
+    }
+
     /// Those of a pixel.
     pub(in crate::method) fn of(&self, pixel: usize) -> Continuations<P> {
         match self.sums.undecided[pixel] {
