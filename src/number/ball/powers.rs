@@ -66,18 +66,24 @@ mod tests {
         assert!(!close || spread <= 1.2 * exact + 4.0 * error, "{spread} of {exact}");
     }
 
+    /// The ends about m, and how far the farther is from m, all without an error.
+    fn about(m: f64, reach: f64) -> ([f64; 2], f64) {
+        let ends = [m - reach, m + reach];
+        (ends, larger(m - ends[0], ends[1] - m))
+    }
+
     #[test]
     fn spreads_hold_both_ends() {
         for i in 0..60 {
             let part = 0.7_f64.pow(f64::from(i));
             for m in [-80.0, -1.5, 0.0, 2.0, 60.0] {
-                let ends = [m - part, m, m + part].map(Real::exp);
-                hold(exponential(ends[1], part, m + part), ends, part < 0.1);
+                let (ends, reach) = about(m, part);
+                let powers = [ends[0], m, ends[1]].map(Real::exp);
+                hold(exponential(powers[1], reach, ends[1]), powers, part < 0.1);
             }
             for y in [0.0, 0.3, 1.0, 2.5, 32.0, 500.0] {
                 for m in [1e-4, 0.9, 1.0, 7.0] {
-                    let reach = m * part;
-                    let ends = [m - reach, m + reach];
+                    let (ends, reach) = about(m, m * part);
                     let powers = [ends[0], m, ends[1]].map(|x: f64| x.pow(y));
                     if powers[2] < 1e30 {
                         let spread = power(powers[1], (m, reach), ends, y);
