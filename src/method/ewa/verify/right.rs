@@ -45,8 +45,8 @@ impl<'a, P: Profile> RightPixels<'a, P> {
             [handed.depth, handed.weight, handed.depth_copy, handed.weight_copy, handed.alpha];
         let triples =
             [handed.normal_sum, handed.color_sum, handed.color, handed.normal, handed.shaded];
-        let floats = scalars.iter().flatten().all(|plane| plane.storage == Storage::Single)
-            && triples.iter().flatten().all(is_single);
+        let floats =
+            scalars.iter().flatten().all(is_single) && triples.iter().flatten().all(is_single);
         let other = handed.opacity.is_some()
             || handed.mask.is_some()
             || handed.weightless
