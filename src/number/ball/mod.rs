@@ -76,7 +76,7 @@ pub(crate) use lanes::BallLanes;
 pub(crate) use profile::Common;
 pub use profile::{Gpu, Ieee, Profile, SumTerms};
 pub use three::{PixelRange, Three};
-pub(crate) use totals::Totals;
+pub(crate) use totals::{Totals, TotalsLanes};
 
 use super::Real;
 use arithmetic::is_exact;

@@ -197,8 +197,8 @@ impl Profile for Gpu {
     #[inline(always)]
     fn total(middle: f64, [magnitude, additions, radius]: [f64; 3]) -> Ball<Self> {
         // Each term is an addition, the first one to 0.
-        let terms = SumTerms { magnitude, additions, radius };
-        if additions == 0.0 { Ball::new(middle, 0.0) } else { terms.ball(middle) }
+        let ball = SumTerms { magnitude, additions, radius }.ball(middle);
+        Ball { radius: if additions == 0.0 { 0.0 } else { ball.radius }, ..ball }
     }
     #[inline(always)]
     fn choose(truth: bool, yes: SumTerms, no: SumTerms) -> SumTerms {

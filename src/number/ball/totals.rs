@@ -1,6 +1,8 @@
 //! Sums of products that are added up one after the other, side by side.
 
 use super::{Ball, Common, Profile, common};
+use crate::number::lanes::LANES;
+use std::marker::PhantomData;
 
 /// N sums of as many terms each: every one the ball that `+` makes of the same terms from 0 on, bit for
 /// bit, or unknown.
@@ -14,7 +16,7 @@ pub(crate) struct Totals<P: Profile, const N: usize> {
     /// The size of the terms, of such a profile.
     magnitude: [f64; N],
     terms: f64,
-    profile: std::marker::PhantomData<P>,
+    profile: PhantomData<P>,
 }
 
 impl<P: Profile, const N: usize> Totals<P, N> {
@@ -24,7 +26,7 @@ impl<P: Profile, const N: usize> Totals<P, N> {
         radius: [0.0; N],
         magnitude: [0.0; N],
         terms: 0.0,
-        profile: std::marker::PhantomData,
+        profile: PhantomData,
     };
 
     /// Adds a term to each.
@@ -45,23 +47,78 @@ impl<P: Profile, const N: usize> Totals<P, N> {
     }
 
     /// The sums; none if one of them is unknown.
-    #[inline(always)]
     pub(crate) fn balls(&self) -> Option<[Ball<P>; N]> {
-        let mut balls = [Ball::exact(0.0); N];
+        let (balls, known) = self.balls_if_known();
+        known.then_some(balls)
+    }
+
+    /// The sums, and whether all of them are known; without a branch.
+    #[inline(always)]
+    fn balls_if_known(&self) -> ([Ball<P>; N], bool) {
+        let (mut balls, mut known) = ([Ball::exact(0.0); N], true);
         for (i, ball) in balls.iter_mut().enumerate() {
-            let (middle, radius) = (self.middle[i], self.radius[i]);
+            let (middle, radius, magnitude) = (self.middle[i], self.radius[i], self.magnitude[i]);
             *ball = if P::ADDS_IN_ANY_ORDER {
-                P::total(middle, [self.magnitude[i], self.terms, radius])
+                P::total(middle, [magnitude, self.terms, radius])
             } else {
                 Ball::new(middle, radius)
             };
+            // No sum of the first terms was larger. A comparison that NaN fails.
+            let most = if P::ADDS_IN_ANY_ORDER { 2.0 * magnitude } else { 0.0 };
+            known &= most + ball.radius <= f64::from(f32::MAX);
         }
-        // No sum of the first terms was larger. Comparisons that NaN fails.
-        let bounded = |i: usize| {
-            let most = if P::ADDS_IN_ANY_ORDER { 2.0 * self.magnitude[i] } else { 0.0 };
-            most + balls[i].radius <= f64::from(f32::MAX)
+        (balls, known)
+    }
+}
+
+/// Totals side by side.
+#[derive(Clone, Copy)]
+pub(crate) struct TotalsLanes<P: Profile, const N: usize> {
+    middle: [[f64; LANES]; N],
+    radius: [[f64; LANES]; N],
+    magnitude: [[f64; LANES]; N],
+    terms: [f64; LANES],
+    profile: PhantomData<P>,
+}
+
+impl<P: Profile, const N: usize> TotalsLanes<P, N> {
+    /// No terms.
+    pub(crate) const NONE: Self = Self {
+        middle: [[0.0; LANES]; N],
+        radius: [[0.0; LANES]; N],
+        magnitude: [[0.0; LANES]; N],
+        terms: [0.0; LANES],
+        profile: PhantomData,
+    };
+
+    #[inline(always)]
+    pub(crate) fn put(&mut self, lane: usize, totals: &Totals<P, N>) {
+        for i in 0..N {
+            self.middle[i][lane] = totals.middle[i];
+            self.radius[i][lane] = totals.radius[i];
+            self.magnitude[i][lane] = totals.magnitude[i];
+        }
+        self.terms[lane] = totals.terms;
+    }
+
+    /// The sums of a lane, and whether all of them are known.
+    #[inline(always)]
+    pub(crate) fn balls(&self, lane: usize) -> ([Ball<P>; N], bool) {
+        let of = |numbers: &[[f64; LANES]; N]| {
+            let mut of_lane = [0.0; N];
+            for (number, lanes) in of_lane.iter_mut().zip(numbers) {
+                *number = lanes[lane];
+            }
+            of_lane
         };
-        (0..N).all(bounded).then_some(balls)
+        let totals = Totals::<P, N> {
+            middle: of(&self.middle),
+            radius: of(&self.radius),
+            magnitude: of(&self.magnitude),
+            terms: self.terms[lane],
+            profile: PhantomData,
+        };
+        totals.balls_if_known()
     }
 }
 

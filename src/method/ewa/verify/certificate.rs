@@ -1,14 +1,14 @@
 //! The visibility pass of a client: what may be the nearest fragment, and what certainly is not.
 
 use super::handed::Handed;
-use super::swift::{SwiftSplat, SwiftSplats, each_fragment, least_nearness};
+use super::swift::{Fragment, SwiftSplat, SwiftSplats, each_fragment, least_nearness};
 use crate::composite::decide;
 use crate::frame::{NO_ID, Rect};
 use crate::method::ewa::possible::PossibleSplat;
 use crate::method::fragment::each_pixel;
 use crate::method::judged::{Marks, PixelMarks};
 use crate::method::tiled::pixels;
-use crate::number::ball::{Profile, Three};
+use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::splat::{Shared, Splat, fragment};
@@ -54,59 +54,112 @@ struct Claim<P: Profile> {
     range: [f64; 2],
 }
 
-/// Judges the nearest fragments of a tile, and says what later passes work with.
-pub(in crate::method) fn judge<P: Profile>(
+/// Judges the nearest fragments of a tile where others may be nearest, pixel by pixel, and says what later
+/// passes work with.
+pub(in crate::method) fn judge_among<P: Profile>(
     splats: &SwiftSplats<P>,
+    others: &[Vec<Other<P>>],
     given: (&Handed<'_>, &Surfels),
     tile: (usize, &Rect),
     marks: &mut Marks,
 ) -> Vec<Nearest<P>> {
-    judge_among(splats, &[], given, tile, marks)
-}
-
-/// The same where others may be nearest, pixel by pixel.
-pub(in crate::method) fn judge_among<P: Profile>(
-    splats: &SwiftSplats<P>,
-    others: &[Vec<Other<P>>],
-    (handed, surfels): (&Handed<'_>, &Surfels),
-    (tile, rect): (usize, &Rect),
-    marks: &mut Marks,
-) -> Vec<Nearest<P>> {
-    let mut claims = claims(splats, others, handed, (tile, rect));
-    // What certainly is farther than the client's fragment is no question.
-    let least: Vec<f64> = claims
-        .iter()
-        .map(|claim| match claim.open {
-            true => f64::NAN,
-            false => least_nearness(&splats.shared, claim.nearest.depth),
-        })
-        .collect();
+    let certificate = Certificate::new(splats, others, given, tile);
     each_fragment(
         splats,
-        (tile, rect),
-        |pixel| least[pixel],
-        |possible, pixel, q, w| {
-            let claim = &mut claims[pixel];
-            let fragment = Against::new(&splats.shared, possible, q, w);
-            if claim.open {
-                fragment.bound(&mut claim.range);
-            } else if claim.nearest.id != Some(possible.splat.surfel) {
-                fragment.judge(claim, &mut marks.at(pixel));
-                fragment.judge_tie(claim, (handed.ties, surfels), &mut marks.at(pixel));
+        tile,
+        |pixel| certificate.least(pixel),
+        |fragment, pixel| {
+            if !fragment.is_of(certificate.claims[pixel].nearest.id) {
+                certificate.meet((pixel, fragment), fragment.depth(), marks);
             }
         },
     );
-    for (pixel, claim) in claims.iter_mut().enumerate() {
-        if claim.open {
-            claim.nearest.depth = between(claim.range);
-        } else {
-            claim.judge(handed, &mut marks.at(pixel));
-            others_of(others, pixel).iter().for_each(|other| {
+    certificate.end(marks);
+    certificate.nearest()
+}
+
+/// What is asked of the nearest fragments of a tile: every fragment that may be nearer is
+/// [met](Certificate::meet), and then it is at its [end](Certificate::end).
+pub(in crate::method) struct Certificate<'a, P: Profile> {
+    handed: &'a Handed<'a>,
+    surfels: &'a Surfels,
+    others: &'a [Vec<Other<P>>],
+    claims: Vec<Claim<P>>,
+    /// The least nearness of a pixel that may be before the client's fragment; what certainly is farther is
+    /// no question. +inf where the client says nothing.
+    least: Vec<f64>,
+}
+
+impl<'a, P: Profile> Certificate<'a, P> {
+    pub(super) fn new(
+        splats: &SwiftSplats<P>,
+        others: &'a [Vec<Other<P>>],
+        (handed, surfels): (&'a Handed<'a>, &'a Surfels),
+        tile: (usize, &Rect),
+    ) -> Self {
+        let mut claims = claims(splats, others, handed, tile);
+        bound_open(splats, &mut claims, tile);
+        let least = |claim: &Claim<P>| match claim.open {
+            true => f64::INFINITY,
+            false => least_nearness(&splats.shared, claim.nearest.depth),
+        };
+        let least = claims.iter().map(least).collect();
+        Self { handed, surfels, others, claims, least }
+    }
+
+    /// What later passes work with.
+    pub(super) fn nearest(&self) -> Vec<Nearest<P>> {
+        self.claims.iter().map(|claim| claim.nearest).collect()
+    }
+
+    /// The least nearness that has to be met at a pixel, as of [`each_fragment`].
+    #[inline(always)]
+    pub(super) fn least(&self, pixel: usize) -> f64 {
+        self.least[pixel]
+    }
+
+    /// Holds a fragment, of depth `t`, against what the client has at its pixel.
+    #[inline(always)]
+    pub(super) fn meet(
+        &self,
+        (pixel, fragment): (usize, &Fragment<'_, P>),
+        t: Ball<P>,
+        marks: &mut Marks,
+    ) {
+        let claim = &self.claims[pixel];
+        // Comparisons that NaN fails.
+        let farther = fragment.most_near() < self.least[pixel];
+        if !(claim.open || farther || fragment.is_of(claim.nearest.id)) {
+            let (against, mut marks) = (Against { fragment, t }, marks.at(pixel));
+            against.judge(claim, &mut marks);
+            against.judge_tie(claim, (self.handed.ties, self.surfels), &mut marks);
+        }
+    }
+
+    /// Judges the claims themselves, and others against them.
+    pub(super) fn end(&self, marks: &mut Marks) {
+        for (pixel, claim) in self.claims.iter().enumerate().filter(|(_, claim)| !claim.open) {
+            claim.judge(self.handed, &mut marks.at(pixel));
+            others_of(self.others, pixel).iter().for_each(|other| {
                 other.judge(claim, &mut marks.at(pixel));
             });
         }
     }
-    claims.into_iter().map(|claim| claim.nearest).collect()
+}
+
+/// The depths that may be the nearest where the client says nothing.
+fn bound_open<P: Profile>(splats: &SwiftSplats<P>, claims: &mut [Claim<P>], tile: (usize, &Rect)) {
+    let open: Vec<bool> = claims.iter().map(|claim| claim.open).collect();
+    if !open.contains(&true) {
+        return;
+    }
+    let least = |pixel: usize| if open[pixel] { f64::NAN } else { f64::INFINITY };
+    each_fragment(splats, tile, least, |fragment, pixel| {
+        Against { fragment, t: fragment.depth() }.bound(&mut claims[pixel].range);
+    });
+    for claim in claims.iter_mut().filter(|claim| claim.open) {
+        claim.nearest.depth = between(claim.range);
+    }
 }
 
 /// What the client says of each pixel.
@@ -262,50 +315,29 @@ impl<P: Profile> Other<P> {
 }
 
 /// A fragment that the client did not choose.
-struct Against<P: Profile> {
-    surfel: u32,
-    /// Whether it is drawn.
-    drawn: bool,
-    inside: Three,
-    /// How certain that is.
-    margin: f64,
-    /// q divided by the limit of q.
-    rim: f64,
+struct Against<'a, P: Profile> {
+    fragment: &'a Fragment<'a, P>,
     t: Ball<P>,
 }
 
-impl<P: Profile> Against<P> {
-    fn new(shared: &Shared<Ball<P>>, possible: &PossibleSplat<P>, q: Ball<P>, w: Ball<P>) -> Self {
-        Self {
-            surfel: possible.splat.surfel,
-            drawn: possible.certain,
-            inside: decide::inside(q, shared.limit),
-            margin: q.distance(shared.limit),
-            rim: q.middle / shared.limit.middle,
-            t: shared.depth(w),
-        }
-    }
-
+impl<P: Profile> Against<'_, P> {
     /// Whether the fragment certainly is nearer than what the client has, or may be.
     fn judge(&self, claim: &Claim<P>, pixel: &mut PixelMarks<'_>) {
-        if !self.inside.possibly() {
-            return;
-        }
-        let depth = claim.nearest.depth;
+        let (fragment, depth) = (self.fragment, claim.nearest.depth);
         let nearer = decide::before(self.t, depth);
-        if self.drawn && (self.inside & nearer).certainly() {
+        if fragment.drawn && (fragment.inside & nearer).certainly() {
             // As certain as the least certain of the two.
-            let gap = self.t.distance(depth);
-            pixel.found(if gap < self.margin { gap } else { self.margin }, || Fault::LeftOut {
-                surfel: self.surfel,
-                rim: self.rim,
+            let (gap, margin) = (self.t.distance(depth), fragment.margin());
+            pixel.found(if gap < margin { gap } else { margin }, || Fault::LeftOut {
+                surfel: fragment.splat.surfel,
+                rim: fragment.rim(),
                 depth: self.t.middle,
                 found: depth.middle,
             });
         } else if nearer.possibly() {
             pixel.doubt(Doubt::Nearer, !nearer.certainly());
-            pixel.doubt(Doubt::CutOff, !self.inside.certainly());
-            pixel.doubt(Doubt::Fate, !self.drawn);
+            pixel.doubt(Doubt::CutOff, !fragment.inside.certainly());
+            pixel.doubt(Doubt::Fate, !fragment.drawn);
         }
     }
 
@@ -320,28 +352,26 @@ impl<P: Profile> Against<P> {
         pixel: &mut PixelMarks<'_>,
     ) {
         let Some(id) = claim.nearest.id else { return };
+        let surfel = self.fragment.splat.surfel;
         let first = match ties {
-            Ties::Lowest => self.surfel < id,
-            Ties::Last => self.surfel > id && id != NO_ID,
+            Ties::Lowest => surfel < id,
+            Ties::Last => surfel > id && id != NO_ID,
             Ties::Any => false,
         };
         let exact = self.t.distance(claim.closest) == f64::INFINITY
-            && self.inside.certainly()
+            && self.fragment.inside.certainly()
             && self.t.middle == claim.closest.middle;
-        if first && self.drawn && (exact || surfels.are_equal(self.surfel, id)) {
-            let surfel = self.surfel;
+        if first && self.fragment.drawn && (exact || surfels.are_equal(surfel, id)) {
             pixel.found(f64::INFINITY, || Fault::Tie { surfel, found: id });
         }
     }
 
     /// The nearest depth that a pixel may have, if the client says nothing of it.
     fn bound(&self, [least, most]: &mut [f64; 2]) {
-        if self.inside.possibly() {
-            let Ball { middle, radius, .. } = self.t;
-            *least = least.at_most(middle - radius);
-            if self.drawn && self.inside.certainly() {
-                *most = most.at_most(middle + radius);
-            }
+        let Ball { middle, radius, .. } = self.t;
+        *least = least.at_most(middle - radius);
+        if self.fragment.drawn && self.fragment.inside.certainly() {
+            *most = most.at_most(middle + radius);
         }
     }
 }

@@ -59,10 +59,11 @@ use crate::verify::client::Client;
 use crate::verify::shift::Told;
 use crate::verify::verdict::{Check, Doubt, Verdict};
 use band::Bands;
+use certificate::{Certificate, Nearest};
 use handed::Handed;
 use pixel::PixelJudge;
-use right::RightPixels;
-use sums::Continuations;
+use right::{Errors, RightPixels};
+use sums::{AllSums, Continuations};
 use swift::SwiftSplats;
 
 /// Judges the planes of a client.
@@ -119,33 +120,61 @@ impl<'a, P: Profile> Judge<'a, P> {
 
     /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
-        let Self { surfels, handed, splats, bands, pixels, right } = self;
+        let Self { surfels, handed, splats, bands, pixels, .. } = self;
         let [first, rest @ ..] = marks;
-        let nearest = certificate::judge(splats, (handed, surfels), (tile, &rect), first);
+        let certificate = Certificate::new(splats, &[], (handed, surfels), (tile, &rect));
+        let nearest = certificate.nearest();
         let limits = bands.moved(&nearest, &rect);
-        let sums = sums::continuations(splats, surfels, &limits, (tile, &rect), &mut rest[0]);
+        let beside = Some((&certificate, &mut *first));
+        let added = sums::add(splats, surfels, &limits, (tile, &rect), beside, &mut rest[0]);
+        certificate.end(first);
+        let right = self.right(rect, &nearest, &added.sums, &rest[0]);
+        let sums = added.followed(|pixel| right[pixel].is_none());
         let (mut covered, mut told) = (0, Told::default());
-        let all: Vec<_> = counted(rect).collect();
-        let right = right.as_ref().filter(|_| !rest[0].logs());
-        for some in all.chunks(LANES) {
-            let errors = right.map(|right| right.errors(some, &nearest, &sums));
-            for (i, &(pixel, at)) in some.iter().enumerate() {
-                if let Some(errors) = errors.and_then(|errors| errors[i]) {
-                    for (marks, error) in rest.iter_mut().zip(errors) {
-                        marks.at(pixel).right(error);
-                    }
-                    covered += u64::from(nearest[pixel].depth.middle.is_finite());
-                    continue;
+        for (pixel, at) in counted(rect) {
+            let is_finite = nearest[pixel].depth.middle.is_finite();
+            if let Some(errors) = right[pixel] {
+                for (marks, error) in rest.iter_mut().zip(errors) {
+                    marks.at(pixel).right(error);
                 }
-                let sums = sums.of(pixel);
-                let taken = pixels.judge((pixel, at), &nearest[pixel], &sums, rest);
-                if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
-                    told.take_all(open, taken);
-                }
-                let certain = matches!(sums, Continuations::One(_));
-                covered += u64::from(nearest[pixel].depth.middle.is_finite() || !certain);
+                covered += u64::from(is_finite);
+                continue;
             }
+            let sums = sums.of(pixel);
+            let taken = pixels.judge((pixel, at), &nearest[pixel], &sums, rest);
+            if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
+                told.take_all(open, taken);
+            }
+            let certain = matches!(sums, Continuations::One(_));
+            covered += u64::from(is_finite || !certain);
         }
         Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS), told }
+    }
+
+    /// The errors of the pixels of a rectangle that are right, as far as that is seen at once.
+    fn right(
+        &self,
+        rect: Rect,
+        nearest: &[Nearest<P>],
+        sums: &AllSums<P>,
+        marks: &Marks,
+    ) -> Vec<Option<Errors>> {
+        let mut found = vec![None; rect.pixels()];
+        let Some(right) = self.right.as_ref().filter(|_| !marks.logs()) else { return found };
+        let mut asked = Vec::with_capacity(found.len());
+        for (pixel, at) in counted(rect).filter(|(pixel, _)| sums.undecided[*pixel] == 0) {
+            if sums.count[pixel] > 0 {
+                asked.push((pixel, at));
+            } else if self.pixels.is_right_of_nothing(at) {
+                found[pixel] = Some([0.0; 3]);
+            }
+        }
+        for some in asked.chunks(LANES) {
+            let errors = right.errors(some, nearest, sums);
+            for ((pixel, _), errors) in some.iter().zip(errors) {
+                found[*pixel] = errors;
+            }
+        }
+        found
     }
 }

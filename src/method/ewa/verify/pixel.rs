@@ -81,9 +81,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         marks: &mut [Marks; 3],
     ) -> Option<usize> {
         let all = all(sums);
-        // Where nothing is and the client has nothing, every check finds an error of 0.
-        let nothing = matches!(all, [Sums { count: 0, .. }]) && self.shading.is_black();
-        if nothing && self.handed.is_empty(at) && !marks[ATTRIBUTES].logs() {
+        let nothing = matches!(all, [Sums { count: 0, .. }]) && !marks[ATTRIBUTES].logs();
+        if nothing && self.is_right_of_nothing(at) {
             return None;
         }
         let check = |sums: &_, report: &mut Report<'_>| self.check(at, nearest, Some(sums), report);
@@ -91,6 +90,11 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             marks[part].at(pixel).found(error, fault);
         });
         only_fitting(all, check)
+    }
+
+    /// Whether, if nothing is at a pixel, the client has nothing: every check finds an error of 0.
+    pub(super) fn is_right_of_nothing(&self, at: (u32, u32)) -> bool {
+        self.shading.is_black() && self.handed.is_empty(at)
     }
 
     /// Opacity and shaded colour as the next pass reads them: the client's, else all that they may be.

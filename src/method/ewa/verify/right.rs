@@ -12,11 +12,10 @@
 use super::certificate::Nearest;
 use super::handed::Handed;
 use super::pixel::{ATTRIBUTES, NORMALIZATION, SHADING};
-use super::sums::TileSums;
+use super::sums::AllSums;
 use crate::composite::sum;
 use crate::method::algorithm::Job;
-use crate::method::ewa::attributes::Sums;
-use crate::number::ball::{BallLanes, Common, Profile};
+use crate::number::ball::{BallLanes, Common, Profile, TotalsLanes};
 use crate::number::lanes::{LANES, each, vectorized};
 use crate::number::{Ball, Real};
 use crate::shade::phong::Shader;
@@ -66,23 +65,17 @@ impl<'a, P: Profile> RightPixels<'a, P> {
         Some(Self { handed, shader, colored: scene.surfels.color().is_some(), plain })
     }
 
-    /// The errors of some pixels of a tile, at most [`LANES`], if they are known and right.
+    /// The errors of some pixels of a tile, at most [`LANES`] without an undecided fragment, if they are known
+    /// and right.
     pub(super) fn errors(
         &self,
         some: &[(usize, (u32, u32))],
         nearest: &[Nearest<P>],
-        sums: &TileSums<'_, P>,
+        sums: &AllSums<P>,
     ) -> [Option<Errors>; LANES] {
         let mut lanes = Pixels::<P>::new();
         for (i, &(pixel, at)) in some.iter().enumerate() {
-            let depth = nearest[pixel].depth;
-            lanes.at[i] = at;
-            if let Some(sums) = sums.known(pixel).filter(|sums| sums.count > 0) {
-                lanes.put(i, depth, &sums);
-            }
-        }
-        if lanes.right == [0; LANES] {
-            return [None; LANES];
+            lanes.put(i, (pixel, at), nearest[pixel].depth, sums);
         }
         let found = judge(self, &lanes);
         std::array::from_fn(|i| {
@@ -100,9 +93,8 @@ fn is_single<T>(plane: &Stored<'_, T>) -> bool {
 struct Pixels<P: Profile> {
     at: [(u32, u32); LANES],
     depth: Numbers<P>,
-    weight: Numbers<P>,
-    normal: [Numbers<P>; 3],
-    color: [Numbers<P>; 3],
+    weighted: TotalsLanes<P, 4>,
+    color: TotalsLanes<P, 3>,
     count: [u8; LANES],
     /// All bits where there is such a pixel, else none.
     right: [u32; LANES],
@@ -110,26 +102,30 @@ struct Pixels<P: Profile> {
 
 impl<P: Profile> Pixels<P> {
     fn new() -> Self {
-        let three = [Numbers::<P>::ZERO; 3];
         Self {
             at: [(0, 0); LANES],
             depth: Numbers::<P>::ZERO,
-            weight: Numbers::<P>::ZERO,
-            normal: three,
-            color: three,
+            weighted: TotalsLanes::NONE,
+            color: TotalsLanes::NONE,
             count: [0; LANES],
             right: [0; LANES],
         }
     }
 
-    fn put(&mut self, i: usize, depth: Ball<P>, sums: &Sums<Ball<P>>) {
+    fn put(
+        &mut self,
+        i: usize,
+        (pixel, at): (usize, (u32, u32)),
+        depth: Ball<P>,
+        sums: &AllSums<P>,
+    ) {
+        self.at[i] = at;
         self.depth.put(i, depth.rounding_as());
-        self.weight.put(i, sums.weight.rounding_as());
-        for c in 0..3 {
-            self.normal[c].put(i, sums.normal[c].rounding_as());
-            self.color[c].put(i, sums.color[c].rounding_as());
+        self.weighted.put(i, &sums.weighted[pixel]);
+        if let Some(color) = sums.color.get(pixel) {
+            self.color.put(i, color);
         }
-        self.count[i] = sums.count;
+        self.count[i] = sums.count[pixel];
         self.right[i] = u32::MAX;
     }
 }
@@ -225,8 +221,24 @@ vectorized!(
     fn judge<P: Profile>(of: &RightPixels<'_, P>, pixels: &Pixels<P>) -> Found {
         let (handed, at) = (of.handed, &pixels.at);
         let mut found = Found { worst: [[0.0; LANES]; 3], right: pixels.right };
-        let Pixels { mut weight, mut normal, mut color, .. } = *pixels;
         // -- Sums
+        let (mut weight, mut normal) = (Numbers::<P>::ZERO, [Numbers::<P>::ZERO; 3]);
+        for i in 0..LANES {
+            let ([w, x, y, z], known) = pixels.weighted.balls(i);
+            weight.put(i, w.rounding_as());
+            normal[0].put(i, x.rounding_as());
+            normal[1].put(i, y.rounding_as());
+            normal[2].put(i, z.rounding_as());
+            found.right[i] &= u32::from(known).wrapping_neg();
+        }
+        let mut color = [Numbers::<P>::ZERO; 3];
+        for i in 0..LANES {
+            let ([r, g, b], known) = pixels.color.balls(i);
+            color[0].put(i, r.rounding_as());
+            color[1].put(i, g.rounding_as());
+            color[2].put(i, b.rounding_as());
+            found.right[i] &= u32::from(known).wrapping_neg();
+        }
         if let Some(plane) = &handed.weight {
             let own = scalars(plane, at);
             found.number(ATTRIBUTES, &own, &weight);
@@ -307,7 +319,7 @@ mod tests {
     use crate::method::Method;
     use crate::method::ewa::Settings;
     use crate::method::ewa::verify::tests::each_scene;
-    use crate::method::judged::{self, Marks, counted};
+    use crate::method::judged::{self, Marks};
     use crate::number::ball::{Gpu, Ieee};
     use crate::verify::client::Client;
 
@@ -320,14 +332,12 @@ mod tests {
         for (tile, rect) in job.grid().rects().into_iter().enumerate() {
             let given = (&handed, judge.surfels);
             let mut marks = Marks::new(rect);
-            let nearest = certificate::judge(&judge.splats, given, (tile, &rect), &mut marks);
+            let nearest =
+                certificate::judge_among(&judge.splats, &[], given, (tile, &rect), &mut marks);
             let (surfels, at) = (judge.surfels, (tile, &rect));
-            let sums = sums::continuations(&judge.splats, surfels, &nearest, at, &mut marks);
-            let right = judge.right.as_ref().unwrap();
-            for some in counted(rect).collect::<Vec<_>>().chunks(LANES) {
-                let errors = right.errors(some, &nearest, &sums);
-                found[0] += errors.iter().flatten().count() as u64;
-            }
+            let added = sums::add(&judge.splats, surfels, &nearest, at, None, &mut marks);
+            let right = judge.right(rect, &nearest, &added.sums, &marks);
+            found[0] += right.iter().flatten().count() as u64;
         }
         let verdict = |judge: &Judge<'_, P>| {
             judged::verdict(job, handed.stages(), 1.0, |tile, marks| judge.judge(tile, marks))

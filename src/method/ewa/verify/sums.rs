@@ -1,13 +1,12 @@
 //! The attribute pass of a client: the sums over the fragments that certainly are visible, and both
 //! continuations of every decision that may be either way.
 
-use super::certificate::Nearest;
-use super::swift::{SwiftSplats, each_fragment, least_nearness};
+use super::certificate::{Certificate, Nearest};
+use super::swift::{Fragment, SwiftSplats, each_fragment, least_nearness};
 use crate::composite::decide;
 use crate::frame::Rect;
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::method::ewa::attributes::Sums;
-use crate::method::ewa::possible::PossibleSplat;
 use crate::method::fragment::facing;
 use crate::method::judged::{Marks, PixelMarks};
 use crate::number::ball::{Common, Profile, Three, Totals};
@@ -49,26 +48,80 @@ pub(in crate::method) fn continuations<'a, P: Profile>(
     splats: &SwiftSplats<P>,
     surfels: &'a Surfels,
     nearest: &[Nearest<P>],
-    (tile, rect): (usize, &Rect),
+    tile: (usize, &Rect),
     marks: &mut Marks,
 ) -> TileSums<'a, P> {
-    let mut sums = AllSums::new(surfels, rect.pixels());
+    add(splats, surfels, nearest, tile, None, marks).followed(|_| true)
+}
+
+/// Adds up what certainly is in the sums of each pixel of a tile, given the nearest fragments. The fragments
+/// that the certificate of these asks about are among those that are in the sums: it meets them here.
+pub(super) fn add<'s, 'a, P: Profile>(
+    splats: &'s SwiftSplats<P>,
+    surfels: &'a Surfels,
+    nearest: &'s [Nearest<P>],
+    tile: (usize, &'s Rect),
+    mut certificate: Option<(&Certificate<'_, P>, &mut Marks)>,
+    marks: &mut Marks,
+) -> Added<'s, 'a, P> {
+    let mut sums = AllSums::new(surfels, tile.1.pixels());
     let limits = limits(splats, nearest);
-    each_part(splats, (nearest, &limits), (tile, rect), |pixel, part, asked| {
-        if part.open.is_none() {
-            sums.add(surfels, pixel, &part);
-        } else {
-            sums.undecided[pixel] += 1;
-            asked.mark(&mut marks.at(pixel));
-        }
-        marks.at(pixel).doubt(Doubt::Side, part.back.decided().is_none());
-    });
-    let followed = |pixel: usize| match sums.undecided[pixel] {
-        0 => sums.of(pixel).is_none(),
-        n => n <= MOST,
+    let least = |pixel: usize| {
+        let own = limits[pixel].least;
+        certificate.as_ref().map_or(own, |(certificate, _)| lesser(own, certificate.least(pixel)))
     };
-    let parts = parts(splats, (nearest, limits), (tile, rect), followed);
-    TileSums { surfels, sums, parts }
+    let least: Vec<f64> = (0..limits.len()).map(least).collect();
+    each_part(
+        splats,
+        (nearest, &limits, &least),
+        tile,
+        |pixel, fragment, depth| {
+            if let Some((certificate, marks)) = &mut certificate {
+                certificate.meet((pixel, fragment), depth, marks);
+            }
+        },
+        |pixel, part, asked| {
+            if part.open.is_none() {
+                sums.add(surfels, pixel, &part);
+            } else {
+                sums.undecided[pixel] += 1;
+                asked.mark(&mut marks.at(pixel));
+            }
+            marks.at(pixel).doubt(Doubt::Side, part.back.decided().is_none());
+        },
+    );
+    Added { splats, surfels, nearest, limits, tile, sums }
+}
+
+/// The lesser of two bounds of a nearness; NaN, which bounds nothing, is less than all.
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b || a.is_nan() { a } else { b }
+}
+
+/// What has been added up at the pixels of a tile.
+pub(super) struct Added<'s, 'a, P: Profile> {
+    splats: &'s SwiftSplats<P>,
+    surfels: &'a Surfels,
+    nearest: &'s [Nearest<P>],
+    limits: Vec<Limit<P>>,
+    tile: (usize, &'s Rect),
+    pub(super) sums: AllSums<P>,
+}
+
+impl<'a, P: Profile> Added<'_, 'a, P> {
+    /// What the sums may be at the pixels that are asked for.
+    pub(super) fn followed(self, asked: impl Fn(usize) -> bool) -> TileSums<'a, P> {
+        let Self { splats, surfels, nearest, limits, tile, sums } = self;
+        let followed = |pixel: usize| {
+            asked(pixel)
+                && match sums.undecided[pixel] {
+                    0 => sums.of(pixel).is_none(),
+                    n => n <= MOST,
+                }
+        };
+        let parts = parts(splats, (nearest, &limits), tile, followed);
+        TileSums { surfels, sums, parts }
+    }
 }
 
 /// What the sums of the pixels of a tile may be.
@@ -79,12 +132,7 @@ pub(in crate::method) struct TileSums<'a, P: Profile> {
 }
 
 impl<P: Profile> TileSums<'_, P> {
-    /// The sums of a pixel without an undecided fragment, if totals know them.
-    pub(in crate::method) fn known(&self, pixel: usize) -> Option<Sums<Ball<P>>> {
-        if self.sums.undecided[pixel] == 0 { self.sums.of(pixel) } else { None }
-    }
-
-    /// Those of a pixel.
+    /// Those of a pixel that was asked for.
     pub(in crate::method) fn of(&self, pixel: usize) -> Continuations<P> {
         match self.sums.undecided[pixel] {
             0 => {
@@ -98,13 +146,13 @@ impl<P: Profile> TileSums<'_, P> {
 }
 
 /// The sums of the pixels of a tile, and how many fragments are undecided.
-struct AllSums<P: Profile> {
+pub(super) struct AllSums<P: Profile> {
     /// Weight and normal.
-    weighted: Vec<Totals<P, 4>>,
+    pub(super) weighted: Vec<Totals<P, 4>>,
     /// The colour, if there are colours.
-    color: Vec<Totals<P, 3>>,
-    count: Vec<u8>,
-    undecided: Vec<u32>,
+    pub(super) color: Vec<Totals<P, 3>>,
+    pub(super) count: Vec<u8>,
+    pub(super) undecided: Vec<u32>,
 }
 
 impl<P: Profile> AllSums<P> {
@@ -198,36 +246,37 @@ fn limits<P: Profile>(splats: &SwiftSplats<P>, nearest: &[Nearest<P>]) -> Vec<Li
     nearest.iter().map(of_pixel).collect()
 }
 
-/// Runs `take` for every fragment that is or may be in the sums, in ascending surfel index.
+/// Runs `take` for every fragment that is or may be in the sums, in ascending surfel index, and `meet` for
+/// all others than the nearest that are not certainly of a nearness below `least`.
+#[inline(always)]
 fn each_part<P: Profile>(
     splats: &SwiftSplats<P>,
-    (nearest, limits): (&[Nearest<P>], &[Limit<P>]),
-    (tile, rect): (usize, &Rect),
+    (nearest, limits, least): (&[Nearest<P>], &[Limit<P>], &[f64]),
+    tile: (usize, &Rect),
+    mut meet: impl FnMut(usize, &Fragment<'_, P>, Ball<P>),
     mut take: impl FnMut(usize, Part<P>, &Asked),
 ) {
     let shared = &splats.shared;
     each_fragment(
         splats,
-        (tile, rect),
-        |pixel| limits[pixel].least,
-        |possible, pixel, q, w| {
-            let PossibleSplat { splat, certain } = possible;
-            let inside = decide::inside(q, shared.limit);
-            if !inside.possibly() {
-                return;
-            }
+        tile,
+        |pixel| least[pixel],
+        |fragment, pixel| {
+            let &Fragment { splat, drawn, q, inside, .. } = fragment;
             // The nearest fragment always passes: it is the law of the test.
-            let visible = if nearest[pixel].id == Some(splat.surfel) {
+            let visible = if fragment.is_of(nearest[pixel].id) {
                 true.into()
             } else {
-                decide::visible(shared.depth(w), limits[pixel].depth)
+                let depth = fragment.depth();
+                meet(pixel, fragment, depth);
+                decide::visible(depth, limits[pixel].depth)
             };
             if visible.possibly() {
-                let asked = Asked { drawn: *certain, inside, visible };
-                let certain = *certain && (inside & visible).certainly();
+                let asked = Asked { drawn, inside, visible };
+                let certain = drawn && (inside & visible).certainly();
                 let open = (!certain).then(|| {
                     asked.open(splat.surfel, || {
-                        let depth = [shared.depth(w), limits[pixel].depth];
+                        let depth = [fragment.depth(), limits[pixel].depth];
                         [([q, shared.limit], shared.limit), (depth, splats.epsilon)]
                     })
                 });
@@ -242,20 +291,21 @@ fn each_part<P: Profile>(
 /// All fragments of the pixels that are followed.
 fn parts<P: Profile>(
     splats: &SwiftSplats<P>,
-    (nearest, mut limits): (&[Nearest<P>], Vec<Limit<P>>),
-    (tile, rect): (usize, &Rect),
+    (nearest, limits): (&[Nearest<P>], &[Limit<P>]),
+    tile: (usize, &Rect),
     followed: impl Fn(usize) -> bool,
 ) -> Fragments<P> {
+    let least = |pixel: usize| if followed(pixel) { limits[pixel].least } else { f64::INFINITY };
+    let least: Vec<f64> = (0..limits.len()).map(least).collect();
     let mut parts = Vec::new();
-    if (0..limits.len()).any(&followed) {
-        for (pixel, limit) in limits.iter_mut().enumerate() {
-            if !followed(pixel) {
-                limit.least = f64::INFINITY;
-            }
-        }
-        each_part(splats, (nearest, &limits), (tile, rect), |pixel, part, _| {
-            parts.push((pixel, part));
-        });
+    if least.iter().any(|least| *least != f64::INFINITY) {
+        each_part(
+            splats,
+            (nearest, limits, &least),
+            tile,
+            |_, _, _| (),
+            |pixel, part, _| parts.push((pixel, part)),
+        );
         // Those of a pixel stay in their order.
         parts.sort_by_key(|(pixel, _)| *pixel);
     }
@@ -314,7 +364,7 @@ mod tests {
             let mut marks = Marks::new(rect);
             let sums = continuations(&splats, surfels, &nearest, (tile, &rect), &mut marks);
             let limits = limits(&splats, &nearest);
-            let all = parts(&splats, (&nearest, limits), (tile, &rect), |_| true);
+            let all = parts(&splats, (&nearest, &limits), (tile, &rect), |_| true);
             for pixel in 0..rect.pixels() {
                 let Continuations::One(own) = sums.of(pixel) else { continue };
                 let plain = chosen(surfels, of_one(&all, pixel), 0);

@@ -5,14 +5,15 @@
 //! the formulas of a fragment at the greatest offset in the splat's bounds, all terms positive, have
 //! radii that no fragment of the splat exceeds.
 
+use crate::composite::decide;
 use crate::frame::Rect;
 use crate::method::algorithm::Job;
 use crate::method::ewa::Settings;
 use crate::method::ewa::possible::{self, PossibleSplat};
 use crate::method::fragment::each_pixel;
 use crate::method::prepare::Prepared;
-use crate::number::ball::Profile;
-use crate::number::{Ball, Real};
+use crate::number::ball::{Profile, Three};
+use crate::number::{Ball, Real, Truth};
 use crate::splat::{Footprint, Shared, Splat};
 
 /// More than what the few operations round that are not in the bounds.
@@ -73,20 +74,60 @@ pub(in crate::method) fn project_part<P: Profile>(
     possible::project_into(part, settings, record, SwiftSplat::bounds)
 }
 
+/// A fragment that is not certainly outside.
+pub(super) struct Fragment<'a, P: Profile> {
+    pub(super) splat: &'a Splat<Ball<P>>,
+    /// Whether the surfel certainly is drawn.
+    pub(super) drawn: bool,
+    pub(super) q: Ball<P>,
+    /// The nearness.
+    w: Ball<P>,
+    pub(super) inside: Three,
+    shared: &'a Shared<Ball<P>>,
+}
+
+impl<P: Profile> Fragment<'_, P> {
+    #[inline(always)]
+    pub(super) fn depth(&self) -> Ball<P> {
+        self.shared.depth(self.w)
+    }
+
+    /// The greatest nearness.
+    #[inline(always)]
+    pub(super) fn most_near(&self) -> f64 {
+        self.w.middle + self.w.radius
+    }
+
+    /// How certain it is whether the fragment is inside: the distance of q and its limit.
+    pub(super) fn margin(&self) -> f64 {
+        self.q.distance(self.shared.limit)
+    }
+
+    /// q divided by its limit.
+    pub(super) fn rim(&self) -> f64 {
+        self.q.middle / self.shared.limit.middle
+    }
+
+    #[inline(always)]
+    pub(super) fn is_of(&self, surfel: Option<u32>) -> bool {
+        surfel == Some(self.splat.surfel)
+    }
+}
+
 /// Runs `visit` for the fragments of the pixels of a rectangle in a tile that are not certainly
-/// outside, nor certainly of a nearness below `least` of their pixel; +inf is above all.
+/// outside, nor certainly of a nearness below `least` of their pixel; +inf is above all, and NaN below.
 #[inline(always)]
 pub(super) fn each_fragment<P: Profile>(
     splats: &SwiftSplats<P>,
     (tile, rect): (usize, &Rect),
     least: impl Fn(usize) -> f64,
-    mut visit: impl FnMut(&PossibleSplat<P>, usize, Ball<P>, Ball<P>),
+    mut visit: impl FnMut(&Fragment<'_, P>, usize),
 ) {
     let shared = &splats.shared;
     let limit = shared.limit.middle + shared.limit.radius;
     let (mut asked, mut columns) = (Vec::new(), Vec::new());
     splats.for_each(tile, |SwiftSplat { possible, swift }| {
-        let PossibleSplat { splat, .. } = possible;
+        let PossibleSplat { splat, certain } = possible;
         asked.clear();
         each_pixel(splat, rect, |pixel, at| {
             let least = least(pixel);
@@ -112,7 +153,10 @@ pub(super) fn each_fragment<P: Profile>(
             let row = f.row(offset(in_row[0].1.1, f.center.y));
             for &(pixel, (x, _)) in in_row {
                 let (q, w) = f.crossing(shared, &columns[(x - x0) as usize], &row);
-                visit(possible, pixel, q, w);
+                let inside = decide::inside(q, shared.limit);
+                if inside.possibly() {
+                    visit(&Fragment { splat, drawn: *certain, q, w, inside, shared }, pixel);
+                }
             }
         }
     });
@@ -203,10 +247,8 @@ fn widest<P: Profile>(ends: [u32; 2], center: Ball<P>) -> Ball<P> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::composite::decide;
     use crate::method::Method;
     use crate::method::ewa::verify::tests::each_scene;
-    use crate::number::Truth;
     use crate::number::ball::{Gpu, Ieee};
     use crate::splat::fragment;
 
