@@ -1,5 +1,6 @@
 //! Projection of many surfels: the visible ones as splats, the others counted.
 
+use super::disc_lanes::DiscLanes;
 use super::{Disc, Fate, Footprint, Outline, Projector, Splat, project};
 use crate::frame::Rect;
 use crate::number::lanes::{LANES, Lanes, vectorized};
@@ -78,14 +79,14 @@ pub fn splats<R: Exact>(
     tally
 }
 
-/// As [`splats`], to the same bits; affine discs in lanes.
+/// As [`splats`], to the same bits; affine outlines in lanes.
 pub fn splats_f32(
     projector: &Projector<f32>,
     surfels: &Surfels,
     range: Range<usize>,
     mut draw: impl FnMut(Splat<f32>),
 ) -> Tally {
-    if projector.outline != Outline::Affine || surfels.tangents().is_some() {
+    if projector.outline != Outline::Affine {
         return splats(projector, surfels, range, draw);
     }
     let lanes = range.start..range.end - range.len() % LANES;
@@ -106,7 +107,7 @@ pub(crate) struct Enlarged {
     pub(crate) times: u32,
 }
 
-/// Calls `draw` for each visible splat of a list, with its place in the list. Affine discs in lanes, to
+/// Calls `draw` for each visible splat of a list, with its place in the list. Affine outlines in lanes, to
 /// the same bits.
 pub(crate) fn enlarged_f32(
     projector: &Projector<f32>,
@@ -114,8 +115,8 @@ pub(crate) fn enlarged_f32(
     list: &[Enlarged],
     mut draw: impl FnMut(usize, Splat<f32>),
 ) -> Tally {
-    let in_lanes_to = match (projector.outline, surfels.tangents()) {
-        (Outline::Affine, None) => list.len() - list.len() % LANES,
+    let in_lanes_to = match projector.outline {
+        Outline::Affine => list.len() - list.len() % LANES,
         _ => 0,
     };
     let mut tally = in_lanes(projector, surfels, 0..in_lanes_to, |i| list[i], &mut draw);
@@ -140,9 +141,23 @@ pub(crate) fn enlarged<R: Real>(surfels: &Surfels, surfel: u32, scale: f32) -> D
     }
 }
 
+/// Calls `draw` for the visible ones of affine splats, whose number is a multiple of [`LANES`].
+fn in_lanes(
+    projector: &Projector<f32>,
+    surfels: &Surfels,
+    range: Range<usize>,
+    item: impl Fn(usize) -> Enlarged,
+    draw: &mut impl FnMut(usize, Splat<f32>),
+) -> Tally {
+    match surfels.tangents() {
+        None => lanes::<false>(projector, surfels, range, item, draw),
+        Some(_) => lanes::<true>(projector, surfels, range, item, draw),
+    }
+}
+
 vectorized!(
     /// [`LANES`] splats at a time: gathered into arrays, projected in one straight loop, scattered.
-    fn in_lanes(
+    fn lanes<const TANGENTS: bool>(
         projector: &Projector<f32>,
         surfels: &Surfels,
         range: Range<usize>,
@@ -152,28 +167,17 @@ vectorized!(
         let projector = *projector;
         let mut counts = [0_u64; 8];
         for first in range.step_by(LANES) {
-            // -- The discs
-            let mut input = [[0.0_f32; LANES]; 7];
-            let (positions, normals) = (surfels.position(), surfels.normal());
-            for i in 0..LANES {
+            let discs = DiscLanes::<TANGENTS>::new(surfels, |i| {
                 let Enlarged { surfel, scale, .. } = item(first + i);
-                let surfel = surfel as usize;
-                let (p, n) = (positions[surfel], normals[surfel]);
-                let values = [p.x, p.y, p.z, n.x, n.y, n.z, surfels.radius()[surfel] * scale];
-                for (lanes, value) in input.iter_mut().zip(values) {
-                    lanes[i] = value;
-                }
-            }
+                (surfel as usize, scale)
+            });
             // -- Their projections
             let mut splats = SplatLanes::new();
             let mut fates = [0_u32; LANES];
-            for i in 0..LANES {
-                let position = Vector3::new(input[0][i], input[1][i], input[2][i]);
-                let normal = Vector3::new(input[3][i], input[4][i], input[5][i]);
-                let (f, b, [back, _], reasons) =
-                    projector.affine_disc(position, normal, input[6][i]);
+            for (i, fate) in fates.iter_mut().enumerate() {
+                let (f, b, [back, _], reasons) = projector.affine_disc(&discs.get(i));
                 splats.put(i, &f, &b, back);
-                fates[i] = reasons.fate() as u32;
+                *fate = reasons.fate() as u32;
             }
             // -- The visible ones
             for i in 0..LANES {
@@ -241,6 +245,56 @@ impl SplatLanes {
             bounds: Rect { x0: pixel(0), y0: pixel(1), x1: pixel(2), y1: pixel(3) },
             surfel,
             back: self.back[i] != 0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Camera;
+    use crate::source::Shape;
+    use crate::splat::tests::ellipses;
+    use crate::splat::{Kernel, View};
+
+    /// The numbers of a splat, as bits.
+    fn bits(splat: &Splat<f32>) -> String {
+        let Splat { footprint, bounds, surfel, back } = splat;
+        format!("{:?} {bounds:?} {surfel} {back}", footprint.map(f32::to_bits))
+    }
+
+    #[test]
+    fn lanes_are_the_definition() {
+        let discs = Shape::Torus.surfels(5003, 3).unwrap();
+        let ellipses = ellipses(discs.clone());
+        let lens = Shape::Torus.default_lens();
+        let camera = Camera::new(57, 43, Shape::Torus.default_pose(), lens).unwrap();
+        // One that is near enough to have surfels behind it, beside it and at the near plane.
+        let near = Camera { near: 2.0, fx: 4.0 * camera.fx, ..camera };
+        for (camera, cull) in [(camera, false), (camera, true), (near, true)] {
+            let projector = Projector::new(View::new(&camera), &Kernel::DEFAULT, cull);
+            for surfels in [&discs, &ellipses] {
+                let (mut plain, mut own) = (Vec::new(), Vec::new());
+                let all = 0..surfels.len();
+                let tally = splats(&projector, surfels, all.clone(), |s| plain.push(bits(&s)));
+                let in_lanes = splats_f32(&projector, surfels, all, |s| own.push(bits(&s)));
+                assert_eq!((own, in_lanes), (plain, tally));
+                assert!(tally.visible > 50, "{tally:?}");
+
+                // In groups, with other radii.
+                let item = |i: u32| Enlarged { surfel: 3 * i, scale: 1.5, times: 2 };
+                let list: Vec<_> = (0..surfels.len() as u32 / 3).map(item).collect();
+                let (mut plain, mut own) = (Vec::new(), Vec::new());
+                enlarged_f32(&projector, surfels, &list, |place, s| own.push((place, bits(&s))));
+                for (place, item) in list.iter().enumerate() {
+                    let disc = enlarged(surfels, item.surfel, item.scale);
+                    let (splat, reasons) = project(&projector, &disc, item.surfel);
+                    if reasons.fate() == Fate::Visible {
+                        plain.push((place, bits(&splat)));
+                    }
+                }
+                assert_eq!(own, plain);
+            }
         }
     }
 }

@@ -18,6 +18,7 @@ pub struct Disc<R> {
 impl<R: Real> Disc<R> {
     /// The radius of a sphere that holds it: r, or sqrt(U . U + V . V) of an ellipse, whose half
     /// axes need not be perpendicular.
+    #[inline(always)]
     pub(super) fn reach(&self) -> R {
         match self.tangents {
             None => self.radius,

@@ -1,4 +1,4 @@
-//! Projection of affine discs in balls, in lanes.
+//! Projection of affine discs and ellipses in balls, in lanes.
 //!
 //! The lanes are balls of [`Common`]: what these decide of a surfel is decided, and a splat of which they
 //! know every number is that of the plain ball, bit for bit. Of any other surfel they say nothing.
@@ -8,13 +8,13 @@
     reason = "a lane is an index into several arrays, and such a loop becomes vectors"
 )]
 
+use super::disc_lanes::DiscLanes;
 use super::{Footprint, Projector, Reasons, Splat};
 use crate::frame::Rect;
 use crate::number::ball::{BallLanes, Common, Profile, Three};
-use crate::number::lanes::{LANES, each, vectorized};
-use crate::number::{Ball, Real, Truth, Vector2, Vector3};
+use crate::number::lanes::{LANES, vectorized};
+use crate::number::{Ball, Truth, Vector2};
 use crate::scene::Surfels;
-use std::marker::PhantomData;
 use std::ops::Range;
 
 /// What is known of a surfel: it certainly is not drawn, or certainly is and as this splat, or neither.
@@ -23,11 +23,23 @@ const DROPPED: u32 = 0;
 const DRAWN: u32 = 1;
 const OPEN: u32 = 2;
 
+/// Calls `draw` for the affine surfels of a range, whose length is a multiple of [`LANES`], in ascending
+/// order, but for those that certainly are not drawn: with the splat if that is certain, none if nothing is
+/// known.
+pub(crate) fn affine_surfels<P: Profile>(
+    projector: &Projector<Ball<Common<P>>>,
+    surfels: &Surfels,
+    range: Range<usize>,
+    draw: &mut impl FnMut(usize, Option<Splat<Ball<P>>>),
+) {
+    match surfels.tangents() {
+        None => in_lanes::<false, P>(projector, surfels, range, draw),
+        Some(_) => in_lanes::<true, P>(projector, surfels, range, draw),
+    }
+}
+
 vectorized!(
-    /// Calls `draw` for the discs of a range, whose length is a multiple of [`LANES`], in ascending
-    /// order, but for those that certainly are not drawn: with the splat if that is certain, none if
-    /// nothing is known.
-    pub(crate) fn affine_discs<P: Profile>(
+    fn in_lanes<const TANGENTS: bool, P: Profile>(
         projector: &Projector<Ball<Common<P>>>,
         surfels: &Surfels,
         range: Range<usize>,
@@ -35,15 +47,14 @@ vectorized!(
     ) {
         let projector = *projector;
         let picture = [projector.view.width, projector.view.height].map(|n| n.middle as u32);
-        for some in seen(&projector, surfels, range).chunks(LANES) {
+        for some in seen::<TANGENTS, P>(&projector, surfels, range).chunks(LANES) {
             // The last lanes may be one surfel again.
-            let indices = each(|i| some[i.min(some.len() - 1)]);
-            let discs = Discs::<P>::new(surfels, &indices);
+            let one = |i: usize| (some[i.min(some.len() - 1)], 1.0);
+            let discs = DiscLanes::<TANGENTS>::new(surfels, one);
             // -- Their projections
             let mut splats = SplatLanes::<Common<P>>::new();
             for i in 0..LANES {
-                let (position, normal, radius) = discs.get(i);
-                let (f, b, truths, reasons) = projector.affine_disc(position, normal, radius);
+                let (f, b, truths, reasons) = projector.affine_disc(&discs.get(i));
                 splats.known[i] = known(&f, &b, picture, truths[1], &reasons);
                 splats.put(i, &f, &b, truths[0]);
             }
@@ -62,57 +73,24 @@ vectorized!(
 /// The surfels of a range, whose length is a multiple of [`LANES`], that do not certainly lie where they
 /// cannot be seen, nor are turned away: a shape is made of these alone.
 #[inline(always)]
-fn seen<P: Profile>(
+fn seen<const TANGENTS: bool, P: Profile>(
     projector: &Projector<Ball<Common<P>>>,
     surfels: &Surfels,
     range: Range<usize>,
 ) -> Vec<usize> {
     let mut seen = Vec::with_capacity(range.len());
     for first in range.step_by(LANES) {
-        let discs = Discs::<P>::new(surfels, &each(|i| first + i));
+        let discs = DiscLanes::<TANGENTS>::new(surfels, |i| (first + i, 1.0));
         let mut unseen = [0_u32; LANES];
         for i in 0..LANES {
-            let (position, normal, radius) = discs.get(i);
-            let placed = projector.place(position, normal);
-            unseen[i] = u32::from(projector.unseen(&placed, radius).any().certainly());
+            let disc = discs.get(i);
+            let placed = projector.place(disc.position, disc.normal);
+            unseen[i] = u32::from(projector.unseen(&placed, disc.reach()).any().certainly());
         }
         seen.extend((0..LANES).filter(|i| unseen[*i] == 0).map(|i| first + i));
     }
     seen
 }
-
-/// [`LANES`] discs, each of their numbers a vector.
-struct Discs<P: Profile> {
-    numbers: [[f32; LANES]; 7],
-    profile: PhantomData<P>,
-}
-
-impl<P: Profile> Discs<P> {
-    #[inline(always)]
-    fn new(surfels: &Surfels, indices: &[usize; LANES]) -> Self {
-        let mut numbers = [[0.0; LANES]; 7];
-        let (positions, normals) = (surfels.position(), surfels.normal());
-        for i in 0..LANES {
-            let surfel = indices[i];
-            let (p, n) = (positions[surfel], normals[surfel]);
-            let values = [p.x, p.y, p.z, n.x, n.y, n.z, surfels.radius()[surfel]];
-            for (lanes, value) in numbers.iter_mut().zip(values) {
-                lanes[i] = value;
-            }
-        }
-        Self { numbers, profile: PhantomData }
-    }
-
-    /// Position, normal and radius.
-    #[inline(always)]
-    fn get(&self, i: usize) -> (Vector3<Place<P>>, Vector3<Place<P>>, Place<P>) {
-        let n = |field: usize| Ball::from_f32(self.numbers[field][i]);
-        (Vector3::new(n(0), n(1), n(2)), Vector3::new(n(3), n(4), n(5)), n(6))
-    }
-}
-
-/// A number of a disc.
-type Place<P> = Ball<Common<P>>;
 
 /// What is known of a surfel.
 #[inline(always)]

@@ -18,6 +18,7 @@ pub mod bounds;
 pub mod clip;
 pub mod crossing;
 mod disc;
+mod disc_lanes;
 pub mod ellipse;
 pub(crate) mod enclosed;
 mod fate;
@@ -27,7 +28,7 @@ pub mod record;
 pub mod settings;
 mod shape;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 pub mod view;
 
 pub use batch::Tally;

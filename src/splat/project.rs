@@ -114,7 +114,7 @@ use super::frustum::Frustum;
 use super::shape::{Covariance, PlacedDisc};
 use super::{Disc, Footprint, Kernel, Outline, Reasons, Splat, View, bounds, crossing};
 use crate::frame::Rect;
-use crate::number::{Exact, Real, Truth, Vector2, Vector3};
+use crate::number::{Exact, Real, Truth, Vector2};
 
 /// All that the projection of a picture's surfels shares.
 #[derive(Clone, Copy, Debug)]
@@ -270,20 +270,17 @@ impl<R: Real> Projector<R> {
         }
     }
 
-    /// An affine disc without a branch, so that a loop over it vectorizes: footprint, bounds,
-    /// whether its back is seen and whether it reaches the near plane, and the reasons not to draw
-    /// it.
+    /// An affine disc without a branch, so that a loop over discs, or over ellipses, vectorizes:
+    /// footprint, bounds, whether its back is seen and whether it reaches the near plane, and the
+    /// reasons not to draw it.
     #[inline(always)]
     pub(super) fn affine_disc(
         &self,
-        position: Vector3<R>,
-        normal: Vector3<R>,
-        radius: R,
+        disc: &Disc<R>,
     ) -> (Footprint<R>, Rect, [R::Truth; 2], Reasons<R>) {
-        let placed = self.place(position, normal);
-        let shape = self.disc(&placed, radius);
+        let (placed, shape) = self.shape(disc);
         let (footprint, bounds) = self.affine(&placed, &shape);
-        let reasons = reasons(self.unseen(&placed, radius), &footprint, &bounds);
+        let reasons = reasons(self.unseen(&placed, disc.reach()), &footprint, &bounds);
         let crosses = self.reaches_near_plane(&placed, &shape);
         (footprint, bounds, [placed.g.gt(R::ZERO), crosses], reasons)
     }

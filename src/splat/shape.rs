@@ -79,16 +79,15 @@ impl<R: Real> Projector<R> {
     }
 
     /// The covariance of an ellipse.
+    #[inline(always)]
     pub(super) fn ellipse(
         &self,
         placed: &PlacedDisc<R>,
         tangents: [Vector3<R>; 2],
     ) -> Covariance<R> {
         let PlacedDisc { m, d, sx, sy, .. } = *placed;
-        let [u, v] = tangents.map(|tangent| {
-            let t = self.view.direction(tangent);
-            Vector3::new(t.x / self.cutoff, t.y / self.cutoff, t.z / self.cutoff)
-        });
+        // Not by `map`, which is not inlined.
+        let (u, v) = (self.axis(tangents[0]), self.axis(tangents[1]));
         let (ux, uy) = (sx * (u.x + d.x * u.z), -(sy * (u.y + d.y * u.z)));
         let (vx, vy) = (sx * (v.x + d.x * v.z), -(sy * (v.y + d.y * v.z)));
         let normal = u.cross(v);
@@ -101,5 +100,12 @@ impl<R: Real> Projector<R> {
             half: self.cutoff * (u.z * u.z + v.z * v.z).root_of_squares(),
             tilt: Vector2::new((ux * u.z + vx * v.z) * m, (uy * u.z + vy * v.z) * m),
         }
+    }
+
+    /// A half axis of the Gaussian in view space.
+    #[inline(always)]
+    fn axis(&self, tangent: Vector3<R>) -> Vector3<R> {
+        let t = self.view.direction(tangent);
+        Vector3::new(t.x / self.cutoff, t.y / self.cutoff, t.z / self.cutoff)
     }
 }

@@ -4,8 +4,18 @@ use super::{Disc, Fate, Footprint, Kernel, Projector, Shared, View, fragment, pr
 use crate::composite::decide;
 use crate::number::random::unit;
 use crate::number::{Exact, Vector2, Vector3};
-use crate::scene::{Camera, Lens, Pose};
+use crate::scene::{Camera, Cloud, Lens, Pose, Surfels};
 use glam::{DVec3, Vec3};
+
+/// Discs as ellipses of 1.5 times their radius and half of it, whose half axes are not perpendicular.
+pub(crate) fn ellipses(discs: Surfels) -> Surfels {
+    let halves = |(normal, radius): (&Vec3, &f32)| {
+        let u = normal.any_orthonormal_vector();
+        [u * (1.5 * radius), (normal.cross(u) * 0.5 + u * 0.25) * *radius]
+    };
+    let tangents = discs.normal().iter().zip(discs.radius()).map(halves).collect();
+    Surfels::new(Cloud { tangents: Some(tangents), ..discs.into_cloud() }).unwrap().0
+}
 
 /// A camera at the origin that looks down -z.
 fn camera(near: f32, lens: Lens) -> Camera {

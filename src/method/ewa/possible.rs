@@ -58,20 +58,20 @@ pub(in crate::method) fn project_into<P: Profile, S: Send>(
     )
 }
 
-/// [`each_possible`] of a range of surfels, in ascending order; affine discs in lanes, but for what these
-/// leave open.
+/// [`each_possible`] of a range of surfels, in ascending order; affine outlines in lanes, but for what
+/// these leave open.
 pub(in crate::method) fn each_of_range<P: Profile>(
     (projector, common): (&Projector<Ball<P>>, &Projector<Ball<Common<P>>>),
     surfels: &Surfels,
     range: Range<usize>,
     mut each: impl FnMut(Splat<Ball<P>>, bool),
 ) {
-    let in_lanes = match (projector.outline, surfels.tangents()) {
-        (Outline::Affine, None) => range.len() - range.len() % LANES,
+    let in_lanes = match projector.outline {
+        Outline::Affine => range.len() - range.len() % LANES,
         _ => 0,
     };
     let rest = range.start + in_lanes;
-    enclosed::affine_discs(common, surfels, range.start..rest, &mut |i, splat| match splat {
+    enclosed::affine_surfels(common, surfels, range.start..rest, &mut |i, splat| match splat {
         Some(splat) => each(splat, true),
         None => each_possible(projector, &batch::disc(surfels, i), i as u32, &mut each),
     });

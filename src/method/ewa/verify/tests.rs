@@ -7,6 +7,7 @@ use crate::scene::{Camera, Lens, Scene};
 use crate::source::Shape;
 use crate::splat::project::project_as;
 use crate::splat::record::{SplatRecord, project_records};
+use crate::splat::tests::ellipses;
 use crate::splat::{Disc, Epsilon, Kernel, Outline, Projector, SplatSettings, View, batch};
 use crate::verify::client::{Client, Rounding, Storage};
 use crate::verify::verdict::{Fault, Outcome, Verdict};
@@ -15,15 +16,20 @@ use crate::verify::verdict::{Fault, Outcome, Verdict};
 pub(super) fn each_scene(mut test: impl FnMut(&Session<'_>, &Camera)) {
     let exec = Exec::new(1, 16).unwrap();
     let of = |outline| Kernel { outline, ..Kernel::DEFAULT };
-    for (shape, kernel, lens, epsilon) in [
+    for (i, (shape, kernel, lens, epsilon)) in [
         (Shape::Sphere, Kernel::DEFAULT, None, None),
+        (Shape::Torus, Kernel::DEFAULT, None, None),
         (Shape::Cluster, Kernel::ZPVBG01, None, None),
         (Shape::Torus, Kernel::ZP06, None, None),
         (Shape::Sphere, of(Outline::Perspective), None, None),
         (Shape::Torus, of(Outline::RayCast), None, None),
         (Shape::Sheets { gap: 0.02 }, Kernel::DEFAULT, Some(Lens::Orthographic(3.0)), Some(0.0)),
-    ] {
-        let scene = Scene::lit("shape", shape.surfels(900, 5).unwrap());
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let discs = shape.surfels(900, 5).unwrap();
+        let scene = Scene::lit("shape", if i == 1 { ellipses(discs) } else { discs });
         let lens = lens.unwrap_or(shape.default_lens());
         let camera = Camera::new(57, 43, shape.default_pose(), lens).unwrap();
         let mut settings = SplatSettings { kernel, ..SplatSettings::default() };
