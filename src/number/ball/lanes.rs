@@ -8,23 +8,24 @@ use crate::number::lanes::LANES;
 pub(crate) struct BallLanes<P: Profile> {
     middle: [f64; LANES],
     radius: [f64; LANES],
-    terms: [P::Terms; LANES],
+    terms: P::TermLanes,
 }
 
 impl<P: Profile> BallLanes<P> {
     /// Zeros.
     pub(crate) const ZERO: Self =
-        Self { middle: [0.0; LANES], radius: [0.0; LANES], terms: [P::NO_SUM; LANES] };
+        Self { middle: [0.0; LANES], radius: [0.0; LANES], terms: P::NO_SUMS };
 
     #[inline(always)]
     pub(crate) fn put(&mut self, lane: usize, ball: Ball<P>) {
         self.middle[lane] = ball.middle;
         self.radius[lane] = ball.radius;
-        self.terms[lane] = ball.terms;
+        P::put_terms(&mut self.terms, lane, ball.terms);
     }
 
     #[inline(always)]
     pub(crate) fn get(&self, lane: usize) -> Ball<P> {
-        Ball { middle: self.middle[lane], radius: self.radius[lane], terms: self.terms[lane] }
+        let terms = P::terms_of(&self.terms, lane);
+        Ball { middle: self.middle[lane], radius: self.radius[lane], terms }
     }
 }

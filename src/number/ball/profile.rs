@@ -1,6 +1,7 @@
 //! How an implementation may round.
 
 use super::Ball;
+use crate::number::lanes::LANES;
 use crate::number::{Real, elementary};
 use std::marker::PhantomData;
 
@@ -44,6 +45,14 @@ pub trait Profile: Copy + Send + Sync + 'static {
     }
     /// The terms of one of two sums: number by number, as a choice between wholes is no vector.
     fn choose(truth: bool, yes: Self::Terms, no: Self::Terms) -> Self::Terms;
+    /// The terms of [`LANES`] numbers side by side, number by number for the same reason.
+    type TermLanes: Copy + Send + Sync;
+    /// Those of numbers that are no sums.
+    const NO_SUMS: Self::TermLanes;
+    /// Puts the terms of a number into a lane.
+    fn put_terms(lanes: &mut Self::TermLanes, lane: usize, terms: Self::Terms);
+    /// The terms of a lane.
+    fn terms_of(lanes: &Self::TermLanes, lane: usize) -> Self::Terms;
 }
 
 /// Each operation rounds once, to nearest, and a product may be fused with the sum it goes into:
@@ -78,6 +87,12 @@ impl Profile for Ieee {
     }
     #[inline(always)]
     fn choose(_truth: bool, _yes: (), _no: ()) {}
+    type TermLanes = ();
+    const NO_SUMS: () = ();
+    #[inline(always)]
+    fn put_terms(_lanes: &mut (), _lane: usize, _terms: ()) {}
+    #[inline(always)]
+    fn terms_of(_lanes: &(), _lane: usize) {}
 }
 
 /// What WGSL and Vulkan publish for `f32`; an ulp is at most 2 u of its number.
@@ -208,6 +223,19 @@ impl Profile for Gpu {
             radius: if truth { yes.radius } else { no.radius },
         }
     }
+    /// Magnitudes, additions and radii.
+    type TermLanes = [[f64; LANES]; 3];
+    const NO_SUMS: Self::TermLanes = [[0.0; LANES]; 3];
+    #[inline(always)]
+    fn put_terms(lanes: &mut Self::TermLanes, lane: usize, terms: SumTerms) {
+        lanes[0][lane] = terms.magnitude;
+        lanes[1][lane] = terms.additions;
+        lanes[2][lane] = terms.radius;
+    }
+    #[inline(always)]
+    fn terms_of(lanes: &Self::TermLanes, lane: usize) -> SumTerms {
+        SumTerms { magnitude: lanes[0][lane], additions: lanes[1][lane], radius: lanes[2][lane] }
+    }
 }
 
 /// Rounds as `P`, without a branch, so that a loop over balls becomes vectors: nothing is known of a result
@@ -246,5 +274,15 @@ impl<P: Profile> Profile for Common<P> {
     #[inline(always)]
     fn choose(truth: bool, yes: P::Terms, no: P::Terms) -> P::Terms {
         P::choose(truth, yes, no)
+    }
+    type TermLanes = P::TermLanes;
+    const NO_SUMS: P::TermLanes = P::NO_SUMS;
+    #[inline(always)]
+    fn put_terms(lanes: &mut P::TermLanes, lane: usize, terms: P::Terms) {
+        P::put_terms(lanes, lane, terms);
+    }
+    #[inline(always)]
+    fn terms_of(lanes: &P::TermLanes, lane: usize) -> P::Terms {
+        P::terms_of(lanes, lane)
     }
 }

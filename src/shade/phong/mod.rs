@@ -346,7 +346,11 @@ impl<R: Real> Answer<R> {
         highlight: R,
     ) -> [R; 3] {
         let body = self.diffuse * cosine;
-        let part = |c: usize| color[c] + light[c] * (body * surface[c] + highlight);
-        [part(0), part(1), part(2)]
+        // No closure, which would stay a function where numbers are balls.
+        [
+            color[0] + light[0] * (body * surface[0] + highlight),
+            color[1] + light[1] * (body * surface[1] + highlight),
+            color[2] + light[2] * (body * surface[2] + highlight),
+        ]
     }
 }

@@ -132,7 +132,11 @@ impl<'a> Handed<'a> {
         let zero =
             |plane: Option<Stored<'_, f64>>| plane.is_none_or(|plane| *plane.plane.at(x, y) == 0.0);
         let zeros = |plane: Option<Stored<'_, [f64; 3]>>| {
-            plane.is_none_or(|plane| *plane.plane.at(x, y) == [0.0; 3])
+            // Not as arrays, which are compared by a call.
+            plane.is_none_or(|plane| {
+                let [a, b, c] = *plane.plane.at(x, y);
+                (a == 0.0) & (b == 0.0) & (c == 0.0)
+            })
         };
         let clear =
             |plane: Option<Stored<'_, u8>>| plane.is_none_or(|plane| *plane.plane.at(x, y) == 0);

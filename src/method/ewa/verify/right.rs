@@ -199,16 +199,17 @@ fn lanes<P: Profile>(values: [f64; LANES]) -> Numbers<P> {
     lanes
 }
 
-/// A triple of each lane from those of two.
+/// The mean of each lane: a direction, or a colour.
 #[inline(always)]
-fn of_sums<P: Profile>(
+fn means<const DIRECTION: bool, P: Profile>(
     sums: &[Numbers<P>; 3],
     weight: &Numbers<P>,
-    of: impl Fn([Ball<Common<P>>; 3], Ball<Common<P>>) -> [Ball<Common<P>>; 3],
 ) -> [Numbers<P>; 3] {
     let mut means = [Numbers::<P>::ZERO; 3];
     for i in 0..LANES {
-        let [a, b, c] = of([sums[0].get(i), sums[1].get(i), sums[2].get(i)], weight.get(i));
+        let (sums, weight) = ([sums[0].get(i), sums[1].get(i), sums[2].get(i)], weight.get(i));
+        let [a, b, c] =
+            if DIRECTION { sum::direction(sums, weight) } else { sum::average(sums, weight) };
         means[0].put(i, a);
         means[1].put(i, b);
         means[2].put(i, c);
@@ -258,14 +259,14 @@ vectorized!(
             found.same(|i| *plane.plane.at(at[i].0, at[i].1) == pixels.count[i]);
         }
         // -- Averages
-        normal = of_sums(&normal, &weight, sum::direction);
+        normal = means::<true, P>(&normal, &weight);
         if let Some(plane) = &handed.normal {
             let own = triples(plane, at);
             found.triple(NORMALIZATION, &own, &normal);
             normal = own;
         }
         if of.colored {
-            color = of_sums(&color, &weight, sum::average);
+            color = means::<false, P>(&color, &weight);
         } else {
             color = of.plain;
         }

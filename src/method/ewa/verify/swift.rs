@@ -163,6 +163,7 @@ pub(super) fn each_fragment<P: Profile>(
 }
 
 /// The least nearness of which a depth may be at most this one.
+#[inline(always)]
 pub(super) fn least_nearness<P: Profile>(shared: &Shared<Ball<P>>, depth: Ball<P>) -> f64 {
     let farthest = depth.middle + depth.radius;
     // Any number that is not certain leaves nothing out: comparisons with NaN are false.
@@ -238,6 +239,7 @@ fn square(value: f64) -> f64 {
 }
 
 /// The greatest offset of two columns, or rows, from a centre, with the greatest radius.
+#[inline(always)]
 fn widest<P: Profile>(ends: [u32; 2], center: Ball<P>) -> Ball<P> {
     let offset = |end: u32| Ball::from_f32(end as f32 + 0.5) - center;
     let (a, b) = (offset(ends[0]), offset(ends[1]));

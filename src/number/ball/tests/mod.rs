@@ -110,6 +110,10 @@ macro_rules! twin {
                 Ball::rounded(middle, a.radius + b.radius, $sum, 0.0)
             }
             fn choose(_truth: bool, _yes: (), _no: ()) {}
+            type TermLanes = ();
+            const NO_SUMS: () = ();
+            fn put_terms(_lanes: &mut (), _lane: usize, _terms: ()) {}
+            fn terms_of(_lanes: &(), _lane: usize) {}
         }
     };
 }
