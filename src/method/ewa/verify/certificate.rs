@@ -78,9 +78,9 @@ pub(in crate::method) fn judge_among<P: Profile>(
     certificate.nearest()
 }
 
-/// What is asked of the nearest fragments of a tile: every fragment that may be nearer is
-/// [met](Certificate::meet), and then it is at its [end](Certificate::end).
-pub(in crate::method) struct Certificate<'a, P: Profile> {
+/// What is asked of the nearest fragments of a tile: of every fragment that may be nearer
+/// ([`Certificate::meet`]), and then of what the client says ([`Certificate::end`]).
+pub(super) struct Certificate<'a, P: Profile> {
     handed: &'a Handed<'a>,
     surfels: &'a Surfels,
     others: &'a [Vec<Other<P>>],
@@ -127,7 +127,7 @@ impl<'a, P: Profile> Certificate<'a, P> {
         marks: &mut Marks,
     ) {
         let claim = &self.claims[pixel];
-        // Comparisons that NaN fails.
+        // A comparison that NaN fails.
         let farther = fragment.most_near() < self.least[pixel];
         if !(claim.open || farther || fragment.is_of(claim.nearest.id)) {
             let (against, mut marks) = (Against { fragment, t }, marks.at(pixel));
@@ -136,7 +136,7 @@ impl<'a, P: Profile> Certificate<'a, P> {
         }
     }
 
-    /// Judges the claims themselves, and others against them.
+    /// Judges what the client says, and others against it.
     pub(super) fn end(&self, marks: &mut Marks) {
         for (pixel, claim) in self.claims.iter().enumerate().filter(|(_, claim)| !claim.open) {
             claim.judge(self.handed, &mut marks.at(pixel));

@@ -54,8 +54,8 @@ pub(in crate::method) fn continuations<'a, P: Profile>(
     add(splats, surfels, nearest, tile, None, marks).followed(|_| true)
 }
 
-/// Adds up what certainly is in the sums of each pixel of a tile, given the nearest fragments. The fragments
-/// that the certificate of these asks about are among those that are in the sums: it meets them here.
+/// Adds up what certainly is in the sums of each pixel of a tile, given the nearest fragments. What the
+/// certificate of these asks of a fragment is asked here too, as most such fragments are in the sums.
 pub(super) fn add<'s, 'a, P: Profile>(
     splats: &'s SwiftSplats<P>,
     surfels: &'a Surfels,
