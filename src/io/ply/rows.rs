@@ -138,10 +138,23 @@ impl Table<'_> {
         // What most files have, without a question for each number.
         if numbers.iter().all(Number::is_plain) {
             self.exec.extend(to, count, |i| of(each(&numbers, |number| number.plain(row(i)))));
+        } else if let Some(table) = table_of_bytes(&numbers) {
+            let value = |row: &[u8], number: Number| table[usize::from(row[number.at])];
+            self.exec.extend(to, count, |i| of(each(&numbers, |number| value(row(i), number))));
         } else {
             self.exec.extend(to, count, |i| of(each(&numbers, |number| number.value(row(i)))));
         }
     }
+}
+
+/// What the codes of numbers are that all are bytes of sRGB.
+fn table_of_bytes(numbers: &[Number]) -> Option<&'static [f32; 256]> {
+    let tables = numbers.iter().map(|number| match (number.scalar, number.decode) {
+        (Scalar::U8, Decode::Srgb(table)) => table.first_chunk(),
+        _ => None,
+    });
+    // There is one table of bytes.
+    tables.reduce(Option::and)?
 }
 
 /// A value for each number; `array::map` is not inlined in builds of many units.
