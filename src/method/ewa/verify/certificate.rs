@@ -68,11 +68,7 @@ pub(in crate::method) fn judge_among<P: Profile>(
         splats,
         tile,
         |pixel| certificate.least(pixel),
-        |fragment, pixel| {
-            if !fragment.is_of(certificate.claims[pixel].nearest.id) {
-                certificate.meet((pixel, fragment), fragment.depth(), marks);
-            }
-        },
+        |fragment, pixel| certificate.meet((pixel, fragment), fragment.depth(), marks),
     );
     certificate.end(marks);
     certificate.nearest()
