@@ -36,14 +36,14 @@ pub(super) fn add(
     // What all that are lower cover, what those of the same group do, and what each group of the
     // first batch covers of the others.
     let show = |done, of| progress("measuring the surface", done, of);
-    let sets = |i: usize, j: usize| {
-        let lower = u32::from(overlaps.lower(i, j)) * (1 | u32::from(own[i] == own[j]) << 1);
+    let sets = |i: usize, j: usize, lower: bool| {
+        let lower = u32::from(lower) * (1 | u32::from(own[i] == own[j]) << 1);
         lower | members.of_others(0, i, j) << 2
     };
     let measured = overlaps.covered::<{ 2 + BATCH }>(sets, &show);
-    let target = areas(tree, 1, |_| 0, |place| measured[place][0])[0].0;
+    let target = areas(tree, 1, |_| 0, |place| measured.in_set(0, place))[0].0;
     let group = |surfel: usize| groups.own()[surfel].into();
-    let before = areas(tree, count, group, |place| measured[place][1]);
+    let before = areas(tree, count, group, |place| measured.in_set(1, place));
 
     let groups = members;
     let mut coverages = Vec::new();
@@ -55,11 +55,11 @@ pub(super) fn add(
             progress("extending groups", 2 * of * first as u64 + here, 2 * of * count as u64);
         };
         let members = if first == 0 {
-            groups.extended(batch.clone(), |place, set| measured[place][2 + set])
+            groups.extended(batch.clone(), |place, set| measured.in_set(2 + set, place))
         } else {
-            let sets = |i: usize, j: usize| groups.of_others(first, i, j);
+            let sets = |i: usize, j: usize, _: bool| groups.of_others(first, i, j);
             let covered = overlaps.covered::<BATCH>(sets, &|done, of| show(0, done, of));
-            groups.extended(batch.clone(), |place, set| covered[place][set])
+            groups.extended(batch.clone(), |place, set| covered.in_set(set, place))
         };
         for (place, members) in members.iter().enumerate() {
             let further = members & !groups.own(first, place);
@@ -67,14 +67,16 @@ pub(super) fn add(
                 added[tree.rank[place] as usize] |= u64::from(further) << first;
             }
         }
-        let sets =
-            |i: usize, j: usize| if overlaps.lower(i, j) { members[i] & members[j] } else { 0 };
+        let sets = |i: usize, j: usize, lower: bool| {
+            if lower { members[i] & members[j] } else { 0 }
+        };
         let covered = overlaps.covered::<BATCH>(sets, &|done, of| show(1, done, of));
         coverages.extend(exec.ordered(batch.clone().collect(), |group| {
             let set = group - first;
             let is_member = |place: usize| members[place] >> set & 1 == 1;
             // Of those that are no members, nothing is open.
-            let covered = |place| if is_member(place) { covered[place][set] } else { u64::MAX };
+            let covered =
+                |place| if is_member(place) { covered.in_set(set, place) } else { u64::MAX };
             let after = areas(tree, 1, |_| 0, covered)[0].0 / target;
             let surfels = (0..n).filter(|&place| is_member(place)).count() as u64;
             let before = before[group].0 / target;
@@ -117,16 +119,16 @@ impl Members<'_> {
         covered: impl Fn(usize, usize) -> u64 + Sync + Send,
     ) -> Vec<u32> {
         let Overlaps { exec, .. } = *self.overlaps;
-        let (n, first) = (self.own.len(), batch.start);
+        let first = batch.start;
+        let state = |group| self.added(group as u8, |place| covered(place, group - first));
+        let states: Vec<_> = batch.map(state).collect();
         let mut members = Vec::new();
-        exec.extend(&mut members, n, |place| self.own(first, place));
-        for group in batch {
-            let set = group - first;
-            let added = self.added(group as u8, |place| covered(place, set));
-            for (members, added) in members.iter_mut().zip(added) {
-                *members |= u32::from(added) << set;
-            }
-        }
+        exec.extend(&mut members, self.own.len(), |place| {
+            (0..).zip(&states).fold(self.own(first, place), |members, (set, state)| {
+                let added = (ADDED..OUT).contains(&state[place].load(Relaxed));
+                members | u32::from(added) << set
+            })
+        });
         members
     }
 }
@@ -137,13 +139,14 @@ const ADDED: u8 = 128;
 const OUT: u8 = 255;
 
 impl Members<'_> {
-    /// Which places are added to a group; `covered` is what it covers of each to begin with.
+    /// The state of each place, all decided, of a group: those from [`ADDED`] to [`OUT`] are added to
+    /// it. `covered` is what it covers of each to begin with.
     ///
     /// The paper's queue needs no queue. A surfel is taken out at the priority p; if it has grown
     /// since, it goes back with a larger one. All others were at p or below and have not been
     /// looked at since: it is the first again, nothing has changed, and step 2b adds it. So each
     /// surfel is decided when its turn comes, in the order of the priorities that step 1 gave.
-    fn added(&self, group: u8, covered: impl Fn(usize) -> u64 + Sync + Send) -> Vec<bool> {
+    fn added(&self, group: u8, covered: impl Fn(usize) -> u64 + Sync + Send) -> Vec<AtomicU8> {
         let &Overlaps { tree, graph, exec } = self.overlaps;
         let too_big = |covered: u64| covered.count_ones() as f32 / SAMPLES as f32 > self.most;
         // The priority of a candidate that is not decided.
@@ -162,29 +165,35 @@ impl Members<'_> {
             if open.asked == 0 {
                 open.mask = covered(place);
             }
-            let mut samples = None;
-            while let Some(&other) = graph.of(place).get(open.asked) {
-                let other = other as usize;
-                let theirs = state[other].load(Relaxed);
-                let first = theirs & !ADDED;
-                let before = first > priority
-                    || (first == priority && tree.surfel[other] < tree.surfel[place]);
-                if theirs != OUT && before {
-                    if theirs < ADDED {
-                        return Some(other);
-                    }
+            let (row, mut samples) = (graph.of(place), None);
+            while open.asked < row.all.len() {
+                let (mut added, mut waits) = (0_u64, 0_u64);
+                row.visit_64(open.asked, |number, other, lower| {
+                    let theirs = state[other].load(Relaxed);
+                    let first = (theirs & !ADDED) + u8::from(lower) > priority;
+                    let before = u64::from((theirs != OUT) & first) << number;
+                    let is_added = if theirs < ADDED { 0 } else { u64::MAX };
+                    added |= before & is_added;
+                    waits |= before & !is_added;
+                });
+                if waits != 0 {
+                    return Some(row.all[open.asked + waits.trailing_zeros() as usize] as usize);
+                }
+                while added != 0 {
+                    let other = row.all[open.asked + added.trailing_zeros() as usize] as usize;
                     let samples = samples.get_or_insert_with(|| tree.samples(place));
                     open.mask |= covered_by(samples, &tree.discs[other]);
                     if too_big(open.mask) {
                         state[place].store(OUT, Relaxed);
                         return None;
                     }
+                    added &= added - 1;
                 }
-                open.asked += 1;
+                open.asked += 64;
             }
             state[place].store(ADDED | priority, Relaxed);
             None
         });
-        state.into_iter().map(|state| (ADDED..OUT).contains(&state.into_inner())).collect()
+        state
     }
 }

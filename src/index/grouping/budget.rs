@@ -28,15 +28,29 @@ impl Budget {
     /// # Errors
     /// [`Error::Invalid`] if more is spent than there is.
     pub(super) fn spend(&self, pairs: u64) -> Result<()> {
-        let most = 64 * self.surfels as u64 + (1 << 20);
         let before = self.spent.fetch_add(pairs, Ordering::Relaxed);
-        if before.saturating_add(pairs) <= 2 * most {
-            return Ok(());
-        }
-        Err(Error::Invalid(format!(
-            "more than {most} pairs of {} surfels overlap at c = {}, over 64 a surfel: give a lower \
+        if before.saturating_add(pairs) <= 2 * self.most() { Ok(()) } else { Err(self.overrun()) }
+    }
+
+    /// Whether those of a part can be counted.
+    ///
+    /// # Errors
+    /// As [`Budget::spend`], of which a part has at most 2^32 - 1.
+    pub(super) fn fits(&self, pairs: usize) -> Result<()> {
+        if u32::try_from(pairs).is_ok() { Ok(()) } else { Err(self.overrun()) }
+    }
+
+    fn most(&self) -> u64 {
+        64 * self.surfels as u64 + (1 << 20)
+    }
+
+    fn overrun(&self) -> Error {
+        Error::Invalid(format!(
+            "more than {} pairs of {} surfels overlap at c = {}, over 64 a surfel: give a lower \
              c or smaller radii",
-            self.surfels, self.factor
-        )))
+            self.most(),
+            self.surfels,
+            self.factor
+        ))
     }
 }

@@ -3,6 +3,7 @@
 use super::budget::Budget;
 use super::disc::{SpaceDisc, dot};
 use super::disc_tree::{DISCS, DiscTree, NearBlocks};
+use super::parts::Parts;
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::elementary::{cos, sin};
@@ -93,19 +94,16 @@ pub(super) fn by_lower(
     scale: f64,
     exec: &Exec,
     progress: &dyn Fn(u64, u64),
-) -> Result<Vec<u64>> {
+) -> Result<Parts<Vec<u64>>> {
     let budget = Budget::new(tree.surfel.len(), scale);
-    let mut covered = Vec::with_capacity(tree.surfel.len());
-    let job = |blocks| covered_by_lower(tree, blocks, scale, &budget);
-    tree.parts(exec, progress, job, |part: Vec<u64>| covered.extend(part))?;
-    Ok(covered)
+    Parts::of(tree, exec, progress, |places| covered_by_lower(tree, places, scale, &budget))
 }
 
 vectorized!(
-    /// [`by_lower`] for the places of some blocks.
+    /// [`by_lower`] for some places.
     fn covered_by_lower(
         tree: &DiscTree,
-        blocks: Range<usize>,
+        places: Range<usize>,
         scale: f64,
         budget: &Budget,
     ) -> Result<Vec<u64>> {
@@ -113,10 +111,10 @@ vectorized!(
             let disc = tree.discs[place];
             SpaceDisc { radius: scale * disc.radius, ..disc }
         };
-        let first = tree.places(blocks.start).start;
-        let mut covered = vec![0; tree.places(blocks.end - 1).end - first];
+        let first = places.start;
+        let mut covered = vec![0; places.len()];
         let mut room = NearBlocks::default();
-        for block in blocks {
+        for block in tree.blocks(&places) {
             let samples: Vec<DiscSamples> =
                 tree.places(block).map(|i| DiscSamples::of(disc(i), tree.surfel[i])).collect();
             let mut seen = 0;
@@ -136,8 +134,8 @@ vectorized!(
 
 /// The covered area of eq. 7 for all radii times `scale`, divided by pi scale^2, and the sum of the
 /// squared radii: sums in ascending index.
-pub(super) fn area(tree: &DiscTree, covered: &[u64]) -> (f64, f64) {
-    areas(tree, 1, |_| 0, |place| covered[place])[0]
+pub(super) fn area(tree: &DiscTree, covered: &Parts<Vec<u64>>) -> (f64, f64) {
+    areas(tree, 1, |_| 0, |place| covered.at(place))[0]
 }
 
 /// [`area`] of each of `count` groups; `group` is asked by rank, and `covered` by place.

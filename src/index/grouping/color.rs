@@ -4,7 +4,7 @@ use super::disc_tree::DiscTree;
 use super::graded::Graded;
 use super::graph::{Graph, conflicts};
 use super::rules::Rules;
-use super::settle::{Open, settle};
+use super::settle::settle;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::scene::groups::{MAX_GROUPS, check_count};
@@ -126,10 +126,8 @@ impl Coloring<'_> {
             }
         }
         // c = 0 has no edges, and so fits.
-        let (color, report) = best.unwrap_or_else(|| {
-            let n = self.surfels.len();
-            (vec![0; n], self.report(0.0, 1, &Graph::empty(n)))
-        });
+        let (color, report) =
+            best.unwrap_or_else(|| (vec![0; self.surfels.len()], self.report(0.0, 1, None)));
         Ok((groups(self.tree, &color, report.groups)?, report))
     }
 
@@ -151,21 +149,23 @@ impl Coloring<'_> {
         most: usize,
     ) -> Option<(Vec<u32>, GroupingReport)> {
         let show = |done, of| (self.progress)("colouring", done, of);
-        let color = largest_first(graph, &self.tree.surfel, most, self.exec, &show)?;
+        let color = largest_first(graph, self.surfels.len(), most, self.exec, &show)?;
         let groups = color.iter().fold(0, |most, &color| most.max(color)) as usize + 1;
-        let report = self.report(overlap, groups, graph);
+        let report = self.report(overlap, groups, Some(graph));
         Some((color, report))
     }
 
-    fn report(&self, overlap: f32, groups: usize, graph: &Graph) -> GroupingReport {
+    /// What is told of a graph; without one there are no edges.
+    fn report(&self, overlap: f32, groups: usize, graph: Option<&Graph>) -> GroupingReport {
         let n = self.surfels.len();
+        let edges = graph.map_or(0, Graph::edges);
         GroupingReport {
             surfels: n as u64,
             overlap,
             groups,
-            edges: graph.edges(),
-            max_degree: (0..n).map(|place| graph.degree(place)).fold(0, u32::max),
-            average_degree: 2.0 * graph.edges() as f64 / n as f64,
+            edges,
+            max_degree: graph.map_or(0, Graph::max_degree),
+            average_degree: 2.0 * edges as f64 / n as f64,
         }
     }
 }
@@ -179,46 +179,51 @@ fn groups(tree: &DiscTree, color: &[u32], groups: usize) -> Result<Groups> {
     Groups::new(own, Vec::new(), vec![1.0; groups])
 }
 
-/// The colour of every place: those with more neighbours first, of those with equally many the
-/// lower `index`; each gets the smallest colour that no neighbour has. None if one gets `most` or a
+/// The colour of all `n` places: those with more neighbours first, of those with equally many the
+/// surfel of the lower index; each gets the smallest colour that no neighbour has. None if one gets `most` or a
 /// larger one.
 fn largest_first(
     graph: &Graph,
-    index: &[u32],
+    n: usize,
     most: usize,
     exec: &Exec,
     progress: &dyn Fn(u64, u64),
 ) -> Option<Vec<u32>> {
     const NONE: u32 = u32::MAX;
-    let n = index.len();
-    let mut turn = Vec::new();
-    exec.extend(&mut turn, n, |place| {
-        u64::from(u32::MAX - graph.degree(place)) << 32 | u64::from(index[place])
-    });
+    let mut degree = Vec::new();
+    exec.extend(&mut degree, n, |place| graph.degree(place));
     let color: Vec<AtomicU32> = (0..n).map(|_| AtomicU32::new(NONE)).collect();
-    let color_of = |place: u32| color[place as usize].load(Relaxed);
+    let color_of = |place: usize| color[place].load(Relaxed);
     let too_many = AtomicBool::new(false);
     settle(n, exec, progress, |open| {
-        let &mut Open { place, .. } = open;
-        if color_of(place as u32) != NONE || too_many.load(Relaxed) {
+        let place = open.place;
+        if color_of(place) != NONE || too_many.load(Relaxed) {
             return None;
         }
-        let before = |&&other: &&u32| turn[other as usize] < turn[place];
-        let neighbours = graph.of(place);
-        while let Some(other) = neighbours.get(open.asked) {
-            if before(&other) {
-                match color_of(*other) {
-                    NONE => return Some(*other as usize),
-                    taken @ 0..64 => open.mask |= 1 << taken,
-                    _ => {}
-                }
+        // Of equally many neighbours, the lower index comes first.
+        let own = degree[place];
+        let before = |other: usize, lower: bool| degree[other] + u32::from(lower) > own;
+        let row = graph.of(place);
+        while open.asked < row.all.len() {
+            let (mut taken, mut waits) = (open.mask, 0_u64);
+            row.visit_64(open.asked, |number, other, lower| {
+                let (before, theirs) = (before(other, lower), color_of(other));
+                waits |= u64::from(before & (theirs == NONE)) << number;
+                taken |= u64::from(before & (theirs < 64)) << (theirs % 64);
+            });
+            if waits != 0 {
+                return Some(row.all[open.asked + waits.trailing_zeros() as usize] as usize);
             }
-            open.asked += 1;
+            open.mask = taken;
+            open.asked += 64;
         }
         let (mut free, mut full) = (open.mask.trailing_ones(), open.mask == u64::MAX);
         while full {
             // The next 64 colours; all that come before are coloured by now.
-            let taken = neighbours.iter().filter(before).map(|&other| color_of(other));
+            let all =
+                row.all.iter().enumerate().map(|(at, &other)| (other as usize, at < row.lower));
+            let taken = all.filter(|&(other, lower)| before(other, lower));
+            let taken = taken.map(|(other, _)| color_of(other));
             let here = taken.filter(|taken| taken / 64 == free / 64);
             let mask = here.fold(0_u64, |mask, taken| mask | 1 << (taken % 64));
             (free, full) = (free + mask.trailing_ones(), mask == u64::MAX);

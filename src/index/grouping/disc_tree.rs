@@ -2,7 +2,8 @@
 //!
 //! A balanced tree over blocks of [`DISCS`] discs that follow each other along a [curve]: it does
 //! not care how unevenly they are spread, and as each box knows the largest radius in it, nor how
-//! their sizes differ. One block is searched for at a time, and pairs are tested a block at a time.
+//! their sizes differ. The tree is searched for a few blocks at a time; each disc of them asks the
+//! boxes that were found, and the discs in those that it may be near, all lanes at once.
 //! What is found depends on the discs alone; the tree leaves no trace but the order in which it is
 //! found.
 
@@ -16,8 +17,8 @@ use crate::scene::Surfels;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
-/// Discs of one block.
-pub(super) const DISCS: usize = 8;
+/// Discs of one block. Loops over fewer lanes are unrolled before they can become vectors.
+pub(super) const DISCS: usize = 16;
 
 /// Discs in the order of the tree: *places* 0, 1, 2 ...
 #[derive(Debug)]
@@ -125,75 +126,45 @@ impl DiscTree {
         room: &mut NearBlocks,
         mut visit: impl FnMut(usize, usize) -> bool,
     ) {
-        let places = self.places(block);
-        // A bit for each i that is not skipped.
-        let mut wanted = (1_u32 << places.len()) - 1;
-        self.near_blocks(block, factor, room);
-        for blocks in room.found.chunks(PART) {
-            let part = DiscPart::of(blocks.iter().map(|&other| &self.blocks[other as usize]));
-            for i in places.clone() {
-                if wanted >> (i % DISCS) & 1 == 0 {
-                    continue;
-                }
-                let near = part.near(&self.blocks[block], i % DISCS, factor);
-                'rest: for (&other, near) in blocks.iter().zip(near.as_chunks::<DISCS>().0) {
-                    let mut near = u64::from_le_bytes(*near);
-                    while near != 0 {
-                        let j = other as usize * DISCS + near.trailing_zeros() as usize / 8;
+        self.search(block, factor, room);
+        for i in self.places(block) {
+            let own = self.blocks[block].disc(i % DISCS);
+            'rest: for (boxes, blocks) in room.boxes.iter().zip(room.found.chunks(DISCS)) {
+                for other in lanes_of(boxes.near(own, factor)) {
+                    let other = blocks[other] as usize;
+                    for lane in lanes_of(self.blocks[other].near(own, factor)) {
+                        let j = other * DISCS + lane;
                         if j != i && !visit(i, j) {
-                            wanted &= !(1 << (i % DISCS));
                             break 'rest;
                         }
-                        near &= near - 1;
                     }
                 }
             }
-            if wanted == 0 {
-                return;
-            }
         }
     }
 
-    /// Runs a job for ranges of blocks, in parallel, and hands on the results in their order.
+    /// The blocks of some places, which are all of those blocks.
+    pub(super) fn blocks(&self, places: &Range<usize>) -> Range<usize> {
+        places.start / DISCS..places.end.div_ceil(DISCS)
+    }
+
+    /// Searches for the blocks that may hold a disc near one of a block.
     ///
-    /// `progress` gets how many places are done, and of how many.
-    pub(super) fn parts<T: Send>(
-        &self,
-        exec: &Exec,
-        progress: &dyn Fn(u64, u64),
-        job: impl Fn(Range<usize>) -> Result<T> + Sync + Send,
-        mut take: impl FnMut(T),
-    ) -> Result<()> {
-        const JOB: usize = 128;
-        const BATCH: usize = 128 * JOB;
-        let (blocks, places) = (self.blocks.len(), self.surfel.len() as u64);
-        for batch in (0..blocks).step_by(BATCH) {
-            progress((batch * DISCS) as u64, places);
-            let starts = (batch..blocks.min(batch + BATCH)).step_by(JOB);
-            let ranges = starts.map(|start| start..blocks.min(start + JOB)).collect();
-            for result in exec.ordered(ranges, &job) {
-                take(result?);
-            }
+    /// Neighbouring blocks have much the same around them: the tree is searched for a few at a
+    /// time, from a box around them.
+    fn search(&self, block: usize, factor: f64, room: &mut NearBlocks) {
+        let level = self.levels.len().min(2) - 1;
+        let of = block >> level;
+        if room.of == Some((of, factor)) {
+            return;
         }
-        progress(places, places);
-        Ok(())
-    }
-
-    /// The blocks that may hold a disc near one of a block, those first whose number is close.
-    fn near_blocks(&self, block: usize, factor: f64, room: &mut NearBlocks) {
-        let NearBlocks { found, around, of } = room;
-        // Neighbouring blocks have much the same around them: the tree is searched for a few at a
-        // time, from a box around them.
-        let level = self.levels.len().min(3) - 1;
-        if *of != Some((block >> level, factor)) {
-            *of = Some((block >> level, factor));
-            self.blocks_near(&self.levels[level][block >> level], factor, around);
-        }
-        let (own, boxes) = (&self.levels[0][block], &self.levels[0]);
-        let near = around.iter().filter(|&&other| boxes[other as usize].may_be_near(own, factor));
-        found.clear();
-        found.extend(near);
-        found.sort_unstable_by_key(|&other| other.abs_diff(block as u32));
+        room.of = Some((of, factor));
+        self.blocks_near(&self.levels[level][of], factor, &mut room.found);
+        room.found.sort_unstable_by_key(|&other| other.abs_diff(block as u32));
+        let boxes =
+            |blocks: &[u32]| BoxLanes::of(blocks.iter().map(|&b| &self.levels[0][b as usize]));
+        room.boxes.clear();
+        room.boxes.extend(room.found.chunks(DISCS).map(boxes));
     }
 
     /// The blocks that may hold a disc near one of a box.
@@ -215,54 +186,67 @@ impl DiscTree {
     }
 }
 
-/// The blocks that are searched, in memory that is used again.
+/// The blocks that may hold a disc near one of a few blocks, in memory that is used again.
 #[derive(Debug, Default)]
 pub(super) struct NearBlocks {
+    /// Those first whose number is close.
     found: Vec<u32>,
-    /// Near a box of several blocks.
-    around: Vec<u32>,
-    /// Which box, and near by which factor.
+    /// The boxes around them, as many side by side as discs are.
+    boxes: Vec<BoxLanes>,
+    /// Of which blocks, and near by which factor.
     of: Option<(usize, f64)>,
 }
 
-/// Blocks whose discs are tested at once.
-const PART: usize = 8;
-const LANES: usize = PART * DISCS;
-
-/// The discs of up to [`PART`] blocks, then NaN, which is near nothing.
-#[derive(Clone, Debug)]
-struct DiscPart {
-    x: [f64; LANES],
-    y: [f64; LANES],
-    z: [f64; LANES],
-    r: [f64; LANES],
+/// The lanes that have a 1, in ascending order.
+#[inline(always)]
+fn lanes_of(flags: [u8; DISCS]) -> impl Iterator<Item = usize> {
+    let mut left = u128::from_le_bytes(flags);
+    std::iter::from_fn(move || {
+        let lane = left.trailing_zeros() as usize / 8;
+        let any = left != 0;
+        left &= left.wrapping_sub(1);
+        any.then_some(lane)
+    })
 }
 
-impl DiscPart {
-    #[inline(always)]
-    fn of<'a>(blocks: impl Iterator<Item = &'a DiscBlock>) -> Self {
-        let [x, y, z, r] = [[f64::NAN; LANES]; 4];
-        let mut part = Self { x, y, z, r };
-        for (at, block) in blocks.enumerate() {
-            let lanes = at * DISCS..(at + 1) * DISCS;
-            part.x[lanes.clone()].copy_from_slice(&block.x);
-            part.y[lanes.clone()].copy_from_slice(&block.y);
-            part.z[lanes.clone()].copy_from_slice(&block.z);
-            part.r[lanes].copy_from_slice(&block.r);
+/// Boxes side by side; what is left of the last ones is NaN, which is near nothing.
+#[derive(Clone, Debug)]
+struct BoxLanes {
+    low: [[f64; DISCS]; 3],
+    high: [[f64; DISCS]; 3],
+    r: [f64; DISCS],
+}
+
+impl BoxLanes {
+    /// Of at most as many boxes as there are lanes.
+    fn of<'a>(boxes: impl Iterator<Item = &'a Bounds>) -> Self {
+        let none = [f64::NAN; DISCS];
+        let mut lanes = Self { low: [none; 3], high: [none; 3], r: none };
+        for (lane, bounds) in boxes.enumerate() {
+            for axis in 0..3 {
+                lanes.low[axis][lane] = bounds.low[axis];
+                lanes.high[axis][lane] = bounds.high[axis];
+            }
+            lanes.r[lane] = bounds.r;
         }
-        part
+        lanes
     }
 
-    /// 1 for each disc here that is near the disc in a lane of a block, else 0.
+    /// 1 for each box that may hold a disc near one; 0 only if it does not, as with
+    /// [`Bounds::may_be_near`].
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "a lane is an index into several arrays")]
-    fn near(&self, block: &DiscBlock, lane: usize, factor: f64) -> [u8; LANES] {
-        let (x, y, z, r) = (block.x[lane], block.y[lane], block.z[lane], block.r[lane]);
-        let mut near = [0; LANES];
-        for l in 0..LANES {
-            let (dx, dy, dz) = (x - self.x[l], y - self.y[l], z - self.z[l]);
-            let reach = factor * (r + self.r[l]);
-            near[l] = u8::from((dx * dx + dy * dy) + dz * dz < reach * reach);
+    fn near(&self, (p, r): (DVec3, f64), factor: f64) -> [u8; DISCS] {
+        let mut near = [0; DISCS];
+        for l in 0..DISCS {
+            let gap = |axis: usize| {
+                let (below, above) = (self.low[axis][l] - p[axis], p[axis] - self.high[axis][l]);
+                let gap = if below > above { below } else { above };
+                if gap > 0.0 { gap } else { 0.0 }
+            };
+            let (x, y, z) = (gap(0), gap(1), gap(2));
+            let reach = factor * (self.r[l] + r);
+            near[l] = u8::from((x * x + y * y) + z * z < reach * reach);
         }
         near
     }
@@ -294,6 +278,25 @@ impl DiscBlock {
             block.r[lane] = disc.radius;
         }
         block
+    }
+
+    /// The centre and the radius of the disc in a lane.
+    #[inline(always)]
+    fn disc(&self, lane: usize) -> (DVec3, f64) {
+        (DVec3::new(self.x[lane], self.y[lane], self.z[lane]), self.r[lane])
+    }
+
+    /// 1 for each disc that is near one, else 0.
+    #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "a lane is an index into several arrays")]
+    fn near(&self, (p, r): (DVec3, f64), factor: f64) -> [u8; DISCS] {
+        let mut near = [0; DISCS];
+        for l in 0..DISCS {
+            let (dx, dy, dz) = (p.x - self.x[l], p.y - self.y[l], p.z - self.z[l]);
+            let reach = factor * (r + self.r[l]);
+            near[l] = u8::from((dx * dx + dy * dy) + dz * dz < reach * reach);
+        }
+        near
     }
 }
 

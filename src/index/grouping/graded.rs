@@ -1,12 +1,14 @@
 //! The graphs of all c that are multiples of 1/64, from one that has the edges of all of them.
 
 use super::color::STEPS;
-use super::disc::dot;
+use super::disc::SpaceDisc;
 use super::disc_tree::DiscTree;
 use super::graph::{Graph, relaxed};
+use super::parts::Parts;
 use super::rules::Rules;
 use crate::error::Result;
 use crate::frame::Exec;
+use crate::number::lanes::vectorized;
 use crate::scene::Surfels;
 use std::ops::Range;
 
@@ -14,7 +16,8 @@ use std::ops::Range;
 /// [`NEVER`].
 pub(super) struct Graded<'a> {
     graph: &'a Graph,
-    least: Vec<u8>,
+    /// In the order of the rows of each part.
+    least: Parts<Vec<u8>>,
 }
 
 /// An edge that the rules take away, or whose discs are not near by 1.
@@ -31,21 +34,10 @@ impl<'a> Graded<'a> {
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Self> {
-        let mut least = Vec::with_capacity(2 * graph.edges() as usize);
-        let job = |blocks: Range<usize>| {
-            let places = tree.places(blocks.start).start..tree.places(blocks.end - 1).end;
-            let mut part = Vec::new();
-            for i in places {
-                part.extend(graph.of(i).iter().map(|&j| {
-                    let j = j as usize;
-                    if relaxed(surfels, tree, rules, i, j) { NEVER } else { step(tree, i, j) }
-                }));
-            }
-            Ok(part)
-        };
+        let away = |i: usize, j: usize| relaxed(surfels, tree, rules, i, j);
+        let job = |places| Ok(least_steps(tree, graph, places, &away));
         let show = |done, of| progress("finding overlaps", done, of);
-        tree.parts(exec, &show, job, |part: Vec<u8>| least.extend(part))?;
-        Ok(Self { graph, least })
+        Ok(Self { graph, least: Parts::of(tree, exec, &show, job)? })
     }
 
     /// The graph of c = `most` / 64.
@@ -56,44 +48,84 @@ impl<'a> Graded<'a> {
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Graph> {
-        let rows = |blocks: Range<usize>| {
-            let places = tree.places(blocks.start).start..tree.places(blocks.end - 1).end;
-            // Written where the next one goes, kept or not: whether it is cannot be foreseen.
-            let mut kept = vec![0; self.graph.entries(places.clone()).len() + 1];
-            let (mut degree, mut end) = (Vec::with_capacity(places.len()), 0);
-            for i in places {
-                let before = end;
-                for (&j, &least) in
-                    self.graph.of(i).iter().zip(&self.least[self.graph.entries(i..i + 1)])
-                {
-                    kept[end] = j;
-                    end += usize::from(least <= most);
-                }
-                degree.push((end - before) as u32);
-            }
-            kept.truncate(end);
-            Ok((degree, kept))
+        let rows = |places: Range<usize>| {
+            Ok(self.graph.part(places.start).upto(most, self.least.with(places.start).0))
         };
         Graph::of_rows(tree, rows, exec, progress)
     }
 }
 
-/// The least multiple of 1/64 by which two discs are near, see [`super`], or [`NEVER`].
-///
-/// Discs that are near by a c are near by every larger one, as rounding is monotone. So the search
-/// may begin anywhere; it begins beside where it ends.
-#[inline(always)]
-fn step(tree: &DiscTree, i: usize, j: usize) -> u8 {
-    let (a, b) = (&tree.discs[i], &tree.discs[j]);
-    let near = |step: u8| a.is_near(b, f64::from(step) / f64::from(STEPS));
-    let d = a.center.as_dvec3() - b.center.as_dvec3();
-    let guess = f64::from(STEPS) * (dot(d, d).sqrt() / (a.radius + b.radius));
-    let mut step = if guess < f64::from(STEPS) { guess as u8 } else { STEPS };
-    while step > 0 && near(step - 1) {
-        step -= 1;
+vectorized!(
+    /// The least steps of the edges of some places.
+    fn least_steps(
+        tree: &DiscTree,
+        graph: &Graph,
+        places: Range<usize>,
+        away: &impl Fn(usize, usize) -> bool,
+    ) -> Vec<u8> {
+        let rows = graph.part(places.start);
+        let mut least = Vec::with_capacity(rows.len());
+        for (row, i) in places.enumerate() {
+            for others in rows.row(row).all.chunks(LANES) {
+                let steps = Lanes::of(tree, others).least_steps(&tree.discs[i]);
+                least.extend(
+                    others
+                        .iter()
+                        .zip(steps)
+                        .map(|(&j, step)| if away(i, j as usize) { NEVER } else { step as u8 }),
+                );
+            }
+        }
+        least
     }
-    while step < STEPS && !near(step) {
-        step += 1;
+);
+
+/// Discs whose steps are found at once.
+const LANES: usize = 8;
+
+/// Discs side by side.
+struct Lanes {
+    x: [f64; LANES],
+    y: [f64; LANES],
+    z: [f64; LANES],
+    r: [f64; LANES],
+}
+
+impl Lanes {
+    /// Of those at up to so many places.
+    #[inline(always)]
+    fn of(tree: &DiscTree, places: &[u32]) -> Self {
+        let mut lanes = Self { x: [0.0; LANES], y: [0.0; LANES], z: [0.0; LANES], r: [1.0; LANES] };
+        for (lane, &place) in places.iter().enumerate() {
+            let disc = &tree.discs[place as usize];
+            let p = disc.center.as_dvec3();
+            (lanes.x[lane], lanes.y[lane], lanes.z[lane]) = (p.x, p.y, p.z);
+            lanes.r[lane] = disc.radius;
+        }
+        lanes
     }
-    if near(step) { step } else { NEVER }
+
+    /// Of each disc the least multiple of 1/64 by which it is near another, see [`super`], or
+    /// [`NEVER`].
+    ///
+    /// Two discs are near by a multiple well above |d| / (r + r'), and are not by one well below.
+    /// Rounding cannot move that border by half a multiple: only the multiple closest to it is
+    /// asked.
+    #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "a lane is an index into several arrays")]
+    fn least_steps(&self, other: &SpaceDisc) -> [i32; LANES] {
+        let (p, r) = (other.center.as_dvec3(), other.radius);
+        let mut least = [0; LANES];
+        for l in 0..LANES {
+            let (x, y, z) = (p.x - self.x[l], p.y - self.y[l], p.z - self.z[l]);
+            let (square, reach) = ((x * x + y * y) + z * z, r + self.r[l]);
+            let border = f64::from(STEPS) * (square.sqrt() / reach);
+            let closest =
+                if border < f64::from(STEPS) { (border + 0.5) as i32 } else { i32::from(STEPS) };
+            let most = f64::from(closest) / f64::from(STEPS) * reach;
+            let step = closest + i32::from(square >= most * most);
+            least[l] = if step > i32::from(STEPS) { i32::from(NEVER) } else { step };
+        }
+        least
+    }
 }

@@ -3,6 +3,7 @@
 use super::budget::Budget;
 use super::disc::dot;
 use super::disc_tree::{DISCS, DiscTree, NearBlocks};
+use super::parts::Parts;
 use super::rules::{Coplanar, Rules};
 use crate::error::Result;
 use crate::frame::Exec;
@@ -10,107 +11,203 @@ use crate::number::lanes::vectorized;
 use crate::scene::Surfels;
 use std::ops::Range;
 
-/// The neighbours of every place of a tree, as one array.
+/// The neighbours of every place of a tree.
 #[derive(Debug)]
-pub(super) struct Graph {
-    /// Where the neighbours of each place start, and last how many there are in all.
-    start: Vec<usize>,
+pub(super) struct Graph(Parts<Rows>);
+
+/// The neighbours of the places of a part.
+#[derive(Debug)]
+pub(super) struct Rows {
+    /// Of each place, and last one whose row starts where all rows end.
+    starts: Vec<Start>,
     neighbour: Vec<u32>,
 }
 
-/// The rows of some places: how many neighbours each has, and all of them.
-type Rows = (Vec<u32>, Vec<u32>);
+/// Where the row of a place starts, and how many of its neighbours are surfels of a lower index.
+#[derive(Clone, Copy, Debug)]
+struct Start {
+    at: u32,
+    lower: u32,
+}
+
+/// The neighbours of a place: at first those `lower`, which are surfels of a lower index.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row<'a> {
+    pub(super) all: &'a [u32],
+    pub(super) lower: usize,
+}
 
 vectorized!(
-    /// The rows of some blocks.
-    fn near_rows<K: Fn(usize, usize) -> bool>(
+    /// The rows of some places.
+    fn near_rows(
         tree: &DiscTree,
-        blocks: Range<usize>,
+        places: Range<usize>,
         factor: f64,
-        keep: &K,
+        keep: &impl Fn(usize, usize) -> bool,
         budget: &Budget,
     ) -> Result<Rows> {
-        let (mut degree, mut neighbour) = (Vec::new(), Vec::new());
-        let (mut room, mut rows) = (NearBlocks::default(), [const { Vec::new() }; DISCS]);
-        for block in blocks {
+        let mut rows = Rows::with_capacity(places.len());
+        let (mut room, mut found) = (NearBlocks::default(), [const { Vec::new() }; DISCS]);
+        for block in tree.blocks(&places) {
             let mut seen = 0;
             tree.near(block, factor, &mut room, |i, j| {
                 seen += 1;
                 if keep(i, j) {
-                    rows[i % DISCS].push(j as u32);
+                    found[i % DISCS].push(j as u32);
                 }
                 true
             });
             budget.spend(seen)?;
-            for (_, row) in tree.places(block).zip(&mut rows) {
-                degree.push(row.len() as u32);
-                neighbour.append(row);
+            for (place, found) in tree.places(block).zip(&mut found) {
+                let surfel = tree.surfel[place];
+                rows.push(found, |other| tree.surfel[other as usize] < surfel);
+                found.clear();
             }
+            budget.fits(rows.len())?;
         }
-        Ok((degree, neighbour))
+        Ok(rows)
     }
 );
 
-impl Graph {
-    /// Without edges.
-    pub(super) fn empty(places: usize) -> Self {
-        Self { start: vec![0; places + 1], neighbour: Vec::new() }
+impl Rows {
+    fn with_capacity(places: usize) -> Self {
+        let mut starts = Vec::with_capacity(places + 1);
+        starts.push(Start { at: 0, lower: 0 });
+        Self { starts, neighbour: Vec::new() }
     }
 
+    /// Adds the neighbours of the next place.
+    #[inline(always)]
+    fn push(&mut self, neighbours: &[u32], is_lower: impl Fn(u32) -> bool) {
+        let start = self.neighbour.len();
+        self.neighbour.resize(start + neighbours.len(), 0);
+        let row = &mut self.neighbour[start..];
+        // Written to both ends of what is free: which of them it is cannot be foreseen.
+        let (mut lower, mut above) = (0, row.len());
+        for &neighbour in neighbours {
+            (row[lower], row[above - 1]) = (neighbour, neighbour);
+            let is_lower = usize::from(is_lower(neighbour));
+            lower += is_lower;
+            above -= 1 - is_lower;
+        }
+        self.end_row(lower, self.neighbour.len());
+    }
+
+    /// The row of the next place, of which so many are lower, goes on to here.
+    fn end_row(&mut self, lower: usize, end: usize) {
+        if let Some(start) = self.starts.last_mut() {
+            start.lower = lower as u32;
+        }
+        self.starts.push(Start { at: end as u32, lower: 0 });
+    }
+
+    /// Those neighbours of which a grade is at most `most`; there is one for each, in their order.
+    pub(super) fn upto(&self, most: u8, grades: &[u8]) -> Self {
+        let mut kept = Self::with_capacity(self.starts.len() - 1);
+        // Written where the next one goes, kept or not: whether it is cannot be foreseen.
+        let (mut neighbour, mut end) = (vec![0; self.neighbour.len() + 1], 0);
+        let mut keep = |entries: Range<usize>| {
+            let before = end;
+            for (&other, &grade) in self.neighbour[entries.clone()].iter().zip(&grades[entries]) {
+                neighbour[end] = other;
+                end += usize::from(grade <= most);
+            }
+            (end - before, end)
+        };
+        for row in self.starts.windows(2) {
+            let [from, to] = [row[0].at, row[1].at].map(|at| at as usize);
+            let middle = from + row[0].lower as usize;
+            let (lower, _) = keep(from..middle);
+            let (_, end) = keep(middle..to);
+            kept.end_row(lower, end);
+        }
+        // What is free is left behind: it may be most of it.
+        kept.neighbour = neighbour[..end].to_vec();
+        kept
+    }
+
+    /// The neighbours of a place of the part.
+    #[inline(always)]
+    pub(super) fn row(&self, place: usize) -> Row<'_> {
+        let Start { at, lower } = self.starts[place];
+        Row {
+            all: &self.neighbour[at as usize..self.starts[place + 1].at as usize],
+            lower: lower as usize,
+        }
+    }
+
+    /// How many neighbours there are in all.
+    pub(super) fn len(&self) -> usize {
+        self.neighbour.len()
+    }
+}
+
+impl Row<'_> {
+    /// Visits up to 64 neighbours from one on, by their number from there, their place, and whether
+    /// their surfel has a lower index.
+    #[inline(always)]
+    pub(super) fn visit_64(&self, from: usize, mut visit: impl FnMut(usize, usize, bool)) {
+        let end = self.all.len().min(from + 64);
+        let (lower, above) = self.all[from..end].split_at(self.lower.clamp(from, end) - from);
+        for (number, &other) in lower.iter().enumerate() {
+            visit(number, other as usize, true);
+        }
+        for (number, &other) in above.iter().enumerate() {
+            visit(lower.len() + number, other as usize, false);
+        }
+    }
+}
+
+impl Graph {
     /// Of the pairs of places that are [near](DiscTree::near) and are kept.
     pub(super) fn new(
         tree: &DiscTree,
         factor: f64,
-        keep: impl Fn(usize, usize) -> bool + Sync,
+        keep: impl Fn(usize, usize) -> bool + Sync + Send,
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Self> {
         let budget = Budget::new(tree.surfel.len(), factor);
-        let rows = |blocks| near_rows(tree, blocks, factor, &keep, &budget);
+        let rows = |places| near_rows(tree, places, factor, &keep, &budget);
         Self::of_rows(tree, rows, exec, progress)
     }
 
-    /// Of rows that are made of some blocks at a time.
+    /// Of rows that are made of the places of one part at a time.
     pub(super) fn of_rows(
         tree: &DiscTree,
         rows: impl Fn(Range<usize>) -> Result<Rows> + Sync + Send,
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Self> {
-        let start = Vec::with_capacity(tree.surfel.len() + 1);
-        let mut graph = Self { start, neighbour: Vec::new() };
-        graph.start.push(0);
-        let mut end = 0;
         let show = |done, of| progress("finding overlaps", done, of);
-        tree.parts(exec, &show, rows, |(degrees, neighbours): Rows| {
-            graph.start.extend(degrees.into_iter().map(|degree| {
-                end += degree as usize;
-                end
-            }));
-            graph.neighbour.extend(neighbours);
-        })?;
-        Ok(graph)
+        Parts::of(tree, exec, &show, rows).map(Self)
     }
 
     /// The neighbours of a place.
-    #[inline]
-    pub(super) fn of(&self, place: usize) -> &[u32] {
-        &self.neighbour[self.start[place]..self.start[place + 1]]
+    #[inline(always)]
+    pub(super) fn of(&self, place: usize) -> Row<'_> {
+        let (rows, place) = self.0.with(place);
+        rows.row(place)
     }
 
-    /// Where all neighbours of some places are, counted from the first of the first place on.
-    #[inline]
-    pub(super) fn entries(&self, places: Range<usize>) -> Range<usize> {
-        self.start[places.start]..self.start[places.end]
+    /// The rows of the part that begins with a place.
+    pub(super) fn part(&self, place: usize) -> &Rows {
+        self.0.with(place).0
     }
 
     pub(super) fn degree(&self, place: usize) -> u32 {
-        (self.start[place + 1] - self.start[place]) as u32
+        self.of(place).all.len() as u32
+    }
+
+    /// The most neighbours of a place.
+    pub(super) fn max_degree(&self) -> u32 {
+        let rows = self.0.iter().flat_map(|rows| rows.starts.windows(2));
+        rows.map(|row| row[1].at - row[0].at).fold(0, u32::max)
     }
 
     /// How many edges there are, each counted once.
     pub(super) fn edges(&self) -> u64 {
-        self.neighbour.len() as u64 / 2
+        self.0.iter().map(|rows| rows.len() as u64).sum::<u64>() / 2
     }
 }
 

@@ -117,6 +117,7 @@ mod extend;
 mod graded;
 mod graph;
 mod overlaps;
+mod parts;
 mod rules;
 mod scales;
 mod settle;

@@ -2,6 +2,7 @@
 
 use super::disc_tree::DiscTree;
 use super::graph::Graph;
+use super::parts::Parts;
 use crate::frame::Exec;
 use crate::number::lanes::vectorized;
 use std::ops::Range;
@@ -14,60 +15,53 @@ pub(super) struct Overlaps<'a> {
 }
 
 impl Overlaps<'_> {
-    /// Whether the surfel at a place j is lower than that at i.
-    #[inline(always)]
-    pub(super) fn lower(&self, i: usize, j: usize) -> bool {
-        self.tree.surfel[j] < self.tree.surfel[i]
-    }
-
-    /// For each place i, the samples that those discs j cover for which `by(i, j)` has bit 0 set,
-    /// bit 1 and so on.
+    /// For each set and place i, the samples that those discs j cover for which `by(i, j, lower)` has bit 0
+    /// set, bit 1 and so on; `lower` tells whether the surfel at j has the lower index.
     pub(super) fn covered<const SETS: usize>(
         &self,
-        by: impl Fn(usize, usize) -> u32 + Sync + Send,
+        by: impl Fn(usize, usize, bool) -> u32 + Sync + Send,
         progress: &dyn Fn(u64, u64),
-    ) -> Vec<[u64; SETS]> {
-        let mut covered = Vec::with_capacity(self.tree.surfel.len());
-        let job = |blocks| Ok(covered_by_neighbours(self.tree, self.graph, blocks, &by));
-        let take = |part: Vec<_>| covered.extend(part);
-        self.tree.parts(self.exec, progress, job, take).expect("nothing fails");
-        covered
+    ) -> Parts<[Vec<u64>; SETS]> {
+        let job = |places| Ok(covered_by_neighbours(self.tree, self.graph, places, &by));
+        Parts::of(self.tree, self.exec, progress, job).expect("nothing fails")
     }
 }
 
 vectorized!(
-    /// [`Overlaps::covered`] for the places of some blocks.
-    fn covered_by_neighbours<const SETS: usize, B: Fn(usize, usize) -> u32>(
+    /// [`Overlaps::covered`] for some places.
+    fn covered_by_neighbours<const SETS: usize, B: Fn(usize, usize, bool) -> u32>(
         tree: &DiscTree,
         graph: &Graph,
-        blocks: Range<usize>,
+        places: Range<usize>,
         by: &B,
-    ) -> Vec<[u64; SETS]> {
-        let mut covered = Vec::with_capacity(tree.places(blocks.end - 1).end);
-        for i in tree.places(blocks.start).start..tree.places(blocks.end - 1).end {
-            let (mut masks, mut samples) = ([0; SETS], None);
-            // The sets that do not cover all yet.
-            let mut open = (1 << SETS) - 1;
-            for &j in graph.of(i) {
-                let sets = by(i, j as usize) & open;
-                if sets == 0 {
+    ) -> [Vec<u64>; SETS] {
+        // Side by side, as who asks for one set does not ask for the others.
+        let mut covered = [(); SETS].map(|()| Vec::with_capacity(places.len()));
+        for i in places {
+            let (mut masks, row) = ([0; SETS], graph.of(i));
+            for from in (0..row.all.len()).step_by(64) {
+                let mut chosen = 0_u64;
+                row.visit_64(from, |number, j, lower| {
+                    chosen |= u64::from(by(i, j, lower) != 0) << number;
+                });
+                if chosen == 0 {
                     continue;
                 }
-                let samples = samples.get_or_insert_with(|| tree.samples(i));
-                let mask = samples.covered_by(&tree.discs[j as usize]);
-                let mut left = sets;
-                while left != 0 {
-                    let set = left.trailing_zeros();
-                    let all: &mut u64 = &mut masks[set as usize];
-                    *all |= mask;
-                    open &= !(u32::from(*all == u64::MAX) << set);
-                    left &= left - 1;
-                }
-                if open == 0 {
-                    break;
+                let samples = tree.samples(i);
+                while chosen != 0 {
+                    let at = from + chosen.trailing_zeros() as usize;
+                    chosen &= chosen - 1;
+                    let j = row.all[at] as usize;
+                    let mask = samples.covered_by(&tree.discs[j]);
+                    let sets = by(i, j, at < row.lower);
+                    for (set, all) in masks.iter_mut().enumerate() {
+                        *all |= if sets >> set & 1 == 1 { mask } else { 0 };
+                    }
                 }
             }
-            covered.push(masks);
+            for (covered, mask) in covered.iter_mut().zip(masks) {
+                covered.push(mask);
+            }
         }
         covered
     }

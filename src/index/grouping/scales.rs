@@ -8,6 +8,7 @@ use super::clipped::{DiscSamples, area, by_lower};
 use super::disc::SpaceDisc;
 use super::disc_tree::DiscTree;
 use super::graph::Graph;
+use super::parts::Parts;
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::lanes::vectorized;
@@ -42,7 +43,7 @@ impl<'a> Scales<'a> {
     }
 
     /// [`by_lower`] at a scale.
-    fn covered(&mut self, scale: f64) -> Result<Vec<u64>> {
+    fn covered(&mut self, scale: f64) -> Result<Parts<Vec<u64>>> {
         let &mut Self { tree, exec, .. } = self;
         if !self.crowded && self.found.as_ref().is_none_or(|found| scale > found.0) {
             self.found = None;
@@ -57,27 +58,24 @@ impl<'a> Scales<'a> {
         }
         // If those up to a larger scale are few enough, so are those near by this one.
         let Some((_, graph)) = &self.found else { return by_lower(tree, scale, exec, &|_, _| ()) };
-        let mut covered = Vec::with_capacity(tree.surfel.len());
-        let job = |blocks| Ok(covered_by_found(tree, graph, blocks, scale));
-        tree.parts(exec, &|_, _| (), job, |part: Vec<u64>| covered.extend(part))?;
-        Ok(covered)
+        let job = |places| Ok(covered_by_found(tree, graph, places, scale));
+        Parts::of(tree, exec, &|_, _| (), job)
     }
 }
 
 vectorized!(
-    /// [`Scales::covered`] for the places of some blocks.
+    /// [`Scales::covered`] for some places.
     fn covered_by_found(
         tree: &DiscTree,
         graph: &Graph,
-        blocks: Range<usize>,
+        places: Range<usize>,
         scale: f64,
     ) -> Vec<u64> {
-        let places = tree.places(blocks.start).start..tree.places(blocks.end - 1).end;
         let mut covered = Vec::with_capacity(places.len());
         for i in places {
             let own = tree.discs[i];
             let (mut mask, mut samples) = (0, None);
-            for &j in graph.of(i) {
+            for &j in graph.of(i).all {
                 let other = &tree.discs[j as usize];
                 if !own.is_near(other, scale) {
                     continue;

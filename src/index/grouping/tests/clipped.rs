@@ -117,7 +117,7 @@ proptest! {
         for (place, &i) in tree.surfel.iter().enumerate() {
             let lower = (0..i as usize).filter(|j| j % 3 != 1);
             let mask = lower.fold(0, |mask, j| mask | naive_cover(&scene, i as usize, j, scale));
-            prop_assert_eq!(covered[place], mask, "surfel {}", i);
+            prop_assert_eq!(covered.at(place), mask, "surfel {}", i);
         }
     }
 }

@@ -89,6 +89,19 @@ proptest! {
     }
 
     #[test]
+    fn adding_is_so_among_more_neighbours_than_one_mask_holds(
+        seed in 0..10_000_u64, most in prop::sample::select(vec![0.25_f32, 0.5, 0.75]),
+    ) {
+        let scene = cluttered(seed, 140, [2.0, 2.0, 0.3], 0.5);
+        let groups = basic(&scene, 0.125);
+        let (result, _) = extended(&scene, &groups, Extension::Add { most });
+        let last = groups.len() - 1;
+        for k in [0, last] {
+            prop_assert_eq!(members(&result, k), queue(&scene, &groups, k, most), "group {}", k);
+        }
+    }
+
+    #[test]
     fn the_report_is_that_of_a_naive_count(seed in 0..10_000_u64) {
         let scene = cluttered(seed, 60, [8.0, 8.0, 0.5], 0.5);
         let groups = basic(&scene, 1.0);

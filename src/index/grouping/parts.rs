@@ -1,0 +1,73 @@
+//! What threads find out about the places of a tree, left in the parts in which they find it: to
+//! copy it together would be work for one of them.
+
+use super::disc_tree::{DISCS, DiscTree};
+use crate::error::Result;
+use crate::frame::Exec;
+use std::ops::Range;
+
+/// Blocks of a part.
+const BLOCKS: usize = 64;
+/// Places of a part.
+const PLACES: usize = BLOCKS * DISCS;
+
+/// Something for each part of a tree.
+#[derive(Debug)]
+pub(super) struct Parts<T>(Vec<T>);
+
+impl<T: Send> Parts<T> {
+    /// Runs a job for the places of each part, in parallel.
+    ///
+    /// `progress` gets how many places are done, and of how many.
+    pub(super) fn of(
+        tree: &DiscTree,
+        exec: &Exec,
+        progress: &dyn Fn(u64, u64),
+        job: impl Fn(Range<usize>) -> Result<T> + Sync + Send,
+    ) -> Result<Self> {
+        const BATCH: usize = 128 * PLACES;
+        let places = tree.surfel.len();
+        let mut parts = Vec::with_capacity(places.div_ceil(PLACES));
+        for batch in (0..places).step_by(BATCH) {
+            progress(batch as u64, places as u64);
+            let starts = (batch..places.min(batch + BATCH)).step_by(PLACES);
+            let ranges = starts.map(|start| start..places.min(start + PLACES)).collect();
+            for part in exec.ordered(ranges, &job) {
+                parts.push(part?);
+            }
+        }
+        progress(places as u64, places as u64);
+        Ok(Self(parts))
+    }
+}
+
+impl<T> Parts<T> {
+    /// The part that a place is in, and which one the place is of that part.
+    #[inline(always)]
+    pub(super) fn with(&self, place: usize) -> (&T, usize) {
+        (&self.0[place / PLACES], place % PLACES)
+    }
+
+    /// All parts.
+    pub(super) fn iter(&self) -> impl Iterator<Item = &T> {
+        self.0.iter()
+    }
+}
+
+impl<T: Copy> Parts<Vec<T>> {
+    /// What there is of a place.
+    #[inline(always)]
+    pub(super) fn at(&self, place: usize) -> T {
+        let (part, place) = self.with(place);
+        part[place]
+    }
+}
+
+impl<T: Copy, const SETS: usize> Parts<[Vec<T>; SETS]> {
+    /// What there is of a place in a set.
+    #[inline(always)]
+    pub(super) fn in_set(&self, set: usize, place: usize) -> T {
+        let (part, place) = self.with(place);
+        part[set][place]
+    }
+}
