@@ -32,6 +32,16 @@ impl Budget {
         if before.saturating_add(pairs) <= 2 * self.most() { Ok(()) } else { Err(self.overrun()) }
     }
 
+    /// [`Budget::spend`] once there are many pairs, which then are none: threads need not meet for
+    /// each surfel.
+    ///
+    /// # Errors
+    /// As [`Budget::spend`].
+    #[inline(always)]
+    pub(super) fn spend_many(&self, pairs: &mut u64) -> Result<()> {
+        if *pairs < 4096 { Ok(()) } else { self.spend(std::mem::take(pairs)) }
+    }
+
     /// Whether those of a part can be counted.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use super::budget::Budget;
 use super::disc::{SpaceDisc, dot};
-use super::disc_tree::{DISCS, DiscTree, NearBlocks};
+use super::disc_tree::{DiscTree, NearBlocks};
 use super::parts::Parts;
 use crate::error::Result;
 use crate::frame::Exec;
@@ -111,23 +111,21 @@ vectorized!(
             let disc = tree.discs[place];
             SpaceDisc { radius: scale * disc.radius, ..disc }
         };
-        let first = places.start;
-        let mut covered = vec![0; places.len()];
-        let mut room = NearBlocks::default();
-        for block in tree.blocks(&places) {
-            let samples: Vec<DiscSamples> =
-                tree.places(block).map(|i| DiscSamples::of(disc(i), tree.surfel[i])).collect();
-            let mut seen = 0;
-            tree.near(block, scale, &mut room, |i, j| {
-                let mask = &mut covered[i - first];
+        let mut covered = Vec::with_capacity(places.len());
+        let (mut room, mut seen) = (NearBlocks::default(), 0);
+        for i in places {
+            let (mut mask, samples) = (0, DiscSamples::of(disc(i), tree.surfel[i]));
+            tree.near(i, scale, &mut room, |j| {
                 seen += 1;
                 if tree.surfel[j] < tree.surfel[i] {
-                    *mask |= samples[i - block * DISCS].covered_by(&disc(j));
+                    mask |= samples.covered_by(&disc(j));
                 }
-                *mask != u64::MAX
+                mask != u64::MAX
             });
-            budget.spend(seen)?;
+            covered.push(mask);
+            budget.spend_many(&mut seen)?;
         }
+        budget.spend(seen)?;
         Ok(covered)
     }
 );

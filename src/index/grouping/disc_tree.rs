@@ -15,7 +15,6 @@ use crate::frame::Exec;
 use crate::memory;
 use crate::scene::Surfels;
 use glam::{DVec3, Vec3};
-use std::ops::Range;
 
 /// Discs of one block. Loops over fewer lanes are unrolled before they can become vectors.
 pub(super) const DISCS: usize = 16;
@@ -101,51 +100,38 @@ impl DiscTree {
         Self { surfel, rank, square, discs, blocks, levels }
     }
 
-    /// The places of a block.
-    pub(super) fn places(&self, block: usize) -> Range<usize> {
-        let first = block * DISCS;
-        first..self.surfel.len().min(first + DISCS)
-    }
-
     /// The samples of the disc at a place.
     #[inline(always)]
     pub(super) fn samples(&self, place: usize) -> DiscSamples {
         DiscSamples::of(self.discs[place], self.surfel[place])
     }
 
-    /// Visits the pairs of places (i, j), i of the block and j any other, that are near:
-    /// `|p_i - p_j| < factor (r_i + r_j)`, as the [module](super) evaluates it.
+    /// Visits the places j that are near a place i: `|p_i - p_j| < factor (r_i + r_j)`, as the
+    /// [module](super) evaluates it.
     ///
-    /// Those j first that are close by in the order of the tree. If a visit returns false, the rest
-    /// of its i is skipped. `room` is memory that is used again.
+    /// Those j first that are close by in the order of the tree, until a visit returns false.
+    /// `room` is memory that is used again.
     #[inline(always)]
     pub(super) fn near(
         &self,
-        block: usize,
+        i: usize,
         factor: f64,
         room: &mut NearBlocks,
-        mut visit: impl FnMut(usize, usize) -> bool,
+        mut visit: impl FnMut(usize) -> bool,
     ) {
-        self.search(block, factor, room);
-        for i in self.places(block) {
-            let own = self.blocks[block].disc(i % DISCS);
-            'rest: for (boxes, blocks) in room.boxes.iter().zip(room.found.chunks(DISCS)) {
-                for other in lanes_of(boxes.near(own, factor)) {
-                    let other = blocks[other] as usize;
-                    for lane in lanes_of(self.blocks[other].near(own, factor)) {
-                        let j = other * DISCS + lane;
-                        if j != i && !visit(i, j) {
-                            break 'rest;
-                        }
+        self.search(i / DISCS, factor, room);
+        let own = self.blocks[i / DISCS].disc(i % DISCS);
+        for (boxes, blocks) in room.boxes.iter().zip(room.found.chunks(DISCS)) {
+            for other in lanes_of(boxes.near(own, factor)) {
+                let other = blocks[other] as usize;
+                for lane in lanes_of(self.blocks[other].near(own, factor)) {
+                    let j = other * DISCS + lane;
+                    if j != i && !visit(j) {
+                        return;
                     }
                 }
             }
         }
-    }
-
-    /// The blocks of some places, which are all of those blocks.
-    pub(super) fn blocks(&self, places: &Range<usize>) -> Range<usize> {
-        places.start / DISCS..places.end.div_ceil(DISCS)
     }
 
     /// Searches for the blocks that may hold a disc near one of a block.

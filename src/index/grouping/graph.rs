@@ -2,7 +2,7 @@
 
 use super::budget::Budget;
 use super::disc::dot;
-use super::disc_tree::{DISCS, DiscTree, NearBlocks};
+use super::disc_tree::{DiscTree, NearBlocks};
 use super::parts::Parts;
 use super::rules::{Coplanar, Rules};
 use crate::error::Result;
@@ -47,24 +47,21 @@ vectorized!(
         budget: &Budget,
     ) -> Result<Rows> {
         let mut rows = Rows::with_capacity(places.len());
-        let (mut room, mut found) = (NearBlocks::default(), [const { Vec::new() }; DISCS]);
-        for block in tree.blocks(&places) {
-            let mut seen = 0;
-            tree.near(block, factor, &mut room, |i, j| {
+        let (mut room, mut found, mut seen) = (NearBlocks::default(), Vec::new(), 0);
+        for i in places {
+            tree.near(i, factor, &mut room, |j| {
                 seen += 1;
                 if keep(i, j) {
-                    found[i % DISCS].push(j as u32);
+                    found.push(j as u32);
                 }
                 true
             });
-            budget.spend(seen)?;
-            for (place, found) in tree.places(block).zip(&mut found) {
-                let surfel = tree.surfel[place];
-                rows.push(found, |other| tree.surfel[other as usize] < surfel);
-                found.clear();
-            }
+            budget.spend_many(&mut seen)?;
+            rows.push(&found, |j| tree.surfel[j as usize] < tree.surfel[i]);
+            found.clear();
             budget.fits(rows.len())?;
         }
+        budget.spend(seen)?;
         Ok(rows)
     }
 );
