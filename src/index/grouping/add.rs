@@ -41,9 +41,11 @@ pub(super) fn add(
         lower | members.of_others(0, i, j) << 2
     };
     let measured = overlaps.covered::<{ 2 + BATCH }>(sets, &show);
-    let target = areas(tree, 1, |_| 0, |place| measured.in_set(0, place))[0].0;
     let group = |surfel: usize| groups.own()[surfel].into();
-    let before = areas(tree, count, group, |place| measured.in_set(1, place));
+    let (target, before) = exec.join(
+        || areas(tree, 1, |_| 0, |place| measured.in_set(0, place))[0].0,
+        || areas(tree, count, group, |place| measured.in_set(1, place)),
+    );
 
     let groups = members;
     let mut coverages = Vec::new();

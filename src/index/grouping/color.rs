@@ -192,7 +192,8 @@ fn largest_first(
     const NONE: u32 = u32::MAX;
     let mut degree = Vec::new();
     exec.extend(&mut degree, n, |place| graph.degree(place));
-    let color: Vec<AtomicU32> = (0..n).map(|_| AtomicU32::new(NONE)).collect();
+    let mut color = Vec::new();
+    exec.extend(&mut color, n, |_| AtomicU32::new(NONE));
     let color_of = |place: usize| color[place].load(Relaxed);
     let too_many = AtomicBool::new(false);
     settle(n, exec, progress, |open| {

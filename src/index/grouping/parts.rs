@@ -25,7 +25,7 @@ impl<T: Send> Parts<T> {
         progress: &dyn Fn(u64, u64),
         job: impl Fn(Range<usize>) -> Result<T> + Sync + Send,
     ) -> Result<Self> {
-        const BATCH: usize = 128 * PLACES;
+        const BATCH: usize = 256 * PLACES;
         let places = tree.surfel.len();
         let mut parts = Vec::with_capacity(places.div_ceil(PLACES));
         for batch in (0..places).step_by(BATCH) {

@@ -46,7 +46,7 @@ pub(super) fn settle(
             }
         }
     };
-    let batch = 32 * JOB;
+    let batch = 64 * JOB;
     for first in (0..count).step_by(batch) {
         progress(first as u64, count as u64);
         let starts = (first..count.min(first + batch)).step_by(JOB);
