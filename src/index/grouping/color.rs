@@ -180,8 +180,8 @@ fn groups(tree: &DiscTree, color: &[u32], groups: usize) -> Result<Groups> {
 }
 
 /// The colour of all `n` places: those with more neighbours first, of those with equally many the
-/// surfel of the lower index; each gets the smallest colour that no neighbour has. None if one gets `most` or a
-/// larger one.
+/// surfel of the lower index; each gets the smallest colour that no neighbour has. None if one gets
+/// `most` or a larger one.
 fn largest_first(
     graph: &Graph,
     n: usize,

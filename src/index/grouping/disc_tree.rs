@@ -52,8 +52,8 @@ struct Bounds {
     r: f64,
 }
 
-/// Bytes of a surfel in the trees, its neighbours in two graphs, what is covered of it: 250 where it overlaps 12
-/// others.
+/// Bytes of a surfel in the trees, its neighbours in two graphs, what is covered of it: 250 where it
+/// overlaps 12 others.
 const OF_A_SURFEL: u64 = 512;
 
 impl DiscTree {
