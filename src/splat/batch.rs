@@ -86,14 +86,20 @@ pub fn splats_f32(
     range: Range<usize>,
     mut draw: impl FnMut(Splat<f32>),
 ) -> Tally {
-    if projector.outline != Outline::Affine {
-        return splats(projector, surfels, range, draw);
-    }
-    let lanes = range.start..range.end - range.len() % LANES;
-    let rest = lanes.end..range.end;
+    let rest = range.start + in_full_lanes(projector.outline, range.len());
     let item = |i: usize| Enlarged { surfel: i as u32, scale: 1.0, times: 1 };
-    let tally = in_lanes(projector, surfels, lanes, item, &mut |_, splat| draw(splat));
-    tally.plus(&splats(projector, surfels, rest, draw))
+    let draw_item = &mut |_, splat| draw(splat);
+    let tally = in_lanes(projector, surfels, range.start..rest, item, draw_item);
+    tally.plus(&splats(projector, surfels, rest..range.end, draw))
+}
+
+/// How many of `count` surfels are projected in lanes, the first ones: those that fill all, if the outline is
+/// affine.
+pub(crate) fn in_full_lanes(outline: Outline, count: usize) -> usize {
+    match outline {
+        Outline::Affine => count - count % LANES,
+        Outline::Perspective | Outline::RayCast => 0,
+    }
 }
 
 /// A surfel that is projected once.
@@ -115,12 +121,9 @@ pub(crate) fn enlarged_f32(
     list: &[Enlarged],
     mut draw: impl FnMut(usize, Splat<f32>),
 ) -> Tally {
-    let in_lanes_to = match projector.outline {
-        Outline::Affine => list.len() - list.len() % LANES,
-        _ => 0,
-    };
-    let mut tally = in_lanes(projector, surfels, 0..in_lanes_to, |i| list[i], &mut draw);
-    for (place, &Enlarged { surfel, scale, times }) in list.iter().enumerate().skip(in_lanes_to) {
+    let rest = in_full_lanes(projector.outline, list.len());
+    let mut tally = in_lanes(projector, surfels, 0..rest, |i| list[i], &mut draw);
+    for (place, &Enlarged { surfel, scale, times }) in list.iter().enumerate().skip(rest) {
         let (splat, reasons) = project(projector, &enlarged(surfels, surfel, scale), surfel);
         let fate = reasons.fate();
         (0..times).for_each(|_| tally.count(fate));

@@ -15,9 +15,13 @@ impl SpaceDisc {
     /// Whether two discs are near by a factor, see the [module](super).
     #[inline(always)]
     pub(super) fn is_near(&self, other: &Self, factor: f64) -> bool {
-        let d = self.center.as_dvec3() - other.center.as_dvec3();
-        let reach = factor * (self.radius + other.radius);
-        dot(d, d) < reach * reach
+        are_near(self.place(), other.place(), factor)
+    }
+
+    /// The centre and the radius.
+    #[inline(always)]
+    pub(super) fn place(&self) -> (DVec3, f64) {
+        (self.center.as_dvec3(), self.radius)
     }
 
     /// The cosine between the normals.
@@ -25,6 +29,13 @@ impl SpaceDisc {
     pub(super) fn cosine(&self, other: &Self) -> f64 {
         dot(self.normal.as_dvec3(), other.normal.as_dvec3())
     }
+}
+
+/// Whether two discs, by centre and radius, are near by a factor, see the [module](super).
+#[inline(always)]
+pub(super) fn are_near((p, r): (DVec3, f64), (q, s): (DVec3, f64), factor: f64) -> bool {
+    let (d, reach) = (p - q, factor * (r + s));
+    dot(d, d) < reach * reach
 }
 
 /// `(x x' + y y') + z z'`.

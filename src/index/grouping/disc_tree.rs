@@ -9,7 +9,7 @@
 
 use super::clipped::DiscSamples;
 use super::curve;
-use super::disc::SpaceDisc;
+use super::disc::{SpaceDisc, are_near};
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::memory;
@@ -37,7 +37,7 @@ pub(super) struct DiscTree {
 
 /// Discs side by side; what is left of the last block is NaN, which is near nothing.
 #[derive(Clone, Debug)]
-struct DiscBlock {
+pub(super) struct DiscBlock {
     x: [f64; DISCS],
     y: [f64; DISCS],
     z: [f64; DISCS],
@@ -84,7 +84,7 @@ impl DiscTree {
             SpaceDisc { center, normal, radius: radius(id) }
         });
         exec.extend(&mut blocks, n.div_ceil(DISCS), |block| {
-            DiscBlock::of(&discs[block * DISCS..n.min((block + 1) * DISCS)])
+            DiscBlock::of(discs[block * DISCS..n.min((block + 1) * DISCS)].iter())
         });
         let mut square = Vec::new();
         exec.extend(&mut square, n, |rank| {
@@ -218,23 +218,20 @@ impl BoxLanes {
         lanes
     }
 
-    /// 1 for each box that may hold a disc near one; 0 only if it does not, as with
-    /// [`Bounds::may_be_near`].
+    /// 1 for each box that [may](Bounds::may_be_near) hold a disc near one, else 0.
     #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "a lane is an index into several arrays")]
     fn near(&self, (p, r): (DVec3, f64), factor: f64) -> [u8; DISCS] {
-        let mut near = [0; DISCS];
-        for l in 0..DISCS {
-            let gap = |axis: usize| {
-                let (below, above) = (self.low[axis][l] - p[axis], p[axis] - self.high[axis][l]);
-                let gap = if below > above { below } else { above };
-                if gap > 0.0 { gap } else { 0.0 }
-            };
-            let (x, y, z) = (gap(0), gap(1), gap(2));
-            let reach = factor * (self.r[l] + r);
-            near[l] = u8::from((x * x + y * y) + z * z < reach * reach);
+        let (one, mut near) = (Bounds { low: p, high: p, r }, [0; DISCS]);
+        for (lane, near) in near.iter_mut().enumerate() {
+            *near = u8::from(self.bounds(lane).may_be_near(&one, factor));
         }
         near
+    }
+
+    #[inline(always)]
+    fn bounds(&self, lane: usize) -> Bounds {
+        let corner = |of: &[[f64; DISCS]; 3]| DVec3::new(of[0][lane], of[1][lane], of[2][lane]);
+        Bounds { low: corner(&self.low), high: corner(&self.high), r: self.r[lane] }
     }
 }
 
@@ -255,32 +252,30 @@ pub(super) fn radii(surfels: &Surfels) -> impl Fn(u32) -> f64 {
 
 impl DiscBlock {
     /// Of at most as many discs as there are lanes.
-    fn of(discs: &[SpaceDisc]) -> Self {
+    #[inline(always)]
+    pub(super) fn of<'a>(discs: impl Iterator<Item = &'a SpaceDisc>) -> Self {
         let [x, y, z, r] = [[f64::NAN; DISCS]; 4];
         let mut block = Self { x, y, z, r };
-        for (lane, disc) in discs.iter().enumerate() {
-            let p = disc.center.as_dvec3();
+        for (lane, disc) in discs.enumerate() {
+            let (p, r) = disc.place();
             (block.x[lane], block.y[lane], block.z[lane]) = (p.x, p.y, p.z);
-            block.r[lane] = disc.radius;
+            block.r[lane] = r;
         }
         block
     }
 
     /// The centre and the radius of the disc in a lane.
     #[inline(always)]
-    fn disc(&self, lane: usize) -> (DVec3, f64) {
+    pub(super) fn disc(&self, lane: usize) -> (DVec3, f64) {
         (DVec3::new(self.x[lane], self.y[lane], self.z[lane]), self.r[lane])
     }
 
     /// 1 for each disc that is near one, else 0.
     #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "a lane is an index into several arrays")]
-    fn near(&self, (p, r): (DVec3, f64), factor: f64) -> [u8; DISCS] {
+    fn near(&self, one: (DVec3, f64), factor: f64) -> [u8; DISCS] {
         let mut near = [0; DISCS];
-        for l in 0..DISCS {
-            let (dx, dy, dz) = (p.x - self.x[l], p.y - self.y[l], p.z - self.z[l]);
-            let reach = factor * (r + self.r[l]);
-            near[l] = u8::from((dx * dx + dy * dy) + dz * dz < reach * reach);
+        for (lane, near) in near.iter_mut().enumerate() {
+            *near = u8::from(are_near(one, self.disc(lane), factor));
         }
         near
     }
@@ -288,10 +283,9 @@ impl DiscBlock {
 
 impl Bounds {
     fn of(block: &DiscBlock) -> Self {
-        let lane = |l: usize| Self {
-            low: DVec3::new(block.x[l], block.y[l], block.z[l]),
-            high: DVec3::new(block.x[l], block.y[l], block.z[l]),
-            r: block.r[l],
+        let lane = |l: usize| {
+            let (p, r) = block.disc(l);
+            Self { low: p, high: p, r }
         };
         let filled = (1..DISCS).take_while(|&l| !block.r[l].is_nan());
         filled.fold(lane(0), |all, l| all.and(&lane(l)))
@@ -304,7 +298,7 @@ impl Bounds {
 
     /// False only if no two discs of these boxes are near: rounding is monotone, so that neither is
     /// the distance below that of any two discs exceeded, nor the reach above theirs missed.
-    #[inline]
+    #[inline(always)]
     fn may_be_near(&self, other: &Self, factor: f64) -> bool {
         let gap = |axis: usize| {
             let (below, above) =

@@ -1,8 +1,8 @@
 //! The graphs of all c that are multiples of 1/64, from one that has the edges of all of them.
 
 use super::color::STEPS;
-use super::disc::SpaceDisc;
-use super::disc_tree::DiscTree;
+use super::disc::{are_near, dot};
+use super::disc_tree::{DISCS, DiscBlock, DiscTree};
 use super::graph::{Graph, relaxed};
 use super::parts::Parts;
 use super::rules::Rules;
@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::lanes::vectorized;
 use crate::scene::Surfels;
+use glam::DVec3;
 use std::ops::Range;
 
 /// A graph, and of each of its edges the least multiple of 1/64 by which its discs are near, or
@@ -66,8 +67,9 @@ vectorized!(
         let rows = graph.part(places.start);
         let mut least = Vec::with_capacity(rows.len());
         for (row, i) in places.enumerate() {
-            for others in rows.row(row).all.chunks(LANES) {
-                let steps = Lanes::of(tree, others).least_steps(&tree.discs[i]);
+            for others in rows.row(row).all.chunks(DISCS) {
+                let block = DiscBlock::of(others.iter().map(|&j| &tree.discs[j as usize]));
+                let steps = steps_of(&block, tree.discs[i].place());
                 least.extend(
                     others
                         .iter()
@@ -80,52 +82,23 @@ vectorized!(
     }
 );
 
-/// Discs whose steps are found at once.
-const LANES: usize = 8;
-
-/// Discs side by side.
-struct Lanes {
-    x: [f64; LANES],
-    y: [f64; LANES],
-    z: [f64; LANES],
-    r: [f64; LANES],
-}
-
-impl Lanes {
-    /// Of those at up to so many places.
-    #[inline(always)]
-    fn of(tree: &DiscTree, places: &[u32]) -> Self {
-        let mut lanes = Self { x: [0.0; LANES], y: [0.0; LANES], z: [0.0; LANES], r: [1.0; LANES] };
-        for (lane, &place) in places.iter().enumerate() {
-            let disc = &tree.discs[place as usize];
-            let p = disc.center.as_dvec3();
-            (lanes.x[lane], lanes.y[lane], lanes.z[lane]) = (p.x, p.y, p.z);
-            lanes.r[lane] = disc.radius;
-        }
-        lanes
+/// Of each disc of a block the least multiple of 1/64 by which it is near another, see [`super`], or
+/// [`NEVER`].
+///
+/// Two discs are near by a multiple well above |d| / (r + r'), and are not by one well below.
+/// Rounding cannot move that border by half a multiple: only the multiple closest to it is asked.
+#[inline(always)]
+fn steps_of(block: &DiscBlock, one: (DVec3, f64)) -> [i32; DISCS] {
+    let mut least = [0; DISCS];
+    for (lane, least) in least.iter_mut().enumerate() {
+        let other = block.disc(lane);
+        let d = one.0 - other.0;
+        let border = f64::from(STEPS) * (dot(d, d).sqrt() / (one.1 + other.1));
+        let closest =
+            if border < f64::from(STEPS) { (border + 0.5) as i32 } else { i32::from(STEPS) };
+        let is_near = are_near(one, other, f64::from(closest) / f64::from(STEPS));
+        let step = closest + i32::from(!is_near);
+        *least = if step > i32::from(STEPS) { i32::from(NEVER) } else { step };
     }
-
-    /// Of each disc the least multiple of 1/64 by which it is near another, see [`super`], or
-    /// [`NEVER`].
-    ///
-    /// Two discs are near by a multiple well above |d| / (r + r'), and are not by one well below.
-    /// Rounding cannot move that border by half a multiple: only the multiple closest to it is
-    /// asked.
-    #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "a lane is an index into several arrays")]
-    fn least_steps(&self, other: &SpaceDisc) -> [i32; LANES] {
-        let (p, r) = (other.center.as_dvec3(), other.radius);
-        let mut least = [0; LANES];
-        for l in 0..LANES {
-            let (x, y, z) = (p.x - self.x[l], p.y - self.y[l], p.z - self.z[l]);
-            let (square, reach) = ((x * x + y * y) + z * z, r + self.r[l]);
-            let border = f64::from(STEPS) * (square.sqrt() / reach);
-            let closest =
-                if border < f64::from(STEPS) { (border + 0.5) as i32 } else { i32::from(STEPS) };
-            let most = f64::from(closest) / f64::from(STEPS) * reach;
-            let step = closest + i32::from(square >= most * most);
-            least[l] = if step > i32::from(STEPS) { i32::from(NEVER) } else { step };
-        }
-        least
-    }
+    least
 }

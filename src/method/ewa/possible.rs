@@ -5,11 +5,10 @@ use crate::frame::Rect;
 use crate::method::algorithm::Job;
 use crate::method::prepare::Prepared;
 use crate::number::ball::{Common, Profile};
-use crate::number::lanes::LANES;
 use crate::number::{Ball, Truth};
 use crate::scene::Surfels;
 use crate::splat::project::project_each;
-use crate::splat::{Disc, Outline, Projector, Splat, Tally, View, batch, enclosed};
+use crate::splat::{Disc, Projector, Splat, Tally, View, batch, enclosed};
 use std::ops::Range;
 
 /// A surfel that may be drawn.
@@ -66,11 +65,7 @@ pub(in crate::method) fn each_of_range<P: Profile>(
     range: Range<usize>,
     mut each: impl FnMut(Splat<Ball<P>>, bool),
 ) {
-    let in_lanes = match projector.outline {
-        Outline::Affine => range.len() - range.len() % LANES,
-        _ => 0,
-    };
-    let rest = range.start + in_lanes;
+    let rest = range.start + batch::in_full_lanes(projector.outline, range.len());
     enclosed::affine_surfels(common, surfels, range.start..rest, &mut |i, splat| match splat {
         Some(splat) => each(splat, true),
         None => each_possible(projector, &batch::disc(surfels, i), i as u32, &mut each),
