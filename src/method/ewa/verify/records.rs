@@ -35,7 +35,7 @@ pub(super) fn project<P: Profile>(
             for record in &records[range] {
                 let Some(disc) = disc(surfels, record) else { continue };
                 let mut bounds = Rect::default();
-                possible::each_possible(projector, &disc, record.surfel, |splat, _| {
+                possible::each_possible(projector, &disc, record.surfel, &mut |splat, _| {
                     bounds = bounds.hull(&splat.bounds.intersection(&picture));
                 });
                 if !bounds.is_empty() {
@@ -154,7 +154,7 @@ fn judge_surfel<P: Profile>(
     let disc = batch::disc(surfels, surfel as usize);
     let mut best: Option<(f64, What)> = None;
     let mut missing = None;
-    possible::each_possible(projector, &disc, surfel, |splat, certain| {
+    possible::each_possible(projector, &disc, surfel, &mut |splat, certain| {
         let center = splat.footprint.center.map(Real::to_f32);
         missing = certain.then_some([center.x, center.y]);
         if let Some(record) = record {

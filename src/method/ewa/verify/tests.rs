@@ -70,7 +70,7 @@ fn compare_projections<P: Profile>(session: &Session<'_>, camera: &Camera, all: 
             (&projector, &common),
             surfels,
             0..surfels.len(),
-            |splat, certain| {
+            &mut |splat, certain| {
                 in_lanes.push((splat.surfel, format!("{splat:?} {certain}")));
             },
         );
@@ -78,7 +78,7 @@ fn compare_projections<P: Profile>(session: &Session<'_>, camera: &Camera, all: 
         let mut counts = [0; 2];
         for i in 0..surfels.len() {
             let (disc, mut found, mut lanes) = (batch::disc(surfels, i), Vec::new(), Vec::new());
-            possible::each_possible(&projector, &disc, i as u32, |splat, certain| {
+            possible::each_possible(&projector, &disc, i as u32, &mut |splat, certain| {
                 found.push(format!("{splat:?} {certain}"));
             });
             assert_eq!(found, plain(&projector, &disc, i as u32));

@@ -81,7 +81,7 @@ impl<P: Profile> GroupDrawings<P> {
                 for &Item { surfel, group } in &items[range] {
                     let scale = groups.scale()[usize::from(group)];
                     let disc = batch::enlarged(surfels, surfel, scale);
-                    each_possible(projector, &disc, surfel, |mut splat, certain| {
+                    each_possible(projector, &disc, surfel, &mut |mut splat, certain| {
                         splat.bounds = splat.bounds.intersection(&picture);
                         if !splat.bounds.is_empty() {
                             let (color, alpha) = appearance(scene, &shader, &splat);
