@@ -127,7 +127,7 @@ impl Members<'_> {
         let mut members = Vec::new();
         exec.extend(&mut members, self.own.len(), |place| {
             (0..).zip(&states).fold(self.own(first, place), |members, (set, state)| {
-                let added = (ADDED..OUT).contains(&state[place].load(Relaxed));
+                let added = state[place].load(Relaxed) >= ADDED;
                 members | u32::from(added) << set
             })
         });
@@ -135,14 +135,14 @@ impl Members<'_> {
     }
 }
 
-/// A candidate that was added; the rest is its priority.
+/// No candidate, or none any more. A candidate has one more than its priority.
+const OUT: u8 = 0;
+/// A candidate that was added; the rest as before.
 const ADDED: u8 = 128;
-/// No candidate, or none any more.
-const OUT: u8 = 255;
 
 impl Members<'_> {
-    /// The state of each place, all decided, of a group: those from [`ADDED`] to [`OUT`] are added to
-    /// it. `covered` is what it covers of each to begin with.
+    /// The state of each place, all decided, of a group: those from [`ADDED`] on are added to it.
+    /// `covered` is what it covers of each to begin with.
     ///
     /// The paper's queue needs no queue. A surfel is taken out at the priority p; if it has grown
     /// since, it goes back with a larger one. All others were at p or below and have not been
@@ -151,49 +151,57 @@ impl Members<'_> {
     fn added(&self, group: u8, covered: impl Fn(usize) -> u64 + Sync + Send) -> Vec<AtomicU8> {
         let &Overlaps { tree, graph, exec } = self.overlaps;
         let too_big = |covered: u64| covered.count_ones() as f32 / SAMPLES as f32 > self.most;
-        // The priority of a candidate that is not decided.
+        let is_open = |state: u8| state != OUT && state < ADDED;
         let begin = |place: usize| {
             let out = self.own[place] == group || too_big(covered(place));
-            AtomicU8::new(if out { OUT } else { covered(place).count_ones() as u8 })
+            AtomicU8::new(if out { OUT } else { covered(place).count_ones() as u8 + 1 })
         };
         let mut state = Vec::new();
         exec.extend(&mut state, self.own.len(), begin);
         settle(self.own.len(), exec, &|_, _| (), |open| {
             let place = open.place;
-            let priority = state[place].load(Relaxed);
-            if priority >= ADDED {
+            let own = state[place].load(Relaxed);
+            if !is_open(own) {
                 return None;
             }
             if open.asked == 0 {
                 open.mask = covered(place);
             }
             let (row, mut samples) = (graph.of(place), None);
-            while open.asked < row.all.len() {
-                let (mut added, mut waits) = (0_u64, 0_u64);
-                row.visit_64(open.asked, |number, other, lower| {
+            loop {
+                while let Some(other) = open.first_of(open.waits, &row) {
                     let theirs = state[other].load(Relaxed);
-                    let first = (theirs & !ADDED) + u8::from(lower) > priority;
-                    let before = u64::from((theirs != OUT) & first) << number;
-                    let is_added = if theirs < ADDED { 0 } else { u64::MAX };
-                    added |= before & is_added;
-                    waits |= before & !is_added;
-                });
-                if waits != 0 {
-                    return Some(row.all[open.asked + waits.trailing_zeros() as usize] as usize);
+                    if is_open(theirs) {
+                        return Some(other);
+                    }
+                    let left = open.waits & (open.waits - 1);
+                    open.decided |= if theirs == OUT { 0 } else { open.waits ^ left };
+                    open.waits = left;
                 }
-                while added != 0 {
-                    let other = row.all[open.asked + added.trailing_zeros() as usize] as usize;
+                while let Some(other) = open.first_of(open.decided, &row) {
                     let samples = samples.get_or_insert_with(|| tree.samples(place));
                     open.mask |= covered_by(samples, &tree.discs[other]);
                     if too_big(open.mask) {
                         state[place].store(OUT, Relaxed);
                         return None;
                     }
-                    added &= added - 1;
+                    open.decided &= open.decided - 1;
                 }
+                if open.asked >= row.all.len() {
+                    break;
+                }
+                let (mut added, mut waits) = (0_u64, 0_u64);
+                row.visit_64(open.asked, |number, other, lower| {
+                    let theirs = state[other].load(Relaxed);
+                    // What is out is not above anything, not by its index either.
+                    let first = (theirs & !ADDED) + u8::from(lower) > own;
+                    added |= u64::from(first & (theirs >= ADDED)) << number;
+                    waits |= u64::from(first & (theirs < ADDED)) << number;
+                });
+                (open.decided, open.waits) = (added, waits);
                 open.asked += 64;
             }
-            state[place].store(ADDED | priority, Relaxed);
+            state[place].store(ADDED | own, Relaxed);
             None
         });
         state

@@ -205,17 +205,25 @@ fn largest_first(
         let own = degree[place];
         let before = |other: usize, lower: bool| degree[other] + u32::from(lower) > own;
         let row = graph.of(place);
-        while open.asked < row.all.len() {
+        loop {
+            while let Some(other) = open.first_of(open.waits, &row) {
+                let theirs = color_of(other);
+                if theirs == NONE {
+                    return Some(other);
+                }
+                open.mask |= u64::from(theirs < 64) << (theirs % 64);
+                open.waits &= open.waits - 1;
+            }
+            if open.asked >= row.all.len() {
+                break;
+            }
             let (mut taken, mut waits) = (open.mask, 0_u64);
             row.visit_64(open.asked, |number, other, lower| {
                 let (before, theirs) = (before(other, lower), color_of(other));
                 waits |= u64::from(before & (theirs == NONE)) << number;
                 taken |= u64::from(before & (theirs < 64)) << (theirs % 64);
             });
-            if waits != 0 {
-                return Some(row.all[open.asked + waits.trailing_zeros() as usize] as usize);
-            }
-            open.mask = taken;
+            (open.mask, open.waits) = (taken, waits);
             open.asked += 64;
         }
         let (mut free, mut full) = (open.mask.trailing_ones(), open.mask == u64::MAX);

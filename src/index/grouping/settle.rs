@@ -8,6 +8,7 @@
 //! Threads share nothing but the outcomes, each of which is one value whoever finds it. A thread
 //! that needs an outcome that is not there finds it itself.
 
+use super::graph::Row;
 use crate::frame::Exec;
 use std::ops::Range;
 
@@ -18,10 +19,26 @@ const JOB: usize = 1 << 12;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Open {
     pub(super) place: usize,
-    /// How many of its neighbours have been asked.
+    /// How many of its neighbours have been asked, 64 at a time.
     pub(super) asked: usize,
-    /// What they came to.
+    /// Which of the last 64 it waits for: none is asked twice but for these.
+    pub(super) waits: u64,
+    /// Which of the last 64 are decided, if who decides has yet to look at them.
+    pub(super) decided: u64,
+    /// What all came to.
     pub(super) mask: u64,
+}
+
+impl Open {
+    const fn new(place: usize) -> Self {
+        Self { place, asked: 0, waits: 0, decided: 0, mask: 0 }
+    }
+
+    /// The first of some of the last 64 neighbours.
+    #[inline(always)]
+    pub(super) fn first_of(&self, some: u64, row: &Row<'_>) -> Option<usize> {
+        (some != 0).then(|| row.all[self.asked - 64 + some.trailing_zeros() as usize] as usize)
+    }
 }
 
 /// Decides all of `count` places.
@@ -37,10 +54,10 @@ pub(super) fn settle(
     let job = |places: Range<usize>| {
         let mut waiting = Vec::new();
         for place in places {
-            waiting.push(Open { place, asked: 0, mask: 0 });
+            waiting.push(Open::new(place));
             while let Some(last) = waiting.last_mut() {
                 match step(last) {
-                    Some(place) => waiting.push(Open { place, asked: 0, mask: 0 }),
+                    Some(place) => waiting.push(Open::new(place)),
                     None => drop(waiting.pop()),
                 }
             }
