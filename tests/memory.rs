@@ -10,10 +10,12 @@
 
 use glam::{DVec3, Vec3};
 use splatref::frame::{Exec, Samples};
+use splatref::index::grouping::{Extension, Grouping, Rules};
 use splatref::method::session::Making;
 use splatref::method::single_pass::{self, DepthTest};
 use splatref::method::{Method, Session};
-use splatref::scene::{Camera, Geometry, Groups, Lens, Motion, Object, Objects, Pose};
+use splatref::number::random::unit;
+use splatref::scene::{Camera, Cloud, Geometry, Groups, Lens, Motion, Object, Objects, Pose};
 use splatref::scene::{Primitives, Scene, Similarity, Surfels};
 use splatref::source::Shape;
 use splatref::source::sampler::{Greedy, Progressive, Schedule, Start, shuffled};
@@ -236,6 +238,54 @@ fn an_order_takes_what_it_is_said_to() {
         let ratio = (bytes * POINTS as u64) as f64 / taken as f64;
         println!("{name}: {} for {taken}, {ratio:.2}", bytes * POINTS as u64);
         assert!((1.0..6.0).contains(&ratio), "{name}: {ratio}");
+    }
+}
+
+const GROUPED_SURFELS: usize = 300_000;
+/// Groups: how many pairs a surfel, how many groups, how they are extended.
+const GROUPED: [(f32, usize, Extension); 5] = [
+    (6.0, 4, Extension::None),
+    (6.0, 4, Extension::Add { most: 0.5 }),
+    (62.0, 64, Extension::None),
+    (62.0, 20, Extension::Add { most: 0.5 }),
+    (62.0, 64, Extension::Enlarge),
+];
+
+/// What groups of random surfels of a square take.
+fn taken_by_groups((pairs, count, extension): (f32, usize, Extension)) -> u64 {
+    let radius = (2.0 * pairs / (4.0 * std::f32::consts::PI * GROUPED_SURFELS as f32)).sqrt();
+    let at = |i| Vec3::new(unit(1, 2 * i as u64), unit(1, 2 * i as u64 + 1), 0.0);
+    let (surfels, _) = Surfels::new(Cloud {
+        position: (0..GROUPED_SURFELS).map(at).collect(),
+        normal: Some(vec![Vec3::Z; GROUPED_SURFELS]),
+        radius: Some(vec![radius; GROUPED_SURFELS]),
+        ..Cloud::default()
+    })
+    .expect("surfels");
+    let exec = Exec::new(2, 32).expect("threads");
+    let grouping = Grouping { rules: Rules::default(), count: Some(count), extension };
+    std::fs::write("/proc/self/clear_refs", "5").ok();
+    let before = status("VmRSS").expect("a size");
+    let (groups, ..) = grouping.groups(&surfels, &exec, &|_, _, _| ()).expect("groups");
+    assert!(groups.len() <= count && groups.len() > 2, "{}", groups.len());
+    status("VmHWM").expect("a peak") - before
+}
+
+/// As a picture: of groups, 272 bytes a surfel and 9 a neighbour are asked for.
+#[test]
+fn groups_take_what_they_are_said_to() {
+    const CASE: &str = "SPLATREF_MEMORY_GROUPS";
+    if let Some(case) = std::env::var(CASE).ok().and_then(|case| case.parse::<usize>().ok()) {
+        println!("\nmemory 0 {}", taken_by_groups(GROUPED[case]));
+        return;
+    }
+    for (case, (pairs, ..)) in GROUPED.into_iter().enumerate() {
+        let test = "groups_take_what_they_are_said_to";
+        let [_, taken] = in_a_process(test, (CASE, &case.to_string()));
+        let said = (272.0 + 9.0 * 2.0 * f64::from(pairs)) * GROUPED_SURFELS as f64;
+        let ratio = said / taken as f64;
+        println!("{:?}: {said} for {taken}, {ratio:.2}", GROUPED[case]);
+        assert!((1.0..6.0).contains(&ratio), "{:?}: {ratio}", GROUPED[case]);
     }
 }
 

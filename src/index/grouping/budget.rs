@@ -1,6 +1,9 @@
-//! How much of the neighbourhood is looked at.
+//! How much of the neighbourhood is looked at, and the memory that it takes.
 
+use super::disc_tree::{DISCS, DiscTree, NearBlocks};
 use crate::error::{Error, Result};
+use crate::memory;
+use crate::number::lanes::vectorized;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// How many pairs of near surfels are looked at, at most.
@@ -51,7 +54,7 @@ impl Budget {
     }
 
     fn most(&self) -> u64 {
-        64 * self.surfels as u64 + (1 << 20)
+        most(self.surfels)
     }
 
     fn overrun(&self) -> Error {
@@ -64,3 +67,59 @@ impl Budget {
         ))
     }
 }
+
+/// The most pairs of so many surfels.
+fn most(surfels: usize) -> u64 {
+    64 * surfels as u64 + (1 << 20)
+}
+
+/// Bytes of a surfel in the tree, and of what is known of each beside its neighbours.
+const OF_A_SURFEL: [u64; 2] = [128, 144];
+/// Bytes of a neighbour: in the graph of all, in that of a smaller c, and the grade of its edge.
+const OF_A_NEIGHBOUR: u64 = 4 + 4 + 1;
+/// The neighbours are counted of one block in so many.
+const COUNTED: usize = 64;
+
+/// Asks for what so many surfels take, their neighbours aside.
+///
+/// # Errors
+/// [`Error::Invalid`] if the process may not hold as much.
+pub(super) fn ask_for_surfels(count: usize) -> Result<()> {
+    let bytes = count as u64 * OF_A_SURFEL.iter().sum::<u64>();
+    memory::ask(bytes, || format!("groups of {count} surfels"))
+}
+
+/// Asks for what the neighbours take that are near by a factor, where the tree is there already.
+///
+/// # Errors
+/// [`Error::Invalid`] if the process may not hold as much.
+pub(super) fn ask_for_neighbours(tree: &DiscTree, factor: f64) -> Result<()> {
+    let count = tree.surfel.len();
+    let neighbours = about_so_many(tree, factor);
+    let bytes = count as u64 * OF_A_SURFEL[1] + neighbours * OF_A_NEIGHBOUR;
+    memory::ask(bytes, || format!("groups of {count} surfels with about {neighbours} neighbours"))
+}
+
+vectorized!(
+    /// About how many neighbours there are, and no more than there may be: those at one block in
+    /// [`COUNTED`] are counted.
+    fn about_so_many(tree: &DiscTree, factor: f64) -> u64 {
+        let n = tree.surfel.len();
+        let blocks = (0..n).step_by(COUNTED * DISCS).map(|first| first..n.min(first + DISCS));
+        let places = blocks.clone().map(|block| block.len()).sum::<usize>().max(1);
+        let (each_for, most) = (n.div_ceil(places).max(1) as u64, 2 * most(n));
+        // A million surfels at one place have a million squared.
+        let enough = most / each_for;
+        let (mut room, mut seen) = (NearBlocks::default(), 0);
+        for place in blocks.flatten() {
+            tree.near(place, factor, &mut room, |_| {
+                seen += 1;
+                seen < enough
+            });
+            if seen >= enough {
+                return most;
+            }
+        }
+        seen * each_for
+    }
+);

@@ -45,7 +45,7 @@ pub fn group(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<(Groups, GroupingReport)> {
     rules.check()?;
-    let tree = DiscTree::of_all(surfels, exec, progress)?;
+    let tree = DiscTree::of_all(surfels, f64::from(rules.overlap), exec, progress)?;
     Coloring { surfels, tree: &tree, rules, exec, progress }.group()
 }
 
@@ -64,7 +64,7 @@ pub fn group_into(
 ) -> Result<(Groups, GroupingReport)> {
     rules.check()?;
     check_count(count)?;
-    let tree = DiscTree::of_all(surfels, exec, progress)?;
+    let tree = DiscTree::of_all(surfels, f64::from(rules.overlap), exec, progress)?;
     Coloring { surfels, tree: &tree, rules, exec, progress }.group_into(count, None)
 }
 

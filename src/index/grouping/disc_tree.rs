@@ -7,12 +7,12 @@
 //! What is found depends on the discs alone; the tree leaves no trace but the order in which it is
 //! found.
 
+use super::budget;
 use super::clipped::DiscSamples;
 use super::curve;
 use super::disc::{SpaceDisc, are_near};
 use crate::error::Result;
 use crate::frame::Exec;
-use crate::memory;
 use crate::scene::Surfels;
 use glam::{DVec3, Vec3};
 
@@ -52,21 +52,23 @@ struct Bounds {
     r: f64,
 }
 
-/// Bytes of a surfel in the trees, its neighbours in two graphs, what is covered of it: 250 where it
-/// overlaps 12 others.
-const OF_A_SURFEL: u64 = 512;
-
 impl DiscTree {
-    /// Of all surfels, for groups of them.
+    /// Of all surfels, for groups of them by neighbours that are near by a factor.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] if the process may not hold what it takes.
     pub(super) fn of_all(
         surfels: &Surfels,
+        factor: f64,
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Self> {
         let count = surfels.len();
-        memory::ask(count as u64 * OF_A_SURFEL, || format!("groups of {count} surfels"))?;
+        budget::ask_for_surfels(count)?;
         progress("sorting surfels", 0, 1);
-        Ok(Self::new(surfels, 0..count as u32, exec))
+        let tree = Self::new(surfels, 0..count as u32, exec);
+        budget::ask_for_neighbours(&tree, factor)?;
+        Ok(tree)
     }
 
     /// Of some surfels, by index in ascending order.

@@ -110,7 +110,7 @@ pub fn extend(
 ) -> Result<(Groups, Extended)> {
     extension.check()?;
     groups.check(surfels)?;
-    let tree = DiscTree::of_all(surfels, exec, progress)?;
+    let tree = DiscTree::of_all(surfels, 1.0, exec, progress)?;
     Work { surfels, tree: &tree, exec, progress }.extend(groups, extension, None)
 }
 

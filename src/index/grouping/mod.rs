@@ -192,7 +192,11 @@ impl Grouping {
         self.rules.check()?;
         self.extension.check()?;
         self.count.map_or(Ok(()), check_count)?;
-        let tree = DiscTree::of_all(surfels, exec, progress)?;
+        let factor = match self.extension {
+            Extension::None => f64::from(self.rules.overlap),
+            Extension::Add { .. } | Extension::Enlarge => 1.0,
+        };
+        let tree = DiscTree::of_all(surfels, factor, exec, progress)?;
         // To be extended by surfels, groups need the graph of all that overlap, which has the edges
         // of every other one. If it has too many, there may be groups all the same.
         let overlaps = match self.extension {
