@@ -100,7 +100,8 @@ impl Extension {
 /// # Errors
 /// [`Error::Invalid`] as [`Extension::check`]; if the groups are of another number of surfels; if
 /// more than 64 pairs a surfel, and a million, overlap at c = 1, or if radii are enlarged in a
-/// group; pairs whose samples are all covered by others are not counted then.
+/// group; pairs whose samples are all covered by others are not counted then; if the process may not
+/// hold what it takes.
 pub fn extend(
     surfels: &Surfels,
     groups: &Groups,
