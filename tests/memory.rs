@@ -251,10 +251,14 @@ const GROUPED: [(f32, usize, Extension); 5] = [
     (62.0, 64, Extension::Enlarge),
 ];
 
-/// What groups of random surfels of a square take.
-fn taken_by_groups((pairs, count, extension): (f32, usize, Extension)) -> u64 {
+/// How many surfels are added to groups of random surfels of a square, of which the first `heap` stand at
+/// one place; and what the groups take.
+fn added_and_taken((pairs, count, extension): (f32, usize, Extension), heap: usize) -> [u64; 2] {
     let radius = (2.0 * pairs / (4.0 * std::f32::consts::PI * GROUPED_SURFELS as f32)).sqrt();
-    let at = |i| Vec3::new(unit(1, 2 * i as u64), unit(1, 2 * i as u64 + 1), 0.0);
+    let at = |i| match i {
+        _ if i < heap => Vec3::splat(2.0),
+        i => Vec3::new(unit(1, 2 * i as u64), unit(1, 2 * i as u64 + 1), 0.0),
+    };
     let (surfels, _) = Surfels::new(Cloud {
         position: (0..GROUPED_SURFELS).map(at).collect(),
         normal: Some(vec![Vec3::Z; GROUPED_SURFELS]),
@@ -266,9 +270,29 @@ fn taken_by_groups((pairs, count, extension): (f32, usize, Extension)) -> u64 {
     let grouping = Grouping { rules: Rules::default(), count: Some(count), extension };
     std::fs::write("/proc/self/clear_refs", "5").ok();
     let before = status("VmRSS").expect("a size");
-    let (groups, ..) = grouping.groups(&surfels, &exec, &|_, _, _| ()).expect("groups");
+    let (groups, _, extended) = grouping.groups(&surfels, &exec, &|_, _, _| ()).expect("groups");
     assert!(groups.len() <= count && groups.len() > 2, "{}", groups.len());
-    status("VmHWM").expect("a peak") - before
+    let added = extended.map_or(0, |extended| extended.added);
+    [added, status("VmHWM").expect("a peak") - before]
+}
+
+/// A heap makes many groups, to each of which surfels are added that overlap no other: 8 bytes each time.
+#[test]
+fn what_is_added_to_groups_takes_what_it_is_said_to() {
+    const HEAP: &str = "SPLATREF_MEMORY_HEAP";
+    let case = (0.5, 64, Extension::Add { most: 0.5 });
+    if std::env::var(HEAP).is_ok() {
+        let [added, taken] = added_and_taken(case, 60);
+        println!("\nmemory {added} {taken}");
+        return;
+    }
+    let test = "what_is_added_to_groups_takes_what_it_is_said_to";
+    let [added, taken] = in_a_process(test, (HEAP, "1"));
+    assert!(added > 40 * GROUPED_SURFELS as u64, "{added}");
+    let said = (272 + 9) * GROUPED_SURFELS as u64 + 8 * added;
+    let ratio = said as f64 / taken as f64;
+    println!("{added} added: {said} for {taken}, {ratio:.2}");
+    assert!((1.0..6.0).contains(&ratio), "{ratio}");
 }
 
 /// As a picture: of groups, 272 bytes a surfel and 9 a neighbour are asked for.
@@ -276,7 +300,7 @@ fn taken_by_groups((pairs, count, extension): (f32, usize, Extension)) -> u64 {
 fn groups_take_what_they_are_said_to() {
     const CASE: &str = "SPLATREF_MEMORY_GROUPS";
     if let Some(case) = std::env::var(CASE).ok().and_then(|case| case.parse::<usize>().ok()) {
-        println!("\nmemory 0 {}", taken_by_groups(GROUPED[case]));
+        println!("\nmemory 0 {}", added_and_taken(GROUPED[case], 0)[1]);
         return;
     }
     for (case, (pairs, ..)) in GROUPED.into_iter().enumerate() {

@@ -1,9 +1,11 @@
 //! Extension (1): surfels of other groups are added to a group \[ZP06, section 4.2.2\].
 
+use super::budget;
 use super::clipped::{SAMPLES, areas, covered_by};
 use super::extend::GroupCoverage;
 use super::overlaps::Overlaps;
 use super::settle::settle;
+use crate::error::Result;
 use crate::scene::Groups;
 use std::ops::Range;
 use std::sync::atomic::AtomicU8;
@@ -22,12 +24,15 @@ pub(super) struct Added {
 }
 
 /// Adds surfels to all groups, and measures how much of the surface each covers.
+///
+/// # Errors
+/// [`crate::Error::Invalid`] if the process may not hold those that are added.
 pub(super) fn add(
     overlaps: &Overlaps<'_>,
     groups: &Groups,
     most: f32,
     progress: &dyn Fn(&str, u64, u64),
-) -> Added {
+) -> Result<Added> {
     let &Overlaps { tree, exec, .. } = overlaps;
     let (n, count) = (tree.surfel.len(), groups.len());
     let mut own = Vec::new();
@@ -87,8 +92,10 @@ pub(super) fn add(
     }
     let bits = |groups: u64| (0..count as u8).filter(move |group| groups >> group & 1 == 1);
     let of = |(surfel, groups)| bits(groups).map(move |group| (surfel, group));
-    let further = (0..).zip(added).filter(|added| added.1 != 0).flat_map(of).collect();
-    Added { target, further, groups: coverages }
+    let count = added.iter().map(|groups| u64::from(groups.count_ones())).sum();
+    let mut further = budget::room_for_added(count)?;
+    further.extend((0..).zip(added).filter(|added| added.1 != 0).flat_map(of));
+    Ok(Added { target, further, groups: coverages })
 }
 
 /// Who is in which group.

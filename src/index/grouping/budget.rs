@@ -32,7 +32,11 @@ impl Budget {
     /// [`Error::Invalid`] if more is spent than there is.
     pub(super) fn spend(&self, pairs: u64) -> Result<()> {
         let before = self.spent.fetch_add(pairs, Ordering::Relaxed);
-        if before.saturating_add(pairs) <= 2 * self.most() { Ok(()) } else { Err(self.overrun()) }
+        if before.saturating_add(pairs) <= 2 * most(self.surfels) {
+            Ok(())
+        } else {
+            Err(self.overrun())
+        }
     }
 
     /// [`Budget::spend`] once there are many pairs, which then are none: threads need not meet for
@@ -53,15 +57,11 @@ impl Budget {
         if u32::try_from(pairs).is_ok() { Ok(()) } else { Err(self.overrun()) }
     }
 
-    fn most(&self) -> u64 {
-        most(self.surfels)
-    }
-
     fn overrun(&self) -> Error {
         Error::Invalid(format!(
             "more than {} pairs of {} surfels overlap at c = {}, over 64 a surfel: give a lower \
              c or smaller radii",
-            self.most(),
+            most(self.surfels),
             self.surfels,
             self.factor
         ))
@@ -98,6 +98,17 @@ pub(super) fn ask_for_neighbours(tree: &DiscTree, factor: f64) -> Result<()> {
     let neighbours = about_so_many(tree, factor);
     let bytes = count as u64 * OF_A_SURFEL[1] + neighbours * OF_A_NEIGHBOUR;
     memory::ask(bytes, || format!("groups of {count} surfels with about {neighbours} neighbours"))
+}
+
+/// Room for so many surfels that are added to groups: of few neighbours here and many there, each may be
+/// added to dozens.
+///
+/// # Errors
+/// [`Error::Invalid`] if the process may not hold as much.
+pub(super) fn room_for_added(count: u64) -> Result<Vec<(u32, u8)>> {
+    let bytes = count * size_of::<(u32, u8)>() as u64;
+    memory::ask(bytes, || format!("groups to which {count} surfels are added"))?;
+    Ok(Vec::with_capacity(count as usize))
 }
 
 vectorized!(

@@ -77,6 +77,14 @@ impl Extension {
         }
     }
 
+    /// By which factor those are near whose neighbourhood is kept.
+    pub(super) fn reach(&self) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Add { .. } | Self::Enlarge => 1.0,
+        }
+    }
+
     /// Whether the numbers are in range.
     ///
     /// # Errors
@@ -111,7 +119,7 @@ pub fn extend(
 ) -> Result<(Groups, Extended)> {
     extension.check()?;
     groups.check(surfels)?;
-    let tree = DiscTree::of_all(surfels, 1.0, exec, progress)?;
+    let tree = DiscTree::of_all(surfels, extension.reach(), exec, progress)?;
     Work { surfels, tree: &tree, exec, progress }.extend(groups, extension, None)
 }
 
@@ -140,7 +148,7 @@ impl Work<'_> {
                     None => Graph::new(tree, 1.0, |_, _| true, exec, progress)?,
                 };
                 let overlaps = Overlaps { tree, graph: &graph, exec };
-                let found = add::add(&overlaps, groups, most, progress);
+                let found = add::add(&overlaps, groups, most, progress)?;
                 (found.target, found.further, found.groups)
             }
             Extension::None | Extension::Enlarge => {

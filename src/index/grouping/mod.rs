@@ -131,6 +131,7 @@ pub use rules::{Coplanar, Rules};
 
 use crate::error::Result;
 use crate::frame::Exec;
+use crate::number::Real;
 use crate::scene::groups::check_count;
 use crate::scene::{Groups, Surfels};
 use crate::setting::{Field, Fields, Slot, Visit};
@@ -192,10 +193,7 @@ impl Grouping {
         self.rules.check()?;
         self.extension.check()?;
         self.count.map_or(Ok(()), check_count)?;
-        let factor = match self.extension {
-            Extension::None => f64::from(self.rules.overlap),
-            Extension::Add { .. } | Extension::Enlarge => 1.0,
-        };
+        let factor = f64::from(self.rules.overlap).at_least(self.extension.reach());
         let tree = DiscTree::of_all(surfels, factor, exec, progress)?;
         // To be extended by surfels, groups need the graph of all that overlap, which has the edges
         // of every other one. If it has too many, there may be groups all the same.
