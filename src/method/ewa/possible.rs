@@ -12,7 +12,7 @@ use crate::splat::{Disc, Projector, Splat, Tally, View, batch, enclosed};
 use std::ops::Range;
 
 /// A surfel that may be drawn.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(in crate::method) struct PossibleSplat<P: Profile> {
     pub(in crate::method) splat: Splat<Ball<P>>,
     /// Whether it certainly is, and with this outline.
@@ -31,7 +31,7 @@ pub(in crate::method) fn project<P: Profile>(
 }
 
 /// The same as other records, of which `bounds` gives the pixels.
-pub(in crate::method) fn project_into<P: Profile, S: Send>(
+pub(in crate::method) fn project_into<P: Profile, S: Copy + Send>(
     job: &Job<'_>,
     settings: &Settings,
     record: impl Fn(PossibleSplat<P>) -> S + Sync + Send,

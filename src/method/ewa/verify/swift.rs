@@ -23,7 +23,7 @@ const ROUNDINGS: f64 = 16.0 / 16_777_216.0;
 pub(in crate::method) type SwiftSplats<P> = Prepared<Ball<P>, SwiftSplat<P>>;
 
 /// A surfel that may be drawn, and bounds of its fragments.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(in crate::method) struct SwiftSplat<P: Profile> {
     pub(super) possible: PossibleSplat<P>,
     swift: Option<Swift>,

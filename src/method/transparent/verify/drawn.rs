@@ -18,6 +18,7 @@ use crate::shade::phong::Shader;
 use crate::splat::{Splat, Tally, View, batch, fragment};
 
 /// A surfel that may be drawn in one of its groups.
+#[derive(Clone, Copy)]
 struct Drawing<P: Profile> {
     splat: Splat<Ball<P>>,
     /// Whether it certainly is, and with this outline.
