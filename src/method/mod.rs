@@ -38,19 +38,22 @@
 //! # Fast paths
 //!
 //! The fast paths of the methods that draw splats give the bits of the definitions for `f32`. A
-//! tile is done from beginning to end while it is in the cache: its splats are gathered into one
-//! list, and its pixels are kept in blocks of 4 x 4, one vector of 16 lanes a quantity. A lane is a
-//! pixel and never a partial sum, so every pixel sees the operations of the definition in their
-//! order. [`ewa`] and [`single_pass`] run over the splats, and for each over its blocks; the
-//! methods of layers run over the blocks, and for each over the list of its splats, because they
-//! meet the fragments of a block again, or keep more of its pixels than fits the nearest cache for
-//! a whole tile. Three things differ, and none of them changes a bit:
+//! tile is done from beginning to end while it is in the cache: its splats, which projection has left
+//! side by side, are gathered into one list, and its pixels are kept in blocks of 4 x 4, one vector
+//! of 16 lanes a quantity. A lane is a pixel and never a partial sum, so every pixel sees the
+//! operations of the definition in their order. [`ewa`] and [`single_pass`] run over the splats, and
+//! for each over its blocks; the methods of layers run over the blocks, and for each over the list of
+//! its splats, because they meet the fragments of a block again, or keep more of its pixels than fits
+//! the nearest cache for a whole tile. Four things differ, and none of them changes a bit:
 //!
 //! - A block is visited whole. The lanes outside a splat's bounds have q > k^2.
 //! - The epsilon-z test `1/w <= limit` becomes `w >= least`, with `least` the smallest `f32` that
 //!   passes: 1/w, correctly rounded, never grows with w.
 //! - A fragment that fails adds weight 0 instead of nothing, and an image without fragments is not
 //!   added to a sum at all.
+//! - Where a processor multiplies and adds in one instruction, the polynomial of e^x is computed so:
+//!   the result is correctly rounded either way, see
+//!   [`exp_f32_in_range`](crate::number::elementary::exp_f32_in_range).
 
 mod algorithm;
 mod allowed;

@@ -29,12 +29,15 @@ pub(crate) type Mask = [u32; LANES];
 /// Compiles a function for every width of vectors: AVX-512, AVX2, and what every target has. Which
 /// of them runs is decided when the program runs; the bits are the same.
 ///
+/// In the function `target_cfg_f!(target_feature = "fma")` tells whether this version multiplies and
+/// adds in one instruction.
+///
 /// Written with parentheses, `vectorized!(fn kernel() {})`, which rustfmt formats; braces it leaves
 /// alone.
 macro_rules! vectorized {
     ($($item:tt)+) => {
         #[multiversion::multiversion(
-            targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2")
+            targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl+fma", "x86_64+avx2+fma")
         )]
         $($item)+
     };

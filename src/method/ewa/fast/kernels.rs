@@ -5,6 +5,7 @@ use crate::method::fast::tile::Tile;
 use crate::number::elementary::exp_f32_in_range;
 use crate::number::lanes::{LANES, Lanes, any, each, mask, select, select_u32, vectorized};
 use crate::splat::{Footprint, Shared};
+use multiversion::target::target_cfg_f;
 
 impl Tile {
     /// Visibility splatting.
@@ -64,14 +65,14 @@ vectorized!(
         tile: &mut Tile,
         shared: &Shared<f32>,
     ) {
+        const FUSED: bool = target_cfg_f!(target_feature = "fma");
         let shared = *shared;
         for splat in &tile.splats {
             let footprint = &splat.footprint;
             each_block::<RAY_CAST>(splat, &tile.grid, &shared, |block, q, w| {
                 let block = &mut tile.blocks[block];
-                let Some(weight) = weights(q, w, &block.least, shared.limit, footprint) else {
-                    return;
-                };
+                let weight = weights::<FUSED>(q, w, &block.least, shared.limit, footprint);
+                let Some(weight) = weight else { return };
                 add(&mut block.weight, &weight, 1.0);
                 if NORMAL {
                     for (sum, value) in block.normal.iter_mut().zip(splat.attributes.normal) {
@@ -90,7 +91,7 @@ vectorized!(
 
 /// The weights of the fragments that are inside and visible, 0 for the others; none if all are.
 #[inline(always)]
-fn weights(
+fn weights<const FUSED: bool>(
     q: &Lanes,
     w: &Lanes,
     least: &Lanes,
@@ -103,6 +104,6 @@ fn weights(
         return None;
     }
     // q of a fragment that counts is in [0, 16]; the others may give any number.
-    let weight = each(|i| footprint.amplitude * exp_f32_in_range(q[i] * -0.5));
+    let weight = each(|i| footprint.amplitude * exp_f32_in_range::<FUSED>(q[i] * -0.5));
     Some(select(&visible, &weight, &[0.0; LANES]))
 }

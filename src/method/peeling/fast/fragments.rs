@@ -5,6 +5,7 @@ use crate::method::fast::tile::Record;
 use crate::number::elementary::exp_f32_in_range;
 use crate::number::lanes::{Lanes, any, each, mask, vectorized};
 use crate::splat::Shared;
+use multiversion::target::target_cfg_f;
 
 /// The fragments that no layer has taken yet.
 #[derive(Default)]
@@ -52,6 +53,7 @@ vectorized!(
         corner: (u32, u32),
         shared: &Shared<f32>,
     ) {
+        const FUSED: bool = target_cfg_f!(target_feature = "fma");
         let shared = *shared;
         for &index in list {
             let splat = &splats[index as usize];
@@ -59,7 +61,7 @@ vectorized!(
             let nearness = inside(&q, &w, shared.limit);
             if any(&mask(|i| !nearness[i].is_nan())) {
                 let amplitude = splat.footprint.amplitude;
-                let weight = each(|i| amplitude * exp_f32_in_range(q[i] * -0.5));
+                let weight = each(|i| amplitude * exp_f32_in_range::<FUSED>(q[i] * -0.5));
                 found.left.push(FragmentBlock { nearness, weight });
                 found.splats.push([splat.surfel, index]);
             }

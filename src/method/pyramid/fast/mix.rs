@@ -118,7 +118,7 @@ pub(super) fn tilts(normal: &[Lanes; 3]) -> [Lanes; 2] {
 /// exp(-2 d^2), as the definition has it for d <= 1; any number for other d.
 #[inline(always)]
 fn gaussian(square: f32) -> f32 {
-    crate::number::elementary::exp_f32_in_range(-2.0 * square)
+    crate::number::elementary::exp_f32_in_range::<false>(-2.0 * square)
 }
 
 impl Mix {

@@ -125,7 +125,7 @@ impl KeptFragments {
 fn finish(images: &mut GroupImages, block: usize, kept: &KeptFragments) {
     let KeptFragments { nearness, q, amplitude, splat, .. } = *kept;
     fold(&mut images.nearest[block], &nearness, &splat);
-    let weight = each(|i| amplitude[i] * exp_f32_in_range(q[i] * -0.5));
+    let weight = each(|i| amplitude[i] * exp_f32_in_range::<false>(q[i] * -0.5));
     let count = &mut images.counts[block];
     images.lists[block * images.ends.len() + *count] = images.images.len() as u32;
     *count += 1;
