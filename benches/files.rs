@@ -73,7 +73,7 @@ fn picture(
         large?.put()?;
         small?.map_or(Ok(()), Pending::put)
     })?;
-    let read = measured(|| exr::read_with(&large, exec).map(|_| ()))?;
+    let read = measured(|| exr::read_with(&large, exec))?;
     let bytes = std::fs::metadata(&large).map_err(|error| Error::io(&large, error))?.len();
     Ok(format!("{exr} | {all} | {:.1} | {read}", bytes as f64 / 1e6))
 }
@@ -87,14 +87,15 @@ fn clouds(arguments: &Arguments, folder: &Path, exec: &Exec) -> Result<()> {
         }
         let path = folder.join("cloud.ply");
         cloud(&path, count).map_err(|error| Error::io(&path, error))?;
-        let read = measured(|| ply::read_with(&path, exec).map(|_| ()))?;
+        let read = measured(|| ply::read_with(&path, exec))?;
         let whole = ply::read_with(&path, exec)?;
         let mut checks = Vec::new();
         while checks.len() < 9 {
             let cloud = whole.clone();
             let start = Instant::now();
-            Surfels::new(cloud)?;
+            let surfels = Surfels::new(cloud)?;
             checks.push(start.elapsed());
+            drop(surfels);
         }
         let bytes = std::fs::metadata(&path).map_err(|error| Error::io(&path, error))?.len();
         let megabytes = bytes as f64 / 1e6;
@@ -124,13 +125,14 @@ fn cloud(path: &Path, count: usize) -> std::io::Result<()> {
     out.flush()
 }
 
-/// Median and minimum of at least 9 runs.
-fn measured(mut run: impl FnMut() -> Result<()>) -> Result<String> {
+/// Median and minimum of at least 9 runs; what they make is given back when the clock has stopped.
+fn measured<T>(mut run: impl FnMut() -> Result<T>) -> Result<String> {
     let (mut times, begin): (Vec<Duration>, _) = (Vec::new(), Instant::now());
     while times.len() < 9 || (times.len() < 101 && begin.elapsed().as_secs() < 2) {
         let start = Instant::now();
-        run()?;
+        let made = run()?;
         times.push(start.elapsed());
+        drop(made);
     }
     Ok(cell(&mut times))
 }
