@@ -19,7 +19,7 @@ pub(super) struct Prepared<R, S> {
     batches: Vec<(Vec<S>, Bins)>,
 }
 
-impl<R: Real, S: Copy + Send> Prepared<R, S> {
+impl<R: Real, S: Send> Prepared<R, S> {
     /// Projects `count` items and sorts the splats into tiles.
     ///
     /// `project` makes the records of a range of items; `bounds` gives the pixels of a record.
@@ -29,18 +29,28 @@ impl<R: Real, S: Copy + Send> Prepared<R, S> {
         count: usize,
         project: impl Fn(&Projector<R>, Range<usize>, &mut Vec<S>) -> Tally + Sync + Send,
         bounds: impl Fn(&S) -> Rect + Sync + Send,
-    ) -> Self {
+    ) -> Self
+    where
+        S: Copy,
+    {
         let size = batch_size(grid, count);
         let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
         let projected = |projector: &Projector<R>, range: Range<usize>, splats: &mut Vec<S>| {
             splats.reserve_exact(range.len());
             project(projector, range, splats)
         };
-        Self::of_batches((job, grid), settings, ranges.collect(), projected, bounds)
+        // A tile finds its splats side by side: of a million, fetching each from elsewhere took a fifth
+        // of a frame.
+        let arranged = |splats: Vec<S>, bins: &mut Bins| match bins.renumber(splats.len()) {
+            Some(order) => order.iter().map(|&i| splats[i as usize]).collect(),
+            None => splats,
+        };
+        Self::arranged((job, grid), settings, ranges.collect(), projected, bounds, arranged)
     }
 
     /// Projects the items of some batches and sorts the splats into tiles; the order of the items is
-    /// that of the batches. `project` and `bounds` are as in [`Prepared::new`].
+    /// that of the batches, of which each has items near each other. `project` and `bounds` are as in
+    /// [`Prepared::new`].
     pub(super) fn of_batches<B: Send>(
         (job, grid): (&Job<'_>, &Grid),
         settings: &SplatSettings,
@@ -48,18 +58,25 @@ impl<R: Real, S: Copy + Send> Prepared<R, S> {
         project: impl Fn(&Projector<R>, B, &mut Vec<S>) -> Tally + Sync + Send,
         bounds: impl Fn(&S) -> Rect + Sync + Send,
     ) -> Self {
+        Self::arranged((job, grid), settings, batches, project, bounds, |splats, _| splats)
+    }
+
+    /// [`Prepared::of_batches`], with the splats of a batch as `arrange` puts them for its bins.
+    fn arranged<B: Send>(
+        (job, grid): (&Job<'_>, &Grid),
+        settings: &SplatSettings,
+        batches: Vec<B>,
+        project: impl Fn(&Projector<R>, B, &mut Vec<S>) -> Tally + Sync + Send,
+        bounds: impl Fn(&S) -> Rect + Sync + Send,
+        arrange: impl Fn(Vec<S>, &mut Bins) -> Vec<S> + Sync + Send,
+    ) -> Self {
         let view = View::new(job.camera);
         let projector = Projector::new(view, &settings.kernel, settings.cull);
         let results = job.exec.ordered(batches, |batch| {
             let mut splats = Vec::new();
             let tally = project(&projector, batch, &mut splats);
             let mut bins = Bins::new(grid, splats.len(), |i| bounds(&splats[i]));
-            // A tile finds its splats side by side: of a million, fetching each from elsewhere took a fifth
-            // of a frame.
-            if let Some(order) = bins.renumber(splats.len()) {
-                splats = order.iter().map(|&i| splats[i as usize]).collect();
-            }
-            ((splats, bins), tally)
+            ((arrange(splats, &mut bins), bins), tally)
         });
         let tally = results.iter().fold(Tally::default(), |sum, (_, tally)| sum.plus(tally));
         Self {
@@ -86,7 +103,10 @@ impl<R: Real, S: Copy + Send> Prepared<R, S> {
     /// The splats that touch a tile, in the order of the items, in the place of what was `gathered`
     /// before; `touches` tells of a splat near the tile whether the splat may touch the tile.
     #[inline(always)]
-    pub(super) fn gather(&self, tile: usize, touches: impl Fn(&S) -> bool, gathered: &mut Vec<S>) {
+    pub(super) fn gather(&self, tile: usize, touches: impl Fn(&S) -> bool, gathered: &mut Vec<S>)
+    where
+        S: Copy,
+    {
         gathered.clear();
         gathered.reserve(self.count(tile));
         for (splats, bins) in &self.batches {

@@ -7,6 +7,7 @@ use crate::method::fast::tile::{Record, Tile};
 use crate::number::elementary::exp_f32_in_range;
 use crate::number::lanes::{LANES, Lanes, each, mask, select, select_u32, vectorized};
 use crate::splat::Shared;
+use multiversion::target::target_cfg_f;
 
 /// What the image of the group that is being drawn keeps at the pixels of a block.
 #[derive(Clone, Copy)]
@@ -47,6 +48,7 @@ vectorized!(
         shared: &Shared<f32>,
         bins: Option<&DepthBins<f32>>,
     ) {
+        const FUSED: bool = target_cfg_f!(target_feature = "fma");
         let shared = *shared;
         let empty = KeptFragments {
             z: [f32::INFINITY; LANES],
@@ -76,7 +78,7 @@ vectorized!(
                     let block = 64 * word + bits.trailing_zeros() as usize;
                     bits &= bits - 1;
                     let kept = &mut kept[block];
-                    finish(images, block, kept);
+                    finish::<FUSED>(images, block, kept);
                     // Empty again: the other numbers are read where there is a splat only.
                     if VORONOI {
                         kept.z = empty.z;
@@ -122,10 +124,10 @@ impl KeptFragments {
 /// Adds what a block has become to the images: a weight is computed once, for the fragment that is
 /// kept.
 #[inline(always)]
-fn finish(images: &mut GroupImages, block: usize, kept: &KeptFragments) {
+fn finish<const FUSED: bool>(images: &mut GroupImages, block: usize, kept: &KeptFragments) {
     let KeptFragments { nearness, q, amplitude, splat, .. } = *kept;
     fold(&mut images.nearest[block], &nearness, &splat);
-    let weight = each(|i| amplitude[i] * exp_f32_in_range::<false>(q[i] * -0.5));
+    let weight = each(|i| amplitude[i] * exp_f32_in_range::<FUSED>(q[i] * -0.5));
     let count = &mut images.counts[block];
     images.lists[block * images.ends.len() + *count] = images.images.len() as u32;
     *count += 1;
