@@ -128,13 +128,13 @@ impl Bins {
     /// Gives the bounds new indices, in the order in which the tiles, one after the other, first list
     /// them, and returns the old index of each: what is kept in this order lies side by side for a
     /// tile. Tiles visit the same bounds as before, in the same order, which is no longer that of the
-    /// indices. None, and nothing changes, if the lists are not [exact](Bins::is_exact): those of
-    /// several levels are merged by their indices.
+    /// indices. None, and nothing changes, if nothing is listed, or if the lists are not
+    /// [exact](Bins::is_exact): those of several levels are merged by their indices.
     pub(crate) fn renumber(&mut self, count: usize) -> Option<Vec<u32>> {
-        let [level] = self.levels.as_mut_slice() else { return None };
-        if level.shift != 0 {
+        if !self.is_exact() {
             return None;
         }
+        let level = self.levels.first_mut()?;
         let (mut numbers, mut old) = (vec![u32::MAX; count], vec![0; count]);
         let mut next = 0;
         for item in &mut level.items {

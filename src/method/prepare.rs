@@ -41,11 +41,11 @@ impl<R: Real, S: Send> Prepared<R, S> {
         };
         // A tile finds its splats side by side: of a million, fetching each from elsewhere took a fifth
         // of a frame.
-        let arranged = |splats: Vec<S>, bins: &mut Bins| match bins.renumber(splats.len()) {
+        let side_by_side = |splats: Vec<S>, bins: &mut Bins| match bins.renumber(splats.len()) {
             Some(order) => order.iter().map(|&i| splats[i as usize]).collect(),
             None => splats,
         };
-        Self::arranged((job, grid), settings, ranges.collect(), projected, bounds, arranged)
+        Self::arranged((job, grid), settings, ranges.collect(), projected, bounds, side_by_side)
     }
 
     /// Projects the items of some batches and sorts the splats into tiles; the order of the items is

@@ -26,8 +26,8 @@ pub(crate) type Lanes<R = f32> = [R; LANES];
 /// A choice of lanes: all bits in a lane that is chosen, none in another.
 pub(crate) type Mask = [u32; LANES];
 
-/// Compiles a function for every width of vectors: AVX-512, AVX2, and what every target has. Which
-/// of them runs is decided when the program runs; the bits are the same.
+/// Compiles a function for every width of vectors: AVX-512, AVX2 with FMA, and what every target
+/// has. Which of them runs is decided when the program runs; the bits are the same.
 ///
 /// In the function `target_cfg_f!(target_feature = "fma")` tells whether this version multiplies and
 /// adds in one instruction.
