@@ -20,7 +20,9 @@ const _: () = assert!(MAX_GROUPS <= Set::BITS as usize, "a bit for each group");
 pub struct Members {
     /// Each surfel in its place in the tree.
     pub(crate) surfels: Surfels,
-    /// The groups that each of them is in.
+    /// The group that each of them has of its own.
+    pub(crate) own: Vec<u8>,
+    /// All groups that each of them is in.
     sets: Vec<Set>,
     /// The groups that multiply radii by the same number: the number, and which they are.
     alike: Vec<(f32, Set)>,
@@ -38,7 +40,7 @@ impl Members {
         exec: &Exec,
     ) -> Result<Self> {
         let (count, of_a_set) = (surfels.len() as u64, size_of::<Set>() as u64);
-        memory::ask(surfels.bytes_reordered() + 2 * of_a_set * count, || {
+        memory::ask(surfels.bytes_reordered() + (2 * of_a_set + 1) * count, || {
             format!("{count} surfels in the order of a tree")
         })?;
         let mut sets: Vec<Set> = groups.own().iter().map(|&group| 1 << group).collect();
@@ -53,7 +55,8 @@ impl Members {
             }
         }
         let sets = order.indices().map(|surfel| sets[surfel as usize]).collect();
-        Ok(Self { surfels: surfels.reordered(order.indices(), exec), sets, alike })
+        let own = order.indices().map(|surfel| groups.own()[surfel as usize]).collect();
+        Ok(Self { surfels: surfels.reordered(order.indices(), exec), own, sets, alike })
     }
 
     /// How many splats a view has at the most.
@@ -70,6 +73,7 @@ impl Members {
 
     /// Calls `visit` for each scale at which a surfel is drawn, given by its place in the tree: with the
     /// scale, and with the groups that draw it so.
+    #[inline(always)]
     pub(crate) fn each_scale(&self, place: usize, mut visit: impl FnMut(f32, Set)) {
         for &(scale, alike) in &self.alike {
             let groups = self.sets[place] & alike;

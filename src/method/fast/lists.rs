@@ -14,42 +14,44 @@ pub(in crate::method) struct BlockLists {
 }
 
 impl BlockLists {
-    /// Lists splats of a tile, in this order.
+    /// Lists the splats of a tile, in their order.
     pub(in crate::method) fn new<A>(
         splats: &[Record<A>],
-        order: impl Iterator<Item = u32> + Clone,
         grid: &BlockGrid,
         shared: &Shared<f32>,
     ) -> Self {
         if shared.ray_cast {
-            Self::of::<true, A>(splats, order, grid, shared.limit)
+            Self::of::<true, A>(splats, grid, shared.limit)
         } else {
-            Self::of::<false, A>(splats, order, grid, shared.limit)
+            Self::of::<false, A>(splats, grid, shared.limit)
         }
     }
 
-    fn of<const RAY_CAST: bool, A>(
-        splats: &[Record<A>],
-        order: impl Iterator<Item = u32> + Clone,
-        grid: &BlockGrid,
-        limit: f32,
-    ) -> Self {
+    fn of<const RAY_CAST: bool, A>(splats: &[Record<A>], grid: &BlockGrid, limit: f32) -> Self {
+        // Where the splats are, one after the other: a tile has at most 16 x 16 blocks.
+        let mut places: Vec<u8> = Vec::with_capacity(4 * splats.len());
+        let mut place_ends = Vec::with_capacity(splats.len());
         let mut counts = vec![0_u32; grid.len()];
-        for splat in order.clone() {
-            let splat = &splats[splat as usize];
-            each_place::<RAY_CAST, A>(splat, grid, limit, |block, _| counts[block] += 1);
+        for splat in splats {
+            each_place::<RAY_CAST, A>(splat, grid, limit, |block, _| {
+                counts[block] += 1;
+                places.push(block as u8);
+            });
+            place_ends.push(places.len());
         }
         let mut sum = 0;
         for count in &mut counts {
             (*count, sum) = (sum, sum + *count);
         }
         let (mut next, mut listed) = (counts, vec![0; sum as usize]);
-        for index in order {
-            let splat = &splats[index as usize];
-            each_place::<RAY_CAST, A>(splat, grid, limit, |block, _| {
-                listed[next[block] as usize] = index;
-                next[block] += 1;
-            });
+        let mut start = 0;
+        for (index, end) in (0..).zip(place_ends) {
+            for &block in &places[start..end] {
+                let next = &mut next[usize::from(block)];
+                listed[*next as usize] = index;
+                *next += 1;
+            }
+            start = end;
         }
         // What follows the last of a block is the first of the next.
         Self { splats: listed, ends: next }

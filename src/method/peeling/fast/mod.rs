@@ -84,7 +84,7 @@ impl<'a> FastPeeling<'a> {
             return None;
         }
         let (grid, shared) = (BlockGrid::new(rect), &self.prepared.shared);
-        let lists = BlockLists::new(&splats, 0..splats.len() as u32, &grid, shared);
+        let lists = BlockLists::new(&splats, &grid, shared);
         let attributes: Vec<_> = splats.iter().map(|splat| self.attributes(splat)).collect();
         let mut fragments = Fragments::default();
         let mut blocks = vec![LayeredBlock::EMPTY; grid.len()];

@@ -4,7 +4,6 @@ use crate::frame::NO_ID;
 use crate::method::fast::groups::sorted;
 use crate::method::fast::tile::{Surface, Tile};
 use crate::number::lanes::{LANES, Lanes};
-use crate::scene::Groups;
 
 /// Colour, 1, normal and opacity of a splat, so that all sums of a pixel are those of one vector.
 pub(super) type Attributes = [f32; 8];
@@ -54,24 +53,23 @@ pub(in crate::method) struct GroupImages {
 }
 
 impl GroupImages {
-    /// Sorts the splats of a tile by group; nothing is touched yet. `empty` is the nearness of an
-    /// empty pixel; `opacity` gives that of a surfel, if opacities are wanted.
+    /// Sorts the splats of a tile by group; nothing is touched yet. Of each splat the group is given,
+    /// with the count of all groups, and the opacity, if opacities are wanted; `empty` is the nearness
+    /// of an empty pixel.
     pub(in crate::method) fn new(
         tile: &Tile,
-        groups: &Groups,
+        (groups, count): (&[u8], usize),
         empty: f32,
-        opacity: Option<impl Fn(u32) -> f32>,
+        opacities: Option<&[f32]>,
     ) -> Self {
         let (splats, blocks) = (tile.splats.len(), tile.blocks.len());
-        // A loop of its own: the groups are far away, and a short loop waits for many at once.
-        let own: Vec<u8> = tile.splats.iter().map(|s| groups.own()[s.surfel as usize]).collect();
-        let (order, ends) = sorted(&own, groups.len());
+        let (order, ends) = sorted(groups, count);
         let mut surfels = Vec::with_capacity(splats + 1);
         let mut attributes = Vec::with_capacity(splats + 1);
-        for splat in &tile.splats {
+        for (i, splat) in tile.splats.iter().enumerate() {
             let Surface { normal: [x, y, z], color: [r, g, b] } = splat.attributes;
             surfels.push(splat.surfel);
-            let opacity = opacity.as_ref().map_or(0.0, |of| of(splat.surfel));
+            let opacity = opacities.map_or(0.0, |all| all[i]);
             attributes.push([r, g, b, 1.0, x, y, z, opacity]);
         }
         surfels.push(NO_ID);
@@ -88,7 +86,7 @@ impl GroupImages {
             lists: vec![0; most],
             counts: vec![0; blocks],
             nearest: vec![none; blocks],
-            opacities: opacity.map_or_else(Vec::new, |_| vec![[0.0; LANES]; blocks]),
+            opacities: opacities.map_or_else(Vec::new, |_| vec![[0.0; LANES]; blocks]),
         }
     }
 }

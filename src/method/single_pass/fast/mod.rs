@@ -50,7 +50,9 @@ pub(super) fn render(
     clock.lap("projection");
     let shared = &prepared.shared;
     let passes = draw::<2>(job, &prepared, target, |tile, watch| {
-        let mut images = GroupImages::new(tile, groups, shared.empty(), None::<fn(u32) -> f32>);
+        // A loop of its own: the groups are far away, and a short loop waits for many at once.
+        let own: Vec<u8> = tile.splats.iter().map(|s| groups.own()[s.surfel as usize]).collect();
+        let mut images = GroupImages::new(tile, (&own, groups.len()), shared.empty(), None);
         images.draw(tile, shared, bins.as_ref());
         watch.lap(0);
         images.nearest(tile);

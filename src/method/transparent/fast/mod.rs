@@ -11,7 +11,7 @@ mod projection;
 
 pub(in crate::method) use averaging::AverageBlock;
 pub(in crate::method) use blending::Nearest;
-pub(in crate::method) use projection::LayerOfSurface;
+pub(in crate::method) use projection::{Layer, LayerOfSurface};
 
 use super::{Holes, Settings, planes};
 use crate::composite::bins::DepthBins;
@@ -25,7 +25,7 @@ use crate::method::fast::tile::{BlockGrid, Record};
 use crate::method::picture::{Clock, Picture};
 use crate::method::prepare::Prepared;
 use blending::LayersBlock;
-use projection::{Blended, Layer};
+use projection::Blended;
 use std::time::Instant;
 
 /// The splats of all groups as records with `A`, projected, shaded and sorted into tiles.
@@ -77,8 +77,7 @@ impl<A: Blended> FastBlending<A> {
         grid: &BlockGrid,
         nearest: impl Fn(usize) -> Nearest,
     ) -> Vec<AverageBlock> {
-        let order = 0..splats.len() as u32;
-        let lists = BlockLists::new(splats, order, grid, &self.prepared.shared);
+        let lists = BlockLists::new(splats, grid, &self.prepared.shared);
         let mut averages = vec![AverageBlock::EMPTY; grid.len()];
         let mut images = vec![LayersBlock::EMPTY; self.bins.len()];
         for (block, list) in lists.blocks() {

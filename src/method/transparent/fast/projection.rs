@@ -22,9 +22,11 @@ use glam::Vec3;
 pub(in crate::method) struct Layer {
     /// Shaded at the centre.
     pub(super) color: [f32; 3],
-    pub(super) alpha: f32,
+    pub(in crate::method) alpha: f32,
     /// The groups that draw it.
     pub(super) groups: Set,
+    /// The one that is the surfel's own.
+    pub(in crate::method) own: u8,
     /// Whether the back of the surfel is seen.
     back: bool,
 }
@@ -61,6 +63,15 @@ impl Blended for Layer {
 pub(in crate::method) struct LayerOfSurface {
     layer: Layer,
     pub(in crate::method) surface: Surface,
+}
+
+impl LayerOfSurface {
+    /// The splat in the nearest layer.
+    #[inline(always)]
+    pub(in crate::method) fn surface(record: &Record<Self>) -> Record {
+        let Record { footprint, surfel, bounds, attributes } = *record;
+        Record { footprint, surfel, bounds, attributes: attributes.surface }
+    }
 }
 
 impl AsRef<Layer> for LayerOfSurface {
@@ -116,9 +127,10 @@ impl<A: Blended> FastBlending<A> {
                 }
                 records.reserve_exact(list.len());
                 let tally = batch::enlarged_f32(projector, surfels, &list, |place, splat| {
-                    let alpha = surfels.opacity().map_or(1.0, |all| all[splat.surfel as usize]);
-                    let (groups, back) = (sets[place], splat.back);
-                    let layer = Layer { color: [0.0; 3], alpha, groups, back };
+                    let i = splat.surfel as usize;
+                    let alpha = surfels.opacity().map_or(1.0, |all| all[i]);
+                    let (groups, own, back) = (sets[place], members.own[i], splat.back);
+                    let layer = Layer { color: [0.0; 3], alpha, groups, own, back };
                     records.push(Record::new(&splat, A::new(layer, &splat, surfels)));
                 });
                 shade(records, surfels, scene.material.color, &shader);

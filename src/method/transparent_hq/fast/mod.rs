@@ -38,24 +38,24 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     let beside = normals.zip(grid.cut(&mut weight, job.exec));
     let jobs = target.cut(&grid, job.exec).into_iter().zip(beside).collect();
     let times = job.exec.ordered(jobs, |(mut pixels, (mut normal, mut weight))| {
-        let (mut layers, mut blocks) = (Vec::new(), nearest.tile());
         let start = Instant::now();
-        splats.gather(pixels.depth.index, pixels.depth.rect, &mut layers, &mut blocks);
-        if blocks.splats.is_empty() {
+        let mut gathered = splats.gather(pixels.depth.index, pixels.depth.rect);
+        if gathered.nearest.splats.is_empty() {
             // Where there is no nearest layer nothing is seen.
             pixels.clear(0.0);
             clear_plane(&mut normal, [0.0; 3]);
             clear_plane(&mut weight, 0.0);
             return [start.elapsed(), Duration::ZERO, Duration::ZERO, Duration::ZERO];
         }
-        let mut images = nearest.geometry(&blocks);
+        let mut images = nearest.geometry(&gathered);
         let drawn = Instant::now();
-        let fronts = nearest.resolve(&mut blocks, &mut images);
+        let fronts = nearest.resolve(&mut gathered.nearest, &mut images);
         let resolved = Instant::now();
+        let (layers, blocks) = (&gathered.layers, &gathered.nearest);
         let band = |block: usize| Nearest(blocks.blocks[block].least);
-        let others = splats.blending.averages::<true>(&layers, &blocks.grid, band);
+        let others = splats.blending.averages::<true>(layers, &blocks.grid, band);
         let blended = Instant::now();
-        let shown = compositing(&through, &blocks, &fronts, &others);
+        let shown = compositing(&through, blocks, &fronts, &others);
         pixels.store(&shown, |layers| layers);
         store_plane(&blocks.blocks, &mut normal, |block, i| components(&block.normal, i));
         store_plane(&blocks.blocks, &mut weight, |block, i| block.weight[i]);

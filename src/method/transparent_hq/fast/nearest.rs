@@ -1,5 +1,6 @@
 //! Pass 1: the fast path of the single pass, with opacities, and the shading of what it leaves.
 
+use super::projection::Gathered;
 use crate::composite::bins::DepthBins;
 use crate::composite::sum;
 use crate::error::Result;
@@ -11,14 +12,15 @@ use crate::method::transparent_hq::Settings;
 use crate::method::transparent_hq::nearest::single_pass as of;
 use crate::number::Real;
 use crate::number::lanes::{LANES, Lanes, vectorized};
-use crate::scene::{Groups, Scene};
+use crate::scene::Scene;
 use crate::shade::phong::Shader;
 use crate::splat::{Shared, View};
 
 /// What the nearest layer is drawn with.
 pub(super) struct FastNearest<'a> {
     scene: &'a Scene,
-    groups: &'a Groups,
+    /// How many groups there are.
+    groups: usize,
     shared: Shared<f32>,
     epsilon: f32,
     /// The bins of the Voronoi depth test; none for the plain one.
@@ -41,7 +43,8 @@ impl<'a> FastNearest<'a> {
     pub(super) fn new(job: &Job<'a>, settings: &Settings) -> Result<Self> {
         let (scene, settings) = (job.scene, of(settings));
         let single_pass::Settings { splats, .. } = settings;
-        let (groups, bins) = (job.index.groups()?, settings.bins(&scene.surfels, job.camera)?);
+        let (groups, bins) =
+            (job.index.groups()?.len(), settings.bins(&scene.surfels, job.camera)?);
         let view = View::new(job.camera);
         let shared = Shared::new(&view, &splats.kernel);
         let epsilon = splats.epsilon.resolve(&scene.surfels);
@@ -49,16 +52,11 @@ impl<'a> FastNearest<'a> {
         Ok(Self { scene, groups, shared, epsilon, bins, shader })
     }
 
-    /// A tile that uses memory again.
-    pub(super) fn tile(&self) -> Tile {
-        Tile::new([true, self.scene.surfels.color().is_some()])
-    }
-
     /// The geometry pass over a tile that has splats.
-    pub(super) fn geometry(&self, tile: &Tile) -> GroupImages {
-        let (surfels, shared) = (&self.scene.surfels, &self.shared);
-        let opacity = |surfel: u32| surfels.opacity().map_or(1.0, |all| all[surfel as usize]);
-        let mut images = GroupImages::new(tile, self.groups, shared.empty(), Some(opacity));
+    pub(super) fn geometry(&self, gathered: &Gathered) -> GroupImages {
+        let Gathered { nearest: tile, groups, opacities, .. } = gathered;
+        let (shared, groups) = (&self.shared, (groups.as_slice(), self.groups));
+        let mut images = GroupImages::new(tile, groups, shared.empty(), Some(opacities));
         images.draw(tile, shared, self.bins.as_ref());
         images
     }

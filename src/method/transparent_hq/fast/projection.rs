@@ -7,59 +7,83 @@ use crate::method::algorithm::Job;
 use crate::method::fast::prepare;
 use crate::method::fast::tile::{Record, Tile};
 use crate::method::prepare::Prepared;
-use crate::method::transparent::fast::{FastBlending, LayerOfSurface};
+use crate::method::transparent::fast::{FastBlending, Layer, LayerOfSurface};
 use crate::method::transparent_hq::Settings;
+use crate::scene::{Groups, Surfels};
 use crate::splat::Tally;
 
 /// The splats of a picture, projected and sorted into tiles.
-pub(super) struct Splats {
+pub(super) struct Splats<'a> {
+    surfels: &'a Surfels,
+    groups: &'a Groups,
     /// Those of the other layers.
     pub(super) blending: FastBlending<LayerOfSurface>,
     /// Those of the nearest layer, where groups enlarge their surfels; else they are the others.
-    own: Option<Prepared<f32, Record>>,
+    nearest: Option<Prepared<f32, Record>>,
 }
 
-impl Splats {
+/// The splats of a tile.
+pub(super) struct Gathered {
+    /// Those of the other layers, from back to front.
+    pub(super) layers: Vec<Record<LayerOfSurface>>,
+    /// Those of the nearest layer in ascending order, and the empty blocks of the tile.
+    pub(super) nearest: Tile,
+    /// Of each of the nearest layer its own group.
+    pub(super) groups: Vec<u8>,
+    /// Of each of the nearest layer its opacity.
+    pub(super) opacities: Vec<f32>,
+}
+
+impl<'a> Splats<'a> {
     /// Projection: of every surfel once, or once more for each scale of its groups.
-    pub(super) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
+    pub(super) fn project(job: &Job<'a>, settings: &Settings) -> Result<Self> {
         let keep_radii = job.index.members()?.keep_radii();
-        let own = (!keep_radii).then(|| prepare(job, &settings.layers.splats));
+        let nearest = (!keep_radii).then(|| prepare(job, &settings.layers.splats));
         // As the nearest layer has it: once, whatever groups it is in.
         let once = |_: Set| 1;
-        Ok(Self { blending: FastBlending::project(job, &settings.layers, once)?, own })
+        let blending = FastBlending::project(job, &settings.layers, once)?;
+        Ok(Self { surfels: &job.scene.surfels, groups: job.index.groups()?, blending, nearest })
     }
 
     /// What became of the surfels as the nearest layer draws them.
     pub(super) fn tally(&self) -> Tally {
-        self.own.as_ref().map_or(self.blending.tally(), |own| own.tally)
+        self.nearest.as_ref().map_or(self.blending.tally(), |nearest| nearest.tally)
     }
 
-    /// The splats of a tile: of the other layers from back to front, and, in the tile, of the nearest
-    /// layer in ascending order.
-    pub(super) fn gather(
-        &self,
-        index: usize,
-        rect: Rect,
-        layers: &mut Vec<Record<LayerOfSurface>>,
-        tile: &mut Tile,
-    ) {
-        self.blending.prepared.gather_f32(index, &rect, layers);
-        tile.splats.clear();
-        match &self.own {
-            Some(own) => own.gather_f32(index, &rect, &mut tile.splats),
-            None => tile.splats.extend(ascending(layers)),
+    /// The splats of a tile of these pixels.
+    pub(super) fn gather(&self, index: usize, rect: Rect) -> Gathered {
+        let surfels = self.surfels;
+        let mut layers = Vec::new();
+        self.blending.prepared.gather_f32(index, &rect, &mut layers);
+        let mut nearest = Tile::new([true, surfels.color().is_some()]);
+        let (mut groups, mut opacities) = (Vec::new(), Vec::new());
+        if let Some(alone) = &self.nearest {
+            alone.gather_f32(index, &rect, &mut nearest.splats);
+            let places = || nearest.splats.iter().map(|splat| splat.surfel as usize);
+            groups.extend(places().map(|i| self.groups.own()[i]));
+            opacities.extend(places().map(|i| surfels.opacity().map_or(1.0, |all| all[i])));
+        } else {
+            // A layer has its group and its opacity with it: fetching them from the scene took a tenth
+            // of a frame.
+            let count = layers.len();
+            nearest.splats.reserve(count);
+            (groups, opacities) = (Vec::with_capacity(count), Vec::with_capacity(count));
+            for splat in ascending(&layers) {
+                let Layer { own, alpha, .. } = *splat.attributes.as_ref();
+                nearest.splats.push(LayerOfSurface::surface(splat));
+                groups.push(own);
+                opacities.push(alpha);
+            }
         }
-        tile.empty(rect, self.blending.prepared.shared.empty());
+        nearest.empty(rect, self.blending.prepared.shared.empty());
+        Gathered { layers, nearest, groups, opacities }
     }
 }
 
 /// Splats of different surfels in ascending order.
-fn ascending(layers: &[Record<LayerOfSurface>]) -> impl Iterator<Item = Record> {
+fn ascending(layers: &[Record<LayerOfSurface>]) -> impl Iterator<Item = &Record<LayerOfSurface>> {
     let mut order: Vec<_> =
         (0_u64..).zip(layers).map(|(i, l)| u64::from(l.surfel) << 32 | i).collect();
     order.sort_unstable();
-    order.into_iter().map(|key| {
-        let Record { footprint, surfel, bounds, attributes } = layers[key as u32 as usize];
-        Record { footprint, surfel, bounds, attributes: attributes.surface }
-    })
+    order.into_iter().map(|key| &layers[key as u32 as usize])
 }
