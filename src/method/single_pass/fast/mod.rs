@@ -18,6 +18,7 @@ use super::Settings;
 use crate::error::Result;
 use crate::frame::Framebuffer;
 use crate::method::algorithm::Job;
+use crate::method::fast::groups::own;
 use crate::method::fast::{draw, prepare};
 use crate::method::picture::{Clock, Laps};
 use crate::splat::Tally;
@@ -50,8 +51,7 @@ pub(super) fn render(
     clock.lap("projection");
     let shared = &prepared.shared;
     let passes = draw::<2>(job, &prepared, target, |tile, watch| {
-        // A loop of its own: the groups are far away, and a short loop waits for many at once.
-        let own: Vec<u8> = tile.splats.iter().map(|s| groups.own()[s.surfel as usize]).collect();
+        let own = own(&tile.splats, groups);
         let mut images = GroupImages::new(tile, (&own, groups.len()), shared.empty(), None);
         images.draw(tile, shared, bins.as_ref());
         watch.lap(0);

@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::frame::Rect;
 use crate::index::members::Set;
 use crate::method::algorithm::Job;
+use crate::method::fast::groups::own;
 use crate::method::fast::prepare;
 use crate::method::fast::tile::{Record, Tile};
 use crate::method::prepare::Prepared;
@@ -56,25 +57,22 @@ impl<'a> Splats<'a> {
         let mut layers = Vec::new();
         self.blending.prepared.gather_f32(index, &rect, &mut layers);
         let mut nearest = Tile::new([true, surfels.color().is_some()]);
-        let (mut groups, mut opacities) = (Vec::new(), Vec::new());
-        if let Some(alone) = &self.nearest {
+        let (groups, opacities) = if let Some(alone) = &self.nearest {
             alone.gather_f32(index, &rect, &mut nearest.splats);
-            let places = || nearest.splats.iter().map(|splat| splat.surfel as usize);
-            groups.extend(places().map(|i| self.groups.own()[i]));
-            opacities.extend(places().map(|i| surfels.opacity().map_or(1.0, |all| all[i])));
+            let opacity = |i: usize| surfels.opacity().map_or(1.0, |all| all[i]);
+            let opacities = nearest.splats.iter().map(|splat| opacity(splat.surfel as usize));
+            (own(&nearest.splats, self.groups), opacities.collect())
         } else {
-            // A layer has its group and its opacity with it: fetching them from the scene took a tenth
-            // of a frame.
-            let count = layers.len();
-            nearest.splats.reserve(count);
-            (groups, opacities) = (Vec::with_capacity(count), Vec::with_capacity(count));
-            for splat in ascending(&layers) {
-                let Layer { own, alpha, .. } = *splat.attributes.as_ref();
+            // A layer has its group and its opacity with it: of two million surfels, fetching them from
+            // the scene took a tenth of a frame and more.
+            nearest.splats.reserve(layers.len());
+            let beside = ascending(&layers).map(|splat| {
                 nearest.splats.push(LayerOfSurface::surface(splat));
-                groups.push(own);
-                opacities.push(alpha);
-            }
-        }
+                let Layer { own, alpha, .. } = *splat.attributes.as_ref();
+                (own, alpha)
+            });
+            beside.unzip()
+        };
         nearest.empty(rect, self.blending.prepared.shared.empty());
         Gathered { layers, nearest, groups, opacities }
     }
