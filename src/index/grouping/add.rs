@@ -129,8 +129,7 @@ impl Members<'_> {
     ) -> Vec<u32> {
         let Overlaps { exec, .. } = *self.overlaps;
         let first = batch.start;
-        let state = |group| self.added(group as u8, |place| covered(place, group - first));
-        let states: Vec<_> = batch.map(state).collect();
+        let states = self.added(batch, covered);
         let mut members = Vec::new();
         exec.extend(&mut members, self.own.len(), |place| {
             (0..).zip(&states).fold(self.own(first, place), |members, (set, state)| {
@@ -148,31 +147,54 @@ const OUT: u8 = 0;
 const ADDED: u8 = 128;
 
 impl Members<'_> {
-    /// The state of each place, all decided, of a group: those from [`ADDED`] on are added to it.
-    /// `covered` is what it covers of each to begin with.
+    /// Whether a surfel of which these samples are covered is not added.
+    #[inline(always)]
+    fn is_too_big(&self, covered: u64) -> bool {
+        covered.count_ones() as f32 / SAMPLES as f32 > self.most
+    }
+
+    /// For each group of a batch the state of each place, if nothing is added yet (the paper's step 1).
+    fn undecided(
+        &self,
+        batch: Range<usize>,
+        covered: impl Fn(usize, usize) -> u64 + Sync + Send,
+    ) -> Vec<Vec<AtomicU8>> {
+        let state = |group: usize| {
+            let mut state = Vec::new();
+            self.overlaps.exec.extend(&mut state, self.own.len(), |place| {
+                let covered = covered(place, group - batch.start);
+                let out = usize::from(self.own[place]) == group || self.is_too_big(covered);
+                AtomicU8::new(if out { OUT } else { covered.count_ones() as u8 + 1 })
+            });
+            state
+        };
+        batch.clone().map(state).collect()
+    }
+
+    /// For each group of a batch the state of each place, all decided: those from [`ADDED`] on are added
+    /// to it. `covered` is what it covers of each to begin with.
     ///
     /// The paper's queue needs no queue. A surfel is taken out at the priority p; if it has grown
     /// since, it goes back with a larger one. All others were at p or below and have not been
     /// looked at since: it is the first again, nothing has changed, and step 2b adds it. So each
     /// surfel is decided when its turn comes, in the order of the priorities that step 1 gave.
-    fn added(&self, group: u8, covered: impl Fn(usize) -> u64 + Sync + Send) -> Vec<AtomicU8> {
+    fn added(
+        &self,
+        batch: Range<usize>,
+        covered: impl Fn(usize, usize) -> u64 + Sync + Send,
+    ) -> Vec<Vec<AtomicU8>> {
         let &Overlaps { tree, graph, exec } = self.overlaps;
-        let too_big = |covered: u64| covered.count_ones() as f32 / SAMPLES as f32 > self.most;
+        let states = self.undecided(batch.clone(), &covered);
         let is_open = |state: u8| state != OUT && state < ADDED;
-        let begin = |place: usize| {
-            let out = self.own[place] == group || too_big(covered(place));
-            AtomicU8::new(if out { OUT } else { covered(place).count_ones() as u8 + 1 })
-        };
-        let mut state = Vec::new();
-        exec.extend(&mut state, self.own.len(), begin);
-        settle(self.own.len(), exec, &|_, _| (), |open| {
+        settle(self.own.len(), batch.len(), exec, &|_, _| (), |set, open| {
+            let state = &states[set];
             let place = open.place;
             let own = state[place].load(Relaxed);
             if !is_open(own) {
                 return None;
             }
             if open.asked == 0 {
-                open.mask = covered(place);
+                open.mask = covered(place, set);
             }
             let (row, mut samples) = (graph.of(place), None);
             loop {
@@ -188,7 +210,7 @@ impl Members<'_> {
                 while let Some(other) = open.first_of(open.decided, &row) {
                     let samples = samples.get_or_insert_with(|| tree.samples(place));
                     open.mask |= covered_by(samples, &tree.discs[other]);
-                    if too_big(open.mask) {
+                    if self.is_too_big(open.mask) {
                         state[place].store(OUT, Relaxed);
                         return None;
                     }
@@ -211,6 +233,6 @@ impl Members<'_> {
             state[place].store(ADDED | own, Relaxed);
             None
         });
-        state
+        states
     }
 }

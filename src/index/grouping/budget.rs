@@ -123,8 +123,8 @@ vectorized!(
         let enough = most / each_for;
         let (mut room, mut seen) = (NearBlocks::default(), 0);
         for place in blocks.flatten() {
-            tree.near(place, factor, &mut room, |_| {
-                seen += 1;
+            tree.near(place, factor, &mut room, |_, so_many| {
+                seen += so_many as u64;
                 seen < enough
             });
             if seen >= enough {

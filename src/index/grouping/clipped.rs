@@ -115,10 +115,12 @@ vectorized!(
         let (mut room, mut seen) = (NearBlocks::default(), 0);
         for i in places {
             let (mut mask, samples) = (0, DiscSamples::of(disc(i), tree.surfel[i]));
-            tree.near(i, scale, &mut room, |j| {
-                seen += 1;
-                if tree.surfel[j] < tree.surfel[i] {
-                    mask |= samples.covered_by(&disc(j));
+            tree.near(i, scale, &mut room, |near, so_many| {
+                seen += so_many as u64;
+                for &j in &near[..so_many] {
+                    if tree.surfel[j as usize] < tree.surfel[i] {
+                        mask |= samples.covered_by(&disc(j as usize));
+                    }
                 }
                 mask != u64::MAX
             });

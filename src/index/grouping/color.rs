@@ -196,7 +196,7 @@ fn largest_first(
     exec.extend(&mut color, n, |_| AtomicU32::new(NONE));
     let color_of = |place: usize| color[place].load(Relaxed);
     let too_many = AtomicBool::new(false);
-    settle(n, exec, progress, |open| {
+    settle(n, 1, exec, progress, |_, open| {
         let place = open.place;
         if color_of(place) != NONE || too_many.load(Relaxed) {
             return None;

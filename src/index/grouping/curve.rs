@@ -1,6 +1,7 @@
 //! Points along a space-filling curve, so that those near each other stand near each other.
 
 use crate::frame::Exec;
+use crate::number::Real;
 use glam::{DVec3, Vec3};
 
 /// Cells along the widest axis: as many as three axes leave bits in 64.
@@ -44,7 +45,11 @@ impl Cells {
     fn around(points: impl Iterator<Item = Vec3>) -> Self {
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         for point in points {
-            (low, high) = (low.min(point), high.max(point));
+            // One instruction each; `Vec3::min` asks for NaN, too.
+            for axis in 0..3 {
+                low[axis] = low[axis].at_most(point[axis]);
+                high[axis] = high[axis].at_least(point[axis]);
+            }
         }
         let low = low.as_dvec3();
         let size = (high.as_dvec3() - low).max_element();

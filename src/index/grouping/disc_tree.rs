@@ -111,26 +111,31 @@ impl DiscTree {
     /// Visits the places j that are near a place i: `|p_i - p_j| < factor (r_i + r_j)`, as the
     /// [module](super) evaluates it.
     ///
-    /// Those j first that are close by in the order of the tree, until a visit returns false.
-    /// `room` is memory that is used again.
+    /// A visit gets a few places at once, of which so many are meant. Those come first that are close
+    /// by in the order of the tree, until a visit returns false. `room` is memory that is used again.
     #[inline(always)]
     pub(super) fn near(
         &self,
         i: usize,
         factor: f64,
         room: &mut NearBlocks,
-        mut visit: impl FnMut(usize) -> bool,
+        mut visit: impl FnMut([u32; BYTE], usize) -> bool,
     ) {
         self.search(i / DISCS, factor, room);
         let own = self.blocks[i / DISCS].disc(i % DISCS);
-        for (boxes, blocks) in room.boxes.iter().zip(room.found.chunks(DISCS)) {
-            for other in lanes_of(boxes.near(own, factor)) {
-                let other = blocks[other] as usize;
-                for lane in lanes_of(self.blocks[other].near(own, factor)) {
-                    let j = other * DISCS + lane;
-                    if j != i && !visit(j) {
-                        return;
-                    }
+        for (at, boxes) in room.boxes.iter().enumerate() {
+            let mut left = set_of(&boxes.near(own, factor));
+            while left != 0 {
+                let block = room.found[at * DISCS + left.trailing_zeros() as usize] as usize;
+                left &= left - 1;
+                let near = set_of(&self.blocks[block].near(own, factor));
+                let others = near & !(u32::from(block == i / DISCS) << (i % DISCS));
+                let first = (block * DISCS) as u32;
+                let [low, high] = [others & 0xFF, others >> BYTE];
+                if !visit(members(first, low), low.count_ones() as usize)
+                    || !visit(members(first + BYTE as u32, high), high.count_ones() as usize)
+                {
+                    return;
                 }
             }
         }
@@ -185,16 +190,46 @@ pub(super) struct NearBlocks {
     of: Option<(usize, f64)>,
 }
 
-/// The lanes that have a 1, in ascending order.
+/// Lanes of which one byte tells which are in a set.
+const BYTE: usize = 8;
+
+/// The members of each set of lanes, in ascending order; how many there are is for who asks.
+static MEMBERS: [[u8; BYTE]; 1 << BYTE] = {
+    let mut members = [[0; BYTE]; 1 << BYTE];
+    let mut set = 0;
+    while set < members.len() {
+        let (mut lane, mut count) = (0, 0);
+        while lane < BYTE {
+            if set >> lane & 1 == 1 {
+                members[set][count] = lane as u8;
+                count += 1;
+            }
+            lane += 1;
+        }
+        set += 1;
+    }
+    members
+};
+
+/// The places of a set of a byte of lanes, the first of which is at a place.
 #[inline(always)]
-fn lanes_of(flags: [u8; DISCS]) -> impl Iterator<Item = usize> {
-    let mut left = u128::from_le_bytes(flags);
-    std::iter::from_fn(move || {
-        let lane = left.trailing_zeros() as usize / 8;
-        let any = left != 0;
-        left &= left.wrapping_sub(1);
-        any.then_some(lane)
-    })
+fn members(first: u32, set: u32) -> [u32; BYTE] {
+    let (members, mut places) = (&MEMBERS[set as usize], [0; BYTE]);
+    for k in 0..BYTE {
+        places[k] = first + u32::from(members[k]);
+    }
+    places
+}
+
+/// The set of the lanes that have a 1: bit l is lane l.
+#[inline(always)]
+fn set_of(flags: &[u8; DISCS]) -> u32 {
+    // The sum of 2^(56 - 7 l): the 1 of byte l comes to bit 56 + l.
+    const GATHER: u64 = 0x0102_0408_1020_4080;
+    let all = u128::from_le_bytes(*flags);
+    let low = (all as u64).wrapping_mul(GATHER) >> 56;
+    let high = ((all >> 64) as u64).wrapping_mul(GATHER) >> 56;
+    (low | high << BYTE) as u32
 }
 
 /// Boxes side by side; what is left of the last ones is NaN, which is near nothing.

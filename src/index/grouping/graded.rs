@@ -70,12 +70,9 @@ vectorized!(
             for others in rows.row(row).all.chunks(DISCS) {
                 let block = DiscBlock::of(others.iter().map(|&j| &tree.discs[j as usize]));
                 let steps = steps_of(&block, tree.discs[i].place());
-                least.extend(
-                    others
-                        .iter()
-                        .zip(steps)
-                        .map(|(&j, step)| if away(i, j as usize) { NEVER } else { step as u8 }),
-                );
+                for (lane, &j) in others.iter().enumerate() {
+                    least.push(if away(i, j as usize) { NEVER } else { steps[lane] as u8 });
+                }
             }
         }
         least
@@ -88,17 +85,20 @@ vectorized!(
 /// Two discs are near by a multiple well above |d| / (r + r'), and are not by one well below.
 /// Rounding cannot move that border by half a multiple: only the multiple closest to it is asked.
 #[inline(always)]
-fn steps_of(block: &DiscBlock, one: (DVec3, f64)) -> [i32; DISCS] {
+fn steps_of(block: &DiscBlock, one: (DVec3, f64)) -> [u32; DISCS] {
+    // Added to a number from 0 to 64 and taken away again, it leaves the whole number closest to that,
+    // which the lower bits of the sum hold. (A conversion that saturates is not made in lanes.)
+    const WHOLE: f64 = 1.5 * (1_u64 << 52) as f64;
     let mut least = [0; DISCS];
     for (lane, least) in least.iter_mut().enumerate() {
         let other = block.disc(lane);
         let d = one.0 - other.0;
         let border = f64::from(STEPS) * (dot(d, d).sqrt() / (one.1 + other.1));
-        let closest =
-            if border < f64::from(STEPS) { (border + 0.5) as i32 } else { i32::from(STEPS) };
-        let is_near = are_near(one, other, f64::from(closest) / f64::from(STEPS));
-        let step = closest + i32::from(!is_near);
-        *least = if step > i32::from(STEPS) { i32::from(NEVER) } else { step };
+        let border = if border < f64::from(STEPS) { border } else { f64::from(STEPS) };
+        let closest = border + WHOLE;
+        let is_near = are_near(one, other, (closest - WHOLE) / f64::from(STEPS));
+        let step = closest.to_bits() as u32 + u32::from(!is_near);
+        *least = if step > u32::from(STEPS) { u32::from(NEVER) } else { step };
     }
     least
 }

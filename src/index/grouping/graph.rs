@@ -49,22 +49,40 @@ vectorized!(
         let mut rows = Rows::with_capacity(places.len());
         let (mut room, mut found, mut seen) = (NearBlocks::default(), Vec::new(), 0);
         for i in places {
-            tree.near(i, factor, &mut room, |j| {
-                seen += 1;
-                if keep(i, j) {
-                    found.push(j as u32);
+            let mut count = 0;
+            tree.near(i, factor, &mut room, |near, so_many| {
+                // All are written, and those that are not meant are written over.
+                if found.len() < count + near.len() {
+                    found.resize(2 * (count + near.len()), 0);
                 }
+                if let Some(free) = found[count..].first_chunk_mut() {
+                    *free = near;
+                }
+                count += so_many;
                 true
             });
+            seen += count as u64;
             budget.spend_many(&mut seen)?;
-            rows.push(&found, |j| tree.surfel[j as usize] < tree.surfel[i]);
-            found.clear();
+            let kept = kept(&mut found[..count], |j| keep(i, j as usize));
+            rows.push(kept, |j| tree.surfel[j as usize] < tree.surfel[i]);
             budget.fits(rows.len())?;
         }
         budget.spend(seen)?;
         Ok(rows)
     }
 );
+
+/// Those of a list that are kept, moved to where it starts.
+#[inline(always)]
+fn kept(list: &mut [u32], keep: impl Fn(u32) -> bool) -> &[u32] {
+    let Some(mut count) = list.iter().position(|&one| !keep(one)) else { return list };
+    for at in count + 1..list.len() {
+        let one = list[at];
+        list[count] = one;
+        count += usize::from(keep(one));
+    }
+    &list[..count]
+}
 
 impl Rows {
     fn with_capacity(places: usize) -> Self {
@@ -230,14 +248,13 @@ pub(super) fn relaxed(
     i: usize,
     j: usize,
 ) -> bool {
-    if !rules.opposite && rules.coplanar.is_none() {
-        return false;
-    }
+    let is_opposite = || tree.discs[i].cosine(&tree.discs[j]) < 0.0;
+    (rules.opposite && is_opposite())
+        || rules.coplanar.as_ref().is_some_and(|rule| are_coplanar(surfels, tree, rule, i, j))
+}
+
+fn are_coplanar(surfels: &Surfels, tree: &DiscTree, rule: &Coplanar, i: usize, j: usize) -> bool {
     let cosine = tree.discs[i].cosine(&tree.discs[j]);
-    if rules.opposite && cosine < 0.0 {
-        return true;
-    }
-    let Some(rule) = &rules.coplanar else { return false };
     let [i, j] = [i, j].map(|place| tree.surfel[place] as usize);
     cosine >= f64::from(rule.cosine)
         && within_planes(surfels, rule, i, j)

@@ -41,24 +41,29 @@ impl Open {
     }
 }
 
-/// Decides all of `count` places.
+/// Decides all of `count` places, as often as there are `questions`, which have nothing to do with each
+/// other.
 ///
-/// `step` goes on with a place; it ends with the place decided, or with a neighbour that is open
-/// and that must be decided before.
+/// `step` goes on with a place and a question; it ends with the place decided, or with a neighbour that
+/// is open and that must be decided before.
 pub(super) fn settle(
     count: usize,
+    questions: usize,
     exec: &Exec,
     progress: &dyn Fn(u64, u64),
-    step: impl Fn(&mut Open) -> Option<usize> + Sync + Send,
+    step: impl Fn(usize, &mut Open) -> Option<usize> + Sync + Send,
 ) {
     let job = |places: Range<usize>| {
         let mut waiting = Vec::new();
-        for place in places {
-            waiting.push(Open::new(place));
-            while let Some(last) = waiting.last_mut() {
-                match step(last) {
-                    Some(place) => waiting.push(Open::new(place)),
-                    None => drop(waiting.pop()),
+        // All questions of these places before other places: their rows are at hand.
+        for question in 0..questions {
+            for place in places.clone() {
+                waiting.push(Open::new(place));
+                while let Some(last) = waiting.last_mut() {
+                    match step(question, last) {
+                        Some(place) => waiting.push(Open::new(place)),
+                        None => drop(waiting.pop()),
+                    }
                 }
             }
         }
