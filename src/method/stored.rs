@@ -129,24 +129,28 @@ impl Formats {
             } else {
                 self.buffers
             };
-            let each = |values: &mut [f32], store: &dyn Fn(f64) -> f64| {
-                values.iter_mut().for_each(|v| *v = store(f64::from(*v)) as f32 + 0.0);
-            };
             match samples {
                 Samples::Scalar(plane) if name == "Z" || name.ends_with(".Z") => {
-                    each(plane.values_mut(), &|t| range.store(t, self.depth));
+                    store_each(plane.values_mut(), |t| range.store(t, self.depth));
                 }
                 Samples::Scalar(_) if name == "margin" || name.ends_with(".voronoi") => {}
-                Samples::Scalar(plane) => each(plane.values_mut(), &|v| buffers.number(v)),
+                Samples::Scalar(plane) => store_each(plane.values_mut(), |v| buffers.number(v)),
                 Samples::Color(plane) => {
-                    each(plane.values_mut().as_flattened_mut(), &|v| buffers.number(v));
+                    store_each(plane.values_mut().as_flattened_mut(), |v| buffers.number(v));
                 }
                 Samples::Vector(plane) => {
-                    each(plane.values_mut().as_flattened_mut(), &|v| buffers.signed(v));
+                    store_each(plane.values_mut().as_flattened_mut(), |v| buffers.signed(v));
                 }
                 Samples::Index(_) | Samples::Count(_) => {}
             }
         }
+    }
+}
+
+/// Each value as it is stored.
+fn store_each(values: &mut [f32], store: impl Fn(f64) -> f64) {
+    for value in values {
+        *value = store(f64::from(*value)) as f32 + 0.0;
     }
 }
 

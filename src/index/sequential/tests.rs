@@ -364,23 +364,3 @@ fn of_nothing_it_is_the_empty_list() {
     let (nodes, tree) = built(&Surfels::none());
     assert!(nodes.is_empty() && tree.prefix(0.0, 1.0) == 0);
 }
-
-#[test]
-#[ignore = "a measurement: prints the time and the nodes of a million surfels"]
-#[allow(clippy::print_stdout, reason = "what it is for")]
-fn a_million_surfels() {
-    let surfels = sampled(1_000_000, true);
-    for threads in [1, 0] {
-        let exec = Exec::new(threads, 32).unwrap();
-        let start = std::time::Instant::now();
-        let (nodes, tree) = Sequential::new(&surfels, &exec).unwrap();
-        println!("{} threads: {:?}, {} nodes", exec.threads(), start.elapsed(), tree.near().len());
-        for away in [2.0, 4.0, 16.0, 64.0] {
-            let distances = distances(&nodes, DVec3::new(0.0, 0.0, away));
-            let all = distances.iter().enumerate();
-            let taken = all.filter(|&(i, &r)| tree.holds(i, r, 500.0)).count();
-            let (prefix, cut) = (tree.prefix(away - 1.0, 500.0), drawn(&tree, away, 500.0));
-            println!("at {away}: prefix {prefix}, drawn {taken}, cut {cut}");
-        }
-    }
-}
