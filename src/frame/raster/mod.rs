@@ -79,8 +79,10 @@ impl Snap {
     pub fn fixed<R: Exact>(&self, x: R) -> i64 {
         let guard = R::from_f32(GUARD_BAND as f32);
         let scaled = x.at_least(-guard).at_most(guard) * R::from_f32(self.scale() as f32);
-        let below = scaled.floor();
-        below.to_i64() + i64::from(scaled - below >= R::from_f32(0.5))
+        // The floor by way of integers, exact here; as an operation it is a call where processors may lack it.
+        let whole = scaled.to_i64();
+        let below = whole - i64::from(R::from_i64(whole) > scaled);
+        below + i64::from(scaled - R::from_i64(below) >= R::from_f32(0.5))
     }
 
     /// A point held in the guard band, which [`Snap::fixed`] never leaves.

@@ -79,7 +79,8 @@ impl Triangle {
             return None;
         }
         let sense = cross.signum();
-        let edges = [[b, c], [c, a], [a, b]].map(|[q, r]| Edge::new(snap, q, r, sense));
+        let edge = |q, r| Edge::new(snap, q, r, sense);
+        let edges = [edge(b, c), edge(c, a), edge(a, b)];
         let bounds = Self::around(snap, [a, b, c]);
         Some(Self { edges, area: 2 * cross.abs(), front: cross < 0, bounds })
     }

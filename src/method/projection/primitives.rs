@@ -100,7 +100,11 @@ pub(super) fn corners<R: Real, const N: usize>(
     index: usize,
 ) -> [Vector3<R>; N] {
     let position = &of.vertices().position;
-    of.corners()[index].map(|i| points.view.point(Vector3::from_glam(position[i as usize])))
+    let mut corners = [Vector3::ZERO; N];
+    for (corner, &i) in corners.iter_mut().zip(&of.corners()[index]) {
+        *corner = points.view.point(Vector3::from_glam(position[i as usize]));
+    }
+    corners
 }
 
 /// A corner of a piece: its place in fixed point, and m.
@@ -117,13 +121,13 @@ fn triangle<R: Exact>(
     mut draw: impl FnMut(Piece<R>),
 ) {
     let p = corners(of, &projector.points, index);
-    let polygon: Vec<Clipped<R, 3>> = projector.clip.triangle(p);
-    for i in 2..polygon.len() {
-        let fan = [&polygon[0], &polygon[i - 1], &polygon[i]];
-        let ends = fan.map(|corner| placed(projector, corner.position));
-        let weights = fan.map(|corner| corner.weights);
-        triangle_piece(projector, (id, index), ends, weights, p).into_iter().for_each(&mut draw);
-    }
+    projector.clip.fan(p, |[a, b, c]| {
+        let end = |corner: &Clipped<R, 3>| placed(projector, corner.position);
+        let (ends, weights) = ([end(a), end(b), end(c)], [a.weights, b.weights, c.weights]);
+        if let Some(piece) = triangle_piece(projector, (id, index), ends, weights, p) {
+            draw(piece);
+        }
+    });
 }
 
 /// The piece of a triangle whose corners are snapped, each with its m, if it may be seen.
@@ -134,9 +138,15 @@ pub(super) fn triangle_piece<R: Real>(
     weights: [[R; 3]; 3],
     p: [Vector3<R>; 3],
 ) -> Option<Piece<R>> {
-    let raster = Triangle::new(&projector.snap, ends.map(|(place, _)| place))?;
-    let [width, height] = projector.size;
-    let bounds = raster.bounds(width, height);
+    let places = [ends[0].0, ends[1].0, ends[2].0];
+    let [x1, y1] = projector.size;
+    let bounds = Triangle::around(&projector.snap, places);
+    let bounds = bounds.intersection(&Rect { x0: 0, y0: 0, x1, y1 });
+    // Of many triangles most have no centre of a pixel in their bounds.
+    if bounds.is_empty() {
+        return None;
+    }
+    let raster = Triangle::new(&projector.snap, places)?;
     triangle_within(projector, (id, index), (raster, bounds), ends, weights, p)
 }
 

@@ -218,6 +218,19 @@ impl<R: Exact> Clip<R> {
         if self.keeps(&corners) { polygon } else { self.polygon(polygon).unwrap_or_default() }
     }
 
+    /// Calls `draw` for each triangle of the fan around the first corner of what [`Clip::triangle`] leaves.
+    #[inline]
+    pub(crate) fn fan(&self, corners: [Vector3<R>; 3], mut draw: impl FnMut([&Clipped<R, 3>; 3])) {
+        if corners.iter().all(is_finite) && self.keeps(&corners) {
+            let [a, b, c] = &whole(corners);
+            return draw([a, b, c]);
+        }
+        let polygon = self.triangle(corners);
+        for i in 2..polygon.len() {
+            draw([&polygon[0], &polygon[i - 1], &polygon[i]]);
+        }
+    }
+
     /// What is left of a segment: its ends, in order.
     #[must_use]
     pub fn segment(&self, corners: [Vector3<R>; 2]) -> Option<[Clipped<R, 2>; 2]> {
