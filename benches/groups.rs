@@ -183,7 +183,7 @@ fn covering(name: &str, surfels: &Surfels, (count, most): (usize, f32), exec: &E
         parts.collect::<Vec<_>>().join(", ")
     };
     format!(
-        "{name} | {} | {} | {} | {most} | {:.0} % | {} | {} | {:.1} s",
+        "{name} | {} | {} | {} | {most} | {:.0} % | {} | {} | {:.2} s",
         surfels.len(),
         report.groups,
         report.overlap,
