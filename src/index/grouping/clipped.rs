@@ -116,13 +116,13 @@ vectorized!(
         for i in places {
             let (mut mask, samples) = (0, DiscSamples::of(disc(i), tree.surfel[i]));
             tree.near(i, scale, &mut room, |near, so_many| {
-                seen += so_many as u64;
-                for &j in &near[..so_many] {
+                near[..so_many].iter().all(|&j| {
+                    seen += 1;
                     if tree.surfel[j as usize] < tree.surfel[i] {
                         mask |= samples.covered_by(&disc(j as usize));
                     }
-                }
-                mask != u64::MAX
+                    mask != u64::MAX
+                })
             });
             covered.push(mask);
             budget.spend_many(&mut seen)?;

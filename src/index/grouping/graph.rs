@@ -163,12 +163,8 @@ impl Row<'_> {
     #[inline(always)]
     pub(super) fn visit_64(&self, from: usize, mut visit: impl FnMut(usize, usize, bool)) {
         let end = self.all.len().min(from + 64);
-        let (lower, above) = self.all[from..end].split_at(self.lower.clamp(from, end) - from);
-        for (number, &other) in lower.iter().enumerate() {
-            visit(number, other as usize, true);
-        }
-        for (number, &other) in above.iter().enumerate() {
-            visit(lower.len() + number, other as usize, false);
+        for (number, &other) in self.all[from..end].iter().enumerate() {
+            visit(number, other as usize, from + number < self.lower);
         }
     }
 }
