@@ -228,10 +228,12 @@ impl<'a> Session<'a> {
         let mut picture = self.define::<f32>(camera, true)?;
         for stage in self.method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
             // A level is made from the last, so that each is as it is stored after as many runs as there are.
+            // Planes without a number are made from other stages alone.
+            let has_levels = stage.leaves.iter().any(|row| row.name.contains('#'));
             loop {
                 let mut left = self.run(&job, stage.name, &picture.frame)?;
                 formats.store(stage, &mut left, &range);
-                if !picture.frame.put(left) {
+                if !(picture.frame.put(left) && has_levels) {
                     break;
                 }
             }
