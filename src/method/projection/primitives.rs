@@ -142,7 +142,7 @@ pub(super) fn triangle_piece<R: Real>(
     let [x1, y1] = projector.size;
     let bounds = Triangle::around(&projector.snap, places);
     let bounds = bounds.intersection(&Rect { x0: 0, y0: 0, x1, y1 });
-    // Of many triangles most have no centre of a pixel in their bounds.
+    // Before edges are made: small triangles often have no centre of a pixel in their bounds.
     if bounds.is_empty() {
         return None;
     }
