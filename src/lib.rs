@@ -206,6 +206,7 @@
 //! # Ok::<(), splatref::Error>(())
 //! ```
 
+#![forbid(unsafe_code)]
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 #[doc = include_str!("../docs/backends.md")]

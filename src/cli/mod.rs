@@ -25,6 +25,7 @@ mod render;
 mod report;
 mod rows;
 mod sequence;
+mod stdout;
 mod study;
 mod suite;
 mod surfels;
@@ -34,11 +35,11 @@ mod words;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
-use splatref::{Error, Result};
+use splatref::Result;
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
-use std::sync::OnceLock;
+use stdout::{printed, say};
 
 /// The ground truth for point-splatting renderers
 #[derive(Parser)]
@@ -161,28 +162,6 @@ fn usage(error: &clap::Error) -> ExitCode {
     let what = what.join(" ");
     complain(format!("{}; see --help", what.strip_prefix("error: ").unwrap_or(&what)));
     ExitCode::from(2)
-}
-
-/// The first failure of stdout.
-static STDOUT: OnceLock<io::Error> = OnceLock::new();
-
-/// A line on stdout. A full disk or a reader that has gone, such as `head`, is no reason to stop:
-/// files are still to be written. It is a failure in the end.
-fn say(text: impl Display) {
-    if let Err(error) = writeln!(io::stdout(), "{}", words::visible(&text.to_string())) {
-        let _ = STDOUT.set(error);
-    }
-}
-
-/// What is printed has arrived, or why not.
-fn printed() -> Result<()> {
-    if let Err(error) = io::stdout().flush() {
-        let _ = STDOUT.set(error);
-    }
-    match STDOUT.get() {
-        None => Ok(()),
-        Some(error) => Err(Error::Invalid(format!("standard output: {error}"))),
-    }
 }
 
 /// The line on stderr.

@@ -191,6 +191,32 @@ fn a_full_standard_output_is_a_failure() {
     }
 }
 
+/// As [`a_full_standard_output_is_a_failure`]; /dev/null in its place is none.
+#[cfg(unix)]
+#[test]
+fn a_closed_standard_output_is_a_failure() {
+    let at = TempDir::new().unwrap();
+    let ended = |arguments: &[&str], output: &str| {
+        let program = env!("CARGO_BIN_EXE_splatref");
+        let script = format!("exec \"$0\" \"$@\" {output}");
+        let mut shell = Command::new("sh");
+        shell.current_dir(at.path()).args(["-c", &script, program]).args(arguments);
+        let output = shell.output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    for arguments in [&small(&["-o", "a.exr"])[..], &["--help"], &["--version"], &["info", "a.exr"]]
+    {
+        let (code, line) = ended(arguments, ">&-");
+        assert_eq!(code, Some(1), "{arguments:?}: {line}");
+        assert!(line.starts_with("splatref: standard output: "), "{arguments:?}: {line}");
+        assert_eq!(names(at.path()), ["a.exr", "a.png"]);
+        for output in [">/dev/null", "1<>/dev/null"] {
+            let (code, line) = ended(arguments, output);
+            assert_eq!(code, Some(0), "{arguments:?} {output}: {line}");
+        }
+    }
+}
+
 #[test]
 fn broken_files_leave_nothing_behind() {
     let at = TempDir::new().unwrap();
