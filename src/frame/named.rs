@@ -183,26 +183,14 @@ impl<R> Frame<R> {
         Ok(self)
     }
 
-    /// Puts planes in the place of those of their names, or after all; whether anything is other than before.
-    pub(crate) fn put(&mut self, planes: Self) -> bool
-    where
-        R: PartialEq,
-    {
-        let mut changed = false;
+    /// Puts planes in the place of those of their names, or after all.
+    pub(crate) fn put(&mut self, planes: Self) {
         for plane in planes.planes {
             match self.planes.iter_mut().find(|own| own.name == plane.name) {
-                Some(own) if *own == plane => {}
-                Some(own) => {
-                    *own = plane;
-                    changed = true;
-                }
-                None => {
-                    self.planes.push(plane);
-                    changed = true;
-                }
+                Some(own) => *own = plane,
+                None => self.planes.push(plane),
             }
         }
-        changed
     }
 
     /// The samples of the plane called `name`.

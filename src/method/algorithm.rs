@@ -31,13 +31,21 @@ pub struct Job<'a> {
     pub(super) buffers: Buffers,
     /// What is compared where the nearest fragment wins.
     pub(super) key: DepthKey,
+    /// The one level that a stage makes, of those of [`Algorithm::levels`]; all of them if none.
+    pub(super) level: Option<usize>,
 }
 
 impl<'a> Job<'a> {
     /// A picture whose sums are stored as they are.
     #[must_use]
     pub fn new(scene: &'a Scene, index: &'a Index, camera: &'a Camera, exec: &'a Exec) -> Self {
-        Self { scene, index, camera, exec, buffers: Buffers::F32, key: DepthKey::WHOLE }
+        let (buffers, key) = (Buffers::F32, DepthKey::WHOLE);
+        Self { scene, index, camera, exec, buffers, key, level: None }
+    }
+
+    /// Of the levels of a stage those that it makes.
+    pub(super) fn only(&self, levels: Vec<usize>) -> Vec<usize> {
+        self.level.map_or(levels, |level| vec![level])
     }
 
     /// The tiles of the picture.
@@ -136,6 +144,13 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
         stage: &str,
         given: &Given<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>>;
+
+    /// The levels that a stage makes, each from the one before, in the order in which they are made; empty of a
+    /// stage that does not work level by level.
+    fn levels(&self, job: &Job<'_>, stage: &str) -> Vec<usize> {
+        let _ = (job, stage);
+        Vec::new()
+    }
 
     /// Every decision at one pixel, with its operands, in words.
     ///

@@ -2,17 +2,16 @@
 
 mod names;
 mod needs;
+mod stored;
 
 use names::Names;
 pub use needs::Making;
 
 use super::algorithm::Job;
-use super::stage::When;
-use super::stored::{DepthKey, DepthRange, Formats};
 use super::table::Memory;
 use super::{Method, Picture};
 use crate::error::{Error, Result};
-use crate::frame::{Exec, Frame, NamedPlane, Pool};
+use crate::frame::{Exec, Frame, Pool};
 use crate::index::Index;
 use crate::index::grouping::{Extended, Grouping, GroupingReport};
 use crate::index::members::Members;
@@ -203,50 +202,6 @@ impl<'a> Session<'a> {
         if let Some(names) = self.names() {
             names.name(&mut picture.frame);
         }
-        Ok(picture)
-    }
-
-    /// The picture by the definition in `f32`, as it becomes where passes leave their numbers in buffers of
-    /// these formats, see [`mod@super::stored`]; with `stages`, the planes of every stage, too. What a method
-    /// carries to the next frame is what this frame saw in `f32`.
-    ///
-    /// # Errors
-    /// As [`Session::define`].
-    pub fn stored(
-        &mut self,
-        camera: &Camera,
-        formats: Formats,
-        stages: bool,
-    ) -> Result<Picture<f32>> {
-        let range = DepthRange::new(self.scene, camera);
-        let key = DepthKey::new(formats.depth, range);
-        let job = Job { buffers: formats.buffers, key, ..self.job(camera)? };
-        if matches!(self.method, Method::Peeling(_)) {
-            // All layers are one stage, which rounds each of them itself.
-            return self.defined(&job, stages);
-        }
-        let mut picture = self.define::<f32>(camera, true)?;
-        for stage in self.method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
-            // A level is made from the last, so that each is as it is stored after as many runs as there are.
-            // Planes without a number are made from other stages alone.
-            let has_levels = stage.leaves.iter().any(|row| row.name.contains('#'));
-            loop {
-                let mut left = self.run(&job, stage.name, &picture.frame)?;
-                formats.store(stage, &mut left, &range);
-                if !(picture.frame.put(left) && has_levels) {
-                    break;
-                }
-            }
-        }
-        if !stages {
-            let is_shown = |plane: &NamedPlane<f32>| {
-                let rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
-                let row = rows.into_iter().find(|row| row.is_called(&plane.name));
-                row.is_none_or(|row| matches!(row.when, When::Always | When::Lit | When::Tubes))
-            };
-            picture.frame.planes.retain(is_shown);
-        }
-        self.index.seen.clone_from(&picture.seen);
         Ok(picture)
     }
 

@@ -7,8 +7,8 @@
 //!
 //! - [`Buffers`] rounds planes of colours, vectors and numbers but depths, indices and counts.
 //! - [`DepthBuffer`] rounds planes of depths, those called `Z` or `.Z` after another name.
-//! - A stage that reads what it leaves, level by level, runs until nothing changes, so that each level is
-//!   rounded before the next is made.
+//! - A stage that works level by level runs once for each, so that a level is rounded before the next is made
+//!   of it.
 //! - Where fragments are *tested* against a depth buffer, what the buffer holds of them is compared: of fragments whose
 //!   depths round to one the first stays. Those are the tests that a nearest fragment wins (visibility splatting, the
 //!   depth-images of [`mod@super::single_pass`], the pixels of [`mod@super::projection`], the discs of

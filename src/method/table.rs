@@ -148,6 +148,10 @@ macro_rules! methods {
                 Ok(job.frame(planes?))
             }
 
+            pub(super) fn levels(&self, job: &Job<'_>, stage: &str) -> Vec<usize> {
+                match self { $(Self::$method(settings) => settings.levels(job, stage),)* }
+            }
+
             pub(super) fn explain<R: Exact>(&self, job: &Job<'_>, at: (u32, u32)) -> Result<String> {
                 match self {
                     $(Self::$method(settings) => {

@@ -97,6 +97,10 @@ impl Algorithm for Settings {
         picture::stage(job, self, stage, given)
     }
 
+    fn levels(&self, job: &Job<'_>, stage: &str) -> Vec<usize> {
+        picture::levels(job, stage)
+    }
+
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {
         explain::explain::<R>(job, self, pixel)
     }

@@ -114,10 +114,20 @@ pub(super) fn stage<R: Exact>(
         "pull" => levels.pull(),
         "push" => levels.push(settings),
         "shading" => {
-            let target = GBuffer::of(&levels.finest()?, job.camera, levels.has, true);
+            let target = GBuffer::of(&levels.pushed(0)?, job.camera, levels.has, true);
             Ok(planes::write_picture(target.shaded(job)))
         }
         _ => Err(unknown(stage)),
+    }
+}
+
+/// The levels that a stage makes one from the other: the pull ever coarser ones, the push ever finer ones.
+pub(super) fn levels(job: &Job<'_>, stage: &str) -> Vec<usize> {
+    let last = pyramid::sizes(job.camera.width, job.camera.height).len() - 1;
+    match stage {
+        "pull" => (1..=last).collect(),
+        "push" => (0..last).rev().collect(),
+        _ => Vec::new(),
     }
 }
 
@@ -166,16 +176,18 @@ impl<'a, R: Exact> GivenLevels<'a, R> {
         if level == 0 { self.samples() } else { self.read(&PULL, level) }
     }
 
-    /// Level 0 after the push; the level of one pixel is not pushed.
-    fn finest(&self) -> Result<Plane<Cell<R>>> {
-        if self.last() > 0 { self.read(&PUSH, 0) } else { self.samples() }
+    /// A level after the push; the level of one pixel is not pushed.
+    fn pushed(&self, level: usize) -> Result<Plane<Cell<R>>> {
+        if level == self.last() { self.pulled(level) } else { self.read(&PUSH, level) }
     }
 
     /// The planes of the pull phase.
     fn pull(&self) -> Result<Vec<NamedPlane<R>>> {
-        let mut fine = self.samples()?;
+        let levels = self.job.only(levels(self.job, "pull"));
+        let Some(first) = levels.first() else { return Ok(Vec::new()) };
+        let mut fine = self.pulled(first - 1)?;
         let mut planes = Vec::new();
-        for level in 1..=self.last() {
+        for level in levels {
             let coarse = pull::pull(&fine, side(level - 1), self.job.exec);
             planes.extend(planes::write_level(&PULL, level, &coarse, self.job));
             fine = self.read_or(&PULL, level, coarse)?;
@@ -185,15 +197,17 @@ impl<'a, R: Exact> GivenLevels<'a, R> {
 
     /// The planes of the push phase.
     fn push(&self, settings: &Settings) -> Result<Vec<NamedPlane<R>>> {
-        let mut coarse = self.pulled(self.last())?;
-        let mut levels = Vec::new();
-        for level in (0..self.last()).rev() {
+        let levels = self.job.only(levels(self.job, "push"));
+        let Some(first) = levels.first() else { return Ok(Vec::new()) };
+        let mut coarse = self.pushed(first + 1)?;
+        let mut found = Vec::new();
+        for level in levels {
             let fine = self.pulled(level)?;
-            let found = push::push(&fine, &coarse, side(level), settings, self.job.exec);
-            coarse = self.read_or(&PUSH, level, found.clone())?;
-            levels.push(found);
+            let pushed = push::push(&fine, &coarse, side(level), settings, self.job.exec);
+            found.push(planes::write_level(&PUSH, level, &pushed, self.job));
+            coarse = self.read_or(&PUSH, level, pushed)?;
         }
-        levels.reverse();
-        Ok(write(&PUSH, 0, &levels, self.job))
+        found.reverse();
+        Ok(found.into_iter().flatten().collect())
     }
 }

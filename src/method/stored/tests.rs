@@ -1,5 +1,6 @@
 use super::*;
 use crate::frame::{Exec, Frame, NO_ID, Plane};
+use crate::method::algorithm::Job;
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::{Method, Session, ewa, peeling, single_pass};
 use crate::scene::{Cloud, Groups, Lens, Pose, Surfels};
@@ -229,6 +230,51 @@ fn every_plane_holds_what_its_buffer_can() {
             let other = values.iter().find(|v| half(f64::from(**v)) != f64::from(**v));
             assert_eq!(other, None, "{} {name}", method.name());
         }
+    }
+}
+
+/// Every stage, run on what is stored, all of its levels at once, leaves what is stored: no stage and no level was
+/// made of numbers that no buffer held.
+#[test]
+fn what_is_stored_was_made_of_what_is_stored() {
+    let exec = Exec::new(2, 16).unwrap();
+    let shape = Shape::Torus;
+    let camera = Camera::new(48, 40, shape.default_pose(), shape.default_lens()).unwrap();
+    let scene = Scene::lit("torus", shape.surfels(800, 0).unwrap());
+    let formats = Formats { buffers: Buffers::F16, depth: DepthBuffer::Unorm16 };
+    let range = DepthRange::new(&scene, &camera);
+    let one_by_one = |method: &Method| !matches!(method, Method::Peeling(_));
+    for method in Method::all().into_iter().filter(one_by_one) {
+        let mut session = Session::new(&scene, method, &exec).unwrap();
+        let mut frame = session.stored(&camera, formats, true).unwrap().frame;
+        session.resume(None);
+        let key = DepthKey::new(formats.depth, range);
+        for stage in session.method().stages().iter().filter(|stage| !stage.leaves.is_empty()) {
+            let run = |frame| {
+                session.with_job(&camera, |job| {
+                    let job = Job { buffers: formats.buffers, key, ..*job };
+                    session.method().stage(&job, stage.name, frame).unwrap()
+                })
+            };
+            let mut left = run(&frame);
+            formats.store(stage, &mut left, &range);
+            for plane in left.planes {
+                let stored = frame.plane(&plane.name);
+                assert!(
+                    stored == Some(&plane.samples),
+                    "{} {}",
+                    session.method().name(),
+                    plane.name
+                );
+            }
+        }
+        frame.planes.retain(|plane| session.is_shown(plane));
+        let shown = session.stored_planes(&camera, formats).unwrap();
+        let sorted = |mut frame: Frame<f32>| {
+            frame.planes.sort_by(|a, b| a.name.cmp(&b.name));
+            frame
+        };
+        assert_eq!(sorted(frame), sorted(shown), "{}", session.method().name());
     }
 }
 

@@ -85,7 +85,7 @@ pub(super) fn stage<R: Exact>(
         }
         "propagation" => propagated(job, settings, given),
         "reconstruction" => {
-            let gathered = gather(&levels(job, settings, given)?, settings, exec);
+            let gathered = gather(&given_levels(job, settings, given)?, settings, exec);
             let mut planes = planes::write_gathered(&gathered, has);
             planes.push(planes::write_id(&gathered));
             Ok(planes)
@@ -105,6 +105,12 @@ pub(super) fn stage<R: Exact>(
     }
 }
 
+/// The levels that a stage makes one from the other: the propagation ever coarser ones.
+pub(super) fn levels(job: &Job<'_>, settings: &Settings, stage: &str) -> Vec<usize> {
+    let count = if stage == "propagation" { sizes(job, settings).len() } else { 0 };
+    (1..count).collect()
+}
+
 /// The sizes of the levels 0 to the top.
 fn sizes(job: &Job<'_>, settings: &Settings) -> Vec<[u32; 2]> {
     let mut sizes = pyramid::sizes(job.camera.width, job.camera.height);
@@ -113,17 +119,27 @@ fn sizes(job: &Job<'_>, settings: &Settings) -> Vec<[u32; 2]> {
 }
 
 /// All levels as the planes have them.
-fn levels<R: Exact>(
+fn given_levels<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     given: &Given<'_, R>,
 ) -> Result<Vec<Plane<Center<R>>>> {
+    let sizes = sizes(job, settings);
+    (0..sizes.len()).map(|level| given_level(job, level, &sizes, given)).collect()
+}
+
+/// A level as the planes have it.
+fn given_level<R: Exact>(
+    job: &Job<'_>,
+    level: usize,
+    sizes: &[[u32; 2]],
+    given: &Given<'_, R>,
+) -> Result<Plane<Center<R>>> {
     let has = Has::of(job.scene);
-    let mut levels = vec![projection::planes::read(given, has)?.map(Center::new)];
-    for (level, size) in sizes(job, settings).into_iter().enumerate().skip(1) {
-        levels.push(planes::read_level(given, level, size, has)?);
+    if level == 0 {
+        return Ok(projection::planes::read(given, has)?.map(Center::new));
     }
-    Ok(levels)
+    planes::read_level(given, level, sizes[level], has)
 }
 
 /// The planes of the propagation.
@@ -132,15 +148,17 @@ fn propagated<R: Exact>(
     settings: &Settings,
     given: &Given<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
-    let has = Has::of(job.scene);
-    let mut fine = projection::planes::read(given, has)?.map(Center::new);
+    let sizes = sizes(job, settings);
+    let levels = job.only(levels(job, settings, "propagation"));
+    let Some(first) = levels.first() else { return Ok(Vec::new()) };
+    let mut fine = given_level(job, first - 1, &sizes, given)?;
     let mut planes = Vec::new();
-    for (level, size) in sizes(job, settings).into_iter().enumerate().skip(1) {
+    for level in levels {
         let reach = R::from_f32(settings.reach(level - 1));
         let coarse = propagation::coarser(&fine, reach, job.exec);
         planes.extend(planes::write_level(level, &coarse, job));
         fine = if given.has(&planes::LEVELS[0], level) {
-            planes::read_level(given, level, size, has)?
+            given_level(job, level, &sizes, given)?
         } else {
             coarse
         };

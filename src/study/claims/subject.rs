@@ -141,7 +141,7 @@ impl<'e> Subject<'e> {
             return self.reference(method, groups);
         }
         kept(&self.pictures, (method, groups.copied(), self.formats), || {
-            Ok(self.session(method, groups)?.stored(&self.camera, self.formats, false)?.frame)
+            self.session(method, groups)?.stored_planes(&self.camera, self.formats)
         })
     }
 
