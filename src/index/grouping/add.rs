@@ -1,7 +1,7 @@
 //! Extension (1): surfels of other groups are added to a group \[ZP06, section 4.2.2\].
 
 use super::budget;
-use super::clipped::{SAMPLES, areas, covered_by};
+use super::clipped::{SAMPLES, areas, areas_of_groups, covered_by};
 use super::extend::GroupCoverage;
 use super::overlaps::Overlaps;
 use super::settle::settle;
@@ -45,11 +45,11 @@ pub(super) fn add(
         let lower = u32::from(lower) * (1 | u32::from(own[i] == own[j]) << 1);
         lower | members.of_others(0, i, j) << 2
     };
-    let measured = overlaps.covered::<{ 2 + BATCH }>(sets, &show);
+    let measured = overlaps.covered::<2, BATCH>(sets, &show);
     let group = |surfel: usize| groups.own()[surfel].into();
-    let (target, before) = exec.join(
-        || areas(tree, 1, |_| 0, |place| measured.in_set(0, place))[0].0,
-        || areas(tree, count, group, |place| measured.in_set(1, place)),
+    let ([target], before) = exec.join(
+        || areas(tree, |place| [measured.open(place)[0]]),
+        || areas_of_groups(tree, count, group, |place| measured.open(place)[1]),
     );
 
     let groups = members;
@@ -62,11 +62,11 @@ pub(super) fn add(
             progress("extending groups", 2 * of * first as u64 + here, 2 * of * count as u64);
         };
         let members = if first == 0 {
-            groups.extended(batch.clone(), |place, set| measured.in_set(2 + set, place))
+            groups.extended(batch.clone(), |place, set| measured.told(set, place))
         } else {
             let sets = |i: usize, j: usize, _: bool| groups.of_others(first, i, j);
-            let covered = overlaps.covered::<BATCH>(sets, &|done, of| show(0, done, of));
-            groups.extended(batch.clone(), |place, set| covered.in_set(set, place))
+            let covered = overlaps.covered::<0, BATCH>(sets, &|done, of| show(0, done, of));
+            groups.extended(batch.clone(), |place, set| covered.told(set, place))
         };
         for (place, members) in members.iter().enumerate() {
             let further = members & !groups.own(first, place);
@@ -77,16 +77,11 @@ pub(super) fn add(
         let sets = |i: usize, j: usize, lower: bool| {
             if lower { members[i] & members[j] } else { 0 }
         };
-        let covered = overlaps.covered::<BATCH>(sets, &|done, of| show(1, done, of));
-        coverages.extend(exec.ordered(batch.clone().collect(), |group| {
-            let set = group - first;
-            let is_member = |place: usize| members[place] >> set & 1 == 1;
-            // Of those that are no members, nothing is open.
-            let covered =
-                |place| if is_member(place) { covered.in_set(set, place) } else { u64::MAX };
-            let after = areas(tree, 1, |_| 0, covered)[0].0 / target;
-            let surfels = (0..n).filter(|&place| is_member(place)).count() as u64;
-            let before = before[group].0 / target;
+        let covered = overlaps.covered::<BATCH, 0>(sets, &|done, of| show(1, done, of));
+        let (surfels, after) = measured_groups(overlaps, &members, |place| covered.open(place));
+        coverages.extend(batch.map(|group| {
+            let (surfels, after) = (surfels[group - first], after[group - first] / target);
+            let before = before[group] / target;
             GroupCoverage { surfels, scale: 1.0, converged: true, before, after }
         }));
     }
@@ -96,6 +91,31 @@ pub(super) fn add(
     let mut further = budget::room_for_added(count)?;
     further.extend((0..).zip(added).filter(|added| added.1 != 0).flat_map(of));
     Ok(Added { target, further, groups: coverages })
+}
+
+/// How many surfels are in each group of a batch, and its area, divided by pi; `members` has a bit for each group
+/// at each place, and `open` tells how many samples of a place others of each group leave open.
+fn measured_groups(
+    overlaps: &Overlaps<'_>,
+    members: &[u32],
+    open: impl Fn(usize) -> [u8; BATCH] + Sync + Send,
+) -> ([u64; BATCH], [f64; BATCH]) {
+    let is_member = |place: usize| -> [bool; BATCH] {
+        std::array::from_fn(|set| members[place] >> set & 1 == 1)
+    };
+    let surfels = || {
+        (0..members.len()).fold([0; BATCH], |mut surfels, place| {
+            let each = surfels.iter_mut().zip(is_member(place));
+            each.for_each(|(surfels, is_member)| *surfels += u64::from(is_member));
+            surfels
+        })
+    };
+    // Of those that are no members, nothing is open.
+    let of_members = |place| {
+        let (open, is_member) = (open(place), is_member(place));
+        std::array::from_fn::<_, BATCH, _>(|set| if is_member[set] { open[set] } else { 0 })
+    };
+    overlaps.exec.join(surfels, || areas(overlaps.tree, of_members))
 }
 
 /// Who is in which group.

@@ -135,30 +135,51 @@ vectorized!(
 /// The covered area of eq. 7 for all radii times `scale`, divided by pi scale^2, and the sum of the
 /// squared radii: sums in ascending index.
 pub(super) fn area(tree: &DiscTree, covered: &Parts<Vec<u64>>) -> (f64, f64) {
-    areas(tree, 1, |_| 0, |place| covered.at(place))[0]
+    let [area] = areas(tree, |place| [covered.at(place).count_zeros() as u8]);
+    (area, tree.square.iter().fold(0.0, |sum, square| sum + square))
 }
 
-/// [`area`] of each of `count` groups; `group` is asked by rank, and `covered` by place.
-pub(super) fn areas(
+/// The area of each of some sets, divided by pi, in ascending index; `open` tells how many samples of a place
+/// are not covered in each of them.
+pub(super) fn areas<const SETS: usize>(
+    tree: &DiscTree,
+    open: impl Fn(usize) -> [u8; SETS],
+) -> [f64; SETS] {
+    let mut areas = [0.0; SETS];
+    for (open, square) in by_rank(tree, [0; SETS], open).into_iter().zip(&tree.square) {
+        for (area, open) in areas.iter_mut().zip(open) {
+            *area += open_area(square, open);
+        }
+    }
+    areas
+}
+
+/// [`areas`] of each of `count` groups, of which each rank is in one.
+pub(super) fn areas_of_groups(
     tree: &DiscTree,
     count: usize,
     group: impl Fn(usize) -> usize,
-    covered: impl Fn(usize) -> u64,
-) -> Vec<(f64, f64)> {
-    let mut open = vec![0_u8; tree.surfel.len()];
-    for (place, &rank) in tree.rank.iter().enumerate() {
-        let mask = covered(place);
-        if mask != u64::MAX {
-            open[rank as usize] = mask.count_zeros() as u8;
-        }
-    }
-    let mut areas = vec![(0.0, 0.0); count];
-    for (rank, (open, square)) in open.into_iter().zip(&tree.square).enumerate() {
-        let (area, sum) = &mut areas[group(rank)];
-        *area += square * (f64::from(open) / SAMPLES as f64);
-        *sum += square;
+    open: impl Fn(usize) -> u8,
+) -> Vec<f64> {
+    let mut areas = vec![0.0; count];
+    for (rank, (open, square)) in by_rank(tree, 0, open).into_iter().zip(&tree.square).enumerate() {
+        areas[group(rank)] += open_area(square, open);
     }
     areas
+}
+
+/// What is open of a disc, divided by pi.
+fn open_area(square: &f64, open: u8) -> f64 {
+    square * (f64::from(open) / SAMPLES as f64)
+}
+
+/// What there is of each place, by rank.
+fn by_rank<T: Copy>(tree: &DiscTree, none: T, of: impl Fn(usize) -> T) -> Vec<T> {
+    let mut all = vec![none; tree.rank.len()];
+    for (place, &rank) in tree.rank.iter().enumerate() {
+        all[rank as usize] = of(place);
+    }
+    all
 }
 
 vectorized!(

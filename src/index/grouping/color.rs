@@ -10,6 +10,7 @@ use crate::frame::Exec;
 use crate::scene::groups::{MAX_GROUPS, check_count};
 use crate::scene::{Groups, Surfels};
 use std::cell::OnceCell;
+use std::mem::take;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU32};
 
@@ -83,8 +84,9 @@ impl Coloring<'_> {
     pub(super) fn group(&self) -> Result<(Groups, GroupingReport)> {
         let overlap = self.rules.overlap;
         let graph = self.graph(overlap)?;
-        let (color, report) =
-            self.color(&graph, overlap, usize::MAX).expect("as many colours as it takes");
+        let (color, report) = self
+            .color(&graph, overlap, usize::MAX, &mut Room::default())
+            .expect("as many colours as it takes");
         if report.groups > MAX_GROUPS {
             return Err(Error::Invalid(format!(
                 "c = {overlap} needs {} groups, and at most {MAX_GROUPS} can be: give a lower c or \
@@ -105,24 +107,30 @@ impl Coloring<'_> {
         // What is above the c of the rules does not fit. The graph of a c that does not has the
         // edges of every smaller one.
         let (mut fits, mut fails) = (0, (f32::from(STEPS) * self.rules.overlap) as u8 + 1);
-        let (mut best, wider) = (None, OnceCell::new());
+        let (mut best, wider, mut room) = (None, OnceCell::new(), Room::default());
         let mut graded = overlaps.map(|graph| self.graded(graph)).transpose()?;
         while fails - fits > 1 {
             let middle = u8::midpoint(fits, fails);
             let overlap = f32::from(middle) / f32::from(STEPS);
             let graph = match &graded {
-                Some(graded) => graded.upto(middle, self.tree, self.exec, self.progress),
+                Some(graded) => {
+                    graded.upto(middle, take(&mut room.graph), self.tree, self.exec, self.progress)
+                }
                 None => self.graph(overlap),
             };
             let graph = graph.ok();
-            match graph.as_ref().and_then(|graph| self.color(graph, overlap, count)) {
+            let found =
+                graph.as_ref().and_then(|graph| self.color(graph, overlap, count, &mut room));
+            let fit = found.is_some();
+            match found {
                 Some(found) => (fits, best) = (middle, Some(found)),
-                None => {
-                    fails = middle;
-                    if let (None, Some(graph)) = (&graded, graph) {
-                        graded = Some(self.graded(wider.get_or_init(|| graph))?);
-                    }
+                None => fails = middle,
+            }
+            match graph {
+                Some(graph) if graded.is_none() && !fit => {
+                    graded = Some(self.graded(wider.get_or_init(|| graph))?);
                 }
+                graph => room.graph = graph.unwrap_or_default(),
             }
         }
         // c = 0 has no edges, and so fits.
@@ -147,9 +155,10 @@ impl Coloring<'_> {
         graph: &Graph,
         overlap: f32,
         most: usize,
+        room: &mut Room,
     ) -> Option<(Vec<u32>, GroupingReport)> {
         let show = |done, of| (self.progress)("colouring", done, of);
-        let color = largest_first(graph, self.surfels.len(), most, self.exec, &show)?;
+        let color = largest_first(graph, self.surfels.len(), most, room, self.exec, &show)?;
         let groups = color.iter().fold(0, |most, &color| most.max(color)) as usize + 1;
         let report = self.report(overlap, groups, Some(graph));
         Some((color, report))
@@ -170,6 +179,15 @@ impl Coloring<'_> {
     }
 }
 
+/// Memory that one c after the other is tried in: a system that takes it back clears it before it gives it
+/// again, which takes as long as a part of the work.
+#[derive(Default)]
+struct Room {
+    graph: Graph,
+    degree: Vec<u32>,
+    color: Vec<AtomicU32>,
+}
+
 /// The groups of the colour of every place.
 fn groups(tree: &DiscTree, color: &[u32], groups: usize) -> Result<Groups> {
     let mut own = vec![0; color.len()];
@@ -186,14 +204,16 @@ fn largest_first(
     graph: &Graph,
     n: usize,
     most: usize,
+    room: &mut Room,
     exec: &Exec,
     progress: &dyn Fn(u64, u64),
 ) -> Option<Vec<u32>> {
     const NONE: u32 = u32::MAX;
-    let mut degree = Vec::new();
-    exec.extend(&mut degree, n, |place| graph.degree(place));
-    let mut color = Vec::new();
-    exec.extend(&mut color, n, |_| AtomicU32::new(NONE));
+    let Room { degree, color, .. } = room;
+    degree.clear();
+    exec.extend(degree, n, |place| graph.degree(place));
+    color.clear();
+    exec.extend(color, n, |_| AtomicU32::new(NONE));
     let color_of = |place: usize| color[place].load(Relaxed);
     let too_many = AtomicBool::new(false);
     settle(n, 1, exec, progress, |_, open| {
@@ -243,6 +263,6 @@ fn largest_first(
         }
         None
     });
-    let color = color.into_iter().map(AtomicU32::into_inner).collect();
-    (!too_many.into_inner()).then_some(color)
+    let fits = !too_many.into_inner();
+    fits.then(|| take(color).into_iter().map(AtomicU32::into_inner).collect())
 }

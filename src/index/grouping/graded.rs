@@ -41,18 +41,19 @@ impl<'a> Graded<'a> {
         Ok(Self { graph, least: Parts::of(tree, exec, &show, job)? })
     }
 
-    /// The graph of c = `most` / 64.
+    /// The graph of c = `most` / 64, in the memory of another graph.
     pub(super) fn upto(
         &self,
         most: u8,
+        room: Graph,
         tree: &DiscTree,
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Graph> {
-        let rows = |places: Range<usize>| {
-            Ok(self.graph.part(places.start).upto(most, self.least.with(places.start).0))
+        let rows = |places: Range<usize>, room| {
+            Ok(self.graph.part(places.start).upto(most, self.least.with(places.start).0, room))
         };
-        Graph::of_rows(tree, rows, exec, progress)
+        Graph::of_rows(room, tree, rows, exec, progress)
     }
 }
 

@@ -9,10 +9,11 @@ use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::lanes::vectorized;
 use crate::scene::Surfels;
+use std::mem;
 use std::ops::Range;
 
 /// The neighbours of every place of a tree.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Graph(Parts<Rows>);
 
 /// The neighbours of the places of a part.
@@ -48,7 +49,7 @@ vectorized!(
     ) -> Result<Rows> {
         let mut rows = Rows::with_capacity(places.len());
         let (mut room, mut found, mut seen) = (NearBlocks::default(), Vec::new(), 0);
-        for i in places {
+        for i in places.clone() {
             let mut count = 0;
             tree.near(i, factor, &mut room, |near, so_many| {
                 // All are written, and those that are not meant are written over.
@@ -64,10 +65,12 @@ vectorized!(
             seen += count as u64;
             budget.spend_many(&mut seen)?;
             let kept = kept(&mut found[..count], |j| keep(i, j as usize));
+            rows.make_room(kept.len(), places.end - i);
             rows.push(kept, |j| tree.surfel[j as usize] < tree.surfel[i]);
             budget.fits(rows.len())?;
         }
         budget.spend(seen)?;
+        rows.neighbour.shrink_to_fit();
         Ok(rows)
     }
 );
@@ -89,6 +92,17 @@ impl Rows {
         let mut starts = Vec::with_capacity(places + 1);
         starts.push(Start { at: 0, lower: 0 });
         Self { starts, neighbour: Vec::new() }
+    }
+
+    /// Makes room for a row of so many neighbours, and for as many at each of the places left: little by
+    /// little rows would be copied again and again.
+    #[inline(always)]
+    fn make_room(&mut self, row: usize, places: usize) {
+        // A row may be longer by far than all others.
+        const MOST: usize = 1 << 16;
+        if self.neighbour.capacity() - self.neighbour.len() < row {
+            self.neighbour.reserve(row.max(MOST.min(row.saturating_mul(places))));
+        }
     }
 
     /// Adds the neighbours of the next place.
@@ -116,11 +130,15 @@ impl Rows {
         self.starts.push(Start { at: end as u32, lower: 0 });
     }
 
-    /// Those neighbours of which a grade is at most `most`; there is one for each, in their order.
-    pub(super) fn upto(&self, most: u8, grades: &[u8]) -> Self {
-        let mut kept = Self::with_capacity(self.starts.len() - 1);
+    /// Those neighbours of which a grade is at most `most`; there is one for each, in their order. In the
+    /// memory of other rows, if there are any.
+    pub(super) fn upto(&self, most: u8, grades: &[u8], room: Option<Self>) -> Self {
+        let mut kept = room.unwrap_or_else(|| Self::with_capacity(self.starts.len() - 1));
+        kept.starts.truncate(1);
+        let count = grades.iter().filter(|&&grade| grade <= most).count();
         // Written where the next one goes, kept or not: whether it is cannot be foreseen.
-        let (mut neighbour, mut end) = (vec![0; self.neighbour.len() + 1], 0);
+        let (mut neighbour, mut end) = (mem::take(&mut kept.neighbour), 0);
+        neighbour.resize(count + 1, 0);
         let mut keep = |entries: Range<usize>| {
             let before = end;
             for (&other, &grade) in self.neighbour[entries.clone()].iter().zip(&grades[entries]) {
@@ -136,8 +154,8 @@ impl Rows {
             let (_, end) = keep(middle..to);
             kept.end_row(lower, end);
         }
-        // What is free is left behind: it may be most of it.
-        kept.neighbour = neighbour[..end].to_vec();
+        neighbour.truncate(count);
+        kept.neighbour = neighbour;
         kept
     }
 
@@ -179,19 +197,20 @@ impl Graph {
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Self> {
         let budget = Budget::new(tree.surfel.len(), factor);
-        let rows = |places| near_rows(tree, places, factor, &keep, &budget);
-        Self::of_rows(tree, rows, exec, progress)
+        let rows = |places, _| near_rows(tree, places, factor, &keep, &budget);
+        Self::of_rows(Self::default(), tree, rows, exec, progress)
     }
 
-    /// Of rows that are made of the places of one part at a time.
+    /// Of rows that are made of the places of one part at a time, in the memory of those of another graph.
     pub(super) fn of_rows(
+        room: Self,
         tree: &DiscTree,
-        rows: impl Fn(Range<usize>) -> Result<Rows> + Sync + Send,
+        rows: impl Fn(Range<usize>, Option<Rows>) -> Result<Rows> + Sync + Send,
         exec: &Exec,
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Self> {
         let show = |done, of| progress("finding overlaps", done, of);
-        Parts::of(tree, exec, &show, rows).map(Self)
+        Parts::in_place_of(room.0, tree, exec, &show, rows).map(Self)
     }
 
     /// The neighbours of a place.

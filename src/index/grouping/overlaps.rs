@@ -15,30 +15,61 @@ pub(super) struct Overlaps<'a> {
 }
 
 impl Overlaps<'_> {
-    /// For each set and place i, the samples that those discs j cover for which `by(i, j, lower)` has bit 0
-    /// set, bit 1 and so on; `lower` tells whether the surfel at j has the lower index.
-    pub(super) fn covered<const SETS: usize>(
+    /// For each set and place i, what those discs j cover for which `by(i, j, lower)` has bit 0 set, bit 1
+    /// and so on; `lower` tells whether the surfel at j has the lower index. Of the first `COUNTED` sets the
+    /// samples are counted that are left open, of the `TOLD` sets that follow all that are covered are told.
+    pub(super) fn covered<const COUNTED: usize, const TOLD: usize>(
         &self,
         by: impl Fn(usize, usize, bool) -> u32 + Sync + Send,
         progress: &dyn Fn(u64, u64),
-    ) -> Parts<[Vec<u64>; SETS]> {
+    ) -> Covered<COUNTED, TOLD> {
         let job = |places| Ok(covered_by_neighbours(self.tree, self.graph, places, &by));
-        Parts::of(self.tree, self.exec, progress, job).expect("nothing fails")
+        Covered(Parts::of(self.tree, self.exec, progress, job).expect("nothing fails"))
+    }
+}
+
+/// What is covered of each place.
+pub(super) struct Covered<const COUNTED: usize, const TOLD: usize>(Parts<Sets<COUNTED, TOLD>>);
+
+/// What is covered of the places of a part. Sets stand side by side, as who asks for one does not ask for
+/// the others.
+struct Sets<const COUNTED: usize, const TOLD: usize> {
+    open: Vec<[u8; COUNTED]>,
+    covered: [Vec<u64>; TOLD],
+}
+
+impl<const COUNTED: usize, const TOLD: usize> Covered<COUNTED, TOLD> {
+    /// How many samples of a place each set leaves open that is counted.
+    #[inline(always)]
+    pub(super) fn open(&self, place: usize) -> [u8; COUNTED] {
+        let (part, place) = self.0.with(place);
+        part.open[place]
+    }
+
+    /// The samples of a place that a set covers, of those that are told.
+    #[inline(always)]
+    pub(super) fn told(&self, set: usize, place: usize) -> u64 {
+        let (part, place) = self.0.with(place);
+        part.covered[set][place]
     }
 }
 
 vectorized!(
     /// [`Overlaps::covered`] for some places.
-    fn covered_by_neighbours<const SETS: usize, B: Fn(usize, usize, bool) -> u32>(
+    fn covered_by_neighbours<
+        const COUNTED: usize,
+        const TOLD: usize,
+        B: Fn(usize, usize, bool) -> u32,
+    >(
         tree: &DiscTree,
         graph: &Graph,
         places: Range<usize>,
         by: &B,
-    ) -> [Vec<u64>; SETS] {
-        // Side by side, as who asks for one set does not ask for the others.
-        let mut covered = [(); SETS].map(|()| Vec::with_capacity(places.len()));
+    ) -> Sets<COUNTED, TOLD> {
+        let mut open = Vec::with_capacity(places.len());
+        let mut covered = [(); TOLD].map(|()| Vec::with_capacity(places.len()));
         for i in places {
-            let (mut masks, row) = ([0; SETS], graph.of(i));
+            let (mut counted, mut told, row) = ([0_u64; COUNTED], [0; TOLD], graph.of(i));
             for from in (0..row.all.len()).step_by(64) {
                 let mut chosen = 0_u64;
                 row.visit_64(from, |number, j, lower| {
@@ -54,15 +85,16 @@ vectorized!(
                     let j = row.all[at] as usize;
                     let mask = samples.covered_by(&tree.discs[j]);
                     let sets = by(i, j, at < row.lower);
-                    for (set, all) in masks.iter_mut().enumerate() {
+                    for (set, all) in counted.iter_mut().chain(&mut told).enumerate() {
                         *all |= if sets >> set & 1 == 1 { mask } else { 0 };
                     }
                 }
             }
-            for (covered, mask) in covered.iter_mut().zip(masks) {
+            open.push(counted.map(|mask| mask.count_zeros() as u8));
+            for (covered, mask) in covered.iter_mut().zip(told) {
                 covered.push(mask);
             }
         }
-        covered
+        Sets { open, covered }
     }
 );

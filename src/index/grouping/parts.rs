@@ -15,6 +15,12 @@ const PLACES: usize = BLOCKS * DISCS;
 #[derive(Debug)]
 pub(super) struct Parts<T>(Vec<T>);
 
+impl<T> Default for Parts<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
 impl<T: Send> Parts<T> {
     /// Runs a job for the places of each part, in parallel.
     ///
@@ -25,14 +31,27 @@ impl<T: Send> Parts<T> {
         progress: &dyn Fn(u64, u64),
         job: impl Fn(Range<usize>) -> Result<T> + Sync + Send,
     ) -> Result<Self> {
+        Self::in_place_of(Self::default(), tree, exec, progress, |places, _| job(places))
+    }
+
+    /// [`Parts::of`], in the memory of those of before, of which each job gets its own.
+    pub(super) fn in_place_of(
+        before: Self,
+        tree: &DiscTree,
+        exec: &Exec,
+        progress: &dyn Fn(u64, u64),
+        job: impl Fn(Range<usize>, Option<T>) -> Result<T> + Sync + Send,
+    ) -> Result<Self> {
         const BATCH: usize = 256 * PLACES;
         let places = tree.surfel.len();
-        let mut parts = Vec::with_capacity(places.div_ceil(PLACES));
+        let (mut before, mut parts) =
+            (before.0.into_iter(), Vec::with_capacity(places.div_ceil(PLACES)));
         for batch in (0..places).step_by(BATCH) {
             progress(batch as u64, places as u64);
             let starts = (batch..places.min(batch + BATCH)).step_by(PLACES);
-            let ranges = starts.map(|start| start..places.min(start + PLACES)).collect();
-            for part in exec.ordered(ranges, &job) {
+            let range = |start| (start..places.min(start + PLACES), before.next());
+            let jobs = starts.map(range).collect();
+            for part in exec.ordered(jobs, |(places, before)| job(places, before)) {
                 parts.push(part?);
             }
         }
@@ -60,14 +79,5 @@ impl<T: Copy> Parts<Vec<T>> {
     pub(super) fn at(&self, place: usize) -> T {
         let (part, place) = self.with(place);
         part[place]
-    }
-}
-
-impl<T: Copy, const SETS: usize> Parts<[Vec<T>; SETS]> {
-    /// What there is of a place in a set.
-    #[inline(always)]
-    pub(super) fn in_set(&self, set: usize, place: usize) -> T {
-        let (part, place) = self.with(place);
-        part[set][place]
     }
 }

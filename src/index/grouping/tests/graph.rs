@@ -71,8 +71,9 @@ proptest! {
         let tree = DiscTree::new(&surfels, 0..surfels.len() as u32, &exec);
         let all = Graph::new(&tree, 1.0, |_, _| true, &exec, &silent).unwrap();
         let graded = Graded::new(&all, &surfels, &tree, &rules, &exec, &silent).unwrap();
-        for step in 0..=64 {
-            let graph = graded.upto(step, &tree, &exec, &silent).unwrap();
+        let mut graph = Graph::default();
+        for step in (0..=64).chain([7, 40, 3]) {
+            graph = graded.upto(step, graph, &tree, &exec, &silent).unwrap();
             let own = conflicts(&surfels, &tree, &rules, f32::from(step) / 64.0, &exec, &silent);
             let own = own.unwrap();
             for place in 0..surfels.len() {
