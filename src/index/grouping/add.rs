@@ -59,14 +59,15 @@ pub(super) fn add(
         let batch = first..count.min(first + BATCH);
         let show = |part: u64, done: u64, of: u64| {
             let here = (part * of + done) * batch.len() as u64;
-            progress("extending groups", 2 * of * first as u64 + here, 2 * of * count as u64);
+            progress("extending groups", 3 * of * first as u64 + here, 3 * of * count as u64);
         };
+        let decided = |done: u64, of: u64| show(1, done, of);
         let members = if first == 0 {
-            groups.extended(batch.clone(), |place, set| measured.told(set, place))
+            groups.extended(batch.clone(), |place, set| measured.told(set, place), &decided)
         } else {
             let sets = |i: usize, j: usize, _: bool| groups.of_others(first, i, j);
             let covered = overlaps.covered::<0, BATCH>(sets, &|done, of| show(0, done, of));
-            groups.extended(batch.clone(), |place, set| covered.told(set, place))
+            groups.extended(batch.clone(), |place, set| covered.told(set, place), &decided)
         };
         for (place, members) in members.iter().enumerate() {
             let further = members & !groups.own(first, place);
@@ -77,7 +78,7 @@ pub(super) fn add(
         let sets = |i: usize, j: usize, lower: bool| {
             if lower { members[i] & members[j] } else { 0 }
         };
-        let covered = overlaps.covered::<BATCH, 0>(sets, &|done, of| show(1, done, of));
+        let covered = overlaps.covered::<BATCH, 0>(sets, &|done, of| show(2, done, of));
         let (surfels, after) = measured_groups(overlaps, &members, |place| covered.open(place));
         coverages.extend(batch.map(|group| {
             let (surfels, after) = (surfels[group - first], after[group - first] / target);
@@ -146,10 +147,11 @@ impl Members<'_> {
         &self,
         batch: Range<usize>,
         covered: impl Fn(usize, usize) -> u64 + Sync + Send,
+        progress: &dyn Fn(u64, u64),
     ) -> Vec<u32> {
         let Overlaps { exec, .. } = *self.overlaps;
         let first = batch.start;
-        let states = self.added(batch, covered);
+        let states = self.added(batch, covered, progress);
         let mut members = Vec::new();
         exec.extend(&mut members, self.own.len(), |place| {
             (0..).zip(&states).fold(self.own(first, place), |members, (set, state)| {
@@ -202,11 +204,12 @@ impl Members<'_> {
         &self,
         batch: Range<usize>,
         covered: impl Fn(usize, usize) -> u64 + Sync + Send,
+        progress: &dyn Fn(u64, u64),
     ) -> Vec<Vec<AtomicU8>> {
         let &Overlaps { tree, graph, exec } = self.overlaps;
         let states = self.undecided(batch.clone(), &covered);
         let is_open = |state: u8| state != OUT && state < ADDED;
-        settle(self.own.len(), batch.len(), exec, &|_, _| (), |set, open| {
+        settle(self.own.len(), batch.len(), exec, progress, |set, open| {
             let state = &states[set];
             let place = open.place;
             let own = state[place].load(Relaxed);
