@@ -272,6 +272,13 @@ impl Surfels {
         self.opacity.as_deref()
     }
 
+    /// The opacity of the surfel of index `i`: 1 if no opacities are given.
+    #[must_use]
+    #[inline(always)]
+    pub fn opacity_of(&self, i: usize) -> f32 {
+        self.opacity().map_or(1.0, |opacity| opacity[i])
+    }
+
     /// Half axes of elliptical surfels in world units.
     #[must_use]
     pub fn tangents(&self) -> Option<&[[Vec3; 2]]> {

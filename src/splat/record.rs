@@ -99,7 +99,7 @@ impl SplatRecord {
             surfel: splat.surfel,
             bounds: [b.x0, b.y0, b.x1, b.y1],
             normal: if splat.back { normal.map(|component| -component) } else { normal },
-            opacity: surfels.opacity().map_or(1.0, |opacity| opacity[i]),
+            opacity: surfels.opacity_of(i),
             color: surfels.color().map_or([0.0; 3], |color| color[i].to_array()),
             back: splat.back.into(),
         }

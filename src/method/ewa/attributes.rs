@@ -94,7 +94,7 @@ impl<R: Real> Sums<R> {
         (surfel, back): (u32, R::Truth),
         weight: R,
     ) {
-        let opacity = surfels.opacity().map_or(R::ONE, |all| R::from_f32(all[surfel as usize]));
+        let opacity = R::from_f32(surfels.opacity_of(surfel as usize));
         self.opacity = self.opacity + weight * opacity;
         self.add_opaque(surfels, (surfel, back), weight);
     }

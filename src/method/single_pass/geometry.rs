@@ -161,5 +161,5 @@ pub(super) fn ratio<R: Real>(q: R, limit: R) -> R {
 
 /// The opacity of a surfel, 1 if the scene has none.
 pub(super) fn opacity<R: Real>(surfels: &Surfels, surfel: u32) -> R {
-    surfels.opacity().map_or(R::ONE, |all| R::from_f32(all[surfel as usize]))
+    R::from_f32(surfels.opacity_of(surfel as usize))
 }

@@ -196,5 +196,5 @@ pub(super) fn appearance<R: Real>(
     let [x, y, z] = facing(normal, splat.back);
     let place = Vector3::from_glam(surfels.position()[i]);
     let color = shader.surfel(place, Vector3::new(x, y, z), color.to_array().map(R::from_f32));
-    (color, surfels.opacity().map_or(R::ONE, |opacity| R::from_f32(opacity[i])))
+    (color, R::from_f32(surfels.opacity_of(i)))
 }

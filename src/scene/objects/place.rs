@@ -225,7 +225,7 @@ impl Objects {
                 }
             }
             if let Some(opacities) = &mut to.opacity {
-                opacities.push(surfels.opacity().map_or(1.0, |own| own[i]));
+                opacities.push(surfels.opacity_of(i));
             }
             to.position.push(position);
             to.normal.push(normal);

@@ -98,7 +98,7 @@ impl<'a> FastPeeling<'a> {
 
     fn attributes(&self, splat: &Record) -> Attributes {
         let Surface { normal: [x, y, z], color: [r, g, b] } = splat.attributes;
-        let opacity = self.surfels.opacity().map_or(1.0, |all| all[splat.surfel as usize]);
+        let opacity = self.surfels.opacity_of(splat.surfel as usize);
         [r, g, b, opacity, x, y, z, 1.0]
     }
 }

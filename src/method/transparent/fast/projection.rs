@@ -128,7 +128,7 @@ impl<A: Blended> FastBlending<A> {
                 records.reserve_exact(list.len());
                 let tally = batch::enlarged_f32(projector, surfels, &list, |place, splat| {
                     let i = splat.surfel as usize;
-                    let alpha = surfels.opacity().map_or(1.0, |all| all[i]);
+                    let alpha = surfels.opacity_of(i);
                     let (groups, own, back) = (sets[place], members.own[i], splat.back);
                     let layer = Layer { color: [0.0; 3], alpha, groups, own, back };
                     records.push(Record::new(&splat, A::new(layer, &splat, surfels)));

@@ -59,8 +59,8 @@ impl<'a> Splats<'a> {
         let mut nearest = Tile::new([true, surfels.color().is_some()]);
         let (groups, opacities) = if let Some(alone) = &self.nearest {
             alone.gather_f32(index, &rect, &mut nearest.splats);
-            let opacity = |i: usize| surfels.opacity().map_or(1.0, |all| all[i]);
-            let opacities = nearest.splats.iter().map(|splat| opacity(splat.surfel as usize));
+            let opacities =
+                nearest.splats.iter().map(|splat| surfels.opacity_of(splat.surfel as usize));
             (own(&nearest.splats, self.groups), opacities.collect())
         } else {
             // A layer has its group and its opacity with it: of two million surfels, fetching them from
