@@ -273,9 +273,8 @@ impl Surfels {
     }
 
     /// The opacity of the surfel of index `i`: 1 if no opacities are given.
-    #[must_use]
     #[inline(always)]
-    pub fn opacity_of(&self, i: usize) -> f32 {
+    pub(crate) fn opacity_of(&self, i: usize) -> f32 {
         self.opacity().map_or(1.0, |opacity| opacity[i])
     }
 

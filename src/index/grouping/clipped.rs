@@ -148,7 +148,7 @@ pub(super) fn areas<const SETS: usize>(
     let mut areas = [0.0; SETS];
     for (open, square) in by_rank(tree, [0; SETS], open).into_iter().zip(&tree.square) {
         for (area, open) in areas.iter_mut().zip(open) {
-            *area += open_area(square, open);
+            *area += open_area(*square, open);
         }
     }
     areas
@@ -163,13 +163,13 @@ pub(super) fn areas_of_groups(
 ) -> Vec<f64> {
     let mut areas = vec![0.0; count];
     for (rank, (open, square)) in by_rank(tree, 0, open).into_iter().zip(&tree.square).enumerate() {
-        areas[group(rank)] += open_area(square, open);
+        areas[group(rank)] += open_area(*square, open);
     }
     areas
 }
 
 /// What is open of a disc, divided by pi.
-fn open_area(square: &f64, open: u8) -> f64 {
+fn open_area(square: f64, open: u8) -> f64 {
     square * (f64::from(open) / SAMPLES as f64)
 }
 

@@ -179,8 +179,8 @@ impl Coloring<'_> {
     }
 }
 
-/// Memory that one c after the other is tried in: a system that takes it back clears it before it gives it
-/// again, which takes as long as a part of the work.
+/// Memory that one c after the other is tried in: what the system has taken back it clears before it gives it
+/// again.
 #[derive(Default)]
 struct Room {
     graph: Graph,

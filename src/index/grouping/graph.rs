@@ -49,7 +49,8 @@ vectorized!(
     ) -> Result<Rows> {
         let mut rows = Rows::with_capacity(places.len());
         let (mut room, mut found, mut seen) = (NearBlocks::default(), Vec::new(), 0);
-        for i in places.clone() {
+        let end = places.end;
+        for i in places {
             let mut count = 0;
             tree.near(i, factor, &mut room, |near, so_many| {
                 // All are written, and those that are not meant are written over.
@@ -65,7 +66,7 @@ vectorized!(
             seen += count as u64;
             budget.spend_many(&mut seen)?;
             let kept = kept(&mut found[..count], |j| keep(i, j as usize));
-            rows.make_room(kept.len(), places.end - i);
+            rows.make_room(kept.len(), end - i);
             rows.push(kept, |j| tree.surfel[j as usize] < tree.surfel[i]);
             budget.fits(rows.len())?;
         }

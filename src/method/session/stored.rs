@@ -53,7 +53,7 @@ impl Session<'_> {
     }
 
     /// The picture whose sums and depth tests are those of buffers, and between which depths these tell apart.
-    fn storing<'j>(
+    pub(in crate::method) fn storing<'j>(
         &'j self,
         camera: &'j Camera,
         formats: Formats,

@@ -1,6 +1,5 @@
 use super::*;
 use crate::frame::{Exec, Frame, NO_ID, Plane};
-use crate::method::algorithm::Job;
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::{Method, Session, ewa, peeling, single_pass};
 use crate::scene::{Cloud, Groups, Lens, Pose, Surfels};
@@ -191,13 +190,18 @@ fn a_layer_may_begin_before_its_fragment() {
     }
 }
 
+/// What every method draws, before a camera of this size.
+fn torus([width, height]: [u32; 2]) -> (Scene, Camera) {
+    let shape = Shape::Torus;
+    let camera = Camera::new(width, height, shape.default_pose(), shape.default_lens()).unwrap();
+    (Scene::lit("torus", shape.surfels(800, 0).unwrap()), camera)
+}
+
 /// In `f32` the stages one by one are the definition, of every method.
 #[test]
 fn stored_as_they_are_pictures_are_the_definition() {
     let exec = Exec::new(2, 16).unwrap();
-    let shape = Shape::Torus;
-    let camera = Camera::new(48, 40, shape.default_pose(), shape.default_lens()).unwrap();
-    let scene = Scene::lit("torus", shape.surfels(800, 0).unwrap());
+    let (scene, camera) = torus([48, 40]);
     for method in Method::all() {
         let mut session = Session::new(&scene, method, &exec).unwrap();
         let whole = session.define::<f32>(&camera, false).unwrap().frame;
@@ -210,9 +214,7 @@ fn stored_as_they_are_pictures_are_the_definition() {
 #[test]
 fn every_plane_holds_what_its_buffer_can() {
     let exec = Exec::new(2, 16).unwrap();
-    let shape = Shape::Torus;
-    let camera = Camera::new(48, 40, shape.default_pose(), shape.default_lens()).unwrap();
-    let scene = Scene::lit("torus", shape.surfels(800, 0).unwrap());
+    let (scene, camera) = torus([48, 40]);
     let formats = Formats { buffers: Buffers::F16, depth: DepthBuffer::Unorm16 };
     for method in Method::all() {
         let mut session = Session::new(&scene, method, &exec).unwrap();
@@ -238,43 +240,31 @@ fn every_plane_holds_what_its_buffer_can() {
 #[test]
 fn what_is_stored_was_made_of_what_is_stored() {
     let exec = Exec::new(2, 16).unwrap();
-    let shape = Shape::Torus;
-    let camera = Camera::new(48, 40, shape.default_pose(), shape.default_lens()).unwrap();
-    let scene = Scene::lit("torus", shape.surfels(800, 0).unwrap());
     let formats = Formats { buffers: Buffers::F16, depth: DepthBuffer::Unorm16 };
-    let range = DepthRange::new(&scene, &camera);
     let one_by_one = |method: &Method| !matches!(method, Method::Peeling(_));
-    for method in Method::all().into_iter().filter(one_by_one) {
-        let mut session = Session::new(&scene, method, &exec).unwrap();
-        let mut frame = session.stored(&camera, formats, true).unwrap().frame;
-        session.resume(None);
-        let key = DepthKey::new(formats.depth, range);
-        for stage in session.method().stages().iter().filter(|stage| !stage.leaves.is_empty()) {
-            let run = |frame| {
-                session.with_job(&camera, |job| {
-                    let job = Job { buffers: formats.buffers, key, ..*job };
-                    session.method().stage(&job, stage.name, frame).unwrap()
-                })
-            };
-            let mut left = run(&frame);
-            formats.store(stage, &mut left, &range);
-            for plane in left.planes {
-                let stored = frame.plane(&plane.name);
-                assert!(
-                    stored == Some(&plane.samples),
-                    "{} {}",
-                    session.method().name(),
-                    plane.name
-                );
+    let sizes = [[1, 1], [48, 40], [67, 131]];
+    for (scene, camera) in sizes.map(torus) {
+        for method in Method::all().into_iter().filter(one_by_one) {
+            let mut session = Session::new(&scene, method, &exec).unwrap();
+            let mut frame = session.stored(&camera, formats, true).unwrap().frame;
+            session.resume(None);
+            let (job, range) = session.storing(&camera, formats).unwrap();
+            for stage in method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
+                let mut left = method.stage(&job, stage.name, &frame).unwrap();
+                formats.store(stage, &mut left, &range);
+                for plane in left.planes {
+                    let stored = frame.plane(&plane.name);
+                    assert!(stored == Some(&plane.samples), "{} {}", method.name(), plane.name);
+                }
             }
+            frame.planes.retain(|plane| session.is_shown(plane));
+            let shown = session.stored_planes(&camera, formats).unwrap();
+            let sorted = |mut frame: Frame<f32>| {
+                frame.planes.sort_by(|a, b| a.name.cmp(&b.name));
+                frame
+            };
+            assert_eq!(sorted(frame), sorted(shown), "{}", method.name());
         }
-        frame.planes.retain(|plane| session.is_shown(plane));
-        let shown = session.stored_planes(&camera, formats).unwrap();
-        let sorted = |mut frame: Frame<f32>| {
-            frame.planes.sort_by(|a, b| a.name.cmp(&b.name));
-            frame
-        };
-        assert_eq!(sorted(frame), sorted(shown), "{}", session.method().name());
     }
 }
 
