@@ -15,6 +15,11 @@ use std::time::{Duration, Instant};
 /// Width and height of pictures.
 pub(super) const SIZE: [u32; 2] = [240, 180];
 
+/// What is found as it is, and with the cure.
+pub(super) fn both(found: impl Fn(bool) -> Result<Found>) -> Result<[Found; 2]> {
+    Ok([found(false)?, found(true)?])
+}
+
 /// Progress that nobody sees.
 pub(super) fn quiet(_: &str, _: u64, _: u64) {}
 
@@ -60,7 +65,7 @@ impl Case {
     }
 
     /// The picture against another one, by the name of a metric.
-    pub(super) fn against(self, truth: &Frame<f32>, metric: &str, exec: &Exec) -> Result<Found> {
+    pub(super) fn against(&self, truth: &Frame<f32>, metric: &str, exec: &Exec) -> Result<Found> {
         let (frame, time) = self.draw(exec)?;
         let errors = Errors::of(&frame, truth, exec)?;
         let error = (Metric::named(metric)?.of)(&errors)
@@ -68,10 +73,16 @@ impl Case {
         Ok(Found { error, picture: frame.color("")?.clone(), time: Some(time) })
     }
 
-    /// The picture against that of the exact shape.
-    pub(super) fn against_shape(self, shape: Shape, metric: &str, exec: &Exec) -> Result<Found> {
-        let truth = self.truth(&exact(shape), exec)?;
-        self.against(&truth, metric, exec)
+    /// The picture, and that of the method which is the cure, against another one.
+    pub(super) fn and_cured(
+        self,
+        method: Method,
+        truth: &Frame<f32>,
+        metric: &str,
+        exec: &Exec,
+    ) -> Result<[Found; 2]> {
+        let plain = self.against(truth, metric, exec)?;
+        Ok([plain, Self { method, ..self }.against(truth, metric, exec)?])
     }
 
     /// The true picture of surfaces from where this is seen.

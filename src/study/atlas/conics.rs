@@ -35,6 +35,7 @@
 //!
 //! `Decided:` both formulas are taken from work that quotes them; a test holds both boxes to a sampled rim.
 
+use super::case::both;
 use super::numbers::{ahead, outside, shown, tilted, visible};
 use super::{Failure, Found};
 use crate::error::{Error, Result};
@@ -205,7 +206,12 @@ fn small(k: u32, distance: f64) -> Mapping<f32> {
     Mapping { u, v, p }
 }
 
-fn conic(distance: f64, cured: bool, _: &Exec) -> Result<Found> {
+fn conic(distance: f64, _: &Exec) -> Result<[Found; 2]> {
+    both(|cured| small_ones(distance, cured))
+}
+
+/// All small discs: the boxes of the footprints that this crate has of them, or those of the textbook.
+fn small_ones(distance: f64, cured: bool) -> Result<Found> {
     let mut picture = Plane::filled(CELLS * CELL, CELLS * CELL, [0.0; 3]);
     let mut most = 0.0;
     for k in 0..CELLS * CELLS {
@@ -272,24 +278,23 @@ fn crossing(distance: f64) -> Mapping<f64> {
     Mapping { u: three(level.cross(normal)), v: three(level), p: three(center) }
 }
 
-fn hyperbola(distance: f64, cured: bool, _: &Exec) -> Result<Found> {
+fn hyperbola(distance: f64, _: &Exec) -> Result<[Found; 2]> {
     const SIDE: u32 = 240;
     // A wide lens, to see beyond the disc.
     let camera = ahead(SIDE, 0.25 * f64::from(SIDE))?;
     let disc = tilted(distance, askew());
     let rect = visible(&camera, disc);
     let [[x, half_x], [y, half_y]] = crossing(distance).sides();
-    let (error, picture) = outside(&camera, disc, |column, row| {
+    let boxed = |column, row| {
         let [px, py] = [column, row].map(|v| f64::from(v) + 0.5 - 0.5 * f64::from(SIDE));
         let [px, py] = [px, -py].map(|v| v / f64::from(camera.fx));
-        if cured {
-            rect.is_some_and(|rect| rect.contains(column, row))
-        } else {
-            // Comparisons that NaN fails.
-            (px - x).abs() <= half_x && (py - y).abs() <= half_y
-        }
-    });
-    Ok(Found { error, picture, time: None })
+        // Comparisons that NaN fails.
+        (px - x).abs() <= half_x && (py - y).abs() <= half_y
+    };
+    Ok([
+        outside(&camera, disc, boxed),
+        outside(&camera, disc, |x, y| rect.is_some_and(|rect| rect.contains(x, y))),
+    ])
 }
 
 #[cfg(test)]

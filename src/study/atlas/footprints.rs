@@ -1,10 +1,10 @@
 //! Footprints that are not what a disc projects to.
 
-use super::case::{Case, checked, exact, quiet};
+use super::case::{Case, both, checked, exact, quiet};
 use super::{Failure, Found};
 use crate::error::Result;
 use crate::frame::Exec;
-use crate::method::ewa;
+use crate::method::{Method, ewa};
 use crate::number::elementary::{cos, sin, tan};
 use crate::scene::{Camera, Cloud, Lens, Pose, Scene, Surfels};
 use crate::source::Shape;
@@ -66,20 +66,26 @@ pub(super) const FAILURES: [Failure; 4] = [
 
 const FLOOR: Shape = Shape::Checkerboard { square: 1.0 };
 
-fn splatting(outline: Outline, low_pass: f32) -> ewa::Settings {
+fn splatting(outline: Outline, low_pass: f32) -> Method {
     let kernel = Kernel { outline, low_pass, ..Kernel::DEFAULT };
-    ewa::Settings { kernel, ..ewa::Settings::default() }
+    ewa::Settings { kernel, ..ewa::Settings::default() }.into()
 }
 
-fn grazing(degrees: f64, cured: bool, exec: &Exec) -> Result<Found> {
-    let outline = if cured { Outline::RayCast } else { Outline::Affine };
-    one_disc(DVec3::Z * -3.0, degrees, outline, exec)
+fn grazing(degrees: f64, exec: &Exec) -> Result<[Found; 2]> {
+    let found = |cured| {
+        let outline = if cured { Outline::RayCast } else { Outline::Affine };
+        one_disc(DVec3::Z * -3.0, degrees, outline, exec)
+    };
+    both(found)
 }
 
-fn wide(degrees: f64, cured: bool, exec: &Exec) -> Result<Found> {
-    let outline = if cured { Outline::Perspective } else { Outline::Affine };
+fn wide(degrees: f64, exec: &Exec) -> Result<[Found; 2]> {
     let center = DVec3::new(3.0 * tan(degrees.to_radians()), 0.0, -3.0);
-    one_disc(center, -degrees, outline, exec)
+    let found = |cured| {
+        let outline = if cured { Outline::Perspective } else { Outline::Affine };
+        one_disc(center, -degrees, outline, exec)
+    };
+    both(found)
 }
 
 /// A disc of the radius 1 around a point, its normal turned about +y from +z, in the middle of a picture whose plane is z = -1.
@@ -116,31 +122,35 @@ fn one_disc(center: DVec3, degrees: f64, outline: Outline, exec: &Exec) -> Resul
     Ok(Found { error, picture: frame.color("")?.clone(), time: Some(time) })
 }
 
-fn near(radii: f64, cured: bool, exec: &Exec) -> Result<Found> {
-    let outline = if cured { Outline::RayCast } else { Outline::Affine };
-    let case = Case::of_shape(FLOOR, 2000, splatting(outline, Kernel::DEFAULT.low_pass).into())?;
+fn near(radii: f64, exec: &Exec) -> Result<[Found; 2]> {
+    let method = |outline| splatting(outline, Kernel::DEFAULT.low_pass);
+    let case = Case::of_shape(FLOOR, 2000, method(Outline::Affine))?;
     let radii_of = case.scene.surfels.radius().iter();
     let least = radii_of.fold(f32::INFINITY, |a, b| if *b < a { *b } else { a });
     let eye = DVec3::new(0.0, radii * f64::from(least), 0.0);
     let target = eye + DVec3::new(0.5, -0.2, -1.0);
     let case = case.seen_from(eye, target, 60.0)?;
     let truth = case.truth(&exact(FLOOR), exec)?;
-    let (frame, time) = case.draw(exec)?;
-    let both = frame.scalar("A")?.values().iter().zip(truth.scalar("A")?.values());
-    let wrong = both.filter(|(found, truth)| (**found > 0.0) != (**truth > 0.0)).count();
-    let error = 1e3 * wrong as f64 / truth.scalar("A")?.values().len() as f64;
-    Ok(Found { error, picture: frame.color("")?.clone(), time: Some(time) })
+    let covered = truth.scalar("A")?.values();
+    let found = |case: &Case| {
+        let (frame, time) = case.draw(exec)?;
+        let pixels = frame.scalar("A")?.values().iter().zip(covered);
+        let wrong = pixels.filter(|(found, truth)| (**found > 0.0) != (**truth > 0.0)).count();
+        let error = 1e3 * wrong as f64 / covered.len() as f64;
+        Ok(Found { error, picture: frame.color("")?.clone(), time: Some(time) })
+    };
+    Ok([found(&case)?, found(&Case { method: method(Outline::RayCast), ..case })?])
 }
 
-fn minify(pixels: f64, cured: bool, exec: &Exec) -> Result<Found> {
+fn minify(pixels: f64, exec: &Exec) -> Result<[Found; 2]> {
     const SIDE: u32 = 80;
-    let low_pass = if cured { Kernel::DEFAULT.low_pass } else { 0.0 };
     let camera =
         Camera::new(SIDE, SIDE, Shape::Sphere.default_pose(), Shape::Sphere.default_lens())?;
     let side = pixels * 4.0 / f64::from(camera.fy);
     let surfels = checked(Shape::Sphere.surfels(100_000, 0)?, side)?;
     let scene = Scene::unlit("checks", surfels);
     let truth = of_points(&scene, (&camera, &[]), exec, &quiet)?.frame;
-    let method = splatting(Outline::Affine, low_pass).into();
-    Case { scene, camera, method, grouping: None }.against(&truth, "rmse", exec)
+    let method = splatting(Outline::Affine, 0.0);
+    let cure = splatting(Outline::Affine, Kernel::DEFAULT.low_pass);
+    Case { scene, camera, method, grouping: None }.and_cured(cure, &truth, "rmse", exec)
 }

@@ -56,15 +56,17 @@ fn rules(overlap: f32) -> Rules {
     Rules { overlap, opposite: true, coplanar: None }
 }
 
-fn overlap(c: f64, cured: bool, exec: &Exec) -> Result<Found> {
+fn overlap(c: f64, exec: &Exec) -> Result<[Found; 2]> {
     let splats = ewa::Settings::default();
-    let c = if cured { 1.0 } else { c };
     let mut case = Case::of_shape(Shape::Cluster, 20_000, splats.into())?;
     let truth = case.draw(exec)?.0;
     case.method = single_pass::Settings { splats, depth: DepthTest::Plain }.into();
-    case.grouping =
-        Some(Grouping { rules: rules(c as f32), count: None, extension: Extension::None });
-    case.against(&truth, "rmse", exec)
+    let mut found = |c: f64| {
+        let rules = rules(c as f32);
+        case.grouping = Some(Grouping { rules, count: None, extension: Extension::None });
+        case.against(&truth, "rmse", exec)
+    };
+    Ok([found(c)?, found(1.0)?])
 }
 
 /// A torus through which one sees, and its picture by peeling.
@@ -78,30 +80,33 @@ fn torus(count: usize, splats: ewa::Settings, exec: &Exec) -> Result<(Case, Fram
     Ok((case, truth))
 }
 
-fn holes(groups: f64, cured: bool, exec: &Exec) -> Result<Found> {
+fn holes(groups: f64, exec: &Exec) -> Result<[Found; 2]> {
     let splats = ewa::Settings::BOTH_SIDES;
     let (mut case, truth) = torus(4000, splats, exec)?;
-    let extension = if cured { Extension::Enlarge } else { Extension::None };
     let holes = transparent::Holes::Background;
     // Algorithm 2 to the letter.
     let bin_edges = BinEdges::Common;
     let settings =
         transparent::Settings { splats, holes, bin_edges, ..transparent::Settings::default() };
     case.method = settings.into();
-    case.grouping = Some(Grouping { rules: rules(1.0), count: Some(groups as usize), extension });
-    case.against(&truth, "rmse", exec)
+    let count = Some(groups as usize);
+    let mut found = |extension| {
+        case.grouping = Some(Grouping { rules: rules(1.0), count, extension });
+        case.against(&truth, "rmse", exec)
+    };
+    Ok([found(Extension::None)?, found(Extension::Enlarge)?])
 }
 
-fn arcs(bins: f64, cured: bool, exec: &Exec) -> Result<Found> {
+fn arcs(bins: f64, exec: &Exec) -> Result<[Found; 2]> {
     let splats = ewa::Settings::BOTH_SIDES;
     let (mut case, truth) = torus(20_000, splats, exec)?;
-    let layers = transparent::Settings { splats, ..transparent::Settings::default() };
-    let bins = BinCount::Count(bins as u32);
-    let swept = transparent::Settings { bins, bin_edges: BinEdges::Common, ..layers };
-    let layers = if cured { layers } else { swept };
-    let settings = transparent_hq::Settings { layers, ..transparent_hq::Settings::default() };
-    case.method = Method::from(settings);
     let extension = Extension::Add { most: 0.5 };
     case.grouping = Some(Grouping { rules: rules(1.0), count: Some(4), extension });
-    case.against(&truth, "rmse", exec)
+    let method = |layers| -> Method {
+        transparent_hq::Settings { layers, ..transparent_hq::Settings::default() }.into()
+    };
+    let layers = transparent::Settings { splats, ..transparent::Settings::default() };
+    let bins = BinCount::Count(bins as u32);
+    case.method = method(transparent::Settings { bins, bin_edges: BinEdges::Common, ..layers });
+    case.and_cured(method(layers), &truth, "rmse", exec)
 }

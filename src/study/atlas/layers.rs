@@ -1,11 +1,11 @@
 //! Layers told apart by epsilon.
 
-use super::case::Case;
+use super::case::{Case, exact};
 use super::{Failure, Found};
 use crate::error::Result;
 use crate::frame::Exec;
-use crate::method::ewa;
 use crate::method::single_pass::{self, BinCount, DepthTest};
+use crate::method::{Method, ewa};
 use crate::scene::{Cloud, Scene, Surfels};
 use crate::source::Shape;
 use crate::splat::Epsilon;
@@ -64,32 +64,34 @@ pub(super) const FAILURES: [Failure; 4] = [
     },
 ];
 
-fn epsilon(epsilon: Epsilon) -> ewa::Settings {
-    ewa::Settings { epsilon, ..ewa::Settings::default() }
+fn epsilon(epsilon: Epsilon) -> Method {
+    ewa::Settings { epsilon, ..ewa::Settings::default() }.into()
 }
 
-fn sheets(radii: f64, cured: bool, exec: &Exec) -> Result<Found> {
+fn sheets(radii: f64, exec: &Exec) -> Result<[Found; 2]> {
     let trial = Shape::Sheets { gap: 1.0 }.surfels(20_000, 0)?;
     let radius = f64::from(Epsilon::MedianRadii(1.0).resolve(&trial));
     let shape = Shape::Sheets { gap: (radii * radius) as f32 };
-    let wanted =
-        if cured { Epsilon::World((radii * radius / 2.0) as f32) } else { Epsilon::DEFAULT };
-    Case::of_shape(shape, 20_000, epsilon(wanted).into())?.against_shape(shape, "rmse", exec)
+    let case = Case::of_shape(shape, 20_000, epsilon(Epsilon::DEFAULT))?;
+    let truth = case.truth(&exact(shape), exec)?;
+    let half = Epsilon::World((radii * radius / 2.0) as f32);
+    case.and_cured(epsilon(half), &truth, "rmse", exec)
 }
 
-fn slope(radii: f64, cured: bool, exec: &Exec) -> Result<Found> {
-    let wanted = if cured { Epsilon::DEFAULT } else { Epsilon::MedianRadii(radii as f32) };
-    let shape = Shape::Sphere;
-    Case::of_shape(shape, 2000, epsilon(wanted).into())?.against_shape(shape, "normal-99", exec)
+fn slope(radii: f64, exec: &Exec) -> Result<[Found; 2]> {
+    let swept = Epsilon::MedianRadii(radii as f32);
+    let case = Case::of_shape(Shape::Sphere, 2000, epsilon(swept))?;
+    let truth = case.truth(&exact(Shape::Sphere), exec)?;
+    case.and_cured(epsilon(Epsilon::DEFAULT), &truth, "normal-99", exec)
 }
 
-fn density(times: f64, cured: bool, exec: &Exec) -> Result<Found> {
+fn density(times: f64, exec: &Exec) -> Result<[Found; 2]> {
     let surfels = halves(40_000, times)?;
     let most = surfels.radius().iter().fold(0.0, |a, b| if *b > a { *b } else { a });
-    let wanted = if cured { Epsilon::World(2.0 * most) } else { Epsilon::DEFAULT };
-    let mut case = Case::of_shape(Shape::Sphere, 1, epsilon(wanted).into())?;
+    let mut case = Case::of_shape(Shape::Sphere, 1, epsilon(Epsilon::DEFAULT))?;
     case.scene = Scene::lit("sphere", surfels);
-    case.against_shape(Shape::Sphere, "normal-99", exec)
+    let truth = case.truth(&exact(Shape::Sphere), exec)?;
+    case.and_cured(epsilon(Epsilon::World(2.0 * most)), &truth, "normal-99", exec)
 }
 
 /// The left half of a sphere of so many surfels, and the right half of one of `times` as few.
@@ -111,11 +113,13 @@ fn halves(count: usize, times: f64) -> Result<Surfels> {
     Ok(Surfels::new(dense)?.0)
 }
 
-fn bins(count: f64, cured: bool, exec: &Exec) -> Result<Found> {
+fn bins(count: f64, exec: &Exec) -> Result<[Found; 2]> {
     let splats = ewa::Settings::default();
     let mut case = Case::of_shape(Shape::Sphere, 5000, splats.into())?;
     let truth = case.draw(exec)?.0;
-    let bins = if cured { BinCount::Epsilon } else { BinCount::Count(count as u32) };
-    case.method = single_pass::Settings { splats, depth: DepthTest::Voronoi(bins) }.into();
-    case.against(&truth, "rmse", exec)
+    let method = |bins| -> Method {
+        single_pass::Settings { splats, depth: DepthTest::Voronoi(bins) }.into()
+    };
+    case.method = method(BinCount::Count(count as u32));
+    case.and_cured(method(BinCount::Epsilon), &truth, "rmse", exec)
 }

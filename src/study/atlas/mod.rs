@@ -52,8 +52,8 @@ pub struct Failure {
     pub limit: f64,
     /// What cures it.
     pub cure: &'static str,
-    /// Measures a value, with the cure or without it.
-    pub at: fn(f64, bool, &Exec) -> Result<Found>,
+    /// Measures a value: as it is, and with the cure.
+    pub at: fn(f64, &Exec) -> Result<[Found; 2]>,
 }
 
 /// What is found at a value.
@@ -100,20 +100,19 @@ pub fn failures() -> Vec<&'static Failure> {
 }
 
 impl Failure {
-    /// Measures every value. `progress` is told how many of how many measurements are done.
+    /// Measures every value. `progress` is told how many of how many values are done.
     ///
     /// # Errors
     /// As drawing the scenes.
     pub fn curve(&'static self, exec: &Exec, progress: &dyn Fn(u64, u64)) -> Result<Curve> {
-        let count = 2 * self.values.len() as u64;
-        let mut sweeps = [Vec::new(), Vec::new()];
-        for (i, &value) in self.values.iter().enumerate() {
-            for (k, sweep) in sweeps.iter_mut().enumerate() {
-                progress((2 * i + k) as u64, count);
-                sweep.push((self.at)(value, k == 1, exec)?);
-            }
+        let count = self.values.len() as u64;
+        let (mut plain, mut cured) = (Vec::new(), Vec::new());
+        for (done, &value) in (0..).zip(self.values) {
+            progress(done, count);
+            let [as_it_is, with_cure] = (self.at)(value, exec)?;
+            plain.push(as_it_is);
+            cured.push(with_cure);
         }
-        let [plain, cured] = sweeps;
         let breaks = plain.iter().position(|found| found.error > self.limit);
         let shown = match breaks {
             Some(at) => [at.checked_sub(1).map(|i| &plain[i]), Some(&plain[at]), Some(&cured[at])],
@@ -137,8 +136,8 @@ impl Failure {
     pub fn cost(&self, at: usize, exec: &Exec) -> Result<Option<f64>> {
         let mut times = [Vec::new(), Vec::new()];
         for _ in 0..5 {
-            for (k, times) in times.iter_mut().enumerate() {
-                times.extend((self.at)(self.values[at], k == 1, exec)?.time);
+            for (times, found) in times.iter_mut().zip((self.at)(self.values[at], exec)?) {
+                times.extend(found.time);
             }
         }
         let medians = times.map(|mut times| {

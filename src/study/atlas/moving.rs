@@ -1,11 +1,11 @@
 //! Deferred splatting over frames.
 
-use super::case::{SIZE, change, checked, quiet};
+use super::case::{SIZE, both, change, checked, quiet};
 use super::{Failure, Found};
 use crate::error::Result;
 use crate::frame::{Exec, Plane};
 use crate::index::mipmap;
-use crate::method::{Session, deferred, ewa};
+use crate::method::{Method, Session, deferred, ewa};
 use crate::scene::objects::{Geometry, Motion, Object, Objects};
 use crate::scene::transform::rotation;
 use crate::scene::{Camera, Lens, Pose, Primitives, Scene, Similarity, Surfels};
@@ -45,10 +45,8 @@ pub(super) const FAILURES: [Failure; 2] = [
 /// The sphere is at rest up to this frame, and turned in the next.
 const REST: u32 = 2;
 
-fn turn(degrees: f64, cured: bool, exec: &Exec) -> Result<Found> {
+fn turn(degrees: f64, exec: &Exec) -> Result<[Found; 2]> {
     let splats = ewa::Settings::default();
-    let settings =
-        deferred::Settings { splats, flags: 1, second: cured, ..deferred::Settings::default() };
     let [width, height] = SIZE;
     let pose = Pose { eye: DVec3::new(0.5, 0.5, 5.0), target: DVec3::ZERO, up: DVec3::Y };
     let camera = Camera::new(width, height, pose, Lens::FieldOfView(34.0))?;
@@ -58,20 +56,24 @@ fn turn(degrees: f64, cured: bool, exec: &Exec) -> Result<Found> {
         Ok(Scene { objects, ..Scene::lit("turn", Surfels::none()) })
     };
     let (rest, turned) = (scene(0)?, scene(REST + 1)?);
-    let mut before = Session::new(&rest, settings.into(), exec)?;
-    for _ in 0..=REST {
-        before.render(&camera)?;
-    }
-    let mut session = Session::new(&turned, settings.into(), exec)?;
-    session.resume(before.seen().cloned());
-    let start = Instant::now();
-    let frame = session.render(&camera)?.frame.clone();
-    let time = Some(start.elapsed());
     let flat = flatten(&turned, exec)?;
     let truth = Session::new(&flat, splats.into(), exec)?.render(&camera)?.frame.clone();
-    let errors = Errors::of(&frame, &truth, exec)?;
-    let error = (Metric::named("rmse")?.of)(&errors).unwrap_or(0.0);
-    Ok(Found { error, picture: frame.color("")?.clone(), time })
+    both(|second| {
+        let settings =
+            deferred::Settings { splats, flags: 1, second, ..deferred::Settings::default() };
+        let mut before = Session::new(&rest, settings.into(), exec)?;
+        for _ in 0..=REST {
+            before.render(&camera)?;
+        }
+        let mut session = Session::new(&turned, settings.into(), exec)?;
+        session.resume(before.seen().cloned());
+        let start = Instant::now();
+        let frame = session.render(&camera)?.frame.clone();
+        let time = Some(start.elapsed());
+        let errors = Errors::of(&frame, &truth, exec)?;
+        let error = (Metric::named("rmse")?.of)(&errors).unwrap_or(0.0);
+        Ok(Found { error, picture: frame.color("")?.clone(), time })
+    })
 }
 
 /// A sphere that is turned by some degrees about +y after [`REST`], before a sheet.
@@ -109,39 +111,45 @@ fn towards(frame: u32) -> Result<Camera> {
     Camera::new(SIDE, SIDE, pose, Shape::Sphere.default_lens())
 }
 
-fn dense(wanted: f64, cured: bool, exec: &Exec) -> Result<Found> {
+fn dense(wanted: f64, exec: &Exec) -> Result<[Found; 2]> {
     let first = towards(0)?;
     // The near half of the sphere covers pi (f / 4)^2 pixels.
     let covered = std::f64::consts::PI * f64::from(first.fy) * f64::from(first.fy) / 16.0;
     let pixel = 4.0 / f64::from(first.fy);
     let surfels = checked(Shape::Sphere.surfels((2.0 * wanted * covered) as usize, 0)?, pixel)?;
     let plain = Scene::unlit("dense", surfels);
-    let scene = if cured {
-        let mipmap = mipmap::build(&plain.surfels, 5, exec, &quiet)?;
-        Scene::unlit("dense", plain.surfels.clone().with_mipmap(Some(mipmap))?)
-    } else {
-        plain.clone()
+    let mipmap = mipmap::build(&plain.surfels, 5, exec, &quiet)?;
+    let cured = Scene::unlit("dense", plain.surfels.clone().with_mipmap(Some(mipmap))?);
+    let (full, _) = approach(&plain, ewa::Settings::default().into(), exec)?;
+    let found = |scene: &Scene| {
+        let (mut pictures, time) = approach(scene, deferred::Settings::default().into(), exec)?;
+        let changes = pictures.windows(2).zip(full.windows(2)).map(|(found, full)| {
+            let [found, full] = [found, full].map(|pair| change(&pair[0], &pair[1]));
+            rmse(found.as_flattened(), full.as_flattened())
+        });
+        let error = changes.sum::<f64>() / f64::from(FRAMES[0]);
+        let picture = pictures.pop().unwrap_or_else(|| Plane::filled(SIDE, SIDE, [0.0; 3]));
+        Ok(Found { error, picture, time: Some(time) })
     };
-    let mut sessions = [
-        Session::new(&scene, deferred::Settings::default().into(), exec)?,
-        Session::new(&plain, ewa::Settings::default().into(), exec)?,
-    ];
-    let mut before: Option<[Plane<[f32; 3]>; 2]> = None;
-    let (mut sum, mut time) = (0.0, Duration::ZERO);
-    let mut picture = Plane::filled(SIDE, SIDE, [0.0; 3]);
+    Ok([found(&plain)?, found(&cured)?])
+}
+
+/// The pictures of all frames but those before, and what the last took.
+fn approach(
+    scene: &Scene,
+    method: Method,
+    exec: &Exec,
+) -> Result<(Vec<Plane<[f32; 3]>>, Duration)> {
+    let mut session = Session::new(scene, method, exec)?;
+    let (mut pictures, mut time) = (Vec::new(), Duration::ZERO);
     let [frames, ahead] = FRAMES;
     for frame in 0..=frames + ahead {
-        let camera = towards(frame)?;
         let start = Instant::now();
-        let found = sessions[0].render(&camera)?.frame.color("")?.clone();
+        let picture = session.render(&towards(frame)?)?.frame.color("")?.clone();
         time = start.elapsed();
-        let full = sessions[1].render(&camera)?.frame.color("")?.clone();
-        let both = [found.clone(), full];
-        if let Some([a, b]) = before.filter(|_| frame > ahead) {
-            let [found, full] = [change(&a, &both[0]), change(&b, &both[1])];
-            sum += rmse(found.as_flattened(), full.as_flattened());
+        if frame >= ahead {
+            pictures.push(picture);
         }
-        (before, picture) = (Some(both), found);
     }
-    Ok(Found { error: sum / f64::from(frames), picture, time: Some(time) })
+    Ok((pictures, time))
 }

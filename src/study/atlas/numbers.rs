@@ -1,5 +1,6 @@
 //! Formulas that lose digits, and bounds that fall short: errors of no method's picture.
 
+use super::case::both;
 use super::{Failure, Found};
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Plane, Rect};
@@ -55,7 +56,12 @@ pub(super) const FAILURES: [Failure; 3] = [
 /// The tangent of the angle between the view and the thin disc's plane.
 const THIN: f64 = 1.0 / 1024.0;
 
-fn thin(radius: f64, cured: bool, _: &Exec) -> Result<Found> {
+fn thin(radius: f64, _: &Exec) -> Result<[Found; 2]> {
+    both(|cured| edge_on(radius, cured))
+}
+
+/// A thin ellipse: q as this crate has it, or the textbook's.
+fn edge_on(radius: f64, cured: bool) -> Result<Found> {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let long = 1.0 / (1.0 + THIN * THIN).sqrt();
     // Seen along -z: half axes r (1, 1) / sqrt 2 and r THIN (1, -1) / sqrt 2.
@@ -135,15 +141,15 @@ fn splat<R: Exact>(
 }
 
 /// The disc before a camera whose picture holds it.
-fn bounds(distance: f64, cured: bool, _: &Exec) -> Result<Found> {
+fn bounds(distance: f64, _: &Exec) -> Result<[Found; 2]> {
     // The disc is about half the picture, wherever it is.
     let focal = 0.25 * f64::from(SIDE) * distance;
     let camera = ahead(SIDE, focal.at_most(0.25 * f64::from(SIDE) * 4.0))?;
-    Ok(beyond_the_square(&camera, (distance, tilted(distance, DVec3::X)), cured))
+    Ok(beyond_the_square(&camera, (distance, tilted(distance, DVec3::X))))
 }
 
 /// A disc at a depth of four radii that faces the eye, at an angle to the axis, in the middle of the picture.
-fn bounds_off_axis(degrees: f64, cured: bool, _: &Exec) -> Result<Found> {
+fn bounds_off_axis(degrees: f64, _: &Exec) -> Result<[Found; 2]> {
     const DISTANCE: f64 = 4.0;
     let camera = ahead(SIDE, f64::from(SIDE) / 2.0)?;
     let away = degrees.to_radians();
@@ -151,29 +157,24 @@ fn bounds_off_axis(degrees: f64, cured: bool, _: &Exec) -> Result<Found> {
     let center = DVec3::new(DISTANCE * tan(away), 0.0, -DISTANCE);
     let normal = DVec3::new(-sin(away), 0.0, cos(away));
     let camera = Camera { cx, ..camera };
-    Ok(beyond_the_square(&camera, (DISTANCE, (center, normal)), cured))
+    Ok(beyond_the_square(&camera, (DISTANCE, (center, normal))))
 }
 
-/// The pixels of a disc of the radius 1 at a depth that are beyond the square, or with the cure beyond the bounds, per mille.
-fn beyond_the_square(
-    camera: &Camera,
-    (distance, disc): (f64, (DVec3, DVec3)),
-    cured: bool,
-) -> Found {
+/// The pixels of a disc of the radius 1 at a depth that are beyond the square, and with the cure beyond the bounds, per mille.
+fn beyond_the_square(camera: &Camera, (distance, disc): (f64, (DVec3, DVec3))) -> [Found; 2] {
     let focal = f64::from(camera.fx);
     let (center, _) = disc;
     let middle = DVec3::new(center.x, center.y, 0.0) * focal / distance;
     let reach = focal / distance;
     let rect = visible(camera, disc);
-    let (error, picture) = outside(camera, disc, |x, y| {
+    let square = |x, y| {
         let [px, py] = from_the_axis(camera, [x, y]);
-        if cured {
-            rect.is_some_and(|rect| rect.contains(x, y))
-        } else {
-            (px - middle.x).abs() <= reach && (py + middle.y).abs() <= reach
-        }
-    });
-    Found { error, picture, time: None }
+        (px - middle.x).abs() <= reach && (py + middle.y).abs() <= reach
+    };
+    [
+        outside(camera, disc, square),
+        outside(camera, disc, |x, y| rect.is_some_and(|rect| rect.contains(x, y))),
+    ]
 }
 
 /// Where the middle of a pixel is beside the axis, in pixels.
@@ -206,7 +207,7 @@ pub(super) fn outside(
     camera: &Camera,
     (center, normal): (DVec3, DVec3),
     held: impl Fn(u32, u32) -> bool,
-) -> (f64, Plane<[f32; 3]>) {
+) -> Found {
     let (side, focal) = (camera.width, f64::from(camera.fx));
     let (mut inside, mut outside) = (0_u32, 0_u32);
     let mut picture = Plane::filled(side, side, [0.0; 3]);
@@ -220,7 +221,8 @@ pub(super) fn outside(
         outside += u32::from(disc && !held);
         *pixel = shown(disc, held);
     }
-    (1e3 * f64::from(outside) / f64::from(inside.max(1)), picture)
+    let error = 1e3 * f64::from(outside) / f64::from(inside.max(1));
+    Found { error, picture, time: None }
 }
 
 /// What a pixel shows: light where a disc is found, red where it is missed, blue where it is not.

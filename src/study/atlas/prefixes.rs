@@ -1,6 +1,6 @@
 //! Prefixes of orders \[BJFM19, 6\], and meshes as surfels.
 
-use super::case::{Case, SIZE, quiet};
+use super::case::{Case, SIZE, both, quiet};
 use super::orders::{geometry, mesh, objects, order, order_along, seen, torus};
 use super::{Failure, Found};
 use crate::error::Result;
@@ -82,47 +82,58 @@ fn blue() -> Method {
     blue::Settings::default().into()
 }
 
-/// The picture of what a view draws against the triangles, by holes.
-fn against(drawn: Scene, whole: &Scene, camera: Camera, exec: &Exec) -> Result<Found> {
-    let case = Case { scene: drawn, camera, method: blue(), grouping: None };
-    let truth = case.truth(&[Surface::Triangles(whole.primitives.triangles.clone())], exec)?;
-    case.against(&truth, "holes", exec)
+/// The pictures of what a view draws, as it is and with the cure, against the triangles, by holes.
+fn against(drawn: [Scene; 2], whole: &Scene, camera: Camera, exec: &Exec) -> Result<[Found; 2]> {
+    let [plain, cured] = drawn.map(|scene| Case { scene, camera, method: blue(), grouping: None });
+    let truth = plain.truth(&[Surface::Triangles(whole.primitives.triangles.clone())], exec)?;
+    Ok([plain.against(&truth, "holes", exec)?, cured.against(&truth, "holes", exec)?])
 }
 
 fn camera(eye: DVec3, side: u32, lens: Lens) -> Result<Camera> {
     Camera::new(side, side, Pose { eye, target: DVec3::ZERO, up: DVec3::Y }, lens)
 }
 
-fn thin(gap: f64, cured: bool, exec: &Exec) -> Result<Found> {
+fn thin(gap: f64, exec: &Exec) -> Result<[Found; 2]> {
     // 500 surfels on both sides, 8 units: about 0.136 apart.
     const APART: f64 = 0.136;
     let plate = cuboid(DVec3::new(1.0, 1.0, gap * APART / 2.0))?;
-    let order = if cured { order_along } else { order };
-    let order = order(&plate, (&Directions::Cube, 384), 500, exec)?;
-    let objects = objects(geometry(order, Primitives::default())?, &[Similarity::IDENTITY])?;
     let camera = camera(DVec3::new(0.0, 0.0, 5.0), 256, Lens::FieldOfView(30.0))?;
-    // So small that all surfels are asked for, as large as they cover with.
-    against(seen(&objects, 0.125, &camera, exec)?, &plate, camera, exec)
+    let from = (&Directions::Cube, 384);
+    let drawn = |order| {
+        let objects = objects(geometry(order, Primitives::default())?, &[Similarity::IDENTITY])?;
+        // So small that all surfels are asked for, as large as they cover with.
+        seen(&objects, 0.125, &camera, exec)
+    };
+    let plain = drawn(order(&plate, from, 500, exec)?)?;
+    let cured = drawn(order_along(&plate, from, 500, exec)?)?;
+    against([plain, cured], &plate, camera, exec)
 }
 
-fn short(count: f64, cured: bool, exec: &Exec) -> Result<Found> {
+fn short(count: f64, exec: &Exec) -> Result<[Found; 2]> {
     let torus = torus()?;
     let order = order(&torus, (&Directions::Cube, 256), 20_000, exec)?;
     let objects = objects(geometry(order, Primitives::default())?, &[Similarity::IDENTITY])?;
     let pose = DVec3::new(2.0, 3.0, 5.0);
     let camera = camera(pose, 256, Lens::Orthographic(3.2))?;
-    let count = if cured && count < 100.0 { 100.0 } else { count };
-    // r of the prefix asked for, as a size in this picture.
-    let radius = objects.geometries()[0].prefix().map_or(0.0, |prefix| {
-        let estimate = prefix.estimate();
-        f64::from(estimate.distance) * (f64::from(estimate.count) / count).sqrt()
-    });
-    let size = (2.0 * radius * f64::from(camera.fy)) as f32;
-    against(seen(&objects, size, &camera, exec)?, &torus, camera, exec)
+    let drawn = |count: f64| {
+        // r of the prefix asked for, as a size in this picture.
+        let radius = objects.geometries()[0].prefix().map_or(0.0, |prefix| {
+            let estimate = prefix.estimate();
+            f64::from(estimate.distance) * (f64::from(estimate.count) / count).sqrt()
+        });
+        let size = (2.0 * radius * f64::from(camera.fy)) as f32;
+        seen(&objects, size, &camera, exec)
+    };
+    let cured = drawn(if count < 100.0 { 100.0 } else { count })?;
+    against([drawn(count)?, cured], &torus, camera, exec)
 }
 
-fn long(length: f64, cured: bool, exec: &Exec) -> Result<Found> {
-    let pieces = if cured { length as u32 } else { 1 };
+fn long(length: f64, exec: &Exec) -> Result<[Found; 2]> {
+    Ok([bar(length, 1, exec)?, bar(length, length as u32, exec)?])
+}
+
+/// A bar of so many pieces.
+fn bar(length: f64, pieces: u32, exec: &Exec) -> Result<Found> {
     let piece = length / f64::from(pieces);
     let bar = cuboid(DVec3::new(0.5, 0.5, piece / 2.0))?;
     let order = order(&bar, (&Directions::Cube, 512), 50_000, exec)?;
@@ -152,8 +163,12 @@ fn long(length: f64, cured: bool, exec: &Exec) -> Result<Found> {
 }
 
 /// Surfels that take `s^-2` of the target's time at the size 1.25, and from frame 0 on four times as long.
-fn swing(late: f64, cured: bool, _: &Exec) -> Result<Found> {
-    let late = late as usize;
+fn swing(late: f64, _: &Exec) -> Result<[Found; 2]> {
+    both(|cured| swings(late as usize, cured))
+}
+
+/// With the cure the controller is asked when the time of its last answer is known.
+fn swings(late: usize, cured: bool) -> Result<Found> {
     let controller = Controller::new(1.0)?;
     let mut sizes = vec![1.25_f32; late + 1];
     for frame in 0..1000 {
@@ -184,23 +199,23 @@ fn columns(sizes: &[f32], most: f32) -> Plane<[f32; 3]> {
     Plane::from_values(2 * sizes.len() as u32, HIGH, (0..HIGH).flat_map(row).collect())
 }
 
-fn paddles(aspect: f64, cured: bool, exec: &Exec) -> Result<Found> {
+fn paddles(aspect: f64, exec: &Exec) -> Result<[Found; 2]> {
     let cloud = cylinder(64, aspect);
     let (triangles, _) = derive::polygons(cloud.clone(), exec, &quiet)?;
-    let (surfels, _) = match cured {
-        true => derive::facets(cloud, exec, &quiet)?,
-        false => derive::surfels(cloud, &Derive::default(), exec, &quiet)?,
-    };
+    let (facets, _) = derive::facets(cloud.clone(), exec, &quiet)?;
+    let (surfels, _) = derive::surfels(cloud, &Derive::default(), exec, &quiet)?;
+    let scene = |surfels| Scene::lit("cylinder", surfels);
     let [width, height] = SIZE;
     let pose = Pose { eye: DVec3::new(0.0, 1.0, 8.0), target: DVec3::ZERO, up: DVec3::Y };
     let case = Case {
-        scene: Scene::lit("cylinder", surfels),
+        scene: scene(surfels),
         camera: Camera::new(width, height, pose, Lens::FieldOfView(34.0))?,
         method: ewa::Settings::default().into(),
         grouping: None,
     };
     let truth = case.truth(&[Surface::Triangles(triangles)], exec)?;
-    case.against(&truth, "spill", exec)
+    let plain = case.against(&truth, "spill", exec)?;
+    Ok([plain, Case { scene: scene(facets), ..case }.against(&truth, "spill", exec)?])
 }
 
 /// A cylinder of the radius 1, about 3 high, of so many columns around, and as many rows as have triangles so

@@ -86,53 +86,70 @@ fn splatting() -> Method {
     ewa::Settings::default().into()
 }
 
-fn either(cured: bool, method: Method) -> Method {
-    if cured { splatting() } else { method }
+fn shift(by: f64, exec: &Exec) -> Result<[Found; 2]> {
+    let mut case = Case::of_shape(Shape::Sphere, 10_000, pull_push())?;
+    let at_rest = case.camera;
+    let truth = |case: &Case| case.truth(&exact(Shape::Sphere), exec);
+    let before = truth(&case)?;
+    case.camera.cx += by as f32;
+    let after = truth(&case)?;
+    let shifted = case.camera;
+    let mut found = |method| {
+        case.method = method;
+        case.camera = at_rest;
+        let first = case.draw(exec)?.0;
+        case.camera = shifted;
+        let (second, time) = case.draw(exec)?;
+        let error = crawl([&first, &second], [&before, &after])?;
+        Ok(Found { error, picture: second.color("")?.clone(), time: Some(time) })
+    };
+    Ok([found(pull_push())?, found(splatting())?])
 }
 
-fn shift(by: f64, cured: bool, exec: &Exec) -> Result<Found> {
-    let mut case = Case::of_shape(Shape::Sphere, 10_000, either(cured, pull_push()))?;
-    let surface = exact(Shape::Sphere);
-    let before = [case.draw(exec)?.0, case.truth(&surface, exec)?];
-    case.camera.cx += by as f32;
-    let (drawn, time) = case.draw(exec)?;
-    let after = [drawn, case.truth(&surface, exec)?];
+/// How much more two pictures change than the true ones do.
+fn crawl(drawn: [&Frame<f32>; 2], truth: [&Frame<f32>; 2]) -> Result<f64> {
     // Silhouettes jump in every picture that has one sample a pixel.
-    let inside = before.iter().chain(&after).map(|frame| {
+    let inside = drawn.iter().chain(&truth).map(|frame| {
         let alpha = frame.scalar("A")?;
         Ok(regions(alpha.values(), frame.width as usize))
     });
     let inside = inside.collect::<Result<Vec<_>>>()?;
     let still = |i: &usize| inside.iter().all(|all| all[*i] == Region::Interior);
-    let change = |k: usize| -> Result<Vec<f32>> {
-        let all = change(before[k].color("")?, after[k].color("")?);
+    let change = |[from, to]: [&Frame<f32>; 2]| -> Result<Vec<f32>> {
+        let all = change(from.color("")?, to.color("")?);
         Ok((0..all.len()).filter(still).flat_map(|i| all[i]).collect())
     };
-    let picture = after[0].color("")?.clone();
-    Ok(Found { error: rmse(&change(0)?, &change(1)?), picture, time: Some(time) })
+    Ok(rmse(&change(drawn)?, &change(truth)?))
 }
 
-fn silhouette(pixels: f64, cured: bool, exec: &Exec) -> Result<Found> {
+fn silhouette(pixels: f64, exec: &Exec) -> Result<[Found; 2]> {
     // The radius of n surfels on the sphere is sqrt(4 pi / n).
-    let case = Case::of_shape(Shape::Sphere, 1000, either(cured, pull_push()))?;
+    let case = Case::of_shape(Shape::Sphere, 1000, pull_push())?;
     let radius = pixels * 4.0 / f64::from(case.camera.fy);
     let count = (4.0 * std::f64::consts::PI / (radius * radius)).round() as usize;
-    let case = Case::of_shape(Shape::Sphere, count, case.method)?;
-    case.against_shape(Shape::Sphere, "spill", exec)
+    let case = Case::of_shape(Shape::Sphere, count, pull_push())?;
+    let truth = case.truth(&exact(Shape::Sphere), exec)?;
+    case.and_cured(splatting(), &truth, "spill", exec)
 }
 
-fn cover(rows: f64, cured: bool, exec: &Exec) -> Result<Found> {
-    let levels = if cured { LevelRule::Diameter } else { LevelRule::Radius };
-    let settings = template::Settings { size: 5, levels, ..template::Settings::default() };
-    let mut case = Case::of_shape(Shape::Sphere, 2500, settings.into())?;
+fn cover(rows: f64, exec: &Exec) -> Result<[Found; 2]> {
+    let method = |levels| -> Method {
+        template::Settings { size: 5, levels, ..template::Settings::default() }.into()
+    };
     let shape = Shape::Sphere;
+    let mut case = Case::of_shape(shape, 2500, method(LevelRule::Radius))?;
     case.camera =
         Camera::new(rows as u32, rows as u32, shape.default_pose(), shape.default_lens())?;
-    case.against_shape(shape, "holes", exec)
+    let truth = case.truth(&exact(shape), exec)?;
+    case.and_cured(method(LevelRule::Diameter), &truth, "holes", exec)
 }
 
-fn mirror(surfels: f64, cured: bool, exec: &Exec) -> Result<Found> {
-    let method = either(cured, template::Settings::default().into());
+fn mirror(surfels: f64, exec: &Exec) -> Result<[Found; 2]> {
+    let method = template::Settings::default().into();
+    Ok([mirrored(surfels, method, exec)?, mirrored(surfels, splatting(), exec)?])
+}
+
+fn mirrored(surfels: f64, method: Method, exec: &Exec) -> Result<Found> {
     let mut case = Case::of_shape(Shape::Sphere, surfels as usize, method)?;
     // Cells of all levels mirror too.
     case.camera =
@@ -173,9 +190,12 @@ fn turned(upright: &Frame<f32>, mirrored: &Frame<f32>) -> Result<f64> {
     Ok(1e3 * wrong as f64 / covered.max(1) as f64)
 }
 
-fn tube(vertices: f64, cured: bool, exec: &Exec) -> Result<Found> {
-    let truth = ring(vertices as u32, 1.0)?.draw(exec)?.0;
-    ring(vertices as u32, if cured { 1.0 } else { -1.0 })?.against(&truth, "rmse", exec)
+fn tube(vertices: f64, exec: &Exec) -> Result<[Found; 2]> {
+    let agreeing = ring(vertices as u32, 1.0)?;
+    let truth = agreeing.draw(exec)?.0;
+    let alternating = ring(vertices as u32, -1.0)?;
+    let found = |case: &Case| case.against(&truth, "rmse", exec);
+    Ok([found(&alternating)?, found(&agreeing)?])
 }
 
 /// Three quarters of a ring as a tube of so many vertices; the tangent of every second one times `sign`.
