@@ -191,6 +191,8 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// As [`Session::render`].
+    // Compiled here for what the crate has itself, and not again in every crate that draws by definitions.
+    #[inline(never)]
     pub fn define<R: Exact>(&self, camera: &Camera, stages: bool) -> Result<Picture<R>> {
         self.defined(&self.job(camera)?, stages)
     }
