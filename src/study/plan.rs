@@ -12,14 +12,14 @@
 //!    [`HOPELESS`] times that of the fastest, or the limit.
 
 use super::report::chart::Loss;
-use super::run::measure::{picture_errors, second};
+use super::run::measure::{picture_error, second};
 use super::run::{Bench, Record, time};
 use super::sweep::Candidate;
 use super::truth::Truth;
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::scene::Camera;
-use crate::verify::metrics::METRICS;
+use crate::verify::metrics::Metric;
 use std::time::{Duration, Instant};
 
 /// A first time may be too long by so much. It is never too short by so much.
@@ -43,7 +43,7 @@ pub fn choose(
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Vec<Known>> {
-    let metric = METRICS.iter().find(|metric| metric.name == loss.figure);
+    let metric = Metric::named(loss.figure)?;
     let count = candidates.len() as u64;
     let mut known = Vec::new();
     for (i, candidate) in candidates.iter().enumerate() {
@@ -60,8 +60,7 @@ pub fn choose(
         if done > 0 && known[i].time > HOPELESS * limit {
             break;
         }
-        let (errors, time) = picture_errors(bench, &candidates[i], truth, exec)?;
-        let value = metric.and_then(|metric| (metric.of)(&errors));
+        let (value, time) = picture_error(bench, &candidates[i], (metric, truth), exec)?;
         known[i] = Known { time, loss: value.map_or(f64::NAN, loss.of), is_whole: true };
         if matches!(budget, Budget::Error(_)) && budget.allows(&known[i]) && time < limit {
             limit = time;

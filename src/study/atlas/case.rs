@@ -8,7 +8,7 @@ use crate::method::{Method, Session};
 use crate::scene::{Camera, Cloud, Lens, Pose, Scene, Similarity, Surfels};
 use crate::source::Shape;
 use crate::study::truth::{Surface, of_surfaces};
-use crate::verify::metrics::{Errors, Metric};
+use crate::verify::metrics::Metric;
 use glam::{DVec3, Vec3};
 use std::time::{Duration, Instant};
 
@@ -67,8 +67,8 @@ impl Case {
     /// The picture against another one, by the name of a metric.
     pub(super) fn against(&self, truth: &Frame<f32>, metric: &str, exec: &Exec) -> Result<Found> {
         let (frame, time) = self.draw(exec)?;
-        let errors = Errors::of(&frame, truth, exec)?;
-        let error = (Metric::named(metric)?.of)(&errors)
+        let error = Metric::named(metric)?
+            .between(&frame, truth, exec)?
             .ok_or_else(|| Error::Invalid(format!("{metric}: the true picture is empty")))?;
         Ok(Found { error, picture: frame.color("")?.clone(), time: Some(time) })
     }

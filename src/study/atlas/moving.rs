@@ -10,7 +10,7 @@ use crate::scene::objects::{Geometry, Motion, Object, Objects};
 use crate::scene::transform::rotation;
 use crate::scene::{Camera, Lens, Pose, Primitives, Scene, Similarity, Surfels};
 use crate::source::{Shape, flatten};
-use crate::verify::metrics::{Errors, Metric, rmse};
+use crate::verify::metrics::{Metric, rmse};
 use glam::{DVec3, Vec3};
 use std::time::{Duration, Instant};
 
@@ -70,8 +70,7 @@ fn turn(degrees: f64, exec: &Exec) -> Result<[Found; 2]> {
         let start = Instant::now();
         let frame = session.render(&camera)?.frame.clone();
         let time = Some(start.elapsed());
-        let errors = Errors::of(&frame, &truth, exec)?;
-        let error = (Metric::named("rmse")?.of)(&errors).unwrap_or(0.0);
+        let error = Metric::named("rmse")?.between(&frame, &truth, exec)?.unwrap_or(0.0);
         Ok(Found { error, picture: frame.color("")?.clone(), time })
     })
 }

@@ -11,7 +11,7 @@ use crate::scene::{Camera, Cloud, Groups, Scene, Similarity, Surfels};
 use crate::study::run::cameras::shifted;
 use crate::study::run::truths::Known;
 use crate::study::truth::{Surface, of_surfaces};
-use crate::verify::metrics::{Errors, Flicker, Metric};
+use crate::verify::metrics::{Flicker, Metric};
 use std::cell::{OnceCell, RefCell};
 use std::rc::Rc;
 use std::time::Instant;
@@ -177,8 +177,7 @@ impl<'e> Subject<'e> {
 
     /// An error of a picture, by the name of a metric.
     pub(super) fn error(&self, frame: &Frame<f32>, truth: &Frame<f32>, name: &str) -> Result<f64> {
-        let errors = Errors::of(frame, truth, self.exec)?;
-        let error = (Metric::named(name)?.of)(&errors);
+        let error = Metric::named(name)?.between(frame, truth, self.exec)?;
         error.ok_or_else(|| Error::Invalid(format!("{name}: the true picture is empty")))
     }
 

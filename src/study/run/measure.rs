@@ -51,20 +51,20 @@ fn drawn(ready: &Ready) -> u64 {
     scene.objects.as_ref().map_or(scene.surfels.len() as u64, Objects::drawn_total)
 }
 
-/// The errors of the second of two pictures of a candidate, and how long that took in ms.
+/// An error of the second of two pictures of a candidate, and how long that took in ms.
 ///
 /// # Errors
 /// As [`measure`].
-pub fn picture_errors(
+pub fn picture_error(
     bench: &mut Bench<'_>,
     candidate: &Candidate,
-    truth: &Truth,
+    (metric, truth): (&Metric, &Truth),
     exec: &Exec,
-) -> Result<(Errors, f64)> {
+) -> Result<(Option<f64>, f64)> {
     let mut visit = bench.visit(candidate, &|_, _, _| ())?;
     let camera = visit.ready.camera;
     let (time, picture) = second(&mut visit, candidate, &camera)?;
-    Ok((Errors::of(&picture.frame, &truth.frame, exec)?, time))
+    Ok((metric.between(&picture.frame, &truth.frame, exec)?, time))
 }
 
 /// The second of two pictures of a candidate, and how long that took in ms.
