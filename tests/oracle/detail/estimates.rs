@@ -14,9 +14,8 @@ pub(crate) fn square(a: Vec3, b: Vec3) -> f32 {
 }
 
 /// Less than 120 degrees apart.
-fn alike(a: Vec3, b: Vec3) -> bool {
-    let dot = |a: Vec3, b: Vec3| {
-        let [[ax, ay, az], [bx, by, bz]] = [a, b].map(|v| v.to_array().map(f64::from));
+fn alike(a: [f64; 3], b: [f64; 3]) -> bool {
+    let dot = |[ax, ay, az]: [f64; 3], [bx, by, bz]: [f64; 3]| {
         let flat = ax * bx + ay * by;
         flat + az * bz
     };
@@ -27,6 +26,7 @@ fn alike(a: Vec3, b: Vec3) -> bool {
 /// `p_m`, and the bits of `r_m`.
 pub(crate) fn model(points: &[Vec3], normals: &[Vec3]) -> (u32, u32) {
     let count = points.len().min(1000);
+    let normals: Vec<_> = normals.iter().map(|n| n.to_array().map(f64::from)).collect();
     let mut nearest = Vec::new();
     for i in 0..count {
         let mut least = None;

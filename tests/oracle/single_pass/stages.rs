@@ -43,6 +43,12 @@ impl<'a, R: Exact> DepthImage<'a, R> {
     }
 }
 
+/// The planes that are not of one group: few names, which are looked up at every pixel.
+fn without_groups<R: Exact>(frame: &Frame<R>) -> Frame<R> {
+    let planes = frame.planes.iter().filter(|plane| !plane.name.starts_with("group"));
+    Frame { planes: planes.cloned().collect(), ..*frame }
+}
+
 /// What was left open, in pixels.
 #[derive(Clone, Copy, Debug, Default)]
 struct Left {
@@ -163,6 +169,7 @@ impl GroupStages<'_> {
         let mut open = Left::default();
         let groups = 0..self.algorithm.count;
         let layers: Vec<_> = groups.map(|k| DepthImage::new(frames[0], k)).collect();
+        let frames: Vec<_> = frames.iter().map(|frame| without_groups(frame)).collect();
         for (i, x, y) in self.case.pixels() {
             let place = format!("{:?} pixel ({x}, {y}) of {}", self.arithmetic, self.case.name);
             let pixel = (i, [f64::from(x) + 0.5, f64::from(y) + 0.5]);
@@ -173,7 +180,7 @@ impl GroupStages<'_> {
                 open.ambiguous += 1;
                 continue;
             }
-            for frame in frames {
+            for frame in &frames {
                 self.composite(frame, pixel, &kept, &place, measured);
             }
         }
