@@ -61,15 +61,10 @@ impl Errors {
     /// [`Error::Invalid`] if the frames differ in size or a plane other than `normal` is missing, or
     /// if there is not enough memory.
     pub fn of(picture: &Frame<f32>, truth: &Frame<f32>, exec: &Exec) -> Result<Self> {
-        Self::with(picture, truth, &Wanted { ssim: true, flip: true }, exec)
+        Self::with(picture, truth, Wanted { ssim: true, flip: true }, exec)
     }
 
-    fn with(
-        picture: &Frame<f32>,
-        truth: &Frame<f32>,
-        wanted: &Wanted,
-        exec: &Exec,
-    ) -> Result<Self> {
+    fn with(picture: &Frame<f32>, truth: &Frame<f32>, wanted: Wanted, exec: &Exec) -> Result<Self> {
         let colors = [picture.color("")?, truth.color("")?];
         same_size(colors[0], colors[1])?;
         let [covered, expected] = [covered(picture)?, covered(truth)?];
@@ -112,7 +107,7 @@ impl Errors {
 }
 
 /// Whether to take the two numbers that take most of the time; none and NaN if not.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Wanted {
     ssim: bool,
     flip: bool,
@@ -149,18 +144,22 @@ pub struct Metric {
     pub better: Better,
     /// The number; none where there is nothing to take it of. PSNR of equal pictures is infinite.
     pub of: fn(&Errors) -> Option<f64>,
+    /// What it takes of [`Errors`].
+    wanted: Wanted,
 }
-
-/// Those that take most of the time.
-const SSIM: &str = "ssim";
-const FLIP: &str = "flip";
 
 /// All numbers of [`Errors`].
 pub const METRICS: [Metric; 17] = [
     metric("rmse", "RMSE", "linear RGB", Better::Less, |e| Some(e.color.rmse)),
     metric("psnr", "PSNR", "dB", Better::More, |e| Some(e.color.psnr)),
-    metric(SSIM, "SSIM", "", Better::More, |e| e.color.ssim),
-    metric(FLIP, "FLIP", "", Better::Less, |e| Some(e.flip)),
+    Metric {
+        wanted: Wanted { ssim: true, flip: false },
+        ..metric("ssim", "SSIM", "", Better::More, |e| e.color.ssim)
+    },
+    Metric {
+        wanted: Wanted { ssim: false, flip: true },
+        ..metric("flip", "FLIP", "", Better::Less, |e| Some(e.flip))
+    },
     metric("holes", "holes", "per mille", Better::Less, |e| e.per_mille(e.coverage.holes)),
     metric("holes-px", "holes", "px", Better::Less, |e| Some(e.coverage.holes as f64)),
     metric("spill", "spill", "per mille", Better::Less, |e| e.per_mille(e.coverage.spill)),
@@ -193,7 +192,7 @@ const fn metric(
     better: Better,
     of: fn(&Errors) -> Option<f64>,
 ) -> Metric {
-    Metric { name, title, unit, better, of }
+    Metric { name, title, unit, better, of, wanted: Wanted { ssim: false, flip: false } }
 }
 
 impl Metric {
@@ -208,8 +207,7 @@ impl Metric {
         truth: &Frame<f32>,
         exec: &Exec,
     ) -> Result<Option<f64>> {
-        let wanted = Wanted { ssim: self.name == SSIM, flip: self.name == FLIP };
-        Ok((self.of)(&Errors::with(picture, truth, &wanted, exec)?))
+        Ok((self.of)(&Errors::with(picture, truth, self.wanted, exec)?))
     }
 
     /// The row of [`METRICS`] that is called `name`.
