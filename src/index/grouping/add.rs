@@ -2,6 +2,7 @@
 
 use super::budget;
 use super::clipped::{SAMPLES, areas, areas_of_groups, covered_by};
+use super::disc_tree::DiscTree;
 use super::extend::GroupCoverage;
 use super::overlaps::Overlaps;
 use super::settle::settle;
@@ -69,17 +70,21 @@ pub(super) fn add(
             let covered = overlaps.covered::<0, BATCH>(sets, &|done, of| show(0, done, of));
             groups.extended(batch.clone(), |place, set| covered.told(set, place), &decided)
         };
-        for (place, members) in members.iter().enumerate() {
-            let further = members & !groups.own(first, place);
-            if further != 0 {
-                added[tree.rank[place] as usize] |= u64::from(further) << first;
-            }
-        }
         let sets = |i: usize, j: usize, lower: bool| {
             if lower { members[i] & members[j] } else { 0 }
         };
         let covered = overlaps.covered::<BATCH, 0>(sets, &|done, of| show(2, done, of));
-        let (surfels, after) = measured_groups(overlaps, &members, |place| covered.open(place));
+        let (_, (surfels, after)) = exec.join(
+            || {
+                for (place, members) in members.iter().enumerate() {
+                    let further = members & !groups.own(first, place);
+                    if further != 0 {
+                        added[tree.rank[place] as usize] |= u64::from(further) << first;
+                    }
+                }
+            },
+            || measured_groups(tree, &members, |place| covered.open(place)),
+        );
         coverages.extend(batch.map(|group| {
             let (surfels, after) = (surfels[group - first], after[group - first] / target);
             let before = before[group] / target;
@@ -97,26 +102,24 @@ pub(super) fn add(
 /// How many surfels are in each group of a batch, and its area, divided by pi; `members` has a bit for each group
 /// at each place, and `open` tells how many samples of a place others of each group leave open.
 fn measured_groups(
-    overlaps: &Overlaps<'_>,
+    tree: &DiscTree,
     members: &[u32],
-    open: impl Fn(usize) -> [u8; BATCH] + Sync + Send,
+    open: impl Fn(usize) -> [u8; BATCH],
 ) -> ([u64; BATCH], [f64; BATCH]) {
     let is_member = |place: usize| -> [bool; BATCH] {
         std::array::from_fn(|set| members[place] >> set & 1 == 1)
     };
-    let surfels = || {
-        (0..members.len()).fold([0; BATCH], |mut surfels, place| {
-            let each = surfels.iter_mut().zip(is_member(place));
-            each.for_each(|(surfels, is_member)| *surfels += u64::from(is_member));
-            surfels
-        })
-    };
+    let surfels = (0..members.len()).fold([0; BATCH], |mut surfels, place| {
+        let each = surfels.iter_mut().zip(is_member(place));
+        each.for_each(|(surfels, is_member)| *surfels += u64::from(is_member));
+        surfels
+    });
     // Of those that are no members, nothing is open.
     let of_members = |place| {
         let (open, is_member) = (open(place), is_member(place));
         std::array::from_fn::<_, BATCH, _>(|set| if is_member[set] { open[set] } else { 0 })
     };
-    overlaps.exec.join(surfels, || areas(overlaps.tree, of_members))
+    (surfels, areas(tree, of_members))
 }
 
 /// Who is in which group.

@@ -9,8 +9,8 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::scene::groups::{MAX_GROUPS, check_count};
 use crate::scene::{Groups, Surfels};
-use std::cell::OnceCell;
-use std::mem::take;
+use std::borrow::Cow;
+use std::mem::{swap, take};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU32};
 
@@ -83,10 +83,10 @@ impl Coloring<'_> {
     /// The groups at the c of the rules.
     pub(super) fn group(&self) -> Result<(Groups, GroupingReport)> {
         let overlap = self.rules.overlap;
-        let graph = self.graph(overlap)?;
-        let (color, report) = self
-            .color(&graph, overlap, usize::MAX, &mut Room::default())
-            .expect("as many colours as it takes");
+        let mut attempt = Attempt::default();
+        self.begin(&mut attempt, self.graph(overlap)?);
+        self.color(&attempt, 0, usize::MAX);
+        let report = self.report(overlap, &attempt);
         if report.groups > MAX_GROUPS {
             return Err(Error::Invalid(format!(
                 "c = {overlap} needs {} groups, and at most {MAX_GROUPS} can be: give a lower c or \
@@ -94,7 +94,7 @@ impl Coloring<'_> {
                 report.groups
             )));
         }
-        Ok((groups(self.tree, &color, report.groups)?, report))
+        Ok((self.groups(&attempt, report.groups)?, report))
     }
 
     /// The groups at the largest c that gives at most `count`. `overlaps` is the graph of all pairs
@@ -104,39 +104,42 @@ impl Coloring<'_> {
         count: usize,
         overlaps: Option<&Graph>,
     ) -> Result<(Groups, GroupingReport)> {
-        // What is above the c of the rules does not fit. The graph of a c that does not has the
-        // edges of every smaller one.
+        let c = |steps: u8| f32::from(steps) / f32::from(STEPS);
+        // What is above the c of the rules does not fit. c = 0 has no edges, and so fits.
         let (mut fits, mut fails) = (0, (f32::from(STEPS) * self.rules.overlap) as u8 + 1);
-        let (mut best, wider, mut room) = (None, OnceCell::new(), Room::default());
-        let mut graded = overlaps.map(|graph| self.graded(graph)).transpose()?;
+        let (mut best, mut next) = (self.without_edges(), Attempt::default());
+        // The graph of a c that does not fit has the edges of every smaller one.
+        let mut wider = overlaps.map(|graph| self.graded(Cow::Borrowed(graph))).transpose()?;
         while fails - fits > 1 {
             let middle = u8::midpoint(fits, fails);
-            let overlap = f32::from(middle) / f32::from(STEPS);
-            let graph = match &graded {
-                Some(graded) => {
-                    graded.upto(middle, take(&mut room.graph), self.tree, self.exec, self.progress)
+            let room = take(&mut next.graph);
+            let graph = match &wider {
+                Some(wider) => wider.upto(middle, room, self.tree, self.exec, self.progress),
+                None => {
+                    drop(room);
+                    self.graph(c(middle))
                 }
-                None => self.graph(overlap),
             };
-            let graph = graph.ok();
-            let found =
-                graph.as_ref().and_then(|graph| self.color(graph, overlap, count, &mut room));
-            let fit = found.is_some();
-            match found {
-                Some(found) => (fits, best) = (middle, Some(found)),
-                None => fails = middle,
-            }
-            match graph {
-                Some(graph) if graded.is_none() && !fit => {
-                    graded = Some(self.graded(wider.get_or_init(|| graph))?);
+            let Ok(graph) = graph else {
+                fails = middle;
+                continue;
+            };
+            self.begin(&mut next, graph);
+            // A place of fewer neighbours gets none of the colours that are too many, and those of more do
+            // not wait for it: it is coloured once it is known that its graph fits best.
+            if self.color(&next, count as u32, count) {
+                fits = middle;
+                swap(&mut best, &mut next);
+            } else {
+                fails = middle;
+                if wider.is_none() {
+                    wider = Some(self.graded(Cow::Owned(take(&mut next.graph)))?);
                 }
-                graph => room.graph = graph.unwrap_or_default(),
             }
         }
-        // c = 0 has no edges, and so fits.
-        let (color, report) =
-            best.unwrap_or_else(|| (vec![0; self.surfels.len()], self.report(0.0, 1, None)));
-        Ok((groups(self.tree, &color, report.groups)?, report))
+        self.color(&best, 0, count);
+        let report = self.report(c(fits), &best);
+        Ok((self.groups(&best, report.groups)?, report))
     }
 
     fn graph(&self, overlap: f32) -> Result<Graph> {
@@ -144,125 +147,122 @@ impl Coloring<'_> {
         conflicts(surfels, tree, rules, overlap, exec, progress)
     }
 
-    fn graded<'a>(&self, graph: &'a Graph) -> Result<Graded<'a>> {
+    fn graded<'a>(&self, graph: Cow<'a, Graph>) -> Result<Graded<'a>> {
         let Self { surfels, tree, rules, exec, progress } = *self;
         Graded::new(graph, surfels, tree, rules, exec, progress)
     }
 
-    /// The colour of every place; none if it takes more than `most`.
-    fn color(
-        &self,
-        graph: &Graph,
-        overlap: f32,
-        most: usize,
-        room: &mut Room,
-    ) -> Option<(Vec<u32>, GroupingReport)> {
-        let show = |done, of| (self.progress)("colouring", done, of);
-        let color = largest_first(graph, self.surfels.len(), most, room, self.exec, &show)?;
-        let groups = color.iter().fold(0, |most, &color| most.max(color)) as usize + 1;
-        let report = self.report(overlap, groups, Some(graph));
-        Some((color, report))
-    }
-
-    /// What is told of a graph; without one there are no edges.
-    fn report(&self, overlap: f32, groups: usize, graph: Option<&Graph>) -> GroupingReport {
+    /// What is told of the groups of an attempt.
+    fn report(&self, overlap: f32, attempt: &Attempt) -> GroupingReport {
         let n = self.surfels.len();
-        let edges = graph.map_or(0, Graph::edges);
+        let color = attempt.color.iter().map(|color| color.load(Relaxed));
+        let edges = attempt.graph.edges();
         GroupingReport {
             surfels: n as u64,
             overlap,
-            groups,
+            groups: color.fold(0, u32::max) as usize + 1,
             edges,
-            max_degree: graph.map_or(0, Graph::max_degree),
+            max_degree: attempt.degree.iter().copied().fold(0, u32::max),
             average_degree: 2.0 * edges as f64 / n as f64,
         }
     }
+
+    /// The groups of an attempt.
+    fn groups(&self, attempt: &Attempt, groups: usize) -> Result<Groups> {
+        let mut own = vec![0; attempt.color.len()];
+        for (&surfel, color) in self.tree.surfel.iter().zip(&attempt.color) {
+            own[surfel as usize] = color.load(Relaxed) as u8;
+        }
+        Groups::new(own, Vec::new(), vec![1.0; groups])
+    }
 }
 
-/// Memory that one c after the other is tried in: what the system has taken back it clears before it gives it
-/// again.
+/// A graph, and the colours that it comes to.
 #[derive(Default)]
-struct Room {
+struct Attempt {
     graph: Graph,
+    /// The number of neighbours of every place.
     degree: Vec<u32>,
+    /// The colour of every place, or [`NONE`].
     color: Vec<AtomicU32>,
 }
 
-/// The groups of the colour of every place.
-fn groups(tree: &DiscTree, color: &[u32], groups: usize) -> Result<Groups> {
-    let mut own = vec![0; color.len()];
-    for (&surfel, &color) in tree.surfel.iter().zip(color) {
-        own[surfel as usize] = color as u8;
-    }
-    Groups::new(own, Vec::new(), vec![1.0; groups])
-}
+/// No colour yet.
+const NONE: u32 = u32::MAX;
 
-/// The colour of all `n` places: those with more neighbours first, of those with equally many the
-/// surfel of the lower index; each gets the smallest colour that no neighbour has. None if one gets
-/// `most` or a larger one.
-fn largest_first(
-    graph: &Graph,
-    n: usize,
-    most: usize,
-    room: &mut Room,
-    exec: &Exec,
-    progress: &dyn Fn(u64, u64),
-) -> Option<Vec<u32>> {
-    const NONE: u32 = u32::MAX;
-    let Room { degree, color, .. } = room;
-    degree.clear();
-    exec.extend(degree, n, |place| graph.degree(place));
-    color.clear();
-    exec.extend(color, n, |_| AtomicU32::new(NONE));
-    let color_of = |place: usize| color[place].load(Relaxed);
-    let too_many = AtomicBool::new(false);
-    settle(n, 1, exec, progress, |_, open| {
-        let place = open.place;
-        if color_of(place) != NONE || too_many.load(Relaxed) {
-            return None;
-        }
-        // Of equally many neighbours, the lower index comes first.
-        let own = degree[place];
-        let before = |other: usize, lower: bool| degree[other] + u32::from(lower) > own;
-        let row = graph.of(place);
-        loop {
-            while let Some(other) = open.first_of(open.waits, &row) {
-                let theirs = color_of(other);
-                if theirs == NONE {
-                    return Some(other);
+impl Coloring<'_> {
+    /// Where there are no edges, all have one colour.
+    fn without_edges(&self) -> Attempt {
+        let color = (0..self.surfels.len()).map(|_| AtomicU32::new(0)).collect();
+        Attempt { color, ..Attempt::default() }
+    }
+
+    /// Begins to colour a graph, in the memory of another attempt: what the system has taken back it clears
+    /// before it gives it again.
+    fn begin(&self, attempt: &mut Attempt, graph: Graph) {
+        let (n, Attempt { degree, color, .. }) = (self.surfels.len(), &mut *attempt);
+        degree.clear();
+        self.exec.extend(degree, n, |place| graph.degree(place));
+        color.clear();
+        self.exec.extend(color, n, |_| AtomicU32::new(NONE));
+        attempt.graph = graph;
+    }
+
+    /// Colours all places that have at least so many neighbours: those with more neighbours first, of
+    /// those with equally many the surfel of the lower index; each gets the smallest colour that no
+    /// neighbour has. False if one gets `most` or a larger one; then others may have none.
+    fn color(&self, attempt: &Attempt, least: u32, most: usize) -> bool {
+        let Attempt { graph, degree, color } = attempt;
+        let color_of = |place: usize| color[place].load(Relaxed);
+        let too_many = AtomicBool::new(false);
+        let show = |done, of| (self.progress)("colouring", done, of);
+        settle(color.len(), 1, self.exec, &show, |_, open| {
+            let place = open.place;
+            if color_of(place) != NONE || degree[place] < least || too_many.load(Relaxed) {
+                return None;
+            }
+            // Of equally many neighbours, the lower index comes first.
+            let own = degree[place];
+            let before = |other: usize, lower: bool| degree[other] + u32::from(lower) > own;
+            let row = graph.of(place);
+            loop {
+                while let Some(other) = open.first_of(open.waits, &row) {
+                    let theirs = color_of(other);
+                    if theirs == NONE {
+                        return Some(other);
+                    }
+                    open.mask |= u64::from(theirs < 64) << (theirs % 64);
+                    open.waits &= open.waits - 1;
                 }
-                open.mask |= u64::from(theirs < 64) << (theirs % 64);
-                open.waits &= open.waits - 1;
+                if open.asked >= row.all.len() {
+                    break;
+                }
+                let (mut taken, mut waits) = (open.mask, 0_u64);
+                row.visit_64(open.asked, |number, other, lower| {
+                    let (before, theirs) = (before(other, lower), color_of(other));
+                    waits |= u64::from(before & (theirs == NONE)) << number;
+                    taken |= u64::from(before & (theirs < 64)) << (theirs % 64);
+                });
+                (open.mask, open.waits) = (taken, waits);
+                open.asked += 64;
             }
-            if open.asked >= row.all.len() {
-                break;
+            let (mut free, mut full) = (open.mask.trailing_ones(), open.mask == u64::MAX);
+            while full {
+                // The next 64 colours; all that come before are coloured by now.
+                let all =
+                    row.all.iter().enumerate().map(|(at, &other)| (other as usize, at < row.lower));
+                let taken = all.filter(|&(other, lower)| before(other, lower));
+                let taken = taken.map(|(other, _)| color_of(other));
+                let here = taken.filter(|taken| taken / 64 == free / 64);
+                let mask = here.fold(0_u64, |mask, taken| mask | 1 << (taken % 64));
+                (free, full) = (free + mask.trailing_ones(), mask == u64::MAX);
             }
-            let (mut taken, mut waits) = (open.mask, 0_u64);
-            row.visit_64(open.asked, |number, other, lower| {
-                let (before, theirs) = (before(other, lower), color_of(other));
-                waits |= u64::from(before & (theirs == NONE)) << number;
-                taken |= u64::from(before & (theirs < 64)) << (theirs % 64);
-            });
-            (open.mask, open.waits) = (taken, waits);
-            open.asked += 64;
-        }
-        let (mut free, mut full) = (open.mask.trailing_ones(), open.mask == u64::MAX);
-        while full {
-            // The next 64 colours; all that come before are coloured by now.
-            let all =
-                row.all.iter().enumerate().map(|(at, &other)| (other as usize, at < row.lower));
-            let taken = all.filter(|&(other, lower)| before(other, lower));
-            let taken = taken.map(|(other, _)| color_of(other));
-            let here = taken.filter(|taken| taken / 64 == free / 64);
-            let mask = here.fold(0_u64, |mask, taken| mask | 1 << (taken % 64));
-            (free, full) = (free + mask.trailing_ones(), mask == u64::MAX);
-        }
-        color[place].store(free, Relaxed);
-        if free as usize >= most {
-            too_many.store(true, Relaxed);
-        }
-        None
-    });
-    let fits = !too_many.into_inner();
-    fits.then(|| take(color).into_iter().map(AtomicU32::into_inner).collect())
+            color[place].store(free, Relaxed);
+            if free as usize >= most {
+                too_many.store(true, Relaxed);
+            }
+            None
+        });
+        !too_many.into_inner()
+    }
 }

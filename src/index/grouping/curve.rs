@@ -18,7 +18,9 @@ pub(super) fn along(points: &[Vec3], most: usize, exec: &Exec) -> Vec<u32> {
     exec.extend(&mut order, points.len(), |i| (cells.place(points[i]), i as u32));
     exec.sort(&mut order);
     refine(points, most, &mut order);
-    order.into_iter().map(|(_, i)| i).collect()
+    let mut along = Vec::new();
+    exec.extend(&mut along, order.len(), |place| order[place].1);
+    along
 }
 
 /// Orders the points of each cell that has more than `most`.

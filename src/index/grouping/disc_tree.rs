@@ -75,7 +75,8 @@ impl DiscTree {
     pub(super) fn new(surfels: &Surfels, members: impl Iterator<Item = u32>, exec: &Exec) -> Self {
         let members: Vec<u32> = members.collect();
         let n = members.len();
-        let points: Vec<Vec3> = members.iter().map(|&id| surfels.position()[id as usize]).collect();
+        let mut points = Vec::new();
+        exec.extend(&mut points, n, |i| surfels.position()[members[i] as usize]);
         let rank = curve::along(&points, DISCS, exec);
         let radius = radii(surfels);
         let (mut surfel, mut discs, mut blocks) = (Vec::new(), Vec::new(), Vec::new());
@@ -93,7 +94,9 @@ impl DiscTree {
             let r = radius(members[rank]);
             r * r
         });
-        let mut levels = vec![blocks.iter().map(Bounds::of).collect::<Vec<_>>()];
+        let mut boxes = Vec::new();
+        exec.extend(&mut boxes, blocks.len(), |block| Bounds::of(&blocks[block]));
+        let mut levels = vec![boxes];
         while let Some(below) = levels.last().filter(|level| level.len() > 1) {
             let pair = |pair: &[Bounds]| pair[1..].iter().fold(pair[0], Bounds::and);
             let level = below.chunks(2).map(pair).collect();

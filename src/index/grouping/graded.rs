@@ -11,12 +11,13 @@ use crate::frame::Exec;
 use crate::number::lanes::vectorized;
 use crate::scene::Surfels;
 use glam::DVec3;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// A graph, and of each of its edges the least multiple of 1/64 by which its discs are near, or
 /// [`NEVER`].
 pub(super) struct Graded<'a> {
-    graph: &'a Graph,
+    graph: Cow<'a, Graph>,
     /// In the order of the rows of each part.
     least: Parts<Vec<u8>>,
 }
@@ -28,7 +29,7 @@ impl<'a> Graded<'a> {
     /// Of a graph that has the edges of all c that are asked for, and maybe some that the rules take
     /// away.
     pub(super) fn new(
-        graph: &'a Graph,
+        graph: Cow<'a, Graph>,
         surfels: &Surfels,
         tree: &DiscTree,
         rules: &Rules,
@@ -36,9 +37,10 @@ impl<'a> Graded<'a> {
         progress: &dyn Fn(&str, u64, u64),
     ) -> Result<Self> {
         let away = |i: usize, j: usize| relaxed(surfels, tree, rules, i, j);
-        let job = |places| Ok(least_steps(tree, graph, places, &away));
+        let job = |places| Ok(least_steps(tree, &graph, places, &away));
         let show = |done, of| progress("finding overlaps", done, of);
-        Ok(Self { graph, least: Parts::of(tree, exec, &show, job)? })
+        let least = Parts::of(tree, exec, &show, job)?;
+        Ok(Self { graph, least })
     }
 
     /// The graph of c = `most` / 64, in the memory of another graph.

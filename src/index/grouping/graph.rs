@@ -13,11 +13,11 @@ use std::mem;
 use std::ops::Range;
 
 /// The neighbours of every place of a tree.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Graph(Parts<Rows>);
 
 /// The neighbours of the places of a part.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Rows {
     /// Of each place, and last one whose row starts where all rows end.
     starts: Vec<Start>,
@@ -228,12 +228,6 @@ impl Graph {
 
     pub(super) fn degree(&self, place: usize) -> u32 {
         self.of(place).all.len() as u32
-    }
-
-    /// The most neighbours of a place.
-    pub(super) fn max_degree(&self) -> u32 {
-        let rows = self.0.iter().flat_map(|rows| rows.starts.windows(2));
-        rows.map(|row| row[1].at - row[0].at).fold(0, u32::max)
     }
 
     /// How many edges there are, each counted once.

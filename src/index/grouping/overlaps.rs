@@ -85,9 +85,9 @@ vectorized!(
                     let j = row.all[at] as usize;
                     let mask = samples.covered_by(&tree.discs[j]);
                     let sets = by(i, j, at < row.lower);
-                    for (set, all) in counted.iter_mut().chain(&mut told).enumerate() {
-                        *all |= if sets >> set & 1 == 1 { mask } else { 0 };
-                    }
+                    let of = |set: usize| if sets >> set & 1 == 1 { mask } else { 0 };
+                    counted.iter_mut().enumerate().for_each(|(set, all)| *all |= of(set));
+                    told.iter_mut().enumerate().for_each(|(set, all)| *all |= of(COUNTED + set));
                 }
             }
             open.push(counted.map(|mask| mask.count_zeros() as u8));

@@ -12,7 +12,7 @@ const BLOCKS: usize = 64;
 const PLACES: usize = BLOCKS * DISCS;
 
 /// Something for each part of a tree.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Parts<T>(Vec<T>);
 
 impl<T> Default for Parts<T> {

@@ -6,6 +6,7 @@ use super::super::graph::{Graph, conflicts};
 use super::*;
 use crate::scene::groups::MAX_GROUPS;
 use crate::source::Shape;
+use std::borrow::Cow;
 
 /// The neighbours of every surfel by the definition, ascending.
 fn definition(surfels: &Surfels, rules: &Rules) -> Vec<Vec<usize>> {
@@ -70,7 +71,7 @@ proptest! {
         let exec = Exec::sequential();
         let tree = DiscTree::new(&surfels, 0..surfels.len() as u32, &exec);
         let all = Graph::new(&tree, 1.0, |_, _| true, &exec, &silent).unwrap();
-        let graded = Graded::new(&all, &surfels, &tree, &rules, &exec, &silent).unwrap();
+        let graded = Graded::new(Cow::Owned(all), &surfels, &tree, &rules, &exec, &silent).unwrap();
         let mut graph = Graph::default();
         for step in (0..=64).chain([7, 40, 3]) {
             graph = graded.upto(step, graph, &tree, &exec, &silent).unwrap();
