@@ -75,8 +75,8 @@ fn most(surfels: usize) -> u64 {
 
 /// Bytes of a surfel in the tree, and of what is known of each beside its neighbours.
 const OF_A_SURFEL: [u64; 2] = [128, 144];
-/// Bytes of a neighbour: in the graph of all, in those of the best and of the next c, and the grade of its edge.
-const OF_A_NEIGHBOUR: u64 = 4 + 4 + 4 + 1;
+/// Bytes of a neighbour: in the graph of all, in that of a smaller c, and the grade of its edge.
+const OF_A_NEIGHBOUR: u64 = 4 + 4 + 1;
 /// The neighbours are counted of one block in so many.
 const COUNTED: usize = 64;
 

@@ -83,9 +83,9 @@ impl Coloring<'_> {
     /// The groups at the c of the rules.
     pub(super) fn group(&self) -> Result<(Groups, GroupingReport)> {
         let overlap = self.rules.overlap;
-        let mut attempt = Attempt::default();
-        self.begin(&mut attempt, self.graph(overlap)?);
-        self.color(&attempt, 0, usize::MAX);
+        let (graph, mut attempt) = (self.graph(overlap)?, Attempt::default());
+        self.begin(&mut attempt, &graph);
+        self.color(&attempt, &graph, 0, usize::MAX);
         let report = self.report(overlap, &attempt);
         if report.groups > MAX_GROUPS {
             return Err(Error::Invalid(format!(
@@ -110,34 +110,38 @@ impl Coloring<'_> {
         let (mut best, mut next) = (self.without_edges(), Attempt::default());
         // The graph of a c that does not fit has the edges of every smaller one.
         let mut wider = overlaps.map(|graph| self.graded(Cow::Borrowed(graph))).transpose()?;
+        let mut room = Graph::default();
         while fails - fits > 1 {
             let middle = u8::midpoint(fits, fails);
-            let room = take(&mut next.graph);
             let graph = match &wider {
-                Some(wider) => wider.upto(middle, room, self.tree, self.exec, self.progress),
-                None => {
-                    drop(room);
-                    self.graph(c(middle))
-                }
+                Some(wider) => self.upto(wider, middle, take(&mut room)),
+                None => self.graph(c(middle)),
             };
             let Ok(graph) = graph else {
                 fails = middle;
                 continue;
             };
-            self.begin(&mut next, graph);
-            // A place of fewer neighbours gets none of the colours that are too many, and those of more do
-            // not wait for it: it is coloured once it is known that its graph fits best.
-            if self.color(&next, count as u32, count) {
+            // A place of few neighbours gets none of the colours that are too many, and those of more do
+            // not wait for it: it is coloured in the end, if its graph can be had then.
+            let least = if wider.is_some() { count as u32 } else { 0 };
+            self.begin(&mut next, &graph);
+            let is_fit = self.color(&next, &graph, least, count);
+            if is_fit {
                 fits = middle;
                 swap(&mut best, &mut next);
             } else {
                 fails = middle;
-                if wider.is_none() {
-                    wider = Some(self.graded(Cow::Owned(take(&mut next.graph)))?);
-                }
+            }
+            if wider.is_some() {
+                room = graph;
+            } else if !is_fit {
+                wider = Some(self.graded(Cow::Owned(graph))?);
             }
         }
-        self.color(&best, 0, count);
+        if let Some(wider) = wider.filter(|_| best.is_open()) {
+            let graph = self.upto(&wider, fits, room)?;
+            self.color(&best, &graph, 0, count);
+        }
         let report = self.report(c(fits), &best);
         Ok((self.groups(&best, report.groups)?, report))
     }
@@ -152,11 +156,15 @@ impl Coloring<'_> {
         Graded::new(graph, surfels, tree, rules, exec, progress)
     }
 
+    fn upto(&self, wider: &Graded<'_>, steps: u8, room: Graph) -> Result<Graph> {
+        wider.upto(steps, room, self.tree, self.exec, self.progress)
+    }
+
     /// What is told of the groups of an attempt.
     fn report(&self, overlap: f32, attempt: &Attempt) -> GroupingReport {
         let n = self.surfels.len();
         let color = attempt.color.iter().map(|color| color.load(Relaxed));
-        let edges = attempt.graph.edges();
+        let edges = attempt.degree.iter().map(|&degree| u64::from(degree)).sum::<u64>() / 2;
         GroupingReport {
             surfels: n as u64,
             overlap,
@@ -177,10 +185,9 @@ impl Coloring<'_> {
     }
 }
 
-/// A graph, and the colours that it comes to.
+/// The colours that a graph comes to.
 #[derive(Default)]
 struct Attempt {
-    graph: Graph,
     /// The number of neighbours of every place.
     degree: Vec<u32>,
     /// The colour of every place, or [`NONE`].
@@ -189,6 +196,13 @@ struct Attempt {
 
 /// No colour yet.
 const NONE: u32 = u32::MAX;
+
+impl Attempt {
+    /// Whether a place has no colour yet.
+    fn is_open(&self) -> bool {
+        self.color.iter().any(|color| color.load(Relaxed) == NONE)
+    }
+}
 
 impl Coloring<'_> {
     /// Where there are no edges, all have one colour.
@@ -199,20 +213,19 @@ impl Coloring<'_> {
 
     /// Begins to colour a graph, in the memory of another attempt: what the system has taken back it clears
     /// before it gives it again.
-    fn begin(&self, attempt: &mut Attempt, graph: Graph) {
-        let (n, Attempt { degree, color, .. }) = (self.surfels.len(), &mut *attempt);
+    fn begin(&self, Attempt { degree, color }: &mut Attempt, graph: &Graph) {
+        let n = self.surfels.len();
         degree.clear();
         self.exec.extend(degree, n, |place| graph.degree(place));
         color.clear();
         self.exec.extend(color, n, |_| AtomicU32::new(NONE));
-        attempt.graph = graph;
     }
 
     /// Colours all places that have at least so many neighbours: those with more neighbours first, of
     /// those with equally many the surfel of the lower index; each gets the smallest colour that no
     /// neighbour has. False if one gets `most` or a larger one; then others may have none.
-    fn color(&self, attempt: &Attempt, least: u32, most: usize) -> bool {
-        let Attempt { graph, degree, color } = attempt;
+    fn color(&self, attempt: &Attempt, graph: &Graph, least: u32, most: usize) -> bool {
+        let Attempt { degree, color } = attempt;
         let color_of = |place: usize| color[place].load(Relaxed);
         let too_many = AtomicBool::new(false);
         let show = |done, of| (self.progress)("colouring", done, of);

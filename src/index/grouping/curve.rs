@@ -4,47 +4,79 @@ use crate::frame::Exec;
 use crate::number::Real;
 use glam::{DVec3, Vec3};
 
-/// Cells along the widest axis: as many as three axes leave bits in 64.
-const CELLS: f64 = (1 << 21) as f64;
-
 /// The numbers 0, 1, 2 ... of some points, in the order of their cells along the curve of Morton;
 /// of one cell the smaller number first.
 ///
 /// If more than `most` points share a cell, they are ordered by cells of their own box, and so on:
 /// a point far away from all others does not put those into one cell.
 pub(super) fn along(points: &[Vec3], most: usize, exec: &Exec) -> Vec<u32> {
-    let cells = Cells::around(points.iter().copied());
+    let numbered = Numbered::upto(points.len());
+    let cells = Cells::around(points.iter().copied(), &numbered);
     let mut order = Vec::new();
-    exec.extend(&mut order, points.len(), |i| (cells.place(points[i]), i as u32));
+    exec.extend(&mut order, points.len(), |i| numbered.with(cells.place(points[i]), i));
     exec.sort(&mut order);
-    refine(points, most, &mut order);
+    refine(points, most, &numbered, &mut order);
     let mut along = Vec::new();
-    exec.extend(&mut along, order.len(), |place| order[place].1);
+    exec.extend(&mut along, order.len(), |place| numbered.number(order[place]) as u32);
     along
 }
 
 /// Orders the points of each cell that has more than `most`.
-fn refine(points: &[Vec3], most: usize, order: &mut [(u64, u32)]) {
-    for run in order.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > most) {
-        let first = points[run[0].1 as usize];
-        if run.iter().any(|&(_, i)| points[i as usize] != first) {
-            let cells = Cells::around(run.iter().map(|&(_, i)| points[i as usize]));
-            run.iter_mut().for_each(|(key, i)| *key = cells.place(points[*i as usize]));
+fn refine(points: &[Vec3], most: usize, numbered: &Numbered, order: &mut [u64]) {
+    let in_one_cell = |a: &u64, b: &u64| numbered.cell(*a) == numbered.cell(*b);
+    for run in order.chunk_by_mut(in_one_cell).filter(|run| run.len() > most) {
+        let point = |of: u64| points[numbered.number(of)];
+        if run.iter().any(|&of| point(of) != point(run[0])) {
+            let cells = Cells::around(run.iter().map(|&of| point(of)), numbered);
+            run.iter_mut()
+                .for_each(|of| *of = numbered.with(cells.place(point(*of)), numbered.number(*of)));
             run.sort_unstable();
-            refine(points, most, run);
+            refine(points, most, numbered, run);
         }
+    }
+}
+
+/// A cell and the number of a point in one integer, the cell above: it is sorted in half the time of two.
+struct Numbered {
+    /// Bits of a number.
+    bits: u32,
+}
+
+impl Numbered {
+    /// For so many numbers.
+    fn upto(count: usize) -> Self {
+        Self { bits: usize::BITS - count.leading_zeros() }
+    }
+
+    /// Cells along the widest axis: as many as three axes leave bits.
+    fn cells(&self) -> u64 {
+        1 << ((u64::BITS - self.bits) / 3)
+    }
+
+    fn with(&self, cell: u64, number: usize) -> u64 {
+        cell << self.bits | number as u64
+    }
+
+    fn cell(&self, of: u64) -> u64 {
+        of >> self.bits
+    }
+
+    fn number(&self, of: u64) -> usize {
+        (of & ((1 << self.bits) - 1)) as usize
     }
 }
 
 /// The cells of a box.
 struct Cells {
     low: DVec3,
+    /// How many there are along the widest axis.
+    count: u64,
     scale: f64,
 }
 
 impl Cells {
     /// Of the box around some points.
-    fn around(points: impl Iterator<Item = Vec3>) -> Self {
+    fn around(points: impl Iterator<Item = Vec3>, numbered: &Numbered) -> Self {
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         for point in points {
             // One instruction each; `Vec3::min` asks for NaN, too.
@@ -55,20 +87,20 @@ impl Cells {
         }
         let low = low.as_dvec3();
         let size = (high.as_dvec3() - low).max_element();
+        let count = numbered.cells();
         // Points that are all at one place have one cell.
-        Self { low, scale: if size > 0.0 { CELLS / size } else { 0.0 } }
+        Self { low, count, scale: if size > 0.0 { count as f64 / size } else { 0.0 } }
     }
 
     /// The place along the curve of the cell of a point.
     fn place(&self, point: Vec3) -> u64 {
         let at = self.scale * (point.as_dvec3() - self.low);
-        let [x, y, z] =
-            at.to_array().map(|at| if at < CELLS { at as u64 } else { CELLS as u64 - 1 });
+        let [x, y, z] = at.to_array().map(|at| (at as u64).min(self.count - 1));
         spread(x) | spread(y) << 1 | spread(z) << 2
     }
 }
 
-/// 21 bits, two zeros after each.
+/// 21 bits, which are all that there are, two zeros after each.
 fn spread(bits: u64) -> u64 {
     let steps = [
         (32, 0x001F_0000_0000_FFFF),

@@ -229,11 +229,6 @@ impl Graph {
     pub(super) fn degree(&self, place: usize) -> u32 {
         self.of(place).all.len() as u32
     }
-
-    /// How many edges there are, each counted once.
-    pub(super) fn edges(&self) -> u64 {
-        self.0.iter().map(|rows| rows.len() as u64).sum::<u64>() / 2
-    }
 }
 
 /// The graph of some rules, at their c or another.

@@ -66,11 +66,6 @@ impl<T> Parts<T> {
     pub(super) fn with(&self, place: usize) -> (&T, usize) {
         (&self.0[place / PLACES], place % PLACES)
     }
-
-    /// All parts.
-    pub(super) fn iter(&self) -> impl Iterator<Item = &T> {
-        self.0.iter()
-    }
 }
 
 impl<T: Copy> Parts<Vec<T>> {

@@ -17,6 +17,24 @@ fn a_point_far_away_leaves_the_others_in_order() {
     assert!(same.is_sorted() && same.len() == 40);
 }
 
+#[test]
+fn neighbours_of_the_curve_are_neighbours_of_a_grid() {
+    // A grid of 32 x 32 x 32, shuffled: along the curve of Morton the first eight fill a cube, and so on.
+    let place = |i: u32| (i * 12_345 + 678) % 32_768;
+    let points: Vec<Vec3> = (0..32_768)
+        .map(place)
+        .map(|at| Vec3::new((at % 32) as f32, (at / 32 % 32) as f32, (at / 1024) as f32))
+        .collect();
+    let order = along(&points, 16, &Exec::sequential());
+    for side in [2, 4, 8, 16] {
+        for cube in order.chunks(side * side * side) {
+            let cells = cube.iter().map(|&i| (points[i as usize] / side as f32).floor());
+            let first = cells.clone().next();
+            assert!(cells.clone().all(|cell| Some(cell) == first), "{side}");
+        }
+    }
+}
+
 proptest! {
     #[test]
     fn every_point_is_there_once_whatever_they_are(points in prop::collection::vec(vector(), 1..300)) {
