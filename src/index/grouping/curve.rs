@@ -36,7 +36,7 @@ fn refine(points: &[Vec3], most: usize, numbered: &Numbered, order: &mut [u64]) 
     }
 }
 
-/// A cell and the number of a point in one integer, the cell above: it is sorted in half the time of two.
+/// A cell and the number of a point in one integer, the cell above: one is sorted faster than two.
 struct Numbered {
     /// Bits of a number.
     bits: u32,
