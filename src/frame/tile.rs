@@ -151,9 +151,12 @@ enum Slot<J, T> {
 /// Runs `run` for each index below `count`, in parallel. What `run` is called with is not a type
 /// parameter: a parallel loop compiled for each of the crate's loops was a fifth of the program.
 ///
-/// Each index is taken by itself: of a run of them nothing can be taken over by a thread that is idle.
+/// A run of indices that a thread has begun cannot be taken over by one that is idle: runs are short.
 fn each(pool: &rayon::ThreadPool, count: usize, run: &(dyn Fn(usize) + Sync)) {
-    pool.install(|| (0..count).into_par_iter().with_max_len(1).for_each(run));
+    /// Runs for each thread, or one for each index.
+    const RUNS: usize = 64;
+    let most = count.div_ceil(RUNS * pool.current_num_threads()).max(1);
+    pool.install(|| (0..count).into_par_iter().with_max_len(most).for_each(run));
 }
 
 /// The division of a picture into tiles; those at the right and lower edge may be cut.
