@@ -12,6 +12,7 @@ mod common;
 use common::models;
 use common::report::{Arguments, Table};
 use splatref::Result;
+use splatref::compare::metrics::visible;
 use splatref::frame::{Exec, Frame};
 use splatref::index::grouping::{Extension, Grouping, Rules};
 use splatref::io::scene_file::SceneFile;
@@ -21,7 +22,6 @@ use splatref::method::transparent::{self, BinEdges};
 use splatref::method::transparent_hq;
 use splatref::method::{Method, Session, peeling};
 use splatref::scene::{Camera, Groups, Scene};
-use splatref::verify::metrics::visible;
 use std::path::Path;
 
 /// A scene before a camera.

@@ -22,6 +22,7 @@ use common::report::{Arguments, Table};
 use common::shot::Shot;
 use glam::Vec3;
 use splatref::Result;
+use splatref::compare::metrics::{Region, regions};
 use splatref::frame::{Exec, Frame, Plane, Samples};
 use splatref::io::scene_file;
 use splatref::method::{Method, Session, single_pass};
@@ -30,7 +31,6 @@ use splatref::scene::{Camera, Lens, Scene};
 use splatref::source::Shape;
 use splatref::source::derive::{self, Derive};
 use splatref::splat::{Epsilon, SplatSettings};
-use splatref::verify::metrics::{Region, regions};
 
 /// Rows; 4/3 as many columns.
 const HEIGHTS: [u32; 3] = [300, 600, 1200];

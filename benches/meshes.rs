@@ -22,13 +22,13 @@ use common::report::{Arguments, Table};
 use common::shot::Shot;
 use glam::{DVec3, Vec3};
 use splatref::Result;
+use splatref::compare::metrics::{coverage, rmse};
 use splatref::frame::Exec;
 use splatref::io::scene_file;
 use splatref::method::{Method, Session, ewa, pyramid, single_pass, template};
 use splatref::number::elementary::{cos, sin};
 use splatref::scene::{Camera, Cloud, Lens, Scene};
 use splatref::source::derive::{self, Derive};
-use splatref::verify::metrics::{coverage, rmse};
 
 /// Rows; 4/3 as many columns.
 const HEIGHTS: [u32; 3] = [300, 600, 1200];

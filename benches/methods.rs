@@ -15,12 +15,12 @@ use common::chart::{Axis, Series, svg};
 use common::report::{Arguments, Table, machine};
 use common::shot::Shot;
 use common::sphere::cell;
+use splatref::compare::metrics::summary;
 use splatref::frame::{Exec, Image};
 use splatref::index::grouping::{Rules, group};
 use splatref::method::{Method, Session, ewa, pyramid, single_pass, template};
 use splatref::scene::{Camera, Scene};
 use splatref::source::Shape;
-use splatref::verify::metrics::summary;
 use splatref::{Error, Result};
 use std::time::{Duration, Instant};
 

@@ -15,8 +15,8 @@ use splatref::method::{Method, Session};
 use splatref::scene::{Camera, Scene};
 use splatref::source::Shape;
 use splatref::splat::record::project_records;
-use splatref::verify::client::{Client, Rounding};
-use splatref::verify::verdict::{Outcome, Verdict};
+use splatref::verdict::client::{Client, Rounding};
+use splatref::verdict::{Outcome, Verdict};
 use splatref::{Error, Result};
 use std::time::{Duration, Instant};
 

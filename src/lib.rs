@@ -49,7 +49,7 @@
 //! 4. [`method::ewa`], the method that the others refer to, then the method you came for: each is a
 //!    chapter below.
 //! 5. [`composite`], the algebra of fragments, and its laws.
-//! 6. [`verify`], what is equal, what a right implementation may leave, and what is neither.
+//! 6. [`compare`], what is equal, and by how much it is not; [`verdict`], what a right implementation may leave.
 //!    [`backends`], if the other picture is a GPU's.
 //!
 //! The rest is read when it is needed: [`frame`] (planes and tiles), [`number`] (what a number must
@@ -75,7 +75,7 @@
 //!   without splats, from surfels and triangles:                                  │
 //!   method::blue           discs ────────────────────────────────────────────────┤
 //!                                                                                ▼
-//!   verify::compare ◀─ io::exr ◀─ Frame ◀─ scene::environment ◀─ shade::{phong, optics}
+//!          compare ◀─ io::exr ◀─ Frame ◀─ scene::environment ◀─ shade::{phong, optics}
 //! ```
 //!
 //! # The methods, a chapter each
@@ -186,7 +186,7 @@
 //!
 //! ```
 //! use splatref::frame::Image;
-//! use splatref::verify::compare::{Criteria, Verdict, compare};
+//! use splatref::compare::{Criteria, Verdict, compare};
 //! use splatref::{Exec, SceneFile};
 //!
 //! let exec = Exec::new(0, 32)?; // every core, tiles of 32 pixels
@@ -211,11 +211,13 @@
 
 #[doc = include_str!("../docs/backends.md")]
 pub mod backends {}
+pub mod compare;
 pub mod composite;
 pub mod error;
 pub mod frame;
 pub mod index;
 pub mod io;
+pub mod laws;
 pub mod memory;
 pub mod method;
 pub mod number;
@@ -226,11 +228,10 @@ pub mod source;
 pub mod splat;
 #[cfg(feature = "cli")]
 pub mod study;
-pub mod verify;
+pub mod verdict;
 
 pub use error::{Error, Result};
 pub use frame::{Exec, Frame};
 pub use io::scene_file::SceneFile;
 pub use method::{Method, Session};
 pub use scene::{Camera, Scene};
-pub use verify::laws;

@@ -20,7 +20,7 @@ use splatref::scene::{Primitives, Scene, Similarity, Surfels};
 use splatref::source::Shape;
 use splatref::source::sampler::{Greedy, Progressive, Schedule, Start, shuffled};
 use splatref::splat::SplatSettings;
-use splatref::verify::client::Client;
+use splatref::verdict::client::Client;
 
 /// A line of /proc/self/status, in bytes.
 fn status(key: &str) -> Option<u64> {

@@ -89,7 +89,7 @@ fn of_mesh(
                 draw(&scene, method, &camera, exec).map(|found| against(&found, &truth))
             });
             let (discs, ewa) = (discs?, ewa?);
-            let of = |found: splatref::verify::metrics::Coverage| {
+            let of = |found: splatref::compare::metrics::Coverage| {
                 format!("{:.2}", percent(found.holes, found.interior))
             };
             let count = scene.surfels.len();

@@ -6,12 +6,12 @@ use super::instanced::{CLOSE, OVERVIEW, Rings};
 use super::scene::{against, blue, draw, percent};
 use glam::DVec3;
 use splatref::Result;
+use splatref::compare::metrics::ssim_map;
 use splatref::frame::{Exec, Frame, NO_ID, Plane, Samples};
 use splatref::scene::{Camera, Lens, Pose, Primitives, Similarity};
 use splatref::source::candidates::{Directions, SIDE};
 use splatref::study::atlas::beside;
 use splatref::study::atlas::orders::{geometry, mesh, objects, order, seen};
-use splatref::verify::metrics::ssim_map;
 use std::time::Instant;
 
 /// Lengths of prefixes in Fig. 4.

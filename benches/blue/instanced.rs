@@ -8,6 +8,7 @@ use super::common::report::{Arguments, Table};
 use super::scene::{against, blue, draw, percent};
 use glam::DVec3;
 use splatref::Result;
+use splatref::compare::metrics::summary;
 use splatref::frame::image::Image;
 use splatref::frame::{Exec, Frame, Plane, Samples};
 use splatref::number::elementary::{cos, sin};
@@ -17,7 +18,6 @@ use splatref::scene::{Triangles, Vertices};
 use splatref::source::candidates::Directions;
 use splatref::source::flatten;
 use splatref::study::atlas::orders::{geometry, mesh, objects, order, seen};
-use splatref::verify::metrics::summary;
 use std::f64::consts::TAU;
 use std::time::Instant;
 

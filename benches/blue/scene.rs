@@ -1,10 +1,10 @@
 //! What a picture covers of the mesh that an order was made of.
 
 use splatref::Result;
+use splatref::compare::metrics::{Coverage, coverage};
 use splatref::frame::{Exec, Frame, Samples};
 use splatref::method::{Method, Session, blue};
 use splatref::scene::{Camera, Scene};
-use splatref::verify::metrics::{Coverage, coverage};
 
 /// The picture of a scene.
 pub(crate) fn draw(

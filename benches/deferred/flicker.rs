@@ -21,13 +21,13 @@
 use super::stage::{along_a_curve, board, check};
 use glam::{DVec3, Vec3};
 use splatref::Result;
+use splatref::compare::metrics::{Region, regions, rmse};
 use splatref::frame::Exec;
 use splatref::index::mipmap;
 use splatref::method::{Method, Session, deferred, ewa};
 use splatref::scene::transform::rotation;
 use splatref::scene::{Camera, Cloud, Lens, Pose, Scene, Similarity, Surfels};
 use splatref::source::Shape;
-use splatref::verify::metrics::{Region, regions, rmse};
 
 pub(crate) const SIDE: u32 = 256;
 /// At 16 surfels a pixel its side is about four radii.

@@ -8,6 +8,7 @@
 use crate::common::report::{Arguments, Table};
 use crate::common::shot::Shot;
 use splatref::Result;
+use splatref::compare::metrics::rmse;
 use splatref::frame::Exec;
 use splatref::method::{Method, Session, ewa, pyramid, template};
 use splatref::number::{Real, Vector3};
@@ -15,7 +16,6 @@ use splatref::scene::{Camera, Phong, Scene};
 use splatref::shade::phong::Shader;
 use splatref::source::Shape;
 use splatref::splat::View;
-use splatref::verify::metrics::rmse;
 
 pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
     let methods: [(&str, Method); 3] = [

@@ -9,12 +9,12 @@ use crate::common::report::{Arguments, Table};
 use crate::common::shot::Shot;
 use glam::{DVec3, Vec3};
 use splatref::Result;
+use splatref::compare::metrics::{rmse, ssim};
 use splatref::frame::{Exec, Plane};
 use splatref::io::scene_file;
 use splatref::method::{Session, pyramid};
 use splatref::scene::{Camera, Lens, Primitives, Scene, Surfels};
 use splatref::source::plant::{LEAVES, apple_tree};
-use splatref::verify::metrics::{rmse, ssim};
 
 /// What is seen, as the centre and the radius of a sphere that fills the picture.
 const VIEWS: [(&str, [f64; 3], f64); 4] = [

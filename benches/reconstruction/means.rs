@@ -1,9 +1,9 @@
 //! The means over the scenes of what is wrong with a picture: against EWA, and of shapes against the true picture. They
 //! are why occluded is what lies behind, and why the template's level is that of the diameter.
 //!
-//! - RMSE and SSIM as in [`splatref::verify::metrics`], of the whole picture.
+//! - RMSE and SSIM as in [`splatref::compare::metrics`], of the whole picture.
 //! - Holes: empty pixels of the reference's interior, per mille of it. Spill: painted pixels of its
-//!   exterior, per mille of what it covers. See [`splatref::verify::metrics::coverage`].
+//!   exterior, per mille of what it covers. See [`splatref::compare::metrics::coverage`].
 //! - Outline: how many pairs of pixels, side by side or one above the other, have one that is
 //!   painted and one that is not, by that number of the reference; above 1 a silhouette is rougher,
 //!   or there are holes.
@@ -12,8 +12,8 @@ use super::common::report::Table;
 use super::common::shot::Shot;
 use super::{Bench, EWA, Subject, methods, splatting};
 use splatref::Result;
+use splatref::compare::metrics::{coverage, summary};
 use splatref::frame::image::Image;
-use splatref::verify::metrics::{coverage, summary};
 
 /// What is measured of a picture.
 #[derive(Clone, Copy, Debug, Default)]

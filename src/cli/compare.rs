@@ -1,10 +1,10 @@
 //! `splatref compare`: two pictures, plane by plane.
 
 use super::{Ended, Ending, report, say};
+use splatref::compare::metrics;
+use splatref::compare::{Criteria, Tolerance, Verdict, compare};
 use splatref::frame::{Exec, Image};
 use splatref::io::{exr, npy, png, srgb};
-use splatref::verify::compare::{Criteria, Tolerance, Verdict, compare};
-use splatref::verify::metrics;
 use splatref::{Error, Result};
 use std::path::{Path, PathBuf};
 

@@ -4,7 +4,7 @@ use super::options::{ExecOptions, SceneOptions};
 use super::{Ended, Ending, draw, report, say, verify};
 use splatref::io::client::Description;
 use splatref::io::scene_file::{Number, Ready};
-use splatref::verify::client::Rounding;
+use splatref::verdict::client::Rounding;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]

@@ -2,6 +2,8 @@
 
 use super::options::ExecOptions;
 use super::{Ended, Ending, draw, say};
+use splatref::compare::digest;
+use splatref::compare::{Comparison, Criteria, Relation, Verdict, compare};
 use splatref::frame::image::{Image, Values};
 use splatref::frame::{Exec, Frame, Plane, Samples};
 use splatref::index::seen::Seen;
@@ -9,8 +11,6 @@ use splatref::io::exr::{self, Compression};
 use splatref::io::scene_file::{Ready, SceneFile};
 use splatref::io::{png, provenance};
 use splatref::method::Picture;
-use splatref::verify::compare::{Comparison, Criteria, Relation, Verdict, compare};
-use splatref::verify::digest;
 use splatref::{Error, Result};
 use std::collections::BTreeSet;
 use std::fs;

@@ -3,13 +3,13 @@
 use super::study::loss;
 use super::tried::{Loaded, Tried, truth_in_words};
 use super::{Ended, Ending, output, progress, report, say};
+use splatref::compare::metrics::METRICS;
 use splatref::io::replace::write_atomically;
 use splatref::io::scene_file::{GroupChoice, MethodChoice};
 use splatref::setting::Setting;
 use splatref::study::plan::{Budget, Known as Row, choose};
 use splatref::study::report::chart::Loss;
 use splatref::study::sweep::Candidate;
-use splatref::verify::metrics::METRICS;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;

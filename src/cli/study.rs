@@ -2,6 +2,7 @@
 
 use super::tried::{Loaded, Tried, truth_in_words};
 use super::{Ended, Ending, atlas, claims, output, progress, report, say};
+use splatref::compare::digest;
 use splatref::frame::{Exec, Frame, Image};
 use splatref::io::replace::write_atomically;
 use splatref::io::scene_file::SceneFile;
@@ -12,7 +13,6 @@ use splatref::study::run::measure::{losses, measure};
 use splatref::study::run::truths::Truths;
 use splatref::study::run::{Bench, LeftOut, Record, Study, Subject, time};
 use splatref::study::sweep::Candidate;
-use splatref::verify::digest;
 use splatref::{Error, Result};
 use std::fs;
 use std::io::Write;

@@ -3,7 +3,7 @@
 use super::verify::report::{JsonShift, leaning};
 use super::{Ended, Ending, say};
 use serde::Deserialize;
-use splatref::verify::shift::{LIMITS, Shift, Shifts};
+use splatref::verdict::shift::{LIMITS, Shift, Shifts};
 use splatref::{Error, Result};
 use std::collections::BTreeMap;
 use std::fs::File;

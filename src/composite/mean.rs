@@ -93,7 +93,7 @@ pub fn foremost<R: Exact>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::verify::laws::{Lawful, means};
+    use crate::laws::{Lawful, means};
     use proptest::prelude::*;
 
     fn mean<R: Exact>(takes: [bool; 4], weights: [R; 4], a: [R; 4]) -> R {

@@ -59,7 +59,7 @@ impl<R: Real> Under<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::verify::laws::{Lawful, under};
+    use crate::laws::{Lawful, under};
     use proptest::prelude::*;
 
     fn operator(above: Under<f64>, alpha: f64, color: [f64; 3]) -> Under<f64> {

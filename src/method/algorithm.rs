@@ -8,12 +8,9 @@ use crate::frame::{Exec, Frame, Grid, NamedPlane, Pool, Rect};
 use crate::index::Index;
 use crate::index::grouping::Grouping;
 use crate::number::Exact;
-use crate::number::ball::Profile;
 use crate::scene::{Camera, Scene};
 use crate::setting::Fields;
 use crate::splat::SplatSettings;
-use crate::verify::client::Client;
-use crate::verify::verdict::{Check, Verdict};
 use std::fmt::{Debug, Display};
 
 /// What a picture is made of, and how.
@@ -28,11 +25,11 @@ pub struct Job<'a> {
     /// Threads and tiles; these cannot change one bit.
     pub exec: &'a Exec,
     /// How the sums that fragments are blended into are stored.
-    pub(super) buffers: Buffers,
+    pub(crate) buffers: Buffers,
     /// What is compared where the nearest fragment wins.
-    pub(super) key: DepthKey,
+    pub(crate) key: DepthKey,
     /// The one level that a stage makes, of those of [`Algorithm::levels`]; all of them if none.
-    pub(super) level: Option<usize>,
+    pub(crate) level: Option<usize>,
 }
 
 impl<'a> Job<'a> {
@@ -44,27 +41,27 @@ impl<'a> Job<'a> {
     }
 
     /// Of the levels of a stage those that it makes.
-    pub(super) fn only(&self, levels: Vec<usize>) -> Vec<usize> {
+    pub(crate) fn only(&self, levels: Vec<usize>) -> Vec<usize> {
         self.level.map_or(levels, |level| vec![level])
     }
 
     /// The tiles of the picture.
-    pub(super) fn grid(&self) -> Grid {
+    pub(crate) fn grid(&self) -> Grid {
         self.exec.grid(self.camera.width, self.camera.height)
     }
 
     /// The tiles of the fast paths.
-    pub(super) fn strips(&self) -> Grid {
+    pub(crate) fn strips(&self) -> Grid {
         self.grid().strips()
     }
 
     /// All pixels of the picture.
-    pub(super) fn picture(&self) -> Rect {
+    pub(crate) fn picture(&self) -> Rect {
         Rect { x0: 0, y0: 0, x1: self.camera.width, y1: self.camera.height }
     }
 
     /// Planes of the picture as a frame.
-    pub(super) fn frame<R>(&self, planes: Vec<NamedPlane<R>>) -> Frame<R> {
+    pub(crate) fn frame<R>(&self, planes: Vec<NamedPlane<R>>) -> Frame<R> {
         Frame { width: self.camera.width, height: self.camera.height, planes }
     }
 }
@@ -166,24 +163,6 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
         let _ = (job, pixel);
         Ok(Vec::new())
     }
-
-    /// Judges the planes of a client: what a right implementation may leave of each stage. A picture
-    /// whose share of undecided sums exceeds `budget` cannot be judged.
-    ///
-    /// # Errors
-    /// As [`Algorithm::define`].
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict>;
-
-    /// Everything of a client that is judged at one pixel.
-    ///
-    /// # Errors
-    /// As [`Algorithm::explain`].
-    fn checks<P: Profile>(
-        &self,
-        job: &Job<'_>,
-        client: &Client,
-        pixel: (u32, u32),
-    ) -> Result<Vec<Check>>;
 
     /// What the settings come to in a scene: names and values as TOML, for the text of a picture.
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {

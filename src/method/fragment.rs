@@ -8,33 +8,33 @@ use crate::splat::{Shared, Splat, fragment};
 
 /// The splats that may touch some pixels, all of one tile.
 #[derive(Debug)]
-pub(super) struct TileSplats<'a, R: Exact> {
+pub(crate) struct TileSplats<'a, R: Exact> {
     prepared: &'a Prepared<R, Splat<R>>,
     tile: usize,
     /// The pixels.
-    pub(super) rect: Rect,
+    pub(crate) rect: Rect,
 }
 
 impl<'a, R: Exact> TileSplats<'a, R> {
     /// The splats of a tile, at these of its pixels.
-    pub(super) fn new(prepared: &'a Prepared<R, Splat<R>>, tile: usize, rect: Rect) -> Self {
+    pub(crate) fn new(prepared: &'a Prepared<R, Splat<R>>, tile: usize, rect: Rect) -> Self {
         Self { prepared, tile, rect }
     }
 
     /// What the fragments of all splats share.
-    pub(super) fn shared(&self) -> &'a Shared<R> {
+    pub(crate) fn shared(&self) -> &'a Shared<R> {
         &self.prepared.shared
     }
 
     /// The depth of the visible band in world units.
-    pub(super) fn epsilon(&self) -> R {
+    pub(crate) fn epsilon(&self) -> R {
         self.prepared.epsilon
     }
 
     /// Runs `draw` for every pixel in the bounds of every splat, in ascending surfel index: splat,
     /// pixel counted row by row, q and nearness.
     #[inline(always)]
-    pub(super) fn each_in_bounds(&self, mut draw: impl FnMut(&Splat<R>, usize, R, R)) {
+    pub(crate) fn each_in_bounds(&self, mut draw: impl FnMut(&Splat<R>, usize, R, R)) {
         self.prepared.for_each(self.tile, |splat| {
             each_in_bounds(self.shared(), splat, &self.rect, |pixel, q, w| {
                 draw(splat, pixel, q, w);
@@ -45,7 +45,7 @@ impl<'a, R: Exact> TileSplats<'a, R> {
     /// Runs `draw` for every fragment that is inside, in ascending surfel index: splat, pixel
     /// counted row by row, q and nearness.
     #[inline(always)]
-    pub(super) fn each_inside(&self, mut draw: impl FnMut(&Splat<R>, usize, R, R)) {
+    pub(crate) fn each_inside(&self, mut draw: impl FnMut(&Splat<R>, usize, R, R)) {
         self.prepared.for_each(self.tile, |splat| {
             each_inside(self.shared(), splat, &self.rect, |pixel, q, w| draw(splat, pixel, q, w));
         });
@@ -55,7 +55,7 @@ impl<'a, R: Exact> TileSplats<'a, R> {
 /// Runs `visit` for the pixels of `rect` in the bounds of a splat: the pixel, counted row by row, and
 /// its column and row.
 #[inline(always)]
-pub(super) fn each_pixel<R: Real>(
+pub(crate) fn each_pixel<R: Real>(
     splat: &Splat<R>,
     rect: &Rect,
     mut visit: impl FnMut(usize, (u32, u32)),
@@ -71,7 +71,7 @@ pub(super) fn each_pixel<R: Real>(
 
 /// Runs `draw` for these pixels: the pixel, counted row by row, q and nearness.
 #[inline(always)]
-pub(super) fn each_in_bounds<R: Real>(
+pub(crate) fn each_in_bounds<R: Real>(
     shared: &Shared<R>,
     splat: &Splat<R>,
     rect: &Rect,
@@ -85,7 +85,7 @@ pub(super) fn each_in_bounds<R: Real>(
 
 /// The same for the fragments that are inside.
 #[inline(always)]
-pub(super) fn each_inside<R: Exact>(
+pub(crate) fn each_inside<R: Exact>(
     shared: &Shared<R>,
     splat: &Splat<R>,
     rect: &Rect,
@@ -100,7 +100,7 @@ pub(super) fn each_inside<R: Exact>(
 
 /// The normal, reversed if the back is seen.
 #[inline(always)]
-pub(super) fn facing<R: Real>(normal: [R; 3], back: R::Truth) -> [R; 3] {
+pub(crate) fn facing<R: Real>(normal: [R; 3], back: R::Truth) -> [R; 3] {
     let part = |component: R| R::select(back, -component, component);
     [part(normal[0]), part(normal[1]), part(normal[2])]
 }

@@ -21,7 +21,7 @@ impl<'a, R: Exact> Given<'a, R> {
     ///
     /// # Errors
     /// [`Error::Invalid`] if the frame is not of the size of the job's picture.
-    pub(super) fn new(frame: &'a Frame<R>, job: &'a Job<'a>) -> Result<Self> {
+    pub(crate) fn new(frame: &'a Frame<R>, job: &'a Job<'a>) -> Result<Self> {
         let (found, picture) = ([frame.width, frame.height], job.camera.size());
         if found == picture {
             return Ok(Self { frame, job });
@@ -35,7 +35,7 @@ impl<'a, R: Exact> Given<'a, R> {
     }
 
     /// Whether there is a plane of a row; `number` stands for the row's `#`.
-    pub(super) fn has(&self, row: &PlaneRow, number: usize) -> bool {
+    pub(crate) fn has(&self, row: &PlaneRow, number: usize) -> bool {
         self.frame.plane(&row.numbered(number)).is_some()
     }
 
@@ -43,7 +43,7 @@ impl<'a, R: Exact> Given<'a, R> {
     ///
     /// # Errors
     /// [`Error::Invalid`] if the plane is missing, or of another type or size.
-    pub(super) fn scalar(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<R>> {
+    pub(crate) fn scalar(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<R>> {
         match self.samples(row, number)? {
             Samples::Scalar(plane) => self.sized(row, number, plane),
             _ => Err(of_another_type(row, number)),
@@ -54,7 +54,7 @@ impl<'a, R: Exact> Given<'a, R> {
     ///
     /// # Errors
     /// As [`Given::scalar`].
-    pub(super) fn triple(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<[R; 3]>> {
+    pub(crate) fn triple(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<[R; 3]>> {
         match (row.holds, self.samples(row, number)?) {
             (Holds::Color, Samples::Color(plane)) | (Holds::Vector, Samples::Vector(plane)) => {
                 self.sized(row, number, plane)
@@ -67,7 +67,7 @@ impl<'a, R: Exact> Given<'a, R> {
     ///
     /// # Errors
     /// As [`Given::scalar`].
-    pub(super) fn triple_if(
+    pub(crate) fn triple_if(
         &self,
         has: bool,
         row: &PlaneRow,
@@ -80,7 +80,7 @@ impl<'a, R: Exact> Given<'a, R> {
     ///
     /// # Errors
     /// As [`Given::scalar`].
-    pub(super) fn count(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<u8>> {
+    pub(crate) fn count(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<u8>> {
         match self.samples(row, number)? {
             Samples::Count(plane) => self.sized(row, number, plane),
             _ => Err(of_another_type(row, number)),
@@ -91,7 +91,7 @@ impl<'a, R: Exact> Given<'a, R> {
     ///
     /// # Errors
     /// As [`Given::scalar`], and if the scene has nothing of an id.
-    pub(super) fn ids(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<u32>> {
+    pub(crate) fn ids(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<u32>> {
         let Samples::Index(plane) = self.samples(row, number)? else {
             return Err(of_another_type(row, number));
         };
@@ -115,7 +115,7 @@ impl<'a, R: Exact> Given<'a, R> {
     }
 
     /// A record for each pixel, made of the values of planes there.
-    pub(super) fn tiled<T: Send>(&self, record: impl Fn(u32, u32) -> T + Sync + Send) -> Tiled<T> {
+    pub(crate) fn tiled<T: Send>(&self, record: impl Fn(u32, u32) -> T + Sync + Send) -> Tiled<T> {
         Tiled::new(self.job, |_, rect| pixels(rect).map(|(x, y)| record(x, y)).collect())
     }
 

@@ -29,11 +29,12 @@
 //! | `planes.rs` | the planes of every [`Stage`], out and in |
 //! | `picture.rs` | all stages in one call |
 //! | `explain.rs` | the decisions at one pixel |
-//! | `verify/` | what a right implementation may leave of each stage |
 //! | `fast/` | the bits of the definition for `f32`, from another layout |
 //!
-//! A new method is its folder, a row in `table.rs`, its scenes under `golden/` and its oracle under
-//! `tests/oracle/`.
+//! What a right implementation may leave of each stage is said in [`crate::verdict`], a folder a method.
+//!
+//! A new method is its folder, a row in `table.rs`, its verdict and a row in `src/verdict/table.rs`, its
+//! scenes under `golden/` and its oracle under `tests/oracle/`.
 //!
 //! # Fast paths
 //!
@@ -56,23 +57,20 @@
 //!   [`exp_f32_in_range`](crate::number::elementary::exp_f32_in_range).
 
 mod algorithm;
-mod allowed;
 pub mod blue;
-mod checks;
 pub mod deferred;
 pub mod ewa;
 mod fast;
-mod fragment;
+pub(crate) mod fragment;
 mod given;
-mod judged;
 pub mod peeling;
-mod picture;
+pub(crate) mod picture;
 pub mod planes;
-mod prepare;
+pub(crate) mod prepare;
 pub mod projection;
 pub mod pyramid;
-mod replay;
-mod resolved;
+pub(crate) mod replay;
+pub(crate) mod resolved;
 pub mod session;
 pub mod single_pass;
 pub mod stage;
@@ -80,8 +78,8 @@ pub mod stored;
 mod table;
 pub mod template;
 #[cfg(test)]
-mod tests;
-mod tiled;
+pub(crate) mod tests;
+pub(crate) mod tiled;
 pub mod transparent;
 pub mod transparent_hq;
 

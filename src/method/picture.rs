@@ -26,7 +26,7 @@ pub struct Picture<R> {
 }
 
 /// Deferred shading, and the planes of the picture.
-pub(super) fn finish<R: Exact>(
+pub(crate) fn finish<R: Exact>(
     target: Framebuffer<R>,
     mut planes: Vec<NamedPlane<R>>,
     tally: Tally,
@@ -52,7 +52,7 @@ pub(super) fn finish<R: Exact>(
 }
 
 /// The colour and the opacity of a picture: deferred shading before the environment of the scene.
-pub(super) fn shaded<R: Exact>(
+pub(crate) fn shaded<R: Exact>(
     job: &Job<'_>,
     depth: &Plane<R>,
     normal: Option<&Plane<[R; 3]>>,
@@ -67,7 +67,7 @@ pub(super) fn shaded<R: Exact>(
 }
 
 /// Colours multiplied by their opacity before the environment of the scene, if it has one.
-pub(super) fn before_environment<R: Exact>(
+pub(crate) fn before_environment<R: Exact>(
     scene: &Scene,
     camera: &Camera,
     mut color: Plane<[R; 3]>,
@@ -90,7 +90,7 @@ pub(super) fn before_environment<R: Exact>(
 }
 
 /// A pixel before the light behind it, which is asked for where the pixel is not opaque.
-pub(super) fn before_light<R: Real>(layers: Blend<R>, light: impl FnOnce() -> [R; 3]) -> Blend<R> {
+pub(crate) fn before_light<R: Real>(layers: Blend<R>, light: impl FnOnce() -> [R; 3]) -> Blend<R> {
     let open = layers.alpha.lt(R::ONE);
     if !open.possibly() {
         return layers;
@@ -101,7 +101,7 @@ pub(super) fn before_light<R: Real>(layers: Blend<R>, light: impl FnOnce() -> [R
 }
 
 /// A framebuffer for a camera's picture, in memory that is used again: the values are any.
-pub(super) fn framebuffer(camera: &Camera, wanted: Wanted, pool: &mut Pool) -> Framebuffer<f32> {
+pub(crate) fn framebuffer(camera: &Camera, wanted: Wanted, pool: &mut Pool) -> Framebuffer<f32> {
     let size = camera.size();
     Framebuffer {
         width: camera.width,
@@ -116,7 +116,7 @@ pub(super) fn framebuffer(camera: &Camera, wanted: Wanted, pool: &mut Pool) -> F
     }
 }
 
-pub(super) fn named<R>(name: &str, samples: Samples<R>) -> NamedPlane<R> {
+pub(crate) fn named<R>(name: &str, samples: Samples<R>) -> NamedPlane<R> {
     NamedPlane { name: name.to_owned(), samples }
 }
 
@@ -124,7 +124,7 @@ pub(super) fn named<R>(name: &str, samples: Samples<R>) -> NamedPlane<R> {
 pub type Laps = Vec<(&'static str, Duration)>;
 
 /// Takes the wall times of stages.
-pub(super) struct Clock {
+pub(crate) struct Clock {
     start: Instant,
     laps: Laps,
 }
@@ -137,22 +137,22 @@ impl Default for Clock {
 
 impl Clock {
     /// A clock whose stages have been timed elsewhere.
-    pub(super) fn of(laps: Laps) -> Self {
+    pub(crate) fn of(laps: Laps) -> Self {
         Self { laps, ..Self::default() }
     }
 
-    pub(super) fn restart(&mut self) {
+    pub(crate) fn restart(&mut self) {
         self.start = Instant::now();
     }
 
     /// The stages and how long they took.
-    pub(super) fn into_laps(self) -> Laps {
+    pub(crate) fn into_laps(self) -> Laps {
         self.laps
     }
 
     /// Ends stages that ran one after the other in every tile: each gets the share of the wall time
     /// that it had of the time of all tiles.
-    pub(super) fn shares<const N: usize>(
+    pub(crate) fn shares<const N: usize>(
         &mut self,
         names: [&'static str; N],
         tiles: &[[Duration; N]],
@@ -169,7 +169,7 @@ impl Clock {
     }
 
     /// Ends a stage that began at the last call, or at `restart`, or goes on with the last one.
-    pub(super) fn lap(&mut self, name: &'static str) {
+    pub(crate) fn lap(&mut self, name: &'static str) {
         match self.laps.last_mut() {
             Some((last, time)) if *last == name => *time += self.start.elapsed(),
             _ => self.laps.push((name, self.start.elapsed())),

@@ -12,10 +12,10 @@ use std::ops::Range;
 ///
 /// An item is what is drawn as one splat: a surfel, or a surfel in one of its groups.
 #[derive(Debug)]
-pub(super) struct Prepared<R, S> {
-    pub(super) shared: Shared<R>,
-    pub(super) epsilon: R,
-    pub(super) tally: Tally,
+pub(crate) struct Prepared<R, S> {
+    pub(crate) shared: Shared<R>,
+    pub(crate) epsilon: R,
+    pub(crate) tally: Tally,
     batches: Vec<(Vec<S>, Bins)>,
 }
 
@@ -23,7 +23,7 @@ impl<R: Real, S: Send> Prepared<R, S> {
     /// Projects `count` items and sorts the splats into tiles.
     ///
     /// `project` makes the records of a range of items; `bounds` gives the pixels of a record.
-    pub(super) fn new(
+    pub(crate) fn new(
         (job, grid): (&Job<'_>, &Grid),
         settings: &SplatSettings,
         count: usize,
@@ -51,7 +51,7 @@ impl<R: Real, S: Send> Prepared<R, S> {
     /// Projects the items of some batches and sorts the splats into tiles; the order of the items is
     /// that of the batches, of which each has items near each other. `project` and `bounds` are as in
     /// [`Prepared::new`].
-    pub(super) fn of_batches<B: Send>(
+    pub(crate) fn of_batches<B: Send>(
         (job, grid): (&Job<'_>, &Grid),
         settings: &SplatSettings,
         batches: Vec<B>,
@@ -94,7 +94,7 @@ impl<R: Real, S: Send> Prepared<R, S> {
 
     /// Calls `visit` for each splat that may touch a tile, in the order of the items.
     #[inline(always)]
-    pub(super) fn for_each(&self, tile: usize, mut visit: impl FnMut(&S)) {
+    pub(crate) fn for_each(&self, tile: usize, mut visit: impl FnMut(&S)) {
         for (splats, bins) in &self.batches {
             bins.for_each(tile, |i| visit(&splats[i as usize]));
         }
@@ -103,7 +103,7 @@ impl<R: Real, S: Send> Prepared<R, S> {
     /// The splats that touch a tile, in the order of the items, in the place of what was `gathered`
     /// before; `touches` tells of a splat near the tile whether the splat may touch the tile.
     #[inline(always)]
-    pub(super) fn gather(&self, tile: usize, touches: impl Fn(&S) -> bool, gathered: &mut Vec<S>)
+    pub(crate) fn gather(&self, tile: usize, touches: impl Fn(&S) -> bool, gathered: &mut Vec<S>)
     where
         S: Copy,
     {
@@ -122,7 +122,7 @@ impl<R: Real, S: Send> Prepared<R, S> {
 }
 
 /// How many of `count` items a batch has.
-pub(super) fn batch_size(grid: &Grid, count: usize) -> usize {
+pub(crate) fn batch_size(grid: &Grid, count: usize) -> usize {
     // Many batches, so that threads end together, of at most 8192 surfels, which fit the cache; but of
     // two items for each tile, so that the starts of its bins take about 2 bytes an item; where tiles
     // are so many that this would be all, four batches.
@@ -131,7 +131,7 @@ pub(super) fn batch_size(grid: &Grid, count: usize) -> usize {
 
 impl<R: Exact> Prepared<R, Splat<R>> {
     /// Every surfel as the splat it is, in ascending index.
-    pub(super) fn splats(job: &Job<'_>, settings: &SplatSettings) -> Self {
+    pub(crate) fn splats(job: &Job<'_>, settings: &SplatSettings) -> Self {
         let surfels = &job.scene.surfels;
         Self::new(
             (job, &job.grid()),

@@ -29,7 +29,7 @@ pub struct Decision<R> {
 
 impl<R: Exact> Decision<R> {
     /// A decision; signs and words are those of a comparison that holds, and of one that does not.
-    pub(super) fn new(
+    pub(crate) fn new(
         quantity: &'static str,
         [own, against]: [R; 2],
         holds: bool,
@@ -41,25 +41,25 @@ impl<R: Exact> Decision<R> {
     }
 
     /// Whether a fragment is inside the cut-off.
-    pub(super) fn inside(shared: &Shared<R>, q: R) -> Self {
+    pub(crate) fn inside(shared: &Shared<R>, q: R) -> Self {
         let words = ["inside ", "outside"];
         Self::new("q", [q, shared.limit], decide::inside(q, shared.limit), ["<=", "> "], words)
     }
 
     /// Whether a fragment is nearer than what the pixel holds.
-    pub(super) fn nearer(w: R, held: R, words: [&'static str; 2]) -> Self {
+    pub(crate) fn nearer(w: R, held: R, words: [&'static str; 2]) -> Self {
         Self::new("nearness", [w, held], decide::nearer(w, held), ["> ", "<="], words)
     }
 
     /// Whether a fragment belongs to the visible surface.
-    pub(super) fn visible(t: R, nearest: R, epsilon: R) -> Self {
+    pub(crate) fn visible(t: R, nearest: R, epsilon: R) -> Self {
         let limit = decide::limit(nearest, epsilon);
         let holds = decide::visible(t, limit);
         Self::new("depth", [t, limit], holds, ["<=", "> "], ["visible", "hidden "])
     }
 
     /// Whether a fragment lies strictly beyond a depth.
-    pub(super) fn beyond(t: R, limit: R, words: [&'static str; 2]) -> Self {
+    pub(crate) fn beyond(t: R, limit: R, words: [&'static str; 2]) -> Self {
         Self::new("depth", [t, limit], decide::beyond(t, limit), ["> ", "<="], words)
     }
 
@@ -108,7 +108,7 @@ impl<R: Exact> Touch<R> {
     }
 
     /// Makes one more decision, if every one before it holds.
-    pub(super) fn decide(&mut self, decision: impl FnOnce() -> Decision<R>) {
+    pub(crate) fn decide(&mut self, decision: impl FnOnce() -> Decision<R>) {
         if self.passes() {
             self.decisions.push(decision());
         }
@@ -124,7 +124,7 @@ impl<R: Exact> fmt::Display for Touch<R> {
 
 impl<R: Exact> Touch<R> {
     /// What was decided, and what came out.
-    pub(super) fn fmt_decisions(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    pub(crate) fn fmt_decisions(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, decision) in self.decisions.iter().enumerate() {
             write!(f, "{}{decision}", if i == 0 { "  " } else { "   " })?;
         }
@@ -137,11 +137,11 @@ impl<R: Exact> Touch<R> {
 
 /// A pixel of the picture, by its column and row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
+pub(crate) struct Place {
     /// The tile that holds the pixel.
-    pub(super) tile: usize,
+    pub(crate) tile: usize,
     /// The pixel alone.
-    pub(super) rect: Rect,
+    pub(crate) rect: Rect,
 }
 
 impl Place {
@@ -149,7 +149,7 @@ impl Place {
     ///
     /// # Errors
     /// [`crate::Error::Usage`] if the pixel is outside the picture.
-    pub(super) fn new(job: &Job<'_>, (x, y): (u32, u32)) -> Result<Self> {
+    pub(crate) fn new(job: &Job<'_>, (x, y): (u32, u32)) -> Result<Self> {
         let Job { camera, exec, .. } = *job;
         camera.check_pixel(x, y)?;
         let (tile, _) = exec.grid(camera.width, camera.height).place(x, y);
@@ -157,7 +157,7 @@ impl Place {
     }
 
     /// The splats that may touch the pixel.
-    pub(super) fn splats<'a, R: Exact>(
+    pub(crate) fn splats<'a, R: Exact>(
         &self,
         prepared: &'a Prepared<R, Splat<R>>,
     ) -> TileSplats<'a, R> {
@@ -166,7 +166,7 @@ impl Place {
 }
 
 /// A splat at the pixel, and whether its fragment is inside.
-pub(super) fn touch<R: Exact>(shared: &Shared<R>, surfel: u32, q: R, w: R) -> Touch<R> {
+pub(crate) fn touch<R: Exact>(shared: &Shared<R>, surfel: u32, q: R, w: R) -> Touch<R> {
     let decisions = vec![Decision::inside(shared, q)];
     Touch { surfel, q, t: shared.depth(w), w, decisions, gives: None }
 }

@@ -12,22 +12,22 @@ use crate::number::Exact;
 
 /// The averages at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Resolved<R> {
+pub(crate) struct Resolved<R> {
     /// Depth of the nearest fragment in world units; +inf where there is none.
-    pub(super) depth: R,
+    pub(crate) depth: R,
     /// Its surfel; [`crate::frame::NO_ID`] where there is none.
-    pub(super) id: u32,
+    pub(crate) id: u32,
     /// Sum of the weights.
-    pub(super) weight: R,
+    pub(crate) weight: R,
     /// Direction of the average normal, in world space.
-    pub(super) normal: [R; 3],
+    pub(crate) normal: [R; 3],
     /// Average colour; 0 where the scene has none.
-    pub(super) color: [R; 3],
+    pub(crate) color: [R; 3],
 }
 
 impl<R: Exact> Resolved<R> {
     /// A pixel without weight.
-    pub(super) const EMPTY: Self = Self {
+    pub(crate) const EMPTY: Self = Self {
         depth: R::INFINITY,
         id: NO_ID,
         weight: R::ZERO,
@@ -36,21 +36,21 @@ impl<R: Exact> Resolved<R> {
     };
 }
 
-pub(super) const COLOR: PlaneRow = PlaneRow::new(
+pub(crate) const COLOR: PlaneRow = PlaneRow::new(
     "resolved",
     Holds::Color,
     "linear RGB",
     "average colour of the visible fragments, before shading; 0 where there is none",
     When::Colored,
 );
-pub(super) const DEPTH: PlaneRow = PlaneRow::new(
+pub(crate) const DEPTH: PlaneRow = PlaneRow::new(
     "Z",
     Holds::Scalar,
     "world units",
     "depth of the nearest fragment; +inf where there is none",
     When::Always,
 );
-pub(super) const NORMAL: PlaneRow = PlaneRow::new(
+pub(crate) const NORMAL: PlaneRow = PlaneRow::new(
     "normal",
     Holds::Vector,
     "",
@@ -58,14 +58,14 @@ pub(super) const NORMAL: PlaneRow = PlaneRow::new(
      null vector where there is none",
     When::Lit,
 );
-pub(super) const WEIGHT: PlaneRow = PlaneRow::new(
+pub(crate) const WEIGHT: PlaneRow = PlaneRow::new(
     "weight",
     Holds::Scalar,
     "",
     "sum of the weights of the visible fragments; 0 where there is none",
     When::Always,
 );
-pub(super) const ID: PlaneRow = PlaneRow::new(
+pub(crate) const ID: PlaneRow = PlaneRow::new(
     "id",
     Holds::Index,
     "surfel",
@@ -73,7 +73,7 @@ pub(super) const ID: PlaneRow = PlaneRow::new(
     When::Always,
 );
 /// The colour of a picture.
-pub(super) const SHADED: PlaneRow = PlaneRow::new(
+pub(crate) const SHADED: PlaneRow = PlaneRow::new(
     "",
     Holds::Color,
     "linear RGB",
@@ -82,7 +82,7 @@ pub(super) const SHADED: PlaneRow = PlaneRow::new(
     When::Always,
 );
 /// The opacity of a picture.
-pub(super) const ALPHA: PlaneRow = PlaneRow::new(
+pub(crate) const ALPHA: PlaneRow = PlaneRow::new(
     "A",
     Holds::Scalar,
     "",
@@ -91,12 +91,12 @@ pub(super) const ALPHA: PlaneRow = PlaneRow::new(
 );
 
 /// Deferred shading, as a stage after the one called `normalized`.
-pub(super) const fn shading(normalized: &'static [&'static str]) -> Stage {
+pub(crate) const fn shading(normalized: &'static [&'static str]) -> Stage {
     Stage { name: "shading", reads: normalized, leaves: &[SHADED, ALPHA] }
 }
 
 /// All planes of the averages.
-pub(super) fn planes<R: Exact>(job: &Job<'_>, pixels: &Tiled<Resolved<R>>) -> Vec<NamedPlane<R>> {
+pub(crate) fn planes<R: Exact>(job: &Job<'_>, pixels: &Tiled<Resolved<R>>) -> Vec<NamedPlane<R>> {
     let mut planes: Vec<_> = colors(job, pixels).into_iter().collect();
     planes.push(DEPTH.scalar(0, pixels.plane(|pixel| pixel.depth)));
     planes.push(NORMAL.triple(0, pixels.plane(|pixel| pixel.normal)));
@@ -106,7 +106,7 @@ pub(super) fn planes<R: Exact>(job: &Job<'_>, pixels: &Tiled<Resolved<R>>) -> Ve
 }
 
 /// The average colours, if the scene has colours.
-pub(super) fn colors<R: Exact>(
+pub(crate) fn colors<R: Exact>(
     job: &Job<'_>,
     pixels: &Tiled<Resolved<R>>,
 ) -> Option<NamedPlane<R>> {
@@ -115,7 +115,7 @@ pub(super) fn colors<R: Exact>(
 }
 
 /// The averages as a framebuffer that can be shaded.
-pub(super) fn framebuffer<R: Exact>(
+pub(crate) fn framebuffer<R: Exact>(
     job: &Job<'_>,
     pixels: &Tiled<Resolved<R>>,
     wanted: Wanted,
@@ -134,7 +134,7 @@ pub(super) fn framebuffer<R: Exact>(
 }
 
 /// The stage of shading, on somebody's averages, of surfels with colours or without.
-pub(super) fn shade<R: Exact>(
+pub(crate) fn shade<R: Exact>(
     job: &Job<'_>,
     given: &Given<'_, R>,
     colored: bool,

@@ -4,13 +4,13 @@ mod names;
 mod needs;
 mod stored;
 
-use names::Names;
+pub(crate) use names::Names;
 pub use needs::Making;
 
 use super::algorithm::Job;
 use super::table::Memory;
 use super::{Method, Picture};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::frame::{Exec, Frame, Pool};
 use crate::index::Index;
 use crate::index::grouping::{Extended, Grouping, GroupingReport};
@@ -18,11 +18,7 @@ use crate::index::members::Members;
 use crate::index::order::BackToFront;
 use crate::index::seen::Seen;
 use crate::number::Exact;
-use crate::number::ball::{Gpu, Ieee};
 use crate::scene::{Boxes, Camera, Groups, Scene};
-use crate::verify::client::{Client, Rounding};
-use crate::verify::verdict::{Check, Verdict};
-use std::borrow::Cow;
 
 /// A scene, a method, what the method prepared of the scene, and memory that is used again.
 ///
@@ -215,7 +211,7 @@ impl<'a> Session<'a> {
     }
 
     /// The ids of the surfels, which a verdict numbers by their order whatever the method.
-    fn numbers(&self) -> Option<Names<'_>> {
+    pub(crate) fn numbers(&self) -> Option<Names<'_>> {
         let objects = self.scene.objects.as_ref().filter(|_| self.scene.primitives.is_empty());
         objects.map(Names::new)
     }
@@ -255,84 +251,6 @@ impl<'a> Session<'a> {
         self.method.explain::<R>(&job, pixel)
     }
 
-    /// Judges the planes of a client, stage by stage: whether a right implementation may leave them.
-    /// A picture in which the sums of more than the share `budget` of its pixels are undecided cannot
-    /// be judged, see [`Verdict::BUDGET`].
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if no plane is one of the method's, if the picture has another size than
-    /// the camera's, or if there are records of another method than `ewa`; else as [`Session::render`].
-    pub fn verify(&self, camera: &Camera, client: &Client, budget: f64) -> Result<Verdict> {
-        self.verify_as(&self.method, camera, client, budget)
-    }
-
-    /// As [`Session::verify`], as if the method were another one, with the same scene and groups.
-    pub(crate) fn verify_as(
-        &self,
-        method: &Method,
-        camera: &Camera,
-        client: &Client,
-        budget: f64,
-    ) -> Result<Verdict> {
-        let job = self.job(camera)?;
-        self.check_client(camera, client)?;
-        self.ask(camera, Making::Verdict)?;
-        let names = self.numbers();
-        let client = &*numbered(names.as_ref(), client)?;
-        let verdict = match client.rounding {
-            Rounding::Gpu => method.verify::<Gpu>(&job, client, budget),
-            Rounding::Ieee => method.verify::<Ieee>(&job, client, budget),
-        }?;
-        Ok(verdict.renumbered(|index| named(names.as_ref(), index)))
-    }
-
-    /// Every value of a client at one pixel that is judged, against what it may be.
-    ///
-    /// # Errors
-    /// As [`Session::verify`] and [`Session::explain`].
-    pub fn checks(
-        &self,
-        camera: &Camera,
-        client: &Client,
-        pixel: (u32, u32),
-    ) -> Result<Vec<Check>> {
-        let job = self.job(camera)?;
-        self.check_client(camera, client)?;
-        self.ask(camera, Making::Verdict)?;
-        let names = self.numbers();
-        let client = &*numbered(names.as_ref(), client)?;
-        let mut checks = match client.rounding {
-            Rounding::Gpu => self.method.checks::<Gpu>(&job, client, pixel),
-            Rounding::Ieee => self.method.checks::<Ieee>(&job, client, pixel),
-        }?;
-        let name = |index| named(names.as_ref(), index);
-        checks.iter_mut().for_each(|check| check.fault.renumber(name));
-        Ok(checks)
-    }
-
-    /// Whether there is something to judge, and nothing that is not.
-    fn check_client(&self, camera: &Camera, client: &Client) -> Result<()> {
-        let frame = client.frame();
-        let (found, picture) = ([frame.width, frame.height], camera.size());
-        if found != picture {
-            let [width, height] = found;
-            return Err(Error::Invalid(format!(
-                "planes of {width} x {height}, but the camera's picture has {} x {}",
-                picture[0], picture[1]
-            )));
-        }
-        if frame.planes.is_empty() {
-            let what = format!("no plane is called as one of the method {}", self.method.name());
-            return Err(Error::Invalid(what));
-        }
-        if client.records.is_some() && !matches!(self.method, Method::Ewa(_)) {
-            let name = self.method.name();
-            let what = format!("records are judged of the method ewa alone, and this is {name}");
-            return Err(Error::Invalid(what));
-        }
-        Ok(())
-    }
-
     /// The surfels that weigh most at a pixel, by the ids of its planes, in `f64`, the heaviest first; none if the method does
     /// not say.
     ///
@@ -350,30 +268,22 @@ impl<'a> Session<'a> {
 
     /// Runs a test of the job that a picture is.
     #[cfg(test)]
-    pub(super) fn with_job<T>(&self, camera: &Camera, test: impl FnOnce(&Job<'_>) -> T) -> T {
+    pub(crate) fn with_job<T>(&self, camera: &Camera, test: impl FnOnce(&Job<'_>) -> T) -> T {
         test(&self.job(camera).expect("a camera that has been checked"))
     }
 
-    fn job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {
+    pub(crate) fn job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {
         camera.check()?;
         let Self { scene, index, exec, .. } = self;
         Ok(Job::new(scene, index, camera, exec))
     }
 }
 
-/// A client with indices of surfels in the place of their ids.
-fn numbered<'c>(names: Option<&Names<'_>>, client: &'c Client) -> Result<Cow<'c, Client>> {
-    let Some(names) = names else { return Ok(Cow::Borrowed(client)) };
-    let mut numbered = client.clone();
-    names.number_given(numbered.frame_mut())?;
-    Ok(Cow::Owned(numbered))
-}
-
 /// The id of a surfel that a verdict has numbered; what is the number of none stays, and so does that of
 /// an id of 40 bits.
-fn named(names: Option<&Names<'_>>, index: u32) -> u32 {
+pub(crate) fn named(names: Option<&Names<'_>>, index: u32) -> u32 {
     names.and_then(|names| names.told(index)).unwrap_or(index)
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -138,18 +138,18 @@ impl PlaneRow {
     }
 
     /// A plane of this row; `number` stands for `#`.
-    pub(super) fn plane<R>(&self, number: usize, samples: Samples<R>) -> NamedPlane<R> {
+    pub(crate) fn plane<R>(&self, number: usize, samples: Samples<R>) -> NamedPlane<R> {
         debug_assert!(self.holds(&samples), "{}", self.name);
         NamedPlane { name: self.numbered(number), samples }
     }
 
     /// A plane of this row, of one number a pixel.
-    pub(super) fn scalar<R>(&self, number: usize, plane: Plane<R>) -> NamedPlane<R> {
+    pub(crate) fn scalar<R>(&self, number: usize, plane: Plane<R>) -> NamedPlane<R> {
         self.plane(number, Samples::Scalar(plane))
     }
 
     /// A plane of this row, of three numbers a pixel.
-    pub(super) fn triple<R>(&self, number: usize, plane: Plane<[R; 3]>) -> NamedPlane<R> {
+    pub(crate) fn triple<R>(&self, number: usize, plane: Plane<[R; 3]>) -> NamedPlane<R> {
         match self.holds {
             Holds::Vector => self.plane(number, Samples::Vector(plane)),
             _ => self.plane(number, Samples::Color(plane)),
@@ -157,12 +157,12 @@ impl PlaneRow {
     }
 
     /// A plane of this row, of surfels.
-    pub(super) fn index<R>(&self, number: usize, plane: Plane<u32>) -> NamedPlane<R> {
+    pub(crate) fn index<R>(&self, number: usize, plane: Plane<u32>) -> NamedPlane<R> {
         self.plane(number, Samples::Index(plane))
     }
 
     /// A plane of this row, of small counts.
-    pub(super) fn count<R>(&self, number: usize, plane: Plane<u8>) -> NamedPlane<R> {
+    pub(crate) fn count<R>(&self, number: usize, plane: Plane<u8>) -> NamedPlane<R> {
         self.plane(number, Samples::Count(plane))
     }
 
@@ -215,6 +215,6 @@ impl Stage {
 }
 
 /// There is no stage of this name, or none that runs on planes.
-pub(super) fn unknown(stage: &str) -> Error {
+pub(crate) fn unknown(stage: &str) -> Error {
     Error::Invalid(format!("there is no stage `{stage}` that runs on planes"))
 }

@@ -120,7 +120,7 @@ impl Formats {
     }
 
     /// Rounds what a stage leaves.
-    pub(super) fn store(self, stage: &Stage, left: &mut Frame<f32>, range: &DepthRange) {
+    pub(crate) fn store(self, stage: &Stage, left: &mut Frame<f32>, range: &DepthRange) {
         for NamedPlane { name, samples } in &mut left.planes {
             let row = stage.leaves.iter().find(|row| row.is_called(name));
             let has_unit = row.is_some_and(|row| !row.unit.is_empty() && row.unit != "linear RGB");
@@ -176,19 +176,19 @@ impl Buffers {
 
     /// A sum of numbers that fragments are added to.
     #[inline]
-    pub(super) fn sum<R: Exact>(self, v: R) -> R {
+    pub(crate) fn sum<R: Exact>(self, v: R) -> R {
         if self == Self::F32 { v } else { R::from_f32(self.number(v.to_f64()) as f32 + 0.0) }
     }
 
     /// A sum of colours.
     #[inline]
-    pub(super) fn color<R: Exact>(self, [x, y, z]: [R; 3]) -> [R; 3] {
+    pub(crate) fn color<R: Exact>(self, [x, y, z]: [R; 3]) -> [R; 3] {
         [self.sum(x), self.sum(y), self.sum(z)]
     }
 
     /// A sum of vectors.
     #[inline]
-    pub(super) fn vector<R: Exact>(self, v: [R; 3]) -> [R; 3] {
+    pub(crate) fn vector<R: Exact>(self, v: [R; 3]) -> [R; 3] {
         if self == Self::F32 {
             v
         } else {
@@ -198,27 +198,27 @@ impl Buffers {
 
     /// Layers that were blended from the front.
     #[inline]
-    pub(super) fn under<R: Exact>(self, Under { color, alpha, through }: Under<R>) -> Under<R> {
+    pub(crate) fn under<R: Exact>(self, Under { color, alpha, through }: Under<R>) -> Under<R> {
         Under { color: self.color(color), alpha: self.sum(alpha), through: self.sum(through) }
     }
 
     /// Layers that were blended.
     #[inline]
-    pub(super) fn blend<R: Exact>(self, Blend { color, alpha }: Blend<R>) -> Blend<R> {
+    pub(crate) fn blend<R: Exact>(self, Blend { color, alpha }: Blend<R>) -> Blend<R> {
         Blend { color: self.color(color), alpha: self.sum(alpha) }
     }
 }
 
 /// The depths between which a depth buffer tells apart.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct DepthRange {
+pub(crate) struct DepthRange {
     near: f64,
     far: f64,
     perspective: bool,
 }
 
 impl DepthRange {
-    pub(super) fn new(scene: &Scene, camera: &Camera) -> Self {
+    pub(crate) fn new(scene: &Scene, camera: &Camera) -> Self {
         let (center, radius) = scene.bounding_sphere();
         let [m0, m1, m2, m3] = camera.view_from_world.row(2).to_array().map(f64::from);
         let t = -(((m0 * center.x + m1 * center.y) + m2 * center.z) + m3);
@@ -273,32 +273,32 @@ impl DepthBuffer {
 
 /// What a depth test compares of a fragment: what the buffer holds.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct DepthKey {
+pub(crate) struct DepthKey {
     format: DepthBuffer,
     range: DepthRange,
 }
 
 impl DepthKey {
     /// All is compared as it is.
-    pub(super) const WHOLE: Self = Self {
+    pub(crate) const WHOLE: Self = Self {
         format: DepthBuffer::F32,
         range: DepthRange { near: 0.0, far: 1.0, perspective: false },
     };
 
     /// Of a buffer.
-    pub(super) fn new(format: DepthBuffer, range: DepthRange) -> Self {
+    pub(crate) fn new(format: DepthBuffer, range: DepthRange) -> Self {
         Self { format, range }
     }
 
     /// Of a depth.
     #[inline]
-    pub(super) fn depth<R: Exact>(&self, t: R) -> f64 {
+    pub(crate) fn depth<R: Exact>(&self, t: R) -> f64 {
         self.range.held(t.to_f64(), self.format)
     }
 
     /// The depth that the buffer gives back.
     #[inline]
-    pub(super) fn stored<R: Exact>(&self, t: R) -> R {
+    pub(crate) fn stored<R: Exact>(&self, t: R) -> R {
         if self.format == DepthBuffer::F32 {
             return t;
         }
@@ -307,13 +307,13 @@ impl DepthKey {
 
     /// Of a nearness, which belongs to the depth `t`.
     #[inline]
-    pub(super) fn nearness<R: Exact>(&self, w: R, t: impl FnOnce() -> R) -> f64 {
+    pub(crate) fn nearness<R: Exact>(&self, w: R, t: impl FnOnce() -> R) -> f64 {
         if self.format == DepthBuffer::F32 { w.to_f64() } else { -self.depth(t()) }
     }
 
     /// Of a Voronoi-enhanced depth in bins.
     #[inline]
-    pub(super) fn voronoi<R: Exact>(&self, z: R, bins: &DepthBins<R>) -> f64 {
+    pub(crate) fn voronoi<R: Exact>(&self, z: R, bins: &DepthBins<R>) -> f64 {
         if self.format == DepthBuffer::F32 {
             z.to_f64()
         } else {

@@ -10,12 +10,9 @@ use crate::error::{Error, Result};
 use crate::frame::{Frame, Pool};
 use crate::index::grouping::Grouping;
 use crate::number::Exact;
-use crate::number::ball::Profile;
 use crate::scene::{Camera, Objects, Primitives, Scene};
 use crate::setting::{Fields, Visit};
 use crate::splat::SplatSettings;
-use crate::verify::client::Client;
-use crate::verify::verdict::{Check, Verdict};
 
 /// Makes the enum of methods, and hands every question on to the settings of the method that is
 /// asked.
@@ -29,7 +26,7 @@ macro_rules! methods {
 
         /// What the fast path of a method works in.
         #[derive(Debug)]
-        pub(super) enum Memory {
+        pub(crate) enum Memory {
             $($method(<$settings as Algorithm>::Memory),)*
         }
 
@@ -107,7 +104,7 @@ macro_rules! methods {
                 match self { $(Self::$method(_) => <$settings>::BACK_TO_FRONT,)* }
             }
 
-            pub(super) fn fast_bytes_a_pixel(&self) -> Option<u64> {
+            pub(crate) fn fast_bytes_a_pixel(&self) -> Option<u64> {
                 match self { $(Self::$method(_) => <$settings>::FAST_BYTES_A_PIXEL,)* }
             }
 
@@ -131,11 +128,11 @@ macro_rules! methods {
                 match self { $(Self::$method(settings) => Algorithm::resolved(settings, scene, camera),)* }
             }
 
-            pub(super) fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+            pub(crate) fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
                 match self { $(Self::$method(settings) => settings.define(job, stages),)* }
             }
 
-            pub(super) fn stage<R: Exact>(
+            pub(crate) fn stage<R: Exact>(
                 &self,
                 job: &Job<'_>,
                 stage: &str,
@@ -148,11 +145,11 @@ macro_rules! methods {
                 Ok(job.frame(planes?))
             }
 
-            pub(super) fn levels(&self, job: &Job<'_>, stage: &str) -> Vec<usize> {
+            pub(crate) fn levels(&self, job: &Job<'_>, stage: &str) -> Vec<usize> {
                 match self { $(Self::$method(settings) => settings.levels(job, stage),)* }
             }
 
-            pub(super) fn explain<R: Exact>(&self, job: &Job<'_>, at: (u32, u32)) -> Result<String> {
+            pub(crate) fn explain<R: Exact>(&self, job: &Job<'_>, at: (u32, u32)) -> Result<String> {
                 match self {
                     $(Self::$method(settings) => {
                         Ok(settings.explain::<R>(job, at)?.to_string())
@@ -160,35 +157,15 @@ macro_rules! methods {
                 }
             }
 
-            pub(super) fn weights(&self, job: &Job<'_>, at: (u32, u32)) -> Result<Vec<(u32, f64)>> {
+            pub(crate) fn weights(&self, job: &Job<'_>, at: (u32, u32)) -> Result<Vec<(u32, f64)>> {
                 match self { $(Self::$method(settings) => settings.weights(job, at),)* }
             }
 
-            pub(super) fn verify<P: Profile>(
-                &self,
-                job: &Job<'_>,
-                client: &Client,
-                budget: f64,
-            ) -> Result<Verdict> {
-                match self {
-                    $(Self::$method(settings) => settings.verify::<P>(job, client, budget),)*
-                }
-            }
-
-            pub(super) fn checks<P: Profile>(
-                &self,
-                job: &Job<'_>,
-                client: &Client,
-                at: (u32, u32),
-            ) -> Result<Vec<Check>> {
-                match self { $(Self::$method(settings) => settings.checks::<P>(job, client, at),)* }
-            }
-
-            pub(super) fn memory(&self) -> Memory {
+            pub(crate) fn memory(&self) -> Memory {
                 match self { $(Self::$method(_) => Memory::$method(Default::default()),)* }
             }
 
-            pub(super) fn draw(
+            pub(crate) fn draw(
                 &self,
                 job: &Job<'_>,
                 memory: &mut Memory,

@@ -5,7 +5,6 @@ mod extremes;
 mod planes;
 mod stages;
 mod ties;
-pub(super) mod verdicts;
 
 use crate::frame::{Frame, Plane, Samples};
 use crate::number::Exact;
@@ -15,7 +14,7 @@ use crate::source::Shape;
 use glam::{DVec3, Vec3};
 
 /// Random surfels around the origin, with radii about `radius` and normals of any direction.
-pub(super) fn surfels(count: u64, radius: f32, color: bool, seed: u64) -> Surfels {
+pub(crate) fn surfels(count: u64, radius: f32, color: bool, seed: u64) -> Surfels {
     let v =
         |i: u64, k: u64| Vec3::from_array([0, 1, 2].map(|c| unit(seed + k, 3 * i + c) * 2.0 - 1.0));
     let of = |k: u64| (0..count).map(|i| v(i, k)).collect::<Vec<_>>();
@@ -31,12 +30,12 @@ pub(super) fn surfels(count: u64, radius: f32, color: bool, seed: u64) -> Surfel
 }
 
 /// An unlit scene.
-pub(super) fn scene(surfels: Surfels) -> Scene {
+pub(crate) fn scene(surfels: Surfels) -> Scene {
     Scene::unlit("", surfels)
 }
 
 /// Cameras of both kinds for pictures of many sizes.
-pub(super) fn cameras() -> Vec<Camera> {
+pub(crate) fn cameras() -> Vec<Camera> {
     let sizes = [[1, 1], [1, 9], [33, 17], [64, 64], [130, 47]];
     let lenses = [Lens::FieldOfView(40.0), Lens::Orthographic(3.0)];
     let pose = Pose { eye: DVec3::new(0.5, 0.25, 4.0), target: DVec3::ZERO, up: DVec3::Y };
@@ -45,7 +44,7 @@ pub(super) fn cameras() -> Vec<Camera> {
 }
 
 /// A sphere in a light, its surfels in three groups, and no two neighbours in one.
-pub(super) fn sphere_of_groups() -> (Scene, Groups) {
+pub(crate) fn sphere_of_groups() -> (Scene, Groups) {
     let surfels = Shape::Sphere.surfels(150, 3).unwrap();
     let own = (0..surfels.len()).map(|i| (i % 3) as u8).collect();
     let groups = Groups::new(own, Vec::new(), vec![1.0; 3]).unwrap();
@@ -53,7 +52,7 @@ pub(super) fn sphere_of_groups() -> (Scene, Groups) {
 }
 
 /// A plane of one number a pixel.
-pub(super) fn scalar<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<R> {
+pub(crate) fn scalar<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<R> {
     match frame.plane(name) {
         Some(Samples::Scalar(plane)) => plane,
         other => panic!("{name}: {other:?}"),
@@ -61,7 +60,7 @@ pub(super) fn scalar<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane
 }
 
 /// A plane of colours.
-pub(super) fn color<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<[R; 3]> {
+pub(crate) fn color<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<[R; 3]> {
     match frame.plane(name) {
         Some(Samples::Color(plane)) => plane,
         other => panic!("{name}: {other:?}"),
@@ -69,7 +68,7 @@ pub(super) fn color<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<
 }
 
 /// A plane of small counts.
-pub(super) fn count<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<u8> {
+pub(crate) fn count<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<u8> {
     match frame.plane(name) {
         Some(Samples::Count(plane)) => plane,
         other => panic!("{name}: {other:?}"),
@@ -77,7 +76,7 @@ pub(super) fn count<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<
 }
 
 /// A plane of surfels.
-pub(super) fn id<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<u32> {
+pub(crate) fn id<'a, R: Exact>(frame: &'a Frame<R>, name: &str) -> &'a Plane<u32> {
     match frame.plane(name) {
         Some(Samples::Index(plane)) => plane,
         other => panic!("{name}: {other:?}"),

@@ -16,10 +16,10 @@ use super::run::measure::{picture_error, second};
 use super::run::{Bench, Record, time};
 use super::sweep::Candidate;
 use super::truth::Truth;
+use crate::compare::metrics::Metric;
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::scene::Camera;
-use crate::verify::metrics::Metric;
 use std::time::{Duration, Instant};
 
 /// A first time may be too long by so much. It is never too short by so much.

@@ -1,4 +1,4 @@
-"""Prints the references of src/verify/metrics/flip (pip install flip-evaluator==1.7 numpy).
+"""Prints the references of src/compare/metrics/flip (pip install flip-evaluator==1.7 numpy).
 
 flip-evaluator is the implementation of the authors of FLIP, in f32.
 """

@@ -1,4 +1,4 @@
-"""Prints the references of src/verify/metrics/outline.rs (pip install scikit-image==0.26.0)."""
+"""Prints the references of src/compare/metrics/outline.rs (pip install scikit-image==0.26.0)."""
 import numpy as np
 from skimage.measure import perimeter_crofton
 

@@ -1,4 +1,4 @@
-"""Prints the references of src/verify/metrics (pip install scikit-image==0.26.0 scipy).
+"""Prints the references of src/compare/metrics (pip install scikit-image==0.26.0 scipy).
 
 `published` is the definition of Wang et al. 2004 as their ssim_index.m computes it: the mean over
 the positions where the 11 x 11 window fits; scikit-image's mean must be the same number.

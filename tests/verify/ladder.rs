@@ -7,8 +7,8 @@ use splatref::io::scene_file::SceneFile;
 use splatref::method::{Method, Session};
 use splatref::scene::{Scene, Surfels};
 use splatref::setting::{Fields, Value};
-use splatref::verify::client::{Client, Rounding};
-use splatref::verify::verdict::Outcome;
+use splatref::verdict::Outcome;
+use splatref::verdict::client::{Client, Rounding};
 use std::path::Path;
 
 /// The word of a verdict on the pictures that the crate draws of a golden with this epsilon, and the

@@ -6,8 +6,8 @@ use splatref::method::{Method, Session, blue};
 use splatref::scene::{Camera, Scene, Surfels};
 use splatref::source::Shape;
 use splatref::splat::{Epsilon, Kernel, SplatSettings};
-use splatref::verify::client::{Client, Rounding};
-use splatref::verify::shift::{Shift, Shifts};
+use splatref::verdict::client::{Client, Rounding};
+use splatref::verdict::shift::{Shift, Shifts};
 
 /// The scenes: a shape, how many surfels, the outline.
 const SUITE: [(&str, usize, Kernel); 7] = [

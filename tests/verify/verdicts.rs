@@ -5,9 +5,9 @@ use crate::client::{Bug, Habit, How, records, render};
 use splatref::frame::Exec;
 use splatref::method::{Method, Session};
 use splatref::splat::Epsilon;
-use splatref::verify::client::{Client, Rounding, Ties};
-use splatref::verify::signature::signature;
-use splatref::verify::verdict::Verdict;
+use splatref::verdict::Verdict;
+use splatref::verdict::causes::signature;
+use splatref::verdict::client::{Client, Rounding, Ties};
 
 /// What is said of a client's picture of a case, however much of it is undecided.
 fn judge(case: &Case, how: How, rounding: Rounding) -> Verdict {

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 use splatref::Result;
 use splatref::method::Session;
 use splatref::scene::Camera;
-use splatref::verify::client::{Client, Rounding};
-use splatref::verify::shift::{LIMITS, Shift};
-use splatref::verify::verdict::{Doubt, Fault, Finding, Judged, Outcome, Verdict};
+use splatref::verdict::client::{Client, Rounding};
+use splatref::verdict::shift::{LIMITS, Shift};
+use splatref::verdict::{Doubt, Fault, Finding, Judged, Outcome, Verdict};
 
 /// A verdict, and what was looked up for its report.
 pub(super) struct Seen<'a> {

@@ -8,7 +8,7 @@ use crate::frame::{NO_ID, Plane, Samples};
 use crate::io::{Reason, srgb};
 use crate::method::Holds;
 use crate::number::Real;
-use crate::verify::client::Storage;
+use crate::verdict::client::Storage;
 
 /// What a product, a division by t and storing may lose in `f32`: shading languages promise a
 /// division to 2.5 units in the last place.

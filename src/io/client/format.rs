@@ -2,7 +2,7 @@
 
 use crate::number::Real;
 use crate::setting::Words;
-use crate::verify::client::Storage;
+use crate::verdict::client::Storage;
 use exr::prelude::f16;
 
 /// How a number is stored.

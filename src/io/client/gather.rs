@@ -11,7 +11,7 @@ use crate::frame::named::{COLOR, component};
 use crate::frame::{Exec, Frame, Image, Plane, Samples};
 use crate::io::Reason;
 use crate::method::{Holds, PlaneRow, Stage};
-use crate::verify::client::{Client, Storage};
+use crate::verdict::client::{Client, Storage};
 use std::path::{Path, PathBuf};
 
 /// A plane that is looked for.

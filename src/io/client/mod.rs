@@ -133,9 +133,9 @@ use crate::frame::Exec;
 use crate::io::{Reason, input};
 use crate::memory;
 use crate::method::Stage;
-use crate::verify::client::Client;
+use crate::verdict::client::Client;
 #[cfg(doc)]
-use crate::verify::client::Storage;
+use crate::verdict::client::Storage;
 use gather::Wanted;
 use parse::Sidecar;
 use std::path::{Path, PathBuf};

@@ -17,7 +17,7 @@
 use super::format::F32_STEP;
 use crate::frame::Plane;
 use crate::number::Real;
-use crate::verify::client::Storage;
+use crate::verdict::client::Storage;
 
 /// What the encoding itself may lose of u and v in `f32`: a sum of three, a quotient, and the fold.
 const ENCODING: f64 = 8.0 * F32_STEP;

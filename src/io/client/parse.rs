@@ -5,7 +5,7 @@ use super::keys::Keys;
 use crate::error::{Error, Result};
 use crate::io::{Reason, input};
 use crate::setting::Words;
-use crate::verify::client::{Rounding, Storage, Ties};
+use crate::verdict::client::{Rounding, Storage, Ties};
 use std::path::{Path, PathBuf};
 
 /// What a TOML file says; nothing else is read yet.

@@ -3,7 +3,7 @@
 use super::format::F32_STEP;
 use crate::frame::Plane;
 use crate::number::Real;
-use crate::verify::client::Storage;
+use crate::verdict::client::Storage;
 
 /// The colours, and how far off each is.
 ///

@@ -156,8 +156,8 @@ impl Stored {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compare::{Criteria, Verdict, compare};
     use crate::frame::{Frame, Samples};
-    use crate::verify::compare::{Criteria, Verdict, compare};
     use image::{ExtendedColorType, ImageEncoder};
     use std::fs;
     use tempfile::TempDir;

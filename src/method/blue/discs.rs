@@ -3,7 +3,7 @@
 use super::squares::{Disc, Squares};
 use crate::composite::decide;
 use crate::frame::NO_ID;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fragment::facing;
 use crate::method::resolved::Resolved;
 use crate::method::tiled::Tiled;
@@ -12,35 +12,35 @@ use crate::splat::View;
 
 /// Where the ray of a pixel meets the plane of a disc.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct DiscFragment<R> {
+pub(crate) struct DiscFragment<R> {
     /// Depth.
-    pub(super) t: R,
+    pub(crate) t: R,
     /// The squared distance from the centre, in square world units.
-    pub(super) offset: R,
+    pub(crate) offset: R,
 }
 
 /// The ray of a pixel: a and b.
 #[inline(always)]
-pub(super) fn ray<R: Real>(view: &View<R>, (x, y): (u32, u32)) -> [R; 2] {
+pub(crate) fn ray<R: Real>(view: &View<R>, (x, y): (u32, u32)) -> [R; 2] {
     [column(view, x), row(view, y)]
 }
 
 /// a of a column.
 #[inline(always)]
-pub(super) fn column<R: Real>(view: &View<R>, x: u32) -> R {
+pub(crate) fn column<R: Real>(view: &View<R>, x: u32) -> R {
     (R::from_f32(x as f32 + 0.5) - view.cx) / view.fx
 }
 
 /// b of a row.
 #[inline(always)]
-pub(super) fn row<R: Real>(view: &View<R>, y: u32) -> R {
+pub(crate) fn row<R: Real>(view: &View<R>, y: u32) -> R {
     -((R::from_f32(y as f32 + 0.5) - view.cy) / view.fy)
 }
 
 impl<R: Real> Disc<R> {
     /// The fragment on the ray of a pixel.
     #[inline(always)]
-    pub(super) fn at(&self, [a, b]: [R; 2], perspective: bool) -> DiscFragment<R> {
+    pub(crate) fn at(&self, [a, b]: [R; 2], perspective: bool) -> DiscFragment<R> {
         let Self { p, n, .. } = *self;
         let (t, x, y, z) = if perspective {
             let t = self.through / ((n.x * a + n.y * b) - n.z);
@@ -55,7 +55,7 @@ impl<R: Real> Disc<R> {
 
     /// Whether a fragment stays.
     #[inline(always)]
-    pub(super) fn holds(&self, fragment: &DiscFragment<R>, near: R) -> R::Truth {
+    pub(crate) fn holds(&self, fragment: &DiscFragment<R>, near: R) -> R::Truth {
         let DiscFragment { t, offset } = *fragment;
         let sound = t.is_finite() & offset.is_finite();
         sound & decide::beyond(t, near) & decide::inside(offset, self.limit)
@@ -64,18 +64,18 @@ impl<R: Real> Disc<R> {
 
 /// What a pixel keeps.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Kept<R> {
+pub(crate) struct Kept<R> {
     /// Its depth; +inf where there is none.
-    pub(super) depth: R,
+    pub(crate) depth: R,
     /// [`NO_ID`] where there is none.
-    pub(super) surfel: u32,
+    pub(crate) surfel: u32,
     /// 0 where there is none.
-    pub(super) offset: R,
+    pub(crate) offset: R,
     back: bool,
 }
 
 /// The nearest fragment of each pixel.
-pub(super) fn nearest<R: Exact>(job: &Job<'_>, squares: &Squares<R>) -> Tiled<Kept<R>> {
+pub(crate) fn nearest<R: Exact>(job: &Job<'_>, squares: &Squares<R>) -> Tiled<Kept<R>> {
     let view = View::<R>::new(job.camera);
     let none = Kept { depth: R::INFINITY, surfel: NO_ID, offset: R::ZERO, back: false };
     Tiled::new(job, |tile, rect| {
@@ -101,7 +101,7 @@ pub(super) fn nearest<R: Exact>(job: &Job<'_>, squares: &Squares<R>) -> Tiled<Ke
 }
 
 /// What a pixel shows of what it keeps, in a scene with colours or without.
-pub(super) fn shown<R: Exact>(job: &Job<'_>, kept: &Kept<R>, colored: bool) -> Resolved<R> {
+pub(crate) fn shown<R: Exact>(job: &Job<'_>, kept: &Kept<R>, colored: bool) -> Resolved<R> {
     if kept.surfel == NO_ID {
         return Resolved::EMPTY;
     }

@@ -6,7 +6,7 @@ use super::squares::{Square, SquareProjector};
 use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::raster::Snap;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::projection::explain::{beside, compared};
 use crate::number::Exact;
 use crate::splat::{Fate, View};

@@ -77,17 +77,18 @@
 //! [`mod@super::planes`].
 //!
 //! [`Exact`]: crate::number::Exact
+//!
+//! What a right implementation may leave of each stage: [`crate::verdict::blue`].
 
 pub mod controller;
-mod discs;
+pub(crate) mod discs;
 pub mod explain;
-mod fast;
+pub(crate) mod fast;
 mod picture;
-mod planes;
+pub(crate) mod planes;
 mod polygons;
 mod settings;
-mod squares;
-pub mod verify;
+pub(crate) mod squares;
 
 pub use settings::Settings;
 
@@ -97,9 +98,6 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
-use crate::number::ball::Profile;
-use crate::verify::client::Client;
-use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -140,18 +138,5 @@ impl Algorithm for Settings {
     fn weights(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<Vec<(u32, f64)>> {
         let surfel = explain::explain::<f64>(job, self, pixel)?.surfel();
         Ok(surfel.map(|surfel| (surfel, 1.0)).into_iter().collect())
-    }
-
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
-        Ok(verify::verify::<P>(job, self, client, budget))
-    }
-
-    fn checks<P: Profile>(
-        &self,
-        job: &Job<'_>,
-        client: &Client,
-        pixel: (u32, u32),
-    ) -> Result<Vec<Check>> {
-        verify::checks::<P>(job, self, client, pixel)
     }
 }

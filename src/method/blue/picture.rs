@@ -6,7 +6,7 @@ use super::squares::Squares;
 use super::{Settings, fast, planes};
 use crate::error::Result;
 use crate::frame::{Framebuffer, NamedPlane, Pool, Wanted};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::given::Given;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::projection::Has;

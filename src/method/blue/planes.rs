@@ -2,20 +2,20 @@
 
 use super::discs::Kept;
 use crate::frame::{Framebuffer, NamedPlane, Plane};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::resolved;
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
-pub(super) const COLOR: PlaneRow = PlaneRow::new(
+pub(crate) const COLOR: PlaneRow = PlaneRow::new(
     "resolved",
     Holds::Color,
     "linear RGB",
     "colour of the nearest fragment, before shading; 0 where there is none",
     When::Colored,
 );
-pub(super) const OFFSET: PlaneRow = PlaneRow::new(
+pub(crate) const OFFSET: PlaneRow = PlaneRow::new(
     "discs.offset",
     Holds::Scalar,
     "square world units",
@@ -23,16 +23,16 @@ pub(super) const OFFSET: PlaneRow = PlaneRow::new(
      there is none",
     When::Stages,
 );
-pub(super) const NORMAL: PlaneRow = PlaneRow::new(
+pub(crate) const NORMAL: PlaneRow = PlaneRow::new(
     "normal",
     Holds::Vector,
     "",
     "normal of the nearest fragment, towards the viewer, in world space; the null vector where there is none",
     When::Lit,
 );
-pub(super) const WEIGHT: PlaneRow =
+pub(crate) const WEIGHT: PlaneRow =
     PlaneRow::new("weight", Holds::Scalar, "", "1 where there is a fragment, else 0", When::Always);
-pub(super) const ID: PlaneRow = PlaneRow::new(
+pub(crate) const ID: PlaneRow = PlaneRow::new(
     "id",
     Holds::Index,
     "",

@@ -5,7 +5,7 @@ use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Framebuffer, Plane};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::projection::{self, PixelSample};
 use crate::number::Exact;
 use crate::splat::View;

@@ -1,7 +1,7 @@
 //! Surfels as squares on the screen, see the page of [`super`].
 
 use crate::frame::{Bins, Grid, Rect};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::prepare::batch_size;
 use crate::method::projection::surfels::PointProjector;
 use crate::number::{Exact, Real, Vector3};
@@ -11,63 +11,63 @@ use std::ops::Range;
 
 /// The plane and the rim of a disc, in view space.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Disc<R> {
+pub(crate) struct Disc<R> {
     /// Centre.
-    pub(super) p: Vector3<R>,
+    pub(crate) p: Vector3<R>,
     /// Normal.
-    pub(super) n: Vector3<R>,
+    pub(crate) n: Vector3<R>,
     /// n . p.
-    pub(super) through: R,
+    pub(crate) through: R,
     /// r r.
-    pub(super) limit: R,
+    pub(crate) limit: R,
 }
 
 /// Where a square begins and ends, in pixels: columns and rows.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edges<R> {
-    pub(super) x: [R; 2],
-    pub(super) y: [R; 2],
+pub(crate) struct Edges<R> {
+    pub(crate) x: [R; 2],
+    pub(crate) y: [R; 2],
 }
 
 /// A surfel that is drawn.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Square<R> {
+pub(crate) struct Square<R> {
     /// Its pixels in the picture.
-    pub(super) bounds: Rect,
-    pub(super) surfel: u32,
+    pub(crate) bounds: Rect,
+    pub(crate) surfel: u32,
     /// Whether its back is seen.
-    pub(super) back: bool,
-    pub(super) disc: Disc<R>,
+    pub(crate) back: bool,
+    pub(crate) disc: Disc<R>,
 }
 
 /// A surfel before it is known whether it is drawn.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PlacedSquare<R: Real> {
-    pub(super) edges: Edges<R>,
-    pub(super) disc: Disc<R>,
+pub(crate) struct PlacedSquare<R: Real> {
+    pub(crate) edges: Edges<R>,
+    pub(crate) disc: Disc<R>,
     /// How the surfel turns: < 0 if its front is seen.
-    pub(super) g: R,
+    pub(crate) g: R,
     /// Why it is not drawn; whether it is outside is for its edges to say.
-    pub(super) reasons: Reasons<R>,
+    pub(crate) reasons: Reasons<R>,
 }
 
 /// What the squares of a picture share.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SquareProjector<'a, R> {
-    pub(super) surfels: &'a Surfels,
+pub(crate) struct SquareProjector<'a, R> {
+    pub(crate) surfels: &'a Surfels,
     sides: Option<&'a Sides>,
-    pub(super) points: PointProjector<R>,
+    pub(crate) points: PointProjector<R>,
 }
 
 impl<'a, R: Real> SquareProjector<'a, R> {
-    pub(super) fn new(job: &Job<'a>, cull: bool) -> Self {
+    pub(crate) fn new(job: &Job<'a>, cull: bool) -> Self {
         let scene = job.scene;
         let points = PointProjector::new(View::new(job.camera), cull);
         Self { surfels: &scene.surfels, sides: scene.sides.as_ref(), points }
     }
 
     /// A surfel on the screen.
-    pub(super) fn place(&self, i: usize) -> PlacedSquare<R> {
+    pub(crate) fn place(&self, i: usize) -> PlacedSquare<R> {
         let side = R::from_f32(self.side(i));
         let [position, normal] =
             [self.surfels.position()[i], self.surfels.normal()[i]].map(Vector3::from_glam);
@@ -76,13 +76,13 @@ impl<'a, R: Real> SquareProjector<'a, R> {
 
     /// The side of a surfel; 0 of one without.
     #[inline(always)]
-    pub(super) fn side(&self, i: usize) -> f32 {
+    pub(crate) fn side(&self, i: usize) -> f32 {
         self.sides.and_then(|sides| sides.of(i as u32)).unwrap_or(0.0)
     }
 
     /// The same of these numbers; the side is 0 of a surfel without one.
     #[inline(always)]
-    pub(super) fn square(
+    pub(crate) fn square(
         &self,
         position: Vector3<R>,
         normal: Vector3<R>,
@@ -108,7 +108,7 @@ impl<'a, R: Real> SquareProjector<'a, R> {
 impl<R: Exact> PlacedSquare<R> {
     /// Its pixels in a picture, and what becomes of it; bounds of what is not drawn mean nothing.
     #[inline(always)]
-    pub(super) fn fate(&self, view: &View<R>) -> (Rect, Fate) {
+    pub(crate) fn fate(&self, view: &View<R>) -> (Rect, Fate) {
         let Edges { x, y } = &self.edges;
         let (x0, x1) = (before(x[0], view.width), before(x[1], view.width));
         let (y0, y1) = (before(y[0], view.height), before(y[1], view.height));
@@ -139,14 +139,14 @@ fn before<R: Exact>(coordinate: R, size: R) -> u32 {
 
 /// The squares of a picture, in batches of ascending surfels with their bins.
 #[derive(Debug)]
-pub(super) struct Squares<R> {
-    pub(super) tally: Tally,
+pub(crate) struct Squares<R> {
+    pub(crate) tally: Tally,
     batches: Vec<(Vec<Square<R>>, Bins)>,
 }
 
 impl<R: Exact> Squares<R> {
     /// Every surfel that is drawn.
-    pub(super) fn new(job: &Job<'_>, cull: bool) -> Self {
+    pub(crate) fn new(job: &Job<'_>, cull: bool) -> Self {
         let projector = SquareProjector::new(job, cull);
         Self::of((job, &job.grid()), |range, squares| {
             let mut tally = Tally::default();
@@ -156,7 +156,7 @@ impl<R: Exact> Squares<R> {
     }
 
     /// The same, where `project` makes the squares of a range of surfels.
-    pub(super) fn of(
+    pub(crate) fn of(
         (job, grid): (&Job<'_>, &Grid),
         project: impl Fn(Range<usize>, &mut Vec<Square<R>>) -> Tally + Sync + Send,
     ) -> Self {
@@ -175,7 +175,7 @@ impl<R: Exact> Squares<R> {
 
     /// Calls `visit` for each square that may touch a tile, in the order of the surfels.
     #[inline(always)]
-    pub(super) fn for_each(&self, tile: usize, mut visit: impl FnMut(&Square<R>)) {
+    pub(crate) fn for_each(&self, tile: usize, mut visit: impl FnMut(&Square<R>)) {
         for (squares, bins) in &self.batches {
             bins.for_each(tile, |i| visit(&squares[i as usize]));
         }

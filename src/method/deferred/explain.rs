@@ -8,7 +8,7 @@ use super::picture::{first, flagged, unseen, whole};
 use super::polygons::Polygons;
 use super::visibility::{both, nearest};
 use crate::error::Result;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::prepare::Prepared;
 use crate::method::replay::{Decision, Place, Touch, touch};
 use crate::number::Exact;

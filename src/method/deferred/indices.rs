@@ -3,7 +3,7 @@
 use super::part::Whole;
 use super::visibility::{NONE, Nearest};
 use crate::composite::decide;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::projection::surfels::PointProjector;
 use crate::method::tiled::Tiled;
 use crate::number::{Exact, Real, Vector3};
@@ -48,7 +48,7 @@ pub(super) fn indices<R: Exact>(
 
 /// Calls `draw` with id, pixel and depth of each surfel whose centre is in the picture and that is
 /// drawn, in ascending id.
-pub(super) fn each_centre<R: Exact>(
+pub(crate) fn each_centre<R: Exact>(
     job: &Job<'_>,
     settings: &SplatSettings,
     whole: &Whole<'_>,

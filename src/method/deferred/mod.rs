@@ -77,21 +77,22 @@
 //! The definition is over any [`Exact`] number. What each stage leaves: [`mod@super::planes`].
 //!
 //! [`Exact`]: crate::number::Exact
+//!
+//! What a right implementation may leave of each stage: [`crate::verdict::deferred`].
 
 pub mod explain;
 mod fast;
 pub mod filter;
-mod indices;
-mod part;
-mod picture;
-mod planes;
+pub(crate) mod indices;
+pub(crate) mod part;
+pub(crate) mod picture;
+pub(crate) mod planes;
 pub mod polygons;
 pub mod queries;
 mod settings;
 #[cfg(test)]
 mod tests;
-pub mod verify;
-mod visibility;
+pub(crate) mod visibility;
 
 pub use settings::Settings;
 
@@ -101,12 +102,9 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
-use crate::number::ball::Profile;
 use crate::scene::objects::Ids;
 use crate::scene::{Camera, Scene};
 use crate::splat::SplatSettings;
-use crate::verify::client::Client;
-use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -146,19 +144,6 @@ impl Algorithm for Settings {
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {
         explain::explain::<R>(job, self, pixel)
-    }
-
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
-        verify::verify::<P>(job, self, client, budget)
-    }
-
-    fn checks<P: Profile>(
-        &self,
-        job: &Job<'_>,
-        client: &Client,
-        pixel: (u32, u32),
-    ) -> Result<Vec<Check>> {
-        verify::checks::<P>(job, self, client, pixel)
     }
 
     fn resolved(&self, scene: &Scene, _: &Camera) -> Vec<(&'static str, String)> {

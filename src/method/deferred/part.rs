@@ -6,7 +6,7 @@ use super::queries::Queries;
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::index::seen::Seen;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::number::lanes::{LANES, Lanes};
 use crate::scene::objects::detail::Mask;
 use crate::scene::objects::{Ids, Split};
@@ -16,7 +16,7 @@ use glam::Vec3;
 use std::borrow::Cow;
 
 /// The surfels of a scene: those of its objects, or of a scene without objects its own, as one.
-pub(super) struct Whole<'a> {
+pub(crate) struct Whole<'a> {
     scene: &'a Scene,
     ids: Cow<'a, Ids>,
     /// Of a scene without objects, if somebody made them.
@@ -26,7 +26,7 @@ pub(super) struct Whole<'a> {
 }
 
 impl<'a> Whole<'a> {
-    pub(super) fn new(scene: &'a Scene) -> Self {
+    pub(crate) fn new(scene: &'a Scene) -> Self {
         let alone = || {
             let counts = [scene.surfels.len() as u32];
             // Fewer than 2^32 - 1, which is what 32 bits hold.
@@ -45,7 +45,7 @@ impl<'a> Whole<'a> {
     }
 
     /// Without the objects of which the frame before selected few surfels, see [`Settings::share`].
-    pub(super) fn after(mut self, before: &Seen, settings: &Settings) -> Self {
+    pub(crate) fn after(mut self, before: &Seen, settings: &Settings) -> Self {
         let share = f64::from(settings.share);
         if share > 0.0 {
             let few = |(object, &selected): (u32, &u32)| {
@@ -59,16 +59,16 @@ impl<'a> Whole<'a> {
     }
 
     /// Whether an object is left out of the frame.
-    pub(super) fn leaves_out(&self, object: u32) -> bool {
+    pub(crate) fn leaves_out(&self, object: u32) -> bool {
         self.left_out.get(object as usize).is_some_and(|&left_out| left_out)
     }
 
-    pub(super) fn ids(&self) -> &Ids {
+    pub(crate) fn ids(&self) -> &Ids {
         &self.ids
     }
 
     /// The ids of all surfels that the high level leaves, ascending.
-    pub(super) fn drawn_ids(&self) -> Vec<u64> {
+    pub(crate) fn drawn_ids(&self) -> Vec<u64> {
         match &self.scene.objects {
             Some(objects) => objects.drawn_ids(),
             None => (0..self.ids.total()).collect(),
@@ -157,7 +157,7 @@ impl<'a> Whole<'a> {
     }
 
     /// The unit of epsilon.
-    pub(super) fn median_radius(&self) -> f32 {
+    pub(crate) fn median_radius(&self) -> f32 {
         match &self.scene.objects {
             Some(objects) => objects.median_radius(),
             None => self.scene.surfels.median_radius(),
@@ -182,7 +182,7 @@ impl<'a> Whole<'a> {
     }
 
     /// The surfels of ascending ids as a scene, unlit and before nothing.
-    pub(super) fn part(&self, ids: Vec<u64>, exec: &Exec) -> Part {
+    pub(crate) fn part(&self, ids: Vec<u64>, exec: &Exec) -> Part {
         let scene = Scene::unlit(&self.scene.name, self.surfels(&ids, exec));
         Part { scene, ids }
     }
@@ -276,28 +276,28 @@ impl Range<'_> {
 }
 
 /// Some surfels of a scene.
-pub(super) struct Part {
+pub(crate) struct Part {
     scene: Scene,
     ids: Vec<u64>,
 }
 
 impl Part {
     /// The job of drawing them alone.
-    pub(super) fn job<'j>(&'j self, whole: &Job<'j>) -> Job<'j> {
+    pub(crate) fn job<'j>(&'j self, whole: &Job<'j>) -> Job<'j> {
         Job { scene: &self.scene, ..*whole }
     }
 
-    pub(super) fn surfels(&self) -> &Surfels {
+    pub(crate) fn surfels(&self) -> &Surfels {
         &self.scene.surfels
     }
 
     /// Their ids, ascending.
-    pub(super) fn ids(&self) -> &[u64] {
+    pub(crate) fn ids(&self) -> &[u64] {
         &self.ids
     }
 
     /// The id of the surfel of an index; [`super::visibility::NONE`] of that of none.
-    pub(super) fn id(&self, index: u32) -> u64 {
+    pub(crate) fn id(&self, index: u32) -> u64 {
         self.ids.get(index as usize).copied().unwrap_or(super::visibility::NONE)
     }
 }

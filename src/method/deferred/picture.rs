@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::frame::{NO_ID, NamedPlane, Pool, Wanted};
 use crate::index::seen::Seen;
 use crate::memory;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::ewa::attributes::{Sums, attributes};
 use crate::method::ewa::normalization::resolve;
 use crate::method::ewa::planes as ewa;
@@ -145,7 +145,7 @@ pub(super) fn flagged(job: &Job<'_>, whole: &Whole<'_>, before: &Seen) -> Result
 const OF_A_FLAGGED: u64 = 512;
 
 /// The surfels of a frame, and what the frame before saw.
-pub(super) fn whole<'a>(job: &Job<'a>, settings: &Settings) -> Result<(Whole<'a>, Cow<'a, Seen>)> {
+pub(crate) fn whole<'a>(job: &Job<'a>, settings: &Settings) -> Result<(Whole<'a>, Cow<'a, Seen>)> {
     let whole = Whole::of(job);
     let before = seen(job, settings, &whole)?;
     Ok((whole.after(&before, settings), before))

@@ -9,7 +9,7 @@ use super::part::Whole;
 use super::visibility::{NONE, Nearest, POLYGON};
 use crate::error::{Error, Result};
 use crate::frame::{NO_ID, NamedPlane, Plane};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::ewa::planes::{COLOR_SUM, COUNT, NORMAL_SUM, WEIGHT_SUM};
 use crate::method::given::Given;
 use crate::method::resolved;
@@ -18,7 +18,7 @@ use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::View;
 
-pub(super) const BEFORE: PlaneRow = PlaneRow::new(
+pub(crate) const BEFORE: PlaneRow = PlaneRow::new(
     "visibility.Z",
     Holds::Scalar,
     "world units",
@@ -26,28 +26,28 @@ pub(super) const BEFORE: PlaneRow = PlaneRow::new(
      is none",
     When::Stages,
 );
-pub(super) const BEFORE_ID: PlaneRow = PlaneRow::new(
+pub(crate) const BEFORE_ID: PlaneRow = PlaneRow::new(
     "visibility.id",
     Holds::Index,
     "surfel",
     "surfel of that fragment; 0xFFFF_FFFF where there is none",
     When::Stages,
 );
-pub(super) const CENTRE: PlaneRow = PlaneRow::new(
+pub(crate) const CENTRE: PlaneRow = PlaneRow::new(
     "indices.Z",
     Holds::Scalar,
     "world units",
     "depth of the nearest centre in the pixel that passes the test of depth; +inf where there is none",
     When::Stages,
 );
-pub(super) const CENTRE_ID: PlaneRow = PlaneRow::new(
+pub(crate) const CENTRE_ID: PlaneRow = PlaneRow::new(
     "indices.id",
     Holds::Index,
     "surfel",
     "surfel of that centre, which is selected; 0xFFFF_FFFF where there is none",
     When::Stages,
 );
-pub(super) const NEAREST: PlaneRow = PlaneRow::new(
+pub(crate) const NEAREST: PlaneRow = PlaneRow::new(
     "difference.Z",
     Holds::Scalar,
     "world units",
@@ -55,7 +55,7 @@ pub(super) const NEAREST: PlaneRow = PlaneRow::new(
      +inf where there is none",
     When::Stages,
 );
-pub(super) const NEAREST_ID: PlaneRow = PlaneRow::new(
+pub(crate) const NEAREST_ID: PlaneRow = PlaneRow::new(
     "difference.id",
     Holds::Index,
     "surfel",

@@ -27,7 +27,7 @@ use super::{Settings, visibility};
 use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, Framebuffer, NO_ID, Plane};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::projection::{self, PixelSample, SampleKind};
 use crate::method::resolved::Resolved;
 use crate::number::Exact;
@@ -39,7 +39,7 @@ use crate::splat::View;
 ///
 /// # Errors
 /// As [`Whole::polygons`].
-pub(super) fn alone(job: &Job<'_>, whole: &Whole<'_>) -> Result<Option<(Scene, Option<[f32; 3]>)>> {
+pub(crate) fn alone(job: &Job<'_>, whole: &Whole<'_>) -> Result<Option<(Scene, Option<[f32; 3]>)>> {
     let primitives = whole.polygons()?;
     if primitives.is_empty() {
         return Ok(None);

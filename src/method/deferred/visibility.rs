@@ -3,7 +3,7 @@
 use super::part::Part;
 use crate::composite::decide;
 use crate::frame::NO_ID;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::ewa::visibility::{Foremost, visibility};
 use crate::method::prepare::Prepared;
 use crate::method::tiled::Tiled;
@@ -11,7 +11,7 @@ use crate::number::Exact;
 use crate::splat::SplatSettings;
 
 /// The id of no surfel; its lowest 32 bits are [`NO_ID`].
-pub(super) const NONE: u64 = u64::MAX;
+pub(crate) const NONE: u64 = u64::MAX;
 
 /// The id of a polygon, higher than that of a surfel; its lowest 32 bits are [`NO_ID`].
 pub(super) const POLYGON: u64 = NONE - (1 << 32);

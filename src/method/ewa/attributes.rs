@@ -4,7 +4,7 @@
 use super::visibility::Foremost;
 use crate::composite::{decide, sum};
 use crate::frame::stencil::{Outcome, Stencil};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fragment::{TileSplats, facing};
 use crate::method::prepare::Prepared;
 use crate::method::stored::Buffers;
@@ -16,20 +16,20 @@ use glam::Vec3;
 
 /// What has been added up at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::method) struct Sums<R> {
-    pub(in crate::method) weight: R,
+pub(crate) struct Sums<R> {
+    pub(crate) weight: R,
     /// Weights times normals.
-    pub(in crate::method) normal: [R; 3],
+    pub(crate) normal: [R; 3],
     /// Weights times colours; 0 where the scene has none.
-    pub(in crate::method) color: [R; 3],
+    pub(crate) color: [R; 3],
     /// Weights times opacities; an opacity that the scene does not have is 1.
-    pub(in crate::method) opacity: R,
+    pub(crate) opacity: R,
     /// How many fragments, up to 255.
-    pub(in crate::method) count: u8,
+    pub(crate) count: u8,
 }
 
 /// Attribute splatting over the picture.
-pub(in crate::method) fn attributes<R: Exact>(
+pub(crate) fn attributes<R: Exact>(
     job: &Job<'_>,
     splats: &Prepared<R, Splat<R>>,
     visible: &Tiled<Foremost<R>>,
@@ -44,7 +44,7 @@ pub(in crate::method) fn attributes<R: Exact>(
 /// The sums over the fragments that are inside, for which `candidate` holds (as in
 /// [`super::visibility::foremost`]) and that pass the epsilon-z test against the nearest, in
 /// ascending surfel index, each stored as its buffer does.
-pub(in crate::method) fn sums<R: Exact>(
+pub(crate) fn sums<R: Exact>(
     tile: &TileSplats<'_, R>,
     (surfels, buffers): (&Surfels, Buffers),
     nearest: &[Foremost<R>],
@@ -65,7 +65,7 @@ pub(in crate::method) fn sums<R: Exact>(
 
 impl<R: Real> Sums<R> {
     /// No fragment.
-    pub(in crate::method) const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         weight: R::ZERO,
         normal: [R::ZERO; 3],
         color: [R::ZERO; 3],
@@ -88,12 +88,7 @@ impl<R: Real> Sums<R> {
     }
 
     /// Adds the attributes of a fragment of a surfel, of which the back is seen or not.
-    pub(in crate::method) fn add(
-        &mut self,
-        surfels: &Surfels,
-        (surfel, back): (u32, R::Truth),
-        weight: R,
-    ) {
+    pub(crate) fn add(&mut self, surfels: &Surfels, (surfel, back): (u32, R::Truth), weight: R) {
         let opacity = R::from_f32(surfels.opacity_of(surfel as usize));
         self.opacity = self.opacity + weight * opacity;
         self.add_opaque(surfels, (surfel, back), weight);
@@ -101,7 +96,7 @@ impl<R: Real> Sums<R> {
 
     /// The same without the opacity, which nobody reads of opaque splats.
     #[inline(always)]
-    pub(in crate::method) fn add_opaque(
+    pub(crate) fn add_opaque(
         &mut self,
         surfels: &Surfels,
         (surfel, back): (u32, R::Truth),

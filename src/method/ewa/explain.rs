@@ -6,7 +6,7 @@ use super::visibility::{Foremost, foremost};
 use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::NO_ID;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fragment::TileSplats;
 use crate::method::prepare::Prepared;
 use crate::method::replay::{Decision, Place, Touch, touch};
@@ -53,16 +53,16 @@ pub fn explain<R: Exact>(
 }
 
 /// Both passes at one pixel: what they leave, and why.
-pub(in crate::method) struct TwoPasses<R> {
-    pub(in crate::method) nearest: Foremost<R>,
-    pub(in crate::method) sums: Sums<R>,
-    pub(in crate::method) touches: Vec<Touch<R>>,
-    pub(in crate::method) visible: Vec<Touch<R>>,
+pub(crate) struct TwoPasses<R> {
+    pub(crate) nearest: Foremost<R>,
+    pub(crate) sums: Sums<R>,
+    pub(crate) touches: Vec<Touch<R>>,
+    pub(crate) visible: Vec<Touch<R>>,
 }
 
 /// Replays both passes at the one pixel of a rectangle, over the fragments strictly beyond a depth,
 /// if there is one.
-pub(in crate::method) fn two_passes<R: Exact>(
+pub(crate) fn two_passes<R: Exact>(
     tile: &TileSplats<'_, R>,
     surfels: &Surfels,
     beyond: Option<R>,

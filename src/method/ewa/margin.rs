@@ -5,7 +5,7 @@ use super::possible::{PossibleSplat, PossibleSplats, project};
 use super::visibility::Foremost;
 use crate::composite::decide;
 use crate::frame::NO_ID;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fragment::{each_in_bounds, each_pixel};
 use crate::method::tiled::Tiled;
 use crate::number::ball::Ieee;

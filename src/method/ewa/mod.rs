@@ -54,16 +54,17 @@
 //!
 //! [`Splat`]: crate::splat::Splat
 //! [`Exact`]: crate::number::Exact
+//!
+//! What a right implementation may leave of each stage: [`crate::verdict::ewa`].
 
-pub(super) mod attributes;
+pub(crate) mod attributes;
 pub mod explain;
 mod fast;
 mod margin;
 pub(super) mod normalization;
 mod picture;
-pub(super) mod planes;
-pub(super) mod possible;
-pub mod verify;
+pub(crate) mod planes;
+pub(crate) mod possible;
 pub(super) mod visibility;
 
 pub use crate::splat::SplatSettings as Settings;
@@ -75,9 +76,6 @@ use crate::method::given::Given;
 use crate::method::replay::Touch;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
-use crate::number::ball::Profile;
-use crate::verify::client::Client;
-use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -116,19 +114,6 @@ impl Algorithm for Settings {
         let replay = explain::explain::<f64>(job, self, pixel)?;
         let given = |touch: &Touch<f64>| Some((touch.surfel, touch.gives?.1));
         Ok(replay.visible.iter().filter_map(given).collect())
-    }
-
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
-        Ok(verify::verify::<P>(job, self, client, budget))
-    }
-
-    fn checks<P: Profile>(
-        &self,
-        job: &Job<'_>,
-        client: &Client,
-        pixel: (u32, u32),
-    ) -> Result<Vec<Check>> {
-        verify::checks::<P>(job, self, client, pixel)
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {

@@ -7,7 +7,7 @@ use crate::method::resolved::Resolved;
 use crate::number::Exact;
 
 /// At one pixel: depth of the nearest fragment; colour = sum / weight; normal = direction of sum / weight.
-pub(in crate::method) fn resolve<R: Exact>(nearest: &Foremost<R>, sums: &Sums<R>) -> Resolved<R> {
+pub(crate) fn resolve<R: Exact>(nearest: &Foremost<R>, sums: &Sums<R>) -> Resolved<R> {
     Resolved {
         depth: nearest.depth,
         id: nearest.id,

@@ -4,7 +4,7 @@ use super::attributes::Sums;
 use super::visibility::Foremost;
 use crate::error::Result;
 use crate::frame::NamedPlane;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::given::Given;
 use crate::method::resolved;
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
@@ -12,42 +12,42 @@ use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::View;
 
-pub(in crate::method) const NEAREST: PlaneRow = PlaneRow::new(
+pub(crate) const NEAREST: PlaneRow = PlaneRow::new(
     "visibility.Z",
     Holds::Scalar,
     "world units",
     "depth of the nearest fragment; +inf where there is none",
     When::Stages,
 );
-pub(in crate::method) const NEAREST_ID: PlaneRow = PlaneRow::new(
+pub(crate) const NEAREST_ID: PlaneRow = PlaneRow::new(
     "visibility.id",
     Holds::Index,
     "surfel",
     "surfel of the nearest fragment; 0xFFFF_FFFF where there is none",
     When::Stages,
 );
-pub(in crate::method) const COLOR_SUM: PlaneRow = PlaneRow::new(
+pub(crate) const COLOR_SUM: PlaneRow = PlaneRow::new(
     "attributes",
     Holds::Color,
     "linear RGB",
     "sum of weight times colour over the visible fragments; 0 where there is none",
     When::Colored,
 );
-pub(in crate::method) const NORMAL_SUM: PlaneRow = PlaneRow::new(
+pub(crate) const NORMAL_SUM: PlaneRow = PlaneRow::new(
     "attributes.normal",
     Holds::Vector,
     "",
     "sum of weight times normal over the visible fragments, in world space; 0 where there is none",
     When::Stages,
 );
-pub(in crate::method) const WEIGHT_SUM: PlaneRow = PlaneRow::new(
+pub(crate) const WEIGHT_SUM: PlaneRow = PlaneRow::new(
     "attributes.weight",
     Holds::Scalar,
     "",
     "sum of the weights of the visible fragments; 0 where there is none",
     When::Stages,
 );
-pub(in crate::method) const COUNT: PlaneRow = PlaneRow::new(
+pub(crate) const COUNT: PlaneRow = PlaneRow::new(
     "attributes.count",
     Holds::Count,
     "fragments",
@@ -65,7 +65,7 @@ const MARGIN: PlaneRow = PlaneRow::new(
 );
 
 /// The stages; the planes of the last two are those of every picture.
-pub(in crate::method) const STAGES: &[Stage] = &[
+pub(crate) const STAGES: &[Stage] = &[
     Stage { name: "projection", reads: &[], leaves: &[] },
     Stage { name: "visibility", reads: &["projection"], leaves: &[NEAREST, NEAREST_ID] },
     Stage {
@@ -88,7 +88,7 @@ pub(in crate::method) const STAGES: &[Stage] = &[
 ];
 
 /// What visibility splatting leaves.
-pub(in crate::method) fn visibility<R: Exact>(visible: &Tiled<Foremost<R>>) -> Vec<NamedPlane<R>> {
+pub(crate) fn visibility<R: Exact>(visible: &Tiled<Foremost<R>>) -> Vec<NamedPlane<R>> {
     vec![
         NEAREST.scalar(0, visible.plane(|pixel| pixel.depth)),
         NEAREST_ID.index(0, visible.plane(|pixel| pixel.id)),
@@ -96,7 +96,7 @@ pub(in crate::method) fn visibility<R: Exact>(visible: &Tiled<Foremost<R>>) -> V
 }
 
 /// Somebody's visibility; nearness is that of the depth, rounded.
-pub(in crate::method) fn given_visibility<R: Exact>(
+pub(crate) fn given_visibility<R: Exact>(
     job: &Job<'_>,
     given: &Given<'_, R>,
 ) -> Result<Tiled<Foremost<R>>> {
@@ -109,10 +109,7 @@ pub(in crate::method) fn given_visibility<R: Exact>(
 }
 
 /// What attribute splatting leaves, but for the margin.
-pub(in crate::method) fn attributes<R: Exact>(
-    job: &Job<'_>,
-    sums: &Tiled<Sums<R>>,
-) -> Vec<NamedPlane<R>> {
+pub(crate) fn attributes<R: Exact>(job: &Job<'_>, sums: &Tiled<Sums<R>>) -> Vec<NamedPlane<R>> {
     let colored = job.scene.surfels.color().is_some();
     let color = colored.then(|| COLOR_SUM.triple(0, sums.plane(|pixel| pixel.color)));
     let mut planes: Vec<_> = color.into_iter().collect();
@@ -123,12 +120,12 @@ pub(in crate::method) fn attributes<R: Exact>(
 }
 
 /// The margin of attribute splatting.
-pub(in crate::method) fn margin<R: Exact>(margins: &Tiled<R>) -> NamedPlane<R> {
+pub(crate) fn margin<R: Exact>(margins: &Tiled<R>) -> NamedPlane<R> {
     MARGIN.scalar(0, margins.plane(|margin| *margin))
 }
 
 /// Somebody's sums; opacities play no part in this method.
-pub(in crate::method) fn given_attributes<R: Exact>(
+pub(crate) fn given_attributes<R: Exact>(
     job: &Job<'_>,
     given: &Given<'_, R>,
 ) -> Result<Tiled<Sums<R>>> {

@@ -2,7 +2,7 @@
 
 use super::Settings;
 use crate::frame::Rect;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::prepare::Prepared;
 use crate::number::ball::{Common, Profile};
 use crate::number::{Ball, Truth};
@@ -13,25 +13,22 @@ use std::ops::Range;
 
 /// A surfel that may be drawn.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::method) struct PossibleSplat<P: Profile> {
-    pub(in crate::method) splat: Splat<Ball<P>>,
+pub(crate) struct PossibleSplat<P: Profile> {
+    pub(crate) splat: Splat<Ball<P>>,
     /// Whether it certainly is, and with this outline.
-    pub(in crate::method) certain: bool,
+    pub(crate) certain: bool,
 }
 
 /// The splats of a picture, each with the pixels that may be inside.
-pub(in crate::method) type PossibleSplats<P> = Prepared<Ball<P>, PossibleSplat<P>>;
+pub(crate) type PossibleSplats<P> = Prepared<Ball<P>, PossibleSplat<P>>;
 
 /// The surfels that may be drawn.
-pub(in crate::method) fn project<P: Profile>(
-    job: &Job<'_>,
-    settings: &Settings,
-) -> PossibleSplats<P> {
+pub(crate) fn project<P: Profile>(job: &Job<'_>, settings: &Settings) -> PossibleSplats<P> {
     project_into(job, settings, |possible| possible, |possible| possible.splat.bounds)
 }
 
 /// The same as other records, of which `bounds` gives the pixels.
-pub(in crate::method) fn project_into<P: Profile, S: Copy + Send>(
+pub(crate) fn project_into<P: Profile, S: Copy + Send>(
     job: &Job<'_>,
     settings: &Settings,
     record: impl Fn(PossibleSplat<P>) -> S + Sync + Send,
@@ -59,7 +56,7 @@ pub(in crate::method) fn project_into<P: Profile, S: Copy + Send>(
 
 /// [`each_possible`] of a range of surfels, in ascending order; affine outlines in lanes, but for what
 /// these leave open.
-pub(in crate::method) fn each_of_range<P: Profile>(
+pub(crate) fn each_of_range<P: Profile>(
     (projector, common): (&Projector<Ball<P>>, &Projector<Ball<Common<P>>>),
     surfels: &Surfels,
     range: Range<usize>,
@@ -77,7 +74,7 @@ pub(in crate::method) fn each_of_range<P: Profile>(
 
 /// What a surfel may become: one splat, two if it is not certain whether it reaches the near plane,
 /// or none; and whether that is certain. Compiled once for all who ask: it is 120 kB.
-pub(in crate::method) fn each_possible<P: Profile>(
+pub(crate) fn each_possible<P: Profile>(
     projector: &Projector<Ball<P>>,
     disc: &Disc<Ball<P>>,
     surfel: u32,

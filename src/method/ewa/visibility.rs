@@ -2,7 +2,7 @@
 
 use crate::composite::decide;
 use crate::frame::NO_ID;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fragment::TileSplats;
 use crate::method::prepare::Prepared;
 use crate::method::stored::DepthKey;
@@ -12,13 +12,13 @@ use crate::splat::{Shared, Splat};
 
 /// The nearest fragment of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::method) struct Foremost<R> {
+pub(crate) struct Foremost<R> {
     /// Its nearness; that of an empty pixel where there is none.
-    pub(in crate::method) nearness: R,
+    pub(crate) nearness: R,
     /// Its depth in world units; +inf where there is none.
-    pub(in crate::method) depth: R,
+    pub(crate) depth: R,
     /// Its surfel; [`NO_ID`] where there is none.
-    pub(in crate::method) id: u32,
+    pub(crate) id: u32,
 }
 
 impl<R: Exact> Foremost<R> {
@@ -29,7 +29,7 @@ impl<R: Exact> Foremost<R> {
 }
 
 /// Visibility splatting over the picture.
-pub(in crate::method) fn visibility<R: Exact>(
+pub(crate) fn visibility<R: Exact>(
     job: &Job<'_>,
     splats: &Prepared<R, Splat<R>>,
 ) -> Tiled<Foremost<R>> {
@@ -40,7 +40,7 @@ pub(in crate::method) fn visibility<R: Exact>(
 
 /// Of the fragments that are inside and for which `candidate` holds (the pixel, counted row by row,
 /// and the nearness), each pixel keeps the greatest nearness; ties: the lower surfel index.
-pub(in crate::method) fn foremost<R: Exact>(
+pub(crate) fn foremost<R: Exact>(
     tile: &TileSplats<'_, R>,
     key: &DepthKey,
     candidate: impl Fn(usize, R) -> bool,

@@ -9,7 +9,7 @@ use crate::splat::{Footprint, Shared};
 /// Calls `draw` for each block of a tile that a splat may touch: with the place of the block in the
 /// list of the tile, and with q and nearness of the splat at its pixels.
 #[inline(always)]
-pub(in crate::method) fn each_block<const RAY_CAST: bool>(
+pub(crate) fn each_block<const RAY_CAST: bool>(
     splat: &Record,
     grid: &BlockGrid,
     shared: &Shared<f32>,
@@ -44,7 +44,7 @@ pub(super) fn each_place<const RAY_CAST: bool, A>(
 
 /// q and nearness of a splat at the pixels of a block whose first pixel is (x, y).
 #[inline(always)]
-pub(in crate::method) fn fragments<const RAY_CAST: bool>(
+pub(crate) fn fragments<const RAY_CAST: bool>(
     shared: &Shared<f32>,
     footprint: &Footprint<f32>,
     (x, y): (u32, u32),
@@ -133,12 +133,12 @@ const WIDE: u32 = 6;
 /// The nearness of the fragments that are inside; NaN, which fails every comparison, for the
 /// others.
 #[inline(always)]
-pub(in crate::method) fn inside(q: &Lanes, w: &Lanes, limit: f32) -> Lanes {
+pub(crate) fn inside(q: &Lanes, w: &Lanes, limit: f32) -> Lanes {
     each(|i| if q[i] <= limit { w[i] } else { f32::NAN })
 }
 
 /// `sum + weight value` in each lane.
 #[inline(always)]
-pub(in crate::method) fn add(sum: &mut Lanes, weight: &Lanes, value: f32) {
+pub(crate) fn add(sum: &mut Lanes, weight: &Lanes, value: f32) {
     *sum = each(|i| sum[i] + weight[i] * value);
 }

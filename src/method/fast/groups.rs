@@ -5,13 +5,13 @@ use crate::scene::Groups;
 
 /// The group that each splat has of its own. In a loop that does nothing else: the groups are far away,
 /// and a short loop waits for many at once.
-pub(in crate::method) fn own(splats: &[Record], groups: &Groups) -> Vec<u8> {
+pub(crate) fn own(splats: &[Record], groups: &Groups) -> Vec<u8> {
     splats.iter().map(|splat| groups.own()[splat.surfel as usize]).collect()
 }
 
 /// The indices of a list of groups, sorted by group and then ascending, and where each group that
 /// occurs ends.
-pub(in crate::method) fn sorted(groups: &[u8], count: usize) -> (Vec<u32>, Vec<usize>) {
+pub(crate) fn sorted(groups: &[u8], count: usize) -> (Vec<u32>, Vec<usize>) {
     let mut next = vec![0; count];
     for &group in groups {
         next[usize::from(group)] += 1;

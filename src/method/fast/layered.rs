@@ -7,21 +7,21 @@ use crate::number::lanes::{LANES, Lanes, components};
 /// What the layers of the pixels of a block come to.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(in crate::method) struct LayeredBlock {
+pub(crate) struct LayeredBlock {
     /// Over black.
-    pub(in crate::method) color: [Lanes; 3],
-    pub(in crate::method) alpha: Lanes,
+    pub(crate) color: [Lanes; 3],
+    pub(crate) alpha: Lanes,
     /// Depth of the nearest fragment; +inf where there is none.
-    pub(in crate::method) depth: Lanes,
+    pub(crate) depth: Lanes,
     /// Its surfel; [`NO_ID`] where there is none.
-    pub(in crate::method) id: [u32; LANES],
+    pub(crate) id: [u32; LANES],
     /// How many layers.
-    pub(in crate::method) layers: Lanes,
+    pub(crate) layers: Lanes,
 }
 
 impl LayeredBlock {
     /// Nothing is seen.
-    pub(in crate::method) const EMPTY: Self = Self {
+    pub(crate) const EMPTY: Self = Self {
         color: [[0.0; LANES]; 3],
         alpha: [0.0; LANES],
         depth: [f32::INFINITY; LANES],
@@ -31,26 +31,26 @@ impl LayeredBlock {
 }
 
 /// The planes of a picture, before its environment.
-pub(in crate::method) struct LayeredPlanes<L> {
-    pub(in crate::method) color: Plane<[f32; 3]>,
-    pub(in crate::method) alpha: Plane<f32>,
-    pub(in crate::method) depth: Plane<f32>,
-    pub(in crate::method) id: Plane<u32>,
-    pub(in crate::method) layers: Plane<L>,
+pub(crate) struct LayeredPlanes<L> {
+    pub(crate) color: Plane<[f32; 3]>,
+    pub(crate) alpha: Plane<f32>,
+    pub(crate) depth: Plane<f32>,
+    pub(crate) id: Plane<u32>,
+    pub(crate) layers: Plane<L>,
 }
 
 /// One tile of them, writable.
-pub(in crate::method) struct LayeredTile<'a, L> {
+pub(crate) struct LayeredTile<'a, L> {
     color: TileMut<'a, [f32; 3]>,
     alpha: TileMut<'a, f32>,
-    pub(in crate::method) depth: TileMut<'a, f32>,
+    pub(crate) depth: TileMut<'a, f32>,
     id: TileMut<'a, u32>,
     layers: TileMut<'a, L>,
 }
 
 impl<L: Send> LayeredPlanes<L> {
     /// Planes in memory that is used again: the values are any.
-    pub(in crate::method) fn new(size: [u32; 2], layers: Plane<L>, pool: &mut Pool) -> Self {
+    pub(crate) fn new(size: [u32; 2], layers: Plane<L>, pool: &mut Pool) -> Self {
         Self {
             color: pool.triple(size),
             alpha: pool.scalar(size),
@@ -61,7 +61,7 @@ impl<L: Send> LayeredPlanes<L> {
     }
 
     /// The tiles, row by row.
-    pub(in crate::method) fn cut(&mut self, grid: &Grid, exec: &Exec) -> Vec<LayeredTile<'_, L>> {
+    pub(crate) fn cut(&mut self, grid: &Grid, exec: &Exec) -> Vec<LayeredTile<'_, L>> {
         let color = grid.cut(&mut self.color, exec).into_iter();
         let alpha = grid.cut(&mut self.alpha, exec);
         let depth = grid.cut(&mut self.depth, exec);
@@ -82,7 +82,7 @@ impl<L: Send> LayeredPlanes<L> {
 
 impl<L: Copy> LayeredTile<'_, L> {
     /// Writes a tile without splats.
-    pub(in crate::method) fn clear(&mut self, none: L) {
+    pub(crate) fn clear(&mut self, none: L) {
         clear_plane(&mut self.color, [0.0; 3]);
         clear_plane(&mut self.alpha, 0.0);
         clear_plane(&mut self.depth, f32::INFINITY);
@@ -91,7 +91,7 @@ impl<L: Copy> LayeredTile<'_, L> {
     }
 
     /// Copies the blocks of a tile into its rows.
-    pub(in crate::method) fn store(&mut self, blocks: &[LayeredBlock], layers: impl Fn(f32) -> L) {
+    pub(crate) fn store(&mut self, blocks: &[LayeredBlock], layers: impl Fn(f32) -> L) {
         store_plane(blocks, &mut self.color, |block, i| components(&block.color, i));
         store_plane(blocks, &mut self.alpha, |block, i| block.alpha[i]);
         store_plane(blocks, &mut self.depth, |block, i| block.depth[i]);

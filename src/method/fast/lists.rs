@@ -6,7 +6,7 @@ use super::tile::{BlockGrid, Record};
 use crate::splat::Shared;
 
 /// The splats that may touch each block of a tile.
-pub(in crate::method) struct BlockLists {
+pub(crate) struct BlockLists {
     /// Block by block.
     splats: Vec<u32>,
     /// Where the list of each block ends.
@@ -15,11 +15,7 @@ pub(in crate::method) struct BlockLists {
 
 impl BlockLists {
     /// Lists the splats of a tile, in their order.
-    pub(in crate::method) fn new<A>(
-        splats: &[Record<A>],
-        grid: &BlockGrid,
-        shared: &Shared<f32>,
-    ) -> Self {
+    pub(crate) fn new<A>(splats: &[Record<A>], grid: &BlockGrid, shared: &Shared<f32>) -> Self {
         if shared.ray_cast {
             Self::of::<true, A>(splats, grid, shared.limit)
         } else {
@@ -58,7 +54,7 @@ impl BlockLists {
     }
 
     /// Each block: its place in the tile, and its splats.
-    pub(in crate::method) fn blocks(&self) -> impl Iterator<Item = (usize, &[u32])> {
+    pub(crate) fn blocks(&self) -> impl Iterator<Item = (usize, &[u32])> {
         self.ends.iter().enumerate().map(|(block, &end)| {
             let start = if block == 0 { 0 } else { self.ends[block - 1] };
             (block, &self.splats[start as usize..end as usize])

@@ -7,12 +7,12 @@ use crate::splat::Shared;
 
 impl Tile {
     /// The least nearness of each pixel that passes the epsilon-z test.
-    pub(in crate::method) fn limits(&mut self, shared: &Shared<f32>, epsilon: f32) {
+    pub(crate) fn limits(&mut self, shared: &Shared<f32>, epsilon: f32) {
         limits(&mut self.blocks, shared, epsilon);
     }
 
     /// Normalization, in place.
-    pub(in crate::method) fn normalize(&mut self, shared: &Shared<f32>) {
+    pub(crate) fn normalize(&mut self, shared: &Shared<f32>) {
         match (self.normal, self.color) {
             (false, false) => normalize::<false, false>(&mut self.blocks, shared),
             (false, true) => normalize::<false, true>(&mut self.blocks, shared),
@@ -40,7 +40,7 @@ vectorized!(
 /// from a w on that is 1/(limit + ulp/2). That is less than an ulp below 1/limit, so the answer is
 /// the rounded 1/limit or one of its neighbours. `limit` is > 0; +inf gives 0.
 #[inline(always)]
-pub(in crate::method) fn least_nearness(shared: &Shared<f32>, limit: f32) -> f32 {
+pub(crate) fn least_nearness(shared: &Shared<f32>, limit: f32) -> f32 {
     if !shared.perspective {
         return -limit;
     }

@@ -5,7 +5,7 @@ use crate::frame::{FramebufferTile, NO_ID, TileMut};
 use crate::number::lanes::components;
 
 /// Writes a tile without splats.
-pub(in crate::method) fn clear(pixels: &mut FramebufferTile<'_, f32>) {
+pub(crate) fn clear(pixels: &mut FramebufferTile<'_, f32>) {
     clear_plane(&mut pixels.depth, f32::INFINITY);
     clear_plane(&mut pixels.id, NO_ID);
     clear_plane(&mut pixels.weight, 0.0);
@@ -29,13 +29,13 @@ pub(super) fn store(tile: &Tile, pixels: &mut FramebufferTile<'_, f32>) {
 }
 
 /// Writes one value into a tile of a plane.
-pub(in crate::method) fn clear_plane<T: Copy>(plane: &mut TileMut<'_, T>, value: T) {
+pub(crate) fn clear_plane<T: Copy>(plane: &mut TileMut<'_, T>, value: T) {
     plane.rows().for_each(|row| row.fill(value));
 }
 
 /// Copies the blocks of a tile into its rows of a plane; `pixel` gives that of a lane.
 #[inline(always)]
-pub(in crate::method) fn store_plane<B, T: Copy>(
+pub(crate) fn store_plane<B, T: Copy>(
     blocks: &[B],
     plane: &mut TileMut<'_, T>,
     pixel: impl Fn(&B, usize) -> T,

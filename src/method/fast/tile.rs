@@ -9,52 +9,48 @@ use crate::splat::{Footprint, Splat};
 use glam::Vec3;
 
 /// Side of a block in pixels.
-pub(in crate::method) const SIDE: u32 = 4;
+pub(crate) const SIDE: u32 = 4;
 /// Pixels of a row of a block.
-pub(in crate::method) const ROW: usize = SIDE as usize;
+pub(crate) const ROW: usize = SIDE as usize;
 const _: () = assert!(ROW * ROW == LANES, "a lane is a pixel of a block");
 
 /// The pixels of a block, row by row.
 #[derive(Clone)]
 #[repr(align(64))]
-pub(in crate::method) struct PixelBlock {
+pub(crate) struct PixelBlock {
     /// Nearness of the nearest fragment.
-    pub(in crate::method) nearest: Lanes,
+    pub(crate) nearest: Lanes,
     /// Its surfel.
-    pub(in crate::method) id: [u32; LANES],
+    pub(crate) id: [u32; LANES],
     /// The least nearness that passes the epsilon-z test.
-    pub(in crate::method) least: Lanes,
-    pub(in crate::method) weight: Lanes,
-    pub(in crate::method) normal: [Lanes; 3],
-    pub(in crate::method) color: [Lanes; 3],
+    pub(crate) least: Lanes,
+    pub(crate) weight: Lanes,
+    pub(crate) normal: [Lanes; 3],
+    pub(crate) color: [Lanes; 3],
 }
 
 /// A splat with its attributes, so that a tile finds all it needs in one place: 80 bytes with those
 /// of a surface.
 #[derive(Clone, Copy)]
-pub(in crate::method) struct Record<A = Surface> {
-    pub(in crate::method) footprint: Footprint<f32>,
-    pub(in crate::method) surfel: u32,
+pub(crate) struct Record<A = Surface> {
+    pub(crate) footprint: Footprint<f32>,
+    pub(crate) surfel: u32,
     /// First and last column, first and last row.
-    pub(in crate::method) bounds: [u16; 4],
-    pub(in crate::method) attributes: A,
+    pub(crate) bounds: [u16; 4],
+    pub(crate) attributes: A,
 }
 
 /// What is averaged where splats are a surface.
 #[derive(Clone, Copy)]
-pub(in crate::method) struct Surface {
+pub(crate) struct Surface {
     /// The normal of the side that is seen.
-    pub(in crate::method) normal: [f32; 3],
-    pub(in crate::method) color: [f32; 3],
+    pub(crate) normal: [f32; 3],
+    pub(crate) color: [f32; 3],
 }
 
 impl Surface {
     #[inline(always)]
-    pub(in crate::method) fn new(
-        splat: &Splat<f32>,
-        normals: &[Vec3],
-        colors: Option<&[Vec3]>,
-    ) -> Self {
+    pub(crate) fn new(splat: &Splat<f32>, normals: &[Vec3], colors: Option<&[Vec3]>) -> Self {
         let i = splat.surfel as usize;
         Self {
             normal: facing(normals[i].to_array(), splat.back),
@@ -65,7 +61,7 @@ impl Surface {
 
 impl<A> Record<A> {
     #[inline(always)]
-    pub(in crate::method) fn new(splat: &Splat<f32>, attributes: A) -> Self {
+    pub(crate) fn new(splat: &Splat<f32>, attributes: A) -> Self {
         let Rect { x0, y0, x1, y1 } = splat.bounds;
         Self {
             footprint: splat.footprint,
@@ -77,7 +73,7 @@ impl<A> Record<A> {
     }
 
     #[inline(always)]
-    pub(in crate::method) fn bounds(&self) -> Rect {
+    pub(crate) fn bounds(&self) -> Rect {
         let [x0, x1, y0, y1] = self.bounds;
         let (x0, y0) = (u32::from(x0), u32::from(y0));
         Rect { x0, y0, x1: u32::from(x1) + 1, y1: u32::from(y1) + 1 }
@@ -85,7 +81,7 @@ impl<A> Record<A> {
 
     /// The blocks of a tile that it may touch: columns and rows, the ends exclusive.
     #[inline(always)]
-    pub(in crate::method) fn blocks(&self, tile: &Rect) -> Rect {
+    pub(crate) fn blocks(&self, tile: &Rect) -> Rect {
         let inside = self.bounds().intersection(tile);
         if inside.is_empty() {
             return Rect::default();
@@ -101,64 +97,59 @@ impl<A> Record<A> {
 
 /// Where the blocks of a tile are.
 #[derive(Clone, Copy)]
-pub(in crate::method) struct BlockGrid {
+pub(crate) struct BlockGrid {
     /// The pixels of the tile.
-    pub(in crate::method) rect: Rect,
+    pub(crate) rect: Rect,
     /// Blocks in a row.
-    pub(in crate::method) columns: u32,
+    pub(crate) columns: u32,
 }
 
 impl BlockGrid {
     /// The blocks of these pixels.
-    pub(in crate::method) fn new(rect: Rect) -> Self {
+    pub(crate) fn new(rect: Rect) -> Self {
         Self { rect, columns: (rect.x1 - rect.x0).div_ceil(SIDE) }
     }
 
     /// How many blocks there are.
-    pub(in crate::method) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         (self.columns * (self.rect.y1 - self.rect.y0).div_ceil(SIDE)) as usize
     }
 
     /// Column and row of the first pixel of a block.
     #[inline(always)]
-    pub(in crate::method) fn corner(&self, block: usize) -> (u32, u32) {
+    pub(crate) fn corner(&self, block: usize) -> (u32, u32) {
         let (column, row) = (block as u32 % self.columns, block as u32 / self.columns);
         (self.rect.x0 + column * SIDE, self.rect.y0 + row * SIDE)
     }
 }
 
 /// What one tile works with.
-pub(in crate::method) struct Tile {
-    pub(in crate::method) splats: Vec<Record>,
-    pub(in crate::method) blocks: Vec<PixelBlock>,
-    pub(in crate::method) grid: BlockGrid,
+pub(crate) struct Tile {
+    pub(crate) splats: Vec<Record>,
+    pub(crate) blocks: Vec<PixelBlock>,
+    pub(crate) grid: BlockGrid,
     /// Whether normals are wanted.
-    pub(in crate::method) normal: bool,
+    pub(crate) normal: bool,
     /// Whether colours are wanted.
-    pub(in crate::method) color: bool,
+    pub(crate) color: bool,
 }
 
 impl Tile {
     /// Memory that tiles use one after the other; normals and colours are there if they are wanted.
-    pub(in crate::method) fn new([normal, color]: [bool; 2]) -> Self {
+    pub(crate) fn new([normal, color]: [bool; 2]) -> Self {
         let grid = BlockGrid::new(Rect::default());
         Self { splats: Vec::new(), blocks: Vec::new(), grid, normal, color }
     }
 
     /// Becomes a tile of these pixels: its splats, and its empty blocks; no blocks if there are no
     /// splats.
-    pub(in crate::method) fn gather(
-        &mut self,
-        prepared: &Prepared<f32, Record>,
-        index: usize,
-        rect: Rect,
-    ) {
+    pub(crate) fn gather(&mut self, prepared: &Prepared<f32, Record>, index: usize, rect: Rect) {
         prepared.gather_f32(index, &rect, &mut self.splats);
         self.empty(rect, prepared.shared.empty());
     }
 
     /// Becomes a tile of these pixels for the splats that it has: its empty blocks, of this nearness.
-    pub(in crate::method) fn empty(&mut self, rect: Rect, nearness: f32) {
+    pub(crate) fn empty(&mut self, rect: Rect, nearness: f32) {
         self.grid = BlockGrid::new(rect);
         let count = if self.splats.is_empty() { 0 } else { self.grid.len() };
         let zero = [0.0; LANES];
@@ -178,12 +169,7 @@ impl Tile {
 impl<A: Copy + Send> Prepared<f32, Record<A>> {
     /// The splats that may touch a tile of these pixels, in the order of the items, in the place of
     /// what was `gathered` before.
-    pub(in crate::method) fn gather_f32(
-        &self,
-        tile: usize,
-        rect: &Rect,
-        gathered: &mut Vec<Record<A>>,
-    ) {
+    pub(crate) fn gather_f32(&self, tile: usize, rect: &Rect, gathered: &mut Vec<Record<A>>) {
         self.gather(tile, |splat| touches(splat, rect, &self.shared), gathered);
     }
 }

@@ -3,7 +3,7 @@
 use super::layers::PeeledLayer;
 use crate::composite::under::Under;
 use crate::frame::Plane;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::picture::before_environment;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;

@@ -6,7 +6,7 @@ use crate::composite::decide;
 use crate::composite::under::Under;
 use crate::error::Result;
 use crate::frame::NO_ID;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::ewa::explain::{TwoPasses, two_passes};
 use crate::method::replay::{Place, Touch};
 use crate::number::Exact;

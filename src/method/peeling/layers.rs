@@ -5,7 +5,7 @@ use super::blending::under;
 use crate::composite::under::Under;
 use crate::composite::{decide, sum};
 use crate::frame::{NO_ID, Rect};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::ewa::attributes::{Sums, sums};
 use crate::method::ewa::normalization::resolve;
 use crate::method::ewa::visibility::{Foremost, foremost};

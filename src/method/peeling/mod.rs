@@ -57,17 +57,18 @@
 //! single pass makes 9. It is here to be compared against, not to be fast; but as the truth of every
 //! other picture it is drawn often, and `fast` gives the same bits for `f32`: there a fragment is
 //! computed once, and is gone when its layer is peeled.
+//!
+//! What a right implementation may leave of each stage: [`crate::verdict::peeling`].
 
 mod blending;
 pub mod explain;
 mod fast;
 mod layers;
 mod picture;
-mod planes;
+pub(crate) mod planes;
 mod settings;
 #[cfg(test)]
 mod tests;
-pub mod verify;
 
 pub use planes::STAGES;
 pub use settings::{MAX_LAYERS, Settings};
@@ -78,10 +79,7 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
-use crate::number::ball::Profile;
 use crate::splat::SplatSettings;
-use crate::verify::client::Client;
-use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -116,19 +114,6 @@ impl Algorithm for Settings {
         given: &Given<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
-    }
-
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
-        Ok(verify::verify::<P>(job, self, client, budget))
-    }
-
-    fn checks<P: Profile>(
-        &self,
-        job: &Job<'_>,
-        client: &Client,
-        pixel: (u32, u32),
-    ) -> Result<Vec<Check>> {
-        verify::checks::<P>(job, self, client, pixel)
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {

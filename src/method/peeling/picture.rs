@@ -6,7 +6,7 @@ use super::layers::{PeeledLayer, PeeledPixel, Peeling};
 use super::planes::{self, STAGES};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Rect};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fragment::TileSplats;
 use crate::method::given::Given;
 use crate::method::picture::{Clock, Picture};

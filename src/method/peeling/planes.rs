@@ -13,35 +13,35 @@ use crate::number::Exact;
 /// How many layers leave planes.
 pub const STAGES: u32 = 8;
 
-pub(super) const LAYER_COLOR: PlaneRow = PlaneRow::new(
+pub(crate) const LAYER_COLOR: PlaneRow = PlaneRow::new(
     "layer#",
     Holds::Color,
     "linear RGB",
     "shaded colour C_j of layer j, not multiplied by its opacity; black where there is no layer",
     When::Stages,
 );
-pub(super) const LAYER_ALPHA: PlaneRow = PlaneRow::new(
+pub(crate) const LAYER_ALPHA: PlaneRow = PlaneRow::new(
     "layer#.A",
     Holds::Scalar,
     "",
     "opacity a_j of layer j in [0, 1]; 0 where there is no layer",
     When::Stages,
 );
-pub(super) const LAYER_DEPTH: PlaneRow = PlaneRow::new(
+pub(crate) const LAYER_DEPTH: PlaneRow = PlaneRow::new(
     "layer#.Z",
     Holds::Scalar,
     "world units",
     "depth t_j of the nearest fragment of layer j; +inf where there is no layer",
     When::Stages,
 );
-pub(super) const LAYER_COUNT: PlaneRow = PlaneRow::new(
+pub(crate) const LAYER_COUNT: PlaneRow = PlaneRow::new(
     "layer#.count",
     Holds::Count,
     "fragments",
     "how many fragments layer j averages, up to 255; 0 where there is no layer",
     When::Stages,
 );
-pub(super) const LAYERS: PlaneRow = PlaneRow::new(
+pub(crate) const LAYERS: PlaneRow = PlaneRow::new(
     "layers",
     Holds::Count,
     "layers",

@@ -3,7 +3,7 @@
 use super::{SampleKind, SceneProjector, primitives};
 use crate::frame::Rect;
 use crate::frame::raster::Snap;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::number::{Exact, Vector3};
 use crate::splat::Fate;
 use std::fmt;
@@ -11,11 +11,11 @@ use std::ops::Range;
 
 /// What happened at one pixel.
 #[derive(Clone, Debug)]
-pub(in crate::method) struct PixelProjection<R> {
+pub(crate) struct PixelProjection<R> {
     /// In ascending order of their ids.
     contenders: Vec<Contender<R>>,
     /// The id that the pixel keeps, and its depth.
-    pub(in crate::method) kept: Option<(u32, R)>,
+    pub(crate) kept: Option<(u32, R)>,
 }
 
 /// A primitive that the pixel is asked to show.
@@ -29,7 +29,7 @@ struct Contender<R> {
 }
 
 /// Asks every primitive of a scene.
-pub(in crate::method) fn replay<R: Exact>(
+pub(crate) fn replay<R: Exact>(
     job: &Job<'_>,
     cull: bool,
     snap: Snap,
@@ -104,7 +104,7 @@ fn pieces<R: Exact>(
 
 /// The primitives of a scene that cover a pixel, each by its id and its depth there, in the
 /// order of their ids.
-pub(in crate::method) fn beside<R: Exact>(
+pub(crate) fn beside<R: Exact>(
     job: &Job<'_>,
     cull: bool,
     snap: Snap,
@@ -149,12 +149,12 @@ impl<R: Exact> fmt::Display for PixelProjection<R> {
 }
 
 /// A comparison with its operands, and how many ulp they are apart.
-pub(in crate::method) fn compared<R: Exact>(a: R, sign: &str, b: R) -> String {
+pub(crate) fn compared<R: Exact>(a: R, sign: &str, b: R) -> String {
     format!("{} {sign} {}  ({} ulp)", a.to_f64(), b.to_f64(), a.ulps_to(b))
 }
 
 /// How a form that an ellipse does not hold compares with the ellipse's square; an ellipse that is
 /// edge-on or a point holds nothing.
-pub(in crate::method) fn outside<R: Exact>(form: R, square: R) -> &'static str {
+pub(crate) fn outside<R: Exact>(form: R, square: R) -> &'static str {
     if form > square { ">" } else { "in no ellipse of" }
 }

@@ -31,15 +31,14 @@
 //!
 //! With stages: [`planes::PLANES`].
 
-pub(in crate::method) mod explain;
-pub(in crate::method) mod fast;
+pub(crate) mod explain;
+pub(crate) mod fast;
 pub mod planes;
 pub mod primitives;
 mod project;
 pub mod surfels;
 #[cfg(test)]
-pub(in crate::method) mod tests;
-pub mod verify;
+pub(crate) mod tests;
 mod visible;
 
 pub(crate) use project::{beside, project};
@@ -76,7 +75,7 @@ impl SampleKind {
         [Self::Empty, Self::Surface, Self::Ribbon, Self::Tube, Self::Polygon];
 
     /// The name in words.
-    pub(in crate::method) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         ["nothing", "surfel", "ribbon", "tube", "triangle"][self as usize]
     }
 }
@@ -152,18 +151,18 @@ pub struct Projected<R> {
 }
 
 /// What the projection of a scene's primitives shares.
-struct SceneProjector<'a, R> {
-    scene: &'a Scene,
-    has: Has,
-    points: PointProjector<R>,
-    clip: Clip<R>,
-    snap: Snap,
+pub(crate) struct SceneProjector<'a, R> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) has: Has,
+    pub(crate) points: PointProjector<R>,
+    pub(crate) clip: Clip<R>,
+    pub(crate) snap: Snap,
     /// Width and height of the picture.
-    size: [u32; 2],
+    pub(crate) size: [u32; 2],
 }
 
 impl<'a, R: Real> SceneProjector<'a, R> {
-    fn new(scene: &'a Scene, camera: &Camera, cull: bool, snap: Snap) -> Self {
+    pub(crate) fn new(scene: &'a Scene, camera: &Camera, cull: bool, snap: Snap) -> Self {
         let view = View::new(camera);
         Self {
             scene,
@@ -179,7 +178,7 @@ impl<'a, R: Real> SceneProjector<'a, R> {
 /// A vector of view space in world space, divided by its length, plus 0: each component
 /// `(m0 x + m1 y) + m2 z` down a column of the view matrix; the null vector stays.
 #[inline(always)]
-pub(in crate::method) fn world<R: Real>(view: &View<R>, v: Vector3<R>) -> [R; 3] {
+pub(crate) fn world<R: Real>(view: &View<R>, v: Vector3<R>) -> [R; 3] {
     let m = &view.rows;
     let column = |i: usize| (m[0][i] * v.x + m[1][i] * v.y) + m[2][i] * v.z;
     let n = Vector3::new(column(0), column(1), column(2)).normalized();

@@ -47,10 +47,7 @@ pub const PLANES: [PlaneRow; 10] = {
 };
 
 /// The planes that leave the stage.
-pub(in crate::method) fn write<R: Exact>(
-    samples: &Plane<PixelSample<R>>,
-    has: Has,
-) -> Vec<NamedPlane<R>> {
+pub(crate) fn write<R: Exact>(samples: &Plane<PixelSample<R>>, has: Has) -> Vec<NamedPlane<R>> {
     let [id, kind, depth, normal, extent, radius, left, upper, color, tangent] = &PLANES;
     let scalar = |row: &PlaneRow, of: fn(&PixelSample<R>) -> R| row.scalar(0, samples.map(of));
     let mut planes = vec![
@@ -73,10 +70,7 @@ pub(in crate::method) fn write<R: Exact>(
 /// # Errors
 /// [`Error::Invalid`] if a plane is missing, or of another type or size, or if a pixel has a kind
 /// that there is not.
-pub(in crate::method) fn read<R: Exact>(
-    given: &Given<'_, R>,
-    has: Has,
-) -> Result<Plane<PixelSample<R>>> {
+pub(crate) fn read<R: Exact>(given: &Given<'_, R>, has: Has) -> Result<Plane<PixelSample<R>>> {
     let [id, kind, depth, normal, extent, radius, left, upper, color, tangent] = &PLANES;
     let (id, kind) = (given.ids(id, 0)?, kinds(given, kind, 0)?);
     let scalar = |row| given.scalar(row, 0);
@@ -102,7 +96,7 @@ pub(in crate::method) fn read<R: Exact>(
 ///
 /// # Errors
 /// As [`Given::count`], and if a pixel has a kind that there is not.
-pub(in crate::method) fn kinds<R: Exact>(
+pub(crate) fn kinds<R: Exact>(
     given: &Given<'_, R>,
     row: &PlaneRow,
     number: usize,
@@ -119,20 +113,16 @@ pub(in crate::method) fn kinds<R: Exact>(
 }
 
 /// The values of a plane at a pixel; 0 where the scene has no such plane.
-pub(in crate::method) fn triple_at<R: Exact>(
-    plane: Option<&Plane<[R; 3]>>,
-    x: u32,
-    y: u32,
-) -> [R; 3] {
+pub(crate) fn triple_at<R: Exact>(plane: Option<&Plane<[R; 3]>>, x: u32, y: u32) -> [R; 3] {
     plane.map_or([R::ZERO; 3], |plane| *plane.at(x, y))
 }
 
 /// The components of a vector, as planes hold it.
-pub(in crate::method) fn components<R: Real>(v: Vector3<R>) -> [R; 3] {
+pub(crate) fn components<R: Real>(v: Vector3<R>) -> [R; 3] {
     [v.x, v.y, v.z]
 }
 
 /// The vector of these components.
-pub(in crate::method) fn vector<R: Real>([x, y, z]: [R; 3]) -> Vector3<R> {
+pub(crate) fn vector<R: Real>([x, y, z]: [R; 3]) -> Vector3<R> {
     Vector3::new(x, y, z)
 }

@@ -44,10 +44,10 @@ use crate::splat::ellipse;
 
 /// A piece of a primitive on the screen.
 #[derive(Debug)]
-pub(super) struct Piece<R> {
-    pub(super) bounds: Rect,
-    pub(super) kind: SampleKind,
-    pub(super) id: u32,
+pub(crate) struct Piece<R> {
+    pub(crate) bounds: Rect,
+    pub(crate) kind: SampleKind,
+    pub(crate) id: u32,
     /// The primitive in its list.
     index: usize,
     back: bool,
@@ -67,11 +67,11 @@ enum Raster {
 }
 
 /// A pixel of a piece: c and the position there.
-pub(super) struct PiecePixel<R> {
-    pub(super) x: u32,
-    pub(super) y: u32,
+pub(crate) struct PiecePixel<R> {
+    pub(crate) x: u32,
+    pub(crate) y: u32,
     pub(super) c: [R; 3],
-    pub(super) p: Vector3<R>,
+    pub(crate) p: Vector3<R>,
 }
 
 /// Calls `draw` for each piece of a primitive that may be seen.
@@ -94,7 +94,7 @@ pub(super) fn pieces<R: Exact>(
 }
 
 /// The corners of a primitive in view space.
-pub(super) fn corners<R: Real, const N: usize>(
+pub(crate) fn corners<R: Real, const N: usize>(
     of: &Indexed<N>,
     points: &PointProjector<R>,
     index: usize,
@@ -131,7 +131,7 @@ fn triangle<R: Exact>(
 }
 
 /// The piece of a triangle whose corners are snapped, each with its m, if it may be seen.
-pub(super) fn triangle_piece<R: Real>(
+pub(crate) fn triangle_piece<R: Real>(
     projector: &SceneProjector<'_, R>,
     (id, index): (u32, usize),
     ends: [([i64; 2], R); 3],
@@ -151,7 +151,7 @@ pub(super) fn triangle_piece<R: Real>(
 }
 
 /// The same as it is drawn in some pixels.
-pub(super) fn triangle_within<R: Real>(
+pub(crate) fn triangle_within<R: Real>(
     projector: &SceneProjector<'_, R>,
     (id, index): (u32, usize),
     (raster, bounds): (Triangle, Rect),
@@ -183,7 +183,7 @@ fn line<R: Exact>(
 }
 
 /// The piece of a ribbon or a tube whose ends are snapped, each with its m, if it may be seen.
-pub(super) fn line_piece<R: Real>(
+pub(crate) fn line_piece<R: Real>(
     projector: &SceneProjector<'_, R>,
     kind: SampleKind,
     (id, index): (u32, usize),
@@ -210,7 +210,7 @@ pub(super) fn line_piece<R: Real>(
 
 impl<R: Real> Piece<R> {
     /// Calls `visit` for every pixel of a rectangle that the piece covers.
-    pub(super) fn for_each(&self, rect: &Rect, mut visit: impl FnMut(PiecePixel<R>)) {
+    pub(crate) fn for_each(&self, rect: &Rect, mut visit: impl FnMut(PiecePixel<R>)) {
         let rect = rect.intersection(&self.bounds);
         match &self.raster {
             Raster::Triangle(triangle) => {
@@ -237,13 +237,13 @@ impl<R: Real> Piece<R> {
     }
 
     /// A pixel with these weights of the corners of the primitive.
-    pub(super) fn with(&self, x: u32, y: u32, c: [R; 3]) -> PiecePixel<R> {
+    pub(crate) fn with(&self, x: u32, y: u32, c: [R; 3]) -> PiecePixel<R> {
         let p = (self.p[0] * c[0] + self.p[1] * c[1]) + self.p[2] * c[2];
         PiecePixel { x, y, c, p }
     }
 
     /// What a pixel keeps of the piece.
-    pub(super) fn sample(
+    pub(crate) fn sample(
         &self,
         projector: &SceneProjector<'_, R>,
         fragment: &PiecePixel<R>,

@@ -6,7 +6,7 @@ use crate::composite::decide;
 use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
 use crate::frame::{Bins, Plane, Rect};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::number::{Exact, Vector3};
 use crate::splat::{Fate, Tally};
 use std::ops::Range;

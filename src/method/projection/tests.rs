@@ -15,17 +15,13 @@ fn text<R: Exact>(frame: &Frame<R>) -> Vec<String> {
 }
 
 /// A lit scene.
-pub(in crate::method) fn lit(scene: Scene) -> Scene {
+pub(crate) fn lit(scene: Scene) -> Scene {
     Scene { lights: vec![Light::DEFAULT], ..scene }
 }
 
 /// Every stage, on the planes of all stages and on those of the stages that it reads alone, leaves
 /// what it leaves in the picture; and every plane of a picture is of one row.
-pub(in crate::method) fn every_stage_runs_alone<R: Exact>(
-    scene: &Scene,
-    camera: &Camera,
-    method: Method,
-) {
+pub(crate) fn every_stage_runs_alone<R: Exact>(scene: &Scene, camera: &Camera, method: Method) {
     let exec = Exec::new(2, 16).unwrap();
     let session = Session::new(scene, method, &exec).unwrap();
     let picture = session.define::<R>(camera, true).unwrap();
@@ -54,7 +50,7 @@ pub(in crate::method) fn every_stage_runs_alone<R: Exact>(
 }
 
 /// A stage on the planes of a picture, of which one is changed.
-pub(in crate::method) fn stage_with(
+pub(crate) fn stage_with(
     scene: &Scene,
     camera: &Camera,
     method: Method,
@@ -69,16 +65,13 @@ pub(in crate::method) fn stage_with(
 }
 
 /// The samples of a plane, to be changed.
-pub(in crate::method) fn samples_mut<'a>(
-    frame: &'a mut Frame<f32>,
-    name: &str,
-) -> &'a mut Samples<f32> {
+pub(crate) fn samples_mut<'a>(frame: &'a mut Frame<f32>, name: &str) -> &'a mut Samples<f32> {
     &mut frame.planes.iter_mut().find(|plane| plane.name == name).unwrap().samples
 }
 
 /// Planes that are missing, of another type or of another size are refused in one line that names
 /// the plane.
-pub(in crate::method) fn wrong_planes_are_refused(scene: &Scene, camera: &Camera, method: Method) {
+pub(crate) fn wrong_planes_are_refused(scene: &Scene, camera: &Camera, method: Method) {
     let invalid = |stage: &str, change: &dyn Fn(&mut Frame<f32>), says: &str| {
         let error = stage_with(scene, camera, method, stage, change).unwrap_err();
         let line = error.to_string();

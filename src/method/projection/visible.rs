@@ -139,7 +139,7 @@ mod tests {
     use super::super::project;
     use super::*;
     use crate::index::Index;
-    use crate::method::algorithm::Job;
+    use crate::method::Job;
     use crate::scene::{Lens, Pose, Primitives, Surfels, Triangles, Vertices};
     use glam::{DVec3, Vec3};
     use proptest::prelude::*;

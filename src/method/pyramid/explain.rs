@@ -5,7 +5,7 @@ use super::push::{self, push_all};
 use super::{Cell, Occlusion, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::projection::explain::{PixelProjection, compared, outside, replay};
 use crate::method::projection::{self, SampleKind};
 use crate::number::{Exact, Vector2};

@@ -2,7 +2,7 @@
 
 use super::Cell;
 use crate::frame::{Plane, Pool};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::picture::before_environment;
 use crate::method::projection::{Has, world};
 use crate::number::Exact;

@@ -28,6 +28,8 @@
 //!
 //! The passes are the definition, over any [`crate::number::Real`]; [`planes`] has every plane that
 //! they leave.
+//!
+//! What a right implementation may leave of each stage: [`crate::verdict::pyramid`].
 
 mod cell;
 mod explain;
@@ -39,8 +41,7 @@ pub mod pull;
 pub mod push;
 mod settings;
 #[cfg(test)]
-mod tests;
-pub mod verify;
+pub(crate) mod tests;
 
 pub use cell::Cell;
 pub use settings::{Occlusion, Settings, Weights};
@@ -51,9 +52,6 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage, projection};
 use crate::number::Exact;
-use crate::number::ball::Profile;
-use crate::verify::client::Client;
-use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -103,18 +101,5 @@ impl Algorithm for Settings {
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {
         explain::explain::<R>(job, self, pixel)
-    }
-
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
-        Ok(verify::verify::<P>(job, self, client, budget))
-    }
-
-    fn checks<P: Profile>(
-        &self,
-        job: &Job<'_>,
-        client: &Client,
-        pixel: (u32, u32),
-    ) -> Result<Vec<Check>> {
-        verify::checks::<P>(job, self, client, pixel)
     }
 }

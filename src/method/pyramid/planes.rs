@@ -7,7 +7,7 @@ use super::Cell;
 use super::gbuffer::GBuffer;
 use crate::error::Result;
 use crate::frame::{NamedPlane, Plane, pyramid};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::given::Given;
 use crate::method::projection::Has;
 use crate::method::projection::planes::{components, kinds, triple_at, vector};

@@ -30,7 +30,7 @@ use crate::method::projection::PixelSample;
 use crate::number::{Exact, Real, Vector2};
 
 /// The side of a cell of a level in pixels, 2^level.
-pub(super) fn side<R: Real>(level: usize) -> R {
+pub(crate) fn side<R: Real>(level: usize) -> R {
     R::from_f32((1_u32 << level) as f32)
 }
 
@@ -62,7 +62,7 @@ pub fn pull<R: Exact>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell
 }
 
 /// The four finer cells of a cell.
-pub(super) fn four<R: Real>(fine: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
+pub(crate) fn four<R: Real>(fine: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
     [0, 1, 2, 3].map(|j| {
         let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
         let exists = x < fine.width() && y < fine.height();

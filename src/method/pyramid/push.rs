@@ -78,7 +78,7 @@ pub fn push<R: Exact>(
 }
 
 /// The parent of a cell and the three neighbours.
-pub(super) fn four<R: Real>(coarse: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
+pub(crate) fn four<R: Real>(coarse: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
     let exists = |x: i64, y: i64| {
         (0..i64::from(coarse.width())).contains(&x) && (0..i64::from(coarse.height())).contains(&y)
     };

@@ -16,7 +16,7 @@ use crate::scene::{Camera, Primitives, Scene};
 use glam::Vec3;
 
 /// Primitives between random points; their vertices are the surfels of another seed.
-pub(super) fn indexed<const N: usize>(count: u32, seed: u64) -> Indexed<N> {
+pub(crate) fn indexed<const N: usize>(count: u32, seed: u64) -> Indexed<N> {
     let points = surfels(u64::from(count), 0.05, true, seed);
     let vertices = Vertices {
         position: points.position().iter().map(|p| *p * 0.75).collect(),

@@ -6,7 +6,7 @@ use crate::scene::objects::{Ids, Objects};
 
 /// The ids of the surfels that are drawn, ascending: by these a method that draws surfels one by one, and
 /// every verdict, counts them.
-pub(super) struct Names<'a> {
+pub(crate) struct Names<'a> {
     ids: &'a Ids,
     /// Of objects with levels of detail; else all ids are drawn.
     drawn: Option<Vec<u64>>,
@@ -57,7 +57,7 @@ impl<'a> Names<'a> {
 
     /// The same of what somebody hands in. Planes of ids of 40 bits that come without their highest 8 do not
     /// say the surfel, and are left out.
-    pub(super) fn number_given<R>(&self, frame: &mut Frame<R>) -> Result<()> {
+    pub(crate) fn number_given<R>(&self, frame: &mut Frame<R>) -> Result<()> {
         if !self.ids.is_wide() {
             return self.number(frame);
         }

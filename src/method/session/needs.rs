@@ -101,7 +101,7 @@ impl Session<'_> {
     }
 
     /// Whether the process may hold a picture more.
-    pub(super) fn ask(&self, camera: &Camera, making: Making) -> Result<()> {
+    pub(crate) fn ask(&self, camera: &Camera, making: Making) -> Result<()> {
         let (width, height) = (camera.width, camera.height);
         memory::ask(self.needs(camera, making), || {
             format!("a picture of {width} x {height} pixels by {}", self.method.name())

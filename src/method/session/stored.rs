@@ -3,7 +3,7 @@
 use super::{Making, Session};
 use crate::error::Result;
 use crate::frame::{Frame, NamedPlane};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::stage::When;
 use crate::method::stored::{DepthKey, DepthRange, Formats};
 use crate::method::{Method, Picture};
@@ -53,7 +53,7 @@ impl Session<'_> {
     }
 
     /// The picture whose sums and depth tests are those of buffers, and between which depths these tell apart.
-    pub(in crate::method) fn storing<'j>(
+    pub(crate) fn storing<'j>(
         &'j self,
         camera: &'j Camera,
         formats: Formats,
@@ -90,7 +90,7 @@ impl Session<'_> {
     }
 
     /// Whether a plane is one of a picture without the planes of the stages.
-    pub(in crate::method) fn is_shown(&self, plane: &NamedPlane<f32>) -> bool {
+    pub(crate) fn is_shown(&self, plane: &NamedPlane<f32>) -> bool {
         let rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
         let row = rows.into_iter().find(|row| row.is_called(&plane.name));
         row.is_none_or(|row| matches!(row.when, When::Always | When::Lit | When::Tubes))

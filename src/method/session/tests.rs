@@ -143,7 +143,7 @@ fn the_memory_of_an_earlier_picture_changes_no_bit() {
 }
 
 /// Two spheres of one geometry in their places, and the same surfels without objects.
-fn two_spheres() -> [Scene; 2] {
+pub(crate) fn two_spheres() -> [Scene; 2] {
     let (surfels, primitives) = (Shape::Sphere.surfels(300, 1).unwrap(), Primitives::default());
     let geometry = Geometry { name: "sphere".into(), surfels, primitives, detail: None };
     let object = |x: f64| {
@@ -190,10 +190,5 @@ fn surfels_of_objects_are_named_by_their_ids() {
         assert!(large > 50, "{method:?}: both spheres are seen");
         let rendered = own.render(&camera).unwrap();
         assert_eq!(rendered.frame.plane("id").is_some(), indices.plane("id").is_some());
-        let verdict = |session: &Session<'_>| {
-            let client = Client::from(&session.define::<f32>(&camera, true).unwrap().frame);
-            session.verify(&camera, &client, 0.02).unwrap().outcome()
-        };
-        assert_eq!(verdict(&own), verdict(&of), "{method:?}");
     }
 }

@@ -9,17 +9,17 @@ use crate::number::Exact;
 
 /// What the compositing pass makes of one pixel.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::method) struct Composite<R> {
+pub(crate) struct Composite<R> {
     /// The sums, with the nearest depth.
-    pub(in crate::method) sums: WeightedFragment<R>,
+    pub(crate) sums: WeightedFragment<R>,
     /// How many groups passed the epsilon-z test.
-    pub(in crate::method) count: u32,
+    pub(crate) count: u32,
     /// The surfel of the greatest nearness.
-    pub(in crate::method) id: u32,
+    pub(crate) id: u32,
 }
 
 /// The compositing pass over the first `pixels` pixels of all images; `empty` is the nearness of an empty pixel.
-pub(in crate::method) fn composites<R: Exact>(
+pub(crate) fn composites<R: Exact>(
     images: &[impl AsRef<[ImagePixel<R>]>],
     pixels: usize,
     epsilon: R,
@@ -44,7 +44,7 @@ pub(in crate::method) fn composites<R: Exact>(
 
 impl<R: Exact> Composite<R> {
     /// Normalization.
-    pub(in crate::method) fn resolved(&self) -> Resolved<R> {
+    pub(crate) fn resolved(&self) -> Resolved<R> {
         let Self { sums, id, .. } = *self;
         Resolved {
             depth: sums.depth,
@@ -56,7 +56,7 @@ impl<R: Exact> Composite<R> {
     }
 
     /// The average opacity.
-    pub(in crate::method) fn opacity(&self) -> R {
+    pub(crate) fn opacity(&self) -> R {
         let WeightedFragment { opacity, weight, .. } = self.sums;
         let [alpha, ..] = sum::average([opacity, R::ZERO, R::ZERO], weight);
         // The quotient of two sums may exceed 1 by their rounding.

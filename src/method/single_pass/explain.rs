@@ -6,7 +6,7 @@ use super::geometry::{Geometry, ImagePixel};
 use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::NO_ID;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::replay::{Decision, Place, Touch, touch};
 use crate::number::Exact;
 use std::fmt;
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
     use crate::frame::Exec;
     use crate::index::Index;
-    use crate::method::algorithm::Algorithm;
+    use crate::method::Algorithm;
     use crate::method::tests::{count, id, scalar, sphere_of_groups};
     use crate::scene::{Camera, Lens};
     use crate::source::Shape;

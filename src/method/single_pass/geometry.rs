@@ -6,7 +6,7 @@ use crate::composite::decide;
 use crate::composite::groups::WeightedFragment;
 use crate::error::Result;
 use crate::frame::{NO_ID, Rect};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fragment::{TileSplats, facing};
 use crate::method::prepare::Prepared;
 use crate::method::stored::DepthKey;
@@ -16,10 +16,10 @@ use crate::splat::{Shared, Splat};
 
 /// The splats of a picture, projected and sorted into tiles, and what the depth test needs.
 #[derive(Debug)]
-pub(in crate::method) struct Geometry<'a, R: Exact> {
+pub(crate) struct Geometry<'a, R: Exact> {
     surfels: &'a Surfels,
     groups: &'a Groups,
-    pub(in crate::method) splats: Prepared<R, Splat<R>>,
+    pub(crate) splats: Prepared<R, Splat<R>>,
     /// The bins of the Voronoi depth test; none for the plain one.
     bins: Option<DepthBins<R>>,
     key: DepthKey,
@@ -42,15 +42,15 @@ pub(super) struct Kept<R> {
 
 /// What a depth-image leaves at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::method) struct ImagePixel<R> {
+pub(crate) struct ImagePixel<R> {
     /// Depth and weighted attributes of the fragment that was kept.
-    pub(in crate::method) sample: WeightedFragment<R>,
+    pub(crate) sample: WeightedFragment<R>,
     /// Its nearness; that of an empty pixel where there is none.
-    pub(in crate::method) nearness: R,
+    pub(crate) nearness: R,
     /// Its Voronoi-enhanced depth in bins, +inf where there is none; 0 under the plain depth test.
-    pub(in crate::method) z: R,
+    pub(crate) z: R,
     /// Its surfel; [`NO_ID`] where there is none.
-    pub(in crate::method) surfel: u32,
+    pub(crate) surfel: u32,
 }
 
 impl<'a, R: Exact> Geometry<'a, R> {
@@ -59,7 +59,7 @@ impl<'a, R: Exact> Geometry<'a, R> {
     /// # Errors
     /// [`crate::Error::Invalid`] if there are no groups, or if the Voronoi depth test takes too
     /// many bins.
-    pub(in crate::method) fn project(job: &Job<'a>, settings: &Settings) -> Result<Self> {
+    pub(crate) fn project(job: &Job<'a>, settings: &Settings) -> Result<Self> {
         let surfels = &job.scene.surfels;
         let (groups, bins) = (job.index.groups()?, settings.bins(surfels, job.camera)?);
         Ok(Self {
@@ -72,12 +72,12 @@ impl<'a, R: Exact> Geometry<'a, R> {
     }
 
     /// What the fragments of all splats share.
-    pub(in crate::method) fn shared(&self) -> &Shared<R> {
+    pub(crate) fn shared(&self) -> &Shared<R> {
         &self.splats.shared
     }
 
     /// The geometry pass over some pixels of a tile: the image of each group, row by row.
-    pub(in crate::method) fn images(&self, tile: usize, rect: Rect) -> Vec<Vec<ImagePixel<R>>> {
+    pub(crate) fn images(&self, tile: usize, rect: Rect) -> Vec<Vec<ImagePixel<R>>> {
         let mut images = vec![vec![self.empty(); rect.pixels()]; self.groups.len()];
         TileSplats::new(&self.splats, tile, rect).each_inside(|splat, pixel, q, nearness| {
             self.offer(splat, q, nearness, &mut images[self.group(splat)][pixel]);
@@ -155,11 +155,11 @@ impl<'a, R: Exact> Geometry<'a, R> {
 }
 
 /// The distance of a fragment from the centre of its splat, as a part of the splat's radius.
-pub(super) fn ratio<R: Real>(q: R, limit: R) -> R {
+pub(crate) fn ratio<R: Real>(q: R, limit: R) -> R {
     (q / limit).root_of_squares()
 }
 
 /// The opacity of a surfel, 1 if the scene has none.
-pub(super) fn opacity<R: Real>(surfels: &Surfels, surfel: u32) -> R {
+pub(crate) fn opacity<R: Real>(surfels: &Surfels, surfel: u32) -> R {
     R::from_f32(surfels.opacity_of(surfel as usize))
 }

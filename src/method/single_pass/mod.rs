@@ -49,15 +49,16 @@
 //! [`Splat`]: crate::splat::Splat
 //! [`Exact`]: crate::number::Exact
 //! [`Groups`]: crate::scene::Groups
+//!
+//! What a right implementation may leave of each stage: [`crate::verdict::single_pass`].
 
 pub(super) mod compositing;
 pub mod explain;
 pub(super) mod fast;
-pub(super) mod geometry;
+pub(crate) mod geometry;
 pub(super) mod picture;
-pub(super) mod planes;
+pub(crate) mod planes;
 mod settings;
-pub mod verify;
 
 pub use settings::{BinCount, DepthTest, Settings, depth_range};
 
@@ -68,11 +69,8 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
-use crate::number::ball::Profile;
 use crate::scene::{Camera, Scene};
 use crate::splat::SplatSettings;
-use crate::verify::client::Client;
-use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -115,19 +113,6 @@ impl Algorithm for Settings {
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {
         explain::explain::<R>(job, self, pixel)
-    }
-
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
-        verify::verify::<P>(job, self, client, budget)
-    }
-
-    fn checks<P: Profile>(
-        &self,
-        job: &Job<'_>,
-        client: &Client,
-        pixel: (u32, u32),
-    ) -> Result<Vec<Check>> {
-        verify::checks::<P>(job, self, client, pixel)
     }
 
     fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {

@@ -5,7 +5,7 @@ use super::geometry::{Geometry, ImagePixel};
 use super::{Settings, fast, planes};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool, Rect, Wanted};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::given::Given;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::resolved;
@@ -46,14 +46,14 @@ pub(super) fn define<R: Exact>(
 }
 
 /// What both passes leave.
-pub(in crate::method) struct Passes<R> {
+pub(crate) struct Passes<R> {
     /// The depth-image of each group, if it is kept.
-    pub(in crate::method) images: Vec<Tiled<ImagePixel<R>>>,
-    pub(in crate::method) composites: Tiled<Composite<R>>,
+    pub(crate) images: Vec<Tiled<ImagePixel<R>>>,
+    pub(crate) composites: Tiled<Composite<R>>,
 }
 
 /// The geometry and the compositing pass, timed as two stages; `keep` keeps the images.
-pub(in crate::method) fn passes<R: Exact>(
+pub(crate) fn passes<R: Exact>(
     job: &Job<'_>,
     geometry: &Geometry<'_, R>,
     keep: bool,
@@ -78,7 +78,7 @@ pub(in crate::method) fn passes<R: Exact>(
 }
 
 /// The compositing pass over somebody's depth-images.
-pub(in crate::method) fn composite<R: Exact>(
+pub(crate) fn composite<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     images: &[Tiled<ImagePixel<R>>],

@@ -6,7 +6,7 @@ use super::{DepthTest, Settings};
 use crate::composite::groups::WeightedFragment;
 use crate::error::Result;
 use crate::frame::{NO_ID, NamedPlane};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::given::Given;
 use crate::method::resolved;
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
@@ -16,18 +16,18 @@ use crate::splat::View;
 
 /// The planes of a depth-image.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::method) struct ImageRows {
-    pub(in crate::method) depth: PlaneRow,
-    pub(in crate::method) id: PlaneRow,
-    pub(in crate::method) weight: PlaneRow,
-    pub(in crate::method) normal: PlaneRow,
-    pub(in crate::method) color: PlaneRow,
-    pub(in crate::method) voronoi: PlaneRow,
+pub(crate) struct ImageRows {
+    pub(crate) depth: PlaneRow,
+    pub(crate) id: PlaneRow,
+    pub(crate) weight: PlaneRow,
+    pub(crate) normal: PlaneRow,
+    pub(crate) color: PlaneRow,
+    pub(crate) voronoi: PlaneRow,
 }
 
 impl ImageRows {
     /// The planes by their names: depth, id, weight, normal, colour, Voronoi-enhanced depth.
-    pub(in crate::method) const fn new(names: [&'static str; 6]) -> Self {
+    pub(crate) const fn new(names: [&'static str; 6]) -> Self {
         use Holds::{Color, Index, Scalar, Vector};
         let [depth, id, weight, normal, color, voronoi] = names;
         let of = PlaneRow::new;
@@ -79,12 +79,12 @@ impl ImageRows {
     }
 
     /// All of them.
-    pub(in crate::method) const fn all(&self) -> [PlaneRow; 6] {
+    pub(crate) const fn all(&self) -> [PlaneRow; 6] {
         [self.depth, self.id, self.weight, self.normal, self.color, self.voronoi]
     }
 }
 
-pub(super) const IMAGES: ImageRows = ImageRows::new([
+pub(crate) const IMAGES: ImageRows = ImageRows::new([
     "group##.Z",
     "group##.id",
     "group##.weight",
@@ -93,28 +93,28 @@ pub(super) const IMAGES: ImageRows = ImageRows::new([
     "group##.voronoi",
 ]);
 
-pub(super) const COLOR_SUM: PlaneRow = PlaneRow::new(
+pub(crate) const COLOR_SUM: PlaneRow = PlaneRow::new(
     "sums",
     Holds::Color,
     "linear RGB",
     "sum of weight times colour over the visible groups; 0 where there is none",
     When::Colored,
 );
-pub(super) const NORMAL_SUM: PlaneRow = PlaneRow::new(
+pub(crate) const NORMAL_SUM: PlaneRow = PlaneRow::new(
     "sums.normal",
     Holds::Vector,
     "",
     "sum of weight times normal over the visible groups, in world space; 0 where there is none",
     When::Stages,
 );
-pub(super) const WEIGHT_SUM: PlaneRow = PlaneRow::new(
+pub(crate) const WEIGHT_SUM: PlaneRow = PlaneRow::new(
     "sums.weight",
     Holds::Scalar,
     "",
     "sum of the weights of the visible groups; 0 where there is none",
     When::Stages,
 );
-pub(super) const COUNT: PlaneRow = PlaneRow::new(
+pub(crate) const COUNT: PlaneRow = PlaneRow::new(
     "sums.count",
     Holds::Count,
     "fragments",
@@ -162,7 +162,7 @@ pub(super) fn given_geometry<R: Exact>(
 }
 
 /// The depth-image of each group.
-pub(in crate::method) fn image_planes<R: Exact>(
+pub(crate) fn image_planes<R: Exact>(
     job: &Job<'_>,
     rows: &ImageRows,
     depth: DepthTest,
@@ -192,7 +192,7 @@ pub(in crate::method) fn image_planes<R: Exact>(
 /// The opacity is that of the surfel, times the weight. Nearness is that of the depth, rounded: so
 /// of two images of the same depth the one of the lower surfel is the nearest, where the definition
 /// may have told their nearnesses apart. The Voronoi-enhanced depth has done its work.
-pub(in crate::method) fn given_images<R: Exact>(
+pub(crate) fn given_images<R: Exact>(
     job: &Job<'_>,
     rows: &ImageRows,
     given: &Given<'_, R>,

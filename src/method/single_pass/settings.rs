@@ -56,7 +56,7 @@ impl Fields for Settings {
 
 impl DepthTest {
     /// The row of the depth test, without that of its bins.
-    pub(in crate::method) fn field(&mut self) -> Field<'_> {
+    pub(crate) fn field(&mut self) -> Field<'_> {
         let help = "what a group keeps of overlapping splats: the nearest, or of the nearest bin \
                     of depth the one nearest to its own centre";
         Field::new("depth", help, Slot::Word(self))
@@ -70,7 +70,7 @@ impl Words for DepthTest {
 
 impl BinCount {
     /// The row of the bins.
-    pub(in crate::method) fn field(&mut self, each: &mut Visit<'_>) {
+    pub(crate) fn field(&mut self, each: &mut Visit<'_>) {
         let mut count = match *self {
             Self::Epsilon => None,
             Self::Count(count) => Some(count),
@@ -107,7 +107,7 @@ impl BinCount {
 
     /// The bins of a picture as TOML: `d_min`, `d_max` and n of \[ZP06, eq. 6\], if there are not
     /// too many.
-    pub(in crate::method) fn resolved(
+    pub(crate) fn resolved(
         &self,
         splats: &SplatSettings,
         scene: &Scene,
@@ -134,7 +134,7 @@ impl Settings {
     }
 
     /// The bins of the Voronoi depth test; none for the plain one.
-    pub(in crate::method) fn bins<R: Real>(
+    pub(crate) fn bins<R: Real>(
         &self,
         surfels: &Surfels,
         camera: &Camera,

@@ -7,7 +7,7 @@ use super::{Center, Settings};
 use crate::error::Result;
 use crate::frame::Plane;
 use crate::frame::raster::Snap;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::projection::explain::{PixelProjection, compared, outside, replay};
 use crate::method::projection::{self, Has};
 use crate::number::Exact;

@@ -17,11 +17,13 @@
 //!
 //! The passes are the definition, over any [`crate::number::Real`]; [`planes`] has every plane that
 //! they leave.
+//!
+//! What a right implementation may leave of each stage: [`crate::verdict::template`].
 
 mod center;
 mod explain;
 mod fast;
-mod normalization;
+pub(crate) mod normalization;
 mod picture;
 pub mod planes;
 pub mod propagation;
@@ -29,7 +31,6 @@ pub mod reconstruction;
 mod settings;
 #[cfg(test)]
 mod tests;
-pub mod verify;
 
 pub use center::Center;
 pub use settings::{Falloff, LevelRule, Settings};
@@ -40,9 +41,6 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage, projection};
 use crate::number::Exact;
-use crate::number::ball::Profile;
-use crate::verify::client::Client;
-use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -99,18 +97,5 @@ impl Algorithm for Settings {
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {
         explain::explain::<R>(job, self, pixel)
-    }
-
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
-        Ok(verify::verify::<P>(job, self, client, budget))
-    }
-
-    fn checks<P: Profile>(
-        &self,
-        job: &Job<'_>,
-        client: &Client,
-        pixel: (u32, u32),
-    ) -> Result<Vec<Check>> {
-        verify::checks::<P>(job, self, client, pixel)
     }
 }

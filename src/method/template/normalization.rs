@@ -30,12 +30,12 @@ pub(super) fn normalize<R: Exact>(
 }
 
 /// The average depth; +inf where nothing was gathered.
-pub(super) fn depth<R: Real>(pixel: &Gathered<R>) -> R {
+pub(crate) fn depth<R: Real>(pixel: &Gathered<R>) -> R {
     R::select(pixel.weight.gt(R::ZERO), pixel.depths / pixel.weight, R::INFINITY)
 }
 
 /// The direction of the average normal, world space.
-pub(super) fn normal<R: Real>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
+pub(crate) fn normal<R: Real>(view: &View<R>, pixel: &Gathered<R>) -> [R; 3] {
     let [x, y, z] = sum::average(pixel.normals, pixel.weight);
     world(view, Vector3::new(x, y, z))
 }

@@ -9,7 +9,7 @@ use super::{Center, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{NamedPlane, Plane, Pool, Wanted, pyramid};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::given::Given;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::projection::{self, Has};

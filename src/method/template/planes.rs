@@ -8,7 +8,7 @@ use super::reconstruction::Gathered;
 use crate::composite::sum;
 use crate::error::Result;
 use crate::frame::{Framebuffer, NO_ID, NamedPlane, Plane, pyramid};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::given::Given;
 use crate::method::projection::Has;
 use crate::method::projection::planes::{components, triple_at, vector};

@@ -73,7 +73,7 @@ pub(super) fn coarser<R: Exact>(
 }
 
 /// The four finer cells of a cell.
-pub(super) fn four<R: Real>(fine: &Plane<Center<R>>, x: u32, y: u32) -> [Center<R>; 4] {
+pub(crate) fn four<R: Real>(fine: &Plane<Center<R>>, x: u32, y: u32) -> [Center<R>; 4] {
     [0, 1, 2, 3].map(|j| {
         let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
         let exists = x < fine.width() && y < fine.height();

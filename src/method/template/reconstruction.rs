@@ -83,20 +83,20 @@ impl<R: Real> Gathered<R> {
     }
 
     /// The ternary test of the module page; the first centre is before nothing.
-    pub(super) fn ternary(&self, center: &Center<R>) -> Ternary<R::Truth> {
+    pub(crate) fn ternary(&self, center: &Center<R>) -> Ternary<R::Truth> {
         let test = decide::ternary([center.depth, center.radius], [self.depth, self.radius]);
         let first = R::Truth::from(self.id == NO_ID);
         Ternary { before: test.before | first, behind: test.behind & !first }
     }
 
     /// Whether a centre that is added becomes the front.
-    pub(super) fn nearer(&self, center: &Center<R>) -> R::Truth {
+    pub(crate) fn nearer(&self, center: &Center<R>) -> R::Truth {
         decide::before(center.depth, self.depth)
     }
 
     /// The sums with a centre added, which becomes the front if it is `nearer`.
     #[must_use]
-    pub(super) fn with(self, center: &Center<R>, weight: R, nearer: bool) -> Self {
+    pub(crate) fn with(self, center: &Center<R>, weight: R, nearer: bool) -> Self {
         let front = if nearer {
             (center.id, center.depth, center.radius)
         } else {
@@ -153,7 +153,7 @@ pub(super) enum Placement {
 
 /// The weight of a form, see the module page; also for one that is outside or NaN.
 #[inline(always)]
-pub(in crate::method::template) fn weight<R: Real>(falloff: Falloff, form: R, square: R) -> R {
+pub(crate) fn weight<R: Real>(falloff: Falloff, form: R, square: R) -> R {
     let (ratio, least) = (form / square, R::from_f32(LEAST));
     let weight = match falloff {
         Falloff::Linear => R::ONE - ratio.sqrt(),
@@ -192,23 +192,23 @@ pub fn gather<R: Exact>(
 
 /// A centre that a pixel asks.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Asked<'a, R: Real> {
-    pub(super) center: &'a Center<R>,
+pub(crate) struct Asked<'a, R: Real> {
+    pub(crate) center: &'a Center<R>,
     pub(super) level: usize,
     pub(super) cell: (u32, u32),
     /// The form at the pixel's centre, and what it is compared with.
-    pub(super) form: R,
-    pub(super) square: R,
+    pub(crate) form: R,
+    pub(crate) square: R,
     /// Whether the centre stays at the level.
-    pub(super) stays: R::Truth,
+    pub(crate) stays: R::Truth,
     /// Whether the ellipse holds the pixel's centre.
-    pub(super) holds: R::Truth,
+    pub(crate) holds: R::Truth,
     /// Whether the centre was projected to the pixel, which it is held by if it stays at level 0.
-    pub(super) own: bool,
+    pub(crate) own: bool,
 }
 
 /// Calls `visit` for every centre that stays in the templates around a pixel, or may, in their order.
-pub(super) fn each_asked<'a, R: Real>(
+pub(crate) fn each_asked<'a, R: Real>(
     levels: &'a [Plane<Center<R>>],
     settings: &Settings,
     pixel: (u32, u32),

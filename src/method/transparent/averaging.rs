@@ -9,23 +9,23 @@ use crate::number::{Exact, Real};
 
 /// The groups of a pixel together.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::method) struct GroupAverage<R> {
-    pub(in crate::method) blend: Blend<R>,
+pub(crate) struct GroupAverage<R> {
+    pub(crate) blend: Blend<R>,
     /// See [`GroupLayers::opacity`].
-    pub(in crate::method) opacity: R,
+    pub(crate) opacity: R,
     /// See [`GroupLayers::hidden`].
-    pub(in crate::method) hidden: R,
+    pub(crate) hidden: R,
     /// Mean count of layers.
-    pub(in crate::method) layers: R,
+    pub(crate) layers: R,
     /// Least depth of any group.
-    pub(in crate::method) depth: R,
+    pub(crate) depth: R,
     /// Its surfel; of equal depths the lower one.
-    pub(in crate::method) surfel: u32,
+    pub(crate) surfel: u32,
 }
 
 /// The average at each of the first `pixels` pixels of all images: each quantity is a sum in the
 /// order of the groups, divided once by their count.
-pub(in crate::method) fn averages<R: Exact>(
+pub(crate) fn averages<R: Exact>(
     images: &[impl AsRef<[GroupLayers<R>]>],
     pixels: usize,
     holes: Holes,
@@ -45,7 +45,7 @@ pub(in crate::method) fn averages<R: Exact>(
 }
 
 impl<R: Real> GroupAverage<R> {
-    pub(in crate::method) const EMPTY: Self = Self {
+    pub(crate) const EMPTY: Self = Self {
         blend: Blend::CLEAR,
         opacity: R::ZERO,
         hidden: R::ZERO,
@@ -54,7 +54,7 @@ impl<R: Real> GroupAverage<R> {
         surfel: NO_ID,
     };
 
-    pub(super) fn divided(self, count: R) -> Self {
+    pub(crate) fn divided(self, count: R) -> Self {
         Self {
             blend: Blend {
                 color: self.blend.color.map(|c| c / count),

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::frame::{NO_ID, Rect};
 use crate::index::Item;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fragment::{each_in_bounds, each_inside, facing};
 use crate::method::prepare::Prepared;
 use crate::method::stored::Buffers;
@@ -29,21 +29,21 @@ pub(super) struct GroupSplat<R: Exact> {
 
 /// What the image of a group holds at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::method) struct GroupLayers<R> {
+pub(crate) struct GroupLayers<R> {
     /// The bin of the nearest fragment so far; +inf where there is none.
-    pub(in crate::method) bin: R,
+    pub(crate) bin: R,
     /// All fragments that passed, blended.
-    pub(in crate::method) blend: Blend<R>,
+    pub(crate) blend: Blend<R>,
     /// The sum of the opacities in front of the nearest opaque fragment.
-    pub(in crate::method) opacity: R,
+    pub(crate) opacity: R,
     /// 1 if an opaque fragment hides what is behind, else 0.
-    pub(in crate::method) hidden: R,
+    pub(crate) hidden: R,
     /// How many fragments passed, up to 255.
-    pub(in crate::method) count: u8,
+    pub(crate) count: u8,
     /// Depth of the fragment that passed last, the nearest; +inf where there is none.
-    pub(in crate::method) depth: R,
+    pub(crate) depth: R,
     /// Its surfel.
-    pub(in crate::method) surfel: u32,
+    pub(crate) surfel: u32,
 }
 
 impl<R: Exact> GroupLayers<R> {
@@ -81,7 +81,7 @@ impl<R: Exact> GroupLayers<R> {
 
 /// The splats of all groups, projected and sorted into tiles.
 #[derive(Debug)]
-pub(in crate::method) struct Blending<R: Exact> {
+pub(crate) struct Blending<R: Exact> {
     prepared: Prepared<R, GroupSplat<R>>,
     /// Of each group.
     pub(super) bins: Vec<DepthBins<R>>,
@@ -90,7 +90,7 @@ pub(in crate::method) struct Blending<R: Exact> {
 
 impl<R: Exact> Blending<R> {
     /// Order, projection and shading.
-    pub(in crate::method) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
+    pub(crate) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
         let (scene, groups) = (job.scene, job.index.groups()?);
         let surfels = &scene.surfels;
         let (items, bins) =
@@ -121,7 +121,7 @@ impl<R: Exact> Blending<R> {
     }
 
     /// What became of the surfels, each counted once in each of its groups.
-    pub(in crate::method) fn tally(&self) -> Tally {
+    pub(crate) fn tally(&self) -> Tally {
         self.prepared.tally
     }
 
@@ -131,7 +131,7 @@ impl<R: Exact> Blending<R> {
     }
 
     /// The depth of the visible band in world units.
-    pub(in crate::method) fn epsilon(&self) -> R {
+    pub(crate) fn epsilon(&self) -> R {
         self.prepared.epsilon
     }
 
@@ -144,7 +144,7 @@ impl<R: Exact> Blending<R> {
     ///
     /// Fragments for which `stays` (the pixel, counted row by row, and the depth) does not hold are
     /// dropped.
-    pub(in crate::method) fn images(
+    pub(crate) fn images(
         &self,
         tile: usize,
         rect: Rect,
@@ -185,7 +185,7 @@ impl<R: Exact> Blending<R> {
 }
 
 /// The shaded colour and the opacity of a surfel.
-pub(super) fn appearance<R: Real>(
+pub(crate) fn appearance<R: Real>(
     scene: &Scene,
     shader: &Shader<R>,
     splat: &Splat<R>,

@@ -5,7 +5,7 @@ use super::averaging::{GroupAverage, averages};
 use super::blending::{Blending, GroupLayers};
 use crate::composite::decide;
 use crate::error::Result;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::replay::{Decision, Place, Touch, touch};
 use crate::number::Exact;
 use std::fmt;
@@ -66,7 +66,7 @@ pub fn explain<R: Exact>(
 
 /// Replays both passes; fragments that are not strictly beyond a depth are dropped, if there is one.
 /// Gives the average of the groups, too.
-pub(in crate::method) fn replay<R: Exact>(
+pub(crate) fn replay<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     pixel: (u32, u32),

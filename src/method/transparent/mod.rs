@@ -61,15 +61,16 @@
 //! The definition is over any [`Exact`] number; `fast` gives the same bits for `f32`.
 //!
 //! [`Groups`]: crate::scene::Groups
+//!
+//! What a right implementation may leave of each stage: [`crate::verdict::transparent`].
 
-pub(super) mod averaging;
-pub(super) mod blending;
+pub(crate) mod averaging;
+pub(crate) mod blending;
 pub mod explain;
 pub(super) mod fast;
 pub(super) mod picture;
-pub(super) mod planes;
+pub(crate) mod planes;
 mod settings;
-pub mod verify;
 
 pub use settings::{BinEdges, Holes, Settings};
 
@@ -80,11 +81,8 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
-use crate::number::ball::Profile;
 use crate::scene::{Camera, Scene};
 use crate::splat::SplatSettings;
-use crate::verify::client::Client;
-use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 /// K = 4, which \[ZP06, section 6.2\] finds sufficient; groups are extended by adding surfels.
@@ -128,19 +126,6 @@ impl Algorithm for Settings {
         given: &Given<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
-    }
-
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
-        verify::verify::<P>(job, self, client, budget)
-    }
-
-    fn checks<P: Profile>(
-        &self,
-        job: &Job<'_>,
-        client: &Client,
-        pixel: (u32, u32),
-    ) -> Result<Vec<Check>> {
-        verify::checks::<P>(job, self, client, pixel)
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {

@@ -6,7 +6,7 @@ use super::{Holes, Settings, planes};
 use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::{NamedPlane, Rect};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::given::Given;
 use crate::method::picture::{Clock, Picture};
 use crate::method::stage::unknown;
@@ -43,24 +43,24 @@ fn picture<R: Exact>(job: &Job<'_>, averages: &Tiled<GroupAverage<R>>) -> Vec<Na
 }
 
 /// The geometry and the compositing pass.
-pub(in crate::method) struct BlendPasses<'a, R: Exact> {
-    pub(in crate::method) blending: &'a Blending<R>,
-    pub(in crate::method) holes: Holes,
+pub(crate) struct BlendPasses<'a, R: Exact> {
+    pub(crate) blending: &'a Blending<R>,
+    pub(crate) holes: Holes,
     /// Whether the images of the groups are kept.
-    pub(in crate::method) keep: bool,
+    pub(crate) keep: bool,
 }
 
 /// What both passes leave.
-pub(in crate::method) struct Blended<R> {
+pub(crate) struct Blended<R> {
     /// The image of each group, if it is kept.
-    pub(in crate::method) images: Vec<Tiled<GroupLayers<R>>>,
-    pub(in crate::method) averages: Tiled<GroupAverage<R>>,
+    pub(crate) images: Vec<Tiled<GroupLayers<R>>>,
+    pub(crate) averages: Tiled<GroupAverage<R>>,
 }
 
 impl<R: Exact> BlendPasses<'_, R> {
     /// Runs both over each tile; fragments for which `stays` (the tile, the pixel in it, and the
     /// depth) does not hold are dropped.
-    pub(in crate::method) fn run(
+    pub(crate) fn run(
         &self,
         job: &Job<'_>,
         stays: impl Fn(usize, usize, R) -> bool + Sync + Send,
@@ -84,16 +84,14 @@ impl<R: Exact> BlendPasses<'_, R> {
 }
 
 /// The planes of the stage of blending, run alone.
-pub(in crate::method) fn blended_alone<R: Exact>(
-    images: &[Tiled<GroupLayers<R>>],
-) -> Vec<NamedPlane<R>> {
+pub(crate) fn blended_alone<R: Exact>(images: &[Tiled<GroupLayers<R>>]) -> Vec<NamedPlane<R>> {
     let mut left = planes::images(images);
     left.extend(planes::images_alone(images));
     left
 }
 
 /// The compositing pass over somebody's images.
-pub(in crate::method) fn average<R: Exact>(
+pub(crate) fn average<R: Exact>(
     job: &Job<'_>,
     holes: Holes,
     images: &[Tiled<GroupLayers<R>>],

@@ -5,7 +5,7 @@ use super::blending::GroupLayers;
 use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::{NamedPlane, Plane};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::given::Given;
 use crate::method::picture::before_environment;
 use crate::method::resolved::{self, ALPHA, SHADED};
@@ -13,56 +13,56 @@ use crate::method::stage::{Holds, PlaneRow, Stage, When};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
-pub(super) const GROUP_COLOR: PlaneRow = PlaneRow::new(
+pub(crate) const GROUP_COLOR: PlaneRow = PlaneRow::new(
     "blended.group##",
     Holds::Color,
     "linear RGB",
     "the layers of the group, blended over black; black where there is none",
     When::Stages,
 );
-pub(super) const GROUP_ALPHA: PlaneRow = PlaneRow::new(
+pub(crate) const GROUP_ALPHA: PlaneRow = PlaneRow::new(
     "blended.group##.A",
     Holds::Scalar,
     "",
     "opacity of the layers of the group together, in [0, 1]; 0 where there is none",
     When::Stages,
 );
-pub(super) const GROUP_OPACITY: PlaneRow = PlaneRow::new(
+pub(crate) const GROUP_OPACITY: PlaneRow = PlaneRow::new(
     "blended.group##.opacities",
     Holds::Scalar,
     "",
     "sum of the opacities of the layers in front of the nearest opaque one; 0 where there is none",
     When::Stages,
 );
-pub(super) const GROUP_BIN: PlaneRow = PlaneRow::new(
+pub(crate) const GROUP_BIN: PlaneRow = PlaneRow::new(
     "blended.group##.bin",
     Holds::Scalar,
     "bins",
     "low-precision depth of the nearest layer; +inf where there is none",
     When::Stages,
 );
-pub(super) const GROUP_COUNT: PlaneRow = PlaneRow::new(
+pub(crate) const GROUP_COUNT: PlaneRow = PlaneRow::new(
     "blended.group##.count",
     Holds::Count,
     "layers",
     "how many layers were blended, each of one fragment, up to 255",
     When::Stages,
 );
-pub(super) const GROUP_ID: PlaneRow = PlaneRow::new(
+pub(crate) const GROUP_ID: PlaneRow = PlaneRow::new(
     "blended.group##.id",
     Holds::Index,
     "surfel",
     "surfel of the layer that was blended last, the nearest; 0xFFFF_FFFF where there is none",
     When::Stages,
 );
-pub(super) const GROUP_HIDDEN: PlaneRow = PlaneRow::new(
+pub(crate) const GROUP_HIDDEN: PlaneRow = PlaneRow::new(
     "blended.group##.hidden",
     Holds::Scalar,
     "",
     "1 if an opaque layer hides what is behind, else 0",
     When::Alone,
 );
-pub(super) const GROUP_DEPTH: PlaneRow = PlaneRow::new(
+pub(crate) const GROUP_DEPTH: PlaneRow = PlaneRow::new(
     "blended.group##.Z",
     Holds::Scalar,
     "world units",
@@ -113,7 +113,7 @@ const ID: PlaneRow = PlaneRow {
     meaning: "surfel of that layer, of equal depths the lower; 0xFFFF_FFFF where there is none",
     ..resolved::ID
 };
-pub(super) const LAYERS: PlaneRow = PlaneRow::new(
+pub(crate) const LAYERS: PlaneRow = PlaneRow::new(
     "layers",
     Holds::Scalar,
     "layers",
@@ -122,7 +122,7 @@ pub(super) const LAYERS: PlaneRow = PlaneRow::new(
 );
 
 /// The stage of blending, after some others.
-pub(in crate::method) const fn blending(reads: &'static [&'static str]) -> Stage {
+pub(crate) const fn blending(reads: &'static [&'static str]) -> Stage {
     let leaves = &[
         GROUP_COLOR,
         GROUP_ALPHA,
@@ -137,7 +137,7 @@ pub(in crate::method) const fn blending(reads: &'static [&'static str]) -> Stage
 }
 
 /// What the average of the groups leaves, whatever is done with it.
-pub(in crate::method) const AVERAGES: [PlaneRow; 5] =
+pub(crate) const AVERAGES: [PlaneRow; 5] =
     [AVERAGE_COLOR, AVERAGE_ALPHA, AVERAGE_OPACITY, AVERAGE_HIDDEN, AVERAGE_LAYERS];
 
 /// The stages.
@@ -163,7 +163,7 @@ pub(super) const STAGES: &[Stage] = &[
 ];
 
 /// The image of each group, as pictures keep it.
-pub(in crate::method) fn images<R: Exact>(images: &[Tiled<GroupLayers<R>>]) -> Vec<NamedPlane<R>> {
+pub(crate) fn images<R: Exact>(images: &[Tiled<GroupLayers<R>>]) -> Vec<NamedPlane<R>> {
     let of = |(k, image): (usize, &Tiled<GroupLayers<R>>)| {
         [
             GROUP_COLOR.triple(k, image.plane(|pixel| pixel.blend.color)),
@@ -178,9 +178,7 @@ pub(in crate::method) fn images<R: Exact>(images: &[Tiled<GroupLayers<R>>]) -> V
 }
 
 /// What the average takes beside the planes that pictures keep.
-pub(in crate::method) fn images_alone<R: Exact>(
-    images: &[Tiled<GroupLayers<R>>],
-) -> Vec<NamedPlane<R>> {
+pub(crate) fn images_alone<R: Exact>(images: &[Tiled<GroupLayers<R>>]) -> Vec<NamedPlane<R>> {
     let of = |(k, image): (usize, &Tiled<GroupLayers<R>>)| {
         [
             GROUP_HIDDEN.scalar(k, image.plane(|pixel| pixel.hidden)),
@@ -191,7 +189,7 @@ pub(in crate::method) fn images_alone<R: Exact>(
 }
 
 /// Somebody's image of each group of the scene.
-pub(in crate::method) fn given_images<R: Exact>(
+pub(crate) fn given_images<R: Exact>(
     job: &Job<'_>,
     given: &Given<'_, R>,
 ) -> Result<Vec<Tiled<GroupLayers<R>>>> {
@@ -215,9 +213,7 @@ pub(in crate::method) fn given_images<R: Exact>(
 }
 
 /// The averages of the groups.
-pub(in crate::method) fn averages<R: Exact>(
-    averages: &Tiled<GroupAverage<R>>,
-) -> [NamedPlane<R>; 5] {
+pub(crate) fn averages<R: Exact>(averages: &Tiled<GroupAverage<R>>) -> [NamedPlane<R>; 5] {
     [
         AVERAGE_COLOR.triple(0, averages.plane(|pixel| pixel.blend.color)),
         AVERAGE_ALPHA.scalar(0, averages.plane(|pixel| pixel.blend.alpha)),
@@ -228,9 +224,7 @@ pub(in crate::method) fn averages<R: Exact>(
 }
 
 /// Somebody's averages, without a nearest surfel.
-pub(in crate::method) fn given_averages<R: Exact>(
-    given: &Given<'_, R>,
-) -> Result<Tiled<GroupAverage<R>>> {
+pub(crate) fn given_averages<R: Exact>(given: &Given<'_, R>) -> Result<Tiled<GroupAverage<R>>> {
     let (color, alpha) = (given.triple(&AVERAGE_COLOR, 0)?, given.scalar(&AVERAGE_ALPHA, 0)?);
     let opacity = given.scalar(&AVERAGE_OPACITY, 0)?;
     let (hidden, layers) = (given.scalar(&AVERAGE_HIDDEN, 0)?, given.scalar(&AVERAGE_LAYERS, 0)?);
@@ -244,15 +238,12 @@ pub(in crate::method) fn given_averages<R: Exact>(
 }
 
 /// The colour and the opacity of the picture: what each pixel shows before the environment.
-pub(in crate::method) fn shown<R: Exact>(
-    job: &Job<'_>,
-    shown: &Tiled<Blend<R>>,
-) -> [NamedPlane<R>; 2] {
+pub(crate) fn shown<R: Exact>(job: &Job<'_>, shown: &Tiled<Blend<R>>) -> [NamedPlane<R>; 2] {
     before(job, shown.plane(|pixel| pixel.color), shown.plane(|pixel| pixel.alpha))
 }
 
 /// The same of planes.
-pub(in crate::method) fn before<R: Exact>(
+pub(crate) fn before<R: Exact>(
     job: &Job<'_>,
     color: Plane<[R; 3]>,
     alpha: Plane<R>,

@@ -2,7 +2,7 @@
 
 use crate::composite::bins::DepthBins;
 use crate::error::Result;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::single_pass::BinCount;
 use crate::number::Real;
 use crate::setting::{Field, Fields, Slot, Visit, Words};
@@ -89,7 +89,7 @@ impl Settings {
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] as [`BinCount::resolve`].
-    pub(super) fn bins<R: Real>(&self, job: &Job<'_>, groups: usize) -> Result<Vec<DepthBins<R>>> {
+    pub(crate) fn bins<R: Real>(&self, job: &Job<'_>, groups: usize) -> Result<Vec<DepthBins<R>>> {
         let surfels = &job.scene.surfels;
         let epsilon = self.splats.epsilon.resolve(surfels);
         let bins = DepthBins::new(&self.bins.resolve(surfels, job.camera, epsilon)?);

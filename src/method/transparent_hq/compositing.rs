@@ -3,7 +3,7 @@
 use super::Settings;
 use super::nearest::FrontLayer;
 use crate::composite::over::Blend;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::tiled::{Tiled, pixels};
 use crate::method::transparent::averaging::GroupAverage;
 use crate::number::{Exact, Real, Truth, Vector3};
@@ -29,7 +29,7 @@ pub(super) fn compositing<R: Exact>(
 }
 
 /// What is seen through the nearest layer.
-pub(super) struct Through<'a, R: Real> {
+pub(crate) struct Through<'a, R: Real> {
     scene: &'a Scene,
     settings: &'a Settings,
     view: View<R>,
@@ -40,7 +40,7 @@ pub(super) struct Through<'a, R: Real> {
 type Light<R> = fn(&Environment, Vector3<R>) -> [R; 3];
 
 impl<'a, R: Real> Through<'a, R> {
-    pub(super) fn new(job: &Job<'a>, settings: &'a Settings, light: Light<R>) -> Self {
+    pub(crate) fn new(job: &Job<'a>, settings: &'a Settings, light: Light<R>) -> Self {
         Self { scene: job.scene, settings, view: View::new(job.camera), light }
     }
 
@@ -50,7 +50,7 @@ impl<'a, R: Real> Through<'a, R> {
     }
 
     /// The colour and the opacity of a pixel at a column and row.
-    pub(super) fn pixel(
+    pub(crate) fn pixel(
         &self,
         (x, y): (u32, u32),
         near: &FrontLayer<R>,
@@ -95,12 +95,12 @@ impl<'a, R: Real> Through<'a, R> {
 
 /// l of \[ZP06, section 5.2.3\]: 1 + the sum of the other opacities over that of the nearest
 /// layer; 0 where that is 0.
-pub(super) fn count_by_opacity<R: Real>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
+pub(crate) fn count_by_opacity<R: Real>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
     let alpha = near.opacity;
     R::select(alpha.gt(R::ZERO), R::ONE + optics::layers(others.opacity, alpha), R::ZERO)
 }
 
 /// The count of layers: that of the others, and one where there is a nearest one.
-pub(super) fn count<R: Real>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
+pub(crate) fn count<R: Real>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
     R::select(near.depth.is_finite(), others.layers + R::ONE, others.layers)
 }

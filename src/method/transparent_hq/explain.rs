@@ -7,7 +7,7 @@ use super::picture::check;
 use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::error::Result;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::replay::Place;
 use crate::method::single_pass::compositing::composites;
 use crate::method::single_pass::explain::{GroupsReplay, explain as explain_nearest};

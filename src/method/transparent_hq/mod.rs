@@ -49,15 +49,16 @@
 //! round otherwise, anywhere with an epsilon of 0.
 //!
 //! The definition is over any [`Exact`] number; `fast` gives the same bits for `f32`.
+//!
+//! What a right implementation may leave of each stage: [`crate::verdict::transparent_hq`].
 
-mod compositing;
+pub(crate) mod compositing;
 pub mod explain;
 mod fast;
-mod nearest;
+pub(crate) mod nearest;
 mod picture;
-mod planes;
+pub(crate) mod planes;
 mod settings;
-pub mod verify;
 
 pub use settings::Settings;
 
@@ -68,11 +69,8 @@ use crate::method::algorithm::{Algorithm, Job};
 use crate::method::given::Given;
 use crate::method::{Picture, Stage, transparent};
 use crate::number::Exact;
-use crate::number::ball::Profile;
 use crate::scene::{Camera, Scene};
 use crate::splat::SplatSettings;
-use crate::verify::client::Client;
-use crate::verify::verdict::{Check, Verdict};
 use std::fmt::Display;
 
 impl Algorithm for Settings {
@@ -109,19 +107,6 @@ impl Algorithm for Settings {
         given: &Given<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
-    }
-
-    fn verify<P: Profile>(&self, job: &Job<'_>, client: &Client, budget: f64) -> Result<Verdict> {
-        verify::verify::<P>(job, self, client, budget)
-    }
-
-    fn checks<P: Profile>(
-        &self,
-        job: &Job<'_>,
-        client: &Client,
-        pixel: (u32, u32),
-    ) -> Result<Vec<Check>> {
-        verify::checks::<P>(job, self, client, pixel)
     }
 
     fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {

@@ -3,9 +3,9 @@
 use super::Settings;
 use crate::composite::decide;
 use crate::frame::stencil::{Function, Operation, Outcome, Stencil};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::resolved::Resolved;
-use crate::method::single_pass;
+pub(crate) use crate::method::single_pass;
 use crate::method::single_pass::compositing::Composite;
 use crate::method::tiled::{Tiled, pixels};
 use crate::number::{Exact, Vector3};
@@ -17,30 +17,30 @@ pub(super) const MASK: Stencil =
     Stencil { reference: 1, pass: Operation::Replace, ..Stencil::DISABLED };
 
 /// Fragments of the other layers pass where the nearest layer is.
-pub(super) const BEHIND: Stencil =
+pub(crate) const BEHIND: Stencil =
     Stencil { function: Function::Equal, pass: Operation::Keep, ..MASK };
 
 /// The nearest layer at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct FrontLayer<R> {
+pub(crate) struct FrontLayer<R> {
     /// Depth Z of its nearest fragment; +inf where there is none.
-    pub(super) depth: R,
+    pub(crate) depth: R,
     /// The surfel of that fragment.
-    pub(super) id: u32,
+    pub(crate) id: u32,
     /// Sum of the weights.
-    pub(super) weight: R,
+    pub(crate) weight: R,
     /// Direction of the average normal, in world space.
-    pub(super) normal: [R; 3],
+    pub(crate) normal: [R; 3],
     /// `C_F`: Phong-shaded.
-    pub(super) color: [R; 3],
+    pub(crate) color: [R; 3],
     /// alpha: the average opacity, in [0, 1].
-    pub(super) opacity: R,
+    pub(crate) opacity: R,
     /// The stencil, see [`MASK`].
-    pub(super) mask: u8,
+    pub(crate) mask: u8,
 }
 
 /// How the nearest layer is drawn.
-pub(super) fn single_pass(settings: &Settings) -> single_pass::Settings {
+pub(crate) fn single_pass(settings: &Settings) -> single_pass::Settings {
     single_pass::Settings { splats: settings.layers.splats, depth: settings.nearest }
 }
 

@@ -5,7 +5,7 @@ use super::nearest::{FrontLayer, nearest, single_pass};
 use super::{Settings, planes};
 use crate::error::{Error, Result};
 use crate::frame::NamedPlane;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::given::Given;
 use crate::method::picture::{Clock, Picture};
 use crate::method::single_pass::geometry::Geometry;

@@ -6,7 +6,7 @@ use super::nearest::FrontLayer;
 use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::{NO_ID, NamedPlane, Plane};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::given::Given;
 use crate::method::resolved::{self, ALPHA, DEPTH, ID, SHADED, WEIGHT};
 use crate::method::single_pass::geometry::ImagePixel;
@@ -17,7 +17,7 @@ use crate::method::transparent::averaging::GroupAverage;
 use crate::method::transparent::planes::{AVERAGES, blending, shown};
 use crate::number::Exact;
 
-pub(super) const IMAGES: ImageRows = ImageRows::new([
+pub(crate) const IMAGES: ImageRows = ImageRows::new([
     "nearest.group##.Z",
     "nearest.group##.id",
     "nearest.group##.weight",
@@ -26,7 +26,7 @@ pub(super) const IMAGES: ImageRows = ImageRows::new([
     "nearest.group##.voronoi",
 ]);
 
-pub(super) const NEAREST_COLOR: PlaneRow = PlaneRow::new(
+pub(crate) const NEAREST_COLOR: PlaneRow = PlaneRow::new(
     "nearest",
     Holds::Color,
     "linear RGB",
@@ -34,14 +34,14 @@ pub(super) const NEAREST_COLOR: PlaneRow = PlaneRow::new(
      none",
     When::Stages,
 );
-pub(super) const NEAREST_ALPHA: PlaneRow = PlaneRow::new(
+pub(crate) const NEAREST_ALPHA: PlaneRow = PlaneRow::new(
     "nearest.A",
     Holds::Scalar,
     "",
     "average opacity alpha of the nearest layer in [0, 1]; 0 where there is none",
     When::Stages,
 );
-pub(super) const NEAREST_MASK: PlaneRow = PlaneRow::new(
+pub(crate) const NEAREST_MASK: PlaneRow = PlaneRow::new(
     "nearest.mask",
     Holds::Count,
     "",
@@ -49,7 +49,7 @@ pub(super) const NEAREST_MASK: PlaneRow = PlaneRow::new(
     When::Stages,
 );
 const NORMAL: PlaneRow = PlaneRow { when: When::Always, ..resolved::NORMAL };
-pub(super) const LAYERS_BY_OPACITY: PlaneRow = PlaneRow::new(
+pub(crate) const LAYERS_BY_OPACITY: PlaneRow = PlaneRow::new(
     "l",
     Holds::Scalar,
     "layers",
@@ -57,7 +57,7 @@ pub(super) const LAYERS_BY_OPACITY: PlaneRow = PlaneRow::new(
      where the nearest layer is not, or has an opacity of 0",
     When::Stages,
 );
-pub(super) const LAYERS: PlaneRow = PlaneRow::new(
+pub(crate) const LAYERS: PlaneRow = PlaneRow::new(
     "layers",
     Holds::Scalar,
     "layers",

@@ -1,6 +1,7 @@
 //! What an entry draws, and what it is measured against.
 
 use super::Found;
+use crate::compare::metrics::Metric;
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Frame, Plane};
 use crate::index::grouping::Grouping;
@@ -8,7 +9,6 @@ use crate::method::{Method, Session};
 use crate::scene::{Camera, Cloud, Lens, Pose, Scene, Similarity, Surfels};
 use crate::source::Shape;
 use crate::study::truth::{Surface, of_surfaces};
-use crate::verify::metrics::Metric;
 use glam::{DVec3, Vec3};
 use std::time::{Duration, Instant};
 

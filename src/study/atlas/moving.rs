@@ -2,6 +2,7 @@
 
 use super::case::{SIZE, both, change, checked, quiet};
 use super::{Failure, Found};
+use crate::compare::metrics::{Metric, rmse};
 use crate::error::Result;
 use crate::frame::{Exec, Plane};
 use crate::index::mipmap;
@@ -10,7 +11,6 @@ use crate::scene::objects::{Geometry, Motion, Object, Objects};
 use crate::scene::transform::rotation;
 use crate::scene::{Camera, Lens, Pose, Primitives, Scene, Similarity, Surfels};
 use crate::source::{Shape, flatten};
-use crate::verify::metrics::{Metric, rmse};
 use glam::{DVec3, Vec3};
 use std::time::{Duration, Instant};
 

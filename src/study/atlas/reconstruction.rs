@@ -2,6 +2,7 @@
 
 use super::case::{Case, SIZE, change, exact};
 use super::{Failure, Found};
+use crate::compare::metrics::{Region, regions, rmse};
 use crate::error::Result;
 use crate::frame::{Exec, Frame, Samples};
 use crate::method::template::LevelRule;
@@ -9,7 +10,6 @@ use crate::method::{Method, ewa, pyramid, template};
 use crate::number::elementary::{cos, sin};
 use crate::scene::{Camera, Lens, Polylines, Pose, Primitives, Scene, Surfels, Vertices};
 use crate::source::Shape;
-use crate::verify::metrics::{Region, regions, rmse};
 use glam::{DVec3, Mat4, Vec3};
 
 pub(super) const FAILURES: [Failure; 5] = [

@@ -2,12 +2,12 @@
 
 use super::subject::{Subject, colors, groups};
 use super::{Claim, Measured};
+use crate::compare::metrics::visible;
 use crate::error::Result;
 use crate::index::grouping::{Extension, Grouping};
 use crate::method::single_pass::{self, BinCount, DepthTest};
 use crate::method::transparent::{BinEdges, Holes};
 use crate::method::{Method, ewa, peeling, transparent, transparent_hq};
-use crate::verify::metrics::visible;
 
 pub(super) const CLAIMS: [Claim; 13] = [
     Claim {

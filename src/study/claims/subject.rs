@@ -1,6 +1,7 @@
 //! A case as a scene: its picture by a method, its true picture, its time.
 
 use super::{Case, Drawn};
+use crate::compare::metrics::{Flicker, Metric};
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Frame, Plane};
 use crate::index::grouping::{Extended, Extension, Grouping, Rules};
@@ -11,7 +12,6 @@ use crate::scene::{Camera, Cloud, Groups, Scene, Similarity, Surfels};
 use crate::study::run::cameras::shifted;
 use crate::study::run::truths::Known;
 use crate::study::truth::{Surface, of_surfaces};
-use crate::verify::metrics::{Flicker, Metric};
 use std::cell::{OnceCell, RefCell};
 use std::rc::Rc;
 use std::time::Instant;
@@ -182,7 +182,7 @@ impl<'e> Subject<'e> {
     }
 
     /// How much a session's pictures change from one of eight to another, the scene moved by eighths of a
-    /// pixel: the [flicker](mod@crate::verify::metrics::flicker) beside black.
+    /// pixel: the [flicker](mod@crate::compare::metrics::flicker) beside black.
     pub(super) fn flicker(&self, mut session: Session<'_>) -> Result<f64> {
         let cameras = shifted(&self.camera);
         let [width, height] = self.camera.size();

@@ -2,11 +2,11 @@ mod behind;
 mod edges;
 
 use super::*;
+use crate::compare::metrics::{Region, regions, rmse};
 use crate::frame::Exec;
 use crate::number::random::unit;
 use crate::scene::indexed::Vertices;
 use crate::scene::{Camera, Lens, Light, Phong, Pose, Scene, Surfels};
-use crate::verify::metrics::{Region, regions, rmse};
 use glam::{DMat3, DVec3};
 
 fn camera(size: [u32; 2], distance: f64, lens: Lens) -> Camera {

@@ -9,8 +9,8 @@ use crate::client::Habit;
 use crate::client_is_right::differences;
 use splatref::frame::{Exec, Frame};
 use splatref::method::{Method, Session};
-use splatref::verify::client::{Client, Rounding, Storage, Ties};
-use splatref::verify::verdict::Verdict;
+use splatref::verdict::Verdict;
+use splatref::verdict::client::{Client, Rounding, Storage, Ties};
 
 /// A case that is drawn and judged several times.
 struct Stand<'a> {

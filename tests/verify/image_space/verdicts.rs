@@ -8,8 +8,8 @@ use crate::client::Habit;
 use crate::client_is_right::differences;
 use splatref::frame::{Exec, Frame};
 use splatref::method::Session;
-use splatref::verify::client::{Client, Rounding, Storage, Ties};
-use splatref::verify::verdict::Verdict;
+use splatref::verdict::Verdict;
+use splatref::verdict::client::{Client, Rounding, Storage, Ties};
 
 /// What is said of a client's picture of a case.
 fn judge(case: &Case, how: How, rounding: Rounding) -> Verdict {

@@ -9,7 +9,7 @@ mod refused;
 use super::*;
 use crate::frame::Samples;
 use crate::method::Method;
-use crate::verify::client::{Rounding, Storage, Ties};
+use crate::verdict::client::{Rounding, Storage, Ties};
 use std::fs;
 use std::path::PathBuf;
 use tempfile::TempDir;

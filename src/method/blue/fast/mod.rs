@@ -8,13 +8,13 @@
 
 mod place;
 #[cfg(test)]
-pub(super) mod tests;
+pub(crate) mod tests;
 mod tile;
 
 use super::Settings;
 use super::squares::{SquareProjector, Squares};
 use crate::frame::Framebuffer;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::splat::{Tally, View};
 use tile::TileOfDiscs;
 

@@ -77,7 +77,7 @@ fn so_have_pictures_of_what_is_huge_tiny_and_near() {
 }
 
 /// A triangle through the surfels, with colours or without.
-pub(in crate::method::blue) fn triangle(color: bool) -> Primitives {
+pub(crate) fn triangle(color: bool) -> Primitives {
     let vertices = Vertices {
         position: vec![
             Vec3::new(-1.0, -0.8, 0.3),

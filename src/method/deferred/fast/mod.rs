@@ -16,7 +16,7 @@ use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::{Exec, Framebuffer, NO_ID, Wanted};
 use crate::index::seen::Seen;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fast::tile::{Record, SIDE, Tile};
 use crate::method::fast::{draw, prepare};
 use crate::method::picture::{Clock, Laps};

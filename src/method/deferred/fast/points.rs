@@ -12,7 +12,7 @@ use super::super::part::{Range, Whole};
 use super::super::queries::{Limits, Queries};
 use super::super::visibility::NONE;
 use crate::composite::decide;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::projection::surfels::{PlacedPoint, PointProjector};
 use crate::number::lanes::{LANES, Lanes, vectorized};
 use crate::number::{Real, Vector3};

@@ -9,7 +9,7 @@ use multiversion::target::target_cfg_f;
 
 impl Tile {
     /// Visibility splatting.
-    pub(in crate::method) fn visibility(&mut self, shared: &Shared<f32>) {
+    pub(crate) fn visibility(&mut self, shared: &Shared<f32>) {
         if shared.ray_cast {
             visibility::<true, false>(self, shared);
         } else {
@@ -19,7 +19,7 @@ impl Tile {
 
     /// Visibility splatting over what another pass has left: of equally near fragments the one of the
     /// lower surfel stays.
-    pub(in crate::method) fn visibility_over(&mut self, shared: &Shared<f32>) {
+    pub(crate) fn visibility_over(&mut self, shared: &Shared<f32>) {
         if shared.ray_cast {
             visibility::<true, true>(self, shared);
         } else {
@@ -28,7 +28,7 @@ impl Tile {
     }
 
     /// Attribute splatting.
-    pub(in crate::method) fn attributes(&mut self, shared: &Shared<f32>) {
+    pub(crate) fn attributes(&mut self, shared: &Shared<f32>) {
         match (shared.ray_cast, self.normal, self.color) {
             (false, false, false) => attributes::<false, false, false>(self, shared),
             (false, false, true) => attributes::<false, false, true>(self, shared),

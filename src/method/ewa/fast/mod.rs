@@ -4,7 +4,7 @@ mod kernels;
 
 use super::Settings;
 use crate::frame::Framebuffer;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fast::{draw, prepare};
 use crate::method::picture::{Clock, Laps};
 use crate::splat::Tally;

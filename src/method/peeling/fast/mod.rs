@@ -10,7 +10,7 @@ mod layers;
 
 use super::{Settings, planes};
 use crate::frame::{Pool, Rect};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fast::layered::{LayeredBlock, LayeredPlanes};
 use crate::method::fast::lists::BlockLists;
 use crate::method::fast::prepare;

@@ -14,6 +14,6 @@ mod points;
 #[cfg(test)]
 mod tests;
 
-pub(in crate::method) use layout::{PAD, RowLayout};
-pub(in crate::method) use nearest::NearestPoints;
-pub(in crate::method) use points::Points;
+pub(crate) use layout::{PAD, RowLayout};
+pub(crate) use nearest::NearestPoints;
+pub(crate) use points::Points;

@@ -18,7 +18,7 @@ use glam::Vec3;
 const NONE: u64 = u64::MAX;
 
 /// The nearest points of a row of pixels.
-pub(in crate::method) struct NearestPoints<'a> {
+pub(crate) struct NearestPoints<'a> {
     points: &'a Points,
     surfels: &'a Surfels,
     lens: &'a PointProjector<f32>,
@@ -30,7 +30,7 @@ pub(in crate::method) struct NearestPoints<'a> {
 
 impl Points {
     /// Calls `draw` for every row of pixels with what the row is drawn into.
-    pub(in crate::method) fn each_row<T: Send>(
+    pub(crate) fn each_row<T: Send>(
         &self,
         (surfels, lens): (&Surfels, &PointProjector<f32>),
         rows: impl Iterator<Item = T>,
@@ -55,19 +55,19 @@ impl Points {
 
 /// What the points of [`LANES`] pixels in a row carry.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::method) struct SampleLanes {
+pub(crate) struct SampleLanes {
     /// +inf where there is none; the other numbers mean nothing there.
-    pub(in crate::method) depth: Lanes,
-    pub(in crate::method) radius: Lanes,
-    pub(in crate::method) extent: Lanes,
-    pub(in crate::method) normal: [Lanes; 3],
+    pub(crate) depth: Lanes,
+    pub(crate) radius: Lanes,
+    pub(crate) extent: Lanes,
+    pub(crate) normal: [Lanes; 3],
     slot: [usize; LANES],
 }
 
 impl NearestPoints<'_> {
     /// The samples of the pixels from column x on; none if there is no point.
     #[inline(always)]
-    pub(in crate::method) fn take(&self, x: usize) -> Option<SampleLanes> {
+    pub(crate) fn take(&self, x: usize) -> Option<SampleLanes> {
         // -- The keys of the points
         let count = LANES.min(self.kept.len() - x);
         let mut kept = [NONE; LANES];
@@ -94,7 +94,7 @@ impl NearestPoints<'_> {
 
     /// The surfels of samples; [`NO_ID`] where there is none.
     #[inline(always)]
-    pub(in crate::method) fn ids(&self, of: &SampleLanes) -> [u32; LANES] {
+    pub(crate) fn ids(&self, of: &SampleLanes) -> [u32; LANES] {
         each(|i| {
             // A slot and its surfel are of the same chunk.
             let (chunk, slot) = (of.slot[i] - of.slot[i] % CHUNK, of.slot[i]);
@@ -105,7 +105,7 @@ impl NearestPoints<'_> {
 
     /// Where the centres of these surfels are in the picture; any place where there is none.
     #[inline(always)]
-    pub(in crate::method) fn centers(&self, id: &[u32; LANES]) -> [Lanes; 2] {
+    pub(crate) fn centers(&self, id: &[u32; LANES]) -> [Lanes; 2] {
         let p = vectors(self.surfels.position(), id);
         let mut center = [[0.0; LANES]; 2];
         for i in 0..LANES {
@@ -117,7 +117,7 @@ impl NearestPoints<'_> {
 
     /// The colours of these surfels, if surfels have colours; any where there is none.
     #[inline(always)]
-    pub(in crate::method) fn colors(&self, id: &[u32; LANES]) -> Option<[Lanes; 3]> {
+    pub(crate) fn colors(&self, id: &[u32; LANES]) -> Option<[Lanes; 3]> {
         let colors = self.surfels.color()?;
         Some(vectors(colors, id))
     }

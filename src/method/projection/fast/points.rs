@@ -66,7 +66,7 @@ pub(super) fn depth(order: u32) -> f32 {
 /// first slots from that of its first surfel on, by bands, and in each band in the order of the
 /// surfels. A point carries the normal, towards the viewer and in view space, and the radius.
 #[derive(Debug, Default)]
-pub(in crate::method) struct Points {
+pub(crate) struct Points {
     pub(super) keys: Vec<PointKey>,
     pub(super) carried: Vec<[f32; 4]>,
     /// Of each chunk: where each band starts, from its first slot on, and where the last ends.
@@ -96,7 +96,7 @@ impl Bands {
 
 impl Points {
     /// Finds and sorts the points of a scene's surfels.
-    pub(in crate::method) fn find(
+    pub(crate) fn find(
         &mut self,
         surfels: &Surfels,
         lens: &PointProjector<f32>,

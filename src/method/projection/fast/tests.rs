@@ -5,7 +5,7 @@ use super::*;
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, NO_ID};
 use crate::index::Index;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::projection::project;
 use crate::method::projection::surfels::PointProjector;
 use crate::method::tests::{cameras, scene, surfels};

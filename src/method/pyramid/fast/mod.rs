@@ -20,7 +20,7 @@ use super::{Cell, Settings};
 use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, pyramid};
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::picture::{Clock, Laps};
 use crate::method::projection::fast::{NearestPoints, Points, RowLayout};
 use crate::method::projection::surfels::PointProjector;

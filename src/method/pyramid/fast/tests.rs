@@ -5,7 +5,7 @@ use super::super::{Occlusion, Weights};
 use super::*;
 use crate::frame::Pool;
 use crate::index::Index;
-use crate::method::algorithm::Algorithm;
+use crate::method::Algorithm;
 use crate::method::tests::{cameras, scene, surfels};
 use crate::scene::{Light, Primitives, Scene};
 

@@ -9,7 +9,7 @@ use crate::splat::Shared;
 
 impl GroupImages {
     /// The nearest fragment of each pixel.
-    pub(in crate::method) fn nearest(&self, tile: &mut Tile) {
+    pub(crate) fn nearest(&self, tile: &mut Tile) {
         for (block, nearest) in tile.blocks.iter_mut().zip(&self.nearest) {
             block.nearest = nearest.nearness;
             for (id, &splat) in block.id.iter_mut().zip(&nearest.splat) {
@@ -19,7 +19,7 @@ impl GroupImages {
     }
 
     /// The sums over what passes the epsilon-z test; fragments that do not pass lose their weight.
-    pub(in crate::method) fn composite(&mut self, tile: &mut Tile, shared: &Shared<f32>) {
+    pub(crate) fn composite(&mut self, tile: &mut Tile, shared: &Shared<f32>) {
         composite(self, tile, shared);
     }
 }

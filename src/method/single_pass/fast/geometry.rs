@@ -25,7 +25,7 @@ struct KeptFragments {
 impl GroupImages {
     /// Draws every splat into the image of its group, with the plain depth test if there are no
     /// bins.
-    pub(in crate::method) fn draw(
+    pub(crate) fn draw(
         &mut self,
         tile: &Tile,
         shared: &Shared<f32>,

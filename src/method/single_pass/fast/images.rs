@@ -30,7 +30,7 @@ pub(super) struct NearestFragments {
 }
 
 /// The images of all groups in one tile.
-pub(in crate::method) struct GroupImages {
+pub(crate) struct GroupImages {
     /// The splats of the tile, by group and then ascending.
     pub(super) order: Vec<u32>,
     /// Each group that has splats: where it ends in `order`.
@@ -49,14 +49,14 @@ pub(in crate::method) struct GroupImages {
     /// Of each block.
     pub(super) nearest: Vec<NearestFragments>,
     /// Of each block, if they are wanted, the sums of weighted opacities.
-    pub(in crate::method) opacities: Vec<Lanes>,
+    pub(crate) opacities: Vec<Lanes>,
 }
 
 impl GroupImages {
     /// Sorts the splats of a tile by group; nothing is touched yet. Of each splat the group is given,
     /// with the count of all groups, and the opacity, if opacities are wanted; `empty` is the nearness
     /// of an empty pixel.
-    pub(in crate::method) fn new(
+    pub(crate) fn new(
         tile: &Tile,
         (groups, count): (&[u8], usize),
         empty: f32,

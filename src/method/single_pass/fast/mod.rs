@@ -12,12 +12,12 @@
 
 mod compositing;
 mod geometry;
-pub(in crate::method) mod images;
+pub(crate) mod images;
 
 use super::Settings;
 use crate::error::Result;
 use crate::frame::Framebuffer;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fast::groups::own;
 use crate::method::fast::{draw, prepare};
 use crate::method::picture::{Clock, Laps};

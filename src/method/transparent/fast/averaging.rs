@@ -8,27 +8,27 @@ use crate::number::lanes::{LANES, Lanes, each, mask, select, select_u32};
 /// The groups of the pixels of a block together: sums first, then averages.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(in crate::method) struct AverageBlock {
+pub(crate) struct AverageBlock {
     /// Over black.
-    pub(in crate::method) color: [Lanes; 3],
-    pub(in crate::method) alpha: Lanes,
+    pub(crate) color: [Lanes; 3],
+    pub(crate) alpha: Lanes,
     /// See [`LayersBlock::opacity`].
-    pub(in crate::method) opacity: Lanes,
+    pub(crate) opacity: Lanes,
     /// See [`LayersBlock::hidden`].
-    pub(in crate::method) hidden: Lanes,
+    pub(crate) hidden: Lanes,
     /// Count of layers.
-    pub(in crate::method) layers: Lanes,
+    pub(crate) layers: Lanes,
     /// Least depth of any group.
-    pub(in crate::method) depth: Lanes,
+    pub(crate) depth: Lanes,
     /// Its surfel; of equal depths the lower one.
-    pub(in crate::method) id: [u32; LANES],
+    pub(crate) id: [u32; LANES],
     /// How many groups have a fragment.
     groups: Lanes,
 }
 
 impl AverageBlock {
     /// No group.
-    pub(in crate::method) const EMPTY: Self = Self {
+    pub(crate) const EMPTY: Self = Self {
         color: [[0.0; LANES]; 3],
         alpha: [0.0; LANES],
         opacity: [0.0; LANES],

@@ -50,7 +50,7 @@ impl LayersBlock {
 
 /// The least nearness at each pixel of a block that belongs to the nearest layer or lies before it.
 #[repr(align(64))]
-pub(in crate::method) struct Nearest(pub(in crate::method) Lanes);
+pub(crate) struct Nearest(pub(crate) Lanes);
 
 impl Nearest {
     /// No nearest layer: every fragment is blended.

@@ -9,16 +9,16 @@ mod averaging;
 mod blending;
 mod projection;
 
-pub(in crate::method) use averaging::AverageBlock;
-pub(in crate::method) use blending::Nearest;
-pub(in crate::method) use projection::{Layer, LayerOfSurface};
+pub(crate) use averaging::AverageBlock;
+pub(crate) use blending::Nearest;
+pub(crate) use projection::{Layer, LayerOfSurface};
 
 use super::{Holes, Settings, planes};
 use crate::composite::bins::DepthBins;
 use crate::error::Result;
 use crate::frame::Pool;
 use crate::index::members::Set;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fast::layered::{LayeredBlock, LayeredPlanes};
 use crate::method::fast::lists::BlockLists;
 use crate::method::fast::tile::{BlockGrid, Record};
@@ -29,8 +29,8 @@ use projection::Blended;
 use std::time::Instant;
 
 /// The splats of all groups as records with `A`, projected, shaded and sorted into tiles.
-pub(in crate::method) struct FastBlending<A> {
-    pub(in crate::method) prepared: Prepared<f32, Record<A>>,
+pub(crate) struct FastBlending<A> {
+    pub(crate) prepared: Prepared<f32, Record<A>>,
     /// Of each group.
     bins: Vec<DepthBins<f32>>,
     holes: Holes,
@@ -71,7 +71,7 @@ impl<A: Blended> FastBlending<A> {
     ///
     /// With `BEHIND`, fragments that are not strictly beyond the nearest layer of a block are
     /// dropped, and the sums of opacities are there.
-    pub(in crate::method) fn averages<const BEHIND: bool>(
+    pub(crate) fn averages<const BEHIND: bool>(
         &self,
         splats: &[Record<A>],
         grid: &BlockGrid,

@@ -4,7 +4,7 @@ use super::FastBlending;
 use crate::error::Result;
 use crate::index::members::Set;
 use crate::index::order::Part;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fast::tile::{Record, Surface};
 use crate::method::fragment::facing;
 use crate::method::prepare::{Prepared, batch_size};
@@ -19,22 +19,20 @@ use glam::Vec3;
 
 /// What is blended where a splat is one of some groups.
 #[derive(Clone, Copy)]
-pub(in crate::method) struct Layer {
+pub(crate) struct Layer {
     /// Shaded at the centre.
     pub(super) color: [f32; 3],
-    pub(in crate::method) alpha: f32,
+    pub(crate) alpha: f32,
     /// The groups that draw it.
     pub(super) groups: Set,
     /// The one that is the surfel's own.
-    pub(in crate::method) own: u8,
+    pub(crate) own: u8,
     /// Whether the back of the surfel is seen.
     back: bool,
 }
 
 /// What a record has of a splat that is blended.
-pub(in crate::method) trait Blended:
-    AsRef<Layer> + AsMut<Layer> + Copy + Send + Sync
-{
+pub(crate) trait Blended: AsRef<Layer> + AsMut<Layer> + Copy + Send + Sync {
     /// The layer that it is, and what else is kept of the splat.
     fn new(layer: Layer, splat: &Splat<f32>, surfels: &Surfels) -> Self;
 }
@@ -60,15 +58,15 @@ impl Blended for Layer {
 
 /// A splat that is blended, and averaged in a nearest layer.
 #[derive(Clone, Copy)]
-pub(in crate::method) struct LayerOfSurface {
+pub(crate) struct LayerOfSurface {
     layer: Layer,
-    pub(in crate::method) surface: Surface,
+    pub(crate) surface: Surface,
 }
 
 impl LayerOfSurface {
     /// The splat in the nearest layer.
     #[inline(always)]
-    pub(in crate::method) fn surface(record: &Record<Self>) -> Record {
+    pub(crate) fn surface(record: &Record<Self>) -> Record {
         let Record { footprint, surfel, bounds, attributes } = *record;
         Record { footprint, surfel, bounds, attributes: attributes.surface }
     }
@@ -96,7 +94,7 @@ impl Blended for LayerOfSurface {
 impl<A: Blended> FastBlending<A> {
     /// Every surfel from back to front, once for all groups that draw it alike; `times` tells as how many
     /// a surfel that some groups draw is counted.
-    pub(in crate::method) fn project(
+    pub(crate) fn project(
         job: &Job<'_>,
         settings: &Settings,
         times: impl Fn(Set) -> u32 + Sync + Send,
@@ -145,7 +143,7 @@ impl<A: Blended> FastBlending<A> {
     }
 
     /// What became of the surfels.
-    pub(in crate::method) fn tally(&self) -> Tally {
+    pub(crate) fn tally(&self) -> Tally {
         self.prepared.tally
     }
 }

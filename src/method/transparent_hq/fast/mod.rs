@@ -10,7 +10,7 @@ use super::compositing::Through;
 use super::{Settings, picture, planes};
 use crate::error::Result;
 use crate::frame::Pool;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fast::layered::LayeredPlanes;
 use crate::method::fast::store::{clear_plane, store_plane};
 use crate::method::picture::{Clock, Picture};

@@ -4,7 +4,7 @@ use super::projection::Gathered;
 use crate::composite::bins::DepthBins;
 use crate::composite::sum;
 use crate::error::Result;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fast::tile::{PixelBlock, ROW, Tile};
 use crate::method::single_pass;
 use crate::method::single_pass::fast::images::GroupImages;

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::index::members::Set;
-use crate::method::algorithm::Job;
+use crate::method::Job;
 use crate::method::fast::groups::own;
 use crate::method::fast::prepare;
 use crate::method::fast::tile::{Record, Tile};

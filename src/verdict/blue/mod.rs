@@ -1,0 +1,283 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Surfels are placed in [`Ball`]s of a [`Profile`], and so are their fragments. A
+//! surfel *may lie* in a pixel if it is not certain that it is not drawn, that the pixel is not in its square,
+//! or that its fragment is discarded; it *lies* there if all of this certainly is otherwise. Triangles as in
+//! [`projection`](crate::verdict::projection). A fragment that stays is within the radius of its
+//! centre, and so is its depth: where the plane is nearly edge-on, that bounds it.
+//!
+//! **Discs.**
+//!
+//! 1. What the id names may lie in the pixel. An empty pixel has none.
+//! 2. Depth, offset, normal, weight and colour are those of a fragment of it, seen from either side where that
+//!    is undecided; in an empty pixel those of nothing.
+//! 3. Nothing else lies in the pixel whose depth certainly is less than Z; without Z, than that of the
+//!    fragment. Of an empty pixel Z is +inf.
+//! 4. No surfel comes before that of the id, as the client says of ties, which lies there at a depth that is
+//!    equal and exact in balls, or all of whose numbers are those of the id's surfel.
+//!
+//! Without ids the fragment is the one that errs least, of those that nothing certainly hides; the pixel may
+//! be empty where nothing certainly lies, and is where Z, else the weight, say so.
+//!
+//! **Shading** from the client's depth, normal, weight and colour; what it has not handed in is that of the
+//! fragment.
+//!
+//! An id tells how the client decided whether a fragment is inside that is in front of all others that may lie in the
+//! pixel: what these decisions say together is a [`crate::verdict::shift`] of the cut-off.
+//!
+//! A pixel is undecided if it is not certain what may lie there in front of, or as, what the client has. Which
+//! of two near ties is nearer does not count: the client's word is taken, and what follows from it is judged.
+
+mod fragments;
+mod planes;
+#[cfg(test)]
+mod tests;
+
+use crate::composite::decide;
+use crate::error::Result;
+use crate::frame::{NO_ID, Rect};
+use crate::method::Job;
+use crate::method::blue::Settings;
+use crate::method::projection::Has;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real, Truth};
+use crate::scene::Surfels;
+use crate::verdict::checks::{Report, Shading, Surface, least_wrong};
+use crate::verdict::client::{Client, Ties};
+use crate::verdict::marks::{self, Counts, Marks, PixelMarks, counted};
+use crate::verdict::shift::Told;
+use crate::verdict::{Check, Doubt, Fault, Verdict};
+use fragments::{Fragments, May};
+use planes::{BluePlanes, Says};
+
+/// Judges the planes of a client.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Verdict {
+    let handed = BluePlanes::new(client);
+    let judge = Judge::<P>::new(job, settings, &handed);
+    marks::verdict(job, handed.stages(), budget, |tile, marks| judge.judge(tile, marks))
+}
+
+/// Everything that is judged at one pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    let handed = BluePlanes::new(client);
+    let judge = Judge::<P>::new(job, settings, &handed);
+    let stages = handed.stages().map(|(stage, _)| stage);
+    marks::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
+}
+
+/// What all tiles share.
+struct Judge<'a, P: Profile> {
+    surfels: &'a Surfels,
+    handed: &'a BluePlanes<'a>,
+    fragments: Fragments<'a, P>,
+    shading: Shading<'a, P>,
+}
+
+/// What an id tells of a fragment whose cut-off alone is undecided: of one that is in front of all others that may lie
+/// there, so that it is seen if it is inside, and only then. An empty pixel tells that it is not.
+fn tell<P: Profile>(id: u32, all: &[May<P>], told: &mut Told) {
+    let in_front = |may: &May<P>| {
+        let mut others = all.iter().filter(|other| other.id != may.id);
+        others.all(|other| decide::before(may.depth, other.depth).certainly())
+    };
+    for may in all.iter().filter(|may| in_front(may)) {
+        if let Some(open) = &may.open {
+            told.take(open, id == may.id);
+        }
+    }
+}
+
+/// What a pixel shows.
+struct Shown<P: Profile> {
+    id: u32,
+    offset: Ball<P>,
+    surface: Surface<P>,
+    weight: Ball<P>,
+}
+
+impl<P: Profile> Shown<P> {
+    const EMPTY: Self = Self {
+        id: NO_ID,
+        offset: Ball::ZERO,
+        surface: Surface {
+            depth: Ball::INFINITY,
+            normal: [Ball::ZERO; 3],
+            tangent: None,
+            color: [Ball::ZERO; 3],
+        },
+        weight: Ball::ZERO,
+    };
+}
+
+impl<'a, P: Profile> Judge<'a, P> {
+    fn new(job: &Job<'a>, settings: &Settings, handed: &'a BluePlanes<'a>) -> Self {
+        Self {
+            surfels: &job.scene.surfels,
+            handed,
+            fragments: Fragments::new(job, settings.cull),
+            shading: Shading::new(job, Has::of(job.scene).color),
+        }
+    }
+
+    /// Marks what is wrong at the pixels of a rectangle in a tile.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
+        let mut counts = Counts::default();
+        let all = self.fragments.of_tile((tile, &rect), |at| self.handed.id(at));
+        for ((pixel, at), own) in counted(rect).zip(&all) {
+            let doubts = self.judge_pixel((pixel, at), own, marks);
+            counts.covered += u64::from(!own.is_empty());
+            counts.undecided += u64::from(doubts & Doubt::OF_SUMS != 0);
+            if self.handed.id.is_some() {
+                tell(self.handed.id(at), own, &mut counts.told);
+            }
+        }
+        counts
+    }
+
+    /// The same of one pixel; the doubts there.
+    fn judge_pixel(
+        &self,
+        (pixel, at): (usize, (u32, u32)),
+        all: &[May<P>],
+        marks: &mut [Marks; 2],
+    ) -> u8 {
+        let says = self.handed.says(at);
+        // Of all that lies that whose greatest depth is least.
+        let front = all.iter().filter(|may| may.lies).reduce(|front, may| {
+            let most = |may: &May<P>| may.depth.middle + may.depth.radius;
+            if most(may) < most(front) { may } else { front }
+        });
+        let shown = self.may_show(says, all, front);
+        let check = |shown: &Shown<P>, report: &mut Report<'_>| self.check(at, shown, report);
+        let best = least_wrong::<_, 2>(&shown, check);
+        if let Some(best) = best {
+            check(best, &mut |part, error, fault| marks[part].at(pixel).found(error, fault));
+        }
+        let mut discs = marks[0].at(pixel);
+        if best.is_none() {
+            discs.found(f64::INFINITY, || self.absent(says, at));
+        }
+        let depth = self.handed.depth.map(|plane| plane.ball(at));
+        let depth = depth.or(best.map(|best| best.surface.depth)).unwrap_or(Ball::INFINITY);
+        let id = match says {
+            Says::Id(id) => id,
+            _ => best.map_or(NO_ID, |best| best.id),
+        };
+        let before = |front: &&May<P>| {
+            says != Says::Nothing
+                && front.id != id
+                && decide::before(front.depth, depth).certainly()
+        };
+        if let Some(front) = front.filter(before) {
+            let (error, rim) = (front.depth.distance(depth), front.rim);
+            let (surfel, depth, found) = (front.id, front.depth.middle, depth.middle);
+            discs.found(error, || Fault::LeftOut { surfel, rim, depth, found });
+        }
+        if let Says::Id(id) = says {
+            self.judge_ties(id, all, &mut discs);
+        }
+        let doubts = doubts(id, depth, all);
+        discs.doubts(doubts);
+        doubts
+    }
+
+    /// All that a pixel may show.
+    fn may_show(&self, says: Says, all: &[May<P>], front: Option<&May<P>>) -> Vec<Shown<P>> {
+        let hidden = |may: &May<P>| {
+            front.is_some_and(|front| decide::before(front.depth, may.depth).certainly())
+        };
+        let takes = |may: &May<P>| match says {
+            Says::Empty => false,
+            Says::Id(id) => id == may.id,
+            Says::Some => self.handed.depth.is_some() || !hidden(may),
+            Says::Nothing => !hidden(may),
+        };
+        let mut shown: Vec<_> =
+            all.iter().filter(|may| takes(may)).flat_map(|may| self.shown(may)).collect();
+        if says == Says::Empty || (says == Says::Nothing && front.is_none()) {
+            shown.push(Shown::EMPTY);
+        }
+        shown
+    }
+
+    /// What a pixel shows of a fragment: one, or that of either side.
+    fn shown(&self, may: &May<P>) -> impl Iterator<Item = Shown<P>> {
+        self.fragments.surfaces(may).into_iter().flatten().map(|surface| Shown {
+            id: may.id,
+            offset: may.offset,
+            surface,
+            weight: Ball::ONE,
+        })
+    }
+
+    /// Every plane at a pixel against what it may show.
+    fn check(&self, at: (u32, u32), shown: &Shown<P>, report: &mut Report<'_>) {
+        self.handed.check(at, shown, report);
+        let surface = self.handed.surface(at, &shown.surface);
+        self.handed.check_picture(at, self.shading.color(at, &surface), report);
+        let alpha = self.shading.alpha(self.handed.seen(at, shown.weight));
+        self.handed.check_alpha(at, alpha, report);
+    }
+
+    /// What is wrong where nothing that the client says may lie.
+    fn absent(&self, says: Says, at: (u32, u32)) -> Fault {
+        match says {
+            Says::Id(surfel) => match self.fragments.rim(surfel, at) {
+                Some(rim) => Fault::Outside { surfel, rim },
+                None => Fault::Absent { surfel },
+            },
+            _ => {
+                let found = self.handed.depth.map_or(f64::NAN, |plane| *plane.plane.at(at.0, at.1));
+                Fault::NoSuchDepth { found, closest: f64::INFINITY }
+            }
+        }
+    }
+
+    /// Whether a surfel is exactly as near as that of the client, and comes before it.
+    fn judge_ties(&self, found: u32, all: &[May<P>], pixel: &mut PixelMarks<'_>) {
+        let Some(own) = all.iter().find(|may| may.id == found) else { return };
+        let count = self.surfels.len();
+        for may in all.iter().filter(|may| may.lies && (may.id as usize) < count) {
+            let surfel = may.id;
+            let first = match self.handed.ties {
+                Ties::Lowest => surfel < found,
+                Ties::Last => surfel > found,
+                Ties::Any => false,
+            };
+            let exact =
+                may.depth.middle == own.depth.middle && may.depth.radius + own.depth.radius == 0.0;
+            let equal = || (found as usize) < count && self.surfels.are_equal(surfel, found);
+            if first && (exact || equal()) {
+                pixel.found(f64::INFINITY, || Fault::Tie { surfel, found });
+            }
+        }
+    }
+}
+
+/// What is not certain of a pixel in which the client has this, at this depth.
+fn doubts<P: Profile>(id: u32, depth: Ball<P>, all: &[May<P>]) -> u8 {
+    let mut doubts = 0;
+    for may in all {
+        let nearer = decide::before(may.depth, depth);
+        let own = may.id == id;
+        if !own && !nearer.possibly() {
+            continue;
+        }
+        let mut doubt = |doubt: Doubt, there: bool| doubts |= if there { doubt as u8 } else { 0 };
+        doubt(Doubt::Nearer, !own && !nearer.certainly());
+        doubt(Doubt::Side, own && may.back.decided().is_none());
+        doubt(Doubt::Fate, !may.drawn);
+        doubt(Doubt::CutOff, may.drawn && !may.lies);
+    }
+    doubts
+}

@@ -1,0 +1,158 @@
+//! The planes that a client has handed in.
+
+use super::Shown;
+use crate::frame::NO_ID;
+use crate::method::Holds;
+use crate::method::blue::planes::{COLOR, ID, NORMAL, OFFSET, WEIGHT};
+use crate::method::resolved::{ALPHA, DEPTH, SHADED};
+use crate::number::Ball;
+use crate::number::ball::Profile;
+use crate::verdict::checks::{Report, Surface, number, triple, whole};
+use crate::verdict::client::{Client, Stored, Ties};
+
+/// The planes, each if it is there.
+pub(super) struct BluePlanes<'a> {
+    pub(super) ties: Ties,
+    color: Option<Stored<'a, [f64; 3]>>,
+    offset: Option<Stored<'a, f64>>,
+    pub(super) depth: Option<Stored<'a, f64>>,
+    normal: Option<Stored<'a, [f64; 3]>>,
+    weight: Option<Stored<'a, f64>>,
+    pub(super) id: Option<Stored<'a, u32>>,
+    shaded: Option<Stored<'a, [f64; 3]>>,
+    alpha: Option<Stored<'a, f64>>,
+}
+
+/// What a client says is in a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Says {
+    /// It gives neither id, nor depth, nor weight.
+    Nothing,
+    Empty,
+    /// This, which the scene may not have.
+    Id(u32),
+    Some,
+}
+
+impl<'a> BluePlanes<'a> {
+    pub(super) fn new(client: &'a Client) -> Self {
+        Self {
+            ties: client.ties,
+            color: client.triple(&COLOR),
+            offset: client.scalar(&OFFSET),
+            depth: client.scalar(&DEPTH),
+            normal: client.triple(&NORMAL),
+            weight: client.scalar(&WEIGHT),
+            id: client.index(&ID),
+            shaded: client.triple(&SHADED),
+            alpha: client.scalar(&ALPHA),
+        }
+    }
+
+    /// The stages, each with the planes that it judges.
+    pub(super) fn stages(&self) -> [(&'static str, Vec<&'static str>); 2] {
+        let discs = [
+            self.color.map(|plane| plane.name),
+            self.offset.map(|plane| plane.name),
+            self.depth.map(|plane| plane.name),
+            self.normal.map(|plane| plane.name),
+            self.weight.map(|plane| plane.name),
+            self.id.map(|plane| plane.name),
+        ];
+        let picture = [self.shaded.map(|plane| plane.name), self.alpha.map(|plane| plane.name)];
+        [
+            ("discs", discs.into_iter().flatten().collect()),
+            ("shading", picture.into_iter().flatten().collect()),
+        ]
+    }
+
+    /// What a pixel is said to have.
+    pub(super) fn says(&self, at: (u32, u32)) -> Says {
+        let some = |there: bool| if there { Says::Some } else { Says::Empty };
+        match (self.id, self.depth, self.weight) {
+            (Some(ids), ..) => match *ids.plane.at(at.0, at.1) {
+                NO_ID => Says::Empty,
+                id => Says::Id(id),
+            },
+            (_, Some(depths), _) => some(*depths.plane.at(at.0, at.1) != f64::INFINITY),
+            (_, _, Some(weights)) => some(*weights.plane.at(at.0, at.1) != 0.0),
+            _ => Says::Nothing,
+        }
+    }
+
+    /// The id at a pixel; none without ids.
+    pub(super) fn id(&self, at: (u32, u32)) -> u32 {
+        self.id.map_or(NO_ID, |ids| *ids.plane.at(at.0, at.1))
+    }
+
+    /// What the discs leave at a pixel, against what they may.
+    pub(super) fn check<P: Profile>(
+        &self,
+        at: (u32, u32),
+        shown: &Shown<P>,
+        report: &mut Report<'_>,
+    ) {
+        if let Some(plane) = &self.id {
+            whole(0, plane, at, shown.id, report);
+        }
+        let scalars = [
+            (&self.depth, shown.surface.depth),
+            (&self.offset, shown.offset),
+            (&self.weight, shown.weight),
+        ];
+        for (plane, truth) in scalars {
+            if let Some(plane) = plane {
+                number(0, plane, at, truth, report);
+            }
+        }
+        let triples = [
+            (&self.normal, Holds::Vector, shown.surface.normal),
+            (&self.color, Holds::Color, shown.surface.color),
+        ];
+        for (plane, holds, truth) in triples {
+            if let Some(plane) = plane {
+                triple(0, (plane, holds), at, truth, report);
+            }
+        }
+    }
+
+    /// The surface at a pixel as the client has it: as it is stored, or as it was before, since one shader may
+    /// do both; what it has not handed in is that of `shown`.
+    pub(super) fn surface<P: Profile>(&self, at: (u32, u32), shown: &Surface<P>) -> Surface<P> {
+        Surface {
+            depth: self.depth.map_or(shown.depth, |plane| plane.ball(at)),
+            normal: self.normal.map_or(shown.normal, |plane| plane.balls(at)),
+            tangent: None,
+            color: self.color.map_or(shown.color, |plane| plane.balls(at)),
+        }
+    }
+
+    /// The weight of a pixel, likewise.
+    pub(super) fn seen<P: Profile>(&self, at: (u32, u32), shown: Ball<P>) -> Ball<P> {
+        self.weight.map_or(shown, |plane| plane.ball(at))
+    }
+
+    /// The colour of the picture against what it may be.
+    pub(super) fn check_picture<P: Profile>(
+        &self,
+        at: (u32, u32),
+        truth: [Ball<P>; 3],
+        report: &mut Report<'_>,
+    ) {
+        if let Some(plane) = &self.shaded {
+            triple(1, (plane, Holds::Color), at, truth, report);
+        }
+    }
+
+    /// The opacity of the picture against what it may be.
+    pub(super) fn check_alpha<P: Profile>(
+        &self,
+        at: (u32, u32),
+        truth: Ball<P>,
+        report: &mut Report<'_>,
+    ) {
+        if let Some(plane) = &self.alpha {
+            number(1, plane, at, truth, report);
+        }
+    }
+}

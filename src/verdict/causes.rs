@@ -1,0 +1,287 @@
+//! Known mistakes, by what is wrong of a picture: what a client most probably does.
+//!
+//! Some mistakes show in what the wrong pixels have in common. For the others the client is judged
+//! again, as if a mistake were the rule: with another setting, another camera, or with its planes
+//! turned back. A mistake is named if of the wrong pixels of the first wrong stage and the next at
+//! most one in five stays wrong; of several the one that leaves the fewest in all stages. The rarer
+//! mistakes are supposed where a common one does not explain everything.
+
+mod epsilon;
+
+use super::client::{Band, Client, Storage, Ties};
+use super::{Judged, Verdict};
+use crate::error::Result;
+use crate::frame::Samples;
+use crate::io::srgb;
+use crate::method::{Method, Session};
+use crate::scene::Camera;
+use crate::setting::{Fields, Value};
+
+/// What would be otherwise if a mistake were the rule.
+enum Change {
+    Method(Method),
+    Camera(Camera),
+    Ties(Ties),
+    Stored(&'static str, Storage),
+    Accumulator(Storage),
+    Flipped,
+    /// The picture is encoded.
+    Decoded,
+    /// Colours are not divided by the weight.
+    Divided,
+    Band(Band),
+    /// The depths are moved by this.
+    Moved(f64),
+    /// What is added up lies behind the band.
+    Behind,
+}
+
+impl Change {
+    /// The wrong pixels if this were the rule. The planes of one changed client are there at a time.
+    fn judge(
+        &self,
+        session: &Session<'_>,
+        camera: &Camera,
+        client: &Client,
+        budget: f64,
+    ) -> Result<Verdict> {
+        let method = session.method();
+        let as_if = |client: Client| session.verify_as(method, camera, &client, budget);
+        match self {
+            Self::Method(method) => session.verify_as(method, camera, client, budget),
+            Self::Camera(camera) => session.verify_as(method, camera, client, budget),
+            Self::Ties(ties) => as_if(Client { ties: *ties, ..client.clone() }),
+            Self::Stored(plane, storage) => as_if(client.clone().stored(plane, *storage)),
+            Self::Accumulator(accumulator) => {
+                as_if(Client { accumulator: *accumulator, ..client.clone() })
+            }
+            Self::Flipped => as_if(client.flipped()),
+            Self::Band(band) => as_if(epsilon::banded(client, *band)),
+            Self::Moved(by) => as_if(epsilon::moved_back(client, *by)),
+            Self::Behind => match epsilon::behind(session, camera, client) {
+                Some((method, client)) => session.verify_as(&method, camera, &client, budget),
+                None => as_if(client.clone()),
+            },
+            Self::Decoded => {
+                // An encoding in f32 is no better, for the power of a shading language.
+                let lost = 1.0 / 262_144.0;
+                let storage = Storage::Srgb { relative: lost, least: lost };
+                let decoded = client.colors(&[""], |color, _| color.map(srgb::to_linear));
+                as_if(decoded.stored("", storage))
+            }
+            Self::Divided => as_if(
+                client.colors(&["", "resolved"], |color, weight| color.map(|part| part / weight)),
+            ),
+        }
+    }
+}
+
+/// The mistake that a client most probably makes, in words; none that is known.
+///
+/// # Errors
+/// As [`Session::verify`].
+pub fn signature(
+    session: &Session<'_>,
+    camera: &Camera,
+    client: &Client,
+    verdict: &Verdict,
+) -> Result<Option<String>> {
+    let Some(wrong) = verdict.first_wrong() else { return Ok(None) };
+    if let Some(plain) = plain(wrong) {
+        return Ok(Some(plain));
+    }
+    let all = wrong_of(verdict, wrong.stage);
+    let mut best: Option<(u64, String)> = None;
+    // A stage that is not judged shows its mistakes in the first that is.
+    let before = verdict.stages.iter().take_while(|stage| stage.stage != wrong.stage);
+    let unseen = before.filter(|stage| stage.planes.is_empty()).chain([wrong]);
+    let stages: Vec<_> = unseen.map(|stage| stage.stage).collect();
+    for supposed in [common_mistakes, rare_mistakes] {
+        for (what, change) in stages.iter().flat_map(|of| supposed(session, camera, client, of)) {
+            let verdict = change.judge(session, camera, client, verdict.budget)?;
+            let [cured, left] = wrong_of(&verdict, wrong.stage);
+            if 5 * cured <= all[0] && best.as_ref().is_none_or(|(least, _)| left < *least) {
+                best = Some((left, what));
+            }
+        }
+        if best.as_ref().is_some_and(|(left, _)| *left == 0) {
+            break;
+        }
+    }
+    Ok(best.map(|(_, what)| what).or_else(|| common(session.method(), verdict, wrong)))
+}
+
+/// How many pixels are wrong in a stage and the one after it, and in all stages.
+fn wrong_of(verdict: &Verdict, stage: &str) -> [u64; 2] {
+    let from = verdict.stages.iter().skip_while(|own| own.stage != stage);
+    let all = verdict.stages.iter().map(|stage| stage.wrong).sum();
+    [from.take(2).map(|stage| stage.wrong).sum(), all]
+}
+
+/// What the wrong pixels of a stage plainly say.
+fn plain(wrong: &Judged) -> Option<String> {
+    let causes = &wrong.causes;
+    let all = |count: u64| count == wrong.wrong;
+    if all(causes.nan) {
+        return Some(format!("NaN in {} of its pixels", causes.nan));
+    }
+    if all(causes.ties) {
+        return Some("ties: of equally near surfels another is kept than the client says".into());
+    }
+    let surfel = causes.left_out.keys().next()?;
+    let one = causes.left_out.len() == 1 && wrong.wrong > 1 && all(causes.lacking());
+    one.then(|| format!("surfel {surfel} is missing"))
+}
+
+/// What the wrong pixels of a stage have in common, if no rule explains them.
+fn common(method: &Method, verdict: &Verdict, wrong: &Judged) -> Option<String> {
+    let causes = &wrong.causes;
+    let most = |count: u64| 20 * count >= 19 * wrong.wrong;
+    let discarded = most(causes.outside + causes.absent) && 2 * causes.outside > wrong.wrong;
+    // Depths that are too near, also where there is no surfel.
+    if discarded || (most(causes.below) && causes.strays > 0) {
+        return Some("depth and id are those of fragments that should be discarded".into());
+    }
+    let cutoff = method.splats().map(|splats| f64::from(splats.kernel.cutoff));
+    // Where a surfel is left out its weight is missing too; more is wrong where shapes are.
+    let others = verdict.stages.iter().any(|stage| stage.wrong > 3 * wrong.wrong);
+    if !most(causes.lacking()) || others {
+        None
+    } else if cutoff.is_some_and(|k| (0.98..1.1).contains(&(k * causes.least_rim))) {
+        Some("q is compared with k, not with k^2".into())
+    } else if causes.least_rim > 0.999 {
+        Some("the cut-off is too small: what lies just inside is left out".into())
+    } else if causes.least_rim > 0.6 {
+        Some("quads too small: what is left out lies near the rims of its splats".into())
+    } else {
+        Some("surfels are left out".into())
+    }
+}
+
+/// The mistakes that show in a stage first, in words and as changes.
+fn common_mistakes(
+    session: &Session<'_>,
+    camera: &Camera,
+    client: &Client,
+    stage: &str,
+) -> Vec<(String, Change)> {
+    let mut all: Vec<(String, Change)> = Vec::new();
+    match stage {
+        "visibility" | "projection" => {
+            for (what, dx, dy) in [
+                ("half a pixel to the right and down", 0.5, 0.5),
+                ("half a pixel to the left and up", -0.5, -0.5),
+                ("half a pixel to the right", 0.5, 0.0),
+                ("half a pixel down", 0.0, 0.5),
+            ] {
+                let moved = Camera { cx: camera.cx + dx, cy: camera.cy + dy, ..*camera };
+                all.push((what.into(), Change::Camera(moved)));
+            }
+            all.push(("rows are flipped".into(), Change::Flipped));
+            all.extend(settings(session, &VISIBILITY));
+            let ties = if client.ties == Ties::Last { Ties::Lowest } else { Ties::Last };
+            all.push(("ties are reversed".into(), Change::Ties(ties)));
+            if let Some((depth, largest)) = client.depth_of_visibility() {
+                let step = Storage::Steps(2.0 * largest / 65_535.0);
+                all.push(("depth of 16 bits".into(), Change::Stored(depth, step)));
+            }
+        }
+        "attributes" => {
+            all.extend(settings(session, &ATTRIBUTES));
+            all.extend(epsilon::other_unit(session.method()));
+            all.push(("sums in half floats".into(), Change::Accumulator(Storage::Half)));
+        }
+        "normalization" | "shading" => {
+            let what = "sRGB where linear colours are meant";
+            all.push((what.into(), Change::Decoded));
+            let what = "colours multiplied by the weight";
+            all.push((what.into(), Change::Divided));
+        }
+        _ => {}
+    }
+    all
+}
+
+/// Those that are made less often.
+fn rare_mistakes(
+    session: &Session<'_>,
+    camera: &Camera,
+    client: &Client,
+    stage: &str,
+) -> Vec<(String, Change)> {
+    match stage {
+        "visibility" => epsilon::moved(session, client),
+        "attributes" => epsilon::bands(session, camera, client),
+        _ => Vec::new(),
+    }
+}
+
+/// A setting that is wrong: its name, what follows from its value, and in words.
+type WrongSetting = (&'static str, fn(&Method, f32) -> Option<Value>, &'static str);
+
+const VISIBILITY: [WrongSetting; 4] = [
+    ("low_pass", |_, _| Some(Value::Number(0.0)), "the low-pass filter is missing"),
+    ("low_pass", |_, h| Some(Value::Number(2.0 * h)), "the low-pass filter is added twice"),
+    ("low_pass", |_, h| Some(Value::Number(0.5 * h)), "half of the low-pass filter is missing"),
+    ("cull", switched, "culling is on where it should be off, or off where it should be on"),
+];
+
+const ATTRIBUTES: [WrongSetting; 4] = [
+    ("epsilon", |method, _| epsilon::scaled(method, 0.5), "epsilon is half as wide"),
+    ("epsilon", |method, _| epsilon::scaled(method, 2.0), "epsilon is twice as wide"),
+    ("epsilon", |method, _| epsilon::scaled(method, 0.0), "epsilon is 0"),
+    (
+        "epsilon",
+        |_, _| Some(Value::Text("inf".into())),
+        "epsilon is ignored, or in a unit in which everything is within it",
+    ),
+];
+
+/// The other value of a switch.
+fn switched(method: &Method, _: f32) -> Option<Value> {
+    method.splats().map(|splats| Value::Switch(!splats.cull))
+}
+
+/// The method with each of some wrong settings, as far as the method has them.
+fn settings(session: &Session<'_>, wrong: &[WrongSetting]) -> Vec<(String, Change)> {
+    let method = session.method();
+    let with = |(name, value, what): &WrongSetting| {
+        let own = method.values().into_iter().find(|(own, _)| own == name)?.1;
+        let number = match own {
+            Value::Number(number) => number,
+            _ => 0.0,
+        };
+        let mut changed = *method;
+        changed.set(name, &value(method, number)?).ok()?;
+        let other = changed != *method && changed.check().is_ok();
+        other.then(|| ((*what).to_owned(), Change::Method(changed)))
+    };
+    wrong.iter().filter_map(with).collect()
+}
+
+impl Client {
+    /// The planes with their rows in the other order.
+    fn flipped(&self) -> Self {
+        let radii = self.radii.iter().map(|(name, radii)| (name.clone(), radii.flipped()));
+        let radii = radii.collect();
+        Self { radii, ..self.mapped(|_, samples| samples.flipped()) }
+    }
+
+    /// The planes with other colours in those of these names; each is told the weight at its pixel, 1 if
+    /// there is none.
+    fn colors(&self, names: &[&str], of: impl Fn([f64; 3], f64) -> [f64; 3]) -> Self {
+        let weight = ["weight", "attributes.weight"];
+        let weight = weight.iter().find_map(|name| self.frame().scalar(name).ok());
+        self.mapped(|name, samples| match samples {
+            Samples::Color(plane) if names.contains(&name) => {
+                let mut plane = plane.clone();
+                for (i, color) in plane.values_mut().iter_mut().enumerate() {
+                    let weight = weight.map_or(1.0, |weight| weight.values()[i]);
+                    *color = of(*color, if weight > 0.0 { weight } else { 1.0 });
+                }
+                Samples::Color(plane)
+            }
+            other => other.clone(),
+        })
+    }
+}

@@ -1,0 +1,267 @@
+//! What is asked of every client, whatever its method: numbers against balls, copies, and shading.
+
+use crate::composite::over::Blend;
+use crate::frame::named::{COLOR, VECTOR, component};
+use crate::method::Job;
+use crate::method::picture::before_light;
+use crate::method::projection::Has;
+use crate::method::{Holds, PlaneRow, When};
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real, Vector3};
+use crate::scene::Environment;
+use crate::shade::phong::Shader;
+use crate::splat::View;
+use crate::verdict::Fault;
+use crate::verdict::client::{Client, Storage, Stored};
+use std::ops::Range;
+
+/// Told of a check: the place of its stage among those that are judged together, by how many bounds
+/// the client errs, NaN if there are none, and what is wrong if that is above 1.
+pub(crate) type Report<'a> = dyn FnMut(usize, f64, &dyn Fn() -> Fault) + 'a;
+
+/// What a client has not of these levels of a stage, if it has any of them: a level of which it has
+/// nothing, else each plane by its name.
+pub(crate) fn missing(
+    client: &Client,
+    rows: &[PlaneRow],
+    levels: Range<usize>,
+    has: Has,
+) -> Vec<String> {
+    let wanted = |row: &&PlaneRow| match row.when {
+        When::Colored => has.color,
+        When::StagesOfTubes => has.tangent,
+        _ => true,
+    };
+    let mut any = false;
+    let mut missing = Vec::new();
+    for level in levels {
+        let names = rows.iter().filter(wanted).map(|row| row.numbered(level));
+        let (there, not): (Vec<_>, Vec<_>) =
+            names.partition(|name| client.frame().plane(name).is_some());
+        any |= !there.is_empty();
+        missing.extend(if there.is_empty() { vec![format!("level {level}")] } else { not });
+    }
+    if any { missing } else { Vec::new() }
+}
+
+/// Any number, or none.
+pub(crate) fn anything<P: Profile>() -> Ball<P> {
+    Ball::new(0.0, f64::NAN)
+}
+
+/// A ball that is larger by this much.
+pub(crate) fn widened<P: Profile>(ball: Ball<P>, by: f64) -> Ball<P> {
+    if by > 0.0 { Ball::new(ball.middle, ball.radius + by) } else { ball }
+}
+
+/// What the next stage reads of a stored value of this format: floats as they are; none of anything
+/// that each reader turns into a number.
+fn read<P: Profile>(value: f64, storage: Storage) -> Option<Ball<P>> {
+    let flushed = P::FLUSHES && value.abs() < f64::from(f32::MIN_POSITIVE);
+    let radius = if value.is_nan() {
+        f64::NAN
+    } else if flushed {
+        value.abs()
+    } else {
+        0.0
+    };
+    let is_float = matches!(storage, Storage::Single | Storage::Half | Storage::Float { .. });
+    is_float.then_some(Ball::new(value, radius))
+}
+
+/// The number that the next stage reads at a pixel.
+pub(crate) fn input<P: Profile>(plane: &Stored<'_, f64>, at: (u32, u32)) -> Ball<P> {
+    let value = *plane.plane.at(at.0, at.1);
+    read(value, plane.storage).unwrap_or_else(|| plane.ball(at))
+}
+
+/// The three numbers that the next stage reads at a pixel.
+pub(crate) fn inputs<P: Profile>(plane: &Stored<'_, [f64; 3]>, at: (u32, u32)) -> [Ball<P>; 3] {
+    let balls = plane.balls(at);
+    let exact = |ball: Ball<P>| read(ball.middle, plane.storage).unwrap_or(ball);
+    if plane.radii.is_some() { balls } else { balls.map(exact) }
+}
+
+/// One number against what it may be.
+pub(crate) fn number<P: Profile>(
+    part: usize,
+    plane: &Stored<'_, f64>,
+    at: (u32, u32),
+    truth: Ball<P>,
+    report: &mut Report<'_>,
+) {
+    component_of(part, || plane.channel(), plane.ball(at), truth, report);
+}
+
+/// Three numbers against what they may be; their letters are those of what the row holds.
+pub(crate) fn triple<P: Profile>(
+    part: usize,
+    (plane, holds): (&Stored<'_, [f64; 3]>, Holds),
+    at: (u32, u32),
+    truth: [Ball<P>; 3],
+    report: &mut Report<'_>,
+) {
+    let letters = if holds == Holds::Color { COLOR } else { VECTOR };
+    let found = plane.balls(at);
+    for (i, letter) in letters.into_iter().enumerate() {
+        component_of(part, || component(&plane.channel(), letter), found[i], truth[i], report);
+    }
+}
+
+fn component_of<P: Profile>(
+    part: usize,
+    channel: impl Fn() -> String,
+    found: Ball<P>,
+    truth: Ball<P>,
+    report: &mut Report<'_>,
+) {
+    let judged = truth.radius.is_finite() || truth.middle == found.middle;
+    let error = if judged { truth.misfit(found) } else { f64::NAN };
+    report(part, error, &|| Fault::Value {
+        channel: channel(),
+        found: found.middle,
+        truth: truth.middle,
+        // Of what is not a number nothing is known.
+        radius: if found.middle.is_nan() { truth.radius } else { truth.radius + found.radius },
+    });
+}
+
+/// An index or a count against what it must be.
+pub(crate) fn whole<T: Copy + Into<u32>>(
+    part: usize,
+    plane: &Stored<'_, T>,
+    at: (u32, u32),
+    truth: T,
+    report: &mut Report<'_>,
+) {
+    let (found, truth) = ((*plane.plane.at(at.0, at.1)).into(), truth.into());
+    let error = if found == truth { 0.0 } else { f64::INFINITY };
+    report(part, error, &|| Fault::Whole { channel: plane.channel(), found, truth });
+}
+
+/// Of several truths the one that the client errs least against, by the worst of each of N stages: a
+/// stage counts before those that follow it, and what is right is equally right.
+pub(crate) fn least_wrong<T, const N: usize>(
+    all: &[T],
+    check: impl Fn(&T, &mut Report<'_>),
+) -> Option<&T> {
+    if let [one] = all {
+        return Some(one);
+    }
+    let mut best: Option<([f64; N], &T)> = None;
+    for truth in all {
+        let mut worst = [1.0; N];
+        check(truth, &mut |part, error, _| worst[part] = worst[part].at_least(error));
+        if best.is_none_or(|(least, _)| worst < least) {
+            best = Some((worst, truth));
+        }
+    }
+    best.map(|(_, truth)| truth)
+}
+
+/// The number of the only truth of several against which nothing is wrong.
+pub(crate) fn only_fitting<T>(all: &[T], check: impl Fn(&T, &mut Report<'_>)) -> Option<usize> {
+    let fits = |truth: &T| {
+        let mut fits = true;
+        check(truth, &mut |_, error, _| fits &= !(error > 1.0));
+        fits
+    };
+    let several = if all.len() > 1 { all } else { &[] };
+    let mut fitting = (0..several.len()).filter(|i| fits(&several[*i]));
+    fitting.next().filter(|_| fitting.next().is_none())
+}
+
+/// What is seen behind all layers of a client.
+pub(crate) struct Backdrop<'a, P: Profile> {
+    environment: Option<&'a Environment>,
+    view: View<Ball<P>>,
+}
+
+impl<'a, P: Profile> Backdrop<'a, P> {
+    pub(crate) fn new(job: &Job<'a>) -> Self {
+        Self { environment: job.scene.environment.as_ref(), view: View::new(job.camera) }
+    }
+
+    /// Layers before the environment, if there is one.
+    pub(crate) fn behind(&self, layers: Blend<Ball<P>>, (x, y): (u32, u32)) -> Blend<Ball<P>> {
+        let Some(environment) = self.environment else { return layers };
+        before_light(layers, || environment.enclosure(self.view.ray(x, y)))
+    }
+}
+
+/// Whether a colour is bounded, so that it is judged.
+pub(crate) fn is_bounded<P: Profile>(color: &[Ball<P>; 3]) -> bool {
+    color.iter().all(|part| part.radius.is_finite())
+}
+
+/// Deferred shading of a client's surfaces.
+pub(crate) struct Shading<'a, P: Profile> {
+    shader: Shader<Ball<P>>,
+    /// Whether surfaces have colours; else the material has one.
+    colored: bool,
+    /// What is seen where nothing else is; none if that is black.
+    backdrop: Option<Backdrop<'a, P>>,
+}
+
+/// What lies at a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surface<P: Profile> {
+    /// Depth; exactly +inf where nothing is.
+    pub(crate) depth: Ball<P>,
+    /// Normal and tangent in world space; without a tangent a surface, else a tube.
+    pub(crate) normal: [Ball<P>; 3],
+    pub(crate) tangent: Option<[Ball<P>; 3]>,
+    /// Its colour, if surfaces have colours.
+    pub(crate) color: [Ball<P>; 3],
+}
+
+impl<'a, P: Profile> Shading<'a, P> {
+    pub(crate) fn new(job: &Job<'a>, colored: bool) -> Self {
+        let scene = job.scene;
+        Self {
+            shader: Shader::new(View::new(job.camera), &scene.lights, scene.material),
+            colored,
+            backdrop: scene.environment.is_some().then(|| Backdrop::new(job)),
+        }
+    }
+
+    /// The same of a layer: where there is nothing, it is black.
+    pub(crate) fn of_layer(job: &Job<'a>, colored: bool) -> Self {
+        Self { backdrop: None, ..Self::new(job, colored) }
+    }
+
+    /// Whether a pixel is black where nothing is.
+    pub(crate) fn is_black(&self) -> bool {
+        self.backdrop.is_none()
+    }
+
+    /// The colour of a pixel; any where the depth is not known.
+    pub(crate) fn color(&self, (x, y): (u32, u32), surface: &Surface<P>) -> [Ball<P>; 3] {
+        let Surface { depth, normal, tangent, color } = *surface;
+        // What is not known may have any midpoint.
+        let empty = depth.middle == f64::INFINITY && depth.radius == 0.0;
+        if empty {
+            let shown = self.backdrop.as_ref().map(|all| all.behind(Blend::CLEAR, (x, y)));
+            return shown.map_or([Ball::ZERO; 3], |shown| shown.color);
+        }
+        if !depth.radius.is_finite() {
+            return [anything(); 3];
+        }
+        let vector = |[x, y, z]: [Ball<P>; 3]| Vector3::new(x, y, z);
+        let color = if self.colored { color } else { self.shader.plain() };
+        let place = (x as usize, y as usize);
+        match tangent {
+            Some(tangent) => self.shader.tube(place, depth, vector(tangent), color),
+            None => self.shader.surface(place, depth, vector(normal), color),
+        }
+    }
+
+    /// The opacity of a pixel in which something is seen if `seen` is greater than 0.
+    pub(crate) fn alpha(&self, seen: Ball<P>) -> Ball<P> {
+        if self.backdrop.is_some() {
+            Ball::ONE
+        } else {
+            Ball::select(seen.gt(Ball::ZERO), Ball::ONE, Ball::ZERO)
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! The planes that a client has handed in, by the stage that judges them.
+
+use crate::method::deferred::Settings;
+use crate::method::deferred::planes::{BEFORE, BEFORE_ID, NEAREST, NEAREST_ID};
+use crate::method::ewa::planes::{COLOR_SUM, COUNT, NORMAL_SUM, WEIGHT_SUM};
+use crate::method::resolved;
+use crate::verdict::client::Client;
+use crate::verdict::ewa::handed::{Handed, SumRows};
+
+/// Depth and surfel of the nearest fragment of pass 1; nothing else.
+pub(super) fn visibility(client: &Client) -> Handed<'_> {
+    let (depth, id) = (client.scalar(&BEFORE), client.index(&BEFORE_ID));
+    Handed { depth, id, depth_copy: None, id_copy: None, ..of(client) }
+}
+
+/// What follows the selection. Of the picture's depth and id, if those of pass 3 are not there, empty
+/// pixels say nothing; with `second` off they may be those of pass 4, and say nothing of pass 1.
+pub(super) fn rest<'a>(client: &'a Client, settings: &Settings) -> Handed<'a> {
+    let all = of(client);
+    let (depth, id) = (client.scalar(&NEAREST), client.index(&NEAREST_ID));
+    if depth.is_some() || id.is_some() || !settings.second {
+        return Handed { depth, id, ..all };
+    }
+    Handed { depth: all.depth_copy, id: all.id_copy, empty_is_open: true, ..all }
+}
+
+/// Depth and surfel of the picture alone, of which empty pixels say nothing.
+pub(super) fn picture(client: &Client) -> Handed<'_> {
+    let all = of(client);
+    Handed { depth: all.depth_copy, id: all.id_copy, empty_is_open: true, ..all }
+}
+
+/// The same as [`rest`] where the picture's weight is that of a polygon.
+pub(super) fn of_polygons<'a>(client: &'a Client, rest: &Handed<'a>) -> Handed<'a> {
+    let (weight, weight_copy) = (client.scalar(&WEIGHT_SUM), client.scalar(&resolved::WEIGHT));
+    Handed { weight, weight_copy, ..*rest }
+}
+
+/// All but what is nearest, of which there are copies.
+fn of(client: &Client) -> Handed<'_> {
+    let rows = SumRows {
+        nearest: None,
+        weight: WEIGHT_SUM,
+        normal: NORMAL_SUM,
+        color: COLOR_SUM,
+        count: COUNT,
+    };
+    Handed {
+        depth: None,
+        id: None,
+        depth_copy: client.scalar(&resolved::DEPTH),
+        id_copy: client.index(&resolved::ID),
+        weightless: true,
+        ..Handed::of(client, &rows)
+    }
+}

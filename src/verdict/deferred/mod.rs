@@ -1,0 +1,400 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Each stage is judged from what the client has of the stage before, as it is stored; what the client has
+//! not is taken from [`Ball`]s of a [`Profile`]. The flags that the last frame left are given, and not
+//! judged: a client that has others draws another frame.
+//!
+//! **Visibility**: the certificate of [`ewa`](crate::verdict::ewa) over the flagged surfels. What may be
+//! nearest where the client gives neither Z nor id is an interval.
+//!
+//! **Indices**, a certificate for each pixel, that of
+//! [`projection`](crate::verdict::projection) with a test of depth. A surfel *may lie* in a pixel if it
+//! is not certainly dropped, its centre may fall into the pixel, and `t <= Z + epsilon` possibly holds; it
+//! *lies* there if all that is certain. Z is that of the client's pass 1, else the interval.
+//!
+//! 1. The surfel of the id may lie in the pixel, and Z is in the ball of its t.
+//! 2. Nothing else lies there whose t certainly is less.
+//! 3. Nothing that comes before, as the client says of ties, lies there at a t that is equal and exact in
+//!    balls, or has all numbers of the id's surfel.
+//! 4. Of an empty pixel Z is +inf, and nothing lies there.
+//!
+//! **B(i)** is what the client's plane of ids lists. Without that plane a surfel *may be selected* if it may
+//! lie in a pixel where nothing that lies there certainly is before it, and its t is the client's Z, if there
+//! is one; it *is selected* if nothing else may be in this pixel and it lies there, or the client's Z says
+//! that something does.
+//!
+//! **Difference**: the certificate over the flagged surfels and those of B(i) whose flag is not set; what
+//! only may be selected is not certainly drawn. With `second` off over the flagged ones alone. Z and id are
+//! those of `difference`; if neither is there those of the picture, whose empty pixels say nothing of what is
+//! nearest.
+//!
+//! **Attributes** as in `ewa`, over B(i), against the client's depth of pass 3. What only may be selected is an
+//! undecided fragment wherever it is visible, of which both continuations are kept.
+//!
+//! **Normalization and shading** as in `ewa`, but that Z and id of the picture are those of pass 3 where the
+//! client's weight is > 0, and those of nothing where it is 0; either, if that is not certain. With `second`
+//! off, where pass 1 certainly left nothing, they are those of the certificate over B(i); where it may
+//! have left nothing they are not judged.
+//!
+//! **[Polygons](crate::method::deferred::polygons)**: what [may lie](crate::verdict::projection) in a pixel of the triangles
+//! beside splats, at the depth of its nearness. In the certificates of passes 1 and 3 a finite Z
+//! without an id is that of a polygon that may lie there; no polygon certainly lies there whose depth
+//! certainly is less than Z. A pixel of the picture may show
+//!
+//! 1. the splats, as above, if the nearest fragment of pass 3 may be a surfel's or none, and weight may be > 0
+//!    or no polygon certainly lies there;
+//! 2. a polygon that no other certainly hides, if the nearest fragment may be a polygon's or weight may be 0:
+//!    its depth or that of the client's pass 3, its normal and its colour, no id, the weight 1.
+//!
+//! Of these that counts which the client errs least against. Where the picture alone says what is nearest, a
+//! pixel in which polygons may lie and that has no id says nothing of it: a fragment without weight may be
+//! before the polygon.
+//!
+//! # Decided
+//!
+//! - A polygon of which it is not certain how it is cut, or which way its corners run, may be at any depth of
+//!   its corners, and of any normal and colour. It hides nothing.
+//! - A pixel that shows a polygon and is right is not undecided, whatever its sums are, if the client has no
+//!   plane of them.
+//! - Pass 3 is judged from the surfels of both passes, not from the depth that the client has of pass 1: both
+//!   are one depth buffer. A client that stores the two in different formats declares the coarser one.
+//! - Of a surfel that only may be selected the choice is free at every pixel, though it is one choice: more is
+//!   allowed than a right implementation leaves, never less.
+//! - Surfels are those that the high level leaves. A node of [levels of
+//!   detail](crate::scene::objects::detail) that a client chooses otherwise is a wrong surfel: which nodes a
+//!   view draws is computed in f64 and given, as the flags are.
+//! - Of ids of more than 32 bits a plane is judged together with that of the highest 8; alone it is not.
+//! - Which objects are [left out](Settings::share) is given, as the flags are: a surfel of one certainly is not
+//!   drawn. Their polygons are there.
+//! - A client that goes on from other numbers than it stores, as a picture in f64 that is rounded once in the
+//!   end, may not promise `ieee`: what its planes say of one stage is not what the next was given.
+
+mod handed;
+mod polygons;
+mod selected;
+#[cfg(test)]
+mod tests;
+
+use crate::composite::decide;
+use crate::error::Result;
+use crate::frame::raster::Snap;
+use crate::frame::{Exec, NO_ID, Rect};
+use crate::memory;
+use crate::method::Job;
+use crate::method::deferred::Settings;
+use crate::method::deferred::part::{Part, Whole};
+use crate::method::deferred::picture::whole;
+use crate::method::deferred::planes::{CENTRE, CENTRE_ID};
+use crate::method::tiled::Tiled;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real};
+use crate::scene::Surfels;
+use crate::verdict::checks::anything;
+use crate::verdict::client::Client;
+use crate::verdict::ewa::certificate::{self, Nearest, Other};
+use crate::verdict::ewa::handed::Handed;
+use crate::verdict::ewa::pixel::PixelJudge;
+use crate::verdict::ewa::sums::{self, Continuations};
+use crate::verdict::ewa::swift::{self, SwiftSplats};
+use crate::verdict::marks::{Counts, Found, Marks, StageMarks, Watch, counted};
+use crate::verdict::projection::{AllPossible, SamplePlanes};
+use crate::verdict::shift::Told;
+use crate::verdict::{Check, Doubt, Verdict};
+use polygons::{Beside, Ground, Polygons, front};
+
+/// Judges the planes of a client, whose ids are ranks: how many ids are less.
+///
+/// # Errors
+/// [`crate::Error::Invalid`] if the flags are of another scene, or if the process may not hold the surfels.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Result<Verdict> {
+    let (found, counts) = judge::<P>(job, settings, client, Watch::All)?;
+    let Counts { covered, undecided, told } = counts;
+    Ok(Verdict::new(found.judged(job), [covered, undecided], budget, told.shifts()))
+}
+
+/// Everything that is judged at one pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    Ok(judge::<P>(job, settings, client, Watch::one(job, pixel)?)?.0.checks())
+}
+
+/// What is found of all stages.
+fn judge<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    watch: Watch,
+) -> Result<(Found<4>, Counts)> {
+    let (whole, before) = whole(job, settings)?;
+    let ground = Ground::new(job, &whole)?;
+    let cull = settings.splats.cull;
+    let ground = ground.as_ref().map(|ground| Polygons::<P>::new(job, ground, cull));
+    let flat = whole.part(whole.drawn_ids(), job.exec);
+    let scene = Scenery { job, settings, whole: &whole, flat: &flat, ground: ground.as_ref() };
+    let flagged = before.surfels(whole.ids());
+    memory::ask(flagged.len() as u64 * OF_A_FLAGGED, || {
+        format!("{} flagged surfels that are judged", flagged.len())
+    })?;
+    let flagged = flagged.into_iter().filter(|&id| scene.draws(id));
+    let flagged: Vec<_> = flagged.filter_map(|id| Some((scene.rank(id)?, true))).collect();
+
+    let first = handed::visibility(client);
+    let (visible, visibility) = scene.visible(&flagged, &first, watch);
+    let epsilon = scene.epsilon();
+    let limits = visible.map(|nearest| decide::limit(nearest.depth, epsilon));
+
+    let (indices, selected) = scene.indices(client, &limits, watch);
+
+    let unseen = |&(rank, _): &(u32, bool)| {
+        let found = whole.ids().find(flat.id(rank));
+        found.is_some_and(|(object, surfel)| !before.has(object, surfel))
+    };
+    let mut drawn = flagged;
+    if settings.second {
+        drawn.extend(selected.iter().filter(|one| unseen(one)));
+        drawn.sort_unstable();
+    }
+    let handed = handed::rest(client, settings);
+    let of_polygons = handed::of_polygons(client, &handed);
+    let judge = Rest {
+        drawn: scene.splats(&drawn),
+        chosen: scene.splats(&selected),
+        pixels: PixelJudge::of_surfels(job, scene.surfels(), &handed),
+        without_sums: of_polygons.no_sums(),
+        polygons: PixelJudge::of_surfels(job, scene.surfels(), &of_polygons),
+        ground: scene.ground,
+        handed: &handed,
+        picture: (!settings.second).then(|| handed::picture(client)),
+        surfels: scene.surfels(),
+        visible: &visible,
+    };
+    let (tiles, counts) = judge.tiles(job.exec, watch.parts(&job.grid()), watch);
+    let [(_, names), ..] = first.stages();
+    let levels = vec![("visibility", names, visibility), indices];
+    let [nearest, sums, averages, shading] = handed.stages();
+    let stages = [("difference", nearest.1), sums, averages, shading];
+    Ok((Found { levels, stages, tiles }, counts))
+}
+
+/// Bytes of a surfel that pass 1 draws, in its place and projected in balls; once more in pass 3.
+const OF_A_FLAGGED: u64 = 1536;
+
+/// What passes draw from: all surfels that the high level leaves, in their places, each numbered by its rank.
+struct Scenery<'a, P: Profile> {
+    job: &'a Job<'a>,
+    settings: &'a Settings,
+    whole: &'a Whole<'a>,
+    flat: &'a Part,
+    ground: Option<&'a Polygons<'a, P>>,
+}
+
+impl<'a, P: Profile> Scenery<'a, P> {
+    fn surfels(&self) -> &'a Surfels {
+        self.flat.surfels()
+    }
+
+    /// Whether a surfel is of an object that the frame does not leave out.
+    fn draws(&self, id: u64) -> bool {
+        let found = self.whole.ids().find(id);
+        found.is_some_and(|(object, _)| !self.whole.leaves_out(object))
+    }
+
+    fn rank(&self, id: u64) -> Option<u32> {
+        self.flat.ids().binary_search(&id).ok().map(|rank| rank as u32)
+    }
+
+    fn epsilon(&self) -> Ball<P> {
+        let epsilon = self.settings.splats.epsilon.in_units(self.whole.median_radius());
+        Ball::from_f32(epsilon)
+    }
+
+    /// Some surfels, ascending, each with whether it certainly is one of those that a pass draws.
+    fn splats(&self, some: &[(u32, bool)]) -> SwiftSplats<P> {
+        let ids = some.iter().map(|&(rank, _)| self.flat.id(rank)).collect();
+        let part = self.whole.part(ids, self.job.exec);
+        swift::project_part(&part.job(self.job), &self.settings.splats, some)
+    }
+
+    /// The nearest fragments of pass 1, and what is wrong of them.
+    fn visible(
+        &self,
+        flagged: &[(u32, bool)],
+        handed: &Handed<'_>,
+        watch: Watch,
+    ) -> (Tiled<Nearest<P>>, Marks) {
+        let (job, splats) = (self.job, self.splats(flagged));
+        let judge = |(tile, rect): (usize, Rect), mut marks: Marks| {
+            let given = (handed, self.surfels());
+            let others = beside(self.ground, (tile, &rect)).others;
+            let found =
+                certificate::judge_among(&splats, &others, given, (tile, &rect), &mut marks);
+            (found, marks)
+        };
+        let grid = job.grid();
+        let found = job
+            .exec
+            .ordered(Watch::All.parts(&grid), |(tile, rect)| judge((tile, rect), Marks::new(rect)));
+        let (tiles, all): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        let mut marks = watch.picture(job);
+        match watch {
+            Watch::All => all.into_iter().for_each(|part| marks.put(part)),
+            Watch::One(_) => {
+                for (tile, rect) in watch.parts(&grid) {
+                    marks.put(judge((tile, rect), watch.marks(rect)).1);
+                }
+            }
+        }
+        (Tiled::from_tiles(grid, tiles), marks)
+    }
+
+    /// What is wrong of pass 2, given the greatest depth that passes at each pixel; and B(i).
+    fn indices(
+        &self,
+        client: &Client,
+        limits: &Tiled<Ball<P>>,
+        watch: Watch,
+    ) -> (StageMarks, Vec<(u32, bool)>) {
+        let (job, cull) = (self.flat.job(self.job), self.settings.splats.cull);
+        let planes = SamplePlanes::of_nearest(client, job.scene, [&CENTRE, &CENTRE_ID]);
+        let draws = |rank: usize| self.draws(self.flat.id(rank as u32));
+        let points = AllPossible::<P>::of(&job, (cull, Snap::default()), Some(limits), draws);
+        let names = planes.names();
+        let marks = match names.is_empty() {
+            true => watch.picture(&job),
+            false => points.judge_all(&job, &planes, watch),
+        };
+        let total = self.flat.ids().len() as u64;
+        let selected = match client.index(&CENTRE_ID) {
+            Some(stored) => selected::listed(stored.plane, total),
+            None => selected::possible(&job, &points, &planes, total),
+        };
+        (("indices", names, marks), selected)
+    }
+}
+
+/// What polygons may leave in a tile.
+fn beside<P: Profile>(ground: Option<&Polygons<'_, P>>, tile: (usize, &Rect)) -> Beside<P> {
+    ground.map_or(Beside::NOTHING, |ground| ground.beside(tile))
+}
+
+/// What the tiles of the passes after the selection share.
+struct Rest<'a, P: Profile> {
+    /// The surfels of passes 1 and 3.
+    drawn: SwiftSplats<P>,
+    /// B(i).
+    chosen: SwiftSplats<P>,
+    handed: &'a Handed<'a>,
+    /// Depth and id of the picture, if these may be those of pass 4: with `second` off.
+    picture: Option<Handed<'a>>,
+    surfels: &'a Surfels,
+    pixels: PixelJudge<'a, P>,
+    /// Whether the client has no plane of the sums.
+    without_sums: bool,
+    /// The same of pixels that show a polygon.
+    polygons: PixelJudge<'a, P>,
+    ground: Option<&'a Polygons<'a, P>>,
+    /// What pass 1 has left.
+    visible: &'a Tiled<Nearest<P>>,
+}
+
+impl<P: Profile> Rest<'_, P> {
+    fn tiles(
+        &self,
+        exec: &Exec,
+        parts: Vec<(usize, Rect)>,
+        watch: Watch,
+    ) -> (Vec<[Marks; 4]>, Counts) {
+        let found = exec.ordered(parts, |(tile, rect)| {
+            let mut marks = [(); 4].map(|()| watch.marks(rect));
+            let counts = self.judge((tile, rect), &mut marks);
+            (marks, counts)
+        });
+        let (mut tiles, mut all) = (Vec::new(), Counts::default());
+        for (marks, counts) in found {
+            tiles.push(marks);
+            all.add(counts);
+        }
+        (tiles, all)
+    }
+
+    /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
+        let [first, rest @ ..] = marks;
+        let beside = beside(self.ground, (tile, &rect));
+        let nearest = self.nearest((tile, &rect), &beside, first);
+        let sums =
+            sums::continuations(&self.chosen, self.surfels, &nearest, (tile, &rect), &mut rest[0]);
+        let (mut covered, mut told) = (0, Told::default());
+        for (pixel, at) in counted(rect) {
+            let sums = sums.of(pixel);
+            let others = beside.others(pixel);
+            let shown = self.shown((tile, at), nearest[pixel], others, &mut rest[1]);
+            let certain = matches!(sums, Continuations::One(_));
+            covered += u64::from(shown.depth.middle.is_finite() || !certain);
+            if !others.is_empty() {
+                self.judge_beside((pixel, at), &beside, &shown, &sums, rest);
+                continue;
+            }
+            let taken = self.pixels.judge((pixel, at), &shown, &sums, rest);
+            if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
+                told.take_all(open, taken);
+            }
+        }
+        Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS), told }
+    }
+
+    /// The nearest fragments that pass 3 has left.
+    fn nearest(
+        &self,
+        (tile, rect): (usize, &Rect),
+        beside: &Beside<P>,
+        marks: &mut Marks,
+    ) -> Vec<Nearest<P>> {
+        if self.picture.is_some() && self.handed.nothing() {
+            return counted(*rect).map(|(_, (x, y))| *self.visible.at(x, y)).collect();
+        }
+        let given = (self.handed, self.surfels);
+        certificate::judge_among(&self.drawn, &beside.others, given, (tile, rect), marks)
+    }
+
+    /// What the picture shows where it has weight: where no pass before has left anything the nearest of
+    /// B(i), where one has left a polygon the nearer of that and of B(i).
+    fn shown(
+        &self,
+        (tile, at): (usize, (u32, u32)),
+        nearest: Nearest<P>,
+        others: &[Other<P>],
+        marks: &mut Marks,
+    ) -> Nearest<P> {
+        let Some(picture) = &self.picture else { return nearest };
+        let Nearest { depth, id } = nearest;
+        let among = |others: Vec<Other<P>>, marks: &mut Marks| {
+            let pixel = Rect::pixel(at);
+            let mut own = marks.beside(pixel);
+            let (others, given) = ([others], (picture, self.surfels));
+            let found =
+                certificate::judge_among(&self.chosen, &others, given, (tile, &pixel), &mut own);
+            marks.put(own);
+            found.into_iter().next().unwrap_or(nearest)
+        };
+        let [splat, polygon] = front(&nearest, others);
+        if depth.middle == f64::INFINITY && depth.radius == 0.0 {
+            among(others.to_vec(), marks)
+        } else if !(depth.middle + depth.radius).is_finite() || (splat && polygon) {
+            Nearest { depth: anything(), id: None }
+        } else if polygon && id == Some(NO_ID) {
+            among(vec![Other { depth, lies: true }], marks)
+        } else {
+            nearest
+        }
+    }
+}

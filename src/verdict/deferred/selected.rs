@@ -1,0 +1,35 @@
+//! B(i) of a client: surfels by their ranks, ascending, each with whether it certainly is selected.
+
+use crate::frame::Plane;
+use crate::method::Job;
+use crate::number::ball::Profile;
+use crate::verdict::marks::Watch;
+use crate::verdict::projection::{AllPossible, SamplePlanes};
+
+/// What a plane of ids lists, of so many surfels: all of it certain.
+pub(super) fn listed(ids: &Plane<u32>, total: u64) -> Vec<(u32, bool)> {
+    let known = ids.values().iter().filter(|&&rank| u64::from(rank) < total);
+    let mut listed: Vec<_> = known.map(|&rank| (rank, true)).collect();
+    listed.sort_unstable();
+    listed.dedup();
+    listed
+}
+
+/// What may be selected if there is no such plane.
+pub(super) fn possible<P: Profile>(
+    job: &Job<'_>,
+    points: &AllPossible<'_, P>,
+    planes: &SamplePlanes<'_>,
+    total: u64,
+) -> Vec<(u32, bool)> {
+    let tiles = Watch::All.parts(&job.grid());
+    let found = job.exec.ordered(tiles, |part| points.kept(planes, part));
+    // A surfel that may lie in several pixels may be selected in each.
+    let mut all: Vec<Option<bool>> = vec![None; total as usize];
+    for (rank, sure) in found.into_iter().flatten() {
+        if let Some(known) = all.get_mut(rank as usize) {
+            *known = Some(sure || *known == Some(true));
+        }
+    }
+    (0..).zip(all).filter_map(|(rank, sure)| Some((rank, sure?))).collect()
+}

@@ -1,0 +1,386 @@
+//! The visibility pass of a client: what may be the nearest fragment, and what certainly is not.
+
+use super::handed::Handed;
+use super::swift::{Fragment, SwiftSplat, SwiftSplats, each_fragment, least_nearness};
+use crate::composite::decide;
+use crate::frame::{NO_ID, Rect};
+use crate::method::ewa::possible::PossibleSplat;
+use crate::method::fragment::each_pixel;
+use crate::method::tiled::pixels;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real, Truth};
+use crate::scene::Surfels;
+use crate::splat::{Shared, Splat, fragment};
+use crate::verdict::client::Ties;
+use crate::verdict::marks::{Marks, PixelMarks};
+use crate::verdict::{Doubt, Fault};
+
+/// The nearest fragment of a pixel, as the client has it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nearest<P: Profile> {
+    /// The depth that later passes work with.
+    pub(crate) depth: Ball<P>,
+    /// The surfel, if the client says which.
+    pub(crate) id: Option<u32>,
+}
+
+/// What is no splat and may be nearest all the same: a polygon, which has no id.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Other<P: Profile> {
+    pub(crate) depth: Ball<P>,
+    /// Whether it certainly lies in the pixel.
+    pub(crate) lies: bool,
+}
+
+/// The others of a pixel of a tile, if any pixel has some.
+fn others_of<P: Profile>(others: &[Vec<Other<P>>], pixel: usize) -> &[Other<P>] {
+    others.get(pixel).map_or(&[], Vec::as_slice)
+}
+
+/// What is known of a pixel before other fragments are held against it.
+#[derive(Clone, Copy, Debug)]
+struct Claim<P: Profile> {
+    nearest: Nearest<P>,
+    /// By how many bounds the claim itself fails: of the fragments that may be meant, that which
+    /// fails least.
+    error: f64,
+    /// The depth of that fragment.
+    closest: Ball<P>,
+    /// Its q divided by the limit, if it certainly is outside.
+    outside: Option<f64>,
+    /// Whether the client says nothing.
+    open: bool,
+    /// If so: the least depth that may be the nearest, and the greatest.
+    range: [f64; 2],
+}
+
+/// Judges the nearest fragments of a tile where others may be nearest, pixel by pixel, and says what later
+/// passes work with.
+pub(crate) fn judge_among<P: Profile>(
+    splats: &SwiftSplats<P>,
+    others: &[Vec<Other<P>>],
+    given: (&Handed<'_>, &Surfels),
+    tile: (usize, &Rect),
+    marks: &mut Marks,
+) -> Vec<Nearest<P>> {
+    let certificate = Certificate::new(splats, others, given, tile);
+    each_fragment(
+        splats,
+        tile,
+        |pixel| certificate.least(pixel),
+        |fragment, pixel| certificate.meet((pixel, fragment), fragment.depth(), marks),
+    );
+    certificate.end(marks);
+    certificate.nearest()
+}
+
+/// What is asked of the nearest fragments of a tile: of every fragment that may be nearer
+/// ([`Certificate::meet`]), and then of what the client says ([`Certificate::end`]).
+pub(super) struct Certificate<'a, P: Profile> {
+    handed: &'a Handed<'a>,
+    surfels: &'a Surfels,
+    others: &'a [Vec<Other<P>>],
+    claims: Vec<Claim<P>>,
+    /// The least nearness of a pixel that may be before the client's fragment; what certainly is farther is
+    /// no question. +inf where the client says nothing.
+    least: Vec<f64>,
+}
+
+impl<'a, P: Profile> Certificate<'a, P> {
+    pub(super) fn new(
+        splats: &SwiftSplats<P>,
+        others: &'a [Vec<Other<P>>],
+        (handed, surfels): (&'a Handed<'a>, &'a Surfels),
+        tile: (usize, &Rect),
+    ) -> Self {
+        let mut claims = claims(splats, others, handed, tile);
+        bound_open(splats, &mut claims, tile);
+        let least = |claim: &Claim<P>| match claim.open {
+            true => f64::INFINITY,
+            false => least_nearness(&splats.shared, claim.nearest.depth),
+        };
+        let least = claims.iter().map(least).collect();
+        Self { handed, surfels, others, claims, least }
+    }
+
+    /// What later passes work with.
+    pub(super) fn nearest(&self) -> Vec<Nearest<P>> {
+        self.claims.iter().map(|claim| claim.nearest).collect()
+    }
+
+    /// The least nearness that has to be met at a pixel, as of [`each_fragment`].
+    #[inline(always)]
+    pub(super) fn least(&self, pixel: usize) -> f64 {
+        self.least[pixel]
+    }
+
+    /// Holds a fragment, of depth `t`, against what the client has at its pixel.
+    #[inline(always)]
+    pub(super) fn meet(
+        &self,
+        (pixel, fragment): (usize, &Fragment<'_, P>),
+        t: Ball<P>,
+        marks: &mut Marks,
+    ) {
+        let claim = &self.claims[pixel];
+        // A comparison that NaN fails.
+        let farther = fragment.most_near() < self.least[pixel];
+        if !(claim.open || farther || fragment.is_of(claim.nearest.id)) {
+            let (against, mut marks) = (Against { fragment, t }, marks.at(pixel));
+            against.judge(claim, &mut marks);
+            against.judge_tie(claim, (self.handed.ties, self.surfels), &mut marks);
+        }
+    }
+
+    /// Judges what the client says, and others against it.
+    pub(super) fn end(&self, marks: &mut Marks) {
+        for (pixel, claim) in self.claims.iter().enumerate().filter(|(_, claim)| !claim.open) {
+            claim.judge(self.handed, &mut marks.at(pixel));
+            others_of(self.others, pixel).iter().for_each(|other| {
+                other.judge(claim, &mut marks.at(pixel));
+            });
+        }
+    }
+}
+
+/// The depths that may be the nearest where the client says nothing.
+fn bound_open<P: Profile>(splats: &SwiftSplats<P>, claims: &mut [Claim<P>], tile: (usize, &Rect)) {
+    let open: Vec<bool> = claims.iter().map(|claim| claim.open).collect();
+    if !open.contains(&true) {
+        return;
+    }
+    let least = |pixel: usize| if open[pixel] { f64::NAN } else { f64::INFINITY };
+    each_fragment(splats, tile, least, |fragment, pixel| {
+        Against { fragment, t: fragment.depth() }.bound(&mut claims[pixel].range);
+    });
+    for claim in claims.iter_mut().filter(|claim| claim.open) {
+        claim.nearest.depth = between(claim.range);
+    }
+}
+
+/// What the client says of each pixel.
+fn claims<P: Profile>(
+    splats: &SwiftSplats<P>,
+    others: &[Vec<Other<P>>],
+    handed: &Handed<'_>,
+    (tile, rect): (usize, &Rect),
+) -> Vec<Claim<P>> {
+    let mut claims: Vec<Claim<P>> = pixels(*rect)
+        .enumerate()
+        .map(|(pixel, at)| {
+            let id = handed.id.map(|ids| *ids.plane.at(at.0, at.1));
+            let depth = handed.depth.map_or(Ball::INFINITY, |depth| depth.ball(at));
+            let nothing = depth.middle == f64::INFINITY && id.is_none_or(|id| id == NO_ID);
+            let error = if nothing { 0.0 } else { f64::INFINITY };
+            let mut claim = Claim {
+                nearest: Nearest { depth, id },
+                error,
+                closest: Ball::INFINITY,
+                outside: None,
+                open: handed.says_nothing(at),
+                range: [f64::INFINITY; 2],
+            };
+            claim.meet_others(handed, others_of(others, pixel));
+            claim
+        })
+        .collect();
+    let shared = &splats.shared;
+    let has_depth = handed.depth.is_some();
+    let mut meet = |splat: &Splat<Ball<P>>, pixel: usize, at| {
+        let (q, w) = fragment(shared, &splat.footprint, at);
+        claims[pixel].meet(shared, q, w, has_depth);
+    };
+    if let Some(ids) = handed.id {
+        // The pixels of each surfel, which are few of those in its bounds.
+        let shown =
+            pixels(*rect).enumerate().map(|(pixel, at)| (*ids.plane.at(at.0, at.1), pixel, at));
+        let mut shown: Vec<_> = shown.filter(|(id, ..)| *id != NO_ID).collect();
+        shown.sort_unstable();
+        splats.for_each(tile, |SwiftSplat { possible: PossibleSplat { splat, .. }, .. }| {
+            let first = shown.partition_point(|(id, ..)| *id < splat.surfel);
+            let own = shown[first..].iter().take_while(|(id, ..)| *id == splat.surfel);
+            let bounds = &splat.bounds;
+            for &(_, pixel, at) in own.filter(|(.., at)| bounds.contains(at.0, at.1)) {
+                meet(splat, pixel, at);
+            }
+        });
+    } else if has_depth {
+        splats.for_each(tile, |SwiftSplat { possible: PossibleSplat { splat, .. }, .. }| {
+            each_pixel(splat, rect, |pixel, at| meet(splat, pixel, at));
+        });
+    }
+    claims
+}
+
+impl<P: Profile> Claim<P> {
+    /// A fragment that may be the one that the client means.
+    fn meet(&mut self, shared: &Shared<Ball<P>>, q: Ball<P>, w: Ball<P>, has_depth: bool) {
+        let inside = decide::inside(q, shared.limit);
+        let outside = if inside.possibly() { 0.0 } else { q.distance(shared.limit) };
+        let t = shared.depth(w);
+        let misfit = if has_depth { t.misfit(self.nearest.depth) } else { 0.0 };
+        let error = if misfit > outside { misfit } else { outside };
+        if error <= self.error {
+            (self.error, self.closest) = (error, t);
+            let rim = q.middle / shared.limit.middle;
+            self.outside = (outside > 0.0).then_some(rim);
+            if !has_depth {
+                self.nearest.depth = t;
+            }
+        }
+    }
+
+    /// What is no splat and may be what the client means.
+    fn meet_others(&mut self, handed: &Handed<'_>, others: &[Other<P>]) {
+        let without_id = self.nearest.id.is_none_or(|id| id == NO_ID);
+        if others.is_empty() || !(self.open || without_id) {
+            return;
+        }
+        // What a picture shows there may be behind a fragment that no weight shows.
+        if handed.empty_is_open || self.open {
+            (self.open, self.nearest.id) = (true, None);
+        }
+        others.iter().for_each(|other| other.bound(&mut self.range));
+        if handed.depth.is_none() && !self.open {
+            // Of no id it may be any of them, or nothing.
+            self.nearest.depth = between(self.range);
+        } else if self.nearest.depth.middle < f64::INFINITY {
+            for other in others {
+                let error = other.depth.misfit(self.nearest.depth);
+                if error < self.error {
+                    (self.error, self.closest) = (error, other.depth);
+                }
+            }
+        }
+    }
+
+    /// Whether the claim itself can be.
+    fn judge(&self, handed: &Handed<'_>, pixel: &mut PixelMarks<'_>) {
+        let Nearest { depth, id } = self.nearest;
+        if handed.depth.is_none() && self.error <= 1.0 {
+            return;
+        }
+        let channel = || handed.depth.map_or_else(String::new, |depth| depth.name.to_owned());
+        pixel.found(self.error, || match id {
+            Some(NO_ID) => Fault::Value {
+                channel: channel(),
+                found: depth.middle,
+                truth: self.closest.middle,
+                radius: self.closest.radius,
+            },
+            Some(surfel) if self.closest.middle == f64::INFINITY => Fault::Absent { surfel },
+            Some(surfel) if self.outside.is_some() => {
+                Fault::Outside { surfel, rim: self.outside.unwrap_or_default() }
+            }
+            Some(_) => Fault::Value {
+                channel: channel(),
+                found: depth.middle,
+                truth: self.closest.middle,
+                radius: self.closest.radius + depth.radius,
+            },
+            None => Fault::NoSuchDepth { found: depth.middle, closest: self.closest.middle },
+        });
+    }
+}
+
+impl<P: Profile> Other<P> {
+    /// Whether it certainly is nearer than what the client has, or may be.
+    fn judge(&self, claim: &Claim<P>, pixel: &mut PixelMarks<'_>) {
+        let depth = claim.nearest.depth;
+        let nearer = decide::before(self.depth, depth);
+        if self.lies && nearer.certainly() {
+            pixel.found(self.depth.distance(depth), || Fault::Hidden {
+                depth: self.depth.middle,
+                found: depth.middle,
+            });
+        } else if nearer.possibly() && self.depth.misfit(depth) > 0.0 {
+            pixel.doubt(Doubt::Nearer, !nearer.certainly());
+            pixel.doubt(Doubt::Fate, !self.lies);
+        }
+    }
+
+    /// As [`Against::bound`].
+    fn bound(&self, [least, most]: &mut [f64; 2]) {
+        let Ball { middle, radius, .. } = self.depth;
+        let radius = if radius.is_nan() { f64::INFINITY } else { radius };
+        *least = least.at_most(middle - radius);
+        if self.lies {
+            *most = most.at_most(middle + radius);
+        }
+    }
+}
+
+/// A fragment that the client did not choose.
+struct Against<'a, P: Profile> {
+    fragment: &'a Fragment<'a, P>,
+    t: Ball<P>,
+}
+
+impl<P: Profile> Against<'_, P> {
+    /// Whether the fragment certainly is nearer than what the client has, or may be.
+    fn judge(&self, claim: &Claim<P>, pixel: &mut PixelMarks<'_>) {
+        let (fragment, depth) = (self.fragment, claim.nearest.depth);
+        let nearer = decide::before(self.t, depth);
+        if fragment.drawn && (fragment.inside & nearer).certainly() {
+            // As certain as the least certain of the two.
+            let (gap, margin) = (self.t.distance(depth), fragment.margin());
+            pixel.found(if gap < margin { gap } else { margin }, || Fault::LeftOut {
+                surfel: fragment.splat.surfel,
+                rim: fragment.rim(),
+                depth: self.t.middle,
+                found: depth.middle,
+            });
+        } else if nearer.possibly() {
+            pixel.doubt(Doubt::Nearer, !nearer.certainly());
+            pixel.doubt(Doubt::CutOff, !fragment.inside.certainly());
+            pixel.doubt(Doubt::Fate, !fragment.drawn);
+        }
+    }
+
+    /// Whether the fragment is exactly as near as that of the client, and comes before it.
+    ///
+    /// Depths are equal in every implementation where nothing was rounded, and where surfels have the
+    /// same numbers.
+    fn judge_tie(
+        &self,
+        claim: &Claim<P>,
+        (ties, surfels): (Ties, &Surfels),
+        pixel: &mut PixelMarks<'_>,
+    ) {
+        let Some(id) = claim.nearest.id else { return };
+        let surfel = self.fragment.splat.surfel;
+        let first = match ties {
+            Ties::Lowest => surfel < id,
+            Ties::Last => surfel > id && id != NO_ID,
+            Ties::Any => false,
+        };
+        let exact = self.t.distance(claim.closest) == f64::INFINITY
+            && self.fragment.inside.certainly()
+            && self.t.middle == claim.closest.middle;
+        if first && self.fragment.drawn && (exact || surfels.are_equal(surfel, id)) {
+            pixel.found(f64::INFINITY, || Fault::Tie { surfel, found: id });
+        }
+    }
+
+    /// The nearest depth that a pixel may have, if the client says nothing of it.
+    fn bound(&self, [least, most]: &mut [f64; 2]) {
+        let Ball { middle, radius, .. } = self.t;
+        *least = least.at_most(middle - radius);
+        if self.fragment.drawn && self.fragment.inside.certainly() {
+            *most = most.at_most(middle + radius);
+        }
+    }
+}
+
+/// The ball of an interval of depths; of one without an end, any depth.
+fn between<P: Profile>([least, most]: [f64; 2]) -> Ball<P> {
+    if least == f64::INFINITY {
+        Ball::INFINITY
+    } else if !least.is_finite() {
+        Ball::new(0.0, f64::INFINITY)
+    } else if most == f64::INFINITY {
+        Ball::new(least, f64::INFINITY)
+    } else {
+        Ball::new(0.5 * (least + most), 0.5 * (most - least))
+    }
+}

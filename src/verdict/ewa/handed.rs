@@ -1,0 +1,185 @@
+//! The planes that a client has handed in, by the stage that judges them.
+
+use crate::frame::NO_ID;
+use crate::method::ewa::planes;
+use crate::method::resolved;
+use crate::method::stage::PlaneRow;
+use crate::splat::record::SplatRecord;
+use crate::verdict::client::{Band, Client, Storage, Stored, Ties};
+
+/// The planes of a client, each if it is there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Handed<'a> {
+    /// The splats, if the client has projected them.
+    pub(crate) records: Option<&'a [SplatRecord]>,
+    /// Depth and surfel of the nearest fragment: those of the visibility pass, else the picture's.
+    pub(crate) depth: Option<Stored<'a, f64>>,
+    pub(crate) id: Option<Stored<'a, u32>>,
+    pub(crate) ties: Ties,
+    pub(crate) band: Band,
+    /// The sums of the attribute pass; its weight may be the picture's.
+    pub(crate) weight: Option<Stored<'a, f64>>,
+    pub(crate) normal_sum: Option<Stored<'a, [f64; 3]>>,
+    pub(crate) color_sum: Option<Stored<'a, [f64; 3]>>,
+    pub(crate) count: Option<Stored<'a, u8>>,
+    pub(crate) accumulator: Storage,
+    /// The averages.
+    pub(crate) color: Option<Stored<'a, [f64; 3]>>,
+    pub(crate) normal: Option<Stored<'a, [f64; 3]>>,
+    pub(crate) opacity: Option<Stored<'a, f64>>,
+    /// 1 where there is something, else 0.
+    pub(crate) mask: Option<Stored<'a, u8>>,
+    /// Copies in the picture of what an earlier pass has left, if both are there.
+    pub(crate) depth_copy: Option<Stored<'a, f64>>,
+    pub(crate) id_copy: Option<Stored<'a, u32>>,
+    /// Whether a pixel of the picture that has no weight is empty, whatever fragment is nearest: the copies
+    /// are judged so.
+    pub(crate) weightless: bool,
+    /// Whether a pixel that is empty says nothing of the nearest fragment: one of such a picture.
+    pub(crate) empty_is_open: bool,
+    pub(crate) weight_copy: Option<Stored<'a, f64>>,
+    /// The picture.
+    pub(crate) shaded: Option<Stored<'a, [f64; 3]>>,
+    pub(crate) alpha: Option<Stored<'a, f64>>,
+}
+
+/// The rows of what comes before the averages.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SumRows {
+    /// Depth and surfel of the nearest fragment, if a stage of its own leaves them.
+    pub(crate) nearest: Option<[PlaneRow; 2]>,
+    pub(crate) weight: PlaneRow,
+    pub(crate) normal: PlaneRow,
+    pub(crate) color: PlaneRow,
+    pub(crate) count: PlaneRow,
+}
+
+impl<'a> Handed<'a> {
+    pub(crate) fn new(client: &'a Client) -> Self {
+        Self::of(
+            client,
+            &SumRows {
+                nearest: Some([planes::NEAREST, planes::NEAREST_ID]),
+                weight: planes::WEIGHT_SUM,
+                normal: planes::NORMAL_SUM,
+                color: planes::COLOR_SUM,
+                count: planes::COUNT,
+            },
+        )
+    }
+
+    /// The same of another method that ends in averages and their shading.
+    pub(crate) fn of(client: &'a Client, rows: &SumRows) -> Self {
+        let first = |own: Option<_>, other: Option<_>| (own.or(other), own.and(other));
+        let nearest = rows.nearest.as_ref();
+        let own = nearest.and_then(|[depth, _]| client.scalar(depth));
+        let (depth, depth_copy) = first(own, client.scalar(&resolved::DEPTH));
+        let (weight, weight_copy) =
+            first(client.scalar(&rows.weight), client.scalar(&resolved::WEIGHT));
+        let own = nearest.and_then(|[_, id]| client.index(id));
+        let other = client.index(&resolved::ID);
+        Self {
+            records: client.records.as_deref(),
+            depth,
+            id: own.or(other),
+            ties: client.ties,
+            band: client.band,
+            weight,
+            normal_sum: client.triple(&rows.normal),
+            color_sum: client.triple(&rows.color),
+            count: client.count(&rows.count),
+            accumulator: client.accumulator,
+            color: client.triple(&resolved::COLOR),
+            normal: client.triple(&resolved::NORMAL),
+            opacity: None,
+            mask: None,
+            depth_copy,
+            id_copy: own.and(other),
+            weightless: false,
+            empty_is_open: false,
+            weight_copy,
+            shaded: client.triple(&resolved::SHADED),
+            alpha: client.scalar(&resolved::ALPHA),
+        }
+    }
+
+    /// Whether nothing is said of the nearest fragments.
+    pub(crate) fn nothing(&self) -> bool {
+        self.depth.is_none() && self.id.is_none()
+    }
+
+    /// Whether nothing is said of the sums.
+    pub(crate) fn no_sums(&self) -> bool {
+        let triples = [self.normal_sum, self.color_sum];
+        self.weight.is_none() && self.count.is_none() && triples.iter().all(Option::is_none)
+    }
+
+    /// Whether nothing is said of the nearest fragment of a pixel.
+    pub(super) fn says_nothing(&self, (x, y): (u32, u32)) -> bool {
+        let far = || self.depth.is_none_or(|plane| *plane.plane.at(x, y) == f64::INFINITY);
+        let none = || self.id.is_none_or(|plane| *plane.plane.at(x, y) == NO_ID);
+        self.nothing() || (self.empty_is_open && far() && none())
+    }
+
+    /// Whether every plane that is there says that nothing is at a pixel, and is black.
+    pub(crate) fn is_empty(&self, (x, y): (u32, u32)) -> bool {
+        let far = |plane: Option<Stored<'_, f64>>| {
+            plane.is_none_or(|plane| *plane.plane.at(x, y) == f64::INFINITY)
+        };
+        let none = |plane: Option<Stored<'_, u32>>| {
+            plane.is_none_or(|plane| *plane.plane.at(x, y) == NO_ID)
+        };
+        let zero =
+            |plane: Option<Stored<'_, f64>>| plane.is_none_or(|plane| *plane.plane.at(x, y) == 0.0);
+        let zeros = |plane: Option<Stored<'_, [f64; 3]>>| {
+            // Not as arrays, which are compared by a call.
+            plane.is_none_or(|plane| {
+                let [a, b, c] = *plane.plane.at(x, y);
+                (a == 0.0) & (b == 0.0) & (c == 0.0)
+            })
+        };
+        let clear =
+            |plane: Option<Stored<'_, u8>>| plane.is_none_or(|plane| *plane.plane.at(x, y) == 0);
+        far(self.depth)
+            && far(self.depth_copy)
+            && [self.id, self.id_copy].into_iter().all(none)
+            && [self.weight, self.weight_copy, self.opacity, self.alpha].into_iter().all(zero)
+            && [self.normal_sum, self.color_sum, self.color, self.normal, self.shaded]
+                .into_iter()
+                .all(zeros)
+            && [self.count, self.mask].into_iter().all(clear)
+    }
+
+    /// The stages, each with the planes that it judges.
+    pub(crate) fn stages(&self) -> [(&'static str, Vec<&'static str>); 4] {
+        let listed = |planes: &[Option<&'static str>]| planes.iter().flatten().copied().collect();
+        let scalar = |plane: &Option<Stored<'_, f64>>| plane.map(|plane| plane.name);
+        let triple = |plane: &Option<Stored<'_, [f64; 3]>>| plane.map(|plane| plane.name);
+        let index = |plane: &Option<Stored<'_, u32>>| plane.map(|plane| plane.name);
+        [
+            ("visibility", listed(&[scalar(&self.depth), index(&self.id)])),
+            (
+                "attributes",
+                listed(&[
+                    scalar(&self.weight),
+                    triple(&self.normal_sum),
+                    triple(&self.color_sum),
+                    self.count.map(|plane| plane.name),
+                ]),
+            ),
+            (
+                "normalization",
+                listed(&[
+                    triple(&self.color),
+                    triple(&self.normal),
+                    scalar(&self.opacity),
+                    self.mask.map(|plane| plane.name),
+                    scalar(&self.depth_copy),
+                    index(&self.id_copy),
+                    scalar(&self.weight_copy),
+                ]),
+            ),
+            ("shading", listed(&[triple(&self.shaded), scalar(&self.alpha)])),
+        ]
+    }
+}

@@ -1,0 +1,180 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Surfels are projected in [`Ball`](crate::number::Ball)s of a [`Profile`]; a fragment is asked as for the
+//! [margin](super#the-margin). Each stage is judged from what the client has of the stage before,
+//! as it is stored; what the client has not is taken from the balls.
+//!
+//! **Projection**, if the client hands in its records: each number of a record is in its ball, normal,
+//! opacity and colour are the surfel's, and there is a record of every surfel that certainly is drawn and
+//! of none that certainly is not. A record is marked at the pixel of its centre. What follows is
+//! judged from the records, as they are stored.
+//!
+//! **Visibility**, a certificate. Z and id are those of `visibility`, else of the picture.
+//!
+//! 1. The surfel of the id has a fragment at the pixel that possibly is inside.
+//! 2. Z is in the ball of its depth. With Z alone some fragment must satisfy 1 and 2.
+//! 3. No other surfel that certainly is drawn has a fragment that certainly is inside and whose depth
+//!    certainly is less than Z; without Z, than the depth of the id's fragment. Of an empty pixel
+//!    Z is +inf, so that no fragment certainly is inside.
+//!
+//! 4. No surfel comes before that of the id, as the client says of ties, whose depth is equal and
+//!    exact in balls, or all of whose numbers are those of the id's surfel.
+//!
+//! The id of other near ties is one of a set, and harmless: the sums take their limit from the
+//! client's Z.
+//!
+//! **Attributes.** A fragment is in the sums if it is drawn, inside, and of a depth of at most Z +
+//! epsilon; that of the id always passes. Where that is undecided, both continuations are kept, 2^n
+//! for n <= 4 fragments; a pixel is right if one of them fits every plane. With more than four
+//! the sums are not judged. Without Z and id, Z is any depth from the least that may be the nearest
+//! to the least that certainly is inside.
+//!
+//! **Normalization and shading**: the formulas of the crate in balls. An environment is seen where
+//! nothing else is, as in [`transparent`](crate::verdict::transparent).
+//!
+//! The error of a number is the distance from the midpoint of its ball, divided by the sum of the
+//! ball's radius and of what its format may lose: up to 1 is right. The error of a certificate that
+//! fails is the distance of the decision that had to be otherwise; of an id or a count it is +inf.
+
+mod band;
+pub(crate) mod certificate;
+pub(crate) mod handed;
+pub(crate) mod pixel;
+mod records;
+mod right;
+pub(crate) mod sums;
+pub(crate) mod swift;
+#[cfg(test)]
+mod tests;
+
+use crate::error::Result;
+use crate::frame::Rect;
+use crate::method::Job;
+use crate::method::ewa::Settings;
+use crate::number::ball::Profile;
+use crate::number::lanes::LANES;
+use crate::scene::Surfels;
+use crate::verdict::client::Client;
+use crate::verdict::marks::{self, Counts, Marks, counted};
+use crate::verdict::shift::Told;
+use crate::verdict::{Check, Doubt, Verdict};
+use band::Bands;
+use certificate::{Certificate, Nearest};
+use handed::Handed;
+use pixel::PixelJudge;
+use right::{Errors, RightPixels};
+use sums::{AllSums, Continuations};
+use swift::SwiftSplats;
+
+/// Judges the planes of a client.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Verdict {
+    let handed = Handed::new(client);
+    let judge = Judge::<P>::new(job, settings, &handed);
+    let verdict =
+        marks::verdict(job, handed.stages(), budget, |tile, marks| judge.judge(tile, marks));
+    match &client.records {
+        Some(records) => verdict.after(records::judge::<P>(job, settings, records)),
+        None => verdict,
+    }
+}
+
+/// Everything that is judged at one pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    let handed = Handed::new(client);
+    let judge = Judge::<P>::new(job, settings, &handed);
+    let stages = handed.stages().map(|(stage, _)| stage);
+    marks::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
+}
+
+/// What all tiles share.
+struct Judge<'a, P: Profile> {
+    surfels: &'a Surfels,
+    handed: &'a Handed<'a>,
+    splats: SwiftSplats<P>,
+    bands: Bands<'a, P>,
+    pixels: PixelJudge<'a, P>,
+    right: Option<RightPixels<'a, P>>,
+}
+
+impl<'a, P: Profile> Judge<'a, P> {
+    fn new(job: &Job<'a>, settings: &Settings, handed: &'a Handed<'a>) -> Self {
+        let splats = match handed.records {
+            Some(records) => records::project(job, settings, records),
+            None => swift::project(job, settings),
+        };
+        let bands = Bands::new(job, handed.band, splats.epsilon);
+        let pixels = PixelJudge::new(job, handed);
+        let right = RightPixels::new(job, handed);
+        Self { surfels: &job.scene.surfels, handed, splats, bands, pixels, right }
+    }
+
+    /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
+        let Self { surfels, handed, splats, bands, pixels, .. } = self;
+        let [first, rest @ ..] = marks;
+        let certificate = Certificate::new(splats, &[], (handed, surfels), (tile, &rect));
+        let nearest = certificate.nearest();
+        let limits = bands.moved(&nearest, &rect);
+        let beside = Some((&certificate, &mut *first));
+        let added = sums::add(splats, surfels, &limits, (tile, &rect), beside, &mut rest[0]);
+        certificate.end(first);
+        let right = self.right(rect, &nearest, &added.sums, &rest[0]);
+        let sums = added.followed(|pixel| right[pixel].is_none());
+        let (mut covered, mut told) = (0, Told::default());
+        for (pixel, at) in counted(rect) {
+            let is_finite = nearest[pixel].depth.middle.is_finite();
+            if let Some(errors) = right[pixel] {
+                for (marks, error) in rest.iter_mut().zip(errors) {
+                    marks.at(pixel).right(error);
+                }
+                covered += u64::from(is_finite);
+                continue;
+            }
+            let sums = sums.of(pixel);
+            let taken = pixels.judge((pixel, at), &nearest[pixel], &sums, rest);
+            if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
+                told.take_all(open, taken);
+            }
+            let certain = matches!(sums, Continuations::One(_));
+            covered += u64::from(is_finite || !certain);
+        }
+        Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS), told }
+    }
+
+    /// The errors of the pixels of a rectangle that are right, as far as that is seen at once.
+    fn right(
+        &self,
+        rect: Rect,
+        nearest: &[Nearest<P>],
+        sums: &AllSums<P>,
+        marks: &Marks,
+    ) -> Vec<Option<Errors>> {
+        let mut found = vec![None; rect.pixels()];
+        let Some(right) = self.right.as_ref().filter(|_| !marks.logs()) else { return found };
+        let mut asked = Vec::with_capacity(found.len());
+        for (pixel, at) in counted(rect).filter(|(pixel, _)| sums.undecided[*pixel] == 0) {
+            if sums.count[pixel] > 0 {
+                asked.push((pixel, at));
+            } else if self.pixels.is_right_of_nothing(at) {
+                found[pixel] = Some([0.0; 3]);
+            }
+        }
+        for some in asked.chunks(LANES) {
+            let errors = right.errors(some, nearest, sums);
+            for ((pixel, _), errors) in some.iter().zip(errors) {
+                found[*pixel] = errors;
+            }
+        }
+        found
+    }
+}

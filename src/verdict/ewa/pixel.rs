@@ -1,0 +1,370 @@
+//! One pixel of a client after the visibility pass: sums, averages and shading, each from what the
+//! client has of the stage before.
+
+use super::certificate::Nearest;
+use super::handed::Handed;
+use super::sums::Continuations;
+use crate::composite::sum;
+use crate::frame::NO_ID;
+use crate::method::Holds;
+use crate::method::Job;
+use crate::method::ewa::attributes::Sums;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real, Truth};
+use crate::scene::Surfels;
+use crate::verdict::checks::{
+    Report, Shading, Surface, anything, input, inputs, least_wrong, number, only_fitting, triple,
+    whole, widened,
+};
+use crate::verdict::client::Storage;
+use crate::verdict::marks::Marks;
+use std::borrow::Cow;
+
+/// The stages after visibility, by their place among the marks.
+pub(super) const ATTRIBUTES: usize = 0;
+pub(super) const NORMALIZATION: usize = 1;
+pub(super) const SHADING: usize = 2;
+
+/// What all pixels share.
+pub(crate) struct PixelJudge<'a, P: Profile> {
+    handed: &'a Handed<'a>,
+    shading: Shading<'a, P>,
+    /// Whether surfels have colours; else the material has one.
+    colored: bool,
+    /// The greatest component of a colour, at least 1.
+    brightest: f64,
+    /// The direction where no weight has arrived, whatever the sums are.
+    nowhere: [Ball<P>; 3],
+}
+
+/// The averages of a pixel.
+struct Averages<P: Profile> {
+    normal: [Ball<P>; 3],
+    color: [Ball<P>; 3],
+}
+
+impl<'a, P: Profile> PixelJudge<'a, P> {
+    pub(crate) fn new(job: &Job<'a>, handed: &'a Handed<'a>) -> Self {
+        Self::of_surfels(job, &job.scene.surfels, handed)
+    }
+
+    /// The same of the surfels of objects in their places.
+    pub(crate) fn of_surfels(job: &Job<'a>, surfels: &Surfels, handed: &'a Handed<'a>) -> Self {
+        let colors = surfels.color().unwrap_or_default();
+        let brightest = colors.iter().fold(1.0_f64, |brightest, color| {
+            let [r, g, b] = color.to_array().map(f64::from);
+            brightest.at_least(r).at_least(g).at_least(b)
+        });
+        let colored = surfels.color().is_some();
+        let shading = Shading::new(job, colored);
+        let nowhere = sum::direction([Ball::ZERO; 3], Ball::ZERO);
+        Self { handed, shading, colored, brightest, nowhere }
+    }
+
+    /// The same of a layer, behind which others may be seen.
+    pub(crate) fn of_layer(job: &Job<'a>, handed: &'a Handed<'a>) -> Self {
+        let colored = job.scene.surfels.color().is_some();
+        Self { shading: Shading::of_layer(job, colored), ..Self::new(job, handed) }
+    }
+
+    /// Marks what is wrong at a pixel: by the continuation that errs least. Gives the number of the only
+    /// one that fits, if one does and others do not.
+    pub(crate) fn judge(
+        &self,
+        (pixel, at): (usize, (u32, u32)),
+        nearest: &Nearest<P>,
+        sums: &Continuations<P>,
+        marks: &mut [Marks; 3],
+    ) -> Option<usize> {
+        let all = all(sums);
+        let nothing = matches!(all, [Sums { count: 0, .. }]) && !marks[ATTRIBUTES].logs();
+        if nothing && self.is_right_of_nothing(at) {
+            return None;
+        }
+        let check = |sums: &_, report: &mut Report<'_>| self.check(at, nearest, Some(sums), report);
+        self.check(at, nearest, least_wrong::<_, 3>(all, check), &mut |part, error, fault| {
+            marks[part].at(pixel).found(error, fault);
+        });
+        only_fitting(all, check)
+    }
+
+    /// Whether, if nothing is at a pixel, the client has nothing: every check finds an error of 0.
+    pub(super) fn is_right_of_nothing(&self, at: (u32, u32)) -> bool {
+        self.shading.is_black() && self.handed.is_empty(at)
+    }
+
+    /// Opacity and shaded colour as the next pass reads them: the client's, else all that they may be.
+    pub(crate) fn read(
+        &self,
+        at: (u32, u32),
+        nearest: &Nearest<P>,
+        sums: &Continuations<P>,
+    ) -> (Ball<P>, [Ball<P>; 3]) {
+        let handed = self.handed;
+        if let (Some(opacity), Some(color)) = (&handed.opacity, &handed.shaded) {
+            return (input(opacity, at), inputs(color, at));
+        }
+        let of = |sums: Option<&Sums<Ball<P>>>| {
+            let stored = sums.map(|sums| self.stored(sums));
+            let sums = stored.as_deref();
+            let averages = self.averages(at, sums);
+            (self.opacity(at, sums), self.color(at, self.depth(at, nearest, sums), &averages))
+        };
+        let each = all(sums).iter().map(|sums| of(Some(sums)));
+        let (opacity, color) = each
+            .reduce(|a, b| (a.0.either(b.0), Ball::either_of(a.1, b.1)))
+            .unwrap_or_else(|| of(None));
+        (
+            handed.opacity.map_or(opacity, |plane| input(&plane, at)),
+            handed.shaded.map_or(color, |plane| inputs(&plane, at)),
+        )
+    }
+
+    /// Whether the picture has a depth and no id, as no splat leaves.
+    pub(crate) fn shows_no_splats(&self, (x, y): (u32, u32)) -> bool {
+        let Handed { depth_copy, id_copy, .. } = self.handed;
+        depth_copy.is_some_and(|plane| *plane.plane.at(x, y) < f64::INFINITY)
+            && id_copy.is_some_and(|plane| *plane.plane.at(x, y) == NO_ID)
+    }
+
+    /// Every plane at a pixel that shows no splats but another surface, with these sums. A weight that the
+    /// picture shows is not that of the sums: `handed` has no such.
+    pub(crate) fn check_other(
+        &self,
+        at: (u32, u32),
+        surface: &Surface<P>,
+        sums: Option<&Sums<Ball<P>>>,
+        report: &mut Report<'_>,
+    ) {
+        if let Some(sums) = sums {
+            self.check_sums(at, &self.stored(sums), report);
+        }
+        let (handed, Surface { depth, normal, color, .. }) = (self.handed, *surface);
+        if let (Some(plane), true) = (&handed.color, self.colored) {
+            triple(NORMALIZATION, (plane, Holds::Color), at, color, report);
+        }
+        if let Some(plane) = &handed.normal {
+            triple(NORMALIZATION, (plane, Holds::Vector), at, normal, report);
+        }
+        if let Some(plane) = &handed.depth_copy {
+            number(NORMALIZATION, plane, at, depth, report);
+        }
+        if let Some(plane) = &handed.id_copy {
+            whole(NORMALIZATION, plane, at, NO_ID, report);
+        }
+        if let Some(plane) = &handed.weight_copy {
+            number(NORMALIZATION, plane, at, Ball::<P>::ONE, report);
+        }
+        if let Some(plane) = &handed.shaded {
+            let depth = handed.depth_copy.map_or(depth, |plane| plane.ball(at));
+            let color = self.color(at, depth, &Averages { normal, color });
+            triple(SHADING, (plane, Holds::Color), at, color, report);
+        }
+        if let Some(plane) = &handed.alpha {
+            let weight = handed.weight_copy.map_or(Ball::ONE, |plane| plane.ball(at));
+            number(SHADING, plane, at, self.shading.alpha(weight), report);
+        }
+    }
+
+    /// Every plane at a pixel, with these sums; without any, as far as the client's own are there.
+    pub(crate) fn check(
+        &self,
+        at: (u32, u32),
+        nearest: &Nearest<P>,
+        sums: Option<&Sums<Ball<P>>>,
+        report: &mut Report<'_>,
+    ) {
+        let stored = sums.map(|sums| self.stored(sums));
+        let sums = stored.as_deref();
+        if let Some(sums) = sums {
+            self.check_sums(at, sums, report);
+        }
+        let averages = self.averages(at, sums);
+        self.check_averages(at, (&averages, sums), report);
+        self.check_copies(at, nearest, sums, report);
+        let handed = self.handed;
+        if let Some(plane) = &handed.shaded {
+            let color = self.color(at, self.depth(at, nearest, sums), &averages);
+            triple(SHADING, (plane, Holds::Color), at, color, report);
+        }
+        if let Some(plane) = &handed.alpha {
+            let weight =
+                handed.weight_copy.map_or_else(|| self.weight_of(at, sums), |plane| plane.ball(at));
+            number(SHADING, plane, at, self.shading.alpha(weight), report);
+        }
+    }
+
+    /// Sums as the client may have stored them between two additions, each of which rounds a sum that
+    /// is at most this large.
+    fn stored<'s>(&self, sums: &'s Sums<Ball<P>>) -> Cow<'s, Sums<Ball<P>>> {
+        if self.handed.accumulator == Storage::Single {
+            return Cow::Borrowed(sums);
+        }
+        let heaviest = sums.weight.middle + sums.weight.radius;
+        let lost = |largest: f64| {
+            f64::from(sums.count) * self.handed.accumulator.radius(heaviest * largest)
+        };
+        Cow::Owned(Sums {
+            weight: widened(sums.weight, lost(1.0)),
+            normal: sums.normal.map(|part| widened(part, lost(1.0))),
+            color: sums.color.map(|part| widened(part, lost(self.brightest))),
+            opacity: widened(sums.opacity, lost(1.0)),
+            count: sums.count,
+        })
+    }
+
+    /// The sums of the attribute pass, as stored.
+    fn check_sums(&self, at: (u32, u32), truth: &Sums<Ball<P>>, report: &mut Report<'_>) {
+        let Handed { weight, normal_sum, color_sum, count, mask, .. } = self.handed;
+        if let Some(plane) = weight {
+            number(ATTRIBUTES, plane, at, truth.weight, report);
+        }
+        if let Some(plane) = normal_sum {
+            triple(ATTRIBUTES, (plane, Holds::Vector), at, truth.normal, report);
+        }
+        if let Some(plane) = color_sum {
+            triple(ATTRIBUTES, (plane, Holds::Color), at, truth.color, report);
+        }
+        if let Some(plane) = count {
+            whole(ATTRIBUTES, plane, at, truth.count, report);
+        }
+        if let Some(plane) = mask {
+            whole(ATTRIBUTES, plane, at, u8::from(truth.count > 0), report);
+        }
+    }
+
+    /// The sum of the weights as the average reads it.
+    pub(crate) fn weight(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
+        self.weight_of(at, sums.map(|sums| self.stored(sums)).as_deref())
+    }
+
+    /// The same of sums as stored, as all sums below are.
+    fn weight_of(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
+        let own = || sums.map_or_else(anything, |sums| sums.weight);
+        self.handed.weight.map_or_else(own, |plane| plane.ball(at))
+    }
+
+    /// The averages of the client's sums, else of these; of none, they are any.
+    fn averages(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Averages<P> {
+        let weight = self.weight_of(at, sums);
+        let unknown = [anything(); 3];
+        let normal = match &self.handed.normal_sum {
+            Some(plane) => plane.balls(at),
+            None => sums.map_or(unknown, |sums| sums.normal),
+        };
+        let color = match &self.handed.color_sum {
+            Some(plane) => plane.balls(at),
+            None => sums.map_or(unknown, |sums| sums.color),
+        };
+        let some = weight.gt(Ball::ZERO).possibly();
+        Averages {
+            normal: if some { sum::direction(normal, weight) } else { self.nowhere },
+            color: if self.colored { sum::average(color, weight) } else { [Ball::ZERO; 3] },
+        }
+    }
+
+    /// The opacity of a layer.
+    fn opacity(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
+        let own = sums.map_or_else(anything, |sums| sums.opacity);
+        let [opacity, ..] = sum::average([own; 3], self.weight_of(at, sums));
+        opacity.at_most(Ball::ONE)
+    }
+
+    /// Averages.
+    fn check_averages(
+        &self,
+        at: (u32, u32),
+        (averages, sums): (&Averages<P>, Option<&Sums<Ball<P>>>),
+        report: &mut Report<'_>,
+    ) {
+        let handed = self.handed;
+        if let (Some(plane), true) = (&handed.color, self.colored) {
+            triple(NORMALIZATION, (plane, Holds::Color), at, averages.color, report);
+        }
+        if let Some(plane) = &handed.normal {
+            triple(NORMALIZATION, (plane, Holds::Vector), at, averages.normal, report);
+        }
+        if let Some(plane) = &handed.opacity {
+            number(NORMALIZATION, plane, at, self.opacity(at, sums), report);
+        }
+    }
+
+    /// Copies of what earlier passes left.
+    fn check_copies(
+        &self,
+        at: (u32, u32),
+        nearest: &Nearest<P>,
+        sums: Option<&Sums<Ball<P>>>,
+        report: &mut Report<'_>,
+    ) {
+        let handed = self.handed;
+        if let (Some(first), Some(copy)) = (handed.weight, handed.weight_copy) {
+            number(NORMALIZATION, &copy, at, first.ball::<P>(at), report);
+        }
+        if handed.weightless {
+            return self.check_shown(at, nearest, sums, report);
+        }
+        if let (Some(first), Some(copy)) = (handed.depth, handed.depth_copy) {
+            number(NORMALIZATION, &copy, at, first.ball::<P>(at), report);
+        }
+        if let (Some(first), Some(copy)) = (handed.id, handed.id_copy) {
+            whole(NORMALIZATION, &copy, at, *first.plane.at(at.0, at.1), report);
+        }
+    }
+
+    /// Depth and id of a picture that shows them where it has weight.
+    fn check_shown(
+        &self,
+        at: (u32, u32),
+        nearest: &Nearest<P>,
+        sums: Option<&Sums<Ball<P>>>,
+        report: &mut Report<'_>,
+    ) {
+        let some = self.weight_of(at, sums).gt(Ball::ZERO);
+        if let Some(copy) = &self.handed.depth_copy {
+            let empty = *copy.plane.at(at.0, at.1) == f64::INFINITY;
+            let shown = some.decided().unwrap_or(!empty);
+            let truth = if shown { nearest.depth } else { Ball::INFINITY };
+            number(NORMALIZATION, copy, at, truth, report);
+        }
+        if let Some(copy) = &self.handed.id_copy {
+            let empty = *copy.plane.at(at.0, at.1) == NO_ID;
+            match (some.decided().unwrap_or(!empty), nearest.id) {
+                (false, _) => whole(NORMALIZATION, copy, at, NO_ID, report),
+                (true, Some(id)) => whole(NORMALIZATION, copy, at, id, report),
+                (true, None) => {}
+            }
+        }
+    }
+
+    /// The depth that is shaded.
+    fn depth(&self, at: (u32, u32), nearest: &Nearest<P>, sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
+        let own = if self.handed.weightless {
+            match self.weight_of(at, sums).gt(Ball::ZERO).decided() {
+                Some(true) => nearest.depth,
+                Some(false) => Ball::INFINITY,
+                None => anything(),
+            }
+        } else {
+            let nothing = self.handed.nothing() && sums.is_some_and(|sums| sums.count == 0);
+            if nothing { Ball::INFINITY } else { nearest.depth }
+        };
+        self.handed.depth_copy.map_or(own, |plane| plane.ball(at))
+    }
+
+    /// The shaded colour of the client's averages, else of these.
+    fn color(&self, at: (u32, u32), depth: Ball<P>, averages: &Averages<P>) -> [Ball<P>; 3] {
+        let normal = self.handed.normal.map_or(averages.normal, |plane| plane.balls(at));
+        let color = self.handed.color.map_or(averages.color, |plane| plane.balls(at));
+        self.shading.color(at, &Surface { depth, normal, tangent: None, color })
+    }
+}
+
+/// What the sums of a pixel may be, as far as that is known.
+pub(crate) fn all<P: Profile>(sums: &Continuations<P>) -> &[Sums<Ball<P>>] {
+    match sums {
+        Continuations::One(sums) => std::slice::from_ref(sums),
+        Continuations::Several(sums, _) => sums,
+        Continuations::Many => &[],
+    }
+}

@@ -1,0 +1,235 @@
+//! The projection of a client: its records, each number in its ball, and no surfel too many or too
+//! few. The stages that follow are judged from these records, exact as they are stored.
+
+use super::swift::{SwiftSplat, SwiftSplats};
+use crate::frame::Rect;
+use crate::method::Job;
+use crate::method::ewa::Settings;
+use crate::method::ewa::possible::{self, PossibleSplat};
+use crate::method::prepare::Prepared;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real, Truth, Vector2};
+use crate::scene::Surfels;
+use crate::splat::project::project_as;
+use crate::splat::record::SplatRecord;
+use crate::splat::{Footprint, Projector, Reasons, Splat, Tally, View, batch};
+use crate::verdict::marks::Marks;
+use crate::verdict::{Fault, Judged};
+
+/// The stage, and the name of what it judges.
+const STAGE: &str = "projection";
+
+/// The splats of a client's records, each in the bounds that the surfel may have.
+pub(super) fn project<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    records: &[SplatRecord],
+) -> SwiftSplats<P> {
+    let surfels = &job.scene.surfels;
+    let picture = job.picture();
+    Prepared::new(
+        (job, &job.grid()),
+        settings,
+        records.len(),
+        |projector, range, splats| {
+            for record in &records[range] {
+                let Some(disc) = disc(surfels, record) else { continue };
+                let mut bounds = Rect::default();
+                possible::each_possible(projector, &disc, record.surfel, &mut |splat, _| {
+                    bounds = bounds.hull(&splat.bounds.intersection(&picture));
+                });
+                if !bounds.is_empty() {
+                    let footprint = record.footprint().map(Ball::from_f32);
+                    let back = (record.back != 0).into();
+                    let splat = Splat { footprint, bounds, surfel: record.surfel, back };
+                    splats.push(SwiftSplat::new(PossibleSplat { splat, certain: true }));
+                }
+            }
+            Tally::default()
+        },
+        SwiftSplat::bounds,
+    )
+}
+
+/// The surfel of a record, if there is such a surfel.
+fn disc<P: Profile>(
+    surfels: &Surfels,
+    record: &SplatRecord,
+) -> Option<crate::splat::Disc<Ball<P>>> {
+    let i = record.surfel as usize;
+    (i < surfels.len()).then(|| batch::disc(surfels, i))
+}
+
+/// What is wrong of the records, each marked at the pixel of its centre.
+pub(super) fn judge<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    records: &[SplatRecord],
+) -> Judged {
+    let surfels = &job.scene.surfels;
+    let projector =
+        Projector::<Ball<P>>::new(View::new(job.camera), &settings.kernel, settings.cull);
+    let ranges = (0..surfels.len()).step_by(4096);
+    let ranges = ranges.map(|first| first..surfels.len().min(first + 4096)).collect();
+    let found = job.exec.ordered(ranges, |range: std::ops::Range<usize>| {
+        let of_surfel = |i: usize| {
+            let at = records.binary_search_by_key(&(i as u32), |record| record.surfel);
+            judge_surfel(&projector, surfels, i as u32, at.ok().map(|at| &records[at]))
+        };
+        range.filter_map(of_surfel).collect::<Vec<_>>()
+    });
+    let mut marks = Marks::picture(job);
+    for Worst { error, at, surfel, what } in found.into_iter().flatten() {
+        marks.at(pixel(job, at)).found(error, || what.fault(surfel));
+    }
+    for record in records.iter().filter(|record| record.surfel as usize >= surfels.len()) {
+        let fault = || Fault::Projected { surfel: record.surfel };
+        marks.at(pixel(job, record.center)).found(f64::INFINITY, fault);
+    }
+    marks.whole(STAGE, vec!["records"])
+}
+
+/// The pixel of a place, or that of the border next to it.
+fn pixel(job: &Job<'_>, place: [f32; 2]) -> usize {
+    let size = job.camera.size();
+    let [x, y] = [0, 1].map(|i| f64::from(place[i]).clamped(0.0, f64::from(size[i] - 1)) as usize);
+    y * size[0] as usize + x
+}
+
+/// What errs most of the record of a surfel: without words, as most records are right.
+#[derive(Clone, Copy)]
+struct Worst {
+    /// By how many bounds.
+    error: f64,
+    /// Where it is.
+    at: [f32; 2],
+    surfel: u32,
+    what: What,
+}
+
+#[derive(Clone, Copy)]
+enum What {
+    /// A number: which, the client's, the truth, and how far from that it may be.
+    Number {
+        name: &'static str,
+        found: f64,
+        truth: f64,
+        radius: f64,
+    },
+    /// The side that is seen; the client's.
+    Side {
+        back: bool,
+    },
+    Copied,
+    Projected,
+    NotProjected,
+}
+
+impl What {
+    /// In words.
+    fn fault(self, surfel: u32) -> Fault {
+        match self {
+            Self::Number { name, found, truth, radius } => {
+                let channel = format!("{name} of surfel {surfel}");
+                Fault::Value { channel, found, truth, radius }
+            }
+            Self::Side { back } => {
+                let channel = format!("back of surfel {surfel}");
+                Fault::Whole { channel, found: back.into(), truth: (!back).into() }
+            }
+            Self::Copied => Fault::Copied { surfel },
+            Self::Projected => Fault::Projected { surfel },
+            Self::NotProjected => Fault::NotProjected { surfel },
+        }
+    }
+}
+
+/// What errs most of the record of a surfel; none of a surfel that is not drawn and need not be.
+fn judge_surfel<P: Profile>(
+    projector: &Projector<Ball<P>>,
+    surfels: &Surfels,
+    surfel: u32,
+    record: Option<&SplatRecord>,
+) -> Option<Worst> {
+    let disc = batch::disc(surfels, surfel as usize);
+    let mut best: Option<(f64, What)> = None;
+    let mut missing = None;
+    possible::each_possible(projector, &disc, surfel, &mut |splat, certain| {
+        let center = splat.footprint.center.map(Real::to_f32);
+        missing = certain.then_some([center.x, center.y]);
+        if let Some(record) = record {
+            let (error, what) = worst(&splat, record, surfels);
+            if best.is_none_or(|(least, _)| error < least) {
+                best = Some((error, what));
+            }
+        }
+    });
+    let certainly = |at, what| Worst { error: f64::INFINITY, at, surfel, what };
+    match (record, best) {
+        (Some(record), Some((error, what))) => {
+            Some(Worst { error, at: record.center, surfel, what })
+        }
+        // One that is out of sight is harmless: what it draws is judged.
+        (Some(record), None) => {
+            let (_, reasons) = project_as(projector, &disc, surfel, false);
+            let Reasons { behind, degenerate, back_facing, .. } = reasons;
+            let dropped = (behind | degenerate | back_facing).certainly();
+            dropped.then(|| certainly(record.center, What::Projected))
+        }
+        (None, _) => missing.map(|at| certainly(at, What::NotProjected)),
+    }
+}
+
+/// What errs most of a record that has a splat.
+fn worst<P: Profile>(
+    splat: &Splat<Ball<P>>,
+    record: &SplatRecord,
+    surfels: &Surfels,
+) -> (f64, What) {
+    let back = record.back != 0;
+    let turned = if back { splat.back.possibly() } else { !splat.back.certainly() };
+    if !same_attributes(record, surfels) {
+        return (f64::INFINITY, What::Copied);
+    } else if !turned {
+        return (f64::INFINITY, What::Side { back });
+    }
+    let truth = numbers(&splat.footprint);
+    let found = numbers(&record.footprint().map(Ball::<P>::from_f32));
+    let mut worst = (-1.0, What::Copied);
+    for ((name, truth), (_, found)) in truth.into_iter().zip(found) {
+        let error = truth.misfit(found);
+        if error > worst.0 {
+            let (found, truth, radius) = (found.middle, truth.middle, truth.radius);
+            worst = (error, What::Number { name, found, truth, radius });
+        }
+    }
+    worst
+}
+
+/// Every number of a footprint, by its name in the record.
+fn numbers<R: Copy>(f: &Footprint<R>) -> [(&'static str, R); 11] {
+    let Vector2 { x, y } = f.center;
+    [
+        ("center.x", x),
+        ("center.y", y),
+        ("ux", f.ux),
+        ("uy", f.uy),
+        ("vy", f.vy),
+        ("w0", f.w0),
+        ("wx", f.wx),
+        ("wy", f.wy),
+        ("w_far", f.w_far),
+        ("w_near", f.w_near),
+        ("amplitude", f.amplitude),
+    ]
+}
+
+/// Whether what is copied from the surfel is the surfel's.
+fn same_attributes(record: &SplatRecord, surfels: &Surfels) -> bool {
+    let i = record.surfel as usize;
+    let normal = surfels.normal()[i].to_array();
+    let turned = if record.back != 0 { normal.map(|part| -part) } else { normal };
+    turned == record.normal
+        && surfels.opacity().is_none_or(|opacity| opacity[i] == record.opacity)
+        && surfels.color().is_none_or(|color| color[i].to_array() == record.color)
+}

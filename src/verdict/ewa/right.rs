@@ -1,0 +1,390 @@
+//! Pixels side by side: most pixels of a client are right, and their errors are found in lanes.
+//!
+//! The checks are those of [`PixelJudge`](super::pixel::PixelJudge), in balls of [`Common`]. Where these know
+//! every number of a pixel and none errs by more than 1, the errors are those of the plain checks, bit for bit.
+//! Of any other pixel nothing is said.
+
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a lane is an index into several arrays, and such a loop becomes vectors"
+)]
+
+use super::certificate::Nearest;
+use super::handed::Handed;
+use super::pixel::{ATTRIBUTES, NORMALIZATION, SHADING};
+use super::sums::AllSums;
+use crate::composite::sum;
+use crate::method::Job;
+use crate::number::ball::{BallLanes, Common, Profile, TotalsLanes};
+use crate::number::lanes::{LANES, each, vectorized};
+use crate::number::{Ball, Real};
+use crate::shade::phong::Shader;
+use crate::splat::View;
+use crate::verdict::client::{Storage, Stored, known};
+
+/// A number of each lane.
+type Numbers<P> = BallLanes<Common<P>>;
+
+/// What all pixels share.
+pub(super) struct RightPixels<'a, P: Profile> {
+    handed: &'a Handed<'a>,
+    shader: Shader<Ball<Common<P>>>,
+    /// Whether surfels have colours; else this is the material's.
+    colored: bool,
+    plain: [Numbers<P>; 3],
+}
+
+/// The stages after visibility: by how many bounds each errs, at most 1.
+pub(super) type Errors = [f64; 3];
+
+impl<'a, P: Profile> RightPixels<'a, P> {
+    /// None where formats or a background make more of the checks than is done here.
+    pub(super) fn new(job: &Job<'a>, handed: &'a Handed<'a>) -> Option<Self> {
+        let scalars =
+            [handed.depth, handed.weight, handed.depth_copy, handed.weight_copy, handed.alpha];
+        let triples =
+            [handed.normal_sum, handed.color_sum, handed.color, handed.normal, handed.shaded];
+        let floats =
+            scalars.iter().flatten().all(is_single) && triples.iter().flatten().all(is_single);
+        let other = handed.opacity.is_some()
+            || handed.mask.is_some()
+            || handed.weightless
+            || handed.accumulator != Storage::Single
+            || job.scene.environment.is_some();
+        if other || !floats {
+            return None;
+        }
+        let scene = job.scene;
+        let shader = Shader::<Ball<P>>::new(View::new(job.camera), &scene.lights, scene.material);
+        let plain = shader.plain().map(|part| {
+            let mut lanes = Numbers::<P>::ZERO;
+            (0..LANES).for_each(|i| lanes.put(i, part.rounding_as()));
+            lanes
+        });
+        let shader = shader.map(View::new(job.camera), Ball::rounding_as);
+        Some(Self { handed, shader, colored: scene.surfels.color().is_some(), plain })
+    }
+
+    /// The errors of some pixels of a tile, at most [`LANES`] without an undecided fragment, if they are known
+    /// and right.
+    pub(super) fn errors(
+        &self,
+        some: &[(usize, (u32, u32))],
+        nearest: &[Nearest<P>],
+        sums: &AllSums<P>,
+    ) -> [Option<Errors>; LANES] {
+        let mut lanes = Pixels::<P>::new();
+        for (i, &(pixel, at)) in some.iter().enumerate() {
+            lanes.put(i, (pixel, at), nearest[pixel].depth, sums);
+        }
+        let found = judge(self, &lanes);
+        std::array::from_fn(|i| {
+            (found.right[i] != 0).then(|| [0, 1, 2].map(|stage: usize| found.worst[stage][i]))
+        })
+    }
+}
+
+/// Whether a plane holds `f32`, of which nothing else is said.
+fn is_single<T>(plane: &Stored<'_, T>) -> bool {
+    plane.storage == Storage::Single && plane.radii.is_none()
+}
+
+/// [`LANES`] pixels, and what has been added up there.
+struct Pixels<P: Profile> {
+    at: [(u32, u32); LANES],
+    depth: Numbers<P>,
+    weighted: TotalsLanes<P, 4>,
+    color: TotalsLanes<P, 3>,
+    count: [u8; LANES],
+    /// All bits where there is such a pixel, else none.
+    right: [u32; LANES],
+}
+
+impl<P: Profile> Pixels<P> {
+    fn new() -> Self {
+        Self {
+            at: [(0, 0); LANES],
+            depth: Numbers::<P>::ZERO,
+            weighted: TotalsLanes::NONE,
+            color: TotalsLanes::NONE,
+            count: [0; LANES],
+            right: [0; LANES],
+        }
+    }
+
+    fn put(
+        &mut self,
+        i: usize,
+        (pixel, at): (usize, (u32, u32)),
+        depth: Ball<P>,
+        sums: &AllSums<P>,
+    ) {
+        self.at[i] = at;
+        self.depth.put(i, depth.rounding_as());
+        self.weighted.put(i, &sums.weighted[pixel]);
+        if let Some(color) = sums.color.get(pixel) {
+            self.color.put(i, color);
+        }
+        self.count[i] = sums.count[pixel];
+        self.right[i] = u32::MAX;
+    }
+}
+
+/// By how many bounds each stage errs, and where that is all.
+struct Found {
+    worst: [[f64; LANES]; 3],
+    right: [u32; LANES],
+}
+
+impl Found {
+    /// A number against what it may be.
+    #[inline(always)]
+    fn number<P: Profile>(&mut self, stage: usize, found: &Numbers<P>, truth: &Numbers<P>) {
+        let Self { worst, right } = self;
+        let (mut most, mut fits) = (worst[stage], *right);
+        for i in 0..LANES {
+            let error = truth.get(i).misfit_of_bounded(found.get(i));
+            // A comparison that NaN fails.
+            fits[i] &= u32::from(error <= 1.0).wrapping_neg();
+            most[i] = if error > most[i] { error } else { most[i] };
+        }
+        (worst[stage], *right) = (most, fits);
+    }
+
+    #[inline(always)]
+    fn triple<P: Profile>(
+        &mut self,
+        stage: usize,
+        found: &[Numbers<P>; 3],
+        truth: &[Numbers<P>; 3],
+    ) {
+        for c in 0..3 {
+            self.number(stage, &found[c], &truth[c]);
+        }
+    }
+
+    /// What has to be the same.
+    #[inline(always)]
+    fn same(&mut self, same: impl Fn(usize) -> bool) {
+        for i in 0..LANES {
+            self.right[i] &= u32::from(same(i)).wrapping_neg();
+        }
+    }
+}
+
+/// The numbers of a plane.
+#[inline(always)]
+fn scalars<P: Profile>(plane: &Stored<'_, f64>, at: &[(u32, u32); LANES]) -> Numbers<P> {
+    lanes(each(|i| *plane.plane.at(at[i].0, at[i].1)))
+}
+
+/// The triples of a plane.
+#[inline(always)]
+fn triples<P: Profile>(plane: &Stored<'_, [f64; 3]>, at: &[(u32, u32); LANES]) -> [Numbers<P>; 3] {
+    let mut values = [[0.0; LANES]; 3];
+    for i in 0..LANES {
+        let [a, b, c] = *plane.plane.at(at[i].0, at[i].1);
+        (values[0][i], values[1][i], values[2][i]) = (a, b, c);
+    }
+    [lanes(values[0]), lanes(values[1]), lanes(values[2])]
+}
+
+/// Stored numbers.
+#[inline(always)]
+fn lanes<P: Profile>(values: [f64; LANES]) -> Numbers<P> {
+    let mut lanes = Numbers::<P>::ZERO;
+    for i in 0..LANES {
+        lanes.put(i, known(values[i], 0.0));
+    }
+    lanes
+}
+
+/// The mean of each lane: a direction, or a colour.
+#[inline(always)]
+fn means<const DIRECTION: bool, P: Profile>(
+    sums: &[Numbers<P>; 3],
+    weight: &Numbers<P>,
+) -> [Numbers<P>; 3] {
+    let mut means = [Numbers::<P>::ZERO; 3];
+    for i in 0..LANES {
+        let (sums, weight) = ([sums[0].get(i), sums[1].get(i), sums[2].get(i)], weight.get(i));
+        let [a, b, c] =
+            if DIRECTION { sum::direction(sums, weight) } else { sum::average(sums, weight) };
+        means[0].put(i, a);
+        means[1].put(i, b);
+        means[2].put(i, c);
+    }
+    means
+}
+
+vectorized!(
+    /// What [`PixelJudge::check`](super::pixel::PixelJudge::check) finds.
+    fn judge<P: Profile>(of: &RightPixels<'_, P>, pixels: &Pixels<P>) -> Found {
+        let (handed, at) = (of.handed, &pixels.at);
+        let mut found = Found { worst: [[0.0; LANES]; 3], right: pixels.right };
+        // -- Sums
+        let (mut weight, mut normal) = (Numbers::<P>::ZERO, [Numbers::<P>::ZERO; 3]);
+        for i in 0..LANES {
+            let ([w, x, y, z], known) = pixels.weighted.balls(i);
+            weight.put(i, w.rounding_as());
+            normal[0].put(i, x.rounding_as());
+            normal[1].put(i, y.rounding_as());
+            normal[2].put(i, z.rounding_as());
+            found.right[i] &= u32::from(known).wrapping_neg();
+        }
+        let mut color = [Numbers::<P>::ZERO; 3];
+        for i in 0..LANES {
+            let ([r, g, b], known) = pixels.color.balls(i);
+            color[0].put(i, r.rounding_as());
+            color[1].put(i, g.rounding_as());
+            color[2].put(i, b.rounding_as());
+            found.right[i] &= u32::from(known).wrapping_neg();
+        }
+        if let Some(plane) = &handed.weight {
+            let own = scalars(plane, at);
+            found.number(ATTRIBUTES, &own, &weight);
+            weight = own;
+        }
+        if let Some(plane) = &handed.normal_sum {
+            let own = triples(plane, at);
+            found.triple(ATTRIBUTES, &own, &normal);
+            normal = own;
+        }
+        if let Some(plane) = &handed.color_sum {
+            let own = triples(plane, at);
+            found.triple(ATTRIBUTES, &own, &color);
+            color = own;
+        }
+        if let Some(plane) = &handed.count {
+            found.same(|i| *plane.plane.at(at[i].0, at[i].1) == pixels.count[i]);
+        }
+        // -- Averages
+        normal = means::<true, P>(&normal, &weight);
+        if let Some(plane) = &handed.normal {
+            let own = triples(plane, at);
+            found.triple(NORMALIZATION, &own, &normal);
+            normal = own;
+        }
+        if of.colored {
+            color = means::<false, P>(&color, &weight);
+        } else {
+            color = of.plain;
+        }
+        if let (Some(plane), true) = (&handed.color, of.colored) {
+            let own = triples(plane, at);
+            found.triple(NORMALIZATION, &own, &color);
+            color = own;
+        }
+        // -- Copies of what earlier passes left
+        let mut depth = pixels.depth;
+        if let Some(plane) = &handed.depth_copy {
+            let own = scalars(plane, at);
+            if let Some(first) = &handed.depth {
+                found.number(NORMALIZATION, &own, &scalars(first, at));
+            }
+            depth = own;
+        }
+        if let Some(plane) = &handed.weight_copy {
+            let own = scalars(plane, at);
+            if let Some(first) = &handed.weight {
+                found.number(NORMALIZATION, &own, &scalars(first, at));
+            }
+            weight = own;
+        }
+        if let (Some(first), Some(copy)) = (&handed.id, &handed.id_copy) {
+            let id = |plane: &Stored<'_, u32>, i: usize| *plane.plane.at(at[i].0, at[i].1);
+            found.same(|i| id(first, i) == id(copy, i));
+        }
+        // -- Shading
+        if let Some(plane) = &handed.shaded {
+            let shaded = of.shader.surfaces(at, &depth, &normal, &color);
+            found.triple(SHADING, &triples(plane, at), &shaded);
+        }
+        if let Some(plane) = &handed.alpha {
+            let mut alpha = Numbers::<P>::ZERO;
+            for i in 0..LANES {
+                let seen = weight.get(i).gt(Ball::ZERO);
+                alpha.put(i, Ball::select(seen, Ball::ONE, Ball::ZERO));
+            }
+            found.number(SHADING, &scalars(plane, at), &alpha);
+        }
+        found
+    }
+);
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Judge, certificate, sums};
+    use super::*;
+    use crate::frame::{Plane, Samples};
+    use crate::method::Method;
+    use crate::method::ewa::Settings;
+    use crate::number::ball::{Gpu, Ieee};
+    use crate::verdict::client::Client;
+    use crate::verdict::ewa::tests::each_scene;
+    use crate::verdict::marks::{self, Marks};
+
+    /// Holds what is found of a client in lanes against what is found without; how many pixels are right in
+    /// lanes, and how many are wrong.
+    fn compare<P: Profile>(job: &Job<'_>, settings: &Settings, client: &Client) -> [u64; 2] {
+        let handed = Handed::new(client);
+        let mut judge = Judge::<P>::new(job, settings, &handed);
+        let mut found = [0; 2];
+        for (tile, rect) in job.grid().rects().into_iter().enumerate() {
+            let given = (&handed, judge.surfels);
+            let mut marks = Marks::new(rect);
+            let nearest =
+                certificate::judge_among(&judge.splats, &[], given, (tile, &rect), &mut marks);
+            let (surfels, at) = (judge.surfels, (tile, &rect));
+            let added = sums::add(&judge.splats, surfels, &nearest, at, None, &mut marks);
+            let right = judge.right(rect, &nearest, &added.sums, &marks);
+            found[0] += right.iter().flatten().count() as u64;
+        }
+        let verdict = |judge: &Judge<'_, P>| {
+            marks::verdict(job, handed.stages(), 1.0, |tile, marks| judge.judge(tile, marks))
+        };
+        let own = verdict(&judge);
+        judge.right = None;
+        let plain = verdict(&judge);
+        assert_eq!((own.covered, own.undecided), (plain.covered, plain.undecided));
+        for (own, plain) in own.stages.iter().zip(&plain.stages) {
+            let bits = |plane: &Plane<f32>| plane.map(|error| error.to_bits());
+            assert_eq!(bits(&own.errors).values(), bits(&plain.errors).values());
+            assert_eq!(own.doubts.values(), plain.doubts.values());
+            assert_eq!(own.wrong, plain.wrong);
+            found[1] += own.wrong;
+        }
+        found
+    }
+
+    #[test]
+    fn what_is_right_in_lanes_has_the_errors_of_the_plain_checks() {
+        let mut found = [[0; 2]; 2];
+        each_scene(|session, camera| {
+            let Method::Ewa(settings) = *session.method() else { return };
+            for stages in [false, true] {
+                let frame = session.define::<f32>(camera, stages).unwrap().frame;
+                let client = Client::from(&frame);
+                // A colour that is wrong here and there.
+                let wrong = client.mapped(|name, samples| match (name, samples) {
+                    ("", Samples::Color(plane)) => Samples::Color(
+                        plane.map(|&[r, g, b]| [if g > 0.5 { r * 1.001 } else { r }, g, b]),
+                    ),
+                    _ => samples.clone(),
+                });
+                session.with_job(camera, |job| {
+                    for client in [&client, &wrong] {
+                        let all = [
+                            compare::<Ieee>(job, &settings, client),
+                            compare::<Gpu>(job, &settings, client),
+                        ];
+                        for (found, more) in found.iter_mut().zip(all) {
+                            *found = [found[0] + more[0], found[1] + more[1]];
+                        }
+                    }
+                });
+            }
+        });
+        assert!(found.iter().all(|[right, wrong]| *right > 5000 && *wrong > 100), "{found:?}");
+    }
+}

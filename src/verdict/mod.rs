@@ -1,0 +1,44 @@
+//! Whether a client's picture is right: verdicts on its planes, stage by stage.
+//!
+//! A verdict takes no tolerance. [`Session::verify`](crate::method::Session::verify) recomputes each
+//! stage in [balls](crate::number::ball) from the planes that a [`client::Client`] has of the stage before,
+//! and says whether an implementation that keeps its promise of rounding may have left the client's
+//! planes: [`Outcome`]. The page of each method says what is asked of each of its stages: [`mod@ewa`],
+//! [`mod@deferred`], [`mod@single_pass`], [`mod@transparent`], [`mod@transparent_hq`], [`mod@peeling`],
+//! [`mod@pyramid`], [`mod@template`], [`mod@blue`]; the projection that `pyramid` and `template` begin with
+//! has a page too: [`mod@projection`].
+//!
+//! - [`client`]: the planes of a client, and how exactly each is stored. Files: [`io::client`](crate::io::client).
+//! - [`Verdict`]: what was found, with a [`Fault`] for each wrong pixel.
+//! - [`causes`]: known mistakes, and which of them a client makes.
+//! - [`shift`]: whether the decisions that may be either way lean to one side, over a suite of scenes.
+//!
+//! Without verdicts: [`crate::compare`] holds planes against planes, [`crate::laws`] says what must hold of
+//! compositing operators.
+
+pub mod blue;
+pub mod causes;
+mod checks;
+pub mod client;
+pub mod deferred;
+pub mod ewa;
+mod fault;
+mod findings;
+mod marks;
+mod outcomes;
+pub mod peeling;
+pub mod projection;
+pub mod pyramid;
+mod session;
+pub mod shift;
+pub mod single_pass;
+mod table;
+pub mod template;
+#[cfg(test)]
+mod tests;
+pub mod transparent;
+pub mod transparent_hq;
+
+pub use fault::{Check, Fault};
+pub(crate) use findings::Cause;
+pub use findings::{Causes, Doubt, Finding, Judged, Outcome, Verdict};

@@ -1,0 +1,54 @@
+//! The blending of a client's layers.
+
+use super::planes::PeelingPlanes;
+use crate::composite::over::Blend;
+use crate::composite::under::Under;
+use crate::method::Holds;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real};
+use crate::verdict::checks::{Backdrop, input, inputs, is_bounded, number, triple};
+use crate::verdict::marks::PixelMarks;
+
+/// Marks what is wrong with the picture at a pixel; whether it is judged, or there is nothing to judge.
+pub(super) fn judge<P: Profile>(
+    (handed, backdrop): (&PeelingPlanes<'_>, &Backdrop<'_, P>),
+    at: (u32, u32),
+    pixel: &mut PixelMarks<'_>,
+) -> bool {
+    if handed.shaded.is_none() && handed.alpha.is_none() {
+        return true;
+    }
+    if !handed.blends() || more(handed, at) {
+        return false;
+    }
+    let mut blend = Under::<Ball<P>>::CLEAR;
+    for layer in &handed.layers {
+        if let (Some(alpha), Some(color)) = (&layer.alpha, &layer.color) {
+            blend = blend.under(input(alpha, at), inputs(color, at));
+        }
+    }
+    let layers = Blend { color: blend.color, alpha: blend.alpha.at_most(Ball::ONE) };
+    let Blend { color, alpha } = backdrop.behind(layers, at);
+    let report = &mut |_: usize, error: f64, fault: &dyn Fn() -> _| pixel.found(error, fault);
+    if let Some(plane) = &handed.shaded {
+        triple(0, (plane, Holds::Color), at, color, report);
+    }
+    if let Some(plane) = &handed.alpha {
+        number(0, plane, at, alpha, report);
+    }
+    handed.shaded.is_none() || is_bounded(&color)
+}
+
+/// Whether a pixel may have more layers than leave planes.
+fn more(handed: &PeelingPlanes<'_>, (x, y): (u32, u32)) -> bool {
+    let last = handed.layers.len();
+    if handed.most as usize <= last {
+        return false;
+    }
+    match (&handed.number, handed.layers.last().and_then(|layer| layer.alpha)) {
+        (Some(number), _) => usize::from(*number.plane.at(x, y)) > last,
+        // A layer that is there, if the last one is.
+        (None, Some(alpha)) => *alpha.plane.at(x, y) != 0.0,
+        (None, None) => true,
+    }
+}

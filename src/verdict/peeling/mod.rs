@@ -1,0 +1,108 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Surfels are projected in [`Ball`](crate::number::Ball)s of a [`Profile`]. Each layer is judged from
+//! the client's depth of the layer before, as it is stored: `limit_j = t_j + epsilon` of that. `Z` and
+//! `id` are depth and surfel of layer 1.
+//!
+//! **Layers.** At a pixel and in a layer j whose depth the client stores, with that of layer j - 1:
+//!
+//! 1. `t_j` is in the ball of the depth of a fragment that possibly is inside and beyond `limit_(j-1)`;
+//!    in layer 1, of a fragment of the surfel of the id.
+//! 2. No fragment that certainly is drawn, inside and beyond `limit_(j-1)` certainly is nearer than
+//!    `t_j`; where there is no layer, none certainly is inside and beyond.
+//! 3. In layer 1 no surfel comes before that of the id, as the client says of ties, whose depth is equal
+//!    and exact in balls, or all of whose numbers are those of the id's surfel.
+//! 4. Count, opacity and colour are those of the fragments inside, beyond `limit_(j-1)` and within
+//!    `limit_j`, summed, averaged and shaded in balls. The fragment of the depth always passes, if there
+//!    is but one that it can be. Where a decision is undecided both continuations are kept, 2^n for
+//!    n <= 4 fragments; beyond that these planes are not judged.
+//! 5. `layers` is the number of layers with a depth; with the last that leaves planes it is at least one
+//!    more if a fragment certainly is beyond that, at most the setting, and not more if none possibly is.
+//!
+//! **Blending** of the client's opacities and colours, if all layers that leave planes are there. A pixel
+//! with more layers than leave planes is not judged. An environment is seen behind them as in
+//! [`transparent`](crate::verdict::transparent).
+//! Of the picture alone nothing is judged: its layers, which are all of it, are not known.
+//!
+//! A pixel is undecided if the sums of one of its layers have several continuations, or if its blending
+//! is not judged, for its number of layers or for its environment.
+
+mod blended;
+mod layer;
+mod planes;
+#[cfg(test)]
+mod tests;
+
+use crate::error::Result;
+use crate::frame::Rect;
+use crate::method::Job;
+use crate::method::peeling::Settings;
+use crate::number::ball::Profile;
+use crate::verdict::checks::Backdrop;
+use crate::verdict::client::Client;
+use crate::verdict::marks::{self, Counts, Marks, counted};
+use crate::verdict::single_pass::fragments::GroupFragments;
+use crate::verdict::{Check, Verdict};
+use layer::LayerJudge;
+use planes::PeelingPlanes;
+
+/// Judges the planes of a client.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Verdict {
+    let handed = PeelingPlanes::new(client, settings);
+    let judge = Judge::<P>::new(job, settings, &handed);
+    marks::verdict(job, handed.stages(), budget, |tile, marks| judge.judge(tile, marks))
+}
+
+/// Everything that is judged at one pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    let handed = PeelingPlanes::new(client, settings);
+    let judge = Judge::<P>::new(job, settings, &handed);
+    let stages = handed.stages().map(|(stage, _)| stage);
+    marks::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
+}
+
+/// What all tiles share.
+struct Judge<'a, P: Profile> {
+    handed: &'a PeelingPlanes<'a>,
+    fragments: GroupFragments<'a, P>,
+    layers: LayerJudge<'a, P>,
+    backdrop: Backdrop<'a, P>,
+}
+
+impl<'a, P: Profile> Judge<'a, P> {
+    fn new(job: &Job<'a>, settings: &'a Settings, handed: &'a PeelingPlanes<'a>) -> Self {
+        let fragments = GroupFragments::whole(job, &settings.splats);
+        let layers = LayerJudge::new(job, settings, handed, fragments.epsilon());
+        Self { handed, fragments, layers, backdrop: Backdrop::new(job) }
+    }
+
+    /// Marks what is wrong at the pixels of a rectangle in a tile.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
+        let [layers, blending] = marks;
+        let mut counts = Counts::default();
+        for y in rect.y0..rect.y1 {
+            let row = Rect { y0: y, y1: y + 1, ..rect };
+            let fragments = self.fragments.of_row(tile, &row, |_, at| self.handed.surfel(at));
+            for (column, at) in counted(row) {
+                let pixel = (y - rect.y0) as usize * row.columns() + column;
+                let own: Vec<_> = fragments.at(column).of(0).copied().collect();
+                let found = self.layers.judge(at, &own, &mut layers.at(pixel));
+                let blends =
+                    blended::judge::<P>((self.handed, &self.backdrop), at, &mut blending.at(pixel));
+                counts.covered += u64::from(found.covered);
+                counts.undecided += u64::from(found.undecided || !blends);
+            }
+        }
+        counts
+    }
+}

@@ -1,0 +1,98 @@
+//! The planes that a client has handed in.
+
+use crate::method::peeling::Settings;
+use crate::method::peeling::planes::{
+    LAYER_ALPHA, LAYER_COLOR, LAYER_COUNT, LAYER_DEPTH, LAYERS, STAGES,
+};
+use crate::method::resolved::{ALPHA, DEPTH, ID, SHADED};
+use crate::verdict::client::{Client, Storage, Stored, Ties};
+
+/// The planes of a layer, each if it is there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LayerPlanes<'a> {
+    pub(super) color: Option<Stored<'a, [f64; 3]>>,
+    pub(super) alpha: Option<Stored<'a, f64>>,
+    pub(super) depth: Option<Stored<'a, f64>>,
+    pub(super) count: Option<Stored<'a, u8>>,
+}
+
+/// The planes of a client, each if it is there.
+#[derive(Clone, Debug)]
+pub(super) struct PeelingPlanes<'a> {
+    /// The layers that leave planes, from the first.
+    pub(super) layers: Vec<LayerPlanes<'a>>,
+    /// Depth and surfel of the first.
+    pub(super) depth: Option<Stored<'a, f64>>,
+    pub(super) id: Option<Stored<'a, u32>>,
+    pub(super) number: Option<Stored<'a, u8>>,
+    /// The most layers of a pixel.
+    pub(super) most: u32,
+    pub(super) ties: Ties,
+    pub(super) accumulator: Storage,
+    /// The picture.
+    pub(super) shaded: Option<Stored<'a, [f64; 3]>>,
+    pub(super) alpha: Option<Stored<'a, f64>>,
+}
+
+impl<'a> PeelingPlanes<'a> {
+    pub(super) fn new(client: &'a Client, settings: &Settings) -> Self {
+        let layer = |number: usize| LayerPlanes {
+            color: client.triple_of(&LAYER_COLOR, number),
+            alpha: client.scalar_of(&LAYER_ALPHA, number),
+            depth: client.scalar_of(&LAYER_DEPTH, number),
+            count: client.count_of(&LAYER_COUNT, number),
+        };
+        let last = settings.layers.min(STAGES) as usize;
+        Self {
+            layers: (1..=last).map(layer).collect(),
+            depth: client.scalar(&DEPTH),
+            id: client.index(&ID),
+            number: client.count(&LAYERS),
+            most: settings.layers,
+            ties: client.ties,
+            accumulator: client.accumulator,
+            shaded: client.triple(&SHADED),
+            alpha: client.scalar(&ALPHA),
+        }
+    }
+
+    /// The depth of a layer, counted from 0.
+    pub(super) fn depth_of(&self, layer: usize) -> Option<Stored<'a, f64>> {
+        let own = self.layers[layer].depth;
+        if layer == 0 { own.or(self.depth) } else { own }
+    }
+
+    /// How many layers have a depth, one after the other from the first.
+    pub(super) fn known(&self) -> usize {
+        (0..self.layers.len()).take_while(|&layer| self.depth_of(layer).is_some()).count()
+    }
+
+    /// Whether the layers can be blended.
+    pub(super) fn blends(&self) -> bool {
+        self.layers.iter().all(|layer| layer.color.is_some() && layer.alpha.is_some())
+    }
+
+    /// The surfel of the first layer, as the client has it.
+    pub(super) fn surfel(&self, (x, y): (u32, u32)) -> Option<u32> {
+        self.id.map(|plane| *plane.plane.at(x, y))
+    }
+
+    /// The stages, each with the planes that it judges.
+    pub(super) fn stages(&self) -> [(&'static str, Vec<&'static str>); 2] {
+        let known = &self.layers[..self.known()];
+        let any = |of: fn(&LayerPlanes<'a>) -> Option<&'static str>| known.iter().find_map(of);
+        let all_known = self.known() == self.layers.len();
+        let layers = [
+            any(|layer| layer.color.map(|plane| plane.name)),
+            any(|layer| layer.alpha.map(|plane| plane.name)),
+            any(|layer| layer.depth.map(|plane| plane.name)),
+            any(|layer| layer.count.map(|plane| plane.name)),
+            self.depth.map(|plane| plane.name),
+            self.id.map(|plane| plane.name),
+            self.number.map(|plane| plane.name).filter(|_| all_known),
+        ];
+        let picture = [self.shaded.map(|plane| plane.name), self.alpha.map(|plane| plane.name)];
+        let picture = picture.into_iter().flatten().filter(|_| self.blends());
+        [("layers", layers.into_iter().flatten().collect()), ("blending", picture.collect())]
+    }
+}

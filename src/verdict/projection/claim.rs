@@ -1,0 +1,157 @@
+//! What a client says is in a pixel, against all that may lie there.
+
+use super::Candidate;
+use super::planes::{SamplePlanes, Says};
+use crate::composite::decide;
+use crate::method::projection::PixelSample;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real, Truth};
+use crate::scene::Surfels;
+use crate::verdict::client::Ties;
+use crate::verdict::marks::PixelMarks;
+use crate::verdict::{Doubt, Fault};
+
+/// What is known of a pixel.
+pub(super) struct Claim<P: Profile> {
+    pub(super) says: Says,
+    /// The client's depth, if it was handed in.
+    depth: Option<Ball<P>>,
+    /// Of what lies in the pixel that whose greatest depth is least.
+    pub(super) front: Option<(u32, Ball<P>)>,
+    /// Of the samples that may be meant the one that errs least, and by how much.
+    best: Option<(f64, PixelSample<Ball<P>>)>,
+}
+
+impl<P: Profile> Claim<P> {
+    pub(super) fn new(planes: &SamplePlanes<'_>, at: (u32, u32), unclear: &[u32]) -> Self {
+        let depth = planes.depth.map(|plane| plane.ball(at));
+        Self { says: planes.says(at, unclear), depth, front: None, best: None }
+    }
+
+    /// What lies in the pixel.
+    pub(super) fn meet(&mut self, id: u32, t: Ball<P>) {
+        let most = |t: Ball<P>| t.middle + t.radius;
+        if self.front.is_none_or(|(_, front)| most(t) < most(front)) {
+            self.front = Some((id, t));
+        }
+    }
+
+    /// Whether the client may mean this.
+    pub(super) fn may_mean(&self, one: &Candidate<'_, P>) -> bool {
+        let hidden = || self.front.is_some_and(|(_, t)| decide::before(t, one.depth()).certainly());
+        match self.says {
+            Says::Id(id) => id == one.id(),
+            Says::Some(kind) => {
+                let fits = kind.is_none_or(|kind| kind == one.kind());
+                fits && (self.depth.is_some() || !hidden())
+            }
+            Says::Nothing => !hidden(),
+            Says::Empty | Says::Unjudged(_) => false,
+        }
+    }
+
+    /// Whether this may be what the client has, by its depth too if it gives one and no id.
+    pub(super) fn may_have(&self, one: &Candidate<'_, P>) -> bool {
+        self.may_mean(one) && self.depth.is_none_or(|depth| !(one.depth().misfit(depth) > 1.0))
+    }
+
+    /// A sample that may be meant.
+    pub(super) fn consider(
+        &mut self,
+        planes: &SamplePlanes<'_>,
+        at: (u32, u32),
+        sample: PixelSample<Ball<P>>,
+    ) {
+        let mut worst = 0.0_f64;
+        planes.check(at, &sample, &mut |_, error, _| worst = worst.at_least(error));
+        if self.best.is_none_or(|(least, _)| worst < least) {
+            self.best = Some((worst, sample));
+        }
+    }
+
+    /// Whether the claim itself can be, and what certainly is in front of it.
+    pub(super) fn judge(
+        &self,
+        planes: &SamplePlanes<'_>,
+        at: (u32, u32),
+        pixel: &mut PixelMarks<'_>,
+    ) {
+        let mut report = |_: usize, error: f64, fault: &dyn Fn() -> Fault| {
+            pixel.found(error, fault);
+        };
+        match (&self.best, self.says) {
+            (_, Says::Unjudged(kind)) => planes.check_kind(at, kind, &mut report),
+            (Some((_, sample)), _) => planes.check(at, sample, &mut report),
+            (None, Says::Id(surfel)) => {
+                report(0, f64::INFINITY, &|| Fault::Absent { surfel });
+            }
+            // Something lies here: rule 3. But other planes may say what they do not of nothing.
+            (None, _) if self.depth().middle == f64::INFINITY => {
+                planes.check(at, &PixelSample::<Ball<P>>::empty(), &mut report);
+            }
+            (None, _) => {
+                let (found, closest) = (self.depth().middle, f64::INFINITY);
+                report(0, f64::INFINITY, &|| Fault::NoSuchDepth { found, closest });
+            }
+        }
+        if let (Some((surfel, t)), true) = (self.front, self.says != Says::Nothing) {
+            let depth = self.depth();
+            if self.says != Says::Id(surfel) && decide::before(t, depth).certainly() {
+                let (error, depth, found) = (t.distance(depth), t.middle, depth.middle);
+                // A sample has no rim.
+                pixel.found(error, || Fault::LeftOut { surfel, rim: 0.0, depth, found });
+            }
+        }
+    }
+
+    /// The depth that others are compared with.
+    fn depth(&self) -> Ball<P> {
+        let of_sample = || self.best.map_or(anywhere(), |(_, sample)| sample.depth);
+        match self.says {
+            Says::Empty => Ball::INFINITY,
+            _ => self.depth.unwrap_or_else(of_sample),
+        }
+    }
+
+    /// Whether a surfel is exactly as near as that of the client, and comes before it.
+    pub(super) fn judge_tie(
+        &self,
+        one: &Candidate<'_, P>,
+        (ties, surfels): (Ties, &Surfels),
+        pixel: &mut PixelMarks<'_>,
+    ) {
+        let (Says::Id(found), Some((_, sample)), Candidate::Surfel(surfel, _)) =
+            (self.says, &self.best, one)
+        else {
+            return;
+        };
+        let (surfel, t) = (surfel.surfel, one.depth());
+        let first = match ties {
+            Ties::Lowest => surfel < found,
+            Ties::Last => surfel > found,
+            Ties::Any => false,
+        };
+        let equal = t.middle == sample.depth.middle;
+        let exact = equal && t.radius + sample.depth.radius == 0.0 && one.lies();
+        if first && (exact || surfels.are_equal(surfel, found)) {
+            pixel.found(f64::INFINITY, || Fault::Tie { surfel, found });
+        }
+    }
+
+    /// Marks what may be in front.
+    pub(super) fn doubt(&self, one: &Candidate<'_, P>, pixel: &mut PixelMarks<'_>) {
+        let nearer = decide::before(one.depth(), self.depth());
+        let own = self.best.is_some_and(|(_, sample)| sample.id == one.id());
+        if !own && nearer.possibly() {
+            pixel.doubt(Doubt::Nearer, !nearer.certainly());
+            pixel.doubt(Doubt::CutOff, !one.is_alone() && one.drawn());
+            pixel.doubt(Doubt::Epsilon, !one.passes().certainly());
+            pixel.doubt(Doubt::Fate, !one.drawn());
+        }
+    }
+}
+
+/// Any depth.
+fn anywhere<P: Profile>() -> Ball<P> {
+    Ball::new(0.0, f64::INFINITY)
+}

@@ -1,0 +1,354 @@
+//! What a right implementation may leave of the projection: a certificate for each pixel.
+//!
+//! Surfels are placed in [`Ball`]s. A surfel *may lie* in a pixel if it is not certainly dropped and
+//! the pixel is one that its centre may fall into; it *lies* there if it certainly is drawn and
+//! there is no other such pixel. The corners of triangles, ribbons and tubes are snapped to each
+//! place that their balls allow, at most 16 ways a primitive; from there on coverage is exact. A
+//! primitive may lie in a pixel that one of them covers; it lies there if there is one way alone.
+//!
+//! 1. The surfel or primitive of the id may lie in the pixel. An empty pixel has none.
+//! 2. Every plane is in the ball of its sample there, of one of those that it may have: seen from
+//!    either side, snapped in either way, visited twice. Of an empty pixel every plane is that of
+//!    [`PixelSample::empty`].
+//! 3. Nothing else lies in the pixel whose depth certainly is less than Z; without Z, than the depth
+//!    of the id's sample. Of an empty pixel Z is +inf.
+//! 4. No surfel comes before that of the id, as the client says of ties, which lies there at a depth
+//!    that is equal and exact in balls, or all of whose numbers are those of the id's surfel.
+//!
+//! Without ids the sample is the one that errs least, of those that nothing certainly hides.
+//!
+//! Where a pass tests depths against limits, what may lie in a pixel is what possibly passes there, and lies
+//! there only if it certainly passes.
+//!
+//! **Triangles beside splats**, of [`deferred`](crate::method::deferred), have no such limit. The corners of
+//! a triangle, of one that certainly is cut those of its pieces, are intervals on the grid of fixed point.
+//! Where each is one place, coverage is exact. Else a piece may lie in a pixel if no edge function certainly
+//! is negative, over all places of its corners; it lies there if all certainly are positive.
+//!
+//! **Not judged**: a primitive that is cut by the near plane or the guard band, or may be, and one with
+//! more ways to snap. Pixels of its id are judged by rule 3 and by their kind alone; without ids all
+//! pixels but empty ones and surfels are.
+
+mod claim;
+mod intervals;
+mod planes;
+mod polygons;
+mod primitives;
+
+pub(crate) use planes::SamplePlanes;
+pub(crate) use polygons::{AllPolygons, PossibleFragment};
+
+use crate::composite::decide;
+use crate::frame::raster::Snap;
+use crate::frame::{Bins, Grid, Rect};
+use crate::method::Job;
+use crate::method::projection::primitives::PiecePixel;
+use crate::method::projection::surfels::{PlacedPoint, PointProjector};
+use crate::method::projection::{PixelSample, SampleKind, SceneProjector};
+use crate::method::tiled::Tiled;
+use crate::number::ball::{Profile, Three};
+use crate::number::{Ball, Pixel, Real, Truth, Vector3};
+use crate::scene::Surfels;
+use crate::verdict::Doubt;
+use crate::verdict::marks::{Marks, StageMarks, Watch, counted};
+use claim::Claim;
+use planes::Says;
+use primitives::{Pieces, PossiblePiece};
+
+/// A surfel that may be drawn.
+struct Possible<P: Profile> {
+    surfel: u32,
+    /// The pixels that it may be drawn into.
+    bounds: Rect,
+    /// Whether it certainly is drawn.
+    drawn: bool,
+    placed: PlacedPoint<Ball<P>>,
+    normal: Vector3<Ball<P>>,
+    back: Three,
+}
+
+/// All that may be drawn, and where.
+pub(crate) struct AllPossible<'a, P: Profile> {
+    projector: SceneProjector<'a, Ball<P>>,
+    /// The greatest depth of a surfel that is drawn into each pixel, if there is one.
+    limits: Option<&'a Tiled<Ball<P>>>,
+    /// The surfels, batch by batch.
+    surfels: Vec<(Vec<Possible<P>>, Bins)>,
+    pieces: Pieces<P>,
+    bins: Bins,
+}
+
+/// What may lie in a pixel.
+enum Candidate<'a, P: Profile> {
+    /// With whether it passes the test of its depth there.
+    Surfel(&'a Possible<P>, Three),
+    Piece(&'a PossiblePiece<P>, PiecePixel<Ball<P>>),
+}
+
+/// Judges the planes of the projection; `snap` is for triangles and lines.
+pub(crate) fn judge<P: Profile>(
+    job: &Job<'_>,
+    cull: bool,
+    snap: Snap,
+    planes: &SamplePlanes<'_>,
+    watch: Watch,
+) -> StageMarks {
+    match planes.names() {
+        names if names.is_empty() => ("projection", names, watch.picture(job)),
+        names => {
+            let possible = AllPossible::<P>::new(job, cull, snap, None);
+            ("projection", names, possible.judge_all(job, planes, watch))
+        }
+    }
+}
+
+impl<'a, P: Profile> AllPossible<'a, P> {
+    pub(crate) fn new(
+        job: &Job<'a>,
+        cull: bool,
+        snap: Snap,
+        limits: Option<&'a Tiled<Ball<P>>>,
+    ) -> Self {
+        Self::of(job, (cull, snap), limits, |_| true)
+    }
+
+    /// The same of those surfels that `draws` says by their indices.
+    pub(crate) fn of(
+        job: &Job<'a>,
+        (cull, snap): (bool, Snap),
+        limits: Option<&'a Tiled<Ball<P>>>,
+        draws: impl Fn(usize) -> bool + Sync + Send,
+    ) -> Self {
+        let (scene, grid) = (job.scene, job.grid());
+        let of = &scene.surfels;
+        let projector = SceneProjector::new(scene, job.camera, cull, snap);
+        let ranges = (0..of.len()).step_by(8192);
+        let ranges = ranges.map(|first| first..of.len().min(first + 8192)).collect();
+        let surfels = job.exec.ordered(ranges, |range: std::ops::Range<usize>| {
+            let place = |i| Possible::new(&projector.points, of, i, &grid);
+            let possible: Vec<_> = range.filter(|&i| draws(i)).filter_map(place).collect();
+            let bins = Bins::new(&grid, possible.len(), |i| possible[i].bounds);
+            (possible, bins)
+        });
+        let pieces = Pieces::new(&projector);
+        let bins = Bins::new(&grid, pieces.all.len(), |i| pieces.all[i].piece.bounds);
+        Self { projector, limits, surfels, pieces, bins }
+    }
+
+    /// Marks what is wrong of planes.
+    pub(crate) fn judge_all(
+        &self,
+        job: &Job<'_>,
+        planes: &SamplePlanes<'_>,
+        watch: Watch,
+    ) -> Marks {
+        let mut marks = watch.picture(job);
+        let found = job.exec.ordered(watch.parts(&job.grid()), |(tile, rect)| {
+            self.judge(planes, (tile, rect), watch.marks(rect))
+        });
+        found.into_iter().for_each(|part| marks.put(part));
+        marks
+    }
+
+    /// What a client that gives no ids may have at the pixels of a tile: which surfel or primitive, and
+    /// whether it certainly has it, as it says that there is something that nothing else may be, or
+    /// as this lies there and certainly is in front.
+    pub(crate) fn kept(
+        &self,
+        planes: &SamplePlanes<'_>,
+        (tile, rect): (usize, Rect),
+    ) -> Vec<(u32, bool)> {
+        let claims = self.claims(planes, (tile, rect));
+        let (mut found, mut counts) = (Vec::new(), vec![0_u32; claims.len()]);
+        self.each((tile, &rect), |pixel, one| {
+            let claim = &claims[pixel];
+            if claim.may_have(&one) {
+                counts[pixel] += 1;
+                let sure = matches!(claim.says, Says::Some(_)) || one.lies();
+                found.push((pixel, one.id(), sure));
+            }
+        });
+        found.into_iter().map(|(pixel, id, sure)| (id, sure && counts[pixel] == 1)).collect()
+    }
+
+    /// Calls `visit` for all that may lie in a pixel of a tile, with the count of the pixel in the
+    /// tile.
+    fn each(&self, (tile, rect): (usize, &Rect), mut visit: impl FnMut(usize, Candidate<'_, P>)) {
+        let count =
+            |x: u32, y: u32| (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
+        for (possible, bins) in &self.surfels {
+            bins.for_each(tile, |i| {
+                let one = &possible[i as usize];
+                let Rect { x0, y0, x1, y1 } = one.bounds.intersection(rect);
+                for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
+                    let passes = self.passes(one, (x, y));
+                    if passes.possibly() {
+                        visit(count(x, y), Candidate::Surfel(one, passes));
+                    }
+                }
+            });
+        }
+        self.bins.for_each(tile, |i| {
+            let one = &self.pieces.all[i as usize];
+            one.piece.for_each(rect, |at| visit(count(at.x, at.y), Candidate::Piece(one, at)));
+        });
+    }
+
+    /// Whether a surfel passes the test of its depth at a pixel.
+    fn passes(&self, one: &Possible<P>, (x, y): (u32, u32)) -> Three {
+        self.limits.map_or_else(|| true.into(), |all| decide::visible(one.placed.t, *all.at(x, y)))
+    }
+
+    /// The sample of a surfel, seen from its back or not.
+    fn surfel(&self, one: &Possible<P>, back: bool) -> PixelSample<Ball<P>> {
+        let SceneProjector { scene, points, has, .. } = &self.projector;
+        let (i, of) = (one.surfel as usize, &scene.surfels);
+        let color = of.color().map_or(scene.material.color, |color| color[i]);
+        let color = if has.color { color.to_array() } else { [0.0; 3] };
+        let g = if back { Ball::ONE } else { -Ball::ONE };
+        let (radius, color) = (Ball::from_f32(of.radius()[i]), color.map(Ball::from_f32));
+        points.sample(one.surfel, &one.placed, one.normal, g, radius, color)
+    }
+
+    /// Calls `visit` for each sample that a candidate may have.
+    fn each_sample(&self, of: &Candidate<'_, P>, mut visit: impl FnMut(PixelSample<Ball<P>>)) {
+        match of {
+            Candidate::Surfel(one, _) => {
+                if !one.back.certainly() {
+                    visit(self.surfel(one, false));
+                }
+                if one.back.possibly() {
+                    visit(self.surfel(one, true));
+                }
+            }
+            Candidate::Piece(one, at) => visit(one.piece.sample(&self.projector, at)),
+        }
+    }
+
+    /// What the client says of each pixel, and what lies there.
+    fn claims(&self, planes: &SamplePlanes<'_>, (tile, rect): (usize, Rect)) -> Vec<Claim<P>> {
+        let claim = |(_, at)| Claim::new(planes, at, &self.pieces.unclear);
+        let mut claims: Vec<Claim<P>> = counted(rect).map(claim).collect();
+        self.each((tile, &rect), |pixel, one| {
+            if one.lies() {
+                claims[pixel].meet(one.id(), one.depth());
+            }
+        });
+        claims
+    }
+
+    fn judge(
+        &self,
+        planes: &SamplePlanes<'_>,
+        (tile, rect): (usize, Rect),
+        mut marks: Marks,
+    ) -> Marks {
+        let mut claims = self.claims(planes, (tile, rect));
+        let columns = rect.columns();
+        self.each((tile, &rect), |pixel, one| {
+            let at = (rect.x0 + (pixel % columns) as u32, rect.y0 + (pixel / columns) as u32);
+            if claims[pixel].may_mean(&one) {
+                self.each_sample(&one, |sample| claims[pixel].consider(planes, at, sample));
+                let side = matches!(one, Candidate::Surfel(of, _) if of.back.decided().is_none());
+                marks.at(pixel).doubt(Doubt::Side, side);
+            }
+        });
+        for (pixel, at) in counted(rect) {
+            let claim = &mut claims[pixel];
+            if matches!(claim.says, Says::Empty | Says::Nothing) && claim.front.is_none() {
+                claim.consider(planes, at, PixelSample::empty());
+            }
+            claim.judge(planes, at, &mut marks.at(pixel));
+        }
+        let surfels = &self.projector.scene.surfels;
+        self.each((tile, &rect), |pixel, one| {
+            claims[pixel].doubt(&one, &mut marks.at(pixel));
+            claims[pixel].judge_tie(&one, (planes.ties, surfels), &mut marks.at(pixel));
+        });
+        marks
+    }
+}
+
+impl<P: Profile> Candidate<'_, P> {
+    fn id(&self) -> u32 {
+        match self {
+            Self::Surfel(one, _) => one.surfel,
+            Self::Piece(one, _) => one.piece.id,
+        }
+    }
+
+    fn kind(&self) -> SampleKind {
+        match self {
+            Self::Surfel(..) => SampleKind::Surface,
+            Self::Piece(one, _) => one.piece.kind,
+        }
+    }
+
+    fn depth(&self) -> Ball<P> {
+        match self {
+            Self::Surfel(one, _) => one.placed.t,
+            Self::Piece(_, at) => -at.p.z,
+        }
+    }
+
+    /// Whether it certainly is drawn, somewhere.
+    fn drawn(&self) -> bool {
+        match self {
+            Self::Surfel(one, _) => one.drawn,
+            Self::Piece(one, _) => one.drawn,
+        }
+    }
+
+    /// Whether it certainly lies in the pixel.
+    fn lies(&self) -> bool {
+        self.drawn() && self.is_alone() && self.passes().certainly()
+    }
+
+    /// Whether there is no other pixel that it may be drawn into instead.
+    fn is_alone(&self) -> bool {
+        match self {
+            Self::Surfel(one, _) => one.bounds.pixels() == 1,
+            Self::Piece(one, _) => one.drawn,
+        }
+    }
+
+    /// Whether it passes the test of its depth.
+    fn passes(&self) -> Three {
+        match self {
+            Self::Surfel(_, passes) => *passes,
+            Self::Piece(..) => true.into(),
+        }
+    }
+}
+
+impl<P: Profile> Possible<P> {
+    /// A surfel, if it may be drawn into a pixel of the picture.
+    fn new(
+        projector: &PointProjector<Ball<P>>,
+        surfels: &Surfels,
+        i: usize,
+        grid: &Grid,
+    ) -> Option<Self> {
+        let normal = projector.view.direction(Vector3::from_glam(surfels.normal()[i]));
+        let position = Vector3::from_glam(surfels.position()[i]);
+        let (placed, g, reasons) = projector.reasons(position, normal);
+        let dropped = reasons.any();
+        if dropped.certainly() {
+            return None;
+        }
+        let [width, height] = grid.size();
+        let [x, y] = placed.pixel();
+        let end = |greatest: u32, size: u32| if greatest < size { greatest + 1 } else { size };
+        let bounds = Rect {
+            x0: x.least(),
+            y0: y.least(),
+            x1: end(x.greatest(), width),
+            y1: end(y.greatest(), height),
+        };
+        // With culling what is drawn is seen from the front.
+        let back = if projector.cull { false.into() } else { g.gt(Ball::ZERO) };
+        let surfel = i as u32;
+        let drawn = !dropped.possibly();
+        (!bounds.is_empty()).then_some(Self { surfel, bounds, drawn, placed, normal, back })
+    }
+}

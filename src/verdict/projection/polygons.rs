@@ -1,0 +1,365 @@
+//! All that the triangles of a scene may leave in each pixel, whatever their size and place.
+//!
+//! The corners of a triangle, of one that is cut those of its pieces, are intervals on the grid of fixed
+//! point. Where each is one place, coverage is exact. Else the weight of a corner is an interval: that of
+//! its edge function over all places of the corners. The piece *may lie* in a pixel if no weight certainly
+//! is negative; it *lies* there if all certainly are positive. What the corners have is off by its slope on
+//! the screen times as much as they are, each as far as it weighs.
+//!
+//! **Open** are pieces of which it is not certain on which side they are seen, and triangles of which it is
+//! not certain where they are cut: they may lie, at any depth of their corners, where the screen has
+//! their corners on no one side.
+
+use super::intervals::{Depths, Intervals, ROUNDINGS};
+use super::primitives::fixed;
+use crate::frame::raster::{GUARD_BAND, Snap, Triangle};
+use crate::frame::{Bins, Rect};
+use crate::method::Job;
+use crate::method::projection::primitives::{
+    Piece, PiecePixel, corners, triangle_piece, triangle_within,
+};
+use crate::method::projection::{PixelSample, SceneProjector};
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real, Vector3};
+use crate::scene::Scene;
+use crate::splat::clip::Clipped;
+use crate::verdict::checks::anything;
+use crate::verdict::marks::counted;
+
+/// Triangles that may be drawn, and where.
+pub(crate) struct AllPolygons<'a, P: Profile> {
+    projector: SceneProjector<'a, Ball<P>>,
+    drawn: Vec<PossiblePolygon<P>>,
+    bins: Bins,
+}
+
+/// A piece of a triangle that may be drawn.
+struct PossiblePolygon<P: Profile> {
+    /// The triangle in its list.
+    index: u32,
+    bounds: Rect,
+    /// What depths it has.
+    depths: Ball<P>,
+    form: Form<P>,
+}
+
+enum Form<P: Profile> {
+    Exact(Box<Piece<Ball<P>>>),
+    Between(Box<(Piece<Ball<P>>, Depths)>),
+    /// With the places of the corners, if these are known.
+    Open(Option<Intervals>),
+}
+
+/// What a triangle may leave in a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PossibleFragment<P: Profile> {
+    /// The triangle in its list.
+    pub(crate) index: u32,
+    pub(crate) depth: Ball<P>,
+    /// In view space.
+    pub(crate) normal: Vector3<Ball<P>>,
+    pub(crate) color: [Ball<P>; 3],
+    /// Whether it certainly lies in the pixel.
+    pub(crate) lies: bool,
+}
+
+impl<'a, P: Profile> AllPolygons<'a, P> {
+    /// Of a scene of triangles alone, in the picture of a job.
+    pub(crate) fn new(job: &Job<'_>, scene: &'a Scene, cull: bool) -> Self {
+        let projector = SceneProjector::new(scene, job.camera, cull, Snap::default());
+        let count = scene.primitives.triangles.len();
+        let ranges = (0..count).step_by(1024).map(|i| i..count.min(i + 1024)).collect();
+        let found = job.exec.ordered(ranges, |range: std::ops::Range<usize>| {
+            let mut drawn = Vec::new();
+            range.for_each(|i| triangle(&projector, i, &mut drawn));
+            drawn
+        });
+        let mut drawn: Vec<_> = found.into_iter().flatten().collect();
+        drawn.retain(|one| !one.bounds.is_empty());
+        let bins = Bins::new(&job.grid(), drawn.len(), |i| drawn[i].bounds);
+        Self { projector, drawn, bins }
+    }
+
+    /// What may lie in each pixel of a tile.
+    pub(crate) fn fragments(&self, (tile, rect): (usize, &Rect)) -> Vec<Vec<PossibleFragment<P>>> {
+        let mut found: Vec<_> = counted(*rect).map(|_| Vec::new()).collect();
+        let place =
+            |x: u32, y: u32| (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
+        self.bins.for_each(tile, |i| {
+            let one = &self.drawn[i as usize];
+            let inner = one.bounds.intersection(rect);
+            match &one.form {
+                _ if inner.is_empty() => {}
+                Form::Exact(piece) => piece.for_each(&inner, |at| {
+                    found[place(at.x, at.y)].push(self.fragment(one, piece, &at, true));
+                }),
+                Form::Between(between) => {
+                    let (piece, depths) = &**between;
+                    for (_, (x, y)) in counted(inner) {
+                        if let Some((weights, lies)) = depths.weights((x, y)) {
+                            let at = piece.with(x, y, weights);
+                            found[place(x, y)].push(self.fragment(one, piece, &at, lies));
+                        }
+                    }
+                }
+                Form::Open(intervals) => {
+                    let any = anything();
+                    let normal = Vector3::new(any, any, any);
+                    for (_, (x, y)) in counted(inner) {
+                        if intervals.as_ref().is_none_or(|all| all.may_reach((x, y))) {
+                            let (depth, color, lies) = (one.depths, [any; 3], false);
+                            found[place(x, y)].push(PossibleFragment {
+                                index: one.index,
+                                depth,
+                                normal,
+                                color,
+                                lies,
+                            });
+                        }
+                    }
+                }
+            }
+        });
+        found
+    }
+
+    fn fragment(
+        &self,
+        one: &PossiblePolygon<P>,
+        piece: &Piece<Ball<P>>,
+        at: &PiecePixel<Ball<P>>,
+        lies: bool,
+    ) -> PossibleFragment<P> {
+        let sample = piece.sample(&self.projector, at);
+        let bounded = sample.depth.radius.is_finite();
+        let depth = if bounded { sample.depth } else { one.depths };
+        let PixelSample { normal, color, .. } = sample;
+        PossibleFragment { index: one.index, depth, normal, color, lies }
+    }
+}
+
+/// The pieces that a triangle may be drawn as.
+fn triangle<P: Profile>(
+    projector: &SceneProjector<'_, Ball<P>>,
+    index: usize,
+    drawn: &mut Vec<PossiblePolygon<P>>,
+) {
+    let p = corners(&projector.scene.primitives.triangles, &projector.points, index);
+    let Some(polygon) = projector.clip.certain(p) else {
+        let depths = depths(projector, &p, &p);
+        let bounds = reach(projector, &p);
+        let index = index as u32;
+        drawn.push(PossiblePolygon { index, bounds, depths, form: Form::Open(None) });
+        return;
+    };
+    for i in 2..polygon.len() {
+        let fan = [polygon[0], polygon[i - 1], polygon[i]];
+        drawn.extend(piece(projector, index, &fan, &p));
+    }
+}
+
+/// A piece of a triangle of these corners, if it may be drawn.
+fn piece<P: Profile>(
+    projector: &SceneProjector<'_, Ball<P>>,
+    index: usize,
+    fan: &[Clipped<Ball<P>, 3>; 3],
+    p: &[Vector3<Ball<P>>; 3],
+) -> Option<PossiblePolygon<P>> {
+    let snap = &projector.snap;
+    let placed = fan.map(|corner| projector.points.place(corner.position));
+    let places: [[[i64; 2]; 2]; 3] =
+        placed.each_ref().map(|at| [fixed(snap, at.center.x), fixed(snap, at.center.y)]);
+    let least = std::array::from_fn(|k| (places[k].map(|[least, _]| least), placed[k].m));
+    let weights = fan.map(|corner| corner.weights);
+    let depths = depths(projector, &fan.map(|corner| corner.position), p);
+    let id = (index as u32, index);
+    if places.iter().flatten().all(|[least, greatest]| least == greatest) {
+        let piece = triangle_piece(projector, id, least, weights, *p)?;
+        return Some(PossiblePolygon {
+            index: id.0,
+            bounds: piece.bounds,
+            depths,
+            form: Form::Exact(Box::new(piece)),
+        });
+    }
+    let intervals = Intervals::new(snap, &places);
+    let bounds = intervals.bounds(projector.size);
+    if !intervals.is_turned() {
+        let form = Form::Open(Some(intervals));
+        return Some(PossiblePolygon { index: id.0, bounds, depths, form });
+    }
+    let raster = Triangle::new(snap, least.map(|(place, _)| place))?;
+    let piece = triangle_within(projector, id, (raster, bounds), least, weights, *p)?;
+    let between = Depths::new(intervals, placed.map(|at| at.m), &weights);
+    let form = Form::Between(Box::new((piece, between)));
+    Some(PossiblePolygon { index: id.0, bounds, depths, form })
+}
+
+/// The depths of a piece of these corners of a triangle.
+fn depths<P: Profile>(
+    projector: &SceneProjector<'_, Ball<P>>,
+    piece: &[Vector3<Ball<P>>; 3],
+    triangle: &[Vector3<Ball<P>>; 3],
+) -> Ball<P> {
+    let size = |sum: f64, p: &Vector3<Ball<P>>| sum + p.z.middle.abs() + p.z.radius;
+    let lost = triangle.iter().fold(0.0, size) * ROUNDINGS;
+    let near = projector.points.view.near.middle;
+    let (mut least, mut most) = (f64::INFINITY, near);
+    for p in piece {
+        least = least.at_most(-p.z.middle - p.z.radius);
+        most = most.at_least(-p.z.middle + p.z.radius);
+    }
+    let (least, most) = (least.at_least(near) - lost, most + lost);
+    let sound = least > 0.0 || !projector.points.view.perspective;
+    if sound && (most - least).is_finite() {
+        Ball::new(0.5 * (least + most), 0.5 * (most - least) * (1.0 + ROUNDINGS))
+    } else {
+        anything()
+    }
+}
+
+/// The pixels that a triangle may reach, wherever it is cut: those that do not have all corners on one
+/// side, by more than what its places may be off.
+fn reach<P: Profile>(projector: &SceneProjector<'_, Ball<P>>, p: &[Vector3<Ball<P>>; 3]) -> Rect {
+    let view = &projector.points.view;
+    let near = if view.perspective { view.near.middle } else { 1.0 };
+    let size = |p: &Vector3<Ball<P>>| {
+        [p.x, p.y, p.z].iter().fold(0.0, |sum, c| sum + c.middle.abs()) * ROUNDINGS
+            + (p.x.radius + p.y.radius + p.z.radius)
+    };
+    let off = p.iter().fold(0.0, |off, p| off + size(p));
+    let [columns, rows] = [0, 1].map(|axis| {
+        let (focal, center) = if axis == 0 {
+            (view.fx.middle, view.cx.middle)
+        } else {
+            (view.fy.middle, view.cy.middle)
+        };
+        let pixels = projector.size[axis];
+        let slack = 2.0 + off * (focal + center.abs() + f64::from(GUARD_BAND)) / near;
+        // > 0: the corner is beyond the coordinate.
+        let beyond = |p: &Vector3<Ball<P>>, at: f64| {
+            let s = if view.perspective { -p.z.middle } else { 1.0 };
+            let c = if axis == 0 { p.x.middle } else { -p.y.middle };
+            focal * c + (center - at) * s
+        };
+        let may = |pixel: &u32| {
+            let at = f64::from(*pixel) + 0.5;
+            let all_after = p.iter().all(|p| beyond(p, at + slack) > 0.0);
+            let all_before = p.iter().all(|p| beyond(p, at - slack) < 0.0);
+            !(all_after || all_before)
+        };
+        let first = (0..pixels).find(may).unwrap_or(pixels);
+        let end = (first..pixels).rev().find(may).map_or(first, |last| last + 1);
+        [first, end]
+    });
+    Rect { x0: columns[0], y0: rows[0], x1: columns[1], y1: rows[1] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Exec;
+    use crate::index::Index;
+    use crate::method::projection::{SampleKind, project};
+    use crate::number::Exact;
+    use crate::number::ball::{Gpu, Ieee};
+    use crate::number::random::unit;
+    use crate::scene::{Camera, Lens, Pose, Primitives, Surfels, Triangles, Vertices};
+    use glam::{DVec3, Vec3};
+
+    /// Triangles of a size between random points, as far as behind the camera.
+    fn scene(seed: u64, count: u32, size: f32) -> Scene {
+        let at = |i: u64| 2.0 * unit(seed, i) - 1.0;
+        let point = |i: u64| Vec3::new(at(3 * i), at(3 * i + 1), at(3 * i + 2));
+        let corner = |i: u64| 5.0 * point(10_000 + i / 3) + size * point(i);
+        let total = u64::from(3 * count);
+        let vertices = Vertices {
+            position: (0..total).map(corner).collect(),
+            direction: (0..total).map(|i| point(20_000 + i).normalize()).collect(),
+            radius: vec![0.0; total as usize],
+            color: Some((0..total).map(|i| point(30_000 + i).abs()).collect()),
+            ..Vertices::default()
+        };
+        let corners = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let triangles = Triangles::new(vertices, corners).unwrap().0;
+        let primitives = Primitives { triangles, ..Primitives::default() };
+        Scene { primitives, ..Scene::unlit("triangles", Surfels::none()) }
+    }
+
+    /// By how many radii a sample errs against a fragment.
+    fn error<P: Profile, R: Exact>(sample: &PixelSample<R>, may: &PossibleFragment<P>) -> f64 {
+        let misfit = |ball: Ball<P>, value: R| ball.misfit(Ball::exact(value.to_f64()));
+        let normal = [
+            (may.normal.x, sample.normal.x),
+            (may.normal.y, sample.normal.y),
+            (may.normal.z, sample.normal.z),
+        ];
+        let all = may.color.into_iter().zip(sample.color).chain(normal);
+        all.chain([(may.depth, sample.depth)])
+            .fold(0.0, |most, (ball, value)| most.at_least(misfit(ball, value)))
+    }
+
+    /// What the crate draws fits what may lie, and hides what certainly lies; how many samples there are, of
+    /// how many the depth is known to a thousandth, and how many certainly lie.
+    fn compare<P: Profile + std::fmt::Debug, R: Exact>(
+        scene: &Scene,
+        camera: &Camera,
+        cull: bool,
+    ) -> [usize; 3] {
+        let exec = Exec::new(1, 16).unwrap();
+        let index = Index::default();
+        let job = Job::new(scene, &index, camera, &exec);
+        let all = AllPolygons::<P>::new(&job, scene, cull);
+        let drawn = project::<R>(&job, cull, Snap::default()).unwrap().samples;
+        let mut counts = [0; 3];
+        for (tile, rect) in job.grid().rects().into_iter().enumerate() {
+            for ((_, (x, y)), may) in counted(rect).zip(all.fragments((tile, &rect))) {
+                let sample = drawn.at(x, y);
+                let before = |one: &&PossibleFragment<P>| {
+                    one.lies && { one.depth.middle + one.depth.radius < sample.depth.to_f64() }
+                };
+                assert!(!may.iter().any(|one| before(&one)), "{x} {y}");
+                if sample.kind == SampleKind::Empty {
+                    continue;
+                }
+                let fits = |one: &&PossibleFragment<P>| error(sample, one) <= 1.0;
+                let closest = |a: &&PossibleFragment<P>, b: &&PossibleFragment<P>| {
+                    a.depth.radius.total_cmp(&b.depth.radius)
+                };
+                let found = may.iter().filter(fits).min_by(closest);
+                let found = found.unwrap_or_else(|| panic!("{x} {y} {sample:?} {may:?}"));
+                let close = found.depth.radius < 1e-3 * found.depth.middle;
+                counts = [
+                    counts[0] + 1,
+                    counts[1] + usize::from(close),
+                    counts[2] + usize::from(found.lies),
+                ];
+            }
+        }
+        counts
+    }
+
+    #[test]
+    fn what_is_drawn_may_lie_and_what_lies_is_drawn() {
+        let mut counts = [0; 3];
+        for seed in 0..12 {
+            let size = [0.05, 0.5, 3.0, 20.0][seed as usize % 4];
+            let scene = scene(seed, 40, size);
+            let lens = [Lens::FieldOfView(50.0), Lens::Orthographic(4.0)][seed as usize / 4 % 2];
+            let eye = DVec3::new(0.25, 0.5, 3.0);
+            let pose = Pose { eye, target: DVec3::ZERO, up: DVec3::Y };
+            let picture = if seed % 3 == 0 { [900, 40] } else { [61, 47] };
+            let camera = Camera::new(picture[0], picture[1], pose, lens).unwrap();
+            let cull = seed % 5 == 0;
+            for found in [
+                compare::<Ieee, f32>(&scene, &camera, cull),
+                compare::<Ieee, f64>(&scene, &camera, cull),
+                compare::<Gpu, f32>(&scene, &camera, cull),
+            ] {
+                counts = [0, 1, 2].map(|i| counts[i] + found[i]);
+            }
+        }
+        let [all, close, lies] = counts;
+        assert!(all > 50_000 && close * 2 > all && lies * 10 > all * 9, "{counts:?}");
+    }
+}

@@ -1,0 +1,177 @@
+//! Pull and push of a client, level by level.
+
+use super::planes::{CellPlanes, Level};
+use crate::composite::decide;
+use crate::method::Job;
+use crate::method::projection::{Has, SampleKind};
+use crate::method::pyramid::{Cell, Settings, pull, push};
+use crate::number::ball::Profile;
+use crate::number::{Ball, Truth, Vector2};
+use crate::verdict::Doubt;
+use crate::verdict::checks::least_wrong;
+use crate::verdict::marks::{Marks, PixelMarks, StageMarks, Watch, counted};
+use crate::verdict::outcomes::{MOST, Outcome, outcomes};
+use crate::verdict::projection::SamplePlanes;
+
+/// Four cells.
+type Four<P> = [Cell<Ball<P>>; 4];
+
+/// The levels as a client has them.
+pub(super) struct Levels<'a, P: Profile> {
+    job: &'a Job<'a>,
+    sizes: &'a [[u32; 2]],
+    /// The planes of the levels 1 to the last after the pull, of 0 to the last but one after the push.
+    planes: [&'a [CellPlanes<'a>]; 2],
+    /// All levels after the pull; none where a plane is missing.
+    pulled: Vec<Option<Level<P>>>,
+    /// All levels after the push, the last that of the pull.
+    pushed: Vec<Option<Level<P>>>,
+}
+
+impl<'a, P: Profile> Levels<'a, P> {
+    pub(super) fn new(
+        job: &'a Job<'a>,
+        sizes: &'a [[u32; 2]],
+        finest: &SamplePlanes<'_>,
+        planes: [&'a [CellPlanes<'a>]; 2],
+    ) -> Self {
+        let has = Has::of(job.scene);
+        let samples = finest.samples(false);
+        let mut pulled = vec![samples.map(|samples| samples.map(Cell::new))];
+        pulled.extend(planes[0].iter().zip(&sizes[1..]).map(|(of, size)| of.level(*size, has)));
+        let mut pushed: Vec<_> =
+            planes[1].iter().zip(sizes).map(|(of, size)| of.level(*size, has)).collect();
+        pushed.extend(pulled.last().cloned());
+        Self { job, sizes, planes, pulled, pushed }
+    }
+
+    /// Level 0 after the push, if its planes are all there.
+    pub(super) fn finest(&self) -> Option<&Level<P>> {
+        self.pushed.first().and_then(Option::as_ref)
+    }
+
+    /// Judges each level of the pull whose finer one is there.
+    pub(super) fn pull(&self, watch: Watch) -> StageMarks {
+        let mut found = Phase::new(self.job, watch);
+        for (level, planes) in (1..).zip(self.planes[0]) {
+            let Some(fine) = &self.pulled[level - 1] else { continue };
+            let side = pull::side(level - 1);
+            found.level(self.job, planes, self.sizes[level], |at, pixel| {
+                let finer = pull::four(fine, at.0, at.1);
+                let offsets = pull::offsets(&finer, side);
+                let (outcomes, doubts) = of_four(&finer, &offsets);
+                pixel.doubts(doubts);
+                let of = |outcome: &Outcome| match *outcome {
+                    Some((takes, first)) => pull::merge(&finer, &offsets, takes, first),
+                    None => Cell::empty(),
+                };
+                outcomes.iter().map(of).collect()
+            });
+        }
+        ("pull", found.names, found.marks)
+    }
+
+    /// Judges each level of the push whose coarser one is there, and what the pull left of it.
+    pub(super) fn push(&self, settings: &Settings, watch: Watch) -> StageMarks {
+        let mut found = Phase::new(self.job, watch);
+        for (level, planes) in self.planes[1].iter().enumerate() {
+            let (Some(fine), Some(coarse)) = (&self.pulled[level], &self.pushed[level + 1]) else {
+                continue;
+            };
+            found.level(self.job, planes, self.sizes[level], |at, pixel| {
+                pushed((fine, coarse), at, level, settings, pixel)
+            });
+        }
+        ("push", found.names, found.marks)
+    }
+}
+
+/// What was found of a phase.
+struct Phase {
+    watch: Watch,
+    marks: Marks,
+    names: Vec<&'static str>,
+}
+
+impl Phase {
+    fn new(job: &Job<'_>, watch: Watch) -> Self {
+        Self { watch, marks: watch.picture(job), names: Vec::new() }
+    }
+
+    /// Judges the planes of a level by all that each cell may be.
+    fn level<P: Profile>(
+        &mut self,
+        job: &Job<'_>,
+        planes: &CellPlanes<'_>,
+        [width, height]: [u32; 2],
+        all: impl Fn((u32, u32), &mut PixelMarks<'_>) -> Vec<Cell<Ball<P>>> + Sync + Send,
+    ) {
+        let names = planes.names();
+        if names.is_empty() {
+            return;
+        }
+        for name in names {
+            if !self.names.contains(&name) {
+                self.names.push(name);
+            }
+        }
+        let watch = self.watch;
+        let parts = watch.parts(&job.exec.grid(width, height));
+        let found = job.exec.ordered(parts, |(_, rect)| {
+            let mut marks = watch.marks(rect);
+            for (pixel, at) in counted(rect) {
+                let mut pixel = marks.at(pixel);
+                let all = all(at, &mut pixel);
+                if all.len() > MOST {
+                    continue;
+                }
+                let best =
+                    least_wrong::<_, 1>(&all, |truth, report| planes.check(at, truth, report));
+                if let Some(truth) = best {
+                    planes.check(at, truth, &mut |_, error, fault| pixel.found(error, fault));
+                }
+            }
+            marks
+        });
+        found.into_iter().for_each(|part| self.marks.put(part));
+    }
+}
+
+/// The outcomes of four cells at these offsets.
+fn of_four<P: Profile>(cells: &Four<P>, offsets: &[Vector2<Ball<P>>; 4]) -> (Vec<Outcome>, u8) {
+    let tube = |j: usize| cells[j].kind == SampleKind::Tube;
+    outcomes(Cell::inside(cells, offsets), cells.map(|cell| cell.front), |j, first| {
+        let overlaps = decide::overlaps(cells[j].front, cells[first].back);
+        overlaps & (tube(j) == tube(first)).into()
+    })
+}
+
+/// All that a cell may be after the push.
+fn pushed<P: Profile>(
+    (fine, coarse): (&Level<P>, &Level<P>),
+    (x, y): (u32, u32),
+    level: usize,
+    settings: &Settings,
+    pixel: &mut PixelMarks<'_>,
+) -> Vec<Cell<Ball<P>>> {
+    let (cell, parent) = (fine.at(x, y), coarse.at(x / 2, y / 2));
+    let covered = push::occluded(cell, parent, settings.occlusion) | (!cell.is_valid()).into();
+    pixel.doubt(Doubt::Fate, covered.decided().is_none());
+    if !covered.possibly() {
+        return vec![*cell];
+    }
+    let coarser = push::four(coarse, x, y);
+    let even = (x.is_multiple_of(2), y.is_multiple_of(2));
+    let offsets = push::offsets(&coarser, even, pull::side(level));
+    let (outcomes, doubts) = of_four(&coarser, &offsets);
+    pixel.doubts(doubts);
+    let mut all = Vec::with_capacity(outcomes.len() + 1);
+    if !covered.certainly() {
+        all.push(*cell);
+    }
+    all.extend(outcomes.iter().map(|outcome| match *outcome {
+        Some((takes, first)) => push::merge(&coarser, &offsets, settings.weights, takes, first),
+        None => *cell,
+    }));
+    all
+}

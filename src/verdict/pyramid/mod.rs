@@ -1,0 +1,107 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Each stage is judged from what the client has of the stage before: floats are inputs as they are
+//! stored, and so exact. The formulas are those of the crate in balls of a [`Profile`].
+//!
+//! **Projection**: see [`mod@crate::verdict::projection`],
+//! which says what is not judged of triangles, ribbons and
+//! tubes. The later stages are judged whatever their inputs are.
+//!
+//! **Pull and push**, level by level from the client's own: the pull from its finer level, the push from
+//! its coarser one and from what its pull left. Level 0 before the push is the projection's, the
+//! end of its intervals a computed number. Of each cell every outcome that the decisions allow: which
+//! ellipses hold its centre, which is foremost, whose intervals overlap, whether it is occluded; a
+//! cell is right if one outcome fits every plane. A level is judged if every plane of what it comes
+//! from is there. What is copied must be equal.
+//!
+//! **Shading**: depth, kind and vectors from the client's finest level after the push (of a picture of
+//! one pixel: the projection); the colour from these planes of the picture as far as they are there,
+//! as they are stored or as they were before. Without the finest level they are not judged, and the
+//! colour is in a scene without colours.
+//!
+//! A cell with more than 16 outcomes is not judged, and counts as undecided like one with several. A
+//! cell is marked where its planes have it, whatever its level.
+
+mod levels;
+mod pixel;
+mod planes;
+#[cfg(test)]
+mod tests;
+
+use crate::error::Result;
+use crate::frame::pyramid;
+use crate::frame::raster::Snap;
+use crate::method::Job;
+use crate::method::projection::Has;
+use crate::method::pyramid::Settings;
+use crate::method::pyramid::planes::{PULL, PUSH};
+use crate::number::ball::Profile;
+use crate::verdict::checks::missing;
+use crate::verdict::client::Client;
+use crate::verdict::marks::{Found, Watch, counted};
+use crate::verdict::projection::{self as samples, SamplePlanes};
+use crate::verdict::shift::Shifts;
+use crate::verdict::{Check, Verdict};
+use levels::Levels;
+use pixel::PixelJudge;
+use planes::{CellPlanes, PicturePlanes};
+
+/// All doubts: in the levels each may move the averages.
+const ANY: u8 = u8::MAX;
+
+/// Judges the planes of a client.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Verdict {
+    let (found, covered) = judge::<P>(job, settings, client, Watch::All);
+    let mut stages = found.judged(job);
+    let last = pyramid::sizes(job.camera.width, job.camera.height).len() - 1;
+    let has = Has::of(job.scene);
+    stages[1].missing = missing(client, &PULL, 1..last + 1, has);
+    stages[2].missing = missing(client, &PUSH, 0..last, has);
+    let undecided = [1, 2].map(|i: usize| stages[i].doubtful(ANY)).iter().sum();
+    Verdict::new(stages, [covered, undecided], budget, Shifts::default())
+}
+
+/// Everything that is judged at one pixel: the cells of all levels that have its place, and the pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    Ok(judge::<P>(job, settings, client, Watch::one(job, pixel)?).0.checks())
+}
+
+/// What is found of all stages, and how many pixels may be covered.
+fn judge<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    watch: Watch,
+) -> (Found<1>, u64) {
+    // The settings have been checked: there is a grid of so many digits.
+    let snap = Snap::new(settings.subpixel_bits).unwrap_or_default();
+    let sizes = pyramid::sizes(job.camera.width, job.camera.height);
+    let last = sizes.len() - 1;
+    let finest = SamplePlanes::new(client, job.scene);
+    let pulled: Vec<_> = (1..=last).map(|level| CellPlanes::pulled(client, level)).collect();
+    let pushed: Vec<_> = (0..last).map(|level| CellPlanes::pushed(client, level)).collect();
+    let projection = samples::judge::<P>(job, settings.cull, snap, &finest, watch);
+    let levels = Levels::<P>::new(job, &sizes, &finest, [&pulled, &pushed]);
+    let before = vec![projection, levels.pull(watch), levels.push(settings, watch)];
+    let handed = PicturePlanes::new(client);
+    let judge = PixelJudge::new(job, levels.finest(), &handed);
+    let found = job.exec.ordered(watch.parts(&job.grid()), |(_, rect)| {
+        let mut marks = watch.marks(rect);
+        let at = counted(rect);
+        let covered = at.filter(|(pixel, at)| judge.judge(*at, &mut marks.at(*pixel))).count();
+        ([marks], covered as u64)
+    });
+    let covered = found.iter().map(|(_, covered)| covered).sum();
+    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
+    (Found { levels: before, stages: [("shading", judge.names())], tiles }, covered)
+}

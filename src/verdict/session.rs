@@ -1,0 +1,99 @@
+//! Verdicts on the pictures of a session.
+
+use super::client::{Client, Rounding};
+use super::table;
+use super::{Check, Verdict};
+use crate::error::{Error, Result};
+use crate::method::session::{Making, Names, named};
+use crate::method::{Method, Session};
+use crate::number::ball::{Gpu, Ieee};
+use crate::scene::Camera;
+use std::borrow::Cow;
+
+impl Session<'_> {
+    /// Judges the planes of a client, stage by stage: whether a right implementation may leave them.
+    /// A picture in which the sums of more than the share `budget` of its pixels are undecided cannot
+    /// be judged, see [`Verdict::BUDGET`].
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if no plane is one of the method's, if the picture has another size than
+    /// the camera's, or if there are records of another method than `ewa`; else as [`Session::render`].
+    pub fn verify(&self, camera: &Camera, client: &Client, budget: f64) -> Result<Verdict> {
+        self.verify_as(self.method(), camera, client, budget)
+    }
+
+    /// As [`Session::verify`], as if the method were another one, with the same scene and groups.
+    pub(crate) fn verify_as(
+        &self,
+        method: &Method,
+        camera: &Camera,
+        client: &Client,
+        budget: f64,
+    ) -> Result<Verdict> {
+        let job = self.job(camera)?;
+        self.check_client(camera, client)?;
+        self.ask(camera, Making::Verdict)?;
+        let names = self.numbers();
+        let client = &*numbered(names.as_ref(), client)?;
+        let verdict = match client.rounding {
+            Rounding::Gpu => table::verify::<Gpu>(method, &job, client, budget),
+            Rounding::Ieee => table::verify::<Ieee>(method, &job, client, budget),
+        }?;
+        Ok(verdict.renumbered(|index| named(names.as_ref(), index)))
+    }
+
+    /// Every value of a client at one pixel that is judged, against what it may be.
+    ///
+    /// # Errors
+    /// As [`Session::verify`] and [`Session::explain`].
+    pub fn checks(
+        &self,
+        camera: &Camera,
+        client: &Client,
+        pixel: (u32, u32),
+    ) -> Result<Vec<Check>> {
+        let job = self.job(camera)?;
+        self.check_client(camera, client)?;
+        self.ask(camera, Making::Verdict)?;
+        let names = self.numbers();
+        let client = &*numbered(names.as_ref(), client)?;
+        let mut checks = match client.rounding {
+            Rounding::Gpu => table::checks::<Gpu>(self.method(), &job, client, pixel),
+            Rounding::Ieee => table::checks::<Ieee>(self.method(), &job, client, pixel),
+        }?;
+        let name = |index| named(names.as_ref(), index);
+        checks.iter_mut().for_each(|check| check.fault.renumber(name));
+        Ok(checks)
+    }
+
+    /// Whether there is something to judge, and nothing that is not.
+    fn check_client(&self, camera: &Camera, client: &Client) -> Result<()> {
+        let frame = client.frame();
+        let (found, picture) = ([frame.width, frame.height], camera.size());
+        if found != picture {
+            let [width, height] = found;
+            return Err(Error::Invalid(format!(
+                "planes of {width} x {height}, but the camera's picture has {} x {}",
+                picture[0], picture[1]
+            )));
+        }
+        if frame.planes.is_empty() {
+            let what = format!("no plane is called as one of the method {}", self.method().name());
+            return Err(Error::Invalid(what));
+        }
+        if client.records.is_some() && !matches!(self.method(), Method::Ewa(_)) {
+            let name = self.method().name();
+            let what = format!("records are judged of the method ewa alone, and this is {name}");
+            return Err(Error::Invalid(what));
+        }
+        Ok(())
+    }
+}
+
+/// A client with indices of surfels in the place of their ids.
+fn numbered<'c>(names: Option<&Names<'_>>, client: &'c Client) -> Result<Cow<'c, Client>> {
+    let Some(names) = names else { return Ok(Cow::Borrowed(client)) };
+    let mut numbered = client.clone();
+    names.number_given(numbered.frame_mut())?;
+    Ok(Cow::Owned(numbered))
+}

@@ -1,0 +1,240 @@
+//! The fragments of the groups in balls: every one that a right implementation may draw.
+
+use crate::composite::bins::DepthBins;
+use crate::composite::decide;
+use crate::error::Result;
+use crate::frame::Rect;
+use crate::method::Job;
+use crate::method::ewa::possible::{PossibleSplat, PossibleSplats, project};
+use crate::method::fragment::each_pixel;
+use crate::method::single_pass::Settings;
+use crate::method::single_pass::geometry::ratio;
+use crate::number::ball::{Profile, Three};
+use crate::number::{Ball, Truth};
+use crate::scene::Groups;
+use crate::splat::{Shared, SplatSettings, View, fragment};
+
+/// The splats of a picture, by their groups.
+pub(crate) struct GroupFragments<'a, P: Profile> {
+    /// None: all surfels are in one group.
+    groups: Option<&'a Groups>,
+    splats: PossibleSplats<P>,
+    pub(crate) view: View<Ball<P>>,
+    /// The bins of the Voronoi depth test; none for the plain one.
+    bins: Option<DepthBins<Ball<P>>>,
+}
+
+/// A fragment that may be inside, or that the client says to be.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fragment<P: Profile> {
+    pub(crate) surfel: u32,
+    /// Whether it certainly is drawn.
+    pub(crate) drawn: bool,
+    pub(crate) inside: Three,
+    /// How certain that is.
+    pub(crate) margin: f64,
+    /// q divided by the limit of q.
+    pub(crate) rim: f64,
+    pub(crate) back: Three,
+    pub(crate) w: Ball<P>,
+    pub(crate) t: Ball<P>,
+    pub(crate) weight: Ball<P>,
+    /// What the depth test compares.
+    pub(crate) keys: Keys<P>,
+}
+
+/// What the depth test may compare of a fragment.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Keys<P: Profile> {
+    /// The least and the greatest bin; none under the plain depth test.
+    bins: Option<[f64; 2]>,
+    /// The distance from the centre of the splat; under the plain depth test the depth.
+    part: Ball<P>,
+}
+
+/// The most bins of which each is a key of its own.
+const MOST_BINS: f64 = 8.0;
+
+impl<P: Profile> Keys<P> {
+    /// The key of a bin.
+    fn of(&self, bin: f64) -> Ball<P> {
+        DepthBins::within(Ball::exact(bin), self.part)
+    }
+
+    /// The least key.
+    pub(crate) fn least(&self) -> Ball<P> {
+        self.bins.map_or(self.part, |[first, _]| self.of(first))
+    }
+
+    /// The greatest.
+    pub(crate) fn greatest(&self) -> Ball<P> {
+        self.bins.map_or(self.part, |[_, last]| self.of(last))
+    }
+
+    /// The key that fits a stored one best.
+    pub(crate) fn closest(&self, found: Ball<P>) -> Ball<P> {
+        let Some([first, last]) = self.bins else { return self.part };
+        if !(last - first <= MOST_BINS) {
+            // The bin is as good as unknown: any of them, and any part of one.
+            return Ball::new(0.5 * (first + last), 0.5 * (last - first) + 1.0);
+        }
+        let others = (1..=(last - first) as u32).map(|i| self.of(first + f64::from(i)));
+        others.fold(
+            self.of(first),
+            |best, key| {
+                if key.misfit(found) < best.misfit(found) { key } else { best }
+            },
+        )
+    }
+
+    /// The key, if it is exact.
+    fn exact(&self) -> Option<f64> {
+        let (least, greatest) = (self.least(), self.greatest());
+        let same = least.middle == greatest.middle && least.radius == 0.0;
+        same.then_some(least.middle)
+    }
+
+    /// Whether two keys are equal in every implementation.
+    pub(crate) fn are_equal(&self, other: &Self) -> bool {
+        self.exact().is_some() && self.exact() == other.exact()
+    }
+}
+
+/// The fragments of a row of pixels, by pixel and group.
+pub(crate) struct RowFragments<P: Profile> {
+    groups: usize,
+    /// In the order of their places, those of a place in ascending surfel index.
+    all: Vec<(usize, Fragment<P>)>,
+}
+
+/// The fragments of the groups at a pixel.
+pub(crate) struct PixelFragments<'a, P: Profile> {
+    first: usize,
+    all: &'a [(usize, Fragment<P>)],
+}
+
+impl<P: Profile> RowFragments<P> {
+    /// Those of a pixel, counted from the left.
+    pub(crate) fn at(&self, column: usize) -> PixelFragments<'_, P> {
+        let first = column * self.groups;
+        PixelFragments { first, all: between(&self.all, [first, first + self.groups]) }
+    }
+}
+
+impl<P: Profile> PixelFragments<'_, P> {
+    /// Those of a group.
+    pub(crate) fn of(&self, group: usize) -> impl Iterator<Item = &Fragment<P>> + Clone {
+        let place = self.first + group;
+        between(self.all, [place, place + 1]).iter().map(|(_, fragment)| fragment)
+    }
+}
+
+/// What lies at the places from one up to, but not with, another.
+fn between<T>(all: &[(usize, T)], places: [usize; 2]) -> &[(usize, T)] {
+    let [first, end] = places.map(|place| all.partition_point(|(at, _)| *at < place));
+    &all[first..end]
+}
+
+impl<'a, P: Profile> GroupFragments<'a, P> {
+    /// Projection.
+    pub(crate) fn project(job: &Job<'a>, settings: &Settings) -> Result<Self> {
+        let groups = Some(job.index.groups()?);
+        let bins = settings.bins(&job.scene.surfels, job.camera)?;
+        let (splats, view) = (project(job, &settings.splats), View::new(job.camera));
+        Ok(Self { groups, splats, view, bins })
+    }
+
+    /// The same without groups: all surfels are in one, under the plain depth test.
+    pub(crate) fn whole(job: &Job<'a>, settings: &SplatSettings) -> Self {
+        let (splats, view) = (project(job, settings), View::new(job.camera));
+        Self { groups: None, splats, view, bins: None }
+    }
+
+    /// How many groups there are.
+    pub(crate) fn groups(&self) -> usize {
+        self.groups.map_or(1, Groups::len)
+    }
+
+    /// The depth of the visible band in world units.
+    pub(crate) fn epsilon(&self) -> Ball<P> {
+        self.splats.epsilon
+    }
+
+    /// Whether the depth test is the Voronoi one.
+    pub(crate) fn voronoi(&self) -> bool {
+        self.bins.is_some()
+    }
+
+    /// What the fragments of all splats share.
+    pub(crate) fn shared(&self) -> &Shared<Ball<P>> {
+        &self.splats.shared
+    }
+
+    /// The fragments of a row of pixels in a tile; `said` gives the surfel that the client says a group
+    /// keeps at a column and row.
+    pub(crate) fn of_row(
+        &self,
+        tile: usize,
+        row: &Rect,
+        said: impl Fn(usize, (u32, u32)) -> Option<u32>,
+    ) -> RowFragments<P> {
+        let (groups, mut all) = (self.groups(), Vec::new());
+        self.splats.for_each(tile, |possible| {
+            let surfel = possible.splat.surfel;
+            let group = self.groups.map_or(0, |groups| groups.own()[surfel as usize].into());
+            each_pixel(&possible.splat, row, |column, at| {
+                let said = said(group, at) == Some(surfel);
+                if let Some(fragment) = self.fragment(possible, at, said) {
+                    all.push((column * groups + group, fragment));
+                }
+            });
+        });
+        // Those of a place stay in their order.
+        all.sort_by_key(|(place, _)| *place);
+        RowFragments { groups, all }
+    }
+
+    /// The fragment of a splat, if it may be inside or the client said that it is.
+    fn fragment(
+        &self,
+        possible: &PossibleSplat<P>,
+        at: (u32, u32),
+        said: bool,
+    ) -> Option<Fragment<P>> {
+        let (shared, splat) = (self.shared(), &possible.splat);
+        let (q, w) = fragment(shared, &splat.footprint, at);
+        let inside = decide::inside(q, shared.limit);
+        if !inside.possibly() && !said {
+            return None;
+        }
+        let t = shared.depth(w);
+        Some(Fragment {
+            surfel: splat.surfel,
+            drawn: possible.certain,
+            inside,
+            margin: q.distance(shared.limit),
+            rim: q.middle / shared.limit.middle,
+            back: splat.back,
+            w,
+            t,
+            weight: splat.footprint.weight(q),
+            keys: self.keys(q, t),
+        })
+    }
+
+    fn keys(&self, q: Ball<P>, t: Ball<P>) -> Keys<P> {
+        let Some(bins) = &self.bins else { return Keys { bins: None, part: t } };
+        let ends = bin_ends(bins, t);
+        Keys { bins: Some(ends), part: ratio(q, self.shared().limit) }
+    }
+}
+
+/// The least and the greatest bin of a depth.
+pub(crate) fn bin_ends<P: Profile>(bins: &DepthBins<Ball<P>>, t: Ball<P>) -> [f64; 2] {
+    let position = bins.position(t);
+    // A little more than the radius, as the comparisons of balls have it.
+    let reach = position.radius * (1.0 + f64::from(f32::EPSILON));
+    let reach = if reach.is_nan() { f64::INFINITY } else { reach };
+    let ends = [position.middle - reach, position.middle + reach];
+    ends.map(|end| bins.bin_of(Ball::exact(end)).middle)
+}

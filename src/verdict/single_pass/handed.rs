@@ -1,0 +1,118 @@
+//! The planes of depth-images that a client has handed in.
+
+use crate::composite::groups::WeightedFragment;
+use crate::method::Holds;
+use crate::method::single_pass::planes::{COLOR_SUM, COUNT, ImageRows, NORMAL_SUM, WEIGHT_SUM};
+use crate::number::Ball;
+use crate::number::ball::Profile;
+use crate::verdict::checks::{Report, input, inputs, number, triple, widened};
+use crate::verdict::client::{Client, Stored};
+use crate::verdict::ewa::handed::SumRows;
+
+/// The rows of the compositing pass.
+pub(crate) fn sum_rows() -> SumRows {
+    SumRows {
+        nearest: None,
+        weight: WEIGHT_SUM,
+        normal: NORMAL_SUM,
+        color: COLOR_SUM,
+        count: COUNT,
+    }
+}
+
+/// The planes of the depth-image of a group, each if it is there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ImagePlanes<'a> {
+    pub(super) depth: Option<Stored<'a, f64>>,
+    pub(super) id: Option<Stored<'a, u32>>,
+    weight: Option<Stored<'a, f64>>,
+    normal: Option<Stored<'a, [f64; 3]>>,
+    color: Option<Stored<'a, [f64; 3]>>,
+    pub(super) voronoi: Option<Stored<'a, f64>>,
+}
+
+impl<'a> ImagePlanes<'a> {
+    pub(super) fn new(client: &'a Client, rows: &ImageRows, group: usize) -> Self {
+        Self {
+            depth: client.scalar_of(&rows.depth, group),
+            id: client.index_of(&rows.id, group),
+            weight: client.scalar_of(&rows.weight, group),
+            normal: client.triple_of(&rows.normal, group),
+            color: client.triple_of(&rows.color, group),
+            voronoi: client.scalar_of(&rows.voronoi, group),
+        }
+    }
+
+    /// The names of the planes that are there.
+    fn names(&self) -> [Option<&'static str>; 6] {
+        [
+            self.depth.map(|plane| plane.name),
+            self.id.map(|plane| plane.name),
+            self.weight.map(|plane| plane.name),
+            self.normal.map(|plane| plane.name),
+            self.color.map(|plane| plane.name),
+            self.voronoi.map(|plane| plane.name),
+        ]
+    }
+
+    /// Whether nothing is there.
+    pub(super) fn nothing(&self) -> bool {
+        self.names().iter().all(Option::is_none)
+    }
+
+    /// Whether the compositing pass finds all that it sums.
+    pub(super) fn complete(&self, colored: bool) -> bool {
+        let color = self.color.is_some() || !colored;
+        self.depth.is_some() && self.weight.is_some() && self.normal.is_some() && color
+    }
+
+    /// The surfel that the image says it keeps at a pixel.
+    pub(super) fn surfel(&self, (x, y): (u32, u32)) -> Option<u32> {
+        self.id.map(|plane| *plane.plane.at(x, y))
+    }
+
+    /// Depth and weighted attributes at a pixel against what may be there.
+    pub(super) fn check<P: Profile>(
+        &self,
+        at: (u32, u32),
+        truth: &WeightedFragment<Ball<P>>,
+        report: &mut Report<'_>,
+    ) {
+        if let Some(plane) = &self.depth {
+            number(0, plane, at, truth.depth, report);
+        }
+        if let Some(plane) = &self.weight {
+            number(0, plane, at, truth.weight, report);
+        }
+        if let Some(plane) = &self.normal {
+            triple(0, (plane, Holds::Vector), at, truth.normal, report);
+        }
+        if let Some(plane) = &self.color {
+            triple(0, (plane, Holds::Color), at, truth.color, report);
+        }
+    }
+
+    /// What the compositing pass reads: the client's numbers, where there are some.
+    pub(super) fn read<P: Profile>(
+        &self,
+        at: (u32, u32),
+        own: &WeightedFragment<Ball<P>>,
+    ) -> WeightedFragment<Ball<P>> {
+        // The weight that was multiplied by an opacity of at most 1 is the stored one, or its own.
+        let lost = self.weight.map_or(0.0, |plane| plane.ball::<P>(at).radius);
+        WeightedFragment {
+            depth: self.depth.map_or(own.depth, |plane| input(&plane, at)),
+            weight: self.weight.map_or(own.weight, |plane| input(&plane, at)),
+            normal: self.normal.map_or(own.normal, |plane| inputs(&plane, at)),
+            color: self.color.map_or(own.color, |plane| inputs(&plane, at)),
+            opacity: widened(own.opacity, lost),
+        }
+    }
+}
+
+/// The names of the planes of all groups, each once, in the order of the rows.
+pub(super) fn names(images: &[ImagePlanes<'_>]) -> Vec<&'static str> {
+    let all = images.iter().map(ImagePlanes::names);
+    let first = |a: [Option<_>; 6], b: [Option<_>; 6]| [0, 1, 2, 3, 4, 5].map(|i| a[i].or(b[i]));
+    all.fold([None; 6], first).into_iter().flatten().collect()
+}

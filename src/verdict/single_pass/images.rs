@@ -1,0 +1,261 @@
+//! The depth-images of a client at a pixel: what each group may keep, and what it certainly does not.
+
+use super::fragments::{Fragment, GroupFragments, PixelFragments};
+use super::handed::ImagePlanes;
+use crate::composite::decide;
+use crate::composite::groups::WeightedFragment;
+use crate::frame::NO_ID;
+use crate::method::fragment::facing;
+use crate::method::single_pass::geometry::opacity;
+use crate::number::ball::{Profile, Three};
+use crate::number::{Ball, Real, Truth};
+use crate::scene::Surfels;
+use crate::verdict::checks::{Report, number};
+use crate::verdict::client::{Stored, Ties};
+use crate::verdict::marks::PixelMarks;
+use crate::verdict::{Doubt, Fault};
+
+/// What a group may keep at a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sample<P: Profile> {
+    /// Its surfel; [`NO_ID`] if nothing is kept.
+    pub(crate) surfel: u32,
+    /// Its nearness; that of an empty pixel if nothing is kept.
+    pub(crate) nearness: Ball<P>,
+    /// As the compositing pass reads it.
+    pub(crate) read: WeightedFragment<Ball<P>>,
+}
+
+/// The samples of a group at a pixel, at least one.
+#[derive(Clone, Debug)]
+pub(crate) struct Samples<P: Profile> {
+    pub(crate) all: Vec<Sample<P>>,
+    /// Whether all of them are summed alike: the client stores what is summed.
+    pub(crate) stored: bool,
+    /// Whether their depths are the one that the client stores.
+    pub(crate) depth_stored: bool,
+}
+
+/// What may be kept: a fragment, or none.
+type Candidate<'f, P> = Option<&'f Fragment<P>>;
+
+/// What the groups share.
+pub(super) struct Images<'a, P: Profile> {
+    fragments: &'a GroupFragments<'a, P>,
+    surfels: &'a Surfels,
+    planes: &'a [ImagePlanes<'a>],
+    ties: Ties,
+}
+
+impl<'a, P: Profile> Images<'a, P> {
+    pub(super) fn new(
+        fragments: &'a GroupFragments<'a, P>,
+        surfels: &'a Surfels,
+        (planes, ties): (&'a [ImagePlanes<'a>], Ties),
+    ) -> Self {
+        Self { fragments, surfels, planes, ties }
+    }
+
+    /// Marks what is wrong with the images at a pixel, and gives what each group may keep.
+    pub(super) fn judge(
+        &self,
+        at: (u32, u32),
+        fragments: &PixelFragments<'_, P>,
+        pixel: &mut PixelMarks<'_>,
+    ) -> Vec<Samples<P>> {
+        let groups = self.planes.iter().enumerate();
+        groups.map(|(k, planes)| self.group(at, planes, fragments.of(k), pixel)).collect()
+    }
+
+    /// The same of one group.
+    fn group<'f>(
+        &self,
+        at: (u32, u32),
+        planes: &ImagePlanes<'_>,
+        fragments: impl Iterator<Item = &'f Fragment<P>> + Clone,
+        pixel: &mut PixelMarks<'_>,
+    ) -> Samples<P>
+    where
+        P: 'f,
+    {
+        let group = Group { images: self, planes, at };
+        let said = planes.surfel(at);
+        let is_said = |candidate: &Candidate<'_, P>| {
+            let surfel = candidate.map_or(NO_ID, |fragment| fragment.surfel);
+            said.is_none_or(|id| id == surfel)
+        };
+        let all = std::iter::once(None).chain(fragments.clone().map(Some)).filter(is_said);
+        let tried: Vec<_> = all
+            .map(|candidate| {
+                let mut worst = 1.0_f64;
+                group.check(candidate, fragments.clone(), &mut |_, error, _| {
+                    worst = worst.at_least(error);
+                });
+                (worst, candidate)
+            })
+            .collect();
+        // Of what errs equally a fragment says more than none.
+        let least = tried.iter().fold(f64::INFINITY, |least, (worst, _)| least.at_most(*worst));
+        let best = tried.iter().rev().find(|(worst, _)| *worst == least).map(|(_, best)| *best);
+        if !planes.nothing() {
+            if let Some(best) = best {
+                group.check(best, fragments.clone(), &mut |_, error, fault| {
+                    pixel.found(error, fault);
+                });
+                group.doubts(best, fragments.clone(), pixel);
+            } else {
+                let surfel = said.unwrap_or(NO_ID);
+                pixel.found(f64::INFINITY, || Fault::Absent { surfel });
+            }
+        }
+        // Opacities are of the surfel, and leave no plane.
+        let stored = planes.complete(self.surfels.color().is_some())
+            && (planes.id.is_some() || self.surfels.opacity().is_none());
+        let right = tried.iter().filter(|(worst, _)| *worst <= least);
+        let mut all: Vec<_> = right.map(|(_, candidate)| group.sample(*candidate)).collect();
+        if all.is_empty() {
+            all.push(Sample { surfel: said.unwrap_or(NO_ID), ..group.sample(None) });
+        }
+        Samples { all, stored, depth_stored: planes.depth.is_some() }
+    }
+}
+
+/// A group at a pixel.
+struct Group<'a, P: Profile> {
+    images: &'a Images<'a, P>,
+    planes: &'a ImagePlanes<'a>,
+    at: (u32, u32),
+}
+
+impl<P: Profile> Group<'_, P> {
+    /// Everything that is asked of a group that keeps a candidate.
+    fn check<'f>(
+        &self,
+        candidate: Candidate<'_, P>,
+        fragments: impl Iterator<Item = &'f Fragment<P>>,
+        report: &mut Report<'_>,
+    ) where
+        P: 'f,
+    {
+        let outside = candidate.filter(|fragment| !fragment.inside.possibly());
+        if let Some(Fragment { surfel, rim, margin, .. }) = outside.copied() {
+            report(0, margin, &|| Fault::Outside { surfel, rim });
+        }
+        self.planes.check(self.at, &self.truth(candidate), report);
+        if let Some(plane) = self.voronoi() {
+            let found = plane.ball(self.at);
+            let truth = candidate.map_or(Ball::INFINITY, |fragment| fragment.keys.closest(found));
+            number(0, plane, self.at, truth, report);
+        }
+        let key = self.key(candidate);
+        for other in fragments.filter(|other| Some(other.surfel) != candidate.map(|c| c.surfel)) {
+            self.check_other(candidate, key, other, report);
+        }
+    }
+
+    /// Whether another fragment should be there.
+    fn check_other(
+        &self,
+        candidate: Candidate<'_, P>,
+        key: Ball<P>,
+        other: &Fragment<P>,
+        report: &mut Report<'_>,
+    ) {
+        if !other.drawn || !other.inside.certainly() {
+            return;
+        }
+        let surfel = other.surfel;
+        let greatest = other.keys.greatest();
+        if self.before(greatest, key).certainly() {
+            // As certain as the least certain of the two.
+            let error = greatest.distance(key).at_most(other.margin);
+            let stored = self.planes.depth.map(|plane| plane.ball::<P>(self.at).middle);
+            let own = candidate.map_or(f64::INFINITY, |fragment| fragment.t.middle);
+            let (rim, depth, found) = (other.rim, other.t.middle, stored.unwrap_or(own));
+            report(0, error, &|| Fault::LeftOut { surfel, rim, depth, found });
+        } else if let Some(kept) = candidate {
+            let first = match self.images.ties {
+                Ties::Lowest => surfel < kept.surfel,
+                Ties::Last => surfel > kept.surfel,
+                Ties::Any => false,
+            };
+            let same = || self.images.surfels.are_equal(surfel, kept.surfel);
+            if first && (other.keys.are_equal(&kept.keys) || same()) {
+                report(0, f64::INFINITY, &|| Fault::Tie { surfel, found: kept.surfel });
+            }
+        }
+    }
+
+    /// Marks the decisions that may be either way, if a candidate is kept.
+    fn doubts<'f>(
+        &self,
+        candidate: Candidate<'_, P>,
+        fragments: impl Iterator<Item = &'f Fragment<P>>,
+        pixel: &mut PixelMarks<'_>,
+    ) where
+        P: 'f,
+    {
+        let key = self.key(candidate);
+        for other in fragments.filter(|other| Some(other.surfel) != candidate.map(|c| c.surfel)) {
+            let nearer = self.before(other.keys.least(), key);
+            let certainly = self.before(other.keys.greatest(), key).certainly();
+            if other.inside.possibly() && nearer.possibly() {
+                pixel.doubt(Doubt::Nearer, !certainly);
+                pixel.doubt(Doubt::CutOff, !other.inside.certainly());
+                pixel.doubt(Doubt::Fate, !other.drawn);
+            }
+        }
+        let side = candidate.is_some_and(|fragment| fragment.back.decided().is_none());
+        pixel.doubt(Doubt::Side, side);
+    }
+
+    /// The depth test.
+    fn before(&self, key: Ball<P>, than: Ball<P>) -> Three {
+        if self.images.fragments.voronoi() {
+            decide::nearer_bin(key, than)
+        } else {
+            decide::before(key, than)
+        }
+    }
+
+    /// The key that others are held against: the client's, else the least of the candidate's.
+    fn key(&self, candidate: Candidate<'_, P>) -> Ball<P> {
+        let own = || candidate.map_or(Ball::INFINITY, |fragment| fragment.keys.least());
+        let stored = if self.images.fragments.voronoi() {
+            self.voronoi()
+        } else {
+            self.planes.depth.as_ref()
+        };
+        stored.map_or_else(own, |plane| plane.ball(self.at))
+    }
+
+    /// The plane of Voronoi-enhanced depths, under that depth test.
+    fn voronoi(&self) -> Option<&Stored<'_, f64>> {
+        self.planes.voronoi.as_ref().filter(|_| self.images.fragments.voronoi())
+    }
+
+    /// What the image leaves of a candidate.
+    fn truth(&self, candidate: Candidate<'_, P>) -> WeightedFragment<Ball<P>> {
+        let Some(fragment) = candidate else { return WeightedFragment::EMPTY };
+        let (surfels, i) = (self.images.surfels, fragment.surfel as usize);
+        let of = |value: [f32; 3]| value.map(Ball::from_f32);
+        let normal = facing(of(surfels.normal()[i].to_array()), fragment.back);
+        let color = surfels.color().map_or([Ball::ZERO; 3], |colors| of(colors[i].to_array()));
+        let opacity = opacity(surfels, fragment.surfel);
+        WeightedFragment::new(fragment.t, fragment.weight, normal, color, opacity)
+    }
+
+    /// What the compositing pass reads of a candidate.
+    fn sample(&self, candidate: Candidate<'_, P>) -> Sample<P> {
+        let read = self.planes.read(self.at, &self.truth(candidate));
+        let shared = self.images.fragments.shared();
+        let own = candidate.map_or(shared.empty(), |fragment| fragment.w);
+        let nearness = match self.planes.depth {
+            None => own,
+            Some(_) if read.depth.middle == f64::INFINITY => shared.empty(),
+            Some(_) => self.images.fragments.view.nearness(read.depth),
+        };
+        let surfel = candidate.map_or(NO_ID, |fragment| fragment.surfel);
+        Sample { surfel, nearness, read }
+    }
+}

@@ -1,0 +1,222 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Surfels are projected in [`Ball`]s of a [`Profile`], each as it is drawn in its
+//! own group. Each stage is judged from what the client has of the stage before, as it is stored;
+//! what the client has not is taken from the balls.
+//!
+//! **Geometry**, a certificate for each group and pixel, over the planes of the group that are there.
+//! The *key* of a fragment is what the depth test compares: its depth, or its Voronoi-enhanced depth. A
+//! depth within a radius of a bin's border has two bins, hence two keys.
+//!
+//! 1. A fragment of the group that possibly is inside fits every plane: its surfel is the id; depth,
+//!    weight, weight times normal and colour are in its balls; the Voronoi-enhanced depth in the ball
+//!    of one of its keys. Or every plane says that there is none.
+//! 2. No fragment of another surfel of the group that certainly is drawn and inside has keys that are
+//!    all certainly less than the key that the client stores; without one, than the least key of the
+//!    fragment. Where there is none, no fragment certainly is inside.
+//! 3. No surfel comes before, as the client says of ties, whose key is equal and exact in balls, or all
+//!    of whose numbers are those of the id's surfel.
+//!
+//! The *samples* of a group are all fragments (or that there is none) that satisfy 1 to 3, each number
+//! in the place of its ball that the client stores. A group that stores depth, weight, normal, and the
+//! colours of a scene that has some, has one sample. Without any plane of the group they are all that
+//! satisfy 2 and 3.
+//!
+//! **Compositing.** Z is one of the samples' depths, and no group all of whose samples have less depth.
+//! The id is that of a sample, and there is no group all of whose samples certainly are nearer; of equal
+//! nearness the surfel that the client's rule of ties says. (Two depths that are equal or neighbours
+//! may come of either order of nearness, as 1/t rounds: Z and the id may be of two samples, neither of
+//! which certainly is nearer than the other.) The sums are those of the samples of depth at most
+//! nearest + epsilon, nearest of the stored depths of all groups, else Z, else of the samples' balls; the
+//! nearest always passes, and so does the id's, unless nearest + epsilon lies within what two reciprocals
+//! round. Where a group has several samples or a test is undecided, all
+//! continuations are followed, up to 16 choices of samples, and for each up to 2^4 of the tests; a pixel
+//! is right if one fits every plane. Beyond that its sums are not judged. Averages follow from the
+//! client's sums.
+//!
+//! **Shading** as in `ewa`.
+//!
+//! A pixel is undecided if its sums have more than one continuation. The error of a number, and of a
+//! certificate that fails, is that of `ewa`.
+
+pub(crate) mod compositing;
+pub(crate) mod fragments;
+mod handed;
+pub(crate) mod images;
+#[cfg(test)]
+mod tests;
+
+use crate::error::Result;
+use crate::frame::Rect;
+use crate::method::Job;
+use crate::method::single_pass::Settings;
+use crate::method::single_pass::planes::{IMAGES, ImageRows};
+use crate::number::Ball;
+use crate::number::ball::Profile;
+use crate::scene::Surfels;
+use crate::verdict::client::Client;
+use crate::verdict::ewa::certificate::Nearest;
+use crate::verdict::ewa::handed::Handed;
+use crate::verdict::ewa::pixel::PixelJudge;
+use crate::verdict::ewa::sums::Continuations;
+use crate::verdict::marks::{self, Counts, Marks, counted};
+use crate::verdict::{Check, Verdict};
+use compositing::Compositing;
+use fragments::GroupFragments;
+use handed::ImagePlanes;
+pub(crate) use handed::sum_rows;
+use images::Images;
+
+/// How a method that works by groups calls their images and its stages, and what a client has of it.
+#[derive(Debug)]
+pub(crate) struct GroupsOf<'a> {
+    pub(crate) client: &'a Client,
+    pub(crate) handed: Handed<'a>,
+    pub(crate) images: &'static ImageRows,
+    /// Whether the colour is that of a layer, behind which others may be seen.
+    pub(crate) layer: bool,
+}
+
+/// The passes of geometry and of compositing, and shading.
+const STAGES: [&str; 3] = ["geometry", "compositing", "shading"];
+
+impl<'a> GroupsOf<'a> {
+    fn new(client: &'a Client) -> Self {
+        let handed = Handed::of(client, &sum_rows());
+        Self { client, handed, images: &IMAGES, layer: false }
+    }
+}
+
+/// Judges the planes of a client.
+///
+/// # Errors
+/// As the projection of the method.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Result<Verdict> {
+    let of = GroupsOf::new(client);
+    let judge = Judge::<P>::new(job, settings, &of)?;
+    let [first, second, third] = STAGES;
+    let [geometry, compositing, shading] = judge.names();
+    let stages = [(first, geometry), (second, compositing), (third, shading)];
+    Ok(marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks)))
+}
+
+/// Everything that is judged at one pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    let of = GroupsOf::new(client);
+    let judge = Judge::<P>::new(job, settings, &of)?;
+    marks::checks(job, STAGES, pixel, |tile, marks| judge.judge(tile, marks))
+}
+
+/// What is found at a pixel.
+#[derive(Clone, Debug)]
+pub(crate) struct Found<P: Profile> {
+    pub(crate) nearest: Nearest<P>,
+    /// What its sums may be.
+    sums: Continuations<P>,
+}
+
+impl<P: Profile> Found<P> {
+    /// Whether there is but one continuation.
+    pub(crate) fn certain(&self) -> bool {
+        matches!(self.sums, Continuations::One(_))
+    }
+
+    /// Whether something may be there.
+    pub(crate) fn covered(&self) -> bool {
+        self.nearest.depth.middle.is_finite() || !self.certain()
+    }
+}
+
+/// What all tiles share.
+pub(crate) struct Judge<'a, P: Profile> {
+    surfels: &'a Surfels,
+    of: &'a GroupsOf<'a>,
+    images: Vec<ImagePlanes<'a>>,
+    fragments: GroupFragments<'a, P>,
+    compositing: Compositing<'a, P>,
+    pixels: PixelJudge<'a, P>,
+}
+
+impl<'a, P: Profile> Judge<'a, P> {
+    /// Projection.
+    pub(crate) fn new(job: &Job<'a>, settings: &Settings, of: &'a GroupsOf<'a>) -> Result<Self> {
+        let GroupsOf { client, handed, images: rows, layer } = of;
+        let fragments = GroupFragments::project(job, settings)?;
+        let images = (0..fragments.groups()).map(|k| ImagePlanes::new(client, rows, k)).collect();
+        let surfels = &job.scene.surfels;
+        let epsilon = fragments.epsilon();
+        let compositing = Compositing::new(job, handed, epsilon);
+        let pixels = if *layer { PixelJudge::of_layer } else { PixelJudge::new }(job, handed);
+        Ok(Self { surfels, of, images, fragments, compositing, pixels })
+    }
+
+    /// The planes that geometry, compositing and shading judge.
+    pub(crate) fn names(&self) -> [Vec<&'static str>; 3] {
+        let [(_, nearest), (_, sums), (_, averages), (_, shading)] = self.of.handed.stages();
+        let compositing = [sums, averages, nearest].concat();
+        [handed::names(&self.images), compositing, shading]
+    }
+
+    /// Opacity and colour of a pixel as the next pass reads them.
+    pub(crate) fn read(&self, at: (u32, u32), found: &Found<P>) -> (Ball<P>, [Ball<P>; 3]) {
+        self.pixels.read(at, &found.nearest, &found.sums)
+    }
+
+    /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 3]) -> Counts {
+        let mut counts = Counts::default();
+        let [geometry, compositing, shading] = marks;
+        for y in rect.y0..rect.y1 {
+            let row = Rect { y0: y, y1: y + 1, ..rect };
+            let mut parts = [(); 3].map(|()| compositing.beside(row));
+            let place = (tile, (y - rect.y0) as usize, row);
+            for found in self.judge_row(place, geometry, &mut parts) {
+                counts.undecided += u64::from(!found.certain());
+                counts.covered += u64::from(found.covered());
+            }
+            let [sums, averages, shaded] = parts;
+            compositing.put(sums);
+            compositing.put(averages);
+            shading.put(shaded);
+        }
+        counts
+    }
+
+    /// One row of pixels, so that the fragments of all groups need not be kept of more; so many lie
+    /// above it in the tile.
+    pub(crate) fn judge_row(
+        &self,
+        (tile, above, row): (usize, usize, Rect),
+        geometry: &mut Marks,
+        parts: &mut [Marks; 3],
+    ) -> Vec<Found<P>> {
+        let said = |group: usize, at| self.images[group].surfel(at);
+        let fragments = self.fragments.of_row(tile, &row, said);
+        let images =
+            Images::new(&self.fragments, self.surfels, (&self.images, self.of.client.ties));
+        let of_pixel = |(column, at)| {
+            let pixel = above * row.columns() + column;
+            let samples = images.judge(at, &fragments.at(column), &mut geometry.at(pixel));
+            let (depth, sums) = self.compositing.judge(at, &samples, &mut parts[0].at(column));
+            let nearest = Nearest { depth, id: None };
+            self.pixels.judge((column, at), &nearest, &sums, parts);
+            Found { nearest, sums }
+        };
+        counted(row).map(of_pixel).collect()
+    }
+
+    /// The depth of the visible band in world units.
+    pub(crate) fn epsilon(&self) -> Ball<P> {
+        self.fragments.epsilon()
+    }
+}

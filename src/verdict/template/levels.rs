@@ -1,0 +1,96 @@
+//! The propagation of a client, level by level.
+
+use super::planes::{CenterPlanes, Level};
+use crate::method::Job;
+use crate::method::projection::Has;
+use crate::method::template::{Center, Settings, propagation};
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real};
+use crate::verdict::checks::least_wrong;
+use crate::verdict::marks::{PixelMarks, StageMarks, Watch, counted};
+use crate::verdict::outcomes::{MOST, Outcome, outcomes};
+use crate::verdict::projection::SamplePlanes;
+
+/// The levels as a client has them.
+pub(super) struct Levels<'a, P: Profile> {
+    job: &'a Job<'a>,
+    settings: &'a Settings,
+    sizes: &'a [[u32; 2]],
+    /// The planes of level 1 and on.
+    planes: &'a [CenterPlanes<'a>],
+    /// All levels; none where a plane is missing.
+    levels: Vec<Option<Level<P>>>,
+}
+
+impl<'a, P: Profile> Levels<'a, P> {
+    pub(super) fn new(
+        job: &'a Job<'a>,
+        settings: &'a Settings,
+        sizes: &'a [[u32; 2]],
+        finest: &SamplePlanes<'_>,
+        planes: &'a [CenterPlanes<'a>],
+    ) -> Self {
+        let has = Has::of(job.scene);
+        let samples = finest.samples(true);
+        let mut levels = vec![samples.map(|samples| samples.map(Center::new))];
+        levels
+            .extend(planes.iter().zip(&sizes[1..]).map(|(planes, size)| planes.level(*size, has)));
+        Self { job, settings, sizes, planes, levels }
+    }
+
+    /// The levels, if all are there.
+    pub(super) fn all(self) -> Option<Vec<Level<P>>> {
+        self.levels.into_iter().collect()
+    }
+
+    /// Judges each level whose finer one is there.
+    pub(super) fn judge(&self, watch: Watch) -> StageMarks {
+        let (mut marks, mut names) = (watch.picture(self.job), Vec::new());
+        for (level, planes) in (1..).zip(self.planes) {
+            let (Some(fine), own) = (&self.levels[level - 1], planes.names()) else { continue };
+            if own.is_empty() {
+                continue;
+            }
+            names.extend(own.into_iter().filter(|name| !names.contains(name)).collect::<Vec<_>>());
+            let [width, height] = self.sizes[level];
+            let reach = Ball::from_f32(self.settings.reach(level - 1));
+            let parts = watch.parts(&self.job.exec.grid(width, height));
+            let found = self.job.exec.ordered(parts, |(_, rect)| {
+                let mut marks = watch.marks(rect);
+                for (pixel, at) in counted(rect) {
+                    let finer = propagation::four(fine, at.0, at.1);
+                    cell(planes, at, (&finer, reach), &mut marks.at(pixel));
+                }
+                marks
+            });
+            found.into_iter().for_each(|part| marks.put(part));
+        }
+        ("propagation", names, marks)
+    }
+}
+
+/// One cell from the four finer ones, of which those beyond the reach move.
+fn cell<P: Profile>(
+    planes: &CenterPlanes<'_>,
+    at: (u32, u32),
+    (finer, reach): (&[Center<Ball<P>>; 4], Ball<P>),
+    pixel: &mut PixelMarks<'_>,
+) {
+    let moving = finer.map(|center| propagation::moves(&center, reach));
+    let (found, doubts) = outcomes(moving, finer.map(|center| center.depth), |j, first| {
+        propagation::near(finer, first)[j]
+    });
+    pixel.doubts(doubts);
+    if found.len() > MOST {
+        return;
+    }
+    let of = |outcome: &Outcome| match *outcome {
+        Some((takes, first)) => propagation::merge(finer, takes, first),
+        None => Center::empty(),
+    };
+    let all: Vec<_> = found.iter().map(of).collect();
+    let best = least_wrong::<_, 1>(&all, |truth, report| planes.check(at, truth, report));
+    if let Some(truth) = best {
+        planes.check(at, truth, &mut |_, error, fault| pixel.found(error, fault));
+    }
+}

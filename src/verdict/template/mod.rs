@@ -1,0 +1,107 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Each stage is judged from what the client has of the stage before: floats are inputs as they are
+//! stored, and so exact. The formulas are those of the crate in balls of a [`Profile`].
+//!
+//! **Projection**: see [`mod@crate::verdict::projection`].
+//!
+//! **Propagation**, level by level from the client's finer level. Of each cell every outcome that the
+//! decisions allow: who moves, which is foremost, who is near enough; a cell is right if one outcome
+//! fits every plane. A level is judged if every plane of the finer one is there, those of the
+//! projection for level 0.
+//!
+//! **Reconstruction**, if every plane of every level is there: the gathering is replayed in its order.
+//! Where a decision is undecided (who stays, whether the ellipse holds the pixel, the ternary test,
+//! which is the front) all continuations are followed.
+//!
+//! **Normalization and shading** as in `ewa`, from the client's sums and averages.
+//!
+//! A cell or a pixel with more than 16 outcomes is not judged, and counts as undecided like one with
+//! several. A cell is marked where its planes have it, whatever its level. What is copied from stage
+//! to stage (ids, depth and radius of the front, a centre that moves alone) must be equal.
+
+mod gathered;
+mod levels;
+mod pixel;
+mod planes;
+#[cfg(test)]
+mod tests;
+
+use crate::error::Result;
+use crate::frame::pyramid;
+use crate::frame::raster::Snap;
+use crate::method::Job;
+use crate::method::projection::Has;
+use crate::method::template::planes::LEVELS;
+use crate::method::template::{Settings, propagation};
+use crate::number::ball::Profile;
+use crate::verdict::checks::missing;
+use crate::verdict::client::Client;
+use crate::verdict::marks::{Found, Watch, counted};
+use crate::verdict::projection::{self as samples, SamplePlanes};
+use crate::verdict::shift::Shifts;
+use crate::verdict::{Check, Verdict};
+use levels::Levels;
+use pixel::PixelJudge;
+use planes::{CenterPlanes, PicturePlanes};
+
+/// All doubts: in the gathering each may move the sums.
+const ANY: u8 = u8::MAX;
+
+/// Judges the planes of a client.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Verdict {
+    let (found, covered) = judge::<P>(job, settings, client, Watch::All);
+    let mut stages = found.judged(job);
+    stages[1].missing =
+        missing(client, &LEVELS, 1..levels(job, settings).len(), Has::of(job.scene));
+    let undecided = stages[2].doubtful(ANY);
+    Verdict::new(stages, [covered, undecided], budget, Shifts::default())
+}
+
+/// Everything that is judged at one pixel: the cells of all levels that have its place, and the pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    Ok(judge::<P>(job, settings, client, Watch::one(job, pixel)?).0.checks())
+}
+
+/// The sizes of the levels that there are.
+fn levels(job: &Job<'_>, settings: &Settings) -> Vec<[u32; 2]> {
+    let mut sizes = pyramid::sizes(job.camera.width, job.camera.height);
+    sizes.truncate(propagation::top(settings, &sizes) + 1);
+    sizes
+}
+
+/// What is found of all stages, and how many pixels may be covered.
+fn judge<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    watch: Watch,
+) -> (Found<3>, u64) {
+    let sizes = levels(job, settings);
+    let finest = SamplePlanes::new(client, job.scene);
+    let coarser: Vec<_> = (1..sizes.len()).map(|level| CenterPlanes::new(client, level)).collect();
+    let projection = samples::judge::<P>(job, settings.cull, Snap::default(), &finest, watch);
+    let levels = Levels::<P>::new(job, settings, &sizes, &finest, &coarser);
+    let propagation = levels.judge(watch);
+    let handed = PicturePlanes::new(client);
+    let judge = PixelJudge::new(job, settings, levels.all(), &handed);
+    let found = job.exec.ordered(watch.parts(&job.grid()), |(_, rect)| {
+        let mut marks = [(); 3].map(|()| watch.marks(rect));
+        let covered = counted(rect).filter(|at| judge.judge(*at, &mut marks)).count();
+        (marks, covered as u64)
+    });
+    let covered = found.iter().map(|(_, covered)| covered).sum();
+    let tiles = found.into_iter().map(|(marks, _)| marks).collect();
+    let stages = handed.stages(judge.gathers());
+    (Found { levels: vec![projection, propagation], stages, tiles }, covered)
+}

@@ -1,0 +1,170 @@
+//! One pixel of a client: what was gathered, averages and shading.
+
+use super::gathered::outcomes;
+use super::planes::{Level, PicturePlanes};
+use crate::composite::sum;
+use crate::frame::NO_ID;
+use crate::method::Holds;
+use crate::method::Job;
+use crate::method::projection::Has;
+use crate::method::template::Settings;
+use crate::method::template::normalization;
+use crate::method::template::reconstruction::Gathered;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real};
+use crate::splat::View;
+use crate::verdict::checks::{
+    Report, Shading, Surface, anything, input, inputs, least_wrong, number, triple, whole, widened,
+};
+use crate::verdict::marks::Marks;
+
+/// The stages, by their place among the marks.
+const RECONSTRUCTION: usize = 0;
+const NORMALIZATION: usize = 1;
+const SHADING: usize = 2;
+
+/// What all pixels share.
+pub(super) struct PixelJudge<'a, P: Profile> {
+    settings: &'a Settings,
+    levels: Option<Vec<Level<P>>>,
+    handed: &'a PicturePlanes<'a>,
+    view: View<Ball<P>>,
+    shading: Shading<'a, P>,
+    has: Has,
+    /// The greatest component of a colour, at least 1.
+    brightest: f64,
+}
+
+impl<'a, P: Profile> PixelJudge<'a, P> {
+    pub(super) fn new(
+        job: &Job<'a>,
+        settings: &'a Settings,
+        levels: Option<Vec<Level<P>>>,
+        handed: &'a PicturePlanes<'a>,
+    ) -> Self {
+        let (scene, has) = (job.scene, Has::of(job.scene));
+        let colors = scene.surfels.color().unwrap_or_default();
+        let brightest = colors.iter().fold(1.0_f64, |brightest, color| {
+            let [r, g, b] = color.to_array().map(f64::from);
+            brightest.at_least(r).at_least(g).at_least(b)
+        });
+        let view = View::new(job.camera);
+        let shading = Shading::new(job, has.color);
+        Self { settings, levels, handed, view, shading, has, brightest }
+    }
+
+    /// Whether the gathering is replayed.
+    pub(super) fn gathers(&self) -> bool {
+        self.levels.is_some()
+    }
+
+    /// Marks what is wrong at a pixel, by the outcome that errs least; whether anything may be there.
+    pub(super) fn judge(&self, (pixel, at): (usize, (u32, u32)), marks: &mut [Marks; 3]) -> bool {
+        let (mut all, mut replayed) = (Vec::new(), false);
+        if let Some(levels) = &self.levels {
+            let found = outcomes(levels, self.settings, at);
+            marks[RECONSTRUCTION].at(pixel).doubts(found.doubts);
+            (all, replayed) = (found.all, true);
+        }
+        let sums = least_wrong::<_, 3>(&all, |sums, report| self.check(at, Some(sums), report));
+        self.check(at, sums, &mut |part, error, fault| marks[part].at(pixel).found(error, fault));
+        match sums {
+            Some(sums) => sums.id != NO_ID,
+            None => replayed || self.handed.empty(at) == Some(false),
+        }
+    }
+
+    /// Every plane at a pixel, with these sums; without any, as far as the client's own are there.
+    fn check(&self, at: (u32, u32), sums: Option<&Gathered<Ball<P>>>, report: &mut Report<'_>) {
+        if let Some(sums) = sums {
+            self.check_sums(at, sums, report);
+        }
+        let nothing = Gathered {
+            weight: anything(),
+            depths: anything(),
+            normals: [anything(); 3],
+            colors: [anything(); 3],
+            ..Gathered::empty()
+        };
+        // What comes next works with the client's own.
+        let (own, handed) = (sums.copied().unwrap_or(nothing), self.handed);
+        let own = Gathered {
+            weight: handed.weight.map_or(own.weight, |plane| input(&plane, at)),
+            depths: handed.depths.map_or(own.depths, |plane| input(&plane, at)),
+            normals: handed.normals.map_or(own.normals, |plane| inputs(&plane, at)),
+            colors: handed.colors.map_or(own.colors, |plane| inputs(&plane, at)),
+            ..own
+        };
+        self.check_averages(at, &own, report);
+        self.check_shading(at, &own, report);
+    }
+
+    /// What was gathered.
+    fn check_sums(&self, at: (u32, u32), sums: &Gathered<Ball<P>>, report: &mut Report<'_>) {
+        let handed = self.handed;
+        // Each addition rounds a sum that is at most this large.
+        let most = |ball: Ball<P>| ball.middle.abs() + ball.radius;
+        let (heaviest, count) = (most(sums.weight), f64::from(sums.count));
+        let lost = |largest: f64| count * handed.accumulator.radius(largest);
+        if let Some(plane) = &handed.id {
+            whole(RECONSTRUCTION, plane, at, sums.id, report);
+        }
+        if let Some(plane) = &handed.count {
+            whole(RECONSTRUCTION, plane, at, sums.count, report);
+        }
+        let scalars = [
+            (&handed.weight, widened(sums.weight, lost(heaviest))),
+            (&handed.depths, widened(sums.depths, lost(most(sums.depths)))),
+            (&handed.front, sums.depth),
+            (&handed.radius, sums.radius),
+        ];
+        for (plane, truth) in scalars {
+            if let Some(plane) = plane {
+                number(RECONSTRUCTION, plane, at, truth, report);
+            }
+        }
+        if let Some(plane) = &handed.normals {
+            let truth = sums.normals.map(|part| widened(part, lost(heaviest)));
+            triple(RECONSTRUCTION, (plane, Holds::Vector), at, truth, report);
+        }
+        if let Some(plane) = &handed.colors {
+            let truth = sums.colors.map(|part| widened(part, lost(heaviest * self.brightest)));
+            triple(RECONSTRUCTION, (plane, Holds::Color), at, truth, report);
+        }
+    }
+
+    /// The averages, and the weight again.
+    fn check_averages(&self, at: (u32, u32), own: &Gathered<Ball<P>>, report: &mut Report<'_>) {
+        let handed = self.handed;
+        if let Some(plane) = &handed.depth {
+            number(NORMALIZATION, plane, at, normalization::depth(own), report);
+        }
+        if let Some(plane) = &handed.normal {
+            let truth = normalization::normal(&self.view, own);
+            triple(NORMALIZATION, (plane, Holds::Vector), at, truth, report);
+        }
+        if let Some(plane) = &handed.weight_copy {
+            number(NORMALIZATION, plane, at, own.weight, report);
+        }
+    }
+
+    /// The picture.
+    fn check_shading(&self, at: (u32, u32), own: &Gathered<Ball<P>>, report: &mut Report<'_>) {
+        let handed = self.handed;
+        let weight = handed.weight_copy.map_or(own.weight, |plane| input(&plane, at));
+        if let Some(plane) = &handed.shaded {
+            let depth = || normalization::depth(own);
+            let normal = || normalization::normal(&self.view, own);
+            let surface = Surface {
+                depth: handed.depth.map_or_else(depth, |plane| input(&plane, at)),
+                normal: handed.normal.map_or_else(normal, |plane| inputs(&plane, at)),
+                tangent: None,
+                color: if self.has.color { sum::average(own.colors, weight) } else { own.colors },
+            };
+            triple(SHADING, (plane, Holds::Color), at, self.shading.color(at, &surface), report);
+        }
+        if let Some(plane) = &handed.alpha {
+            number(SHADING, plane, at, self.shading.alpha(weight), report);
+        }
+    }
+}

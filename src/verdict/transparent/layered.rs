@@ -1,0 +1,63 @@
+//! The groups of a client, blended one by one.
+
+use super::drawn::{GroupDrawings, RowDrawings};
+use super::planes::{self, GroupFound, GroupPlanes};
+use super::replayed::replay;
+use crate::error::Result;
+use crate::frame::Rect;
+use crate::method::Job;
+use crate::method::transparent::Settings;
+use crate::number::Ball;
+use crate::number::ball::{Profile, Three};
+use crate::verdict::client::Client;
+use crate::verdict::marks::PixelMarks;
+
+/// The geometry pass of a client.
+pub(crate) struct LayersJudge<'a, P: Profile> {
+    planes: Vec<GroupPlanes<'a>>,
+    drawings: GroupDrawings<P>,
+}
+
+/// The groups at a pixel.
+pub(crate) struct LayersFound<P: Profile> {
+    pub(crate) groups: Vec<GroupFound<P>>,
+    /// Whether one has several continuations, or is not judged.
+    pub(crate) open: bool,
+}
+
+impl<'a, P: Profile> LayersJudge<'a, P> {
+    /// Order, projection and shading.
+    pub(crate) fn project(job: &Job<'_>, settings: &Settings, client: &'a Client) -> Result<Self> {
+        let drawings = GroupDrawings::project(job, settings)?;
+        let planes = (0..drawings.groups()).map(|k| GroupPlanes::new(client, k)).collect();
+        Ok(Self { planes, drawings })
+    }
+
+    /// The names of the planes that are judged.
+    pub(crate) fn names(&self) -> Vec<&'static str> {
+        planes::names(&self.planes)
+    }
+
+    /// The fragments of a row of pixels in a tile.
+    pub(crate) fn of_row(&self, tile: usize, row: &Rect) -> RowDrawings<P> {
+        self.drawings.of_row(tile, row)
+    }
+
+    /// Marks what is wrong at a pixel, of fragments of depths that stay.
+    pub(crate) fn judge(
+        &self,
+        (column, at): (usize, (u32, u32)),
+        row: &RowDrawings<P>,
+        stays: impl Fn(Ball<P>) -> Three,
+        pixel: &mut PixelMarks<'_>,
+    ) -> LayersFound<P> {
+        let mut open = false;
+        let groups = self.planes.iter().enumerate().map(|(k, planes)| {
+            let found = replay(row.at(column, k), &stays);
+            open |= found.all.as_ref().is_none_or(|all| all.len() > 1);
+            pixel.doubts(found.doubts);
+            planes.judge(at, found.all, pixel)
+        });
+        LayersFound { groups: groups.collect(), open }
+    }
+}

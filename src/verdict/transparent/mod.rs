@@ -1,0 +1,134 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! The order of the surfels is exact, and so is the bin of a fragment but beside the border of one.
+//! Surfels are projected and shaded in [`Ball`](crate::number::Ball)s of a [`Profile`], each in all of
+//! its groups.
+//!
+//! **Blending**, group by group: the fragments are replayed in their order. Where it is undecided
+//! whether a surfel is drawn, whether its fragment is inside, or in which of two bins it lies, both
+//! continuations are followed; those that come to the same are one. A pixel of a group is right if one
+//! fits every plane of the group that is there. One with more than 16, or with a fragment that may be in
+//! more than two bins, is not judged.
+//!
+//! **Averaging** of what the client stores of each group; what it does not store is that of the
+//! continuations that fit, where they agree. What is not known of one group is not judged of the
+//! average. `Z` is the depth of one of the groups, and no group certainly is nearer; `id` is the surfel
+//! of a group that may be the nearest (of equal depths any of them). The picture follows from the
+//! client's average, before the environment if there is one.
+//!
+//! **Environment.** Where the opacity is less than 1, the light of the ray is taken in balls: the sky by
+//! its formula; a map from all squares of four pixel centres that the ray may lie between, which meet
+//! without a jump, at the seam too. Where these are more than 8 in a row or a column, as beside a pole,
+//! the colour is not judged. Weights are those of `f32`: a texture unit that rounds them to 8 bits is not
+//! within a map's balls.
+//!
+//! A pixel is undecided if a group has several continuations, or is not judged, or if its colour is not.
+
+pub(crate) mod averaged;
+pub(crate) mod drawn;
+pub(crate) mod layered;
+pub(crate) mod planes;
+mod replayed;
+mod shown;
+#[cfg(test)]
+mod tests;
+
+use crate::error::Result;
+use crate::frame::Rect;
+use crate::method::Job;
+use crate::method::transparent::{Holes, Settings};
+use crate::number::ball::Profile;
+use crate::verdict::client::{Client, Ties};
+use crate::verdict::ewa::handed::Handed;
+use crate::verdict::marks::{self, Counts, Marks, counted};
+use crate::verdict::single_pass::sum_rows;
+use crate::verdict::{Check, Verdict};
+use averaged::AveragePlanes;
+use layered::LayersJudge;
+use planes::GroupFound;
+use shown::Shown;
+
+/// The stages by their names.
+const STAGES: [&str; 2] = ["blending", "averaging"];
+
+/// Judges the planes of a client.
+///
+/// # Errors
+/// As the projection of the method.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Result<Verdict> {
+    let handed = handed(client);
+    let judge = Judge::<P>::new(job, settings, client, &handed)?;
+    let [first, second] = STAGES;
+    let averaging = [judge.averages.names(), judge.shown.names()].concat();
+    let stages = [(first, judge.layers.names()), (second, averaging)];
+    Ok(marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks)))
+}
+
+/// Everything that is judged at one pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    let handed = handed(client);
+    let judge = Judge::<P>::new(job, settings, client, &handed)?;
+    marks::checks(job, STAGES, pixel, |tile, marks| judge.judge(tile, marks))
+}
+
+/// Depth and surfel of the picture. Depths of one surfel in two groups, or of two equal ones, may tie or
+/// not, as each group scales it.
+fn handed(client: &Client) -> Handed<'_> {
+    Handed { ties: Ties::Any, ..Handed::of(client, &sum_rows()) }
+}
+
+/// What all tiles share.
+struct Judge<'a, P: Profile> {
+    layers: LayersJudge<'a, P>,
+    averages: AveragePlanes<'a>,
+    holes: Holes,
+    shown: Shown<'a, P>,
+}
+
+impl<'a, P: Profile> Judge<'a, P> {
+    fn new(
+        job: &Job<'a>,
+        settings: &Settings,
+        client: &'a Client,
+        handed: &'a Handed<'a>,
+    ) -> Result<Self> {
+        Ok(Self {
+            layers: LayersJudge::project(job, settings, client)?,
+            averages: AveragePlanes::new(client),
+            holes: settings.holes,
+            shown: Shown::new(job, client, handed),
+        })
+    }
+
+    /// Marks what is wrong at the pixels of a rectangle in a tile.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
+        let mut counts = Counts::default();
+        let [blending, averaging] = marks;
+        for y in rect.y0..rect.y1 {
+            let row = Rect { y0: y, y1: y + 1, ..rect };
+            let drawings = self.layers.of_row(tile, &row);
+            for (column, at) in counted(row) {
+                let pixel = (y - rect.y0) as usize * row.columns() + column;
+                let all = |_| true.into();
+                let found =
+                    self.layers.judge((column, at), &drawings, all, &mut blending.at(pixel));
+                let pixel = &mut averaging.at(pixel);
+                let average = self.averages.judge(at, (&found.groups, self.holes), pixel);
+                let judged = self.shown.judge(at, &found.groups, &average, pixel);
+                counts.covered += u64::from(found.groups.iter().any(GroupFound::covered));
+                counts.undecided += u64::from(found.open || !judged);
+            }
+        }
+        counts
+    }
+}

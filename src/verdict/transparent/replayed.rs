@@ -1,0 +1,127 @@
+//! The layers of a group at a pixel: what blending from back to front may come to.
+
+use super::drawn::Drawn;
+use crate::composite::decide;
+use crate::composite::over::Blend;
+use crate::frame::NO_ID;
+use crate::frame::stencil::{Outcome, Stencil};
+use crate::number::ball::{Profile, Three};
+use crate::number::{Ball, Real, Truth};
+use crate::verdict::Doubt;
+
+/// The most continuations that are followed.
+const MOST: usize = 16;
+
+/// What has been blended.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layers<P: Profile> {
+    pub(super) bin: f64,
+    pub(super) blend: Blend<Ball<P>>,
+    pub(super) opacity: Ball<P>,
+    pub(super) hidden: bool,
+    pub(super) count: u8,
+    pub(super) depth: Ball<P>,
+    pub(super) surfel: u32,
+    /// The greatest component that the colour has had.
+    pub(super) brightest: f64,
+}
+
+/// What may have been blended; none if it is more than is followed.
+pub(super) struct Replayed<P: Profile> {
+    pub(super) all: Option<Vec<Layers<P>>>,
+    pub(super) doubts: u8,
+}
+
+impl<P: Profile> Layers<P> {
+    /// No fragment.
+    pub(super) const EMPTY: Self = Self {
+        bin: f64::INFINITY,
+        blend: Blend::CLEAR,
+        opacity: Ball::ZERO,
+        hidden: false,
+        count: 0,
+        depth: Ball::INFINITY,
+        surfel: NO_ID,
+        brightest: 0.0,
+    };
+
+    /// With a fragment that passed the depth test in this bin.
+    fn with(&self, drawn: &Drawn<P>, bin: f64) -> Self {
+        let Drawn { alpha, color, t, surfel, .. } = *drawn;
+        // Opacities are exact.
+        let opaque = decide::opaque(alpha).certainly();
+        let blend = self.blend.over(alpha, color);
+        let brightest = blend.color.iter().fold(self.brightest, |brightest, part| {
+            brightest.at_least(part.middle.abs() + part.radius)
+        });
+        Self {
+            bin,
+            blend,
+            opacity: if opaque { Ball::ZERO } else { self.opacity + alpha },
+            hidden: opaque || self.hidden,
+            count: Stencil::COUNT.update(self.count, Outcome::Pass),
+            depth: t,
+            surfel,
+            brightest,
+        }
+    }
+
+    /// Whether both are of the same layers, as far as anything shows it.
+    fn same(&self, other: &Self) -> bool {
+        let numbers = |layers: &Self| {
+            let [r, g, b] = layers.blend.color.map(|part| part.middle.to_bits());
+            [r, g, b, layers.blend.alpha.middle.to_bits(), layers.opacity.middle.to_bits()]
+        };
+        let rest = |layers: &Self| (layers.bin, layers.hidden, layers.count, layers.surfel);
+        numbers(self) == numbers(other) && rest(self) == rest(other)
+    }
+}
+
+/// Blends the fragments of a group at a pixel, from back to front, without those of a depth that does
+/// not stay.
+pub(super) fn replay<'d, P: Profile>(
+    fragments: impl Iterator<Item = &'d Drawn<P>>,
+    stays: &impl Fn(Ball<P>) -> Three,
+) -> Replayed<P> {
+    let (mut all, mut doubts) = (vec![Layers::EMPTY], 0);
+    for drawn in fragments {
+        let stays = stays(drawn.t);
+        if !stays.possibly() {
+            continue;
+        }
+        let [first, last] = drawn.bins;
+        if !(last - first <= 1.0) {
+            return Replayed { all: None, doubts };
+        }
+        let certain = drawn.certain && (drawn.inside & stays).certainly();
+        let mut next: Vec<Layers<P>> = Vec::with_capacity(all.len());
+        let mut open = false;
+        for layers in &all {
+            let passes = |bin: f64| bin < layers.bin;
+            let bins = [first, last].into_iter().filter(|bin| passes(*bin));
+            // Of one bin twice the second is the same.
+            let outcomes = bins.map(|bin| layers.with(drawn, bin));
+            let same = !certain || !passes(first) || !passes(last);
+            open |= passes(first) && !certain;
+            for outcome in outcomes.chain(same.then_some(*layers)) {
+                if !next.iter().any(|other| other.same(&outcome)) {
+                    next.push(outcome);
+                }
+            }
+        }
+        if open {
+            doubts |= if drawn.inside.certainly() { 0 } else { Doubt::CutOff as u8 };
+            doubts |= if drawn.certain { 0 } else { Doubt::Fate as u8 };
+            doubts |= if stays.certainly() { 0 } else { Doubt::Epsilon as u8 };
+        }
+        if next.len() > MOST {
+            return Replayed { all: None, doubts };
+        }
+        all = next;
+    }
+    if all.len() > 1 {
+        // Whatever was undecided: a bin, too, is a matter of nearness that moves sums.
+        doubts |= Doubt::Epsilon as u8;
+    }
+    Replayed { all: Some(all), doubts }
+}

@@ -1,0 +1,84 @@
+//! The picture of a client at a pixel: what is nearest, and what the average shows.
+
+use super::planes::GroupFound;
+use super::replayed::Layers;
+use crate::composite::groups::WeightedFragment;
+use crate::method::Holds;
+use crate::method::Job;
+use crate::method::transparent::averaging::GroupAverage;
+use crate::method::transparent::planes::LAYERS;
+use crate::number::ball::Profile;
+use crate::number::{Ball, Real};
+use crate::verdict::checks::{Backdrop, is_bounded, number, triple};
+use crate::verdict::client::{Client, Stored};
+use crate::verdict::ewa::handed::Handed;
+use crate::verdict::marks::PixelMarks;
+use crate::verdict::single_pass::compositing::Compositing;
+use crate::verdict::single_pass::images::{Sample, Samples};
+
+/// What all pixels share.
+pub(super) struct Shown<'a, P: Profile> {
+    handed: &'a Handed<'a>,
+    layers: Option<Stored<'a, f64>>,
+    nearest: Compositing<'a, P>,
+    backdrop: Backdrop<'a, P>,
+}
+
+impl<'a, P: Profile> Shown<'a, P> {
+    pub(super) fn new(job: &Job<'a>, client: &'a Client, handed: &'a Handed<'a>) -> Self {
+        let nearest = Compositing::new(job, handed, Ball::ZERO);
+        Self { handed, layers: client.scalar(&LAYERS), nearest, backdrop: Backdrop::new(job) }
+    }
+
+    /// The names of the planes that are judged.
+    pub(super) fn names(&self) -> Vec<&'static str> {
+        let Handed { shaded, alpha, depth, id, .. } = self.handed;
+        let scalar = |plane: &Option<Stored<'_, f64>>| plane.map(|plane| plane.name);
+        let all = [
+            shaded.map(|plane| plane.name),
+            scalar(alpha),
+            scalar(depth),
+            id.map(|plane| plane.name),
+            scalar(&self.layers),
+        ];
+        all.into_iter().flatten().collect()
+    }
+
+    /// Marks what is wrong with the picture at a pixel; whether its colour is judged, or is not there.
+    pub(super) fn judge(
+        &self,
+        at: (u32, u32),
+        groups: &[GroupFound<P>],
+        average: &GroupAverage<Ball<P>>,
+        pixel: &mut PixelMarks<'_>,
+    ) -> bool {
+        if let Some(samples) = groups.iter().map(samples).collect::<Option<Vec<_>>>() {
+            self.nearest.check_nearest(at, &samples, pixel);
+        }
+        let shown = self.backdrop.behind(average.blend, at);
+        let report = &mut |_: usize, error: f64, fault: &dyn Fn() -> _| pixel.found(error, fault);
+        if let Some(plane) = &self.handed.shaded {
+            triple(0, (plane, Holds::Color), at, shown.color, report);
+        }
+        if let Some(plane) = &self.handed.alpha {
+            number(0, plane, at, shown.alpha, report);
+        }
+        if let Some(plane) = &self.layers {
+            number(0, plane, at, average.layers, report);
+        }
+        self.handed.shaded.is_none() || is_bounded(&shown.color)
+    }
+}
+
+/// What may be the nearest of a group; none if that is not known.
+fn samples<P: Profile>(group: &GroupFound<P>) -> Option<Samples<P>> {
+    let sample = |layers: &Layers<P>| {
+        let depth = group.depth.unwrap_or(layers.depth);
+        // Depths decide.
+        let nearness = -depth;
+        let read = WeightedFragment { depth, ..WeightedFragment::EMPTY };
+        Sample { surfel: layers.surfel, nearness, read }
+    };
+    let all = group.all.as_ref()?.iter().map(sample).collect();
+    Some(Samples { all, stored: false, depth_stored: group.depth.is_some() })
+}

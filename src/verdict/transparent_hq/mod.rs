@@ -1,0 +1,183 @@
+//! What a right implementation may leave of each stage, held against somebody's planes.
+//!
+//! Each stage is judged from what the client has of the stage before, as it is stored; what the client
+//! has not is taken from the balls of the stage before: of several continuations from all of them.
+//!
+//! **Geometry** and **nearest**: the depth-image of each group, and what is composited of them, by the
+//! rules of [`single-pass`](crate::verdict::single_pass). Beside `Z`, `id`, `normal` and `weight`
+//! a continuation of the sums gives the opacity, their sum divided by that of the weights, at most 1;
+//! the mask, 1 where a fragment is in the sums; and the colour, shaded at the client's `Z` with its
+//! normal. An average colour leaves no plane, so that the one that is shaded is that of the continuation.
+//!
+//! **Blending** and **averaging** by the rules of [`transparent`](crate::verdict::transparent). A
+//! fragment stays where the client's mask is 1 and its depth is greater than Z + epsilon, Z the client's;
+//! without a mask, where Z is finite. Where that is undecided both continuations are followed.
+//!
+//! **Compositing** of the client's nearest layer and averages: `l`, `layers`, and the picture. It is
+//! before the environment as in `transparent`. With refraction it is [`mod@crate::shade::optics`] in balls,
+//! of the client's normal. A decision that is undecided there gives what holds both of its outcomes: on
+//! which side a surface is seen, whether light is reflected totally, which form of a cosine is taken. A
+//! direction that either side of a surface may give holds too much of a map to be judged.
+//! Without the client's normals a picture with refraction is not judged.
+//!
+//! A pixel is undecided if the sums of its nearest layer have more than one continuation; if a group of
+//! the others has, or is not judged; or if its colour is not.
+
+mod shown;
+#[cfg(test)]
+mod tests;
+
+use crate::composite::decide;
+use crate::error::Result;
+use crate::frame::{NO_ID, Rect};
+use crate::method::Job;
+use crate::method::transparent_hq::Settings;
+use crate::method::transparent_hq::nearest::{BEHIND, FrontLayer, single_pass};
+use crate::method::transparent_hq::planes::{IMAGES, NEAREST_ALPHA, NEAREST_COLOR, NEAREST_MASK};
+use crate::number::ball::{Profile, Three};
+use crate::number::{Ball, Real};
+use crate::verdict::checks::anything;
+use crate::verdict::client::{Client, Stored};
+use crate::verdict::ewa::handed::Handed;
+use crate::verdict::marks::{self, Counts, Marks, counted};
+use crate::verdict::single_pass::compositing::limit;
+use crate::verdict::single_pass::{self as groups, Found, GroupsOf, sum_rows};
+use crate::verdict::transparent::averaged::AveragePlanes;
+use crate::verdict::transparent::layered::LayersJudge;
+use crate::verdict::{Check, Verdict};
+use shown::Shown;
+
+/// The stages by their names.
+const STAGES: [&str; 5] = ["geometry", "nearest", "blending", "averaging", "compositing"];
+
+/// Judges the planes of a client.
+///
+/// # Errors
+/// As the projection of the method.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Result<Verdict> {
+    let of = nearest(client);
+    let judge = Judge::<P>::new(job, settings, &of)?;
+    let [geometry, compositing, shading] = judge.nearest.names();
+    let names = [
+        geometry,
+        [shading, compositing].concat(),
+        judge.others.names(),
+        judge.averages.names(),
+        judge.shown.names(),
+    ];
+    let mut names = names.into_iter();
+    let stages = STAGES.map(|stage| (stage, names.next().unwrap_or_default()));
+    Ok(marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks)))
+}
+
+/// Everything that is judged at one pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    let of = nearest(client);
+    let judge = Judge::<P>::new(job, settings, &of)?;
+    marks::checks(job, STAGES, pixel, |tile, marks| judge.judge(tile, marks))
+}
+
+/// The planes of the nearest layer. Its sums leave none, and the picture is not its alone.
+fn nearest(client: &Client) -> GroupsOf<'_> {
+    let handed = Handed {
+        normal_sum: None,
+        color_sum: None,
+        count: None,
+        color: None,
+        opacity: client.scalar(&NEAREST_ALPHA),
+        mask: client.count(&NEAREST_MASK),
+        shaded: client.triple(&NEAREST_COLOR),
+        alpha: None,
+        ..Handed::of(client, &sum_rows())
+    };
+    GroupsOf { client, handed, images: &IMAGES, layer: true }
+}
+
+/// What all tiles share.
+struct Judge<'a, P: Profile> {
+    settings: &'a Settings,
+    handed: &'a Handed<'a>,
+    nearest: groups::Judge<'a, P>,
+    others: LayersJudge<'a, P>,
+    averages: AveragePlanes<'a>,
+    shown: Shown<'a, P>,
+}
+
+impl<'a, P: Profile> Judge<'a, P> {
+    fn new(job: &Job<'a>, settings: &'a Settings, of: &'a GroupsOf<'a>) -> Result<Self> {
+        Ok(Self {
+            settings,
+            handed: &of.handed,
+            nearest: groups::Judge::new(job, &single_pass(settings), of)?,
+            others: LayersJudge::project(job, &settings.layers, of.client)?,
+            averages: AveragePlanes::new(of.client),
+            shown: Shown::new(job, settings, of.client),
+        })
+    }
+
+    /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 5]) -> Counts {
+        let mut counts = Counts::default();
+        for y in rect.y0..rect.y1 {
+            let row = Rect { y0: y, y1: y + 1, ..rect };
+            self.judge_row((tile, (y - rect.y0) as usize, row), marks, &mut counts);
+        }
+        counts
+    }
+
+    fn judge_row(
+        &self,
+        (tile, above, row): (usize, usize, Rect),
+        [geometry, nearest, blending, averaging, compositing]: &mut [Marks; 5],
+        counts: &mut Counts,
+    ) {
+        let mut parts = [(); 3].map(|()| nearest.beside(row));
+        let fronts = self.nearest.judge_row((tile, above, row), geometry, &mut parts);
+        parts.into_iter().for_each(|part| nearest.put(part));
+        let drawings = self.others.of_row(tile, &row);
+        for ((column, at), front) in counted(row).zip(fronts) {
+            let pixel = above * row.columns() + column;
+            let near = self.front(at, &front);
+            let behind = self.behind(at, near.depth);
+            let marks = &mut blending.at(pixel);
+            let others = self.others.judge((column, at), &drawings, behind, marks);
+            let of = (others.groups.as_slice(), self.settings.layers.holes);
+            let average = self.averages.judge(at, of, &mut averaging.at(pixel));
+            let judged = self.shown.judge(at, &near, &average, &mut compositing.at(pixel));
+            counts.covered += u64::from(front.covered());
+            counts.undecided += u64::from(!front.certain() || others.open || !judged);
+        }
+    }
+
+    /// The nearest layer as the next passes read it, without surfel, weight and mask.
+    fn front(&self, at: (u32, u32), found: &Found<P>) -> FrontLayer<Ball<P>> {
+        let (opacity, color) = self.nearest.read(at, found);
+        FrontLayer {
+            depth: self.handed.depth.map_or(found.nearest.depth, |plane| plane.ball(at)),
+            id: NO_ID,
+            weight: Ball::ZERO,
+            normal: self.handed.normal.map_or([anything(); 3], |plane| plane.balls(at)),
+            color,
+            opacity,
+            mask: 0,
+        }
+    }
+
+    /// Whether a fragment of a depth belongs to the other layers, behind one at depth `z`.
+    fn behind(&self, (x, y): (u32, u32), z: Ball<P>) -> impl Fn(Ball<P>) -> Three {
+        let masked = |plane: Stored<'_, u8>| BEHIND.test(*plane.plane.at(x, y)).into();
+        let there = self.handed.mask.map_or_else(|| z.is_finite(), masked);
+        let limit = limit(z, self.nearest.epsilon());
+        move |t| there & !decide::visible(t, limit)
+    }
+}
