@@ -12,7 +12,7 @@
 
 use splatref::Result;
 use splatref::frame::Frame;
-use splatref::io::srgb::from_linear;
+use splatref::number::srgb::from_linear;
 
 /// What is compared of a picture.
 pub(crate) struct Seen {

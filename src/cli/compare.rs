@@ -4,7 +4,8 @@ use super::{Ended, Ending, report, say};
 use splatref::compare::metrics;
 use splatref::compare::{Criteria, Tolerance, Verdict, compare};
 use splatref::frame::{Exec, Image};
-use splatref::io::{exr, npy, png, srgb};
+use splatref::io::{exr, npy, png};
+use splatref::number::srgb;
 use splatref::{Error, Result};
 use std::path::{Path, PathBuf};
 

@@ -120,31 +120,9 @@ mod tests;
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::Real;
-use crate::number::lanes::vectorized;
-use crate::scene::Surfels;
-use glam::{DVec3, Vec3};
-use std::ops::Range;
+use crate::scene::{Geometry, Surfels};
 
-/// What a distance is multiplied by in [`Sequential::holds`]: 1 - 2^-20.
-const SHORTER: f64 = 1.0 - 1.0 / 1_048_576.0;
-
-/// The parent of the root, and the surfel of an inner node.
-const NONE: u32 = u32::MAX;
-
-/// When each of a list of nodes is drawn, surfels and the discs that stand for them from afar; see the
-/// [module](self).
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sequential {
-    near: Vec<f32>,
-    far: Vec<f32>,
-    gap: Vec<f32>,
-    /// The largest `far` from here to the end of the list.
-    far_from: Vec<f32>,
-    /// The largest gap from here to the end of the list.
-    gap_from: Vec<f32>,
-    parent: Vec<u32>,
-    surfel: Vec<u32>,
-}
+pub use crate::scene::objects::detail::sequential::Sequential;
 
 impl Sequential {
     /// Builds the list, without regard to colours: the discs of all nodes in its order, whose median radius
@@ -170,111 +148,20 @@ impl Sequential {
     pub fn with_color(surfels: &Surfels, most: f32, exec: &Exec) -> Result<(Surfels, Self)> {
         build::build(surfels, most, exec)
     }
-
-    /// The error of each node: 0 for a surfel.
-    #[must_use]
-    pub fn near(&self) -> &[f32] {
-        &self.near
-    }
-
-    /// The error of each node's parent: +inf for the root.
-    #[must_use]
-    pub fn far(&self) -> &[f32] {
-        &self.far
-    }
-
-    /// How far each node's centre is from that of its parent: 0 for the root.
-    #[must_use]
-    pub fn gap(&self) -> &[f32] {
-        &self.gap
-    }
-
-    /// The parent of a node, by its place in the list; none for the root.
-    #[must_use]
-    pub fn parent(&self, node: usize) -> Option<usize> {
-        Some(self.parent[node]).filter(|&parent| parent != NONE).map(|parent| parent as usize)
-    }
-
-    /// The surfel that a node is, by its index; none if it is an inner node.
-    #[must_use]
-    pub fn surfel(&self, node: usize) -> Option<u32> {
-        Some(self.surfel[node]).filter(|&surfel| surfel != NONE)
-    }
-
-    /// How many nodes of the list are to be looked at: [`Sequential::holds`] and
-    /// [`Sequential::cuts`] take none of the others at `least_distance` or farther.
-    #[must_use]
-    pub fn prefix(&self, least_distance: f64, scale: f64) -> usize {
-        let at = |i: usize| reaches(self.far_from[i], self.gap_from[i], least_distance, scale);
-        // Both fall along the list, and rounding keeps their order.
-        let (mut low, mut high) = (0, self.far.len());
-        while low < high {
-            let middle = low.midpoint(high);
-            if at(middle) {
-                low = middle + 1;
-            } else {
-                high = middle;
-            }
-        }
-        low
-    }
-
-    /// Whether a node is drawn, with the distance of its own centre from the eye. Distances are
-    /// finite and >= 0, the scale is in [0, +inf].
-    #[must_use]
-    pub fn holds(&self, node: usize, distance: f64, scale: f64) -> bool {
-        times(self.near[node], scale) <= distance
-            && reaches(self.far[node], self.gap[node], distance, scale)
-    }
-
-    /// [`Sequential::holds`] of up to 64 consecutive nodes at some points, a bit each: with the distances of
-    /// these from an eye, `sqrt((dx dx + dy dy) + dz dz)`. The scale is finite and > 0.
-    pub(crate) fn holding(
-        &self,
-        nodes: Range<usize>,
-        points: &[Vec3],
-        eye: DVec3,
-        scale: f64,
-    ) -> u64 {
-        let errors = [&self.near, &self.far, &self.gap].map(|all| &all[nodes.clone()]);
-        holding(errors, &points[nodes], eye, scale)
-    }
-
-    /// Whether a node is drawn, with one distance for all nodes; ranges as for
-    /// [`Sequential::holds`].
-    #[must_use]
-    pub fn cuts(&self, node: usize, distance: f64, scale: f64) -> bool {
-        times(self.near[node], scale) <= distance && distance < times(self.far[node], scale)
-    }
 }
 
-vectorized!(
-    /// See [`Sequential::holding`].
-    fn holding([near, far, gap]: [&[f32]; 3], points: &[Vec3], eye: DVec3, scale: f64) -> u64 {
-        let mut held = [0_u64; 64];
-        let count = near.len().min(64);
-        let (near, far, gap) = (&near[..count], &far[..count], &gap[..count]);
-        for (i, p) in points[..count].iter().enumerate() {
-            let d = DVec3::new(p.x.into(), p.y.into(), p.z.into()) - eye;
-            let distance = ((d.x * d.x + d.y * d.y) + d.z * d.z).sqrt();
-            // Neither 0 nor +inf times a scale that is finite and > 0 needs a case of its own.
-            let good = f64::from(near[i]) * scale <= distance;
-            let parent = SHORTER * distance < f64::from(far[i]) * scale + f64::from(gap[i]);
-            held[i] = u64::from(good & parent);
-        }
-        held.iter().rev().fold(0, |word, bit| word << 1 | bit)
+impl Geometry {
+    /// The geometry with the nodes of a tree, which are its surfels from here on. `threshold` is tau of
+    /// [`crate::scene::objects::detail::tree`], in [0, 4096]. Prefiltered colours are left out: those of inner nodes are averages.
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] if the threshold is out of range, if there are no surfels, or levels of detail
+    /// already, and as [`Sequential::new`].
+    pub fn with_detail(self, threshold: f64, exec: &Exec) -> Result<Self> {
+        self.check_tree(threshold)?;
+        let (nodes, list) = Sequential::new(&self.surfels, exec)?;
+        Ok(self.with_tree(threshold, nodes, list))
     }
-);
-
-/// Whether a distance is below that from which on the parent is drawn.
-fn reaches(far: f32, gap: f32, distance: f64, scale: f64) -> bool {
-    SHORTER * distance < times(far, scale) + f64::from(gap)
-}
-
-/// An error times a scale; 0 and +inf whatever the scale.
-fn times(error: f32, scale: f64) -> f64 {
-    let error = f64::from(error);
-    if error == 0.0 || error == f64::INFINITY { error } else { error * scale }
 }
 
 /// The least f32 that is not less.

@@ -13,7 +13,6 @@
 //! - [`replace`]: output files that are whole or not there.
 //! - [`scene_file`]: scenes as TOML: models, lights, camera, settings.
 //! - [`state`]: what a frame saw.
-//! - [`srgb`]: the transfer function between stored colours and linear light.
 //! - [`texture`]: textures of models.
 
 pub mod client;
@@ -29,7 +28,6 @@ pub mod png;
 pub mod provenance;
 pub mod replace;
 pub mod scene_file;
-pub mod srgb;
 pub mod state;
 pub mod texture;
 

@@ -2,7 +2,7 @@
 //!
 //! | file | | |
 //! |---|---|---|
-//! | `.png` | 8 or 16 bits, grey, a palette or colours | **sRGB**, decoded in `f64` and rounded once ([`super::srgb`]) |
+//! | `.png` | 8 or 16 bits, grey, a palette or colours | **sRGB**, decoded in `f64` and rounded once ([`crate::number::srgb`]) |
 //! | `.exr` | the channels `R`, `G`, `B`, `HALF` or `FLOAT` | linear, kept |
 //!
 //! Opacity is passed over, and so is what a PNG says of its gamma. Reading PNG needs the feature `cli`.
@@ -205,7 +205,7 @@ mod tests {
         };
         let texels =
             |of: Vec<[f32; 3]>| Texture::new(Plane::from_values(of.len() as u32, 1, of)).unwrap();
-        let linear = |code: f64| crate::io::srgb::to_linear(code) as f32;
+        let linear = |code: f64| crate::number::srgb::to_linear(code) as f32;
         write(2, ExtendedColorType::Rgba8, &[0, 128, 255, 7, 10, 11, 12, 255]);
         let of = [10.0, 11.0, 12.0].map(|code| linear(code / 255.0));
         let expected = texels(vec![[0.0, linear(128.0 / 255.0), 1.0], of]);

@@ -11,12 +11,14 @@
 //! - [`lanes`]: values side by side, and kernels for every width of vectors.
 //! - [`elementary`]: the only home of exp, pow, sin ... in the crate.
 //! - [`random`]: random values as functions of a seed and an index.
+//! - [`srgb`]: the transfer function between stored colours and linear light.
 
 pub mod ball;
 pub mod elementary;
 pub mod lanes;
 pub mod random;
 pub mod real;
+pub mod srgb;
 pub mod truth;
 pub mod vector;
 

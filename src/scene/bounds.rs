@@ -24,6 +24,35 @@ impl Scene {
     }
 }
 
+/// What bounds surfels and primitives together, by the rules of [`Scene::bounds`] and
+/// [`Scene::bounding_sphere`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bounds {
+    /// The corner of the box with the least coordinates.
+    pub low: Vec3,
+    /// The other corner.
+    pub high: Vec3,
+    /// The radius of the sphere around the middle of the box, (low + high) / 2 in f64.
+    pub radius: f64,
+}
+
+impl Bounds {
+    /// Those of surfels and primitives.
+    #[must_use]
+    pub fn of(surfels: &Surfels, primitives: &Primitives) -> Self {
+        let (low, high) = corners(surfels, primitives);
+        // -0 becomes 0.
+        let (low, high) = (low + Vec3::ZERO, high + Vec3::ZERO);
+        Self { low, high, radius: sphere(surfels, primitives).1 }
+    }
+
+    /// The box, and the sphere around it.
+    pub(super) fn corners_and_sphere(&self) -> ([DVec3; 2], (DVec3, f64)) {
+        let corners = [self.low.as_dvec3(), self.high.as_dvec3()];
+        (corners, ((corners[0] + corners[1]) / 2.0, self.radius))
+    }
+}
+
 /// See [`Scene::bounds`].
 pub(super) fn corners(surfels: &Surfels, primitives: &Primitives) -> (Vec3, Vec3) {
     let surfels = (!surfels.is_empty()).then(|| surfels.bounds());

@@ -13,6 +13,7 @@
 //! - [`hash`]: the identity of a scene.
 //! - [`indexed`]: triangles, ribbons and tubes.
 //! - [`light`]: lights and the Phong material.
+//! - [`merge`]: several models as one.
 //! - [`mipmap`]: prefiltered colours of surfels.
 //! - [`sides`]: how large surfels are drawn as point primitives.
 //! - [`texture`]: textures, and means of them.
@@ -29,9 +30,11 @@ pub mod groups;
 pub mod hash;
 pub mod indexed;
 pub mod light;
+pub mod merge;
 pub mod mipmap;
 pub mod objects;
 pub mod sides;
+mod slerp;
 pub mod surfels;
 pub mod texture;
 pub mod transform;

@@ -1,10 +1,10 @@
 //! Scenes of objects as scenes of surfels.
 
-use super::merge::join;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
 use crate::scene::Scene;
+use crate::scene::merge::join;
 
 /// The scene with all surfels and primitives of its objects in their places, for methods that draw
 /// surfels: those that are drawn in the order of their ids, the primitives in the order of the objects. A

@@ -1,12 +1,11 @@
-//! What makes a scene: derived attributes, procedural shapes, plants, several models as one,
-//! and places of many objects.
+//! What makes a scene: derived attributes, procedural shapes, plants, samplers, and places of
+//! many objects.
 //!
 //! - [`mod@candidates`]: what of a mesh is seen from outside, as points.
 //! - [`mod@derive`]: from what a file gives to complete surfels.
 //! - [`mod@flatten`]: a scene of objects as a scene of surfels.
 //! - [`hierarchy`]: surfels of a whole scene, coarser from level to level.
 //! - [`hybrid`]: a mesh as polygons here and surfels there.
-//! - [`merge`]: several models as one.
 //! - [`plant`]: a tree of triangles, and the ribbons and tubes that stand for the tree.
 //! - [`procedural`]: shapes whose true picture is known.
 //! - [`sampler`]: points in an order of which every prefix is spread over all of them.
@@ -17,7 +16,6 @@ pub mod derive;
 pub mod flatten;
 pub mod hierarchy;
 pub mod hybrid;
-pub mod merge;
 pub mod plant;
 pub mod procedural;
 pub mod sampler;

@@ -12,8 +12,8 @@ use super::client::{Band, Client, Storage, Ties};
 use super::{Judged, Verdict};
 use crate::error::Result;
 use crate::frame::Samples;
-use crate::io::srgb;
 use crate::method::{Method, Session};
+use crate::number::srgb;
 use crate::scene::Camera;
 use crate::setting::{Fields, Value};
 

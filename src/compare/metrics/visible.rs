@@ -3,7 +3,7 @@
 use super::{Region, regions};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Samples};
-use crate::io::srgb::from_linear;
+use crate::number::srgb::from_linear;
 
 /// A pixel is visibly off if R, G or B differs by more than this as sRGB.
 pub const STEP: f64 = 8.0 / 255.0;

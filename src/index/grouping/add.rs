@@ -1,10 +1,11 @@
 //! Extension (1): surfels of other groups are added to a group \[ZP06, section 4.2.2\].
 
 use super::budget;
-use super::clipped::{SAMPLES, areas, areas_of_groups, covered_by};
+use super::clipped::{areas, areas_of_groups};
+use super::coverage::GroupCoverage;
 use super::disc_tree::DiscTree;
-use super::extend::GroupCoverage;
 use super::overlaps::Overlaps;
+use super::samples::{SAMPLES, covered_by};
 use super::settle::settle;
 use crate::error::Result;
 use crate::scene::Groups;

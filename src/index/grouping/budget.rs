@@ -2,8 +2,10 @@
 
 use super::disc_tree::{DISCS, DiscTree, NearBlocks};
 use crate::error::{Error, Result};
+use crate::frame::Exec;
 use crate::memory;
 use crate::number::lanes::vectorized;
+use crate::scene::Surfels;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// How many pairs of near surfels are looked at, at most.
@@ -80,11 +82,31 @@ const OF_A_NEIGHBOUR: u64 = 4 + 4 + 1;
 /// The neighbours are counted of one block in so many.
 const COUNTED: usize = 64;
 
+impl DiscTree {
+    /// Of all surfels, for groups of them by neighbours that are near by a factor.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the process may not hold what it takes.
+    pub(super) fn of_all(
+        surfels: &Surfels,
+        factor: f64,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Self> {
+        let count = surfels.len();
+        ask_for_surfels(count)?;
+        progress("sorting surfels", 0, 1);
+        let tree = Self::new(surfels, 0..count as u32, exec);
+        ask_for_neighbours(&tree, factor)?;
+        Ok(tree)
+    }
+}
+
 /// Asks for what so many surfels take, their neighbours aside.
 ///
 /// # Errors
 /// [`Error::Invalid`] if the process may not hold as much.
-pub(super) fn ask_for_surfels(count: usize) -> Result<()> {
+fn ask_for_surfels(count: usize) -> Result<()> {
     let bytes = count as u64 * OF_A_SURFEL.iter().sum::<u64>();
     memory::ask(bytes, || format!("groups of {count} surfels"))
 }
@@ -93,7 +115,7 @@ pub(super) fn ask_for_surfels(count: usize) -> Result<()> {
 ///
 /// # Errors
 /// [`Error::Invalid`] if the process may not hold as much.
-pub(super) fn ask_for_neighbours(tree: &DiscTree, factor: f64) -> Result<()> {
+fn ask_for_neighbours(tree: &DiscTree, factor: f64) -> Result<()> {
     let count = tree.surfel.len();
     let neighbours = about_so_many(tree, factor);
     let bytes = count as u64 * OF_A_SURFEL[1] + neighbours * OF_A_NEIGHBOUR;

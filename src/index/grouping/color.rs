@@ -1,7 +1,7 @@
 //! Largest First colouring \[Lei79\]: from the graph to groups.
 
 use super::disc_tree::DiscTree;
-use super::graded::Graded;
+use super::graded::{Graded, STEPS};
 use super::graph::{Graph, conflicts};
 use super::rules::Rules;
 use super::settle::settle;
@@ -13,9 +13,6 @@ use std::borrow::Cow;
 use std::mem::{swap, take};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU32};
-
-/// c is tried in multiples of one in so many.
-pub(super) const STEPS: u8 = 64;
 
 /// What [`group`] found: a row of Table 1.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,11 +7,9 @@
 //! What is found depends on the discs alone; the tree leaves no trace but the order in which it is
 //! found.
 
-use super::budget;
-use super::clipped::DiscSamples;
 use super::curve;
 use super::disc::{SpaceDisc, are_near};
-use crate::error::Result;
+use super::samples::DiscSamples;
 use crate::frame::Exec;
 use crate::scene::Surfels;
 use glam::{DVec3, Vec3};
@@ -53,24 +51,6 @@ struct Bounds {
 }
 
 impl DiscTree {
-    /// Of all surfels, for groups of them by neighbours that are near by a factor.
-    ///
-    /// # Errors
-    /// [`crate::Error::Invalid`] if the process may not hold what it takes.
-    pub(super) fn of_all(
-        surfels: &Surfels,
-        factor: f64,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Self> {
-        let count = surfels.len();
-        budget::ask_for_surfels(count)?;
-        progress("sorting surfels", 0, 1);
-        let tree = Self::new(surfels, 0..count as u32, exec);
-        budget::ask_for_neighbours(&tree, factor)?;
-        Ok(tree)
-    }
-
     /// Of some surfels, by index in ascending order.
     pub(super) fn new(surfels: &Surfels, members: impl Iterator<Item = u32>, exec: &Exec) -> Self {
         let members: Vec<u32> = members.collect();

@@ -1,6 +1,7 @@
 //! Groups that each cover the surface \[ZP06, section 4.2.2\].
 
 use super::clipped::{area, by_lower};
+use super::coverage::{Extended, GroupCoverage};
 use super::disc_tree::DiscTree;
 use super::graph::Graph;
 use super::overlaps::Overlaps;
@@ -24,34 +25,6 @@ pub enum Extension {
     },
     /// Radii are enlarged (extension 2).
     Enlarge,
-}
-
-/// What [`extend`] did.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Extended {
-    /// A: the area of the surface, in square world units.
-    pub area: f64,
-    /// How many surfels were added to groups, each counted once for each group.
-    pub added: u64,
-    /// What that is in per cent of the surfels.
-    pub percent: f64,
-    /// Each group.
-    pub groups: Vec<GroupCoverage>,
-}
-
-/// What [`extend`] did to a group.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GroupCoverage {
-    /// Surfels in the group, those added included.
-    pub surfels: u64,
-    /// What its radii are multiplied by.
-    pub scale: f32,
-    /// Whether the iteration of eq. 9 converged; true where there was none.
-    pub converged: bool,
-    /// The area that the group covers without the extension, eq. 7, as a part of A.
-    pub before: f64,
-    /// The same with the extension.
-    pub after: f64,
 }
 
 /// How far a surfel may be covered that is added to a group, if nobody says.

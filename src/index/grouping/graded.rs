@@ -1,6 +1,5 @@
 //! The graphs of all c that are multiples of 1/64, from one that has the edges of all of them.
 
-use super::color::STEPS;
 use super::disc::{are_near, dot};
 use super::disc_tree::{DISCS, DiscBlock, DiscTree};
 use super::graph::{Graph, relaxed};
@@ -13,6 +12,9 @@ use crate::scene::Surfels;
 use glam::DVec3;
 use std::borrow::Cow;
 use std::ops::Range;
+
+/// c is tried in multiples of one in so many.
+pub(super) const STEPS: u8 = 64;
 
 /// A graph, and of each of its edges the least multiple of 1/64 by which its discs are near, or
 /// [`NEVER`].

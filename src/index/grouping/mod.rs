@@ -109,6 +109,7 @@ mod add;
 mod budget;
 mod clipped;
 mod color;
+mod coverage;
 mod curve;
 mod disc;
 mod disc_tree;
@@ -119,14 +120,16 @@ mod graph;
 mod overlaps;
 mod parts;
 mod rules;
+mod samples;
 mod scales;
 mod settle;
 #[cfg(test)]
 mod tests;
 
 pub use color::{GroupingReport, group, group_into};
+pub use coverage::{Extended, GroupCoverage};
 pub use enlarge::{MAX_SCALE, MAX_STEPS, SMALL_STEP};
-pub use extend::{Extended, Extension, GroupCoverage, extend};
+pub use extend::{Extension, extend};
 pub use rules::{Coplanar, Rules};
 
 use crate::error::Result;

@@ -4,11 +4,12 @@
 //! other at dozens of scales. They are searched for once for a range of scales, and each scale asks
 //! those found whether they are near by it.
 
-use super::clipped::{DiscSamples, area, by_lower};
+use super::clipped::{area, by_lower};
 use super::disc::SpaceDisc;
 use super::disc_tree::DiscTree;
 use super::graph::Graph;
 use super::parts::Parts;
+use super::samples::DiscSamples;
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::lanes::vectorized;

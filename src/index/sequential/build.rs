@@ -1,12 +1,13 @@
 //! From surfels to the tree, and from the tree to the list.
 
 use super::node::{Child, Disc, Leaves};
-use super::{NONE, Sequential, larger, longer};
+use super::{larger, longer};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::point_tree::{Entry, divide};
 use crate::memory;
 use crate::scene::cloud::half_axes;
+use crate::scene::objects::detail::sequential::{NONE, Sequential};
 use crate::scene::{Cloud, Surfels};
 use glam::Vec3;
 use std::ops::Range;

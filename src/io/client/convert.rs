@@ -5,9 +5,10 @@ use super::files::{Kind, Numbers};
 use super::format::{F16_LOSS, F32_STEP, Format, Loss};
 use super::parse::{Encoding, Meaning, PlaneKeys};
 use crate::frame::{NO_ID, Plane, Samples};
-use crate::io::{Reason, srgb};
+use crate::io::Reason;
 use crate::method::Holds;
 use crate::number::Real;
+use crate::number::srgb;
 use crate::verdict::client::Storage;
 
 /// What a product, a division by t and storing may lose in `f32`: shading languages promise a

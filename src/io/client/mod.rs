@@ -37,7 +37,7 @@
 //! | `empty` | see below | of depths and indices: the number of an empty pixel, as it is stored (rounded to what the file can hold); `nan` is any NaN |
 //! | `id_base` | 0 | of indices: the number of the first surfel |
 //! | `premultiplied` | `false`, `true` | of colours: multiplied by the plane `A` of their layer (`A` of the picture, `blended.A` of `blended`), which must be there; linear light is divided by it, and left alone where it is 0 |
-//! | `encoding` | `"linear"` (of a PNG `"srgb"`), `"srgb"` | of colours, see [`crate::io::srgb`] |
+//! | `encoding` | `"linear"` (of a PNG `"srgb"`), `"srgb"` | of colours, see [`crate::number::srgb`] |
 //! | | `"octahedral"` | of `normal` and `projection.normal`: unit vectors in two numbers, see below |
 //! | `range` | \[0, 1\] | of unorm and `rgb10a2`: which numbers 0 and 1 mean; `[-1, 1]` of the components of normals. Depths must be t |
 //! | `meaning`, `near`, `far` | those of `[depth]` | of depths |

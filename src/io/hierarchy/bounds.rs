@@ -6,7 +6,8 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::replace::write_atomically;
 use crate::io::{Reason, input};
-use crate::scene::objects::outline::{Bounds, Needed};
+use crate::scene::bounds::Bounds;
+use crate::scene::objects::outline::Needed;
 use std::io::Write;
 
 const MAGIC: &[u8; 16] = b"splatref ball 1\n";

@@ -74,7 +74,7 @@
 //!
 //! A node of which no pixel sees anything has a file too, with the count, `p_m` and `r_m` 0, so that nobody looks again.
 //!
-//! A normal is at most 1e-4 off. Colours are clamped to \[0, 1\], encoded by [`crate::io::srgb`], and rounded as
+//! A normal is at most 1e-4 off. Colours are clamped to \[0, 1\], encoded by [`crate::number::srgb`], and rounded as
 //! floor(255 c + 1/2). An opacity o is floor(255 o + 1/2), and where a vertex of a geometry has one, code / 255 is that of a surfel, rounded to f32
 //! once; else the code is 255, and surfels have none. `Decided:` Table 1 has 20 bytes a surfel (494.79 MB for 24.74 M) and does not say which. `Decided:` light above 1 is cut, as
 //! it is in the paper's bytes. What has no colours has that of the scene's material. The estimate is that of the surfels as they are in the file.

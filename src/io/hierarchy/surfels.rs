@@ -3,8 +3,9 @@
 use super::bytes::{Hash, Reader, Writer};
 use crate::error::{Error, Result};
 use crate::io::replace::write_atomically;
-use crate::io::{Reason, input, srgb};
+use crate::io::{Reason, input};
 use crate::memory;
+use crate::number::srgb;
 use crate::scene::Cloud;
 use crate::scene::objects::detail::prefix::Estimate;
 use crate::source::hierarchy::Numbers;

@@ -3,7 +3,7 @@
 //! | line | | |
 //! |---|---|---|
 //! | `v x y z` | a position | world units, rounded to `f32` once; a fourth number, a weight, is skipped |
-//! | `v x y z r g b` | with a colour | **sRGB** in [0, 1], decoded in `f64` and rounded once ([`crate::io::srgb`]) |
+//! | `v x y z r g b` | with a colour | **sRGB** in [0, 1], decoded in `f64` and rounded once ([`crate::number::srgb`]) |
 //! | `vn x y z` | a normal | of any length |
 //! | `f a b c ...` | a polygon | the fan of its first corner; with fewer than 3 corners it is nothing |
 //!
@@ -50,9 +50,10 @@ mod materials;
 #[cfg(test)]
 mod tests;
 
-use super::{Reason, input, srgb};
+use super::{Reason, input};
 use crate::error::{Error, Result};
 use crate::memory;
+use crate::number::srgb;
 use crate::scene::{Cloud, Coordinates};
 use glam::{Vec2, Vec3};
 use materials::Material;

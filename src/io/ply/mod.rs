@@ -26,7 +26,7 @@
 //! | `edge` | `vertex1` and `vertex2` | integers | a segment of a ribbon or of a tube |
 //!
 //! To compare with a renderer that takes colours as they are stored, mind that integers here are
-//! decoded from sRGB ([`crate::io::srgb`]): a `uchar` of 128 is 0.2159 and not 0.502. Floats are kept.
+//! decoded from sRGB ([`crate::number::srgb`]): a `uchar` of 128 is 0.2159 and not 0.502. Floats are kept.
 //!
 //! Without an element `group` there are as many groups as the largest number tells, of scale 1;
 //! with one there are as many as it has, 64 at most. It may come before or after the vertices.

@@ -5,7 +5,7 @@ use super::header::{Element, PropertyKind, Scalar, quote};
 use super::rows::Rows;
 use super::values::{BodyValues, Event};
 use crate::frame::Exec;
-use crate::io::srgb;
+use crate::number::srgb;
 use crate::scene::mipmap::MOST_LEVELS;
 use crate::scene::{Cloud, Coordinates, Mipmap};
 use glam::{Vec2, Vec3};

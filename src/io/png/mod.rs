@@ -7,7 +7,7 @@ pub use read::{Stored, read};
 
 use crate::frame::{Frame, Plane};
 use crate::io::replace::{Pending, write_atomically};
-use crate::io::srgb;
+use crate::number::srgb;
 use crate::{Error, Result};
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};

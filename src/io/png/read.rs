@@ -3,8 +3,9 @@
 use super::{quantize, straight};
 use crate::frame::image::Values;
 use crate::frame::{Image, Plane};
-use crate::io::{input, srgb};
+use crate::io::input;
 use crate::memory;
+use crate::number::srgb;
 use crate::{Error, Result};
 use image::codecs::png::PngDecoder;
 use image::{ColorType, ImageDecoder, ImageError, Limits};

@@ -6,10 +6,10 @@ use crate::error::Result;
 use crate::frame::Exec;
 use crate::io::environment;
 use crate::io::hierarchy::Hierarchy;
+use crate::scene::merge::{join, merge};
 use crate::scene::{Cloud, Counts, Dropped, Environment, Geometry, Object, Objects};
 use crate::scene::{Primitives, Scene, Similarity, Surfels, Vertices};
 use crate::source::derive::Derived;
-use crate::source::merge::{join, merge};
 use crate::source::sampler::estimate;
 
 /// A scene and how it came about.

@@ -8,10 +8,10 @@ use crate::frame::Exec;
 use crate::index::seen::Seen;
 use crate::method::Job;
 use crate::number::lanes::{LANES, Lanes};
+use crate::scene::merge::join;
 use crate::scene::objects::detail::Mask;
 use crate::scene::objects::{Ids, Split};
 use crate::scene::{Boxes, Primitives, Scene, Similarity, Surfels};
-use crate::source::merge::join;
 use glam::Vec3;
 use std::borrow::Cow;
 

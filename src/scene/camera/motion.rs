@@ -18,7 +18,7 @@
 
 use super::{Pose, axes};
 use crate::error::{Error, Result};
-use crate::scene::objects::motion::slerp;
+use crate::scene::slerp::slerp;
 use glam::DMat3;
 
 /// Where a camera is over the frames of a sequence, see the [module](self).

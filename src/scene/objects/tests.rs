@@ -1,8 +1,8 @@
 use super::*;
 use crate::frame::Exec;
+use crate::scene::merge::merge;
 use crate::scene::transform::rotation;
 use crate::scene::{Cloud, Mipmap, Scene};
-use crate::source::merge::merge;
 use crate::source::{Shape, flatten};
 
 fn place(degrees: f64, scale: f64, x: f64) -> Similarity {

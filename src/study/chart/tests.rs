@@ -185,11 +185,11 @@ fn quantiles_and_densities_by_hand() {
 /// Simulated by the matrices of Viénot, Brettel and Mollon (1999), on linear light.
 #[test]
 fn the_colour_blind_tell_colours_apart() {
-    let linear = |c: u8| crate::io::srgb::to_linear(f64::from(c) / 255.0);
+    let linear = |c: u8| crate::number::srgb::to_linear(f64::from(c) / 255.0);
     let seen = |color: Rgb, [a, b, c]: [f64; 3]| {
         let [r, g, blue] = color.map(linear);
         let yellow = a * r + b * g;
-        [yellow, yellow, c * (r - g) + blue].map(crate::io::srgb::from_linear)
+        [yellow, yellow, c * (r - g) + blue].map(crate::number::srgb::from_linear)
     };
     for matrix in [[0.11238, 0.88762, 0.00401], [0.29275, 0.70725, -0.02234]] {
         for (i, one) in COLORS.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! How exactly a plane is stored.
 
-use crate::io::srgb;
 use crate::number::Real;
+use crate::number::srgb;
 
 /// How far a stored value may lie from the value that was computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,7 +53,7 @@ pub enum Storage {
         /// What storing may lose at the least.
         least: f64,
     },
-    /// A colour encoded as sRGB, see [`crate::io::srgb`], each code off by `relative` of itself, at least
+    /// A colour encoded as sRGB, see [`crate::number::srgb`], each code off by `relative` of itself, at least
     /// by `least`; the plane holds linear light.
     Srgb {
         /// The part of a code that storing may lose.

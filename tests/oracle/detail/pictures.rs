@@ -8,7 +8,7 @@ use crate::kit::eye::wide;
 use crate::sampler::cases::alone;
 use glam::Vec3;
 use splatref::frame::Exec;
-use splatref::io::srgb;
+use splatref::number::srgb;
 use splatref::scene::{Cloud, Property, Similarity, Triangles, Vertices};
 use splatref::source::candidates::candidates;
 use splatref::source::hierarchy::{Sampler, Traversal};

@@ -4,7 +4,8 @@ use super::*;
 use crate::frame::Frame;
 use crate::io::scene_file::Ready;
 use crate::number::Real;
-use crate::scene::objects::outline::{Bounds, Needed};
+use crate::scene::bounds::Bounds;
+use crate::scene::objects::outline::Needed;
 use crate::scene::{Objects, Primitives, Surfels};
 use glam::DVec3;
 

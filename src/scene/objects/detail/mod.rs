@@ -2,6 +2,7 @@
 //!
 //! - [`tree`]: nodes of a sequential point tree \[GBP04, 7.2\].
 //! - [`prefix`]: a prefix of an order \[BJFM19, 4.1\].
+//! - [`sequential`]: the list of such a tree.
 //! - [`refine`]: of an object and its finer ones, how much of which \[BJFM19, 4\].
 //!
 //! What a view draws is an f64 computation, given to every method as the camera is.
@@ -23,6 +24,7 @@
 
 pub mod prefix;
 pub mod refine;
+pub mod sequential;
 pub mod tree;
 
 use super::{Geometry, Objects};

@@ -25,8 +25,8 @@
 use super::{Detail, Eye};
 use crate::error::{Error, Result};
 use crate::number::Real;
+use crate::scene::bounds::Bounds;
 use crate::scene::objects::Geometry;
-use crate::scene::objects::outline::Bounds;
 use crate::scene::{Projection, Similarity, bounds};
 use glam::DVec3;
 

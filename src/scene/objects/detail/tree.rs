@@ -20,13 +20,12 @@
 //! with c and R of the sphere around the surfels that the geometry was made of, and its primitives, in its
 //! own coordinates; r of an orthographic camera. Discs of inner nodes reach beyond the surfels by tau at most.
 
+use super::sequential::Sequential;
 use super::{Detail, Eye, Mask};
 use crate::error::{Error, Result};
-use crate::frame::Exec;
-use crate::index::sequential::Sequential;
 use crate::number::Real;
 use crate::scene::objects::Geometry;
-use crate::scene::{Projection, Similarity, bounds};
+use crate::scene::{Projection, Similarity, Surfels, bounds};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -86,19 +85,17 @@ impl Tree {
 }
 
 impl Geometry {
-    /// The geometry with the nodes of a tree, which are its surfels from here on. `threshold` is tau,
-    /// in [0, [`MOST_PIXELS`]]. Prefiltered colours are left out: those of inner nodes are averages.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if the threshold is out of range, if there are no surfels, or levels of detail
-    /// already, and as [`Sequential::new`].
-    pub fn with_detail(self, threshold: f64, exec: &Exec) -> Result<Self> {
+    /// Whether the geometry may get a tree with a threshold in pixels.
+    pub(crate) fn check_tree(&self, threshold: f64) -> Result<()> {
         if !(0.0..=MOST_PIXELS).contains(&threshold) {
             let what = format!("levels of detail of {threshold} pixels; give 0 to {MOST_PIXELS}");
             return Err(Error::Invalid(what));
         }
-        self.check_plain()?;
-        let (nodes, list) = Sequential::new(&self.surfels, exec)?;
+        self.check_plain()
+    }
+
+    /// The geometry with nodes in the place of its surfels, and the list that says when each is drawn.
+    pub(crate) fn with_tree(self, threshold: f64, nodes: Surfels, list: Sequential) -> Self {
         let tree = Tree {
             leaves: Arc::new(Mask::of(nodes.len(), |node| list.surfel(node).is_some())),
             list,
@@ -107,6 +104,6 @@ impl Geometry {
             median_radius: self.surfels.median_radius(),
             sphere: bounds::sphere(&self.surfels, &self.primitives),
         };
-        Ok(Self { surfels: nodes, detail: Some(Detail::Tree(tree)), ..self })
+        Self { surfels: nodes, detail: Some(Detail::Tree(tree)), ..self }
     }
 }

@@ -1,6 +1,6 @@
 //! The transfer function of sRGB (IEC 61966-2-1) between stored colours and linear light.
 
-use crate::number::elementary;
+use super::elementary;
 
 /// The linear value of a stored one, both in [0, 1].
 ///
