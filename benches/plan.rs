@@ -18,7 +18,7 @@ use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::scene_file::{SceneFile, Source};
 use splatref::study::plan::{Budget, Known, choose, timed};
-use splatref::study::report::chart::Loss;
+use splatref::study::run::Loss;
 use splatref::study::run::measure::losses;
 use splatref::study::run::truths;
 use splatref::study::run::{Bench, Record, time};

@@ -5,7 +5,7 @@ use super::{Ended, Ending, output, progress};
 use glam::Vec3;
 use splatref::Result;
 use splatref::frame::Exec;
-use splatref::io::hierarchy::{Built, Hierarchy, NONE, Object, build};
+use splatref::io::hierarchy::{Built, Hierarchy, NONE, Object};
 use splatref::io::scene_file::SceneFile;
 use splatref::source::hierarchy::{Flaws, Numbers, Settings};
 use std::path::Path;
@@ -24,7 +24,8 @@ pub(super) fn make(scene: &Path, folder: &Path, settings: &Settings, threads: us
     let exec = Exec::new(threads, 32)?;
     let start = Instant::now();
     let steps = progress::Steps::new("loading");
-    let built = build(&file, folder, settings, &exec, &|what, done, of| steps.show(what, done, of));
+    let built =
+        file.approximate(folder, settings, &exec, &|what, done, of| steps.show(what, done, of));
     drop(steps);
     let Built { geometries, nodes, found, unseen } = built?;
     for (name, _, flaws) in &geometries {

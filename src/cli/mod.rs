@@ -7,7 +7,9 @@
 mod atlas;
 mod claims;
 mod compare;
+mod destination;
 mod draw;
+mod ending;
 mod explain;
 mod golden;
 mod group;
@@ -35,7 +37,7 @@ mod words;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
-use splatref::Result;
+use ending::{Ended, Ending};
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -125,20 +127,6 @@ pub(crate) fn run() -> ExitCode {
         }
     }
 }
-
-/// How a command ended that did its work.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Ending {
-    /// As it should be.
-    Good,
-    /// Pictures that should be equal are not.
-    Different,
-    /// Nothing can be said.
-    Undecidable,
-}
-
-/// How a command ended.
-type Ended = Result<Ending>;
 
 /// Help and version as they are; errors of clap as one line.
 fn usage(error: &clap::Error) -> ExitCode {

@@ -8,7 +8,7 @@ use splatref::io::replace::write_atomically;
 use splatref::io::scene_file::{GroupChoice, MethodChoice};
 use splatref::setting::Setting;
 use splatref::study::plan::{Budget, Known as Row, choose};
-use splatref::study::report::chart::Loss;
+use splatref::study::run::Loss;
 use splatref::study::sweep::Candidate;
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -1,20 +1,17 @@
 //! `splatref render`: a scene into an EXR and a PNG.
 
+use super::destination::{Destination, write};
 use super::options::{ExecOptions, SceneOptions};
 use super::rows::{OfFiles, RowOptions};
-use super::{Ended, Ending, draw, output, progress, report, sequence};
-use splatref::frame::{Exec, Frame};
-use splatref::index::seen::Seen;
-use splatref::io::replace::Pending;
-use splatref::io::scene_file::{FileKind, OutputSettings, Ready, SceneFile};
-use splatref::io::state::{self, State};
-use splatref::io::{exr, png, provenance};
+use super::{Ended, Ending, draw, progress, report, sequence};
+use splatref::Result;
+use splatref::frame::Exec;
+use splatref::io::provenance;
+use splatref::io::scene_file::Ready;
 use splatref::method::Picture;
-use splatref::{Error, Result};
 use std::borrow::Cow;
-use std::fs;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
@@ -59,15 +56,21 @@ pub(super) fn run(args: &Args) -> Ended {
     let mut file = args.options.scene_file(&args.scene)?;
     file.output = args.files.chosen.on(file.output, "the output")?;
     let exec = args.exec.exec()?;
+    let destination = Destination {
+        scene: &args.scene,
+        output: args.output.as_deref(),
+        keep_state: args.keep_state.as_deref(),
+        options: &args.options,
+    };
     if let Some(frames) = &args.frames {
         file.check_frame(frames.end - 1)?;
         file.frame = frames.start;
-        return sequence::render(args, &file, frames.clone(), &exec);
+        return sequence::render(&destination, &file, frames.clone(), &exec);
     }
-    let picture = place(args, &file, None)?;
+    let picture = destination.place(&file, None)?;
     let preview = picture.with_extension("png");
     let ready = draw::ready(&file, &exec)?;
-    check_state(args, &ready, &file, std::slice::from_ref(&picture))?;
+    destination.check_state(&ready, &file, std::slice::from_ref(&picture))?;
     let (mut session, made) = draw::session(&ready, &args.options, &exec)?;
     let loading = start.elapsed();
     let Ready { loaded, camera, method, .. } = &ready;
@@ -87,14 +90,14 @@ pub(super) fn run(args: &Args) -> Ended {
     })?;
 
     let writing = Instant::now();
-    make_folder(args)?;
+    destination.make_folder()?;
     progress::during("writing", || -> Result<()> {
         let text = || provenance::text(scene, groups.as_ref(), camera, method, file.output);
         write(&picture, &drawing.frame, text, file.output, &exec)
     })?;
     let (writing, tally, seen) = (writing.elapsed(), drawing.tally, drawing.seen.clone());
     drop(drawing);
-    keep(args, &ready, ready.frame(), seen.as_ref())?;
+    destination.keep(&ready, ready.frame(), seen.as_ref())?;
 
     report::scene(loaded);
     report::camera(camera);
@@ -108,91 +111,6 @@ pub(super) fn run(args: &Args) -> Ended {
     report::line("files", picture.display());
     report::line("", preview.display());
     Ok(Ending::Good)
-}
-
-/// Where pictures go of which nobody says; made when they are written.
-const FOLDER: &str = "out";
-
-/// Where the picture goes, or that of a frame.
-pub(super) fn place(args: &Args, file: &SceneFile, frame: Option<u32>) -> Result<PathBuf> {
-    let named = |path: &Path| match frame {
-        None => path.to_owned(),
-        Some(frame) => path.with_extension(format!("{frame:04}.exr")),
-    };
-    match &args.output {
-        Some(path) if matches!(FileKind::of(path), Ok(FileKind::Exr)) => {
-            let path = named(path);
-            output::check(&path, &args.scene, file)?;
-            Ok(path)
-        }
-        Some(path) => {
-            let path = path.display();
-            Err(Error::Usage(format!("{path}: the picture is an EXR; give a name in .exr")))
-        }
-        None => {
-            let path = named(&Path::new(FOLDER).join(format!("{}.exr", file.name)));
-            output::check_unread(&path, &args.scene, file)?;
-            Ok(path)
-        }
-    }
-}
-
-/// Writes what a frame saw, if somebody asked for that.
-pub(super) fn keep(args: &Args, ready: &Ready, frame: u32, seen: Option<&Seen>) -> Result<()> {
-    let (Some(path), Some(seen)) = (&args.keep_state, seen) else { return Ok(()) };
-    let state = State { frame, seen: seen.clone() };
-    state::pending(path, &state, &ready.identity()?)?.put()
-}
-
-/// Whether a state can be kept where it was asked for, beside these pictures: before anything is drawn.
-pub(super) fn check_state(
-    args: &Args,
-    ready: &Ready,
-    file: &SceneFile,
-    pictures: &[PathBuf],
-) -> Result<()> {
-    if let Some(read) = args.options.state() {
-        let kept = args.keep_state.iter().chain(pictures);
-        kept.into_iter().try_for_each(|path| output::check_other(path, read))?;
-    }
-    let Some(path) = &args.keep_state else { return Ok(()) };
-    if !ready.method.draws_objects() {
-        let name = ready.method.name();
-        let what = format!("--keep-state: the method {name} carries nothing from frame to frame");
-        return Err(Error::Usage(what));
-    }
-    output::check(path, &args.scene, file)?;
-    for picture in pictures {
-        output::check_two(path, picture)?;
-        output::check_two(path, &picture.with_extension("png"))?;
-    }
-    Ok(())
-}
-
-/// Makes the folder of pictures, if nobody says where they go.
-pub(super) fn make_folder(args: &Args) -> Result<()> {
-    if args.output.is_some() {
-        return Ok(());
-    }
-    let folder = Path::new(FOLDER);
-    fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))
-}
-
-/// Writes a picture and its preview, both before one is put in its place.
-pub(super) fn write(
-    picture: &Path,
-    frame: &Frame<f32>,
-    text: impl Fn() -> String + Sync,
-    output: OutputSettings,
-    exec: &Exec,
-) -> Result<()> {
-    let (small, large) = exec.join(
-        || png::pending_frame(&picture.with_extension("png"), frame),
-        || exr::pending(picture, frame, &text(), output.compression, exec),
-    );
-    let (small, large) = (small?, large?);
-    large.put()?;
-    small.map_or(Ok(()), Pending::put)
 }
 
 /// Each stage, and last the whole, of each repetition.
@@ -211,16 +129,8 @@ fn timed<'s>(
     Ok(drawing)
 }
 
-/// How many threads there are, in words.
-pub(super) fn threads(exec: &Exec) -> String {
-    match exec.threads() {
-        1 => "1 thread".into(),
-        n => format!("{n} threads"),
-    }
-}
-
 fn print_times(exec: &Exec, loading: Duration, times: Times, writing: Duration) {
-    let threads = threads(exec);
+    let threads = report::threads(exec);
     let of = match times.len() {
         1 => String::new(),
         n => format!(", minimum and median of {n} pictures"),

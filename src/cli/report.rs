@@ -2,6 +2,7 @@
 
 use super::say;
 use glam::Vec3;
+use splatref::frame::Exec;
 use splatref::index::grouping::GroupCoverage;
 use splatref::index::seen::Seen;
 use splatref::io::scene_file::{Loaded, ModelReport, OutputSettings};
@@ -293,6 +294,14 @@ pub(super) fn tally(tally: &Tally) {
             tally.visible, tally.behind, tally.degenerate, tally.back_facing, tally.outside
         ),
     );
+}
+
+/// How many threads there are, in words.
+pub(super) fn threads(exec: &Exec) -> String {
+    match exec.threads() {
+        1 => "1 thread".into(),
+        n => format!("{n} threads"),
+    }
 }
 
 /// One time, or the minimum and the lower median of several.

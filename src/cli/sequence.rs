@@ -1,6 +1,6 @@
 //! `splatref render --frames`: a picture for each frame of a sequence.
 
-use super::render::{Args, check_state, keep, make_folder, place, threads, write};
+use super::destination::{Destination, write};
 use super::{Ended, Ending, draw, progress, report};
 use splatref::Result;
 use splatref::frame::Exec;
@@ -27,20 +27,25 @@ pub(super) fn frames(text: &str) -> std::result::Result<Range<u32>, String> {
 }
 
 /// Renders the frames of a scene file, which stands in the first of them.
-pub(super) fn render(args: &Args, file: &SceneFile, frames: Range<u32>, exec: &Exec) -> Ended {
+pub(super) fn render(
+    to: &Destination<'_>,
+    file: &SceneFile,
+    frames: Range<u32>,
+    exec: &Exec,
+) -> Ended {
     let start = Instant::now();
-    let place = |frame| place(args, file, Some(frame));
+    let place = |frame| to.place(file, Some(frame));
     let places = frames.clone().map(place).collect::<Result<Vec<_>>>()?;
     let mut ready = draw::ready(file, exec)?;
-    check_state(args, &ready, file, &places)?;
-    let mut seen = draw::seen(&ready, &args.options)?;
+    to.check_state(&ready, file, &places)?;
+    let mut seen = draw::seen(&ready, to.options)?;
     let mut times = Times::default();
     times.add("loading", start.elapsed());
     report::scene(&ready.loaded);
     report::camera(&ready.camera);
     report::picture(&ready.camera, file.output);
     report::method(&ready.method, &ready.loaded.scene, &ready.camera);
-    make_folder(args)?;
+    to.make_folder()?;
 
     let steps = progress::Steps::new("preparing");
     let last = frames.end - 1;
@@ -64,9 +69,9 @@ pub(super) fn render(args: &Args, file: &SceneFile, frames: Range<u32>, exec: &E
         }
     }
     drop(steps);
-    keep(args, &ready, last, seen.as_ref())?;
+    to.keep(&ready, last, seen.as_ref())?;
 
-    report::line("time", format!("{}, sums over {} frames", threads(exec), places.len()));
+    report::line("time", format!("{}, sums over {} frames", report::threads(exec), places.len()));
     times.0.into_iter().for_each(|(what, time)| report::time(what, vec![time]));
     report::time("total", vec![start.elapsed()]);
     files(&places);

@@ -1,8 +1,11 @@
 //! The framebuffer: depth, stencil and floating accumulation.
 
 use super::tile::TileMut;
-use super::{Exec, Grid, NO_ID, Plane};
+use super::{Exec, Grid, Plane};
 use crate::number::Real;
+
+/// The id of a pixel that no surfel covers.
+pub const NO_ID: u32 = u32::MAX;
 
 /// Which planes a picture needs besides depth, id and weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

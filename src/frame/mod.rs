@@ -23,7 +23,7 @@ pub mod stencil;
 pub mod tile;
 
 pub use bin::Bins;
-pub use framebuffer::{Framebuffer, FramebufferTile, Wanted};
+pub use framebuffer::{Framebuffer, FramebufferTile, NO_ID, Wanted};
 pub use image::Image;
 pub use named::{Channel, ChannelData, Frame, NamedPlane, Samples};
 pub use plane::Plane;
@@ -31,6 +31,3 @@ pub use pool::Pool;
 pub use rect::Rect;
 pub use stencil::Stencil;
 pub use tile::{Exec, Grid, TileMut};
-
-/// The id of a pixel that no surfel covers.
-pub const NO_ID: u32 = u32::MAX;

@@ -1,6 +1,5 @@
 //! Which points of a cloud can be no surfels.
 
-use super::surfels::Dropped;
 use crate::frame::Exec;
 use crate::scene::Mipmap;
 use crate::scene::light::is_color;
@@ -8,6 +7,36 @@ use glam::Vec3;
 
 /// So many points are looked at by one job.
 pub(super) const CHUNK: usize = 1 << 14;
+
+/// How many surfels of a cloud were dropped, each counted once, under the first reason that held.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Dropped {
+    /// A position that is NaN or infinite.
+    pub position: u64,
+    /// A normal that is not finite or shorter than 2^-80.
+    pub normal: u64,
+    /// A radius that is not finite or not > 0.
+    pub radius: u64,
+    /// Colour, prefiltered or not, outside [0, [`crate::scene::light::MAX_RADIANCE`]], opacity outside [0, 1], tangents not finite or parallel.
+    pub attribute: u64,
+}
+
+impl Dropped {
+    /// All of them.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.position + self.normal + self.radius + self.attribute
+    }
+}
+
+impl std::ops::AddAssign for Dropped {
+    fn add_assign(&mut self, more: Self) {
+        self.position += more.position;
+        self.normal += more.normal;
+        self.radius += more.radius;
+        self.attribute += more.attribute;
+    }
+}
 
 /// What is known of points besides their normals, in arrays of one length.
 pub(super) struct Points<'a> {

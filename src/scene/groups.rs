@@ -2,7 +2,6 @@
 //! [`crate::index::grouping`] makes them.
 
 use crate::error::{Error, Result};
-use crate::scene::Surfels;
 
 /// The most groups that a scene may need; a GPU of the paper's time had 16 texture units.
 pub const MAX_GROUPS: usize = 64;
@@ -115,19 +114,6 @@ impl Groups {
             .zip(indices)
             .flat_map(|(new, &old)| self.of(old).skip(1).map(move |group| (new, group)));
         Self { own, added: added.collect(), scale: self.scale.clone() }
-    }
-
-    /// Whether they can be groups of these surfels: there must be as many.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if there are not.
-    pub fn check(&self, surfels: &Surfels) -> Result<()> {
-        let (grouped, there) = (self.own.len(), surfels.len());
-        if grouped == there {
-            Ok(())
-        } else {
-            Err(Error::Invalid(format!("groups of {grouped} surfels for a scene of {there}")))
-        }
     }
 
     /// The groups that a surfel is in: its own, then those it was added to.

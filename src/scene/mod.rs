@@ -43,6 +43,7 @@ pub use boxes::Boxes;
 pub use camera::{Camera, CameraMotion, Lens, Pose, Projection};
 pub use cloud::{Cloud, Property};
 pub use coordinates::Coordinates;
+pub use degenerate::Dropped;
 pub use environment::Environment;
 pub use groups::Groups;
 pub(crate) use groups::MAX_GROUPS;
@@ -51,7 +52,7 @@ pub use light::{Light, Phong};
 pub use mipmap::Mipmap;
 pub use objects::{Geometry, Motion, Object, Objects};
 pub use sides::Sides;
-pub use surfels::{Dropped, Surfels};
+pub use surfels::Surfels;
 pub use texture::{Paint, Texture};
 pub use transform::Similarity;
 

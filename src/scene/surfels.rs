@@ -7,7 +7,7 @@ pub(super) use arrays::Arrays;
 use super::Cloud;
 use super::Groups;
 use super::Mipmap;
-use super::degenerate::{CHUNK, Points};
+use super::degenerate::{CHUNK, Dropped, Points};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::scene::light::is_color;
@@ -34,36 +34,6 @@ pub struct Surfels {
     groups: Option<Groups>,
     median_radius: f32,
     bounding_sphere: (DVec3, f64),
-}
-
-/// How many surfels of a cloud were dropped, each counted once, under the first reason that held.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Dropped {
-    /// A position that is NaN or infinite.
-    pub position: u64,
-    /// A normal that is not finite or shorter than 2^-80.
-    pub normal: u64,
-    /// A radius that is not finite or not > 0.
-    pub radius: u64,
-    /// Colour, prefiltered or not, outside [0, [`crate::scene::light::MAX_RADIANCE`]], opacity outside [0, 1], tangents not finite or parallel.
-    pub attribute: u64,
-}
-
-impl Dropped {
-    /// All of them.
-    #[must_use]
-    pub fn total(&self) -> u64 {
-        self.position + self.normal + self.radius + self.attribute
-    }
-}
-
-impl std::ops::AddAssign for Dropped {
-    fn add_assign(&mut self, more: Self) {
-        self.position += more.position;
-        self.normal += more.normal;
-        self.radius += more.radius;
-        self.attribute += more.attribute;
-    }
 }
 
 impl Surfels {
@@ -439,6 +409,21 @@ fn retain<T>(values: Vec<T>, keep: &[bool]) -> Vec<T> {
         return values;
     }
     values.into_iter().zip(keep).filter_map(|(value, &k)| k.then_some(value)).collect()
+}
+
+impl Groups {
+    /// Whether they can be groups of these surfels: there must be as many.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there are not.
+    pub fn check(&self, surfels: &Surfels) -> Result<()> {
+        let (grouped, there) = (self.own().len(), surfels.len());
+        if grouped == there {
+            Ok(())
+        } else {
+            Err(Error::Invalid(format!("groups of {grouped} surfels for a scene of {there}")))
+        }
+    }
 }
 
 #[cfg(test)]

@@ -110,28 +110,10 @@
 //! the textbook xx yy - xy xy cancels.
 
 use super::fate::reasons;
-use super::frustum::Frustum;
 use super::shape::{Covariance, PlacedDisc};
-use super::{Disc, Footprint, Kernel, Outline, Reasons, Splat, View, bounds, crossing};
+use super::{Disc, Footprint, Outline, Projector, Reasons, Splat, bounds, crossing};
 use crate::frame::Rect;
 use crate::number::{Exact, Real, Truth, Vector2};
-
-/// All that the projection of a picture's surfels shares.
-#[derive(Clone, Copy, Debug)]
-pub struct Projector<R> {
-    /// The camera.
-    pub view: View<R>,
-    /// k, the cut-off.
-    pub cutoff: R,
-    /// h, the variance of the low-pass filter in px^2.
-    pub low_pass: R,
-    /// How a disc becomes a shape.
-    pub outline: Outline,
-    /// Whether surfels seen from behind are dropped.
-    pub cull: bool,
-    /// The sides of the view.
-    pub(super) frustum: Frustum<R>,
-}
 
 /// Projects one surfel; see the module page. The splat is meaningless unless there is no reason not
 /// to draw it.
@@ -192,19 +174,6 @@ pub(crate) fn project_each<R: Real>(
 }
 
 impl<R: Real> Projector<R> {
-    /// The shared numbers of a picture.
-    #[must_use]
-    pub fn new(view: View<R>, kernel: &Kernel, cull: bool) -> Self {
-        Self {
-            frustum: Frustum::new(&view, kernel),
-            view,
-            cutoff: R::from_f32(kernel.cutoff),
-            low_pass: R::from_f32(kernel.low_pass),
-            outline: kernel.outline,
-            cull,
-        }
-    }
-
     /// Whether a disc reaches the near plane of a perspective camera, t - half <= near, so that its
     /// outline is no ellipse.
     #[must_use]

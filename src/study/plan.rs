@@ -11,9 +11,8 @@
 //! 3. **Timed**: those within the budget are timed by turns, but for those whose whole picture took more than
 //!    [`HOPELESS`] times that of the fastest, or the limit.
 
-use super::report::chart::Loss;
 use super::run::measure::{picture_error, second};
-use super::run::{Bench, Record, time};
+use super::run::{Bench, Loss, Record, time};
 use super::sweep::Candidate;
 use super::truth::Truth;
 use crate::compare::metrics::Metric;

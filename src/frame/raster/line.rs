@@ -25,7 +25,7 @@
 //!   with different parameters. The depth test settles it as it does between segments.
 //! - A segment of length 0 is its one pixel, once, with parameter 0.
 
-use super::{Snap, not_negative};
+use super::snap::{Snap, not_negative};
 use crate::frame::Rect;
 
 /// A segment on the screen in fixed point.

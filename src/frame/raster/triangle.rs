@@ -22,7 +22,7 @@
 //! corner. It is as if every centre were moved to the right by an infinitesimal and down by a much
 //! smaller one. The order of the corners does not matter.
 
-use super::{Snap, not_negative};
+use super::snap::{Snap, not_negative};
 use crate::frame::Rect;
 
 /// A triangle on the screen in fixed point; its area is not 0.

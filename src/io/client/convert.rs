@@ -1,9 +1,10 @@
 //! From the numbers of a file to a plane of the crate, and how exactly it is stored.
 
-use super::Wanted;
-use super::files::{Kind, Numbers};
+use super::files::Kind;
 use super::format::{F16_LOSS, F32_STEP, Format, Loss};
+use super::numbers::Numbers;
 use super::parse::{Encoding, Meaning, PlaneKeys};
+use super::wanted::Wanted;
 use crate::frame::{NO_ID, Plane, Samples};
 use crate::io::Reason;
 use crate::method::Holds;

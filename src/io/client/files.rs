@@ -1,8 +1,10 @@
 //! The files of planes, each read once.
 
 use super::format::Format;
+use super::numbers::{Numbers, ask};
 use super::parse::PlaneKeys;
-use super::{Wanted, raw};
+use super::raw;
+use super::wanted::Wanted;
 use crate::error::{Error, Result};
 use crate::frame::image::Values;
 use crate::frame::{Exec, Image};
@@ -11,16 +13,6 @@ use crate::io::{Reason, npy};
 use crate::method::Holds;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-
-/// The numbers of a plane as a file has them, row by row as they lie there.
-#[derive(Clone, Debug)]
-pub(super) struct Numbers {
-    pub(super) size: [u32; 2],
-    /// One, or three.
-    pub(super) components: Vec<Vec<f64>>,
-    /// How the file stores them.
-    pub(super) file: Format,
-}
 
 /// What a file is, by its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -168,7 +160,7 @@ impl Picture {
     /// The numbers of these channels.
     fn numbers(&self, names: &[String]) -> Reason<Numbers> {
         let Image { width, height, channels, .. } = &self.image;
-        super::ask([*width, *height], names.len())?;
+        ask([*width, *height], names.len())?;
         let mut components = Vec::new();
         let mut file = None;
         for name in names {
@@ -195,25 +187,6 @@ impl Picture {
         }
         let file = file.unwrap_or(Format::F32);
         Ok(Numbers { size: [*width, *height], components, file })
-    }
-}
-
-impl Numbers {
-    /// What a PNG has as the codes of colours, as whole numbers.
-    fn as_codes(&mut self) {
-        if let (true, Some(codes)) = (self.file.is_unorm(), self.file.codes()) {
-            let values = self.components.iter_mut().flatten();
-            values.for_each(|value| *value = (*value * codes).round());
-            self.file = if self.file == Format::Unorm8 { Format::U8 } else { Format::U16 };
-        }
-    }
-
-    /// The other row first.
-    pub(super) fn flip(&mut self) {
-        let width = self.size[0] as usize;
-        for component in &mut self.components {
-            *component = component.chunks(width).rev().flatten().copied().collect();
-        }
     }
 }
 

@@ -1,58 +1,20 @@
 //! From what a TOML file says to the planes of a client.
 
 use super::convert;
-use super::files::{Files, Kind, Numbers};
+use super::files::{Files, Kind};
+use super::numbers::{Numbers, ask};
 use super::octahedral;
-use super::parse::{DepthKeys, Encoding, PlaneKeys, Sidecar};
+use super::parse::{DepthKeys, PlaneKeys, Sidecar};
 use super::records;
 use super::straight::straight;
+use super::wanted::Wanted;
 use crate::error::{Error, Result};
 use crate::frame::named::{COLOR, component};
 use crate::frame::{Exec, Frame, Image, Plane, Samples};
 use crate::io::Reason;
-use crate::method::{Holds, PlaneRow, Stage};
+use crate::method::{Holds, Stage};
 use crate::verdict::client::{Client, Storage};
 use std::path::{Path, PathBuf};
-
-/// A plane that is looked for.
-#[derive(Clone, Debug)]
-pub(super) struct Wanted {
-    /// What the TOML file calls it, as it is written there.
-    pub(super) key: String,
-    /// The name of the plane.
-    pub(super) name: String,
-    pub(super) row: &'static PlaneRow,
-    /// What is said of it, and of all depths.
-    pub(super) keys: PlaneKeys,
-    /// What is said of it alone.
-    pub(super) own_depth: DepthKeys,
-}
-
-impl Wanted {
-    fn new(key: &str, name: &str, row: &'static PlaneRow, keys: PlaneKeys, all: DepthKeys) -> Self {
-        let own_depth = keys.depth;
-        let keys = PlaneKeys { depth: own_depth.or(all), ..keys };
-        let key = if key.contains('.') { format!("\"{key}\"") } else { key.to_owned() };
-        Self { key, name: name.into(), row, keys, own_depth }
-    }
-
-    /// Whether it holds depths t.
-    pub(super) fn is_depth(&self) -> bool {
-        self.row.holds == Holds::Scalar && (self.name == "Z" || self.name.ends_with(".Z"))
-    }
-
-    /// Whether it holds unit vectors in two numbers a pixel.
-    pub(super) fn is_octahedral(&self) -> bool {
-        self.keys.encoding == Some(Encoding::Octahedral)
-    }
-
-    /// The names that the crate has for its channels; of two numbers those of the first two.
-    pub(super) fn channels(&self) -> Vec<String> {
-        let mut channels = self.row.holds.channels(&self.name);
-        channels.truncate(if self.is_octahedral() { 2 } else { 3 });
-        channels
-    }
-}
 
 /// A plane that was read.
 struct Read {
@@ -230,14 +192,14 @@ fn joined(mut planes: Vec<Read>) -> Result<Client> {
             Samples::Color(color) if wanted.keys.premultiplied == Some(true) => {
                 let name = component(&wanted.name, "A");
                 let alpha = other(&planes, wanted, ("premultiplied", &name))?;
-                super::ask([color.width(), color.height()], 3).map_err(Error::Invalid)?;
+                ask([color.width(), color.height()], 3).map_err(Error::Invalid)?;
                 let (values, off) = straight((color, *storage), alpha);
                 (Samples::Color(values), off)
             }
             Samples::Vector(pairs) if wanted.is_octahedral() => {
                 let (layer, _) = wanted.name.rsplit_once('.').unwrap_or_default();
                 let (depths, _) = other(&planes, wanted, ("octahedral", &component(layer, "Z")))?;
-                super::ask([pairs.width(), pairs.height()], 3).map_err(Error::Invalid)?;
+                ask([pairs.width(), pairs.height()], 3).map_err(Error::Invalid)?;
                 let (values, off) = octahedral::decoded((pairs, *storage), depths);
                 (Samples::Vector(values), off)
             }

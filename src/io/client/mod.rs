@@ -120,6 +120,7 @@ mod files;
 mod format;
 mod gather;
 mod keys;
+mod numbers;
 mod octahedral;
 mod parse;
 mod raw;
@@ -127,16 +128,15 @@ mod records;
 mod straight;
 #[cfg(test)]
 mod tests;
+mod wanted;
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::io::{Reason, input};
-use crate::memory;
+use crate::io::input;
 use crate::method::Stage;
 use crate::verdict::client::Client;
 #[cfg(doc)]
 use crate::verdict::client::Storage;
-use gather::Wanted;
 use parse::Sidecar;
 use std::path::{Path, PathBuf};
 
@@ -193,12 +193,4 @@ impl Description {
 /// As these.
 pub fn read(path: &Path, stages: &[Stage], size: [u32; 2], exec: &Exec) -> Result<Client> {
     Description::open(path)?.client(stages, size, exec)
-}
-
-/// Whether there may be planes of so many numbers in `f64`, as a file has them and as they mean it.
-fn ask([width, height]: [u32; 2], components: usize) -> Reason<()> {
-    let pixels = u64::from(width) * u64::from(height);
-    memory::try_ask(pixels.saturating_mul(16 * components as u64), || {
-        format!("a plane of {width} x {height} pixels")
-    })
 }

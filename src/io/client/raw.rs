@@ -1,7 +1,7 @@
 //! Raw files: numbers at fixed distances, little-endian.
 
-use super::files::Numbers;
 use super::format::Format;
+use super::numbers::{Numbers, ask};
 use super::parse::PlaneKeys;
 use crate::error::{Error, Result};
 use crate::io::{Reason, input};
@@ -34,7 +34,7 @@ pub(super) fn read(
     let layout = Layout::new(keys, format, components, size).map_err(refused)?;
     let (mut file, length) = input::open(path).map_err(|source| Error::io(path, source))?;
     let span = layout.span(length).map_err(refused)?;
-    super::ask(size, components).map_err(refused)?;
+    ask(size, components).map_err(refused)?;
     file.seek(SeekFrom::Start(layout.offset)).map_err(|source| Error::io(path, source))?;
     let bytes = input::rest(file, span).map_err(|source| Error::io(path, source))?;
     if bytes.len() as u64 != span {

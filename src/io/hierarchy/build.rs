@@ -9,9 +9,9 @@ use super::{mesh, surfels};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::replace::write_atomically;
-use crate::io::scene_file::{Model, SceneFile, Source, check_properties};
-use crate::scene::Camera;
+use crate::scene::{Object, Triangles};
 use crate::source::hierarchy::{Flaws, Settings, Traversal, approximate};
+use glam::Vec3;
 use std::io::Write;
 use std::path::Path;
 
@@ -28,23 +28,25 @@ pub struct Built {
     pub unseen: u32,
 }
 
-/// Makes the hierarchy of a scene in a folder, whose parent is there; or goes on with what is there. Models are taken as their triangles,
-/// in the order of [`SceneFile::models`] and [`SceneFile::geometries`].
-///
-/// `progress` is told the name of a step, how much of it is done, and of how much: of "surfels" how many.
-///
-/// # Errors
-/// Those of [`SceneFile::load_polygons`]; [`Error::Usage`] if no surfel or no
-/// picture is asked for; [`Error::Format`] if the folder is of something else; [`Error::Io`] if it cannot be written
-/// to; as [`crate::source::candidates::candidates`], and if the process may not hold what one node needs.
-pub fn build(
-    file: &SceneFile,
+/// The scene that a hierarchy is made of: its geometries by number, and its objects.
+pub(in crate::io) struct Geometries<'a> {
+    pub(in crate::io) names: Vec<String>,
+    pub(in crate::io) objects: Vec<Object>,
+    /// The colour of what has none.
+    pub(in crate::io) fill: Vec3,
+    /// Reads the triangles of a geometry, and says how many were dropped.
+    pub(in crate::io) read: Box<dyn Fn(usize) -> Result<(Triangles, u64)> + 'a>,
+}
+
+/// See [`SceneFile::approximate`](crate::io::scene_file::SceneFile::approximate).
+pub(in crate::io) fn build(
+    scene: Geometries<'_>,
     folder: &Path,
     settings: &Settings,
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Built> {
-    let mut work = Work::begin(file, folder, settings, exec, progress)?;
+    let mut work = Work::begin(scene, folder, settings, exec, progress)?;
     // What is below comes first.
     for node in (0..work.wanted.len() as u32).rev() {
         work.make(node)?;
@@ -70,41 +72,22 @@ pub(super) struct Work<'a> {
 impl<'a> Work<'a> {
     /// Writes the geometries; nothing is approximated yet.
     pub(super) fn begin(
-        file: &SceneFile,
+        scene: Geometries<'_>,
         folder: &Path,
         settings: &'a Settings,
         exec: &'a Exec,
         progress: &'a dyn Fn(&str, u64, u64),
     ) -> Result<Self> {
-        if settings.most == 0 {
-            return Err(Error::Usage("a hierarchy of 0 surfels; give at least 1".into()));
-        }
-        if file.hierarchy.is_some() {
-            let what = format!("{} is a hierarchy already; name a mesh or a scene", file.name);
-            return Err(Error::Usage(what));
-        }
-        Camera::check_size(settings.side, settings.side)?;
-        let models: Vec<(String, &Model)> = file
-            .models
-            .iter()
-            .map(|model| (model.source.name(), model))
-            .chain(file.geometries.iter().map(|one| (one.name.clone(), &one.model)))
-            .collect();
-        for (name, model) in &models {
-            check(name, model)?;
-            check_properties(model, &settings.properties)?;
-        }
-        let objects = file.objects()?;
-        let fill = file.material.color;
-        let plan = plan::hash(settings, fill, &objects, models.len());
+        let Geometries { names, objects, fill, read } = scene;
+        let plan = plan::hash(settings, fill, &objects, names.len());
         plan::begin(folder, &plan)?;
-        let mut geometries = Vec::with_capacity(models.len());
+        let mut geometries = Vec::with_capacity(names.len());
         let mut built = Built { geometries: Vec::new(), nodes: 0, found: 0, unseen: 0 };
-        for (number, (name, model)) in (0..).zip(models) {
-            progress("geometries", u64::from(number), file.all_models().count() as u64);
-            let header =
-                geometry(file, model, (folder, number), &settings.properties, exec, progress)
-                    .map_err(|error| named(&name, error))?;
+        let count = names.len();
+        for (number, name) in names.into_iter().enumerate() {
+            progress("geometries", number as u64, count as u64);
+            let header = geometry(folder, number as u32, || read(number))
+                .map_err(|error| named(&name, error))?;
             let triangles = header.nodes.first().map_or(0, |root| root.below);
             built.geometries.push((name, triangles, header.flaws));
             geometries.push(header);
@@ -202,43 +185,21 @@ fn named(name: &str, error: Error) -> Error {
     }
 }
 
-/// Whether a model can be approximated.
-fn check(name: &str, model: &Model) -> Result<()> {
-    let what = match &model.source {
-        Source::Shape { .. } => "a shape has surfels of its own and no triangles to approximate",
-        Source::File { prefix: Some(_), .. } => "a prefix is of points, which are not approximated",
-        Source::File { .. } if model.progressive => "progressive points are not approximated",
-        Source::File { .. } | Source::Tree { .. } => return Ok(()),
-    };
-    Err(Error::Invalid(format!("{name}: {what}")))
-}
-
 /// The header of a geometry, which is written if it is not there.
 fn geometry(
-    file: &SceneFile,
-    model: &Model,
-    (folder, number): (&Path, u32),
-    properties: &[String],
-    exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    folder: &Path,
+    number: u32,
+    read: impl FnOnce() -> Result<(Triangles, u64)>,
 ) -> Result<mesh::Header> {
-    let alone = SceneFile {
-        models: vec![model.clone()],
-        geometries: Vec::new(),
-        objects: Vec::new(),
-        environment: None,
-        ..file.clone()
-    };
-    let loaded = alone.load_polygons(properties, exec, progress)?;
-    let triangles = &loaded.scene.primitives.triangles;
-    let hash = mesh::hash(triangles);
+    let (triangles, dropped) = read()?;
+    let hash = mesh::hash(&triangles);
     if let Ok(Some(header)) = mesh::read(folder, number) {
         if header.hash != hash {
             return Err(refused(folder, "another geometry"));
         }
         return Ok(header);
     }
-    mesh::write(folder, number, &hash, triangles, loaded.dropped_primitives)?;
+    mesh::write(folder, number, &hash, &triangles, dropped)?;
     match mesh::read(folder, number)? {
         Some(header) if header.hash == hash => Ok(header),
         _ => Err(refused(folder, "another geometry")),

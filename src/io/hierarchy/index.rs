@@ -1,7 +1,7 @@
 //! The index of a hierarchy, see the [module](super).
 
 use super::bytes::{Hash, Reader, Writer};
-use super::mesh::Kind;
+use super::kind::Kind;
 use super::surfels;
 use crate::io::Reason;
 use crate::scene::Similarity;

@@ -2,12 +2,13 @@
 
 use super::bytes::{Hash, Reader, Writer};
 use super::index::{self, NONE, Node};
+use super::kind::Kind;
 use crate::error::{Error, Result};
 use crate::io::replace::write_atomically;
 use crate::io::{Reason, input};
 use crate::memory;
 use crate::scene::objects::detail::prefix::Estimate;
-use crate::scene::{Property, Triangles, Vertices};
+use crate::scene::{Property, Triangles};
 use crate::source::hierarchy::parts::tree;
 use crate::source::hierarchy::{BOUND, Flaws, Numbers, Part};
 use sha2::{Digest, Sha256};
@@ -17,45 +18,10 @@ use std::path::{Path, PathBuf};
 const MAGIC: &[u8; 16] = b"splatref mesh 1\n";
 const HEADER: u64 = 88;
 const OF_A_NODE: u64 = 56;
-/// Bytes of a triangle, of place and normal of a vertex, of its colour, and of any other number.
+/// Bytes of a triangle.
 const TRIANGLE: u64 = 12;
-const VERTEX: u64 = 24;
-const COLOR: u64 = 12;
-const NUMBER: u64 = 4;
 /// Bytes of the largest of both in memory, beside those of the file.
 const IN_MEMORY: u64 = 2;
-
-/// What the vertices of a geometry have beside places and normals.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Kind {
-    /// Colours.
-    pub colored: bool,
-    /// Opacities.
-    pub veiled: bool,
-    /// So many further properties.
-    pub properties: u32,
-}
-
-impl Kind {
-    fn of(vertices: &Vertices) -> Self {
-        let (colored, veiled) = (vertices.color.is_some(), vertices.opacity.is_some());
-        Self { colored, veiled, properties: vertices.properties.len() as u32 }
-    }
-
-    pub(super) fn word(self) -> u32 {
-        u32::from(self.colored) + 2 * u32::from(self.veiled) + 4 * self.properties
-    }
-
-    pub(super) fn of_word(word: u32) -> Self {
-        Self { colored: word & 1 == 1, veiled: word & 2 == 2, properties: word / 4 }
-    }
-
-    /// The bytes of a vertex.
-    fn vertex(self) -> u64 {
-        let numbers = u64::from(self.veiled) + u64::from(self.properties);
-        VERTEX + COLOR * u64::from(self.colored) + NUMBER * numbers
-    }
-}
 
 /// What a file says of its geometry, but for its triangles.
 pub(super) struct Header {

@@ -1,6 +1,6 @@
 //! Hierarchies of surfel approximations as folders \[BJFM19, 3.4\].
 //!
-//! What is in them is defined by [`crate::source::hierarchy`]. [`build()`] makes a folder, and goes on with one that was
+//! What is in them is defined by [`crate::source::hierarchy`]. [`SceneFile::approximate`](crate::io::scene_file::SceneFile::approximate) makes a folder, and goes on with one that was
 //! begun; [`Hierarchy`] reads it: the index at once, surfels and triangles a node at a time, of a view
 //! only those of the nodes that it [draws](Hierarchy::needed_by).
 //!
@@ -165,6 +165,7 @@ mod build;
 mod bytes;
 mod gather;
 mod index;
+mod kind;
 mod layout;
 mod mesh;
 mod plan;
@@ -176,7 +177,8 @@ mod tests;
 mod view;
 
 pub use crate::source::hierarchy::BOUND;
-pub use build::{Built, build};
+pub use build::Built;
+pub(in crate::io) use build::{Geometries, build};
 pub use index::{Geometry, NONE, Node, Object};
-pub use mesh::Kind;
+pub use kind::Kind;
 pub use read::Hierarchy;

@@ -86,7 +86,7 @@ fn quiet(_: &str, _: u64, _: u64) {}
 /// Makes the hierarchy of a file of a folder in another one.
 fn make(at: &TempDir, scene: &str, to: &str, settings: &Settings) -> Result<Built> {
     let file = SceneFile::open(at.path().join(scene)).unwrap();
-    build(&file, &at.path().join(to), settings, &Exec::sequential(), &quiet)
+    file.approximate(&at.path().join(to), settings, &Exec::sequential(), &quiet)
 }
 
 /// The bytes of all files of a folder.

@@ -48,6 +48,7 @@ mod edges;
 mod faces;
 mod groups;
 mod header;
+mod layout;
 mod numbers;
 mod properties;
 mod rows;

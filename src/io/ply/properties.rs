@@ -1,8 +1,8 @@
 //! Further numbers of the vertices, by their names.
 
 use super::header::{self, PlyHeader, PropertyKind, quote};
+use super::layout::{Layout, PropertyUse};
 use super::values::{BodyValues, Event};
-use super::vertices::{Layout, PropertyUse};
 use super::{ask, groups, vertex};
 use crate::error::{Error, Result};
 use crate::io::{Reason, input};

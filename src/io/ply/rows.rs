@@ -4,7 +4,7 @@
 //! cannot fail, as values are not judged; the walk of [`super::values`] reads all other vertices.
 
 use super::header::{Element, Format, PropertyKind, Scalar};
-use super::vertices::{
+use super::layout::{
     COLOR, COORDINATE, Decode, Layout, MIPMAP, NORMAL, OPACITY, POSITION, PropertyUse, RADIUS,
     TANGENT, TANGENTS,
 };
@@ -17,7 +17,7 @@ use std::ops::Range;
 pub(super) struct Rows {
     /// Bytes of a row.
     stride: usize,
-    /// By the place of a number in [`super::vertices::NAMES`], and then of the levels.
+    /// By the place of a number in [`super::layout::NAMES`], and then of the levels.
     numbers: Vec<Option<Number>>,
 }
 

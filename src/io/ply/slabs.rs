@@ -2,9 +2,9 @@
 
 use super::groups;
 use super::header::{self, PlyHeader};
+use super::layout::Layout;
 use super::rows::Rows;
 use super::values::BodyValues;
-use super::vertices::Layout;
 use super::{ask, other, vertex};
 use crate::frame::Exec;
 use crate::scene::Cloud;

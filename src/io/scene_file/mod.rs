@@ -40,6 +40,7 @@
 //! settings follow from the rows of [`crate::setting`], here, on the command line and in the text of a
 //! picture.
 
+mod approximate;
 mod choice;
 mod draw;
 mod load;
@@ -55,7 +56,6 @@ mod text;
 pub use choice::{Choice, GroupChoice, MethodChoice, Number, OutputSettings};
 pub use draw::Draw;
 pub use load::{Loaded, ModelReport};
-pub(in crate::io) use model::check_properties;
 pub use objects::{Geometry, MOST_FRAMES, ObjectChoice, Places};
 pub use open::{FileKind, TREE, read_model, shapes};
 pub use ready::Ready;

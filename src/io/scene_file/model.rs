@@ -126,7 +126,7 @@ pub(super) fn read(
 ///
 /// # Errors
 /// [`Error::Usage`] if there are names, but the model is no PLY; [`Error::Format`] as [`ply::properties`].
-pub(in crate::io) fn check_properties(model: &Model, names: &[String]) -> Result<()> {
+pub(super) fn check_properties(model: &Model, names: &[String]) -> Result<()> {
     match ply_of(model, names)? {
         Some(path) => ply::check_properties(path, names),
         None => Ok(()),

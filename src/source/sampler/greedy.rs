@@ -60,6 +60,7 @@
 //! [`random::bits`]: crate::number::random::bits
 
 mod build;
+mod order;
 mod rounds;
 #[cfg(test)]
 mod tests;
@@ -70,6 +71,8 @@ use crate::frame::Exec;
 use crate::memory;
 use crate::number::random;
 use glam::Vec3;
+use order::Division;
+pub use order::Order;
 
 /// What the tree and the picks take for a point, at most.
 const BYTES_A_POINT: u64 = 80;
@@ -88,15 +91,6 @@ pub enum Start {
     Index(u32),
     /// A point by chance, a function of this seed and of how many points there are.
     Seed(u64),
-}
-
-/// Points in their order.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Order {
-    /// The index of each pick; none comes twice.
-    pub index: Vec<u32>,
-    /// For each pick, the squared distance to the nearest pick before it; +inf for the first.
-    pub distance: Vec<f32>,
 }
 
 impl Greedy {
@@ -118,7 +112,7 @@ impl Greedy {
         let bytes = points.len() as u64 * BYTES_A_POINT;
         memory::ask(bytes, || format!("the order of {} points", points.len()))?;
         let count = count.min(points.len());
-        Ok(rounds::order(points, start, count, &rounds::How::of(exec), exec, progress))
+        Ok(rounds::order(points, start, count, &Division::among(exec), exec, progress))
     }
 
     /// The definition: [`Greedy::order`] as the module says it, by n distances a pick.

@@ -2,26 +2,7 @@
 
 use crate::study::chart::Drawing;
 use crate::study::chart::scatter::{Point, Scatter};
-use crate::study::run::{Record, Study};
-
-/// What is up in a chart: a figure as a loss, of which less is better.
-#[derive(Clone, Debug)]
-pub struct Loss {
-    /// What it is called, with its unit.
-    pub title: String,
-    /// The name of the figure.
-    pub figure: &'static str,
-    /// The loss of a value of it.
-    pub of: fn(f64) -> f64,
-}
-
-impl Loss {
-    /// The loss of a candidate, if its figure is known.
-    #[must_use]
-    pub fn value(&self, record: &Record) -> Option<f64> {
-        record.figure(self.figure).map(self.of)
-    }
-}
+use crate::study::run::{Loss, Record, Study};
 
 /// The points of a study, in the order of its candidates: those that were timed and measured. The
 /// first of each is the index of the candidate.

@@ -2,10 +2,10 @@
 //! difference, with zoom, blink and slider. It asks nothing of the network, and its policy says so to
 //! the browser.
 
-use super::chart::{Loss, points};
+use super::chart::points;
 use crate::study::chart::Drawing;
 use crate::study::chart::escaped;
-use crate::study::run::{Record, Study};
+use crate::study::run::{Loss, Record, Study};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;

@@ -1,8 +1,8 @@
 //! The files of a study that is known: readable, and the same bytes everywhere.
 
-use super::chart::{Loss, chart};
+use super::chart::chart;
 use super::{csv, page};
-use crate::study::run::{Measured, Record, Study, Subject};
+use crate::study::run::{Loss, Measured, Record, Study, Subject};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fmt::Write;

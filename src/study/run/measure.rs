@@ -2,6 +2,7 @@
 
 use super::bench::{Bench, Visit};
 use super::cameras;
+use super::loss::Loss;
 use super::record::Measured;
 use super::truths::Truths;
 use crate::compare::metrics::{Better, Errors, Flicker, METRICS, Metric};
@@ -11,7 +12,6 @@ use crate::io::scene_file::{Number, Ready};
 use crate::method::Picture;
 use crate::number::elementary::pow;
 use crate::scene::{Camera, Objects};
-use crate::study::report::chart::Loss;
 use crate::study::sweep::Candidate;
 use crate::study::truth::Truth;
 use std::borrow::Cow;

@@ -9,10 +9,12 @@
 
 mod bench;
 pub mod cameras;
+mod loss;
 pub mod measure;
 mod record;
 pub mod time;
 pub mod truths;
 
 pub use bench::{Bench, LeftOut, Visit};
+pub use loss::Loss;
 pub use record::{Measured, Record, Study, Subject};

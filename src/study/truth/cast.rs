@@ -1,17 +1,12 @@
 //! Surfaces along rays, tile by tile.
 
-use super::rays::Rays;
+use super::caster::Caster;
 use super::tile::{Seen, Tile};
-use super::triangles::{Placed, Reach};
 use super::{How, SAMPLES, Surface, Truth, frame};
 use crate::error::Result;
-use crate::frame::{Bins, Exec, Plane, Rect};
+use crate::frame::{Exec, Plane, Rect};
 use crate::memory;
-use crate::scene::{Camera, Scene, Triangles};
-use crate::shade::phong::Shader;
-use crate::source::procedural::Tracer;
-use crate::splat::View;
-use glam::{DMat3, DMat4, DVec3, Vec3};
+use crate::scene::{Camera, Scene};
 
 /// The true picture of surfaces under the lights of a scene, and its colours under shifts by eighths of a
 /// pixel, each 0 to 7; see the [module](super).
@@ -70,9 +65,6 @@ fn ask(camera: &Camera, shifts: usize, [wide, high]: [u32; 2], exec: &Exec) -> R
 
 /// Bytes of a sample: the nearest surface, of shapes with its normal and colour, and the colour.
 const OF_A_SAMPLE: u64 = 192;
-/// Bytes of a triangle while it is listed: twice its number and its bounds, and the tiles it is in.
-const OF_A_TRIANGLE: u64 = 112;
-
 /// The planes of the picture, its colours as they are and under each shift.
 struct Planes {
     colors: Vec<Plane<[f32; 3]>>,
@@ -111,115 +103,3 @@ fn put<T, U>(plane: &mut Plane<U>, rect: &Rect, values: &[T], of: impl Fn(&T) ->
         to.iter_mut().zip(row).for_each(|(to, value)| *to = of(value));
     }
 }
-
-/// What the tiles share.
-pub(super) struct Caster<'a> {
-    pub(super) solids: Vec<Solid<'a>>,
-    pub(super) scene: &'a Scene,
-    pub(super) cull: bool,
-    pub(super) camera: &'a Camera,
-    pub(super) view: View<f64>,
-    pub(super) reach: Reach,
-    pub(super) shader: Shader<f64>,
-    pub(super) world_from_view: DMat4,
-}
-
-/// A surface made ready to be seen.
-pub(super) enum Solid<'a> {
-    Shape(Turned),
-    Triangles {
-        triangles: &'a Triangles,
-        /// The numbers of those that may be seen, ascending.
-        listed: Vec<u32>,
-        /// The tiles in which they may be.
-        bins: Bins,
-    },
-}
-
-/// A shape in its place.
-pub(super) struct Turned {
-    pub(super) tracer: Tracer,
-    pub(super) shape_from_view: DMat4,
-    /// Of directions.
-    pub(super) world_from_shape: DMat3,
-    /// Its one colour, if it has one.
-    pub(super) color: Option<DVec3>,
-}
-
-impl<'a> Caster<'a> {
-    fn new(
-        surfaces: &'a [Surface],
-        scene: &'a Scene,
-        cull: bool,
-        camera: &'a Camera,
-        exec: &Exec,
-    ) -> Result<Self> {
-        let view = View::new(camera);
-        let mut caster = Self {
-            solids: Vec::new(),
-            scene,
-            cull,
-            camera,
-            view,
-            reach: Rays::reach(camera),
-            shader: Shader::new(view, &scene.lights, scene.material),
-            world_from_view: camera.view_from_world.as_dmat4().inverse(),
-        };
-        for surface in surfaces {
-            let solid = match surface {
-                Surface::Shape { shape, place, color } => {
-                    place.check()?;
-                    let world_from_shape = DMat4::from_translation(place.translation)
-                        * DMat4::from_mat3(place.rotation * place.scale);
-                    Solid::Shape(Turned {
-                        tracer: shape.tracer()?,
-                        shape_from_view: world_from_shape.inverse() * caster.world_from_view,
-                        world_from_shape: place.rotation,
-                        color: color.map(Vec3::as_dvec3),
-                    })
-                }
-                Surface::Triangles(triangles) => caster.list(triangles, exec)?,
-            };
-            caster.solids.push(solid);
-        }
-        Ok(caster)
-    }
-
-    /// The triangles that may be seen, sorted into tiles.
-    fn list(&self, triangles: &'a Triangles, exec: &Exec) -> Result<Solid<'a>> {
-        let count = triangles.len() as u32;
-        memory::ask(u64::from(count) * OF_A_TRIANGLE, || {
-            format!("the true picture of {count} triangles")
-        })?;
-        let chunks: Vec<u32> = (0..count).step_by(CHUNK).collect();
-        let found = exec.ordered(chunks, |first| {
-            let last = count.min(first.saturating_add(CHUNK as u32));
-            let rect = |i| Some((i, self.rect(&Placed::new(triangles, i, &self.view))?));
-            (first..last).filter_map(rect).collect::<Vec<_>>()
-        });
-        let (listed, rects): (Vec<u32>, Vec<Rect>) = found.into_iter().flatten().unzip();
-        let grid = exec.grid(self.camera.width, self.camera.height);
-        let bins = Bins::new(&grid, rects.len(), |i| rects[i]);
-        Ok(Solid::Triangles { triangles, listed, bins })
-    }
-
-    /// The pixels that may see a triangle, under a shift or none; none if no pixel may.
-    fn rect(&self, placed: &Placed) -> Option<Rect> {
-        let [left, top, right, bottom] = placed.bounds(&self.view)?;
-        let from_behind = || placed.lines(self.reach).is_some_and(|lines| !lines.front);
-        let place = |v: f64, room: u32| {
-            let v = v.floor();
-            if v > 0.0 { if v < f64::from(room) { v as u32 } else { room } } else { 0 }
-        };
-        let (width, height) = (self.camera.width, self.camera.height);
-        // Under a shift a pixel has samples of those to the left and above.
-        let x = [place(left, width), place(right + 2.0, width)];
-        let y = [place(top, height), place(bottom + 2.0, height)];
-        let rect = Rect { x0: x[0], y0: y[0], x1: x[1], y1: y[1] };
-        let hidden = rect.is_empty() || (self.cull && from_behind());
-        (!hidden).then_some(rect)
-    }
-}
-
-/// Triangles of one job.
-const CHUNK: usize = 1 << 14;

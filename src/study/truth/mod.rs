@@ -30,6 +30,7 @@
 //! pixel x has the samples 8 x - kx to 8 x - kx + 7 of the picture that is not shifted.
 
 mod cast;
+mod caster;
 mod points;
 mod rays;
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What the rays of a tile see.
 
-use super::cast::{Caster, Solid, Turned};
+use super::caster::{Caster, Solid, Turned};
 use super::rays::Rays;
 use super::triangles::{Placed, mixed};
 use super::{SAMPLES, mean};

@@ -192,7 +192,7 @@ fn what_a_mesh_lacks_is_told() {
     let refused = |folder: &Path| {
         let settings = named(&["heat", "gloss"], Traversal::BottomUp);
         let exec = Exec::sequential();
-        splatref::io::hierarchy::build(&file, folder, &settings, &exec, &|_, _, _| ())
+        file.approximate(folder, &settings, &exec, &|_, _, _| ())
     };
     let line = refused(&folder).expect_err("no gloss").to_string();
     assert!(line.contains("2.ply: element vertex has no property `gloss`"), "{line}");

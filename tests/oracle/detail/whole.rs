@@ -6,7 +6,7 @@ use crate::kit::dice::Dice;
 use glam::{DVec3, Vec3};
 use splatref::SceneFile;
 use splatref::frame::Exec;
-use splatref::io::hierarchy::{BOUND, build};
+use splatref::io::hierarchy::BOUND;
 use splatref::io::ply;
 use splatref::scene::{Cloud, Motion, Object, Similarity};
 use splatref::source::candidates::Directions;
@@ -119,7 +119,7 @@ pub(crate) fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 
 pub(crate) fn made(file: &SceneFile, folder: &Path, settings: &Settings, threads: usize) {
     let exec = Exec::new(threads, 32).expect("threads");
-    build(file, folder, settings, &exec, &|_, _, _| ()).expect("a hierarchy");
+    file.approximate(folder, settings, &exec, &|_, _, _| ()).expect("a hierarchy");
 }
 
 /// The files of the page and those that are there; and how many nodes have surfels.

@@ -3,6 +3,7 @@
 mod lines;
 
 use super::*;
+use crate::frame::Rect;
 use crate::number::Real;
 use lines::visited;
 use proptest::prelude::*;

@@ -16,7 +16,8 @@ fn threads_and_the_order_of_subtrees_change_nothing() {
         for (number, threads) in [1, 3].into_iter().enumerate() {
             let folder = at.path().join(format!("{traversal:?}{number}"));
             let exec = Exec::new(threads, 16).unwrap();
-            let mut work = Work::begin(&file, &folder, &settings, &exec, &quiet).unwrap();
+            let scene = file.to_approximate(&settings, &exec, &quiet).unwrap();
+            let mut work = Work::begin(scene, &folder, &settings, &exec, &quiet).unwrap();
             let count = work.wanted.len() as u32;
             // From above; and from the middle.
             for i in 0..count {
@@ -49,7 +50,7 @@ fn what_was_stopped_goes_on() {
             calls.set(calls.get() + 1);
             assert!(calls.get() < stop, "stopped");
         };
-        let run = || build(&file, &folder, &settings, &exec, &progress);
+        let run = || file.approximate(&folder, &settings, &exec, &progress);
         let ended = catch_unwind(AssertUnwindSafe(run));
         assert!(ended.is_err(), "it was stopped after {stop}");
         let found = bytes(&folder);
@@ -60,10 +61,10 @@ fn what_was_stopped_goes_on() {
         left.push(found.len());
     }
     assert!(left.is_sorted() && left[0] < left[3], "{left:?}");
-    let built = build(&file, &folder, &settings, &Exec::sequential(), &quiet).unwrap();
+    let built = file.approximate(&folder, &settings, &Exec::sequential(), &quiet).unwrap();
     assert!(built.found > 0 && built.found < built.nodes, "{built:?}");
     assert!(bytes(&folder) == all);
-    let again = build(&file, &folder, &settings, &Exec::sequential(), &quiet).unwrap();
+    let again = file.approximate(&folder, &settings, &Exec::sequential(), &quiet).unwrap();
     assert_eq!(again.found, again.nodes, "nothing is left to do");
     assert!(bytes(&folder) == all);
 }

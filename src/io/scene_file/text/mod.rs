@@ -17,6 +17,7 @@ macro_rules! through {
 
 mod camera;
 mod exactly;
+mod folder;
 mod model;
 mod object;
 mod table;
@@ -35,12 +36,12 @@ use crate::scene::objects::detail::refine::Refinement;
 use crate::scene::{Light, Phong};
 use camera::RawCamera;
 use exactly::Exactly;
+use folder::Folder;
 use glam::Vec3;
 use model::RawModel;
 use object::Unresolved;
 use serde::de::{self, Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
-use written::Folder;
 
 pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
     let file: File = toml::from_str(text).map_err(|error| input::no_toml(path, text, &error))?;

@@ -1,8 +1,8 @@
 //! Models and geometries.
 
 use super::exactly::Exactly;
+use super::folder::Folder;
 use super::transform::RawTransform;
-use super::written::Folder;
 use crate::io::scene_file::{DEFAULT_COUNT, Draw, Geometry, Model, Source, TREE};
 use crate::io::scene_file::{check_mipmaps, check_opacity, check_prefix, shapes};
 use crate::scene::light::{MAX_RADIANCE, is_color};

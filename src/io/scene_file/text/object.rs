@@ -1,9 +1,9 @@
 //! Objects: what they are of, and where.
 
 use super::exactly::Exactly;
+use super::folder::Folder;
 use super::model::color;
 use super::transform::{RawRotation, RawTransform};
-use super::written::Folder;
 use crate::io::scene_file::{Geometry, ObjectChoice, Places};
 use crate::scene::{Motion, Similarity};
 use crate::source::Scatter;

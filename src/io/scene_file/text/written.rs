@@ -2,6 +2,7 @@
 
 use super::super::{CameraChoice, OutputSettings, SceneFile};
 use super::camera::RawCamera;
+use super::folder::Folder;
 use super::model::RawModel;
 use super::object::RawObject;
 use super::table::Written;
@@ -11,7 +12,7 @@ use crate::method::Method;
 use crate::scene::objects::detail::refine::Refinement;
 use crate::scene::{Light, Phong};
 use crate::setting::Fields;
-use std::path::{Path, PathBuf, absolute};
+use std::path::{Path, PathBuf};
 
 /// The tables of a file, in the order of the example.
 #[derive(serde::Serialize)]
@@ -82,20 +83,4 @@ fn some<T>(all: impl Iterator<Item = T>) -> Option<Vec<T>> {
 /// The values that are not the default.
 fn other_than<T: PartialEq>(values: Vec<T>, default: &[T]) -> Vec<T> {
     values.into_iter().filter(|value| !default.contains(value)).collect()
-}
-
-/// The folder that a file is written to.
-pub(super) struct Folder(PathBuf);
-
-impl Folder {
-    fn of(path: &Path) -> Result<Self> {
-        let whole = absolute(path).map_err(|source| Error::io(path, source))?;
-        Ok(Self(whole.parent().unwrap_or(&whole).to_owned()))
-    }
-
-    /// How the file calls another: by what follows the folder if it lies within, else by the whole path.
-    pub(super) fn path(&self, other: &Path) -> PathBuf {
-        let whole = absolute(other).unwrap_or_else(|_| other.to_owned());
-        whole.strip_prefix(&self.0).map(Path::to_owned).unwrap_or(whole)
-    }
 }

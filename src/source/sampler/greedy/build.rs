@@ -7,7 +7,7 @@
 //!
 //! Nothing of the result depends on the tree, only the time.
 
-use super::rounds::How;
+use super::order::Division;
 use super::tree::{BUCKET, Bucket, Group, Region};
 use crate::frame::Exec;
 use crate::index::point_tree::{Entry, widest};
@@ -24,7 +24,7 @@ const MOST_LEAVES: usize = 4096;
 const GROUP: usize = BUCKET * LANES;
 
 /// The tree, without distances; there is at least one point.
-pub(super) fn regions(points: &[Vec3], how: &How, exec: &Exec) -> Vec<Region> {
+pub(super) fn regions(points: &[Vec3], how: &Division, exec: &Exec) -> Vec<Region> {
     let leaves = points.len().div_ceil(how.leaf).min(MOST_LEAVES);
     let cuts = Cuts::new(points, leaves, exec);
     let chunk = points.len().div_ceil(2 * exec.threads());

@@ -1,7 +1,7 @@
 //! Rounds: all points whose m is not below a floor are picked, whatever their turn.
 
-use super::Order;
 use super::build;
+use super::order::{Division, Order};
 use super::tree::{Border, Key, Region, reach, relax};
 use crate::frame::Exec;
 use glam::Vec3;
@@ -9,38 +9,17 @@ use std::collections::BinaryHeap;
 use std::collections::binary_heap::PeekMut;
 use std::slice;
 
-/// How the work is divided, which changes nothing of the result.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct How {
-    /// The most regions.
-    pub(super) regions: usize,
-    /// Points of a leaf of the tree, on the average.
-    pub(super) leaf: usize,
-    /// The least picks before regions are treated in parallel: the first ones reach everything.
-    pub(super) warm: usize,
-    /// The floor, in largest m.
-    pub(super) floor: f32,
-}
-
-/// Many regions have much border, and what is within reach of it is left to one thread.
-const MOST_REGIONS: usize = 16;
 /// How many rounds are run between two reports of progress.
 const STRETCH: usize = 16;
 /// So many buckets and more are worth waking threads for.
 const MANY: usize = 512;
-
-impl How {
-    pub(super) fn of(exec: &Exec) -> Self {
-        Self { regions: exec.threads().min(MOST_REGIONS), leaf: 896, warm: 1000, floor: 0.95 }
-    }
-}
 
 /// The order of checked points; `count` is at most their number.
 pub(super) fn order(
     points: &[Vec3],
     start: u32,
     count: usize,
-    how: &How,
+    how: &Division,
     exec: &Exec,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Order {
@@ -86,7 +65,7 @@ struct State<'a> {
     keys: Vec<Key>,
     /// How many picks are wanted after the start.
     count: usize,
-    how: &'a How,
+    how: &'a Division,
     exec: &'a Exec,
 }
 

@@ -1,6 +1,7 @@
 //! The order against its definition, index by index and bit by bit, and its laws.
 
-use super::rounds::{self, How};
+use super::order::Division;
+use super::rounds;
 use super::*;
 use crate::index::point_tree::given;
 use proptest::prelude::*;
@@ -74,8 +75,8 @@ fn check(name: &str, points: &[Vec3], start: u32, execs: &[Exec]) {
     let defined = Greedy { start: Start::Index(start) }.define(points, n + 5).unwrap();
     let ways = [(1, 1, 0.95, 1000), (3, 40, 0.9, 1), (8, 64, 0.5, 1), (2, 200, 0.98, 40)];
     for (i, (regions, leaf, floor, warm)) in ways.into_iter().enumerate() {
-        let how = How { regions, leaf, warm, floor };
-        let how = if i == 0 { How { leaf: 896, ..how } } else { how };
+        let how = Division { regions, leaf, warm, floor };
+        let how = if i == 0 { Division { leaf: 896, ..how } } else { how };
         for count in [n, n / 3 + 1] {
             let exec = &execs[i % execs.len()];
             let order = rounds::order(points, start, count, &how, exec, SILENT);

@@ -1,0 +1,114 @@
+//! The files that `splatref render` writes.
+
+use super::options::SceneOptions;
+use super::output;
+use splatref::frame::{Exec, Frame};
+use splatref::index::seen::Seen;
+use splatref::io::replace::Pending;
+use splatref::io::scene_file::{FileKind, OutputSettings, Ready, SceneFile};
+use splatref::io::state::{self, State};
+use splatref::io::{exr, png};
+use splatref::{Error, Result};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Where pictures go of which nobody says; made when they are written.
+const FOLDER: &str = "out";
+
+/// What the command line says of the files of `render`.
+pub(super) struct Destination<'a> {
+    pub(super) scene: &'a Path,
+    /// Where the picture goes, if somebody says.
+    pub(super) output: Option<&'a Path>,
+    /// Where what the last frame saw goes, if it is kept.
+    pub(super) keep_state: Option<&'a Path>,
+    pub(super) options: &'a SceneOptions,
+}
+
+impl Destination<'_> {
+    /// Where the picture goes, or that of a frame.
+    pub(super) fn place(&self, file: &SceneFile, frame: Option<u32>) -> Result<PathBuf> {
+        let named = |path: &Path| match frame {
+            None => path.to_owned(),
+            Some(frame) => path.with_extension(format!("{frame:04}.exr")),
+        };
+        match self.output {
+            Some(path) if matches!(FileKind::of(path), Ok(FileKind::Exr)) => {
+                let path = named(path);
+                output::check(&path, self.scene, file)?;
+                Ok(path)
+            }
+            Some(path) => {
+                let path = path.display();
+                Err(Error::Usage(format!("{path}: the picture is an EXR; give a name in .exr")))
+            }
+            None => {
+                let path = named(&Path::new(FOLDER).join(format!("{}.exr", file.name)));
+                output::check_unread(&path, self.scene, file)?;
+                Ok(path)
+            }
+        }
+    }
+
+    /// Writes what a frame saw, if somebody asked for that.
+    pub(super) fn keep(&self, ready: &Ready, frame: u32, seen: Option<&Seen>) -> Result<()> {
+        let (Some(path), Some(seen)) = (self.keep_state, seen) else { return Ok(()) };
+        let state = State { frame, seen: seen.clone() };
+        state::pending(path, &state, &ready.identity()?)?.put()
+    }
+
+    /// Whether a state can be kept where it was asked for, beside these pictures: before anything is drawn.
+    pub(super) fn check_state(
+        &self,
+        ready: &Ready,
+        file: &SceneFile,
+        pictures: &[PathBuf],
+    ) -> Result<()> {
+        if let Some(read) = self.options.state() {
+            let pictures = pictures.iter().map(PathBuf::as_path);
+            self.keep_state
+                .into_iter()
+                .chain(pictures)
+                .try_for_each(|path| output::check_other(path, read))?;
+        }
+        let Some(path) = self.keep_state else { return Ok(()) };
+        if !ready.method.draws_objects() {
+            let name = ready.method.name();
+            let what =
+                format!("--keep-state: the method {name} carries nothing from frame to frame");
+            return Err(Error::Usage(what));
+        }
+        output::check(path, self.scene, file)?;
+        for picture in pictures {
+            output::check_two(path, picture)?;
+            output::check_two(path, &picture.with_extension("png"))?;
+        }
+        Ok(())
+    }
+
+    /// Makes the folder of pictures, if nobody says where they go.
+    pub(super) fn make_folder(&self) -> Result<()> {
+        if self.output.is_some() {
+            return Ok(());
+        }
+        let folder = Path::new(FOLDER);
+        fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))
+    }
+}
+
+/// Writes a picture and its preview, both before one is put in its place.
+pub(super) fn write(
+    picture: &Path,
+    frame: &Frame<f32>,
+    text: impl Fn() -> String + Sync,
+    output: OutputSettings,
+    exec: &Exec,
+) -> Result<()> {
+    let (small, large) = exec.join(
+        || png::pending_frame(&picture.with_extension("png"), frame),
+        || exr::pending(picture, frame, &text(), output.compression, exec),
+    );
+    let (small, large) = (small?, large?);
+    large.put()?;
+    small.map_or(Ok(()), Pending::put)
+}

@@ -1,0 +1,95 @@
+//! Surfel approximations of a scene, as [`crate::io::hierarchy`] stores them.
+
+use super::model::check_properties;
+use super::{Model, SceneFile, Source};
+use crate::error::{Error, Result};
+use crate::frame::Exec;
+use crate::io::hierarchy::{self, Built, Geometries};
+use crate::scene::{Camera, Triangles};
+use crate::source::hierarchy::Settings;
+use std::path::Path;
+
+impl SceneFile {
+    /// Makes the hierarchy of the scene in a folder, whose parent is there; or goes on with what is there. Models are taken as their triangles,
+    /// in the order of [`SceneFile::models`] and [`SceneFile::geometries`].
+    ///
+    /// `progress` is told the name of a step, how much of it is done, and of how much: of "surfels" how many.
+    ///
+    /// # Errors
+    /// Those of [`SceneFile::load_polygons`]; [`Error::Usage`] if no surfel or no
+    /// picture is asked for; [`Error::Format`] if the folder is of something else; [`Error::Io`] if it cannot be written
+    /// to; as [`crate::source::candidates::candidates`], and if the process may not hold what one node needs.
+    pub fn approximate(
+        &self,
+        folder: &Path,
+        settings: &Settings,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<Built> {
+        let scene = self.to_approximate(settings, exec, progress)?;
+        hierarchy::build(scene, folder, settings, exec, progress)
+    }
+
+    /// What a hierarchy is made of, once it is known that there can be one.
+    pub(in crate::io) fn to_approximate<'a>(
+        &'a self,
+        settings: &'a Settings,
+        exec: &'a Exec,
+        progress: &'a dyn Fn(&str, u64, u64),
+    ) -> Result<Geometries<'a>> {
+        if settings.most == 0 {
+            return Err(Error::Usage("a hierarchy of 0 surfels; give at least 1".into()));
+        }
+        if self.hierarchy.is_some() {
+            let what = format!("{} is a hierarchy already; name a mesh or a scene", self.name);
+            return Err(Error::Usage(what));
+        }
+        Camera::check_size(settings.side, settings.side)?;
+        let models: Vec<(String, &Model)> = self
+            .models
+            .iter()
+            .map(|model| (model.source.name(), model))
+            .chain(self.geometries.iter().map(|one| (one.name.clone(), &one.model)))
+            .collect();
+        for (name, model) in &models {
+            check(name, model)?;
+            check_properties(model, &settings.properties)?;
+        }
+        let objects = self.objects()?;
+        let fill = self.material.color;
+        let (names, models): (Vec<String>, Vec<&Model>) = models.into_iter().unzip();
+        let read =
+            move |geometry: usize| self.triangles(models[geometry], settings, exec, progress);
+        Ok(Geometries { names, objects, fill, read: Box::new(read) })
+    }
+
+    /// The triangles of a model, and how many were dropped.
+    fn triangles(
+        &self,
+        model: &Model,
+        settings: &Settings,
+        exec: &Exec,
+        progress: &dyn Fn(&str, u64, u64),
+    ) -> Result<(Triangles, u64)> {
+        let alone = Self {
+            models: vec![model.clone()],
+            geometries: Vec::new(),
+            objects: Vec::new(),
+            environment: None,
+            ..self.clone()
+        };
+        let loaded = alone.load_polygons(&settings.properties, exec, progress)?;
+        Ok((loaded.scene.primitives.triangles, loaded.dropped_primitives))
+    }
+}
+
+/// Whether a model can be approximated.
+fn check(name: &str, model: &Model) -> Result<()> {
+    let what = match &model.source {
+        Source::Shape { .. } => "a shape has surfels of its own and no triangles to approximate",
+        Source::File { prefix: Some(_), .. } => "a prefix is of points, which are not approximated",
+        Source::File { .. } if model.progressive => "progressive points are not approximated",
+        Source::File { .. } | Source::Tree { .. } => return Ok(()),
+    };
+    Err(Error::Invalid(format!("{name}: {what}")))
+}
