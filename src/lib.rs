@@ -221,6 +221,7 @@ pub mod laws;
 pub mod memory;
 pub mod method;
 pub mod number;
+pub mod progress;
 pub mod scene;
 pub mod setting;
 pub mod shade;

@@ -9,6 +9,7 @@ use glam::Vec3;
 use splatref::frame::Exec;
 use splatref::io::ply;
 use splatref::io::scene_file::FileKind;
+use splatref::progress::Progress;
 use splatref::scene::{Camera, Cloud};
 use splatref::source::candidates::{self, Directions};
 use splatref::source::hierarchy::{self as approximations, MOST, Settings, Traversal};
@@ -310,7 +311,7 @@ impl Args {
         cloud: &Cloud,
         pixel: Option<f64>,
         exec: &Exec,
-        show: &dyn Fn(&str, u64, u64),
+        show: Progress<'_>,
     ) -> Result<Option<Graph>> {
         let (Distance::Geodesic, Some(normal)) = (self.distance, &cloud.normal) else {
             return Ok(None);
@@ -325,7 +326,7 @@ impl Args {
         cloud: &Cloud,
         order: &Order,
         exec: &Exec,
-        show: &dyn Fn(&str, u64, u64),
+        show: Progress<'_>,
     ) -> Result<Option<Vec<Vec3>>> {
         let (Some(count), Some(color)) = (self.average_colors, &cloud.color) else {
             return Ok(None);
@@ -339,7 +340,7 @@ impl Args {
         graph: Option<&Graph>,
         count: usize,
         exec: &Exec,
-        show: &dyn Fn(&str, u64, u64),
+        show: Progress<'_>,
     ) -> Result<Order> {
         let points = &cloud.position;
         let start = self.start.map_or(Start::Seed(self.seed), Start::Index);

@@ -49,6 +49,7 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::point_tree::PointTree;
 use crate::memory;
+use crate::progress::Progress;
 use crate::scene::mipmap::check_levels;
 use crate::scene::{Mipmap, Surfels};
 use glam::{DVec3, Vec3};
@@ -74,7 +75,7 @@ pub fn build(
     surfels: &Surfels,
     levels: usize,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Mipmap> {
     check_levels(levels)?;
     let colors = colors(surfels)?;

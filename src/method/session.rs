@@ -18,6 +18,7 @@ use crate::index::members::Members;
 use crate::index::order::BackToFront;
 use crate::index::seen::Seen;
 use crate::number::Exact;
+use crate::progress::Progress;
 use crate::scene::{Boxes, Camera, Groups, Scene};
 
 /// A scene, a method, what the method prepared of the scene, and memory that is used again.
@@ -76,7 +77,7 @@ impl<'a> Session<'a> {
         method: Method,
         grouping: Option<Grouping>,
         exec: &'a Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<(Self, Option<Made>)> {
         method.check()?;
         method.check_scene(scene)?;

@@ -18,6 +18,7 @@ use super::truth::Truth;
 use crate::compare::metrics::Metric;
 use crate::error::Result;
 use crate::frame::Exec;
+use crate::progress::Progress;
 use crate::scene::Camera;
 use std::time::{Duration, Instant};
 
@@ -40,7 +41,7 @@ pub fn choose(
     (candidates, truth): (&[Candidate], &Truth),
     (budget, loss): (Budget, &Loss),
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Vec<Known>> {
     let metric = Metric::named(loss.figure)?;
     let count = candidates.len() as u64;
@@ -78,7 +79,7 @@ pub fn timed(
     candidates: &[Candidate],
     of: &[usize],
     known: &mut [Known],
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<()> {
     let mut records: Vec<Record> = of.iter().map(|&i| Record::of(&candidates[i])).collect();
     let start = Instant::now();

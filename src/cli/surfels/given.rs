@@ -4,6 +4,7 @@ use super::{Args, report};
 use splatref::frame::Exec;
 use splatref::io::scene_file::{FileKind, SceneFile, read_model};
 use splatref::io::{ply, texture};
+use splatref::progress::Progress;
 use splatref::scene::Cloud;
 use splatref::source::candidates::{self, Candidates, Directions, candidates};
 use splatref::{Error, Result};
@@ -22,7 +23,7 @@ impl From<Candidates> for Given {
 
 impl Args {
     /// What the input gives.
-    pub(super) fn given(&self, exec: &Exec, show: &dyn Fn(&str, u64, u64)) -> Result<Given> {
+    pub(super) fn given(&self, exec: &Exec, show: Progress<'_>) -> Result<Given> {
         if FileKind::of(&self.points)? == FileKind::Toml {
             return self.scene(exec, show).map(Given::from);
         }
@@ -36,7 +37,7 @@ impl Args {
     }
 
     /// What is seen of a scene, in its first frame.
-    fn scene(&self, exec: &Exec, show: &dyn Fn(&str, u64, u64)) -> Result<Candidates> {
+    fn scene(&self, exec: &Exec, show: Progress<'_>) -> Result<Candidates> {
         let file = SceneFile::open(&self.points)?;
         if file.hierarchy.is_some() {
             let what = "a hierarchy has its surfels already; name a mesh or a scene";
@@ -73,12 +74,7 @@ impl Args {
     }
 
     /// What is seen of a mesh.
-    fn candidates(
-        &self,
-        mut mesh: Cloud,
-        exec: &Exec,
-        show: &dyn Fn(&str, u64, u64),
-    ) -> Result<Candidates> {
+    fn candidates(&self, mut mesh: Cloud, exec: &Exec, show: Progress<'_>) -> Result<Candidates> {
         texture::paint(&mut mesh, &self.points, self.texture.as_deref(), 0, exec)?;
         let (directions, side) = self.pictures();
         let (found, derived) = candidates::of_cloud(mesh, &directions, side, exec, show)?;

@@ -8,6 +8,7 @@ use super::overlaps::Overlaps;
 use super::samples::{SAMPLES, covered_by};
 use super::settle::settle;
 use crate::error::Result;
+use crate::progress::Progress;
 use crate::scene::Groups;
 use std::ops::Range;
 use std::sync::atomic::AtomicU8;
@@ -33,7 +34,7 @@ pub(super) fn add(
     overlaps: &Overlaps<'_>,
     groups: &Groups,
     most: f32,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Added> {
     let &Overlaps { tree, exec, .. } = overlaps;
     let (n, count) = (tree.surfel.len(), groups.len());

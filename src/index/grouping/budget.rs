@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
 use crate::number::lanes::vectorized;
+use crate::progress::Progress;
 use crate::scene::Surfels;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -91,7 +92,7 @@ impl DiscTree {
         surfels: &Surfels,
         factor: f64,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<Self> {
         let count = surfels.len();
         ask_for_surfels(count)?;

@@ -7,6 +7,7 @@ use super::rules::Rules;
 use super::settle::settle;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::progress::Progress;
 use crate::scene::groups::{MAX_GROUPS, check_count};
 use crate::scene::{Groups, Surfels};
 use std::borrow::Cow;
@@ -40,7 +41,7 @@ pub fn group(
     surfels: &Surfels,
     rules: &Rules,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<(Groups, GroupingReport)> {
     rules.check()?;
     let tree = DiscTree::of_all(surfels, f64::from(rules.overlap), exec, progress)?;
@@ -58,7 +59,7 @@ pub fn group_into(
     rules: &Rules,
     count: usize,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<(Groups, GroupingReport)> {
     rules.check()?;
     check_count(count)?;
@@ -73,7 +74,7 @@ pub(super) struct Coloring<'a> {
     pub(super) tree: &'a DiscTree,
     pub(super) rules: &'a Rules,
     pub(super) exec: &'a Exec,
-    pub(super) progress: &'a dyn Fn(&str, u64, u64),
+    pub(super) progress: Progress<'a>,
 }
 
 impl Coloring<'_> {

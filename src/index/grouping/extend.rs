@@ -9,6 +9,7 @@ use super::scales::Scales;
 use super::{add, enlarge};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::progress::Progress;
 use crate::scene::{Groups, Surfels};
 use crate::setting::{Field, Slot, Visit, Words};
 use std::f64::consts::PI;
@@ -88,7 +89,7 @@ pub fn extend(
     groups: &Groups,
     extension: &Extension,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<(Groups, Extended)> {
     extension.check()?;
     groups.check(surfels)?;
@@ -102,7 +103,7 @@ pub(super) struct Work<'a> {
     /// Of all surfels.
     pub(super) tree: &'a DiscTree,
     pub(super) exec: &'a Exec,
-    pub(super) progress: &'a dyn Fn(&str, u64, u64),
+    pub(super) progress: Progress<'a>,
 }
 
 impl Work<'_> {

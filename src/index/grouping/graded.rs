@@ -8,6 +8,7 @@ use super::rules::Rules;
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::lanes::vectorized;
+use crate::progress::Progress;
 use crate::scene::Surfels;
 use glam::DVec3;
 use std::borrow::Cow;
@@ -36,7 +37,7 @@ impl<'a> Graded<'a> {
         tree: &DiscTree,
         rules: &Rules,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<Self> {
         let away = |i: usize, j: usize| relaxed(surfels, tree, rules, i, j);
         let job = |places| Ok(least_steps(tree, &graph, places, &away));
@@ -52,7 +53,7 @@ impl<'a> Graded<'a> {
         room: Graph,
         tree: &DiscTree,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<Graph> {
         let rows = |places: Range<usize>, room| {
             Ok(self.graph.part(places.start).upto(most, self.least.with(places.start).0, room))

@@ -8,6 +8,7 @@ use super::rules::{Coplanar, Rules};
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::lanes::vectorized;
+use crate::progress::Progress;
 use crate::scene::Surfels;
 use std::mem;
 use std::ops::Range;
@@ -195,7 +196,7 @@ impl Graph {
         factor: f64,
         keep: impl Fn(usize, usize) -> bool + Sync + Send,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<Self> {
         let budget = Budget::new(tree.surfel.len(), factor);
         let rows = |places, _| near_rows(tree, places, factor, &keep, &budget);
@@ -208,7 +209,7 @@ impl Graph {
         tree: &DiscTree,
         rows: impl Fn(Range<usize>, Option<Rows>) -> Result<Rows> + Sync + Send,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<Self> {
         let show = |done, of| progress("finding overlaps", done, of);
         Parts::in_place_of(room.0, tree, exec, &show, rows).map(Self)
@@ -238,7 +239,7 @@ pub(super) fn conflicts(
     rules: &Rules,
     overlap: f32,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Graph> {
     let keep = |i: usize, j: usize| !relaxed(surfels, tree, rules, i, j);
     Graph::new(tree, f64::from(overlap), keep, exec, progress)

@@ -135,6 +135,7 @@ pub use rules::{Coplanar, Rules};
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::Real;
+use crate::progress::Progress;
 use crate::scene::groups::check_count;
 use crate::scene::{Groups, Surfels};
 use crate::setting::{Field, Fields, Slot, Visit};
@@ -191,7 +192,7 @@ impl Grouping {
         &self,
         surfels: &Surfels,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<(Groups, GroupingReport, Option<Extended>)> {
         self.rules.check()?;
         self.extension.check()?;

@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::replace::write_atomically;
 use crate::io::{Reason, input};
+use crate::progress::Progress;
 use crate::scene::bounds::Bounds;
 use crate::scene::objects::outline::Needed;
 use std::io::Write;
@@ -18,11 +19,7 @@ const FILE: &str = "bounds";
 
 impl Hierarchy {
     /// The bounds of all nodes: those of the file, or of the nodes, which are read one at a time.
-    pub(super) fn bounds(
-        &self,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Vec<Bounds>> {
+    pub(super) fn bounds(&self, exec: &Exec, progress: Progress<'_>) -> Result<Vec<Bounds>> {
         let path = self.folder.join(FILE);
         if !path.exists() {
             return self.bounds_of_nodes(exec, progress);
@@ -33,11 +30,7 @@ impl Hierarchy {
     }
 
     /// Writes the bounds of all nodes.
-    pub(super) fn write_bounds(
-        &self,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<()> {
+    pub(super) fn write_bounds(&self, exec: &Exec, progress: Progress<'_>) -> Result<()> {
         let mut to = Writer::default();
         to.bytes(MAGIC);
         to.bytes(&self.index.hash);
@@ -50,11 +43,7 @@ impl Hierarchy {
         write_atomically(&self.folder.join(FILE), |file| file.write_all(&to.0))
     }
 
-    fn bounds_of_nodes(
-        &self,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Vec<Bounds>> {
+    fn bounds_of_nodes(&self, exec: &Exec, progress: Progress<'_>) -> Result<Vec<Bounds>> {
         let nodes = self.nodes();
         let each = (0..).zip(nodes).map(|(number, node)| {
             progress("bounds", u64::from(number), nodes.len() as u64);

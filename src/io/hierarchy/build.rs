@@ -9,6 +9,7 @@ use super::{mesh, surfels};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::replace::write_atomically;
+use crate::progress::Progress;
 use crate::scene::{Object, Triangles};
 use crate::source::hierarchy::{Flaws, Settings, Traversal, approximate};
 use glam::Vec3;
@@ -44,7 +45,7 @@ pub(in crate::io) fn build(
     folder: &Path,
     settings: &Settings,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Built> {
     let mut work = Work::begin(scene, folder, settings, exec, progress)?;
     // What is below comes first.
@@ -59,7 +60,7 @@ pub(super) struct Work<'a> {
     hierarchy: Hierarchy,
     settings: &'a Settings,
     exec: &'a Exec,
-    progress: &'a dyn Fn(&str, u64, u64),
+    progress: Progress<'a>,
     /// How many surfels each node is to have.
     pub(super) wanted: Vec<u32>,
     made: Vec<bool>,
@@ -76,7 +77,7 @@ impl<'a> Work<'a> {
         folder: &Path,
         settings: &'a Settings,
         exec: &'a Exec,
-        progress: &'a dyn Fn(&str, u64, u64),
+        progress: Progress<'a>,
     ) -> Result<Self> {
         let Geometries { names, objects, fill, read } = scene;
         let plan = plan::hash(settings, fill, &objects, names.len());

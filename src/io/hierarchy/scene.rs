@@ -26,6 +26,7 @@ use super::read::Hierarchy;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
+use crate::progress::Progress;
 use crate::scene::objects::detail::prefix::Estimate;
 use crate::scene::objects::outline::Needed;
 use crate::scene::objects::{Geometry, Object, Objects};
@@ -54,7 +55,7 @@ impl Hierarchy {
     /// # Errors
     /// As [`Hierarchy::surfels`] and [`Hierarchy::triangles`]; [`Error::Invalid`] as [`Objects::new`], if there is
     /// nothing to show, or if the process may not hold it.
-    pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Objects> {
+    pub fn load(&self, exec: &Exec, progress: Progress<'_>) -> Result<Objects> {
         let has = self.has();
         self.ask(has.iter().map(|&number| {
             let node = &self.nodes()[number as usize];

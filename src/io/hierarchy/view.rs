@@ -14,6 +14,7 @@ use super::read::Hierarchy;
 use super::scene::{Showing, estimate, name, radius};
 use crate::error::Result;
 use crate::frame::Exec;
+use crate::progress::Progress;
 use crate::scene::Objects;
 use crate::scene::objects::outline::Outline;
 
@@ -22,7 +23,7 @@ impl Hierarchy {
     ///
     /// # Errors
     /// As [`Hierarchy::load`]; without a file of bounds all files are read for them, a node at a time.
-    pub fn outlined(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Objects> {
+    pub fn outlined(&self, exec: &Exec, progress: Progress<'_>) -> Result<Objects> {
         let has = self.has();
         self.ask(std::iter::empty())?;
         let bounds = self.bounds(exec, progress)?;
@@ -50,12 +51,7 @@ impl Hierarchy {
     ///
     /// # Errors
     /// As [`Hierarchy::surfels`] and [`Hierarchy::triangles`]; [`crate::Error::Invalid`] if the process may not hold what is drawn.
-    pub fn needed_by(
-        &self,
-        view: Objects,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Objects> {
+    pub fn needed_by(&self, view: Objects, exec: &Exec, progress: Progress<'_>) -> Result<Objects> {
         let (has, needed) = (self.has(), view.needed());
         let node = |i: usize| &self.nodes()[has[i] as usize];
         self.ask(needed.iter().enumerate().map(|(i, &needed)| (node(i), needed)))?;

@@ -5,6 +5,7 @@ use super::{Model, SceneFile, Source};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::hierarchy::{self, Built, Geometries};
+use crate::progress::Progress;
 use crate::scene::{Camera, Triangles};
 use crate::source::hierarchy::Settings;
 use std::path::Path;
@@ -24,7 +25,7 @@ impl SceneFile {
         folder: &Path,
         settings: &Settings,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<Built> {
         let scene = self.to_approximate(settings, exec, progress)?;
         hierarchy::build(scene, folder, settings, exec, progress)
@@ -35,7 +36,7 @@ impl SceneFile {
         &'a self,
         settings: &'a Settings,
         exec: &'a Exec,
-        progress: &'a dyn Fn(&str, u64, u64),
+        progress: Progress<'a>,
     ) -> Result<Geometries<'a>> {
         if settings.most == 0 {
             return Err(Error::Usage("a hierarchy of 0 surfels; give at least 1".into()));
@@ -69,7 +70,7 @@ impl SceneFile {
         model: &Model,
         settings: &Settings,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<(Triangles, u64)> {
         let alone = Self {
             models: vec![model.clone()],

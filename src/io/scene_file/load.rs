@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::frame::Exec;
 use crate::io::environment;
 use crate::io::hierarchy::Hierarchy;
+use crate::progress::Progress;
 use crate::scene::merge::{join, merge};
 use crate::scene::{Cloud, Counts, Dropped, Environment, Geometry, Object, Objects};
 use crate::scene::{Primitives, Scene, Similarity, Surfels, Vertices};
@@ -56,7 +57,7 @@ impl SceneFile {
     /// surfel nor a primitive is left or there are too many, if a model cannot be drawn as it says, or
     /// if one that is not drawn as points was given an opacity, or mipmaps, or one in one colour or drawn as lines a texture; as [`crate::index::mipmap::build`], and if
     /// mipmaps are asked for of a model in one colour.
-    pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
+    pub fn load(&self, exec: &Exec, progress: Progress<'_>) -> Result<Loaded> {
         self.load_for(Purpose::Scene, exec, progress)
     }
 
@@ -65,7 +66,7 @@ impl SceneFile {
     ///
     /// # Errors
     /// As [`SceneFile::load`], and as [`Hierarchy::outlined`].
-    pub fn load_outlined(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
+    pub fn load_outlined(&self, exec: &Exec, progress: Progress<'_>) -> Result<Loaded> {
         self.load_for(Purpose::View, exec, progress)
     }
 
@@ -80,7 +81,7 @@ impl SceneFile {
         &self,
         properties: &[String],
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<Loaded> {
         let mut file = self.clone();
         for model in file.all_models_mut() {
@@ -94,7 +95,7 @@ impl SceneFile {
         &self,
         purpose: Purpose<'_>,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<Loaded> {
         self.all_models().try_for_each(|model| check_draw(model, purpose))?;
         let hierarchy = self.hierarchy.as_deref().map(Hierarchy::open).transpose()?;
@@ -141,7 +142,7 @@ impl SceneFile {
         loaded: &mut Loaded,
         purpose: Purpose<'_>,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<()> {
         let (mut parts, mut primitives) = (Vec::new(), Vec::new());
         for model in &self.models {
@@ -166,7 +167,7 @@ impl SceneFile {
         loaded: &mut Loaded,
         purpose: Purpose<'_>,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<()> {
         let own = self.models.iter().map(|model| (model.source.name(), model, None));
         let named = self.geometries.iter();
@@ -213,7 +214,7 @@ fn of_hierarchy(
     view: bool,
     loaded: &mut Loaded,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<()> {
     let objects = match view {
         true => hierarchy.outlined(exec, progress)?,
@@ -242,7 +243,7 @@ impl Loaded {
         name: String,
         purpose: Purpose<'_>,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<(Surfels, Primitives)> {
         let ModelParts { surfels, primitives, derived, painted } =
             read(model, purpose, exec, progress)?;

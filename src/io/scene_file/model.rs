@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::mipmap;
 use crate::io::{ply, texture};
+use crate::progress::Progress;
 use crate::scene::{Cloud, Primitives, Surfels};
 use crate::source::derive::{self, Derive, Derived};
 use crate::source::plant;
@@ -81,7 +82,7 @@ pub(super) fn read(
     model: &Model,
     purpose: Purpose<'_>,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<ModelParts> {
     let further = if let Purpose::Candidates(names) = purpose { names } else { &[] };
     ply_of(model, further)?;
@@ -165,7 +166,7 @@ fn of_file(
     draw: &Draw,
     options: &Derive,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<ModelParts> {
     let none = Primitives::default();
     Ok(match draw {
@@ -208,7 +209,7 @@ pub(super) fn prefiltered(
     surfels: Surfels,
     model: &Model,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Surfels> {
     let made = match model.mipmaps {
         None => return Ok(surfels),

@@ -9,6 +9,7 @@ use crate::index::seen::Seen;
 use crate::io::state::{self, State};
 use crate::method::session::Made;
 use crate::method::{Method, Picture, Session, deferred};
+use crate::progress::Progress;
 use crate::scene::{Camera, CameraMotion, Lens, Objects, Primitives, Scene, Surfels};
 use crate::source::flatten;
 use std::borrow::Cow;
@@ -41,7 +42,7 @@ impl SceneFile {
     /// As [`SceneFile::check_frame`], [`SceneFile::load`], [`SceneFile::camera`] and [`Ready::at`];
     /// [`crate::Error::Invalid`] if a setting is
     /// out of range or not of the method, or if the method cannot draw the scene.
-    pub fn ready(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Ready> {
+    pub fn ready(&self, exec: &Exec, progress: Progress<'_>) -> Result<Ready> {
         self.check_drawing()?;
         self.placed(self.load_for(Purpose::View, exec, progress)?, exec, progress)
     }
@@ -63,12 +64,7 @@ impl SceneFile {
         self.placed(loaded, exec, &|_, _, _| ())
     }
 
-    fn placed(
-        &self,
-        loaded: Loaded,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Ready> {
+    fn placed(&self, loaded: Loaded, exec: &Exec, progress: Progress<'_>) -> Result<Ready> {
         let (method, grouping) = self.check_drawing()?;
         let loaded = self.refined(loaded)?;
         let camera = self.camera(&loaded.scene)?;
@@ -162,7 +158,7 @@ impl Ready {
 
     /// Puts the objects in their places of the frame, as the camera sees them. What a method is given of them is decided here:
     /// the objects, or all their surfels.
-    fn place(&mut self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<()> {
+    fn place(&mut self, exec: &Exec, progress: Progress<'_>) -> Result<()> {
         let Loaded { scene, unread, .. } = &mut self.loaded;
         if let Some(objects) = scene.objects.take() {
             // Those of the last frame make room.
@@ -187,7 +183,7 @@ impl Ready {
     pub fn session<'a>(
         &'a self,
         exec: &'a Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<(Session<'a>, Option<Made>)> {
         Session::prepare(&self.loaded.scene, self.method, self.grouping, exec, progress)
     }

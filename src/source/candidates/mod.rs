@@ -78,6 +78,7 @@ use crate::frame::{Exec, NO_ID};
 use crate::memory;
 use crate::method::projection::{Foremost, PixelSample, SHARES, VisibleTriangles};
 use crate::number::Vector3;
+use crate::progress::Progress;
 use crate::scene::merge::join;
 use crate::scene::{Camera, Cloud, Lens, Primitives, Scene, Surfels};
 use glam::{DMat4, DVec3, DVec4, Vec3};
@@ -125,7 +126,7 @@ pub fn candidates(
     directions: &Directions,
     side: u32,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Candidates> {
     let scene = mesh(scene)?;
     gather(&Mesh { scene: &scene, painting: None }, directions, side, exec, progress)
@@ -142,7 +143,7 @@ fn gather(
     directions: &Directions,
     side: u32,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Candidates> {
     let (low, high) = mesh.scene.bounds();
     let (low, high) = (low.as_dvec3(), high.as_dvec3());

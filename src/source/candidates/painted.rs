@@ -4,6 +4,7 @@ use super::{Candidates, Directions, Mesh};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
+use crate::progress::Progress;
 use crate::scene::texture::Ellipse;
 use crate::scene::{Cloud, Paint, Primitives, Scene, Surfels};
 use crate::source::derive::{self, Derived, stretch};
@@ -22,7 +23,7 @@ pub fn of_cloud(
     directions: &Directions,
     side: u32,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<(Candidates, Derived)> {
     cloud.check()?;
     let before = cloud.triangles.len();

@@ -4,6 +4,7 @@ use super::{Derive, Derived, Origin, drop_nowhere, primitives, texture};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
+use crate::progress::Progress;
 use crate::scene::light::is_color;
 use crate::scene::{Cloud, Surfels};
 use glam::{DVec3, Vec3};
@@ -35,11 +36,7 @@ use std::ops::{Add, Div};
 /// # Errors
 /// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if the points have groups,
 /// which say nothing of triangles.
-pub fn facets(
-    mut cloud: Cloud,
-    exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
-) -> Result<(Surfels, Derived)> {
+pub fn facets(mut cloud: Cloud, exec: &Exec, progress: Progress<'_>) -> Result<(Surfels, Derived)> {
     primitives::some_triangles(&cloud)?;
     cloud.check()?;
     if cloud.groups.is_some() {
@@ -73,7 +70,7 @@ pub fn facets_or_surfels(
     cloud: Cloud,
     options: &Derive,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<(Surfels, Derived)> {
     if is_bare_mesh(&cloud, options) {
         facets(cloud, exec, progress)

@@ -152,6 +152,7 @@ pub(in crate::source) use texture::stretch;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
+use crate::progress::Progress;
 use crate::scene::{Cloud, Dropped, Surfels};
 use glam::Vec3;
 use places::Places;
@@ -218,7 +219,7 @@ pub fn surfels(
     cloud: Cloud,
     options: &Derive,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<(Surfels, Derived)> {
     let (cloud, mut derived) = complete(cloud, options, exec, progress)?;
     let (surfels, dropped) = Surfels::new_with(cloud, exec)?;
@@ -231,7 +232,7 @@ fn complete(
     mut cloud: Cloud,
     options: &Derive,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<(Cloud, Derived)> {
     cloud.check()?;
     let nowhere = drop_nowhere(&mut cloud)?;
@@ -263,7 +264,7 @@ fn missing_normals(
     cloud: &Cloud,
     places: &OnceCell<Places>,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<(Vec<Vec3>, Origin)> {
     let points = &cloud.position;
     if let Some(tangents) = &cloud.tangents {
@@ -282,7 +283,7 @@ fn missing_radii(
     options: &Derive,
     places: &OnceCell<Places>,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<(Vec<f32>, Origin)> {
     let points = &cloud.position;
     if let Some(radius) = options.radius {

@@ -5,6 +5,7 @@ use super::neighbours::Neighbours;
 use super::{PLANE_NEIGHBOURS, RADIUS_NEIGHBOURS, orient, plane};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::progress::Progress;
 use glam::Vec3;
 
 /// Where points stand, ordered for the search of neighbours.
@@ -16,7 +17,7 @@ pub(super) struct Places {
 
 impl Places {
     /// Of fewer than 2^32 finite points.
-    pub(super) fn new(points: &[Vec3], exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Self {
+    pub(super) fn new(points: &[Vec3], exec: &Exec, progress: Progress<'_>) -> Self {
         progress("ordering points", 0, points.len() as u64);
         let distinct = Distinct::new(points);
         let neighbours = Neighbours::new(&distinct.place, exec);
@@ -24,11 +25,7 @@ impl Places {
     }
 
     /// The normal of the plane at each point, see [`plane::normal`] and [`orient::agree`].
-    pub(super) fn normals(
-        &self,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Vec<Vec3>> {
+    pub(super) fn normals(&self, exec: &Exec, progress: Progress<'_>) -> Result<Vec<Vec3>> {
         let places = &self.distinct.place;
         if places.len() < 3 {
             return Err(Error::Invalid(format!(
@@ -52,7 +49,7 @@ impl Places {
 
     /// The distance from each point to its [`RADIUS_NEIGHBOURS`]th neighbour, or to the last there
     /// is, rounded to `f32` once.
-    pub(super) fn radii(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Vec<f32>> {
+    pub(super) fn radii(&self, exec: &Exec, progress: Progress<'_>) -> Result<Vec<f32>> {
         if self.distinct.place.len() < 2 {
             let what = "radii are missing and cannot be derived: all points stand at one place; \
                         give a radius";

@@ -5,6 +5,7 @@ use super::{
 };
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::progress::Progress;
 use crate::scene::indexed::{self, Indexed};
 use crate::scene::{Cloud, Dropped, Polylines, Surfels, Triangles, Vertices};
 use crate::source::hybrid::{HalfSpace, split};
@@ -23,7 +24,7 @@ use std::cell::OnceCell;
 pub fn polygons(
     mut cloud: Cloud,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<(Triangles, Derived)> {
     some_triangles(&cloud)?;
     let before = cloud.triangles.len();
@@ -55,7 +56,7 @@ pub fn hybrid(
     half: &HalfSpace,
     options: &Derive,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<(Surfels, Triangles, Derived)> {
     some_triangles(&cloud)?;
     let before = cloud.triangles.len();

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
+use crate::progress::Progress;
 use crate::scene::texture::Ellipse;
 use crate::scene::{Cloud, Coordinates, Mipmap, Paint};
 use glam::{DVec3, Vec2, Vec3};
@@ -22,11 +23,7 @@ type Key = (u32, [u32; 2], u32);
 ///
 /// # Errors
 /// [`Error::Invalid`] if there are no coordinates, or if the process may not hold the colours.
-pub(super) fn facets(
-    cloud: &Cloud,
-    exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
-) -> Result<Option<Colors>> {
+pub(super) fn facets(cloud: &Cloud, exec: &Exec, progress: Progress<'_>) -> Result<Option<Colors>> {
     let Some(paint) = &cloud.paint else { return Ok(None) };
     let coordinates = coordinates(cloud)?;
     let find = |i: usize, scale: f64| {
@@ -46,7 +43,7 @@ pub(super) fn points(
     cloud: Cloud,
     radius: &[f32],
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Cloud> {
     let Some(paint) = &cloud.paint else { return Ok(Cloud { coordinates: None, ..cloud }) };
     let coordinates = coordinates(&cloud)?;
@@ -85,7 +82,7 @@ fn colors(
     count: usize,
     find: &(dyn Fn(usize, f64) -> Vec3 + Sync),
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Colors> {
     let levels = paint.levels();
     memory::ask(count as u64 * 12 * (levels as u64 + 1), || {

@@ -54,6 +54,7 @@
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::progress::Progress;
 use crate::scene::objects::detail::prefix::Estimate;
 use crate::scene::{Cloud, Primitives, Scene, Surfels, Triangles};
 use crate::source::candidates::{self, Directions, candidates};
@@ -168,7 +169,7 @@ pub fn approximate(
     count: u32,
     settings: &Settings,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Cloud> {
     let mut side = settings.side_of(count);
     let cloud = loop {
@@ -192,7 +193,7 @@ fn seen(
     side: u32,
     settings: &Settings,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Cloud> {
     if triangles.is_empty() {
         return Ok(Cloud::default());
@@ -215,7 +216,7 @@ impl Settings {
         points: &[Vec3],
         count: usize,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<Order> {
         let (start, seed) = (Start::Seed(self.seed), self.seed);
         match self.sampler {

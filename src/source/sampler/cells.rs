@@ -34,6 +34,7 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::point_tree::PointTree;
 use crate::memory;
+use crate::progress::Progress;
 use glam::{DVec3, Vec3};
 
 /// Points of one job.
@@ -52,7 +53,7 @@ pub fn averaged(
     order: &Order,
     count: usize,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Vec<Vec3>> {
     check(points, colors, order, count)?;
     let bytes = points.len() as u64 * BYTES[0] + count as u64 * BYTES[1];

@@ -70,6 +70,7 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
 use crate::number::random;
+use crate::progress::Progress;
 use glam::Vec3;
 use order::Division;
 pub use order::Order;
@@ -106,7 +107,7 @@ impl Greedy {
         points: &[Vec3],
         count: usize,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<Order> {
         let start = self.start.of(points)?;
         let bytes = points.len() as u64 * BYTES_A_POINT;

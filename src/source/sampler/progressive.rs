@@ -45,6 +45,7 @@ use super::nearest::Nearest;
 use crate::error::Result;
 use crate::memory;
 use crate::number::random;
+use crate::progress::Progress;
 use glam::Vec3;
 
 /// Samples of a round, at first.
@@ -90,12 +91,7 @@ impl Progressive {
     ///
     /// # Errors
     /// As [`super::Greedy::order`].
-    pub fn order(
-        &self,
-        points: &[Vec3],
-        count: usize,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Order> {
+    pub fn order(&self, points: &[Vec3], count: usize, progress: Progress<'_>) -> Result<Order> {
         let start = self.start.of(points)?;
         memory::ask(points.len() as u64 * BYTES, || {
             format!("an order of {} points", points.len())
@@ -223,12 +219,7 @@ impl Rest {
 ///
 /// # Errors
 /// As [`super::Greedy::order`].
-pub fn shuffled(
-    points: &[Vec3],
-    seed: u64,
-    count: usize,
-    progress: &dyn Fn(&str, u64, u64),
-) -> Result<Order> {
+pub fn shuffled(points: &[Vec3], seed: u64, count: usize, progress: Progress<'_>) -> Result<Order> {
     Start::Seed(seed).of(points)?;
     memory::ask(points.len() as u64 * BYTES, || format!("an order of {} points", points.len()))?;
     let mut keys: Vec<(u64, u32)> =

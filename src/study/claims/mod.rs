@@ -28,6 +28,7 @@ use crate::error::Result;
 use crate::frame::{Exec, Plane};
 use crate::io::scene_file::SceneFile;
 use crate::method::stored::{Buffers, DepthBuffer, Formats};
+use crate::progress::Progress;
 use crate::source::Shape;
 use subject::Subject;
 
@@ -129,7 +130,7 @@ pub fn verdicts(
     claims: &[&'static Claim],
     (scans, formats): (&[SceneFile], &[(&str, Formats)]),
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Vec<Verdict>> {
     let none = |of: &&'static Claim| Verdict { of, found: Vec::new(), stored: Vec::new() };
     let mut all: Vec<Verdict> = claims.iter().map(none).collect();

@@ -5,6 +5,7 @@ use crate::frame::Exec;
 use crate::index::grouping::Grouping;
 use crate::io::scene_file::{GroupChoice, Loaded, MethodChoice, OutputSettings, Ready, SceneFile};
 use crate::method::{Method, Session};
+use crate::progress::Progress;
 use crate::scene::Groups;
 use crate::scene::objects::detail::refine::Refinement;
 use crate::study::sweep::Candidate;
@@ -69,7 +70,7 @@ impl<'e> Bench<'e> {
     pub fn load(
         candidates: Vec<Candidate>,
         exec: &'e Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<(Self, Vec<Candidate>, Vec<LeftOut>)> {
         let mut bench = Self { exec, files: Vec::new(), loads: Vec::new(), groups: Vec::new() };
         let (mut kept, mut left_out, mut first) = (Vec::new(), Vec::<LeftOut>::new(), None);
@@ -94,7 +95,7 @@ impl<'e> Bench<'e> {
     }
 
     /// The scene of a candidate, of those that are loaded if it is among them.
-    fn scene(&mut self, candidate: &Candidate, progress: &dyn Fn(&str, u64, u64)) -> Result<usize> {
+    fn scene(&mut self, candidate: &Candidate, progress: Progress<'_>) -> Result<usize> {
         let method = candidate.file.method.method()?;
         let plain = SceneFile {
             method: MethodChoice::default(),
@@ -119,7 +120,7 @@ impl<'e> Bench<'e> {
     }
 
     /// What a scene of objects is made of, read once whatever is asked of its levels of detail; geometries are shared.
-    fn file(&mut self, plain: &SceneFile, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
+    fn file(&mut self, plain: &SceneFile, progress: Progress<'_>) -> Result<Loaded> {
         let all = SceneFile { refinement: Refinement::default(), ..plain.clone() };
         if let Some((_, loaded)) = self.files.iter().find(|(file, _)| *file == all) {
             return Ok(loaded.clone());
@@ -133,11 +134,7 @@ impl<'e> Bench<'e> {
     ///
     /// # Errors
     /// As [`Session::prepare`].
-    pub fn visit(
-        &mut self,
-        candidate: &Candidate,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Visit<'_>> {
+    pub fn visit(&mut self, candidate: &Candidate, progress: Progress<'_>) -> Result<Visit<'_>> {
         let method = candidate.file.method.method()?;
         let chosen = candidate.file.grouping(&method)?;
         let load = self.scene(candidate, progress)?;
@@ -154,7 +151,7 @@ impl<'e> Bench<'e> {
         load: usize,
         method: &Method,
         chosen: Option<Grouping>,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<Option<&Groups>> {
         let Some(default) = method.grouping() else { return Ok(None) };
         let scene = &self.loads[load].ready.loaded.scene;

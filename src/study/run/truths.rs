@@ -13,6 +13,7 @@ use crate::error::Result;
 use crate::frame::{Exec, Plane};
 use crate::io::scene_file::{Draw, GroupChoice, MethodChoice, SceneFile, Source};
 use crate::method::Method;
+use crate::progress::Progress;
 use crate::scene::{Camera, Scene, Surfels};
 use crate::setting::{Fields, Value};
 use crate::study::truth::{self, Surface, Truth};
@@ -45,12 +46,7 @@ impl Known {
     ///
     /// # Errors
     /// As [`SceneFile::ready`] where not even points can be drawn.
-    pub fn of(
-        file: &SceneFile,
-        lit: &Scene,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Self> {
+    pub fn of(file: &SceneFile, lit: &Scene, exec: &Exec, progress: Progress<'_>) -> Result<Self> {
         let method = file.method.method()?;
         let cull = method.values().contains(&("cull", Value::Switch(true)));
         let (surfels, surfaces, unknown) = match surfaces(file, exec, progress) {
@@ -84,7 +80,7 @@ impl Known {
         &self,
         looks: (&Camera, &[[u32; 2]]),
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<Truth> {
         if self.unknown.is_some() {
             return truth::of_points(&self.scene, looks, exec, progress);
@@ -96,12 +92,7 @@ impl Known {
     ///
     /// # Errors
     /// As [`truth::of_surfaces`] and [`truth::of_points`].
-    pub fn still(
-        &self,
-        camera: &Camera,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Truth> {
+    pub fn still(&self, camera: &Camera, exec: &Exec, progress: Progress<'_>) -> Result<Truth> {
         self.picture((camera, &[]), exec, progress)
     }
 
@@ -110,12 +101,7 @@ impl Known {
     ///
     /// # Errors
     /// As [`truth::of_surfaces`] and [`truth::of_points`].
-    pub fn pictures(
-        &self,
-        camera: &Camera,
-        exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Truths> {
+    pub fn pictures(&self, camera: &Camera, exec: &Exec, progress: Progress<'_>) -> Result<Truths> {
         let still = self.picture((camera, &cameras::shifts()), exec, progress)?;
         let mut path = Vec::new();
         if self.unknown.is_none() {
@@ -134,7 +120,7 @@ impl Known {
 fn surfaces(
     file: &SceneFile,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> std::result::Result<Vec<Surface>, String> {
     if file.hierarchy.is_some() {
         return Err("a hierarchy shows what its nodes hold".into());
@@ -171,7 +157,7 @@ fn drawn(
     file: &SceneFile,
     draw: impl Fn(Draw) -> Draw,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Scene> {
     let mut whole = file.clone();
     for model in whole.all_models_mut() {

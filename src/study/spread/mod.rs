@@ -18,6 +18,7 @@ pub use draw::{MOST_ORDERS, MOST_PREFIXES, MOST_UNITS, chart};
 use super::chart::violin::quantile;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::progress::Progress;
 use crate::source::sampler::{Spectrum, quality, spectrum};
 use glam::Vec3;
 
@@ -81,7 +82,7 @@ pub fn measure(
     prefixes: &[usize],
     spectra: bool,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Vec<AtPrefix>> {
     for Ordered { name, points } in orders {
         for &prefix in prefixes {

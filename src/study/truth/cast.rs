@@ -6,6 +6,7 @@ use super::{How, SAMPLES, Surface, Truth, frame};
 use crate::error::Result;
 use crate::frame::{Exec, Plane, Rect};
 use crate::memory;
+use crate::progress::Progress;
 use crate::scene::{Camera, Scene};
 
 /// The true picture of surfaces under the lights of a scene, and its colours under shifts by eighths of a
@@ -20,7 +21,7 @@ pub fn of_surfaces(
     cull: bool,
     (camera, shifts): (&Camera, &[[u32; 2]]),
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Truth> {
     camera.check()?;
     let grid = exec.grid(camera.width, camera.height);

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::frame::{Exec, NamedPlane, Plane, Rect, Samples};
 use crate::memory;
 use crate::method::{Method, Session, ewa, peeling};
+use crate::progress::Progress;
 use crate::scene::{Camera, Primitives, Scene};
 use std::borrow::Cow;
 
@@ -23,7 +24,7 @@ pub fn of_points(
     scene: &Scene,
     (camera, shifts): (&Camera, &[[u32; 2]]),
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Result<Truth> {
     camera.check()?;
     let (width, height) = (camera.width, camera.height);

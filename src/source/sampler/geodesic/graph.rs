@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::point_tree::PointTree;
 use crate::memory;
+use crate::progress::Progress;
 use crate::source::sampler::greedy::squared_distance;
 use crate::source::sampler::search::LEAF;
 use glam::Vec3;
@@ -41,7 +42,7 @@ impl Graph {
         normals: &[Vec3],
         reach: f32,
         exec: &Exec,
-        progress: &dyn Fn(&str, u64, u64),
+        progress: Progress<'_>,
     ) -> Result<Self> {
         check(points, normals, reach)?;
         let n = points.len();

@@ -55,6 +55,7 @@ pub(super) use graph::alike;
 use super::greedy::{Greedy, Order};
 use crate::error::Result;
 use crate::memory;
+use crate::progress::Progress;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -70,12 +71,7 @@ impl Greedy {
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if the start is not the index of a point.
-    pub fn along(
-        &self,
-        graph: &Graph,
-        count: usize,
-        progress: &dyn Fn(&str, u64, u64),
-    ) -> Result<Order> {
+    pub fn along(&self, graph: &Graph, count: usize, progress: Progress<'_>) -> Result<Order> {
         let n = graph.len();
         let mut next = self.start.among(n)?;
         memory::ask(n as u64 * BYTES_A_POINT, || format!("distances along {n} points"))?;

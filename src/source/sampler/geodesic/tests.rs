@@ -5,10 +5,11 @@ use super::*;
 use crate::frame::Exec;
 use crate::index::point_tree::given;
 use crate::number::random;
+use crate::progress::Progress;
 use glam::Vec3;
 use proptest::prelude::*;
 
-const SILENT: &dyn Fn(&str, u64, u64) = &|_, _, _| ();
+const SILENT: Progress<'static> = &|_, _, _| ();
 
 fn graph(points: &[Vec3], normals: &[Vec3], reach: f32) -> Graph {
     Graph::new(points, normals, reach, &Exec::sequential(), SILENT).unwrap()

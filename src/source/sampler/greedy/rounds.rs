@@ -4,6 +4,7 @@ use super::build;
 use super::order::{Division, Order};
 use super::tree::{Border, Key, Region, reach, relax};
 use crate::frame::Exec;
+use crate::progress::Progress;
 use glam::Vec3;
 use std::collections::BinaryHeap;
 use std::collections::binary_heap::PeekMut;
@@ -21,7 +22,7 @@ pub(super) fn order(
     count: usize,
     how: &Division,
     exec: &Exec,
-    progress: &dyn Fn(&str, u64, u64),
+    progress: Progress<'_>,
 ) -> Order {
     let mut order = Order::default();
     if count == 0 {

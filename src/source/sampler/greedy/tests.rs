@@ -4,9 +4,10 @@ use super::order::Division;
 use super::rounds;
 use super::*;
 use crate::index::point_tree::given;
+use crate::progress::Progress;
 use proptest::prelude::*;
 
-const SILENT: &dyn Fn(&str, u64, u64) = &|_, _, _| ();
+const SILENT: Progress<'static> = &|_, _, _| ();
 
 fn random_points(seed: u64, n: u64) -> Vec<Vec3> {
     (0..n).map(|i| Vec3::from([0, 1, 2].map(|j| random::unit(seed, 3 * i + j)))).collect()
