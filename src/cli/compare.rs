@@ -4,7 +4,7 @@ use super::{Ended, Ending, report, say};
 use splatref::compare::metrics;
 use splatref::compare::{Criteria, Tolerance, Verdict, compare};
 use splatref::frame::{Exec, Image};
-use splatref::io::{exr, npy, png};
+use splatref::io::{exr, extension, npy, png};
 use splatref::number::srgb;
 use splatref::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -117,8 +117,7 @@ enum PictureFile {
 
 impl PictureFile {
     fn read(path: &Path, args: &Args, exec: &Exec) -> Result<Self> {
-        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-        match extension.as_deref() {
+        match extension(path).as_deref() {
             Some("png") => png::read(path).map(Self::Png),
             Some("npy") => {
                 let stem = path.file_stem().unwrap_or_default().to_string_lossy();

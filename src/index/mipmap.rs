@@ -47,13 +47,12 @@
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::index::point_tree::PointTree;
+use crate::index::point_tree::{Entry, PointTree, Search};
 use crate::memory;
 use crate::progress::Progress;
 use crate::scene::mipmap::check_levels;
 use crate::scene::{Mipmap, Surfels};
 use glam::{DVec3, Vec3};
-use std::ops::Range;
 
 /// How much smaller than R cells are, as an exponent of 2.
 const FINER: i32 = 2;
@@ -188,52 +187,46 @@ impl<'a> Samples<'a> {
 
     /// The means around some surfels at some levels; none where nothing has weight.
     fn means(&self, some: &[(usize, usize)]) -> Vec<Option<Vec3>> {
-        let mut found = Vec::new();
+        let (entries, center) = (self.tree.entries(), DVec3::ZERO);
+        let mut within = Within { entries, center, reach2: 0.0, found: Vec::new() };
         let mean = |&(i, k): &(usize, usize)| {
-            let center = self.surfels.position()[i].as_dvec3();
+            let point = self.surfels.position()[i];
+            let center = point.as_dvec3();
             let reach = power(k as i32) * size(self.surfels, i);
             let reach2 = reach * reach;
-            found.clear();
-            self.find(0..self.all.len(), center, (reach2, [0.0; 3]), &mut found);
-            found.sort_unstable();
-            let near = found.iter().map(|&id| &self.all[id as usize]);
+            (within.center, within.reach2) = (center, reach2);
+            within.found.clear();
+            self.tree.search(point, &mut within);
+            within.found.sort_unstable();
+            let near = within.found.iter().map(|&id| &self.all[id as usize]);
             mean(near, (center, self.surfels.normal()[i].as_dvec3()), reach2)
         };
         some.iter().map(mean).collect()
     }
+}
 
-    /// Appends the samples of a range that are nearer than R. `offset` is how far away the range is
-    /// along each axis, at least; as rounding is monotone, no sample in it is nearer than that.
-    fn find(
-        &self,
-        range: Range<usize>,
-        center: DVec3,
-        (reach2, offset): (f64, [f64; 3]),
-        found: &mut Vec<u32>,
-    ) {
-        let entries = self.tree.entries();
-        let mut offer = |at: usize| {
-            let d = entries[at].point.as_dvec3() - center;
-            if dot(d, d) < reach2 {
-                found.push(entries[at].id);
-            }
-        };
-        if range.len() <= LEAF {
-            range.for_each(offer);
-            return;
+/// The search of all samples that are nearer than R.
+struct Within<'a> {
+    entries: &'a [Entry],
+    center: DVec3,
+    reach2: f64,
+    found: Vec<u32>,
+}
+
+impl Search for Within<'_> {
+    #[inline]
+    fn look(&mut self, rank: usize) {
+        let entry = &self.entries[rank];
+        let d = entry.point.as_dvec3() - self.center;
+        if dot(d, d) < self.reach2 {
+            self.found.push(entry.id);
         }
-        let (middle, axis) = self.tree.node(&range);
-        offer(middle);
-        let beyond = center[axis] - f64::from(entries[middle].point[axis]);
-        let (low, high) = (range.start..middle, middle + 1..range.end);
-        let (near, far) = if beyond < 0.0 { (low, high) } else { (high, low) };
-        self.find(near, center, (reach2, offset), found);
-        let mut offset = offset;
-        offset[axis] = beyond;
+    }
+
+    #[inline]
+    fn reaches(&self, offset: [f64; 3]) -> bool {
         let away = DVec3::from_array(offset);
-        if dot(away, away) < reach2 {
-            self.find(far, center, (reach2, offset), found);
-        }
+        dot(away, away) < self.reach2
     }
 }
 

@@ -13,6 +13,7 @@
 use crate::frame::Exec;
 use glam::Vec3;
 use std::cmp::Ordering;
+use std::ops::Range;
 
 /// Ranges up to this length are split in one job.
 const JOB: usize = 1 << 13;
@@ -23,6 +24,17 @@ pub(crate) struct PointTree {
     entries: Vec<Entry>,
     /// For the middle of a range that was split, its axis.
     axis: Vec<u8>,
+    /// The most points of a range that is not split.
+    leaf: usize,
+}
+
+/// What a search of the tree looks for.
+pub(crate) trait Search {
+    /// Looks at the point of a rank.
+    fn look(&mut self, rank: usize);
+
+    /// Whether to look at points that are at least so far from the place of the search along each axis.
+    fn reaches(&self, offset: [f64; 3]) -> bool;
 }
 
 /// A point and its index.
@@ -48,7 +60,7 @@ impl PointTree {
             parts = exec.ordered(parts, halve).into_iter().flatten().collect();
         }
         exec.ordered(parts, |part| split(part, leaf));
-        Self { entries, axis }
+        Self { entries, axis, leaf }
     }
 
     /// All points, in the order of the tree.
@@ -56,9 +68,40 @@ impl PointTree {
         &self.entries
     }
 
+    /// Shows a search all points that it reaches from a place, and others; the nearer half of a range first.
+    ///
+    /// Where distances are computed of coordinates in the same way as of offsets, rounding is monotone: no
+    /// point behind a plane is nearer than the plane.
+    pub(crate) fn search(&self, from: Vec3, search: &mut impl Search) {
+        self.descend(0..self.entries.len(), from, [0.0; 3], search);
+    }
+
+    fn descend(
+        &self,
+        range: Range<usize>,
+        from: Vec3,
+        mut offset: [f64; 3],
+        search: &mut impl Search,
+    ) {
+        if range.len() <= self.leaf {
+            range.for_each(|rank| search.look(rank));
+            return;
+        }
+        let (middle, axis) = self.node(&range);
+        search.look(middle);
+        let beyond = f64::from(from[axis]) - f64::from(self.entries[middle].point[axis]);
+        let (low, high) = (range.start..middle, middle + 1..range.end);
+        let (near, far) = if beyond < 0.0 { (low, high) } else { (high, low) };
+        self.descend(near, from, offset, search);
+        offset[axis] = beyond;
+        if search.reaches(offset) {
+            self.descend(far, from, offset, search);
+        }
+    }
+
     /// The rank of the point that splits a range, and the axis along which it does.
     #[inline(always)]
-    pub(crate) fn node(&self, range: &std::ops::Range<usize>) -> (usize, usize) {
+    pub(crate) fn node(&self, range: &Range<usize>) -> (usize, usize) {
         let middle = range.start + range.len() / 2;
         (middle, usize::from(self.axis[middle]))
     }

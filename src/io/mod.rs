@@ -31,5 +31,13 @@ pub mod scene_file;
 pub mod state;
 pub mod texture;
 
+use std::path::Path;
+
+/// The extension of a file's name, in lower case.
+#[must_use]
+pub fn extension(path: &Path) -> Option<String> {
+    Some(path.extension()?.to_string_lossy().to_ascii_lowercase())
+}
+
 /// A result or the reason why not, without the file's name.
 type Reason<T> = Result<T, String>;

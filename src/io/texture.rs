@@ -15,6 +15,7 @@
 //! [`crate::source::candidates`]. It takes the place of all colours of the file.
 
 use super::environment::rgb;
+use super::extension;
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Plane};
 use crate::scene::{Cloud, Paint, Texture};
@@ -26,8 +27,7 @@ use std::path::{Path, PathBuf};
 /// [`Error::Io`] if it cannot be read; [`Error::Format`] if its name is none of a PNG or an EXR, as the readers of
 /// those, if a channel is absent, or as [`Texture::new`].
 pub fn read(path: &Path, exec: &Exec) -> Result<Texture> {
-    let extension = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase());
-    let texels = match extension.as_deref() {
+    let texels = match extension(path).as_deref() {
         Some("exr") => rgb(path, exec, "a texture", Texture::check_size)?,
         Some("png") => png(path)?,
         _ => return Err(Error::format(path, "no texture; give a .png or an .exr")),

@@ -123,6 +123,19 @@ pub(crate) fn named<R>(name: &str, samples: Samples<R>) -> NamedPlane<R> {
 /// Stages, in order, and the wall time of each.
 pub type Laps = Vec<(&'static str, Duration)>;
 
+/// The wall time divided among stages, as the time of all tiles is.
+pub(crate) fn wall_shares<const N: usize>(
+    wall: Duration,
+    tiles: &[[Duration; N]],
+) -> [Duration; N] {
+    let sums: [Duration; N] = std::array::from_fn(|i| tiles.iter().map(|tile| tile[i]).sum());
+    let total: Duration = sums.iter().sum();
+    sums.map(|part| match total.as_secs_f64() {
+        0.0 => Duration::ZERO,
+        total => wall.mul_f64(part.as_secs_f64() / total),
+    })
+}
+
 /// Takes the wall times of stages.
 pub(crate) struct Clock {
     start: Instant,
@@ -157,14 +170,8 @@ impl Clock {
         names: [&'static str; N],
         tiles: &[[Duration; N]],
     ) {
-        let wall = self.start.elapsed();
-        let sums: [Duration; N] = std::array::from_fn(|i| tiles.iter().map(|tile| tile[i]).sum());
-        let total: Duration = sums.iter().sum();
-        let share = |part: Duration| match total.as_secs_f64() {
-            0.0 => Duration::ZERO,
-            total => wall.mul_f64(part.as_secs_f64() / total),
-        };
-        self.laps.extend(names.into_iter().zip(sums.map(share)));
+        let shares = wall_shares(self.start.elapsed(), tiles);
+        self.laps.extend(names.into_iter().zip(shares));
         self.start = Instant::now();
     }
 

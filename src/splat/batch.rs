@@ -1,10 +1,10 @@
 //! Projection of many surfels: the visible ones as splats, the others counted.
 
 use super::disc_lanes::DiscLanes;
-use super::{Disc, Fate, Footprint, Outline, Projector, Splat, project};
+use super::{Disc, FOOTPRINT, Fate, Footprint, Outline, Projector, Splat, project};
 use crate::frame::Rect;
 use crate::number::lanes::{LANES, Lanes, vectorized};
-use crate::number::{Exact, Real, Vector2, Vector3};
+use crate::number::{Exact, Real, Vector3};
 use crate::scene::Surfels;
 use std::ops::Range;
 
@@ -179,7 +179,7 @@ vectorized!(
             let mut fates = [0_u32; LANES];
             for (i, fate) in fates.iter_mut().enumerate() {
                 let (f, b, [back, _], reasons) = projector.affine_disc(&discs.get(i));
-                splats.put(i, &f, &b, back);
+                splats.put(i, f, &b, back);
                 *fate = reasons.fate() as u32;
             }
             // -- The visible ones
@@ -204,7 +204,7 @@ vectorized!(
 /// [`LANES`] splats, each of their numbers a vector.
 struct SplatLanes {
     /// The footprint, in the order of its fields.
-    numbers: [Lanes; 11],
+    numbers: [Lanes; FOOTPRINT],
     /// The bounds, in the order of their fields.
     bounds: [[u32; LANES]; 4],
     back: [u32; LANES],
@@ -213,16 +213,14 @@ struct SplatLanes {
 impl SplatLanes {
     #[inline(always)]
     fn new() -> Self {
-        Self { numbers: [[0.0; LANES]; 11], bounds: [[0; LANES]; 4], back: [0; LANES] }
+        Self { numbers: [[0.0; LANES]; FOOTPRINT], bounds: [[0; LANES]; 4], back: [0; LANES] }
     }
 
     #[inline(always)]
-    fn put(&mut self, i: usize, f: &Footprint<f32>, b: &Rect, back: bool) {
-        let n = &mut self.numbers;
-        (n[0][i], n[1][i]) = (f.center.x, f.center.y);
-        (n[2][i], n[3][i], n[4][i]) = (f.ux, f.uy, f.vy);
-        (n[5][i], n[6][i], n[7][i]) = (f.w0, f.wx, f.wy);
-        (n[8][i], n[9][i], n[10][i]) = (f.w_far, f.w_near, f.amplitude);
+    fn put(&mut self, i: usize, f: Footprint<f32>, b: &Rect, back: bool) {
+        for (lanes, number) in self.numbers.iter_mut().zip(f.numbers()) {
+            lanes[i] = number;
+        }
         let pixels = &mut self.bounds;
         (pixels[0][i], pixels[1][i], pixels[2][i], pixels[3][i]) = (b.x0, b.y0, b.x1, b.y1);
         self.back[i] = u32::from(back);
@@ -230,21 +228,10 @@ impl SplatLanes {
 
     #[inline(always)]
     fn get(&self, i: usize, surfel: u32) -> Splat<f32> {
-        let n = |field: usize| self.numbers[field][i];
+        let numbers = std::array::from_fn(|field| self.numbers[field][i]);
         let pixel = |field: usize| self.bounds[field][i];
         Splat {
-            footprint: Footprint {
-                center: Vector2::new(n(0), n(1)),
-                ux: n(2),
-                uy: n(3),
-                vy: n(4),
-                w0: n(5),
-                wx: n(6),
-                wy: n(7),
-                w_far: n(8),
-                w_near: n(9),
-                amplitude: n(10),
-            },
+            footprint: Footprint::of_numbers(numbers),
             bounds: Rect { x0: pixel(0), y0: pixel(1), x1: pixel(2), y1: pixel(3) },
             surfel,
             back: self.back[i] != 0,

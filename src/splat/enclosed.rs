@@ -12,11 +12,11 @@
 )]
 
 use super::disc_lanes::DiscLanes;
-use super::{Footprint, Projector, Reasons, Splat};
+use super::{FOOTPRINT, Footprint, Projector, Reasons, Splat};
 use crate::frame::Rect;
 use crate::number::ball::{BallLanes, Common, Profile, Three};
 use crate::number::lanes::{LANES, vectorized};
-use crate::number::{Ball, Truth, Vector2};
+use crate::number::{Ball, Truth};
 use crate::scene::Surfels;
 use std::ops::Range;
 
@@ -59,7 +59,7 @@ vectorized!(
             for i in 0..LANES {
                 let (f, b, truths, reasons) = projector.affine_disc(&discs.get(i));
                 splats.known[i] = known(&f, &b, picture, truths[1], &reasons);
-                splats.put(i, &f, &b, truths[0]);
+                splats.put(i, f, &b, truths[0]);
             }
             // -- Those that may be drawn
             for (i, &surfel) in some.iter().enumerate() {
@@ -120,7 +120,7 @@ fn known<P: Profile>(
 /// [`LANES`] splats, each of their numbers a vector.
 struct SplatLanes<P: Profile> {
     /// The footprint, in the order of its fields.
-    numbers: [BallLanes<P>; 11],
+    numbers: [BallLanes<P>; FOOTPRINT],
     /// The bounds, in the order of their fields.
     bounds: [[u32; LANES]; 4],
     /// Whether the back is seen: certainly, by the midpoints, possibly.
@@ -131,24 +131,15 @@ struct SplatLanes<P: Profile> {
 impl<P: Profile> SplatLanes<P> {
     #[inline(always)]
     fn new() -> Self {
-        let numbers = [BallLanes::ZERO; 11];
+        let numbers = [BallLanes::ZERO; FOOTPRINT];
         Self { numbers, bounds: [[0; LANES]; 4], back: [[0; LANES]; 3], known: [0; LANES] }
     }
 
     #[inline(always)]
-    fn put(&mut self, i: usize, f: &Footprint<Ball<P>>, b: &Rect, back: Three) {
-        let n = &mut self.numbers;
-        n[0].put(i, f.center.x);
-        n[1].put(i, f.center.y);
-        n[2].put(i, f.ux);
-        n[3].put(i, f.uy);
-        n[4].put(i, f.vy);
-        n[5].put(i, f.w0);
-        n[6].put(i, f.wx);
-        n[7].put(i, f.wy);
-        n[8].put(i, f.w_far);
-        n[9].put(i, f.w_near);
-        n[10].put(i, f.amplitude);
+    fn put(&mut self, i: usize, f: Footprint<Ball<P>>, b: &Rect, back: Three) {
+        for (lanes, number) in self.numbers.iter_mut().zip(f.numbers()) {
+            lanes.put(i, number);
+        }
         let pixels = &mut self.bounds;
         (pixels[0][i], pixels[1][i], pixels[2][i], pixels[3][i]) = (b.x0, b.y0, b.x1, b.y1);
         self.back[0][i] = u32::from(back.certainly());
@@ -158,22 +149,11 @@ impl<P: Profile> SplatLanes<P> {
 
     #[inline(always)]
     fn get<Q: Profile<Terms = P::Terms>>(&self, i: usize, surfel: u32) -> Splat<Ball<Q>> {
-        let n = |field: usize| self.numbers[field].get(i).rounding_as();
+        let numbers = std::array::from_fn(|field| self.numbers[field].get(i).rounding_as());
         let pixel = |field: usize| self.bounds[field][i];
         let back = |field: usize| self.back[field][i] != 0;
         Splat {
-            footprint: Footprint {
-                center: Vector2::new(n(0), n(1)),
-                ux: n(2),
-                uy: n(3),
-                vy: n(4),
-                w0: n(5),
-                wx: n(6),
-                wy: n(7),
-                w_far: n(8),
-                w_near: n(9),
-                amplitude: n(10),
-            },
+            footprint: Footprint::of_numbers(numbers),
             bounds: Rect { x0: pixel(0), y0: pixel(1), x1: pixel(2), y1: pixel(3) },
             surfel,
             back: Three::new([back(0), back(1), back(2)]),

@@ -150,6 +150,9 @@ pub struct Footprint<R> {
     pub amplitude: R,
 }
 
+/// How many numbers a footprint has.
+pub(crate) const FOOTPRINT: usize = 11;
+
 /// What the fragments of a splat in one column of pixels share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Column<R> {
@@ -244,6 +247,21 @@ impl<R> Footprint<R> {
             w_near: f(self.w_near),
             amplitude: f(self.amplitude),
         }
+    }
+
+    /// The numbers in the order of the fields.
+    #[inline(always)]
+    pub(crate) fn numbers(self) -> [R; FOOTPRINT] {
+        let Self { center, ux, uy, vy, w0, wx, wy, w_far, w_near, amplitude } = self;
+        [center.x, center.y, ux, uy, vy, w0, wx, wy, w_far, w_near, amplitude]
+    }
+
+    /// The footprint with these [`Footprint::numbers`].
+    #[inline(always)]
+    pub(crate) fn of_numbers(numbers: [R; FOOTPRINT]) -> Self {
+        let [x, y, ux, uy, vy, w0, wx, wy, w_far, w_near, amplitude] = numbers;
+        let center = Vector2::new(x, y);
+        Self { center, ux, uy, vy, w0, wx, wy, w_far, w_near, amplitude }
     }
 }
 

@@ -40,6 +40,17 @@ pub enum Ties {
     Any,
 }
 
+impl Ties {
+    /// Whether a fragment of `surfel` is kept before one of `other` that is as near.
+    pub(crate) fn keeps(self, surfel: u32, other: u32) -> bool {
+        match self {
+            Self::Lowest => surfel < other,
+            Self::Last => surfel > other,
+            Self::Any => false,
+        }
+    }
+}
+
 impl Words for Ties {
     const WORDS: &'static [(&'static str, Self)] =
         &[("lowest", Self::Lowest), ("last", Self::Last), ("any", Self::Any)];

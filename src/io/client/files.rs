@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::frame::image::Values;
 use crate::frame::{Exec, Image};
 use crate::io::exr::{self, ChannelType};
-use crate::io::{Reason, npy};
+use crate::io::{Reason, extension, npy};
 use crate::method::Holds;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -25,8 +25,7 @@ pub(super) enum Kind {
 
 impl Kind {
     pub(super) fn of(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_string_lossy().to_ascii_lowercase();
-        match extension.as_str() {
+        match extension(path)?.as_str() {
             "exr" => Some(Self::Exr),
             "npy" => Some(Self::Npy),
             "png" => Some(Self::Png),

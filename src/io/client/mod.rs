@@ -132,7 +132,7 @@ mod wanted;
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::io::input;
+use crate::io::{extension, input};
 use crate::method::Stage;
 use crate::verdict::client::Client;
 #[cfg(doc)]
@@ -154,8 +154,7 @@ impl Description {
     /// [`Error::Usage`] if the file is of another kind. [`Error::Io`] if a TOML file cannot be read,
     /// [`Error::Format`] if it has an unknown key, a value of the wrong type or what cannot be.
     pub fn open(path: &Path) -> Result<Self> {
-        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-        let sidecar = match extension.as_deref() {
+        let sidecar = match extension(path).as_deref() {
             Some("exr") => Sidecar::of_picture(path),
             Some("toml") => {
                 let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;

@@ -4,7 +4,7 @@ use super::{DEFAULT_COUNT, SceneFile, Source};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::hierarchy::Hierarchy;
-use crate::io::{input, obj, ply};
+use crate::io::{extension, input, obj, ply};
 use crate::scene::Cloud;
 use crate::source::{Shape, plant};
 use std::path::Path;
@@ -49,8 +49,7 @@ impl FileKind {
     /// # Errors
     /// [`Error::Usage`] if the extension is none that is known.
     pub fn of(path: &Path) -> Result<Self> {
-        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-        match extension.as_deref() {
+        match extension(path).as_deref() {
             Some("ply") => Ok(Self::Ply),
             Some("obj") => Ok(Self::Obj),
             Some("toml") => Ok(Self::Toml),

@@ -13,7 +13,7 @@
 //! each a number; its other properties are skipped, as are other elements.
 
 use crate::error::{Error, Result};
-use crate::io::{Reason, input, ply};
+use crate::io::{Reason, extension, input, ply};
 use crate::scene::light::{MAX_RADIANCE, is_color};
 use crate::scene::{Similarity, transform};
 use glam::{DMat3, DVec3, Vec3};
@@ -37,8 +37,7 @@ pub(super) struct Row {
 /// are missing, given twice or, in CSV, unknown, if there are no rows, or if a row is no place.
 pub(super) fn read(path: &Path) -> Result<Vec<Row>> {
     let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
-    let extension = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase());
-    let rows = match extension.as_deref() {
+    let rows = match extension(path).as_deref() {
         Some("csv") => csv(&bytes),
         Some("ply") => of_ply(&bytes),
         _ => Err("a table of places is a .csv or a .ply".into()),

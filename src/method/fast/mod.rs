@@ -10,6 +10,7 @@ pub(super) mod store;
 pub(super) mod tile;
 
 use super::algorithm::Job;
+use super::picture::wall_shares;
 use super::prepare::Prepared;
 use crate::frame::Framebuffer;
 use crate::splat::SplatSettings;
@@ -75,12 +76,5 @@ pub(super) fn draw<const N: usize>(
         }
         watch.times
     });
-    let wall = start.elapsed();
-    let zero = [Duration::ZERO; N];
-    let sums = times.iter().fold(zero, |a, b| std::array::from_fn(|i| a[i] + b[i]));
-    let total: Duration = sums.iter().sum();
-    sums.map(|part| match total.as_secs_f64() {
-        0.0 => Duration::ZERO,
-        total => wall.mul_f64(part.as_secs_f64() / total),
-    })
+    wall_shares(start.elapsed(), &times)
 }

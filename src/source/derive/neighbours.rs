@@ -4,7 +4,7 @@
 //! points are spread.
 
 use crate::frame::Exec;
-use crate::index::point_tree::{Entry, PointTree};
+use crate::index::point_tree::{Entry, PointTree, Search};
 use glam::Vec3;
 
 /// Ranges up to this length are searched through: so few points cost less than a branch for each.
@@ -49,11 +49,14 @@ impl Neighbours {
         let all = self.tree.entries();
         let mut results = vec![T::default(); all.len()];
         let job = |entries: &[Entry]| -> Vec<T> {
-            let mut nearest = Nearest { k, found: Vec::with_capacity(k + 1) };
-            let each = entries.iter().map(|entry| {
+            let Some(&query) = entries.first() else { return Vec::new() };
+            let found = Vec::with_capacity(k + 1);
+            let mut nearest = Nearest { entries: all, query, k, found };
+            let each = entries.iter().map(|&query| {
+                nearest.query = query;
                 nearest.found.clear();
-                self.search(0..all.len(), entry, [0.0; 3], &mut nearest);
-                f(entry.id, &nearest.found)
+                self.tree.search(query.point, &mut nearest);
+                f(query.id, &nearest.found)
             });
             each.collect()
         };
@@ -69,50 +72,23 @@ impl Neighbours {
         progress(done, done);
         results
     }
-
-    /// Offers the points of a range to `nearest`, except the one that asks.
-    ///
-    /// `offset` is how far the range is from the query along each axis, at least. Rounding is
-    /// monotone, so that the distance made of it never exceeds that of a point in the range.
-    fn search(
-        &self,
-        range: std::ops::Range<usize>,
-        query: &Entry,
-        offset: [f64; 3],
-        nearest: &mut Nearest,
-    ) {
-        let entries = self.tree.entries();
-        if range.len() <= LEAF {
-            entries[range].iter().for_each(|entry| nearest.offer(query, entry));
-            return;
-        }
-        let (middle, axis) = self.tree.node(&range);
-        let entry = &entries[middle];
-        let beyond = f64::from(query.point[axis]) - f64::from(entry.point[axis]);
-        let (low, high) = (range.start..middle, middle + 1..range.end);
-        let (near, far) = if beyond < 0.0 { (low, high) } else { (high, low) };
-        self.search(near, query, offset, nearest);
-        nearest.offer(query, entry);
-        let mut offset = offset;
-        offset[axis] = beyond;
-        // At the same distance a lower index may still win.
-        if length2(offset) <= nearest.reach() {
-            self.search(far, query, offset, nearest);
-        }
-    }
 }
 
 fn length2([x, y, z]: [f64; 3]) -> f64 {
     (x * x + y * y) + z * z
 }
 
-/// The best points so far, ascending.
-struct Nearest {
+/// The search of the points that are nearest to one of them.
+struct Nearest<'a> {
+    entries: &'a [Entry],
+    /// The point that asks, which does not count.
+    query: Entry,
     k: usize,
+    /// The best so far, ascending.
     found: Vec<Neighbour>,
 }
 
-impl Nearest {
+impl Nearest<'_> {
     /// No point farther than this is of interest.
     fn reach(&self) -> f64 {
         match self.found.last() {
@@ -120,12 +96,15 @@ impl Nearest {
             _ => f64::INFINITY,
         }
     }
+}
 
+impl Search for Nearest<'_> {
     #[inline]
-    fn offer(&mut self, query: &Entry, entry: &Entry) {
-        let delta = query.point.as_dvec3() - entry.point.as_dvec3();
+    fn look(&mut self, rank: usize) {
+        let entry = &self.entries[rank];
+        let delta = self.query.point.as_dvec3() - entry.point.as_dvec3();
         let distance2 = length2(delta.to_array());
-        if distance2 > self.reach() || entry.id == query.id {
+        if distance2 > self.reach() || entry.id == self.query.id {
             return;
         }
         let closer = |n: &Neighbour| {
@@ -134,6 +113,12 @@ impl Nearest {
         let at = self.found.iter().rposition(closer).map_or(0, |last| last + 1);
         self.found.insert(at, Neighbour { distance2, id: entry.id });
         self.found.truncate(self.k);
+    }
+
+    #[inline]
+    fn reaches(&self, offset: [f64; 3]) -> bool {
+        // At the same distance a lower index may still win.
+        length2(offset) <= self.reach()
     }
 }
 

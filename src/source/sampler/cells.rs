@@ -29,7 +29,7 @@
 //! - Distances are straight: a cell reaches through a wall that is thinner than the cell.
 
 use super::greedy::Order;
-use super::search::{Found, LEAF, Search};
+use super::search::{self, Found, LEAF};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::point_tree::PointTree;
@@ -114,9 +114,8 @@ fn closer(points: &[Vec3], nearest: &mut [Found], more: &[Vec3], first: u32, exe
     let jobs = points.chunks(JOB).zip(nearest.chunks_mut(JOB)).collect();
     exec.ordered(jobs, |(points, nearest): (&[Vec3], &mut [Found])| {
         for (&point, found) in points.iter().zip(nearest) {
-            let search = Search { tree: &tree, point, own: u32::MAX };
             // As near as an earlier one is not nearer: the search has the indices of the tree, none below 0.
-            let (distance, index) = search.nearest((found.0, 0));
+            let (distance, index) = search::nearest(&tree, point, u32::MAX, (found.0, 0));
             if distance < found.0 {
                 *found = (distance, first + index);
             }

@@ -11,7 +11,7 @@
 //! `Decided:` another member is one at another place of the prefix, so that equal points are 0 apart.
 //! The paper draws the square roots of `nearest`, divided by one common length, as violins.
 
-use super::search::{LEAF, Search};
+use super::search::{self, LEAF};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::point_tree::PointTree;
@@ -55,8 +55,7 @@ pub fn quality(points: &[Vec3], prefix: &[u32], exec: &Exec) -> Result<Quality> 
     let members: Vec<Vec3> = prefix.iter().map(|&index| points[index as usize]).collect();
     let tree = PointTree::new(&members, LEAF, exec);
     let jobs: Vec<_> = members.chunks(JOB).enumerate().collect();
-    let least =
-        |point, own| Search { tree: &tree, point, own }.nearest((f32::INFINITY, u32::MAX)).0;
+    let least = |point, own| search::nearest(&tree, point, own, (f32::INFINITY, u32::MAX)).0;
     let nearest = exec.ordered(jobs, |(job, some)| {
         let ids = (job * JOB) as u32..;
         some.iter().zip(ids).map(|(&point, own)| least(point, own)).collect::<Vec<_>>()

@@ -1,9 +1,8 @@
 //! The search of the point that is nearest, by squared distances of [`super::greedy`].
 
 use super::greedy::squared_distance;
-use crate::index::point_tree::PointTree;
+use crate::index::point_tree::{PointTree, Search};
 use glam::Vec3;
-use std::ops::Range;
 
 /// Ranges of the tree of at most so many points are searched one by one.
 pub(super) const LEAF: usize = 8;
@@ -11,46 +10,45 @@ pub(super) const LEAF: usize = 8;
 /// A squared distance, and the index of the point that is so far: the lower index of equal distances.
 pub(super) type Found = (f32, u32);
 
-/// The search of the point of a tree that is nearest to a place.
-pub(super) struct Search<'a> {
-    pub(super) tree: &'a PointTree,
-    pub(super) point: Vec3,
-    /// The point that does not count.
-    pub(super) own: u32,
+/// Whether a search within this squared distance reaches points that are so far along each axis.
+#[inline]
+pub(super) fn is_within([x, y, z]: [f64; 3], reach2: f32) -> bool {
+    // In `f32`, as the squared distances are.
+    let [x, y, z] = [x, y, z].map(|offset| offset as f32);
+    (x * x + y * y) + z * z <= reach2
 }
 
-impl Search<'_> {
-    /// The nearest point, or what is found already if that is nearer, or as near and of a lower index.
-    pub(super) fn nearest(&self, mut found: Found) -> Found {
-        self.within(0..self.tree.entries().len(), &mut found);
-        found
-    }
+/// The search of the point of a tree that is nearest to a place.
+struct Nearest<'a> {
+    tree: &'a PointTree,
+    point: Vec3,
+    /// The point that does not count.
+    own: u32,
+    found: Found,
+}
 
-    /// Replaces what is found by the nearest of a range of the tree.
-    fn within(&self, range: Range<usize>, found: &mut Found) {
-        if range.len() <= LEAF {
-            range.for_each(|rank| self.offer(rank, found));
-            return;
-        }
-        let (middle, axis) = self.tree.node(&range);
-        self.offer(middle, found);
-        let out = self.point[axis] - self.tree.entries()[middle].point[axis];
-        let (low, high) = (range.start..middle, middle + 1..range.end);
-        let (near, far) = if out < 0.0 { (low, high) } else { (high, low) };
-        self.within(near, found);
-        // Rounded, too, no point behind the plane is nearer than the plane: rounding is monotone.
-        if out * out <= found.0 {
-            self.within(far, found);
-        }
-    }
+/// The point nearest to a place, but for one that does not count; or what is found already if that is
+/// nearer, or as near and of a lower index.
+pub(super) fn nearest(tree: &PointTree, point: Vec3, own: u32, found: Found) -> Found {
+    let mut nearest = Nearest { tree, point, own, found };
+    tree.search(point, &mut nearest);
+    nearest.found
+}
 
-    #[inline(always)]
-    fn offer(&self, rank: usize, found: &mut Found) {
+impl Search for Nearest<'_> {
+    #[inline]
+    fn look(&mut self, rank: usize) {
         let entry = self.tree.entries()[rank];
         let distance = squared_distance(self.point, entry.point);
-        let nearer = distance < found.0 || (distance == found.0 && entry.id < found.1);
+        let (least, id) = self.found;
+        let nearer = distance < least || (distance == least && entry.id < id);
         if nearer && entry.id != self.own {
-            *found = (distance, entry.id);
+            self.found = (distance, entry.id);
         }
+    }
+
+    #[inline]
+    fn reaches(&self, offset: [f64; 3]) -> bool {
+        is_within(offset, self.found.0)
     }
 }

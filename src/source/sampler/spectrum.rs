@@ -44,15 +44,14 @@
 //! \[WW11\] Wei, Wang: *Differential Domain Analysis for Non-uniform Sampling*, SIGGRAPH 2011.
 
 use super::greedy::squared_distance;
-use super::search::LEAF;
+use super::search::{LEAF, is_within};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::index::point_tree::{Entry, PointTree};
+use crate::index::point_tree::{Entry, PointTree, Search};
 use crate::memory;
 use crate::number::elementary::bessel_j0;
 use glam::Vec3;
 use std::f64::consts::{PI, TAU};
-use std::ops::Range;
 
 /// The fewest points, and the most samples by which the reach is chosen.
 pub const FEWEST: usize = 256;
@@ -166,18 +165,14 @@ fn reach2(points: &[Vec3], exec: &Exec) -> f32 {
 fn pairs(points: &[Vec3], reach2: f32, exec: &Exec) -> Vec<u64> {
     let tree = PointTree::new(points, LEAF, exec);
     let scale = BINS as f64 / f64::from(reach2).sqrt();
-    let count = |entries: &[Entry]| {
-        let mut bins = vec![0_u64; BINS];
-        for from in entries {
-            let mut offer = |id: u32, d2: f32| {
-                if id != from.id && d2 < reach2 {
-                    // Rounding may lead to the first bin beyond.
-                    bins[((f64::from(d2).sqrt() * scale) as usize).min(BINS - 1)] += 1;
-                }
-            };
-            within(&tree, 0..points.len(), (from.point, reach2), &mut offer);
+    let count = |some: &[Entry]| {
+        let (entries, from) = (tree.entries(), some[0]);
+        let mut pairs = Pairs { entries, from, reach2, scale, bins: vec![0; BINS] };
+        for &from in some {
+            pairs.from = from;
+            tree.search(from.point, &mut pairs);
         }
-        bins
+        pairs.bins
     };
     let found = exec.ordered(tree.entries().chunks(JOB).collect(), count);
     let mut bins = vec![0; BINS];
@@ -185,28 +180,30 @@ fn pairs(points: &[Vec3], reach2: f32, exec: &Exec) -> Vec<u64> {
     bins
 }
 
-/// Tells `offer` of all points of a range whose squared distance may be below `reach2`, and of others.
-fn within(
-    tree: &PointTree,
-    range: Range<usize>,
-    (from, reach2): (Vec3, f32),
-    offer: &mut impl FnMut(u32, f32),
-) {
-    if range.len() <= LEAF {
-        let entries = &tree.entries()[range];
-        entries.iter().for_each(|entry| offer(entry.id, squared_distance(from, entry.point)));
-        return;
+/// The search of all pairs of a point that are nearer than R.
+struct Pairs<'a> {
+    entries: &'a [Entry],
+    from: Entry,
+    reach2: f32,
+    /// Bins of a unit of length.
+    scale: f64,
+    bins: Vec<u64>,
+}
+
+impl Search for Pairs<'_> {
+    #[inline]
+    fn look(&mut self, rank: usize) {
+        let entry = &self.entries[rank];
+        let d2 = squared_distance(self.from.point, entry.point);
+        if entry.id != self.from.id && d2 < self.reach2 {
+            // Rounding may lead to the first bin beyond.
+            self.bins[((f64::from(d2).sqrt() * self.scale) as usize).min(BINS - 1)] += 1;
+        }
     }
-    let (middle, axis) = tree.node(&range);
-    let entry = &tree.entries()[middle];
-    offer(entry.id, squared_distance(from, entry.point));
-    let out = from[axis] - entry.point[axis];
-    let (low, high) = (range.start..middle, middle + 1..range.end);
-    let (near, far) = if out < 0.0 { (low, high) } else { (high, low) };
-    within(tree, near, (from, reach2), offer);
-    // Rounded, too, no point behind the plane is nearer than the plane: rounding is monotone.
-    if out * out < reach2 {
-        within(tree, far, (from, reach2), offer);
+
+    #[inline]
+    fn reaches(&self, offset: [f64; 3]) -> bool {
+        is_within(offset, self.reach2)
     }
 }
 

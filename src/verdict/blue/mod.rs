@@ -43,7 +43,7 @@ use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::verdict::checks::{Report, Shading, Surface, least_wrong};
-use crate::verdict::client::{Client, Ties};
+use crate::verdict::client::Client;
 use crate::verdict::marks::{self, Counts, Marks, PixelMarks, counted};
 use crate::verdict::shift::Told;
 use crate::verdict::{Check, Doubt, Fault, Verdict};
@@ -249,11 +249,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         let count = self.surfels.len();
         for may in all.iter().filter(|may| may.lies && (may.id as usize) < count) {
             let surfel = may.id;
-            let first = match self.handed.ties {
-                Ties::Lowest => surfel < found,
-                Ties::Last => surfel > found,
-                Ties::Any => false,
-            };
+            let first = self.handed.ties.keeps(surfel, found);
             let exact =
                 may.depth.middle == own.depth.middle && may.depth.radius + own.depth.radius == 0.0;
             let equal = || (found as usize) < count && self.surfels.are_equal(surfel, found);

@@ -349,11 +349,7 @@ impl<P: Profile> Against<'_, P> {
     ) {
         let Some(id) = claim.nearest.id else { return };
         let surfel = self.fragment.splat.surfel;
-        let first = match ties {
-            Ties::Lowest => surfel < id,
-            Ties::Last => surfel > id && id != NO_ID,
-            Ties::Any => false,
-        };
+        let first = ties.keeps(surfel, id);
         let exact = self.t.distance(claim.closest) == f64::INFINITY
             && self.fragment.inside.certainly()
             && self.t.middle == claim.closest.middle;

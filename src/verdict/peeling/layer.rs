@@ -13,7 +13,7 @@ use crate::scene::Surfels;
 use crate::verdict::checks::{
     Report, Shading, Surface, input, least_wrong, number, triple, whole, widened,
 };
-use crate::verdict::client::{Stored, Ties};
+use crate::verdict::client::Stored;
 use crate::verdict::ewa::sums::MOST;
 use crate::verdict::marks::PixelMarks;
 use crate::verdict::single_pass::compositing::limit as band_end;
@@ -356,11 +356,7 @@ impl<P: Profile> Nearest<'_, '_, P> {
     fn judge_tie(&self, other: &Fragment<P>, own: &Fragment<P>, pixel: &mut PixelMarks<'_>) {
         let Some(id) = self.id else { return };
         let surfel = other.surfel;
-        let first = match self.judge.handed.ties {
-            Ties::Lowest => surfel < id,
-            Ties::Last => surfel > id,
-            Ties::Any => false,
-        };
+        let first = self.judge.handed.ties.keeps(surfel, id);
         let exact = other.t.distance(own.t) == f64::INFINITY && other.t.middle == own.t.middle;
         if first && (exact || self.judge.surfels.are_equal(surfel, id)) {
             pixel.found(f64::INFINITY, || Fault::Tie { surfel, found: id });

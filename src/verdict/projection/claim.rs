@@ -126,11 +126,7 @@ impl<P: Profile> Claim<P> {
             return;
         };
         let (surfel, t) = (surfel.surfel, one.depth());
-        let first = match ties {
-            Ties::Lowest => surfel < found,
-            Ties::Last => surfel > found,
-            Ties::Any => false,
-        };
+        let first = ties.keeps(surfel, found);
         let equal = t.middle == sample.depth.middle;
         let exact = equal && t.radius + sample.depth.radius == 0.0 && one.lies();
         if first && (exact || surfels.are_equal(surfel, found)) {

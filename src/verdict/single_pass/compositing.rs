@@ -11,7 +11,6 @@ use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::splat::View;
 use crate::verdict::checks::anything;
-use crate::verdict::client::Ties;
 use crate::verdict::ewa::handed::Handed;
 use crate::verdict::ewa::sums::{Continuations, MOST};
 use crate::verdict::marks::PixelMarks;
@@ -202,11 +201,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
         if one.surfel == other.surfel || one.surfel == NO_ID || other.surfel == NO_ID {
             return false;
         }
-        let first = match self.handed.ties {
-            Ties::Lowest => one.surfel < other.surfel,
-            Ties::Last => one.surfel > other.surfel,
-            Ties::Any => false,
-        };
+        let first = self.handed.ties.keeps(one.surfel, other.surfel);
         let exact = one.nearness.distance(other.nearness) == f64::INFINITY
             && one.nearness.middle == other.nearness.middle;
         first && (exact || self.surfels.are_equal(one.surfel, other.surfel))

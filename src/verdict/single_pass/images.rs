@@ -174,11 +174,7 @@ impl<P: Profile> Group<'_, P> {
             let (rim, depth, found) = (other.rim, other.t.middle, stored.unwrap_or(own));
             report(0, error, &|| Fault::LeftOut { surfel, rim, depth, found });
         } else if let Some(kept) = candidate {
-            let first = match self.images.ties {
-                Ties::Lowest => surfel < kept.surfel,
-                Ties::Last => surfel > kept.surfel,
-                Ties::Any => false,
-            };
+            let first = self.images.ties.keeps(surfel, kept.surfel);
             let same = || self.images.surfels.are_equal(surfel, kept.surfel);
             if first && (other.keys.are_equal(&kept.keys) || same()) {
                 report(0, f64::INFINITY, &|| Fault::Tie { surfel, found: kept.surfel });

@@ -4,11 +4,11 @@
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::index::point_tree::PointTree;
+use crate::index::point_tree::{Entry, PointTree, Search};
 use crate::memory;
 use crate::progress::Progress;
 use crate::source::sampler::greedy::squared_distance;
-use crate::source::sampler::search::LEAF;
+use crate::source::sampler::search::{LEAF, is_within};
 use glam::Vec3;
 use std::ops::Range;
 
@@ -192,63 +192,56 @@ struct Near {
     rank: u32,
 }
 
+impl Around<'_> {
+    /// The neighbours of each of some ranks.
+    fn of(&self, ranks: Range<usize>) -> Vec<Vec<Near>> {
+        let one = |entry: &Entry| {
+            let normal = self.normals[entry.id as usize];
+            let found = Vec::with_capacity(NEAR + 1);
+            let mut query = Query { around: self, point: entry.point, normal, id: entry.id, found };
+            self.tree.search(entry.point, &mut query);
+            query.found
+        };
+        self.tree.entries()[ranks].iter().map(one).collect()
+    }
+}
+
 /// Of which point neighbours are searched, and those found so far, in their order.
-struct Query {
+struct Query<'a> {
+    around: &'a Around<'a>,
     point: Vec3,
     normal: Vec3,
     id: u32,
     found: Vec<Near>,
 }
 
-impl Around<'_> {
-    /// The neighbours of each of some ranks.
-    fn of(&self, ranks: Range<usize>) -> Vec<Vec<Near>> {
-        let one = |entry: &crate::index::point_tree::Entry| {
-            let normal = self.normals[entry.id as usize];
-            let found = Vec::with_capacity(NEAR + 1);
-            let mut query = Query { point: entry.point, normal, id: entry.id, found };
-            self.search(0..self.tree.entries().len(), &mut query);
-            query.found
-        };
-        self.tree.entries()[ranks].iter().map(one).collect()
-    }
-
-    fn search(&self, range: Range<usize>, query: &mut Query) {
-        if range.len() <= LEAF {
-            range.for_each(|rank| self.offer(rank, query));
-            return;
-        }
-        let (middle, axis) = self.tree.node(&range);
-        self.offer(middle, query);
-        let out = query.point[axis] - self.tree.entries()[middle].point[axis];
-        let (low, high) = (range.start..middle, middle + 1..range.end);
-        let (near, far) = if out < 0.0 { (low, high) } else { (high, low) };
-        self.search(near, query);
-        // Rounded, too, no point behind the plane is nearer than the plane: rounding is monotone.
-        if out * out <= self.limit(query) {
-            self.search(far, query);
-        }
-    }
-
+impl Query<'_> {
     /// No point farther than this is of interest.
-    fn limit(&self, query: &Query) -> f32 {
-        query.found.get(NEAR - 1).map_or(self.reach2, |last| last.d2)
+    fn limit(&self) -> f32 {
+        self.found.get(NEAR - 1).map_or(self.around.reach2, |last| last.d2)
     }
+}
 
+impl Search for Query<'_> {
     #[inline]
-    fn offer(&self, rank: usize, query: &mut Query) {
-        let entry = self.tree.entries()[rank];
-        let d2 = squared_distance(query.point, entry.point);
-        if !(d2 <= self.limit(query)) || entry.id == query.id {
+    fn look(&mut self, rank: usize) {
+        let entry = self.around.tree.entries()[rank];
+        let d2 = squared_distance(self.point, entry.point);
+        if !(d2 <= self.limit()) || entry.id == self.id {
             return;
         }
-        if !alike(query.normal, self.normals[entry.id as usize]) {
+        if !alike(self.normal, self.around.normals[entry.id as usize]) {
             return;
         }
         let nearer = |other: &Near| other.d2 < d2 || (other.d2 == d2 && other.id < entry.id);
-        let at = query.found.iter().rposition(nearer).map_or(0, |last| last + 1);
-        query.found.insert(at, Near { d2, id: entry.id, rank: rank as u32 });
-        query.found.truncate(NEAR);
+        let at = self.found.iter().rposition(nearer).map_or(0, |last| last + 1);
+        self.found.insert(at, Near { d2, id: entry.id, rank: rank as u32 });
+        self.found.truncate(NEAR);
+    }
+
+    #[inline]
+    fn reaches(&self, offset: [f64; 3]) -> bool {
+        is_within(offset, self.limit())
     }
 }
 
