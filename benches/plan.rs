@@ -80,14 +80,14 @@ fn scene(shape: &str, count: usize, exec: &Exec) -> Result<Vec<Row>> {
     let (mut bench, all, _) = Bench::load(all.collect(), exec, &quiet)?;
     let ready = bench.visit(&all[0], &quiet)?.ready;
     let camera = ready.camera;
-    let truth = truths::Known::of(&file, &ready.loaded.scene, exec, &quiet)?;
+    let truth = truths::Known::about(&file, &ready.loaded.scene, exec, &quiet)?;
     let truth = truth.still(&camera, exec, &quiet)?;
     let rmse = losses()
         .into_iter()
         .find(|loss| loss.figure == "rmse")
         .unwrap_or_else(|| losses()[0].clone());
     let measure = |bench: &mut Bench<'_>, budget| {
-        choose(bench, (&all, &truth), (budget, &rmse as &Loss), exec, &quiet)
+        choose(bench, &all, &truth, budget, &rmse as &Loss, exec, &quiet)
     };
     let errors: Vec<f64> =
         measure(&mut bench, Budget::Error(0.0))?.iter().map(|known| known.loss).collect();
@@ -123,7 +123,7 @@ fn exhaustive(
     all: &[Candidate],
     (budget, errors): (Budget, &[f64]),
 ) -> Result<Vec<Known>> {
-    let mut records: Vec<Record> = all.iter().map(Record::of).collect();
+    let mut records: Vec<Record> = all.iter().map(Record::new).collect();
     for round in 0..time::ROUNDS {
         for i in time::order(round, all.len()) {
             time::turn(bench, &all[i], round, &mut records[i].times)?;

@@ -57,7 +57,7 @@ fn of_mesh(
     holes: &mut Table,
     exec: &Exec,
 ) -> Result<String> {
-    let order = order(mesh, (directions, SIDE), COUNT, exec)?;
+    let order = order(mesh, directions, SIDE, COUNT, exec)?;
     let all = candidates(mesh, directions, SIDE, exec, &|_, _, _| ())?.cloud.position;
     // The order, then all that it was chosen from.
     let points = [&order.position[..], &all].concat();

@@ -22,7 +22,7 @@ pub(crate) const STEPS: [f64; 5] = [1.5, 2.0, 4.0, 9.0, 25.0];
 pub(crate) fn fade(fade: f64, exec: &Exec) -> Result<(usize, f64)> {
     let torus = torus()?;
     let [coarse, finer] = [(5000, "coarse"), (50_000, "finer")].map(|(count, name)| {
-        let order = order(&torus, (&Directions::Cube, 512), count, exec)?;
+        let order = order(&torus, &Directions::Cube, 512, count, exec)?;
         Ok(Geometry { name: name.into(), ..geometry(order, Primitives::default())? })
     });
     let coarse: Geometry = coarse?;

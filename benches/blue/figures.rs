@@ -29,7 +29,7 @@ type Color = Plane<[f32; 3]>;
 /// Fig. 4: prefixes of one order of the pipes, each as large as the pipes themselves, and as small as it is meant for.
 pub(crate) fn prefixes(arguments: &Arguments, exec: &Exec) -> Result<()> {
     let pipes = mesh(pipes()?);
-    let all = order(&pipes, (&Directions::Cube, SIDE), PREFIXES[3], exec)?;
+    let all = order(&pipes, &Directions::Cube, SIDE, PREFIXES[3], exec)?;
     let prefix = |count: usize| {
         let some: Vec<u32> = (0..count as u32).collect();
         objects(geometry(all.some(&some), Primitives::default())?, &[Similarity::IDENTITY])

@@ -39,7 +39,7 @@ pub(crate) struct Rings {
 impl Rings {
     pub(crate) fn new(exec: &Exec) -> Result<Self> {
         let ring = mesh(ring()?);
-        let order = order(&ring, (&Directions::Cube, 1024), 48_000, exec)?;
+        let order = order(&ring, &Directions::Cube, 1024, 48_000, exec)?;
         let geometry = geometry(order, ring.primitives.clone())?;
         let places: Vec<Similarity> = (0..RANK * RANK)
             .map(|i| {

@@ -30,7 +30,7 @@ pub(crate) fn row(table: &mut Table, name: &str, found: &Candidates, exec: &Exec
     let order = greedy.order(points, COUNTS[1], exec, &quiet)?;
     // What the colours are changes nothing of the time.
     let start = Instant::now();
-    averaged((points, normals), &order, order.index.len(), exec, &quiet)?;
+    averaged(points, normals, &order, order.index.len(), exec, &quiet)?;
     times.push(start.elapsed());
     let times: Vec<String> = times.iter().map(|t| format!("{:.2}", t.as_secs_f64())).collect();
     let (n, parts) = (points.len(), graph.parts());

@@ -33,7 +33,7 @@ impl Destination<'_> {
             Some(frame) => path.with_extension(format!("{frame:04}.exr")),
         };
         match self.output {
-            Some(path) if matches!(FileKind::of(path), Ok(FileKind::Exr)) => {
+            Some(path) if matches!(FileKind::from_extension(path), Ok(FileKind::Exr)) => {
                 let path = named(path);
                 output::check(&path, self.scene, file)?;
                 Ok(path)

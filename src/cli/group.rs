@@ -42,7 +42,7 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Ended {
     let grouping = args.grouping()?;
-    if !matches!(FileKind::of(&args.output), Ok(FileKind::Ply)) {
+    if !matches!(FileKind::from_extension(&args.output), Ok(FileKind::Ply)) {
         let path = args.output.display();
         return Err(Error::Usage(format!("{path}: groups go into a PLY; give a name in .ply")));
     }

@@ -27,7 +27,7 @@ pub(super) fn run(args: &Args) -> Ended {
         hierarchy::info(&args.file)?;
         return Ok(Ending::Good);
     }
-    match FileKind::of(&args.file)? {
+    match FileKind::from_extension(&args.file)? {
         FileKind::Ply | FileKind::Obj => points(&args.file)?,
         FileKind::Toml => scene(&args.file)?,
         FileKind::Exr => picture(&args.file)?,

@@ -300,7 +300,7 @@ fn size(text: &str) -> std::result::Result<[u32; 2], String> {
 
 /// `sky` or a file.
 fn environment(text: &str) -> std::result::Result<EnvironmentChoice, String> {
-    Ok(EnvironmentChoice::of(text))
+    Ok(EnvironmentChoice::from_text(text))
 }
 
 /// The name of a method.

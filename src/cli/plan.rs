@@ -66,7 +66,7 @@ pub(super) fn run(args: &Args) -> Ended {
     candidates.retain(|candidate| !candidate.imitates);
     let truth = known.still(&camera, &exec, &show)?;
 
-    let rows = choose(&mut bench, (&candidates, &truth), (budget, &args.metric), &exec, &show)?;
+    let rows = choose(&mut bench, &candidates, &truth, budget, &args.metric, &exec, &show)?;
     drop(steps);
     report::line("scene", format!("{}, {} x {}", scene.name, camera.width, camera.height));
     report::line("truth", truth_in_words(&known, &truth));

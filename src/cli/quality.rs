@@ -78,7 +78,7 @@ impl Args {
     fn check(&self) -> Result<()> {
         let refused = |path: &Path, what| Err(Error::Usage(format!("{}: {what}", path.display())));
         for path in self.files.iter().chain(&self.of) {
-            if !matches!(FileKind::of(path), Ok(FileKind::Ply | FileKind::Obj)) {
+            if !matches!(FileKind::from_extension(path), Ok(FileKind::Ply | FileKind::Obj)) {
                 return refused(path, "points are read from a .ply or an .obj");
             }
         }

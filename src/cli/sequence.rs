@@ -57,7 +57,7 @@ pub(super) fn render(
         for (done, (frame, path)) in all.iter().enumerate() {
             show(done);
             session.resume(seen);
-            seen = one(&mut session, &ready.camera_at(*frame)?, path, (output, exec), &mut times)?;
+            seen = one(&mut session, &ready.camera_at(*frame)?, path, output, exec, &mut times)?;
         }
     } else {
         for (done, (frame, path)) in all.iter().enumerate() {
@@ -65,7 +65,7 @@ pub(super) fn render(
             ready = times.of("placing", || ready.at(*frame, exec))?;
             let mut session = times.of("preparing", || ready.session(exec, &|_, _, _| ()))?.0;
             session.resume(seen);
-            seen = one(&mut session, &ready.camera, path, (output, exec), &mut times)?;
+            seen = one(&mut session, &ready.camera, path, output, exec, &mut times)?;
         }
     }
     drop(steps);
@@ -83,7 +83,8 @@ fn one(
     session: &mut Session<'_>,
     camera: &Camera,
     path: &Path,
-    (output, exec): (OutputSettings, &Exec),
+    output: OutputSettings,
+    exec: &Exec,
     times: &mut Times,
 ) -> Result<Option<Seen>> {
     let (scene, method, groups) = (session.scene(), *session.method(), session.groups().cloned());

@@ -199,7 +199,7 @@ impl Folder {
     ) -> Result<Study> {
         let study = Study {
             of,
-            candidates: candidates.iter().map(Record::of).collect(),
+            candidates: candidates.iter().map(Record::new).collect(),
             left_out: left_out.into_iter().map(|(method, why)| (method.to_owned(), why)).collect(),
             machine: time::machine(exec),
         };

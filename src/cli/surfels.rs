@@ -272,18 +272,22 @@ impl Args {
             return Err(Error::Usage("--sampler random has no --start: remove one of them".into()));
         }
         let refused = |path: &Path, what| Err(Error::Usage(format!("{}: {what}", path.display())));
-        let scene = matches!(FileKind::of(&self.points), Ok(FileKind::Toml));
-        if !(scene || matches!(FileKind::of(&self.points), Ok(FileKind::Ply | FileKind::Obj))) {
+        let scene = matches!(FileKind::from_extension(&self.points), Ok(FileKind::Toml));
+        if !(scene
+            || matches!(FileKind::from_extension(&self.points), Ok(FileKind::Ply | FileKind::Obj)))
+        {
             let what = "points or a mesh are read from a .ply or an .obj, a scene from a .toml";
             return refused(&self.points, what);
         }
         if scene && self.texture.is_some() {
             return refused(&self.points, "--texture is of one mesh; a scene names its textures");
         }
-        if !matches!(FileKind::of(&self.output), Ok(FileKind::Ply)) {
+        if !matches!(FileKind::from_extension(&self.output), Ok(FileKind::Ply)) {
             return refused(&self.output, "points go into a PLY; give a name in .ply");
         }
-        if !self.properties.is_empty() && matches!(FileKind::of(&self.points), Ok(FileKind::Obj)) {
+        if !self.properties.is_empty()
+            && matches!(FileKind::from_extension(&self.points), Ok(FileKind::Obj))
+        {
             return refused(&self.points, "--properties are of a .ply; remove them");
         }
         output::check_folder(&self.output)?;
@@ -331,7 +335,7 @@ impl Args {
         let (Some(count), Some(color)) = (self.average_colors, &cloud.color) else {
             return Ok(None);
         };
-        averaged((&cloud.position, color), order, count, exec, show).map(Some)
+        averaged(&cloud.position, color, order, count, exec, show).map(Some)
     }
 
     fn order(

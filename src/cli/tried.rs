@@ -70,7 +70,7 @@ impl Tried {
         let other = self.truth.as_deref().map(SceneFile::open).transpose()?;
         let shown = other.as_ref().unwrap_or(scene);
         let ready = bench.visit(&candidates[0], &show)?.ready;
-        let known = Known::of(shown, &ready.loaded.scene, exec, &show)?;
+        let known = Known::about(shown, &ready.loaded.scene, exec, &show)?;
         let camera = ready.camera;
         Ok(Loaded { bench, candidates, left_out, known, camera })
     }

@@ -35,7 +35,7 @@ impl Seen {
     /// The groups of these surfels, ascending and each there once: what the frame that selected them
     /// saw.
     #[must_use]
-    pub fn of(ids: &Ids, group: u32, selected: &[u64]) -> Self {
+    pub fn from_selected(ids: &Ids, group: u32, selected: &[u64]) -> Self {
         let mut seen = Self::nothing(ids, group);
         let mut lengths = vec![0; seen.counts.len()];
         for (object, run) in ids.runs(selected) {
@@ -197,7 +197,7 @@ mod tests {
                 picks.iter().filter(|_| !every.is_empty()).map(|i| every[i.index(every.len())]).collect();
             chosen.sort_unstable();
             chosen.dedup();
-            let seen = Seen::of(&ids, group, &chosen);
+            let seen = Seen::from_selected(&ids, group, &chosen);
             let of_group = |id: u64| {
                 let (object, surfel) = ids.find(id).unwrap();
                 (object, surfel / group)
@@ -224,11 +224,11 @@ mod tests {
         // The last surfel of each is selected.
         let ids = Ids::new(vec![(1 << 20) - 1; 1 << 12], |_| String::new()).unwrap();
         let last: Vec<u64> = (0..1 << 12).map(|object| ids.id(object, (1 << 20) - 2)).collect();
-        let seen = Seen::of(&ids, 64, &last);
+        let seen = Seen::from_selected(&ids, 64, &last);
         assert_eq!(seen.words.len() * 8, 8 << 20);
         // The first: a word each.
         let first: Vec<u64> = (0..1 << 12).map(|object| ids.id(object, 0)).collect();
-        assert_eq!(Seen::of(&ids, 64, &first).words.len(), 1 << 12);
+        assert_eq!(Seen::from_selected(&ids, 64, &first).words.len(), 1 << 12);
         assert_eq!(Seen::nothing(&ids, 64).words.len(), 0);
     }
 }

@@ -124,7 +124,7 @@ mod tests {
     fn file(folder: &Path, counts: &[u32], group: u32) -> (State, Vec<u8>) {
         let ids = ids(counts);
         let some = (0..counts[0]).step_by(7).map(|surfel| ids.id(0, surfel));
-        let seen = Seen::of(&ids, group, &some.collect::<Vec<_>>());
+        let seen = Seen::from_selected(&ids, group, &some.collect::<Vec<_>>());
         let (state, path) = (State { frame: 56, seen }, folder.join("s.bin"));
         pending(&path, &state, SCENE).unwrap().put().unwrap();
         let bytes = std::fs::read(&path).unwrap();

@@ -39,7 +39,7 @@ pub struct Bounds {
 impl Bounds {
     /// Those of surfels and primitives.
     #[must_use]
-    pub fn of(surfels: &Surfels, primitives: &Primitives) -> Self {
+    pub fn around(surfels: &Surfels, primitives: &Primitives) -> Self {
         let (low, high) = corners(surfels, primitives);
         // -0 becomes 0.
         let (low, high) = (low + Vec3::ZERO, high + Vec3::ZERO);

@@ -21,7 +21,7 @@ impl Coordinates {
     /// # Panics
     /// If there is no such triangle or point.
     #[must_use]
-    pub fn of(&self, triangle: usize, corners: [u32; 3]) -> [Vec2; 3] {
+    pub fn corners(&self, triangle: usize, corners: [u32; 3]) -> [Vec2; 3] {
         match self {
             Self::Points(points) => corners.map(|corner| points[corner as usize]),
             Self::Corners(all) => all[triangle],

@@ -32,7 +32,7 @@ impl Sides {
 
     /// That of a surfel, if it has one.
     #[must_use]
-    pub fn of(&self, surfel: u32) -> Option<f32> {
+    pub fn side(&self, surfel: u32) -> Option<f32> {
         let after = self.runs.partition_point(|run| run.0 <= surfel);
         self.runs[..after].last().and_then(|run| run.1)
     }
@@ -45,7 +45,7 @@ mod tests {
     #[test]
     fn runs_end_where_the_next_begins() {
         let sides = Sides::new(vec![(0, None), (2, Some(3.0)), (3, Some(1.5))]).unwrap();
-        let found: Vec<_> = [0, 1, 2, 3, u32::MAX].map(|surfel| sides.of(surfel)).into();
+        let found: Vec<_> = [0, 1, 2, 3, u32::MAX].map(|surfel| sides.side(surfel)).into();
         assert_eq!(found, [None, None, Some(3.0), Some(1.5), Some(1.5)]);
     }
 

@@ -253,7 +253,7 @@ pub(crate) struct Ellipse {
 
 impl Ellipse {
     /// The matrix of two half axes.
-    pub(crate) fn of(p: DVec2, q: DVec2) -> Self {
+    pub(crate) fn from_half_axes(p: DVec2, q: DVec2) -> Self {
         Self { xx: p.x * p.x + q.x * q.x, xy: p.x * p.y + q.x * q.y, yy: p.y * p.y + q.y * q.y }
     }
 

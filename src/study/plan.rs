@@ -38,8 +38,10 @@ pub const MOST_ROUNDS: u64 = 25;
 /// As [`Bench::visit`] and of the drawing.
 pub fn choose(
     bench: &mut Bench<'_>,
-    (candidates, truth): (&[Candidate], &Truth),
-    (budget, loss): (Budget, &Loss),
+    candidates: &[Candidate],
+    truth: &Truth,
+    budget: Budget,
+    loss: &Loss,
     exec: &Exec,
     progress: Progress<'_>,
 ) -> Result<Vec<Known>> {
@@ -60,7 +62,7 @@ pub fn choose(
         if done > 0 && known[i].time > HOPELESS * limit {
             break;
         }
-        let (value, time) = picture_error(bench, &candidates[i], (metric, truth), exec)?;
+        let (value, time) = picture_error(bench, &candidates[i], metric, truth, exec)?;
         known[i] = Known { time, loss: value.map_or(f64::NAN, loss.of), is_whole: true };
         if matches!(budget, Budget::Error(_)) && budget.allows(&known[i]) && time < limit {
             limit = time;
@@ -81,7 +83,7 @@ pub fn timed(
     known: &mut [Known],
     progress: Progress<'_>,
 ) -> Result<()> {
-    let mut records: Vec<Record> = of.iter().map(|&i| Record::of(&candidates[i])).collect();
+    let mut records: Vec<Record> = of.iter().map(|&i| Record::new(&candidates[i])).collect();
     let start = Instant::now();
     for round in 0..MOST_ROUNDS {
         if round >= time::ROUNDS && start.elapsed() >= ENOUGH {
@@ -228,11 +230,11 @@ mod tests {
         let ready = bench.visit(&all[0], &quiet).unwrap().ready;
         let camera = ready.camera;
         assert_eq!(small(&camera).size(), [9, 7]);
-        let truth = truths::Known::of(&file, &ready.loaded.scene, &exec, &quiet).unwrap();
+        let truth = truths::Known::about(&file, &ready.loaded.scene, &exec, &quiet).unwrap();
         let truth = truth.still(&camera, &exec, &quiet).unwrap();
         let rmse = losses().into_iter().find(|loss| loss.figure == "rmse").unwrap();
         let mut chosen = |budget| {
-            let known = choose(&mut bench, (&all, &truth), (budget, &rmse), &exec, &quiet).unwrap();
+            let known = choose(&mut bench, &all, &truth, budget, &rmse, &exec, &quiet).unwrap();
             let whole = known.iter().filter(|known| known.is_whole).count();
             assert!(known.iter().all(|known| known.is_whole != known.loss.is_nan()));
             let ranked = budget.ranked(&known);

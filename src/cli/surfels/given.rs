@@ -24,7 +24,7 @@ impl From<Candidates> for Given {
 impl Args {
     /// What the input gives.
     pub(super) fn given(&self, exec: &Exec, show: Progress<'_>) -> Result<Given> {
-        if FileKind::of(&self.points)? == FileKind::Toml {
+        if FileKind::from_extension(&self.points)? == FileKind::Toml {
             return self.scene(exec, show).map(Given::from);
         }
         let mut cloud = read_model(&self.points, exec)?;

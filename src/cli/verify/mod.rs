@@ -124,7 +124,7 @@ fn check(args: &Args, file: &SceneFile, described: &Description) -> Result<()> {
         output::check_two(errors, json)?;
     }
     if let Some(path) = &args.output
-        && !matches!(FileKind::of(path), Ok(FileKind::Exr))
+        && !matches!(FileKind::from_extension(path), Ok(FileKind::Exr))
     {
         let path = path.display();
         return Err(Error::Usage(format!("{path}: the errors are an EXR; give a name in .exr")));

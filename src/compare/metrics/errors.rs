@@ -10,7 +10,7 @@
 //!         .with("A", Samples::Scalar(Plane::filled(16, 16, 1.0)))?
 //!         .with("Z", Samples::Scalar(Plane::filled(16, 16, 2.0_f32 + value)))
 //! };
-//! let errors = Errors::of(&gray(0.25)?, &gray(0.5)?, &Exec::sequential())?;
+//! let errors = Errors::measure(&gray(0.25)?, &gray(0.5)?, &Exec::sequential())?;
 //! for metric in &METRICS {
 //!     if let Some(value) = (metric.of)(&errors) {
 //!         println!("{}: {value} {}", metric.title, metric.unit); // RMSE: 0.25 linear RGB ...
@@ -60,7 +60,7 @@ impl Errors {
     /// # Errors
     /// [`Error::Invalid`] if the frames differ in size or a plane other than `normal` is missing, or
     /// if there is not enough memory.
-    pub fn of(picture: &Frame<f32>, truth: &Frame<f32>, exec: &Exec) -> Result<Self> {
+    pub fn measure(picture: &Frame<f32>, truth: &Frame<f32>, exec: &Exec) -> Result<Self> {
         Self::with(picture, truth, Wanted { ssim: true, flip: true }, exec)
     }
 
@@ -196,11 +196,11 @@ const fn metric(
 }
 
 impl Metric {
-    /// The number of a picture against its truth, as that of [`Errors::of`]; faster, as no other is taken that takes
+    /// The number of a picture against its truth, as that of [`Errors::measure`]; faster, as no other is taken that takes
     /// long.
     ///
     /// # Errors
-    /// As [`Errors::of`].
+    /// As [`Errors::measure`].
     pub fn between(
         &self,
         picture: &Frame<f32>,
@@ -262,8 +262,8 @@ mod tests {
     }
 
     fn of(picture: &Frame<f32>, truth: &Frame<f32>) -> Errors {
-        let found = Errors::of(picture, truth, &Exec::sequential()).unwrap();
-        assert_eq!(Errors::of(picture, truth, &Exec::new(3, 8).unwrap()).unwrap(), found);
+        let found = Errors::measure(picture, truth, &Exec::sequential()).unwrap();
+        assert_eq!(Errors::measure(picture, truth, &Exec::new(3, 8).unwrap()).unwrap(), found);
         found
     }
 
@@ -370,10 +370,10 @@ mod tests {
 
         let exec = Exec::sequential();
         unlit.planes.pop();
-        let said = Errors::of(&unlit, &truth, &exec).unwrap_err().to_string();
+        let said = Errors::measure(&unlit, &truth, &exec).unwrap_err().to_string();
         assert!(said.contains("no scalar plane is called `Z`"), "{said}");
         let small = Frame::new(2, 1).with("", Samples::Color(Plane::filled(2, 1, [0.0; 3])));
-        let said = Errors::of(&small.unwrap(), &truth, &exec).unwrap_err().to_string();
+        let said = Errors::measure(&small.unwrap(), &truth, &exec).unwrap_err().to_string();
         assert!(said.contains("2 x 1 pixels and a reference of 40 x 30"), "{said}");
     }
 

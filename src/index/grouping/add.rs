@@ -224,7 +224,7 @@ impl Members<'_> {
             if open.asked == 0 {
                 open.mask = covered(place, set);
             }
-            let (row, mut samples) = (graph.of(place), None);
+            let (row, mut samples) = (graph.row(place), None);
             loop {
                 while let Some(other) = open.first_of(open.waits, &row) {
                     let theirs = state[other].load(Relaxed);

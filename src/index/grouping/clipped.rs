@@ -18,7 +18,7 @@ pub(super) fn by_lower(
     progress: &dyn Fn(u64, u64),
 ) -> Result<Parts<Vec<u64>>> {
     let budget = Budget::new(tree.surfel.len(), scale);
-    Parts::of(tree, exec, progress, |places| covered_by_lower(tree, places, scale, &budget))
+    Parts::compute(tree, exec, progress, |places| covered_by_lower(tree, places, scale, &budget))
 }
 
 vectorized!(
@@ -36,7 +36,7 @@ vectorized!(
         let mut covered = Vec::with_capacity(places.len());
         let (mut room, mut seen) = (NearBlocks::default(), 0);
         for i in places {
-            let (mut mask, samples) = (0, DiscSamples::of(disc(i), tree.surfel[i]));
+            let (mut mask, samples) = (0, DiscSamples::new(disc(i), tree.surfel[i]));
             tree.near(i, scale, &mut room, |near, so_many| {
                 near[..so_many].iter().all(|&j| {
                     seen += 1;

@@ -235,7 +235,7 @@ impl Coloring<'_> {
             // Of equally many neighbours, the lower index comes first.
             let own = degree[place];
             let before = |other: usize, lower: bool| degree[other] + u32::from(lower) > own;
-            let row = graph.of(place);
+            let row = graph.row(place);
             loop {
                 while let Some(other) = open.first_of(open.waits, &row) {
                     let theirs = color_of(other);

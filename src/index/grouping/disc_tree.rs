@@ -75,7 +75,7 @@ impl DiscTree {
             r * r
         });
         let mut boxes = Vec::new();
-        exec.extend(&mut boxes, blocks.len(), |block| Bounds::of(&blocks[block]));
+        exec.extend(&mut boxes, blocks.len(), |block| Bounds::around(&blocks[block]));
         let mut levels = vec![boxes];
         while let Some(below) = levels.last().filter(|level| level.len() > 1) {
             let pair = |pair: &[Bounds]| pair[1..].iter().fold(pair[0], Bounds::and);
@@ -88,7 +88,7 @@ impl DiscTree {
     /// The samples of the disc at a place.
     #[inline(always)]
     pub(super) fn samples(&self, place: usize) -> DiscSamples {
-        DiscSamples::of(self.discs[place], self.surfel[place])
+        DiscSamples::new(self.discs[place], self.surfel[place])
     }
 
     /// Visits the places j that are near a place i: `|p_i - p_j| < factor (r_i + r_j)`, as the
@@ -302,7 +302,7 @@ impl DiscBlock {
 }
 
 impl Bounds {
-    fn of(block: &DiscBlock) -> Self {
+    fn around(block: &DiscBlock) -> Self {
         let lane = |l: usize| {
             let (p, r) = block.disc(l);
             Self { low: p, high: p, r }

@@ -42,7 +42,7 @@ impl<'a> Graded<'a> {
         let away = |i: usize, j: usize| relaxed(surfels, tree, rules, i, j);
         let job = |places| Ok(least_steps(tree, &graph, places, &away));
         let show = |done, of| progress("finding overlaps", done, of);
-        let least = Parts::of(tree, exec, &show, job)?;
+        let least = Parts::compute(tree, exec, &show, job)?;
         Ok(Self { graph, least })
     }
 

@@ -217,7 +217,7 @@ impl Graph {
 
     /// The neighbours of a place.
     #[inline(always)]
-    pub(super) fn of(&self, place: usize) -> Row<'_> {
+    pub(super) fn row(&self, place: usize) -> Row<'_> {
         let (rows, place) = self.0.with(place);
         rows.row(place)
     }
@@ -228,7 +228,7 @@ impl Graph {
     }
 
     pub(super) fn degree(&self, place: usize) -> u32 {
-        self.of(place).all.len() as u32
+        self.row(place).all.len() as u32
     }
 }
 

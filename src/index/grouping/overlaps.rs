@@ -24,7 +24,7 @@ impl Overlaps<'_> {
         progress: &dyn Fn(u64, u64),
     ) -> Covered<COUNTED, TOLD> {
         let job = |places| Ok(covered_by_neighbours(self.tree, self.graph, places, &by));
-        Covered(Parts::of(self.tree, self.exec, progress, job).expect("nothing fails"))
+        Covered(Parts::compute(self.tree, self.exec, progress, job).expect("nothing fails"))
     }
 }
 
@@ -69,7 +69,7 @@ vectorized!(
         let mut open = Vec::with_capacity(places.len());
         let mut covered = [(); TOLD].map(|()| Vec::with_capacity(places.len()));
         for i in places {
-            let (mut counted, mut told, row) = ([0_u64; COUNTED], [0; TOLD], graph.of(i));
+            let (mut counted, mut told, row) = ([0_u64; COUNTED], [0; TOLD], graph.row(i));
             for from in (0..row.all.len()).step_by(64) {
                 let mut chosen = 0_u64;
                 row.visit_64(from, |number, j, lower| {

@@ -25,7 +25,7 @@ impl<T: Send> Parts<T> {
     /// Runs a job for the places of each part, in parallel.
     ///
     /// `progress` gets how many places are done, and of how many.
-    pub(super) fn of(
+    pub(super) fn compute(
         tree: &DiscTree,
         exec: &Exec,
         progress: &dyn Fn(u64, u64),
@@ -34,7 +34,7 @@ impl<T: Send> Parts<T> {
         Self::in_place_of(Self::default(), tree, exec, progress, |places, _| job(places))
     }
 
-    /// [`Parts::of`], in the memory of those of before, of which each job gets its own.
+    /// [`Parts::compute`], in the memory of those of before, of which each job gets its own.
     pub(super) fn in_place_of(
         before: Self,
         tree: &DiscTree,

@@ -43,7 +43,7 @@ pub(super) struct DiscSamples {
 impl DiscSamples {
     /// Of the disc of a surfel.
     #[inline(always)]
-    pub(super) fn of(disc: SpaceDisc, surfel: u32) -> Self {
+    pub(super) fn new(disc: SpaceDisc, surfel: u32) -> Self {
         let (u, v) = axes(disc.normal.as_dvec3());
         let pattern = &*PATTERN;
         let (c, s) = pattern.turn[(random::bits(0, surfel.into()) >> 58) as usize];

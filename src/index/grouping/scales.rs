@@ -60,7 +60,7 @@ impl<'a> Scales<'a> {
         // If those up to a larger scale are few enough, so are those near by this one.
         let Some((_, graph)) = &self.found else { return by_lower(tree, scale, exec, &|_, _| ()) };
         let job = |places| Ok(covered_by_found(tree, graph, places, scale));
-        Parts::of(tree, exec, &|_, _| (), job)
+        Parts::compute(tree, exec, &|_, _| (), job)
     }
 }
 
@@ -76,14 +76,14 @@ vectorized!(
         for i in places {
             let own = tree.discs[i];
             let (mut mask, mut samples) = (0, None);
-            for &j in graph.of(i).all {
+            for &j in graph.row(i).all {
                 let other = &tree.discs[j as usize];
                 if !own.is_near(other, scale) {
                     continue;
                 }
                 let samples = samples.get_or_insert_with(|| {
                     let disc = SpaceDisc { radius: scale * own.radius, ..own };
-                    DiscSamples::of(disc, tree.surfel[i])
+                    DiscSamples::new(disc, tree.surfel[i])
                 });
                 mask |= samples.covered_by(&SpaceDisc { radius: scale * other.radius, ..*other });
                 if mask == u64::MAX {

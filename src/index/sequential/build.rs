@@ -46,7 +46,7 @@ pub(super) fn build(surfels: &Surfels, most: f32, exec: &Exec) -> Result<(Surfel
     memory::ask(count as u64 * BYTES_A_SURFEL, || format!("a point tree of {count} surfels"))?;
     let ids = sorted(surfels.position(), exec);
     let mut discs = Vec::with_capacity(count);
-    exec.extend(&mut discs, count, |place| Disc::of(surfels, ids[place]));
+    exec.extend(&mut discs, count, |place| Disc::from_surfel(surfels, ids[place]));
     let tangents = surfels.tangents().map(|all| ids.iter().map(|&id| all[id as usize]).collect());
     let nodes = grown(&Leaves { discs, tangents, most }, exec);
     listed(surfels, &ids, nodes, exec)

@@ -29,7 +29,7 @@ pub(super) struct Disc {
 
 impl Disc {
     /// A surfel as it is.
-    pub(super) fn of(surfels: &Surfels, surfel: u32) -> Self {
+    pub(super) fn from_surfel(surfels: &Surfels, surfel: u32) -> Self {
         let i = surfel as usize;
         Self {
             position: surfels.position()[i],

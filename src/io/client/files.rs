@@ -24,7 +24,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    pub(super) fn of(path: &Path) -> Option<Self> {
+    pub(super) fn from_extension(path: &Path) -> Option<Self> {
         match extension(path)?.as_str() {
             "exr" => Some(Self::Exr),
             "npy" => Some(Self::Npy),

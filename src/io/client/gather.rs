@@ -36,7 +36,7 @@ pub(super) fn client(
     let mut wanted = named(sidecar, stages).map_err(refused)?;
     let mut unknown = Vec::new();
     if let Some(file) = &sidecar.file {
-        if Kind::of(file) != Some(Kind::Exr) {
+        if Kind::from_extension(file) != Some(Kind::Exr) {
             let what = "file: only an EXR has several planes; give others in [planes]";
             return Err(Error::format(path, what));
         }
@@ -166,7 +166,7 @@ fn file_of(wanted: &Wanted, sidecar: &Sidecar) -> Reason<(PathBuf, Kind)> {
     let file = file.ok_or_else(|| {
         format!("planes.{key}: no `file`, neither here nor for all planes; give one")
     })?;
-    let kind = Kind::of(file).ok_or_else(|| {
+    let kind = Kind::from_extension(file).ok_or_else(|| {
         format!("planes.{key}.file is {file:?}; give an .exr, .npy, .png, .raw or .bin")
     })?;
     Ok((file.clone(), kind))

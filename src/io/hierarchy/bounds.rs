@@ -49,7 +49,7 @@ impl Hierarchy {
             progress("bounds", u64::from(number), nodes.len() as u64);
             let all = Needed { surfels: node.surfels, primitives: true };
             self.read(number, all, exec)
-                .map(|(surfels, primitives)| Bounds::of(&surfels, &primitives))
+                .map(|(surfels, primitives)| Bounds::around(&surfels, &primitives))
         });
         each.collect()
     }

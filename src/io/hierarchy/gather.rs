@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 /// Where something is shown, and in which colour.
 #[derive(Clone, Copy)]
-struct Shown {
+struct Placement {
     place: Similarity,
     color: Option<Vec3>,
 }
@@ -48,7 +48,7 @@ pub(super) fn gather(
         parts: BTreeMap::new(),
         surfels: BTreeMap::new(),
     };
-    gather.triangles(node, &Shown { place: Similarity::IDENTITY, color: None })?;
+    gather.triangles(node, &Placement { place: Similarity::IDENTITY, color: None })?;
     gather.all.finish()
 }
 
@@ -70,7 +70,7 @@ impl Hierarchy {
 
 impl Gather<'_> {
     /// The triangles of a node, and what is drawn of what is below.
-    fn triangles(&mut self, node: u32, shown: &Shown) -> Result<()> {
+    fn triangles(&mut self, node: u32, shown: &Placement) -> Result<()> {
         let Node { geometry, triangles, objects, children, .. } =
             self.hierarchy.nodes()[node as usize].clone();
         if triangles > 0 {
@@ -80,14 +80,14 @@ impl Gather<'_> {
         if geometry == NONE {
             let own = self.hierarchy;
             for object in &own.objects()[objects.start as usize..objects.end as usize] {
-                let shown = Shown { place: object.place, color: object.color };
+                let shown = Placement { place: object.place, color: object.color };
                 self.child(own.root(object), &shown)?;
             }
         }
         children.into_iter().try_for_each(|child| self.child(child, shown))
     }
 
-    fn child(&mut self, node: u32, shown: &Shown) -> Result<()> {
+    fn child(&mut self, node: u32, shown: &Placement) -> Result<()> {
         let Node { surfels, estimate, .. } = self.hierarchy.nodes()[node as usize];
         if !self.bottom_up || surfels == 0 {
             return self.triangles(node, shown);

@@ -19,7 +19,7 @@ pub struct Kind {
 }
 
 impl Kind {
-    pub(super) fn of(vertices: &Vertices) -> Self {
+    pub(super) fn from_vertices(vertices: &Vertices) -> Self {
         let (colored, veiled) = (vertices.color.is_some(), vertices.opacity.is_some());
         Self { colored, veiled, properties: vertices.properties.len() as u32 }
     }

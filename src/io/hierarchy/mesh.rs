@@ -84,11 +84,11 @@ pub(super) fn write(
     dropped: u64,
 ) -> Result<()> {
     let tree = tree(triangles, BOUND)?;
-    let flaws = Flaws::of(triangles, dropped);
+    let flaws = Flaws::find(triangles, dropped);
     let mut header = Writer::default();
     header.bytes(MAGIC);
     header.bytes(hash);
-    header.words(&[tree.nodes.len() as u32, Kind::of(triangles.vertices()).word()]);
+    header.words(&[tree.nodes.len() as u32, Kind::from_vertices(triangles.vertices()).word()]);
     index::flaws(&mut header, flaws);
     for (number, node) in (0..).zip(&tree.nodes) {
         let own = tree.own(number);
@@ -102,7 +102,7 @@ pub(super) fn write(
     write_atomically(&path(folder, geometry), |to| {
         to.write_all(&header.0)?;
         for number in 0..tree.nodes.len() as u32 {
-            to.write_all(&block(&Part::of(triangles, tree.own(number))))?;
+            to.write_all(&block(&Part::from_triangles(triangles, tree.own(number))))?;
         }
         Ok(())
     })

@@ -91,12 +91,13 @@ impl Hierarchy {
         let mut geometry = vec![None; self.nodes().len()];
         has.iter().enumerate().for_each(|(i, &number)| geometry[number as usize] = Some(i));
         let mut showing = Showing { geometry, objects: Vec::new(), coarser: Vec::new() };
-        let of_scene = Shown { name: String::new(), place: Similarity::IDENTITY, color: None };
+        let of_scene =
+            TreePlacement { name: String::new(), place: Similarity::IDENTITY, color: None };
         let upper = showing.tree(self, 0..self.upper(), &of_scene, None);
         for object in self.objects() {
             let above = if object.node == NONE { None } else { upper[object.node as usize] };
             let name = format!("object-{}.", object.number);
-            let shown = Shown { name, place: object.place, color: object.color };
+            let shown = TreePlacement { name, place: object.place, color: object.color };
             let nodes = self.geometries()[object.geometry as usize].nodes.clone();
             showing.tree(self, nodes, &shown, above);
         }
@@ -190,7 +191,7 @@ pub(super) fn radius(node: &Node) -> f32 {
 }
 
 /// Where a tree is shown.
-struct Shown {
+struct TreePlacement {
     /// What the names of its objects begin with.
     name: String,
     place: Similarity,
@@ -203,7 +204,7 @@ impl Showing {
         &mut self,
         hierarchy: &Hierarchy,
         nodes: std::ops::Range<u32>,
-        shown: &Shown,
+        shown: &TreePlacement,
         above: Option<u32>,
     ) -> Vec<Option<u32>> {
         let mut nearest: Vec<Option<u32>> = Vec::with_capacity(nodes.len());

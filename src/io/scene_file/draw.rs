@@ -28,7 +28,7 @@ pub enum Draw {
 
 impl Draw {
     /// As what a model from this source is drawn if nobody says.
-    pub(super) fn of(source: &Source) -> Self {
+    pub(super) fn default_for(source: &Source) -> Self {
         match source {
             Source::File { .. } => Self::Surfels,
             Source::Shape { .. } => Self::Points,
@@ -79,7 +79,7 @@ impl Draw {
             (_, Some(_)) => {
                 return Err("`split` means nothing without draw = \"hybrid\": remove it".into());
             }
-            (None, None) => Self::of(source),
+            (None, None) => Self::default_for(source),
             (Some("surfels"), None) => Self::Surfels,
             (Some("points"), None) => Self::Points,
             (Some("facets"), None) => Self::Facets,

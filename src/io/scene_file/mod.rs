@@ -200,7 +200,7 @@ pub enum EnvironmentChoice {
 impl EnvironmentChoice {
     /// `sky`, or else the name of a file.
     #[must_use]
-    pub fn of(text: &str) -> Self {
+    pub fn from_text(text: &str) -> Self {
         match text {
             "sky" => Self::Sky,
             file => Self::File(file.into()),
@@ -243,7 +243,7 @@ impl SceneFile {
     #[must_use]
     pub fn of_model(source: Source) -> Self {
         let model = Model {
-            draw: Draw::of(&source),
+            draw: Draw::default_for(&source),
             source,
             transform: Similarity::IDENTITY,
             color: None,

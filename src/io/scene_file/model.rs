@@ -138,7 +138,9 @@ pub(super) fn check_properties(model: &Model, names: &[String]) -> Result<()> {
 fn ply_of<'a>(model: &'a Model, names: &[String]) -> Result<Option<&'a Path>> {
     let Some(first) = names.first() else { return Ok(None) };
     match &model.source {
-        Source::File { path, .. } if FileKind::of(path)? == FileKind::Ply => Ok(Some(path)),
+        Source::File { path, .. } if FileKind::from_extension(path)? == FileKind::Ply => {
+            Ok(Some(path))
+        }
         source => Err(Error::Usage(format!(
             "{}: there is no property {}, which only vertices of a .ply have",
             source.name(),

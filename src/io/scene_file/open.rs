@@ -37,7 +37,7 @@ pub enum FileKind {
 /// # Errors
 /// As [`obj::read`] and [`ply::read_with`].
 pub fn read_model(path: &Path, exec: &Exec) -> Result<Cloud> {
-    match FileKind::of(path) {
+    match FileKind::from_extension(path) {
         Ok(FileKind::Obj) => obj::read(path),
         _ => ply::read_with(path, exec),
     }
@@ -48,7 +48,7 @@ impl FileKind {
     ///
     /// # Errors
     /// [`Error::Usage`] if the extension is none that is known.
-    pub fn of(path: &Path) -> Result<Self> {
+    pub fn from_extension(path: &Path) -> Result<Self> {
         match extension(path).as_deref() {
             Some("ply") => Ok(Self::Ply),
             Some("obj") => Ok(Self::Obj),
@@ -111,7 +111,7 @@ impl SceneFile {
         if Hierarchy::is_in(path) {
             return Ok(Self::of_hierarchy(path));
         }
-        match FileKind::of(path)? {
+        match FileKind::from_extension(path)? {
             FileKind::Ply | FileKind::Obj => Ok(Self::of_model(Source::File {
                 path: path.to_owned(),
                 radius: None,

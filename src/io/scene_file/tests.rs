@@ -336,8 +336,11 @@ fn an_environment_is_the_sky_or_a_file() {
     assert_eq!(load(&file("")).scene.environment, None);
     let sky = file("[environment]\nsky = true\n");
     assert_eq!(load(&sky).scene.environment, Some(Environment::Sky));
-    assert_eq!(EnvironmentChoice::of("sky"), EnvironmentChoice::Sky);
-    assert_eq!(EnvironmentChoice::of("b/sky.exr"), EnvironmentChoice::File("b/sky.exr".into()));
+    assert_eq!(EnvironmentChoice::from_text("sky"), EnvironmentChoice::Sky);
+    assert_eq!(
+        EnvironmentChoice::from_text("b/sky.exr"),
+        EnvironmentChoice::File("b/sky.exr".into())
+    );
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");

@@ -77,7 +77,7 @@ impl<'a, R: Real> SquareProjector<'a, R> {
     /// The side of a surfel; 0 of one without.
     #[inline(always)]
     pub(crate) fn side(&self, i: usize) -> f32 {
-        self.sides.and_then(|sides| sides.of(i as u32)).unwrap_or(0.0)
+        self.sides.and_then(|sides| sides.side(i as u32)).unwrap_or(0.0)
     }
 
     /// The same of these numbers; the side is 0 of a surfel without one.

@@ -30,7 +30,7 @@ impl<'a> Whole<'a> {
         let alone = || {
             let counts = [scene.surfels.len() as u32];
             // Fewer than 2^32 - 1, which is what 32 bits hold.
-            Ids::of(Split::Single(32), &counts).unwrap_or_else(Ids::none)
+            Ids::with_split(Split::Single(32), &counts).unwrap_or_else(Ids::none)
         };
         let ids = match &scene.objects {
             Some(objects) => Cow::Borrowed(objects.ids()),

@@ -39,7 +39,7 @@ pub(super) fn define<R: Exact>(
 
     let kept = indices(job, &settings.splats, &whole, &visible);
     let list = selected(&kept);
-    let now = Seen::of(whole.ids(), settings.flags, &list);
+    let now = Seen::from_selected(whole.ids(), settings.flags, &list);
     clock.lap("indices");
 
     let part = whole.drawn(list, job);

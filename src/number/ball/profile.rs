@@ -141,7 +141,7 @@ pub struct SumTerms {
 
 impl SumTerms {
     #[inline(always)]
-    fn of(ball: &Ball<Gpu>) -> Self {
+    fn from_ball(ball: &Ball<Gpu>) -> Self {
         let Ball { middle, radius, terms } = *ball;
         let one = Self { magnitude: middle.abs() + radius, additions: 0.0, radius };
         Gpu::choose(terms.additions == 0.0, one, terms)
@@ -200,7 +200,7 @@ impl Profile for Gpu {
     }
     #[inline(always)]
     fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {
-        let (a, b) = (SumTerms::of(a), SumTerms::of(b));
+        let (a, b) = (SumTerms::from_ball(a), SumTerms::from_ball(b));
         let terms = SumTerms {
             magnitude: a.magnitude + b.magnitude,
             additions: a.additions + b.additions + 1.0,

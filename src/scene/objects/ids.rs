@@ -96,7 +96,7 @@ impl Ids {
         let bits = bits_for(u64::from(most));
         let [single, wide] = [Split::Single(bits), Split::Stencil(bits)];
         let splits = [Split::Even, Split::Two, single, Split::Stencil(LARGE), wide];
-        let fits = splits.into_iter().find_map(|split| Self::of(split, &counts));
+        let fits = splits.into_iter().find_map(|split| Self::with_split(split, &counts));
         fits.map(|fits| Self { all, ..fits }).ok_or_else(|| {
             let objects = counts.len();
             let large = counts.iter().position(|&count| count == most && count > 1 << LARGE);
@@ -119,7 +119,7 @@ impl Ids {
 
     /// The ids by a split of one's own; none if it does not fit.
     #[must_use]
-    pub fn of(split: Split, counts: &[u32]) -> Option<Self> {
+    pub fn with_split(split: Split, counts: &[u32]) -> Option<Self> {
         let numbers = |bits: u32| 0..1_u64 << bits;
         let (mut objects, mut small) = match split {
             Split::Even => (numbers(32 - LARGE), numbers(0)),
@@ -162,7 +162,7 @@ impl Ids {
     /// The same surfels by another split; none if they do not fit.
     #[must_use]
     pub fn split_as(&self, split: Split) -> Option<Self> {
-        Some(Self { all: self.all.clone(), ..Self::of(split, &self.counts)? })
+        Some(Self { all: self.all.clone(), ..Self::with_split(split, &self.counts)? })
     }
 
     /// The ids of no objects.
@@ -323,15 +323,15 @@ mod tests {
     #[test]
     fn the_bits_are_those_of_the_paper() {
         let large = (1 << 17) + 1;
-        let two = Ids::of(Split::Two, &[5, large, 7, large]).unwrap();
+        let two = Ids::with_split(Split::Two, &[5, large, 7, large]).unwrap();
         assert_eq!(two.order(), [1, 3, 0, 2], "large objects first");
         assert_eq!(two.id(1, 9), 9);
         assert_eq!(two.id(3, 9), 1 << 20 | 9);
         assert_eq!(two.id(0, 4), 1 << 31 | 4);
         assert_eq!(two.id(2, 6), 1 << 31 | 1 << 17 | 6);
-        let even = Ids::of(Split::Even, &[5, 6]).unwrap();
+        let even = Ids::with_split(Split::Even, &[5, 6]).unwrap();
         assert_eq!(even.id(1, 3), 1 << 20 | 3);
-        let stencil = Ids::of(Split::Stencil(20), &vec![1; 4098]).unwrap();
+        let stencil = Ids::with_split(Split::Stencil(20), &vec![1; 4098]).unwrap();
         // No object has the number 4095.
         assert_eq!(stencil.id(4094, 0), 4094 << 20);
         assert_eq!(stencil.id(4095, 0), 1 << 32, "the stencil has the high bits");
@@ -348,7 +348,7 @@ mod tests {
             let single = Split::Single(bits_for(u64::from(most)));
             let wide = Split::Stencil(bits_for(u64::from(most)));
             for split in [Split::Even, Split::Two, single, Split::Stencil(20), wide] {
-                let Some(ids) = Ids::of(split, &counts) else { continue };
+                let Some(ids) = Ids::with_split(split, &counts) else { continue };
                 let object = at.index(counts.len());
                 prop_assert_eq!(ids.total(), counts.iter().map(|&c| u64::from(c)).sum::<u64>());
                 if counts[object] > 0 {

@@ -32,7 +32,7 @@ mod place;
 use super::{Boxes, Primitives, Similarity, Surfels};
 use crate::error::{Error, Result};
 pub use detail::Detail;
-use detail::Shown;
+use detail::DrawnPart;
 use detail::refine::{Forest, Refinement};
 use glam::{DVec3, Vec3};
 pub use ids::{Ids, Split};
@@ -81,7 +81,7 @@ pub struct Objects {
     refinement: Arc<Refinement>,
     forest: Option<Arc<Forest>>,
     /// What is drawn of each object.
-    shown: Arc<[Shown]>,
+    shown: Arc<[DrawnPart]>,
     median_radius: f32,
     bounding_sphere: (DVec3, f64),
     /// The hash of what geometries are read from, if they are known by that.
@@ -146,7 +146,7 @@ impl Objects {
         let places: Vec<_> = self.objects.iter().map(|object| object.motion.at(frame)).collect();
         let at_rest = |object: &Object| {
             let all = self.extents[object.geometry].count;
-            Shown::at_rest(&self.geometries[object.geometry], all)
+            DrawnPart::at_rest(&self.geometries[object.geometry], all)
         };
         let shown = self.objects.iter().map(at_rest).collect();
         let mut moved = Self { frame, places, shown, ..self.clone() };

@@ -18,7 +18,7 @@ fn noise(seed: u64) -> impl Fn(u32, u32) -> [f32; 3] {
 /// An ellipse of these half axes, the longer one turned so many radians.
 fn turned(long: f64, short: f64, angle: f64) -> Ellipse {
     let (s, c) = (sin(angle), cos(angle));
-    Ellipse::of(DVec2::new(c, s) * long, DVec2::new(-s, c) * short)
+    Ellipse::from_half_axes(DVec2::new(c, s) * long, DVec2::new(-s, c) * short)
 }
 
 #[test]

@@ -156,7 +156,7 @@ fn gather(
         cloud: Cloud {
             normal: Some(Vec::new()),
             color: colored.then(Vec::new),
-            ..Properties::of(mesh.scene).of_none()
+            ..Properties::from_scene(mesh.scene).of_none()
         },
         counts: Vec::new(),
         pixel: 2.0 * radius / f64::from(side),
@@ -236,7 +236,7 @@ impl Candidates {
         let pixels = u64::from(camera.width) * u64::from(camera.height);
         let vertices = mesh.scene.primitives.triangles.vertices().position.len() as u64;
         // Every pixel may be covered.
-        let properties = Properties::of(mesh.scene);
+        let properties = Properties::from_scene(mesh.scene);
         let of_a_pixel = OF_A_PIXEL + OF_A_CANDIDATE + 8 * properties.count();
         memory::ask(pixels * of_a_pixel + vertices * OF_A_VERTEX, || {
             format!("a picture of {pixels} pixels for candidates")

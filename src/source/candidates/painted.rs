@@ -72,7 +72,7 @@ fn lift(cloud: &mut Cloud) -> Result<Option<Lifted>> {
     (cloud.color, cloud.mipmap) = (None, None);
     let finite = |at: &[Vec2; 3]| at.iter().all(|at| at.is_finite());
     let all = std::mem::take(&mut cloud.triangles).into_iter().enumerate();
-    let all = all.map(|(i, corners)| (corners, coordinates.of(i, corners)));
+    let all = all.map(|(i, corners)| (corners, coordinates.corners(i, corners)));
     let (corners, at): (Vec<_>, Vec<_>) = all.filter(|(_, at)| finite(at)).unzip();
     if corners.is_empty() && before > 0 {
         let what =

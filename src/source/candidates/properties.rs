@@ -10,7 +10,7 @@ pub(super) struct Properties<'a> {
 
 impl<'a> Properties<'a> {
     /// Those of the triangles of a scene.
-    pub(super) fn of(scene: &'a Scene) -> Self {
+    pub(super) fn from_scene(scene: &'a Scene) -> Self {
         let vertices = scene.primitives.triangles.vertices();
         Self { opacity: vertices.opacity.as_deref(), further: &vertices.properties }
     }

@@ -27,9 +27,9 @@ pub(super) fn facets(cloud: &Cloud, exec: &Exec, progress: Progress<'_>) -> Resu
     let Some(paint) = &cloud.paint else { return Ok(None) };
     let coordinates = coordinates(cloud)?;
     let find = |i: usize, scale: f64| {
-        let [a, b, c] = coordinates.of(i, cloud.triangles[i]).map(|at| at.as_dvec2());
+        let [a, b, c] = coordinates.corners(i, cloud.triangles[i]).map(|at| at.as_dvec2());
         let center = ((a + b) + c) / 3.0;
-        let outline = Ellipse::of(c - center, (b - a) / 3.0_f64.sqrt());
+        let outline = Ellipse::from_half_axes(c - center, (b - a) / 3.0_f64.sqrt());
         paint.color(center, outline.times(scale))
     };
     colors(paint, cloud.triangles.len(), &find, exec, progress).map(Some)
@@ -109,7 +109,7 @@ fn keys(triangles: &[[u32; 3]], coordinates: &Coordinates, exec: &Exec) -> Vec<K
     let bits = |at: Vec2| (at + Vec2::ZERO).to_array().map(f32::to_bits);
     let mut keys = Vec::with_capacity(3 * triangles.len());
     for (i, corners) in triangles.iter().enumerate() {
-        let at = coordinates.of(i, *corners);
+        let at = coordinates.corners(i, *corners);
         keys.extend(corners.iter().zip(at).map(|(&corner, at)| (corner, bits(at), i as u32)));
     }
     // Equal ones are corners of one triangle, which has no area.
@@ -143,7 +143,7 @@ fn of_groups(
         for &(_, _, triangle) in group {
             let corners = cloud.triangles[triangle as usize];
             let places = corners.map(|corner| cloud.position[corner as usize]);
-            let Some((own, a)) = stretched(places, coordinates.of(triangle as usize, corners))
+            let Some((own, a)) = stretched(places, coordinates.corners(triangle as usize, corners))
             else {
                 continue;
             };

@@ -29,7 +29,7 @@ pub struct Flaws {
 impl Flaws {
     /// Those of some triangles, of which so many were dropped.
     #[must_use]
-    pub fn of(triangles: &Triangles, dropped: u64) -> Self {
+    pub fn find(triangles: &Triangles, dropped: u64) -> Self {
         let position = &triangles.vertices().position;
         let place = places(position);
         let mut flaws = Self { dropped, ..Self::default() };
@@ -110,7 +110,7 @@ mod tests {
         let vertices = Vertices { position, direction, radius, color: None, ..Vertices::default() };
         let flaws = |corners: &[[u32; 3]]| {
             let (triangles, dropped) = Triangles::new(vertices.clone(), corners.to_vec()).unwrap();
-            Flaws::of(&triangles, dropped)
+            Flaws::find(&triangles, dropped)
         };
         let square = [[0, 1, 2], [6, 2, 3]];
         assert_eq!(flaws(&square), Flaws::default());

@@ -80,7 +80,7 @@ impl Part {
     /// # Panics
     /// If there is no triangle of a number.
     #[must_use]
-    pub fn of(triangles: &Triangles, some: &[u32]) -> Self {
+    pub fn from_triangles(triangles: &Triangles, some: &[u32]) -> Self {
         let corners = some.iter().map(|&i| triangles.corners()[i as usize]);
         let used = Self::vertices_of(triangles, some);
         let all = triangles.vertices();
@@ -258,7 +258,7 @@ mod tests {
             let tree = tree(&mesh, bound).unwrap();
             let mut all = Gathered::new(&Numbers::default());
             for node in 0..tree.nodes.len() as u32 {
-                let part = Part::of(&mesh, tree.own(node));
+                let part = Part::from_triangles(&mesh, tree.own(node));
                 prop_assert_eq!(part.color.is_some(), colored);
                 all.part(part, &Similarity::IDENTITY, None, Vec3::X).unwrap();
             }

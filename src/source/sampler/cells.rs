@@ -49,7 +49,8 @@ const BYTES: [u64; 2] = [16, 72];
 /// [`Error::Invalid`] if there are not as many colours as points, if a point or a colour is not finite, if a pick
 /// is no point, or if the order has fewer than `count` picks.
 pub fn averaged(
-    (points, colors): (&[Vec3], &[Vec3]),
+    points: &[Vec3],
+    colors: &[Vec3],
     order: &Order,
     count: usize,
     exec: &Exec,
@@ -132,7 +133,7 @@ mod tests {
 
     fn of(points: &[Vec3], colors: &[Vec3], index: &[u32], exec: &Exec) -> Result<Vec<Vec3>> {
         let order = Order { index: index.into(), distance: vec![0.0; index.len()] };
-        averaged((points, colors), &order, index.len(), exec, &|_, _, _| ())
+        averaged(points, colors, &order, index.len(), exec, &|_, _, _| ())
     }
 
     proptest! {
@@ -214,8 +215,7 @@ mod tests {
         let (points, colors) = ([Vec3::ZERO, Vec3::ONE], [Vec3::ONE; 2]);
         let order = Order { index: vec![0], distance: vec![0.0] };
         let run = |points: &[Vec3], colors: &[Vec3], count| {
-            let done =
-                averaged((points, colors), &order, count, &Exec::sequential(), &|_, _, _| ());
+            let done = averaged(points, colors, &order, count, &Exec::sequential(), &|_, _, _| ());
             done.unwrap_err().to_string()
         };
         assert_eq!(run(&points, &colors[..1], 1), "1 colours of 2 points");

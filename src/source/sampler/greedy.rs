@@ -109,7 +109,7 @@ impl Greedy {
         exec: &Exec,
         progress: Progress<'_>,
     ) -> Result<Order> {
-        let start = self.start.of(points)?;
+        let start = self.start.first_pick(points)?;
         let bytes = points.len() as u64 * BYTES_A_POINT;
         memory::ask(bytes, || format!("the order of {} points", points.len()))?;
         let count = count.min(points.len());
@@ -121,7 +121,7 @@ impl Greedy {
     /// # Errors
     /// As [`Greedy::order`].
     pub fn define(&self, points: &[Vec3], count: usize) -> Result<Order> {
-        let mut next = self.start.of(points)?;
+        let mut next = self.start.first_pick(points)?;
         let mut least = vec![f32::INFINITY; points.len()];
         let mut order = Order::default();
         while order.index.len() < count.min(points.len()) {
@@ -149,7 +149,7 @@ impl Greedy {
 
 impl Start {
     /// The index of the first pick, if there can be an order.
-    pub(super) fn of(&self, points: &[Vec3]) -> Result<u32> {
+    pub(super) fn first_pick(&self, points: &[Vec3]) -> Result<u32> {
         if let Some(at) = points.iter().position(|point| !point.is_finite()) {
             let what = format!("point {at} is not finite and has no distance to others");
             return Err(Error::Invalid(what));

@@ -92,7 +92,7 @@ impl Progressive {
     /// # Errors
     /// As [`super::Greedy::order`].
     pub fn order(&self, points: &[Vec3], count: usize, progress: Progress<'_>) -> Result<Order> {
-        let start = self.start.of(points)?;
+        let start = self.start.first_pick(points)?;
         memory::ask(points.len() as u64 * BYTES, || {
             format!("an order of {} points", points.len())
         })?;
@@ -220,7 +220,7 @@ impl Rest {
 /// # Errors
 /// As [`super::Greedy::order`].
 pub fn shuffled(points: &[Vec3], seed: u64, count: usize, progress: Progress<'_>) -> Result<Order> {
-    Start::Seed(seed).of(points)?;
+    Start::Seed(seed).first_pick(points)?;
     memory::ask(points.len() as u64 * BYTES, || format!("an order of {} points", points.len()))?;
     let mut keys: Vec<(u64, u32)> =
         (0..points.len() as u32).map(|i| (random::bits(seed, u64::from(i)), i)).collect();

@@ -26,7 +26,8 @@ pub fn mesh(triangles: Triangles) -> Scene {
 /// As [`candidates`] and [`Greedy::order`].
 pub fn order(
     mesh: &Scene,
-    (directions, side): (&Directions, u32),
+    directions: &Directions,
+    side: u32,
     count: usize,
     exec: &Exec,
 ) -> Result<Cloud> {
@@ -43,7 +44,8 @@ pub fn order(
 /// As [`candidates`], [`Graph::new`] and [`Greedy::along`].
 pub fn order_along(
     mesh: &Scene,
-    (directions, side): (&Directions, u32),
+    directions: &Directions,
+    side: u32,
     count: usize,
     exec: &Exec,
 ) -> Result<Cloud> {

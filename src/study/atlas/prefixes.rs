@@ -98,20 +98,19 @@ fn thin(gap: f64, exec: &Exec) -> Result<[Found; 2]> {
     const APART: f64 = 0.136;
     let plate = cuboid(DVec3::new(1.0, 1.0, gap * APART / 2.0))?;
     let camera = camera(DVec3::new(0.0, 0.0, 5.0), 256, Lens::FieldOfView(30.0))?;
-    let from = (&Directions::Cube, 384);
     let drawn = |order| {
         let objects = objects(geometry(order, Primitives::default())?, &[Similarity::IDENTITY])?;
         // So small that all surfels are asked for, as large as they cover with.
         seen(&objects, 0.125, &camera, exec)
     };
-    let plain = drawn(order(&plate, from, 500, exec)?)?;
-    let cured = drawn(order_along(&plate, from, 500, exec)?)?;
+    let plain = drawn(order(&plate, &Directions::Cube, 384, 500, exec)?)?;
+    let cured = drawn(order_along(&plate, &Directions::Cube, 384, 500, exec)?)?;
     against([plain, cured], &plate, camera, exec)
 }
 
 fn short(count: f64, exec: &Exec) -> Result<[Found; 2]> {
     let torus = torus()?;
-    let order = order(&torus, (&Directions::Cube, 256), 20_000, exec)?;
+    let order = order(&torus, &Directions::Cube, 256, 20_000, exec)?;
     let objects = objects(geometry(order, Primitives::default())?, &[Similarity::IDENTITY])?;
     let pose = DVec3::new(2.0, 3.0, 5.0);
     let camera = camera(pose, 256, Lens::Orthographic(3.2))?;
@@ -136,7 +135,7 @@ fn long(length: f64, exec: &Exec) -> Result<[Found; 2]> {
 fn bar(length: f64, pieces: u32, exec: &Exec) -> Result<Found> {
     let piece = length / f64::from(pieces);
     let bar = cuboid(DVec3::new(0.5, 0.5, piece / 2.0))?;
-    let order = order(&bar, (&Directions::Cube, 512), 50_000, exec)?;
+    let order = order(&bar, &Directions::Cube, 512, 50_000, exec)?;
     let places: Vec<Similarity> = (0..pieces)
         .map(|i| {
             let z = (f64::from(i) + 0.5) * piece - length / 2.0;

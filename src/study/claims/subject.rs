@@ -168,7 +168,7 @@ impl<'e> Subject<'e> {
                 of_surfaces(&[surface], &self.scene, false, view, self.exec, &quiet)?
             }
             Drawn::Scan(file) => {
-                let known = Known::of(file, &self.scene, self.exec, &quiet)?;
+                let known = Known::about(file, &self.scene, self.exec, &quiet)?;
                 known.still(&self.camera, self.exec, &quiet)?
             }
         };

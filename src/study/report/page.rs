@@ -18,11 +18,11 @@ struct Data<'a> {
     columns: Vec<&'a str>,
     /// Which candidate is shown first.
     first: usize,
-    candidates: Vec<Shown<'a>>,
+    candidates: Vec<CandidateRow<'a>>,
 }
 
 #[derive(Serialize)]
-struct Shown<'a> {
+struct CandidateRow<'a> {
     options: &'a str,
     front: bool,
     values: Vec<Option<f64>>,
@@ -44,7 +44,7 @@ pub fn page(
     let shown: Vec<usize> = points(study, loss).into_iter().map(|(i, _)| i).collect();
     let candidate = |&i: &usize| {
         let record = &study.candidates[i];
-        Shown {
+        CandidateRow {
             options: &record.options,
             front: front.contains(&i),
             values: values(record, figures),

@@ -58,7 +58,8 @@ fn drawn(ready: &Ready) -> u64 {
 pub fn picture_error(
     bench: &mut Bench<'_>,
     candidate: &Candidate,
-    (metric, truth): (&Metric, &Truth),
+    metric: &Metric,
+    truth: &Truth,
     exec: &Exec,
 ) -> Result<(Option<f64>, f64)> {
     let mut visit = bench.visit(candidate, &|_, _, _| ())?;
@@ -107,7 +108,7 @@ pub fn measure(
         output.draw(&mut visit.session, &camera)?;
     }
     let frame = output.draw(&mut visit.session, &camera)?.frame.clone();
-    let errors = Errors::of(&frame, &truths.still.frame, exec)?;
+    let errors = Errors::measure(&frame, &truths.still.frame, exec)?;
     let mut known = BTreeMap::new();
     let mut know = |name: &str, value: Option<f64>| {
         // Of equal pictures the PSNR is infinite, which no file holds.

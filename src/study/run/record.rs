@@ -69,7 +69,7 @@ pub struct Measured {
 impl Record {
     /// Of a candidate nothing is known yet.
     #[must_use]
-    pub fn of(candidate: &Candidate) -> Self {
+    pub fn new(candidate: &Candidate) -> Self {
         let (options, method) = (candidate.options.clone(), candidate.method.to_owned());
         Self { options, method, measured: None, times: Vec::new() }
     }

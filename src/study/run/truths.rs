@@ -46,7 +46,12 @@ impl Known {
     ///
     /// # Errors
     /// As [`SceneFile::ready`] where not even points can be drawn.
-    pub fn of(file: &SceneFile, lit: &Scene, exec: &Exec, progress: Progress<'_>) -> Result<Self> {
+    pub fn about(
+        file: &SceneFile,
+        lit: &Scene,
+        exec: &Exec,
+        progress: Progress<'_>,
+    ) -> Result<Self> {
         let method = file.method.method()?;
         let cull = method.values().contains(&("cull", Value::Switch(true)));
         let (surfels, surfaces, unknown) = match surfaces(file, exec, progress) {
@@ -189,7 +194,7 @@ mod tests {
         }
         change(&mut file);
         let ready = file.ready(&exec, &|_, _, _| ()).unwrap();
-        let known = Known::of(&file, &ready.loaded.scene, &exec, &|_, _, _| ()).unwrap();
+        let known = Known::about(&file, &ready.loaded.scene, &exec, &|_, _, _| ()).unwrap();
         let truth = known.still(&ready.camera, &exec, &|_, _, _| ()).unwrap();
         (known, truth)
     }

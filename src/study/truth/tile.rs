@@ -68,8 +68,7 @@ impl Caster<'_> {
             match solid {
                 Solid::Shape(shape) => self.trace(shape, surface, rays, &mut nearest),
                 Solid::Triangles { triangles, listed, bins } => {
-                    let lists = (*triangles, listed.as_slice(), bins);
-                    draw(self, lists, (tile, surface), rays, &mut nearest);
+                    draw(self, triangles, listed, bins, (tile, surface), rays, &mut nearest);
                 }
             }
         }
@@ -223,7 +222,9 @@ vectorized!(
     /// The nearest of the triangles of a tile and of what is before them.
     fn draw(
         caster: &Caster<'_>,
-        (triangles, listed, bins): (&Triangles, &[u32], &Bins),
+        triangles: &Triangles,
+        listed: &[u32],
+        bins: &Bins,
         (tile, surface): (usize, u32),
         rays: &Rays,
         nearest: &mut Nearest,

@@ -66,7 +66,7 @@ macro_rules! page {
                 let m = if eye.perspective { 1.0 / -p[2] } else { 1.0 };
                 let (a, b) = (p[0] * m, p[1] * m);
                 let g = if eye.perspective { (n[0] * a + n[1] * b) - n[2] } else { -n[2] };
-                let h = match scene.sides.as_ref().and_then(|sides| sides.of(i as u32)) {
+                let h = match scene.sides.as_ref().and_then(|sides| sides.side(i as u32)) {
                     Some(side) => N::from(side) * 0.5,
                     None => {
                         let rho = r * ((eye.f[0] * eye.f[1]).sqrt() * m);

@@ -19,7 +19,7 @@ fn alone(case: &Case<Settings>, i: usize) -> Case<Settings> {
         radius: Some(vec![of.radius()[i]]),
         ..Cloud::default()
     });
-    let side = scene.sides.as_ref().and_then(|sides| sides.of(i as u32));
+    let side = scene.sides.as_ref().and_then(|sides| sides.side(i as u32));
     scene.sides = side.and_then(|side| Sides::new(vec![(0, Some(side))]).ok());
     scene.primitives = Primitives::default();
     let Case { name, camera, settings, .. } = case;

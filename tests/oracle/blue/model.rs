@@ -111,7 +111,7 @@ impl Placed {
         let [fx, fy] = [f64::from(camera.fx), f64::from(camera.fy)];
         let center = [f64::from(camera.cx) + fx * p.x / t, f64::from(camera.cy) - fy * p.y / t];
         let own = (radius * (fx * fy).sqrt() / t).max(0.5);
-        let side = scene.sides.as_ref().and_then(|sides| sides.of(surfel));
+        let side = scene.sides.as_ref().and_then(|sides| sides.side(surfel));
         let half = side.map_or(own, |side| f64::from(side) / 2.0);
         let relative = if perspective { off / t } else { off };
         let reach = center[0].abs() + center[1].abs() + half + 64.0;

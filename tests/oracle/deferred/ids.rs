@@ -146,7 +146,7 @@ fn deferred_ids_are_those_of_the_table() {
         let wide = [Split::Stencil(20), Split::Stencil(14), Split::Stencil(31)];
         let narrow = [Split::Even, Split::Two, Split::Single(17), Split::Single(12)];
         for split in narrow.into_iter().chain(wide) {
-            let (model, ids) = (Numbers::of(split, &counts), Ids::of(split, &counts));
+            let (model, ids) = (Numbers::of(split, &counts), Ids::with_split(split, &counts));
             assert_eq!(model.is_some(), ids.is_some(), "{split:?}");
             if let (Some(model), Some(ids)) = (model, ids) {
                 compare(&mut dice, &model, &ids);

@@ -68,7 +68,7 @@ pub(super) fn shot<R: Exact>(
 
 /// What a frame saw that selected these.
 fn after(world: &World, group: u32, selected: &[u64]) -> Seen {
-    Seen::of(world.objects().ids(), group, selected)
+    Seen::from_selected(world.objects().ids(), group, selected)
 }
 
 pub(super) fn selected<R: Exact>(frame: &Frame<R>) -> Vec<u32> {

@@ -183,7 +183,7 @@ proptest! {
         let firsts = numbers.every().into_iter().filter(|of| known(of) && of.1.is_multiple_of(m));
         let firsts: Vec<_> = firsts.map(|(o, s)| numbers.id(o, s)).collect();
         let ids = sequence.world.objects().ids().clone();
-        let other = drawn::<f32>(of, camera, Some(Seen::of(&ids, m, &firsts)), &exec);
+        let other = drawn::<f32>(of, camera, Some(Seen::from_selected(&ids, m, &firsts)), &exec);
         prop_assert!(digest(&whole.frame) == digest(&other.frame), "{}", sequence.name);
         prop_assert_eq!(&whole.seen, &other.seen);
         // No flags are those of the first frame.
@@ -231,7 +231,7 @@ proptest! {
         let every: Vec<_> = numbers.every().iter().map(|&(o, s)| numbers.id(o, s)).collect();
         // Every flag: pass 1 is visibility splatting of all.
         let m = sequence.settings.flags;
-        let seen = Seen::of(objects.ids(), m, &every);
+        let seen = Seen::from_selected(objects.ids(), m, &every);
         let own = drawn::<f32>((&scene, sequence.settings), camera, Some(seen), &exec).frame;
         let (flat, _) = objects.flattened(&exec).expect("few");
         let draw = |indices: &[u64], epsilon: f32| {

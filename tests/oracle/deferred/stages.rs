@@ -198,7 +198,8 @@ fn state(
     }
     assert_eq!(seen.selected(), each, "{name}: how many were selected");
     assert_eq!(seen.group(), sequence.settings.flags);
-    let again = Seen::of(ids, seen.group(), &selected.iter().copied().collect::<Vec<_>>());
+    let again =
+        Seen::from_selected(ids, seen.group(), &selected.iter().copied().collect::<Vec<_>>());
     assert_eq!(*seen, again, "{name}: the state is that of the selection");
 }
 

@@ -103,7 +103,7 @@ fn right_choices_are_right() {
     assert_eq!(plain.primitives, scene.primitives);
     assert_eq!(scene.primitives.triangles.len(), 1, "of two, one is beyond its limit");
     assert!((0..plain.surfels.len() as u32).all(|i| {
-        let of = |scene: &splatref::scene::Scene| scene.sides.as_ref().and_then(|all| all.of(i));
+        let of = |scene: &splatref::scene::Scene| scene.sides.as_ref().and_then(|all| all.side(i));
         of(&plain) == of(scene) && of(scene).is_some()
     }));
     for way in [Way::Plain, Way::Single] {

@@ -59,7 +59,7 @@ proptest! {
         let graph = conflicts(&surfels, &tree, &rules, rules.overlap, &exec, &silent).unwrap();
         let mut found = vec![Vec::new(); surfels.len()];
         for (place, &surfel) in tree.surfel.iter().enumerate() {
-            let neighbours = graph.of(place).all.iter().map(|&j| tree.surfel[j as usize] as usize);
+            let neighbours = graph.row(place).all.iter().map(|&j| tree.surfel[j as usize] as usize);
             found[surfel as usize] = neighbours.collect();
             found[surfel as usize].sort_unstable();
         }
@@ -78,7 +78,7 @@ proptest! {
             let own = conflicts(&surfels, &tree, &rules, f32::from(step) / 64.0, &exec, &silent);
             let own = own.unwrap();
             for place in 0..surfels.len() {
-                let [mut a, mut b] = [&graph, &own].map(|graph| graph.of(place).all.to_vec());
+                let [mut a, mut b] = [&graph, &own].map(|graph| graph.row(place).all.to_vec());
                 a.sort_unstable();
                 b.sort_unstable();
                 prop_assert_eq!(a, b, "c = {}/64", step);

@@ -34,7 +34,7 @@ impl RawKey {
         (self.frame, Pose { eye, target, up: self.up.map_or(DVec3::Y, |up| up.0.into()) })
     }
 
-    fn of((frame, pose): (u32, Pose)) -> Self {
+    fn from_key((frame, pose): (u32, Pose)) -> Self {
         let array = |v: DVec3| Exactly(v.to_array());
         Self { frame, eye: array(pose.eye), target: array(pose.target), up: Some(array(pose.up)) }
     }
@@ -71,7 +71,7 @@ impl RawCamera {
         })
     }
 
-    pub(super) fn of(choice: &CameraChoice) -> Self {
+    pub(super) fn from_choice(choice: &CameraChoice) -> Self {
         let CameraChoice { size, eye, target, up, motion, lens } = choice;
         let array = |v: &Option<DVec3>| v.map(|v| Exactly(v.to_array()));
         let [mut fov, mut focal, mut ortho] = [None; 3];
@@ -86,7 +86,7 @@ impl RawCamera {
             eye: array(eye),
             target: array(target),
             up: array(up),
-            keys: motion.as_ref().map(|motion| motion.keys().map(RawKey::of).collect()),
+            keys: motion.as_ref().map(|motion| motion.keys().map(RawKey::from_key).collect()),
             fov,
             focal,
             ortho,

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf, absolute};
 pub(super) struct Folder(PathBuf);
 
 impl Folder {
-    pub(super) fn of(path: &Path) -> Result<Self> {
+    pub(super) fn containing(path: &Path) -> Result<Self> {
         let whole = absolute(path).map_err(|source| Error::io(path, source))?;
         Ok(Self(whole.parent().unwrap_or(&whole).to_owned()))
     }

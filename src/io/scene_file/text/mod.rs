@@ -184,7 +184,7 @@ impl RawRefinement {
         refinement.check().map(|()| refinement).map_err(|error| error.to_string())
     }
 
-    fn of(refinement: &Refinement) -> Self {
+    fn from_refinement(refinement: &Refinement) -> Self {
         let Refinement { surfel_size, budget, ref zones } = *refinement;
         let zones = zones.iter().map(|zone| Exactly(*zone)).collect();
         Self { surfel_size: Some(surfel_size), budget, zones }
@@ -231,7 +231,7 @@ impl RawLight {
         light.check().map(|()| light).map_err(|error| error.to_string())
     }
 
-    fn of(light: &Light) -> Self {
+    fn from_light(light: &Light) -> Self {
         let array = |v: Vec3| Exactly(v.to_array());
         match *light {
             Light::Directional { towards, color } => {
@@ -270,7 +270,7 @@ impl RawMaterial {
         material.check().map(|()| material).map_err(|error| error.to_string())
     }
 
-    fn of(material: &Phong) -> Self {
+    fn from_material(material: &Phong) -> Self {
         let Phong { ambient, diffuse, specular, shininess, color } = *material;
         Self {
             ambient: Some(ambient),
@@ -298,7 +298,7 @@ impl RawEnvironment {
         }
     }
 
-    fn of(environment: &EnvironmentChoice, place: &Folder) -> Self {
+    fn from_choice(environment: &EnvironmentChoice, place: &Folder) -> Self {
         match environment {
             EnvironmentChoice::Sky => Self { file: None, sky: Some(true) },
             EnvironmentChoice::File(path) => Self { file: Some(place.path(path)), sky: None },

@@ -84,23 +84,23 @@ impl RawModel {
 
     pub(super) fn of_geometry(geometry: &Geometry, place: &Folder) -> Self {
         let Geometry { name, detail, model } = geometry;
-        Self { name: Some(name.clone()), detail: *detail, ..Self::of(model, place) }
+        Self { name: Some(name.clone()), detail: *detail, ..Self::from_model(model, place) }
     }
 
-    pub(super) fn of(model: &Model, place: &Folder) -> Self {
+    pub(super) fn from_model(model: &Model, place: &Folder) -> Self {
         let Model { ref source, draw, transform, color, opacity, mipmaps, progressive } = *model;
         let split = match draw {
             Draw::Hybrid(half) => Some(Exactly(half.numbers())),
             _ => None,
         };
         Self {
-            draw: (draw != Draw::of(source)).then(|| draw.word().into()),
+            draw: (draw != Draw::default_for(source)).then(|| draw.word().into()),
             split,
             color: color.map(|color| Exactly(color.to_array())),
             opacity,
             mipmaps,
             progressive: progressive.then_some(true),
-            transform: RawTransform::of(&transform),
+            transform: RawTransform::from_similarity(&transform),
             ..Self::of_source(source, place)
         }
     }

@@ -89,7 +89,11 @@ impl RawObject {
 }
 
 impl RawObject {
-    pub(super) fn of(object: &ObjectChoice, geometries: &[Geometry], place: &Folder) -> Self {
+    pub(super) fn from_object(
+        object: &ObjectChoice,
+        geometries: &[Geometry],
+        place: &Folder,
+    ) -> Self {
         let ObjectChoice { name, geometry, color, places } = object;
         let of = geometries[*geometry].name.clone();
         let mut raw = Self {
@@ -103,16 +107,16 @@ impl RawObject {
         };
         match places {
             Places::One(motion) => match motion.keys() {
-                [(0, place)] => raw.transform = RawTransform::of(place),
-                keys => raw.keys = Some(keys.iter().map(RawKey::of).collect()),
+                [(0, place)] => raw.transform = RawTransform::from_similarity(place),
+                keys => raw.keys = Some(keys.iter().map(RawKey::from_key).collect()),
             },
             Places::Table { path, transform } => {
                 raw.table = Some(place.path(path));
-                raw.transform = RawTransform::of(transform);
+                raw.transform = RawTransform::from_similarity(transform);
             }
             Places::Scatter { scatter, transform } => {
-                raw.scatter = Some(RawScatter::of(scatter));
-                raw.transform = RawTransform::of(transform);
+                raw.scatter = Some(RawScatter::from_scatter(scatter));
+                raw.transform = RawTransform::from_similarity(transform);
             }
         }
         raw
@@ -126,8 +130,9 @@ impl RawKey {
         place.map(|place| (frame, place)).map_err(|what| format!("frame {frame}: {what}"))
     }
 
-    fn of(&(frame, ref place): &(u32, Similarity)) -> Self {
-        let RawTransform { scale, rotate, translate } = RawTransform::of(place).unwrap_or_default();
+    fn from_key(&(frame, ref place): &(u32, Similarity)) -> Self {
+        let RawTransform { scale, rotate, translate } =
+            RawTransform::from_similarity(place).unwrap_or_default();
         Self { frame, scale, rotate, translate }
     }
 }
@@ -148,7 +153,7 @@ impl RawScatter {
         scatter.check().map(|()| scatter).map_err(|error| error.to_string())
     }
 
-    fn of(scatter: &Scatter) -> Self {
+    fn from_scatter(scatter: &Scatter) -> Self {
         let Scatter { count, seed, low, high, scale, axis } = *scatter;
         Self {
             count: count.into(),

@@ -46,7 +46,7 @@ impl RawTransform {
     }
 
     /// None of what stays where it is.
-    pub(super) fn of(similarity: &Similarity) -> Option<Self> {
+    pub(super) fn from_similarity(similarity: &Similarity) -> Option<Self> {
         let Similarity { rotation, scale, translation } = *similarity;
         let rows = Exactly(rotation.transpose().to_cols_array_2d().map(Exactly));
         let matrix = RawRotation { axis: None, degrees: None, matrix: Some(rows) };

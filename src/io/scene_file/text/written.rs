@@ -34,33 +34,36 @@ struct Tables {
 
 /// The text of a file at `path`, see [`SceneFile::text`].
 pub(in crate::io::scene_file) fn write(file: &SceneFile, path: &Path) -> Result<String> {
-    let tables = Tables::of(file, &Folder::of(path)?)?;
+    let tables = Tables::from_file(file, &Folder::containing(path)?)?;
     toml::to_string(&tables)
         .map_err(|error| Error::Invalid(format!("TOML cannot say the scene: {error}")))
 }
 
 impl Tables {
-    fn of(file: &SceneFile, place: &Folder) -> Result<Self> {
+    fn from_file(file: &SceneFile, place: &Folder) -> Result<Self> {
         let SceneFile { name: _, frame: _, hierarchy, models, geometries, objects, .. } = file;
         let SceneFile { refinement, camera, lights, material, environment, .. } = file;
         let method = file.method.method()?;
         let default = Method::by_name(method.name())?.values();
         let groups = file.grouping(&method)?;
         let output = file.output;
-        let objects = objects.iter().map(|object| RawObject::of(object, geometries, place));
+        let objects =
+            objects.iter().map(|object| RawObject::from_object(object, geometries, place));
         Ok(Self {
             hierarchy: hierarchy.as_deref().map(|folder| place.path(folder)),
-            model: some(models.iter().map(|model| RawModel::of(model, place))),
+            model: some(models.iter().map(|model| RawModel::from_model(model, place))),
             geometry: some(geometries.iter().map(|one| RawModel::of_geometry(one, place))),
             object: some(objects),
             sequence: (file.frames > 1).then_some(RawSequence { frames: file.frames }),
             refinement: (*refinement != Refinement::default())
-                .then(|| RawRefinement::of(refinement)),
-            camera: (*camera != CameraChoice::default()).then(|| RawCamera::of(camera)),
+                .then(|| RawRefinement::from_refinement(refinement)),
+            camera: (*camera != CameraChoice::default()).then(|| RawCamera::from_choice(camera)),
             light: (lights[..] != [Light::DEFAULT])
-                .then(|| lights.iter().map(RawLight::of).collect()),
-            material: (*material != Phong::default()).then(|| RawMaterial::of(material)),
-            environment: environment.as_ref().map(|choice| RawEnvironment::of(choice, place)),
+                .then(|| lights.iter().map(RawLight::from_light).collect()),
+            material: (*material != Phong::default()).then(|| RawMaterial::from_material(material)),
+            environment: environment
+                .as_ref()
+                .map(|choice| RawEnvironment::from_choice(choice, place)),
             method: Written {
                 name: Some(method.name()),
                 settings: other_than(method.values(), &default),

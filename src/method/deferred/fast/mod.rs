@@ -46,7 +46,7 @@ pub(super) fn render(
     let epsilon = splats.epsilon.in_units(whole.median_radius());
     let limits = first.limits(epsilon, job.exec);
     let list = points::selected(job, settings, &whole, &limits);
-    let now = Seen::of(whole.ids(), settings.flags, &list);
+    let now = Seen::from_selected(whole.ids(), settings.flags, &list);
     clock.lap("indices");
 
     let fresh = whole.part(unseen(&whole, &before, &list), job.exec);

@@ -99,7 +99,7 @@ impl Geometry {
 
 /// What a view draws of an object.
 #[derive(Clone, Debug)]
-pub(super) struct Shown {
+pub(super) struct DrawnPart {
     /// How many surfels are looked at, and have ids.
     count: u32,
     /// Which of them are drawn; none: all.
@@ -119,13 +119,13 @@ pub struct Disc {
     pub side: f32,
 }
 
-impl Default for Shown {
+impl Default for DrawnPart {
     fn default() -> Self {
         Self { count: 0, mask: None, disc: None, primitives: true }
     }
 }
 
-impl Shown {
+impl DrawnPart {
     fn nothing() -> Self {
         Self { mask: Some(Arc::default()), primitives: false, ..Self::default() }
     }
@@ -143,7 +143,7 @@ pub struct Mask {
 }
 
 impl Mask {
-    fn of(count: usize, is_drawn: impl Fn(usize) -> bool) -> Self {
+    fn from_fn(count: usize, is_drawn: impl Fn(usize) -> bool) -> Self {
         let word = |first: usize| {
             let bits = first..count.min(first + 64);
             bits.fold(0, |word, i| word | u64::from(is_drawn(i)) << (i - first))

@@ -56,7 +56,7 @@
 //! would have.
 
 use super::prefix::Prefix;
-use super::{Disc, Eye, MARGIN, Shown};
+use super::{Disc, DrawnPart, Eye, MARGIN};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::number::Real;
@@ -238,7 +238,7 @@ impl Objects {
     }
 
     /// What a camera draws of each object.
-    pub(super) fn refined(&self, eye: &Eye, exec: &Exec) -> Vec<Shown> {
+    pub(super) fn refined(&self, eye: &Eye, exec: &Exec) -> Vec<DrawnPart> {
         let all: Vec<u32> = (0..self.objects.len() as u32).collect();
         let asked = exec.ordered(all.clone(), |object| self.asked(object, eye));
         let (size, drawn) = self.within_budget(&asked);
@@ -248,14 +248,14 @@ impl Objects {
             let geometry = self.geometry(object);
             let seen = asked[at].seen;
             match &geometry.detail {
-                _ if weight == 0.0 => Shown::nothing(),
-                None => Shown { count: self.count_of_all(object), ..Shown::default() },
-                Some(_) if !seen => Shown::nothing(),
+                _ if weight == 0.0 => DrawnPart::nothing(),
+                None => DrawnPart { count: self.count_of_all(object), ..DrawnPart::default() },
+                Some(_) if !seen => DrawnPart::nothing(),
                 Some(Detail::Tree(tree)) => {
                     let (count, mask) = tree.drawn(geometry, &self.places[at], eye);
-                    Shown { count, mask: Some(Arc::new(mask)), ..Shown::default() }
+                    DrawnPart { count, mask: Some(Arc::new(mask)), ..DrawnPart::default() }
                 }
-                Some(Detail::Prefix(prefix)) => Shown {
+                Some(Detail::Prefix(prefix)) => DrawnPart {
                     count,
                     disc: Some(self.disc_with(object, prefix, size, &asked[at])),
                     primitives: of_primitives > 0.0,

@@ -68,7 +68,10 @@ impl Tree {
         if eye.camera.projection == Projection::Orthographic {
             let distance = 1.0 / place.scale;
             let count = self.list.prefix(distance, scale);
-            return (count as u32, Mask::of(count, |node| self.list.cuts(node, distance, scale)));
+            return (
+                count as u32,
+                Mask::from_fn(count, |node| self.list.cuts(node, distance, scale)),
+            );
         }
         let eye = eye.before(place);
         let (middle, radius) = self.sphere;
@@ -97,7 +100,7 @@ impl Geometry {
     /// The geometry with nodes in the place of its surfels, and the list that says when each is drawn.
     pub(crate) fn with_tree(self, threshold: f64, nodes: Surfels, list: Sequential) -> Self {
         let tree = Tree {
-            leaves: Arc::new(Mask::of(nodes.len(), |node| list.surfel(node).is_some())),
+            leaves: Arc::new(Mask::from_fn(nodes.len(), |node| list.surfel(node).is_some())),
             list,
             threshold,
             count: self.surfels.len() as u32,

@@ -51,7 +51,7 @@ fn a_candidate_has_the_mean_of_the_texture_around_it() {
     assert_eq!((derived.dropped_primitives, candidates.dropped), (0, 0));
     assert!(candidates.counts.iter().all(|&count| count > 300), "{:?}", candidates.counts);
     let s = candidates.pixel;
-    let outline = Ellipse::of(DVec2::new(0.25, 0.0) * s, DVec2::new(0.125, 0.375) * s);
+    let outline = Ellipse::from_half_axes(DVec2::new(0.25, 0.0) * s, DVec2::new(0.125, 0.375) * s);
     for (&p, &color) in
         candidates.cloud.position.iter().zip(candidates.cloud.color.as_ref().unwrap())
     {

@@ -39,7 +39,7 @@ fn painted(mut cloud: Cloud, texture: Texture, levels: usize) -> Cloud {
 /// The same coordinates, told corner by corner.
 fn by_corners(cloud: Cloud) -> Cloud {
     let all = cloud.coordinates.clone().unwrap();
-    let corners = cloud.triangles.iter().enumerate().map(|(i, c)| all.of(i, *c)).collect();
+    let corners = cloud.triangles.iter().enumerate().map(|(i, c)| all.corners(i, *c)).collect();
     Cloud { coordinates: Some(Coordinates::Corners(corners)), ..cloud }
 }
 
@@ -70,8 +70,8 @@ fn colours_are_means_within_the_outlines() {
                     points.mipmap().unwrap().of(i)[k - 1]
                 };
                 let scale = [1.0, 4.0, 16.0, 64.0][k];
-                let expected =
-                    paint.color(at(points.position()[i]), Ellipse::of(u, v).times(scale));
+                let expected = paint
+                    .color(at(points.position()[i]), Ellipse::from_half_axes(u, v).times(scale));
                 // Corners of rounded coordinates have no affine map.
                 assert!((found - expected).abs().max_element() < 1e-4, "{map:?} {i} level {k}");
             }
@@ -86,7 +86,8 @@ fn colours_are_means_within_the_outlines() {
                 } else {
                     flat.mipmap().unwrap().of(i)[k - 1]
                 };
-                let ellipse = Ellipse::of(halves[0], halves[1]).times([1.0, 4.0, 16.0, 64.0][k]);
+                let ellipse =
+                    Ellipse::from_half_axes(halves[0], halves[1]).times([1.0, 4.0, 16.0, 64.0][k]);
                 let expected = paint.color(place, ellipse);
                 assert!((found - expected).abs().max_element() < 1e-3, "{map:?} {i} level {k}");
             }

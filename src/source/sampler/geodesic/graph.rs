@@ -56,7 +56,7 @@ impl Graph {
             progress("neighbours", first as u64, n as u64);
             let ranks = first..(first + batch).min(n);
             let jobs = ranks.clone().step_by(JOB).map(|from| from..(from + JOB).min(ranks.end));
-            for part in exec.ordered(jobs.collect(), |ranks| around.of(ranks)) {
+            for part in exec.ordered(jobs.collect(), |ranks| around.neighbours(ranks)) {
                 for found in part {
                     near.extend(found.iter().map(|found| (found.rank, found.d2.sqrt())));
                     ends.push(near.len() as u64);
@@ -194,7 +194,7 @@ struct Near {
 
 impl Around<'_> {
     /// The neighbours of each of some ranks.
-    fn of(&self, ranks: Range<usize>) -> Vec<Vec<Near>> {
+    fn neighbours(&self, ranks: Range<usize>) -> Vec<Vec<Near>> {
         let one = |entry: &Entry| {
             let normal = self.normals[entry.id as usize];
             let found = Vec::with_capacity(NEAR + 1);

@@ -33,14 +33,14 @@ pub(super) fn regions(points: &[Vec3], how: &Division, exec: &Exec) -> Vec<Regio
     let regions = how.regions.min(leaves);
     let ranges = (0..regions).map(|i| leaves * i / regions..leaves * (i + 1) / regions);
     exec.ordered(ranges.collect(), |range: Range<usize>| {
-        let points = |leaf| sorted.iter().map(|sorted| sorted.of(leaf).len()).sum::<usize>();
+        let points = |leaf| sorted.iter().map(|sorted| sorted.leaf(leaf).len()).sum::<usize>();
         let buckets = |points: usize| points.div_ceil(BUCKET) + points.div_ceil(GROUP);
         let most = range.clone().map(|leaf| buckets(points(leaf))).sum();
         let mut growing = Growing { buckets: Vec::with_capacity(most), groups: Vec::new() };
         let mut entries = Vec::new();
         for leaf in range {
             entries.clear();
-            sorted.iter().for_each(|sorted| entries.extend_from_slice(sorted.of(leaf)));
+            sorted.iter().for_each(|sorted| entries.extend_from_slice(sorted.leaf(leaf)));
             growing.leaf(&mut entries);
         }
         // A sample may leave a region without points.
@@ -163,7 +163,7 @@ impl Sorted {
         Self { entries, ends }
     }
 
-    fn of(&self, leaf: usize) -> &[Entry] {
+    fn leaf(&self, leaf: usize) -> &[Entry] {
         let start = leaf.checked_sub(1).map_or(0, |before| self.ends[before]);
         &self.entries[start as usize..self.ends[leaf] as usize]
     }

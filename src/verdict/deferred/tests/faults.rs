@@ -66,7 +66,7 @@ fn faults_of_the_visibility_are_found() {
         })
         .collect();
     let mut session = shown.session(method, &exec);
-    session.resume(Some(Seen::of(ids, settings.flags, &moved)));
+    session.resume(Some(Seen::from_selected(ids, settings.flags, &moved)));
     let frame = session.define::<f32>(&shown.camera, true).unwrap().frame;
     assert_first_wrong(shown, method, &frame, "visibility", "flags of the next group");
     // No flags at all, which no plane but those of pass 1 need show.

@@ -99,7 +99,7 @@ proptest! {
         let (flat, _) = found.flattened(&Exec::sequential()).unwrap();
         prop_assert_eq!(flat.len(), found.ids().count(0) as usize);
         prop_assert!(flat.radius().iter().all(|r| (f64::from(*r) / (radius * scale) - 1.0).abs() < 1e-6));
-        prop_assert_eq!(found.sides().unwrap().unwrap().of(0), Some(disc.side));
+        prop_assert_eq!(found.sides().unwrap().unwrap().side(0), Some(disc.side));
         prop_assert_eq!(found.median_radius(), flat.radius()[0]);
     }
 
@@ -264,7 +264,7 @@ fn far_ends_of_numbers_stay_surfels() {
             let found = seen(&objects, asked, &front(away));
             let (flat, _) = found.flattened(&Exec::sequential()).unwrap();
             assert!(flat.radius().iter().all(|r| *r > 0.0 && r.is_finite()), "{scale} {away}");
-            assert!(found.sides().unwrap().is_none_or(|sides| sides.of(0).is_some()));
+            assert!(found.sides().unwrap().is_none_or(|sides| sides.side(0).is_some()));
         }
     }
 }
