@@ -45,7 +45,7 @@ impl<R: Real> Blend<R> {
     /// Blends the next nearer layer, from back to front: `alpha c + (1 - alpha) below`, for the
     /// colour and, with c = 1, for the opacity \[ZP06, section 3.3\].
     ///
-    /// Laws: alpha = 1 leaves only the layer, alpha = 0 leaves what was there, and the opacity of
+    /// Laws: alpha = 1 leaves only the layer, and alpha = 0 leaves what was there. The opacity of
     /// layers is 1 - the product of their 1 - alpha, up to rounding.
     #[inline(always)]
     #[must_use]

@@ -5,11 +5,11 @@ use super::{Grid, Rect};
 /// The bounds that touch each tile: for each tile, indices in ascending order.
 ///
 /// Bounds that touch at most 16 tiles are listed in each of these tiles. Larger bounds are listed
-/// in cells of 2 x 2, 4 x 4 ... tiles: in the smallest cells at most 16 of which they touch. A tile
-/// has the lists of all cells that it is in. So memory is at most 64 bytes a splat, whatever the
-/// size of the splat. About twice as many tiles visit a splat as it touches (at most four times in
-/// the tests, with up to 13 x 10 tiles). Many more tiles visit a splat that is far longer than 16
-/// tiles and thin.
+/// in cells of 2 x 2, 4 x 4 ... tiles, as small as possible so that the bounds touch at most 16
+/// cells. A tile has the lists of all cells that it is in. So memory is at most 64 bytes a splat,
+/// whatever the size of the splat. About twice as many tiles visit a splat as it touches (at most
+/// four times in the tests, with up to 13 x 10 tiles). Many more tiles visit a splat that is far
+/// longer than 16 tiles and thin.
 #[derive(Clone, Debug, Default)]
 pub struct Bins {
     /// Columns of tiles.
@@ -93,6 +93,7 @@ impl Bins {
     /// Calls `visit` for each index whose bounds may touch the tile, in ascending order.
     #[inline(always)]
     pub fn for_each(&self, tile: usize, mut visit: impl FnMut(u32)) {
+        // Lists of tiles only: there is one level, and its list is in order.
         if self.is_exact() {
             return self
                 .levels
@@ -119,6 +120,7 @@ impl Bins {
                 visit(first);
                 lists[lowest] = rest;
             }
+            // The last list takes the place of an exhausted one.
             if lists[lowest].is_empty() {
                 left -= 1;
                 lists[lowest] = lists[left];

@@ -140,10 +140,10 @@ impl<R> Frame<R> {
     /// Adds a plane.
     ///
     /// # Errors
-    /// [`Error::Invalid`], and the frame stays as it was, if the plane has another size than the
-    /// frame, or if a channel of the plane could not have its name in a file. Such a name is empty,
-    /// longer than [`LONGEST_NAME`], contains a control character, or is already taken. (Only a
-    /// colour may have the empty name, because its channels are `R`, `G` and `B`.)
+    /// [`Error::Invalid`] if the plane has another size than the frame, or if a channel of the
+    /// plane could not have its name in a file; the frame then stays as it was. Such a name is
+    /// empty, longer than [`LONGEST_NAME`], contains a control character, or is already taken.
+    /// (Only a colour may have the empty name, because its channels are `R`, `G` and `B`.)
     pub fn push(&mut self, name: &str, samples: Samples<R>) -> Result<()> {
         let ((width, height), size) = (samples.size(), (self.width, self.height));
         if (width, height) != size {

@@ -2,21 +2,21 @@
 //! 4.4\]. A mesh with a texture gets its prefiltered colours from the texture, by
 //! [`crate::source::derive`].
 //!
-//! The colour of level k of a surfel is a mean over everything within R = 2^k s of its centre,
-//! where s is its radius, or sqrt(|U x V|) of an ellipse with the half axes U and V. There may be
-//! thousands of surfels around it, so they are not taken one by one. They are taken as *samples*:
-//! the surfels of one cell of a grid that face one way. All in f64, from the `f32` numbers of the
-//! surfels, each operation rounded in the order written.
+//! The colour of level k of a surfel is a mean over everything within R = 2^k s of its centre. s is
+//! its radius, or sqrt(|U x V|) for an ellipse with the half axes U and V. There may be thousands
+//! of surfels around it, so they are not taken one by one. They are taken as *samples*: the surfels
+//! of one cell of a grid that face one way. All in f64, from the `f32` numbers of the surfels, each
+//! operation rounded in the order written.
 //!
 //! **Grid.** With 2^e <= R < 2^(e+1), the side of a cell is 2^(e-2): a cell is a quarter of R at
 //! most, and more than an eighth. The cell of a position is floor(x / side) for each coordinate; 0
 //! and -0 are one number. A grid depends on e alone, so surfels of all sizes and levels share it.
 //!
 //! **Samples.** The side of a surfel is the axis along which its normal is longest in magnitude,
-//! among equal ones the first, and whether the normal points backwards along it: +x, -x, +y, -y,
-//! +z, -z in this order. A sample is made of the surfels of one cell and one side, in ascending
-//! order, all sums from 0. With the area a = s s, the position p, the normal n and the colour c of
-//! each surfel,
+//! among equal ones the first, with a sign: minus if the normal points backwards along the axis.
+//! The order of sides is +x, -x, +y, -y, +z, -z. A sample is made of the surfels of one cell and
+//! one side, in ascending order, all sums from 0. With the area a = s s, the position p, the normal
+//! n and the colour c of each surfel,
 //!
 //! ```text
 //!   A = sum of a      P = (sum of p a) / A, rounded to f32      N = sum of n a      C = (sum of c a) / A
@@ -233,6 +233,7 @@ impl<'a> Samples<'a> {
         let mut offset = offset;
         offset[axis] = beyond;
         let away = DVec3::from_array(offset);
+        // The far half matters only if the plane is within R.
         if dot(away, away) < reach2 {
             self.find(far, center, (reach2, offset), found);
         }

@@ -147,6 +147,7 @@ impl Seen {
                     let to = count.min(from.saturating_add(self.group));
                     bits &= bits - 1;
                     match all[begin..].last_mut() {
+                        // These surfels have no ids in this view.
                         _ if from >= to => {}
                         Some((_, last)) if last.end == from => last.end = to,
                         _ => all.push((object, from..to)),

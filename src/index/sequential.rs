@@ -56,10 +56,10 @@
 //! # The error of a node
 //!
 //! The error of a leaf is 0. `Decided:` the error of an inner node is measured against the surfels
-//! below it, not against its children, because the children ignore how far their own surfels are
-//! from their planes. Along a direction d, surfels reach from the least `m - h` to the largest
-//! `m + h`, with `m = (p - c) . d` and `h = r |n x d|`, or
-//! `sqrt((U . d) (U . d) + (V . d) (V . d))` for an ellipse; the extent is the difference.
+//! below it, not against its children. The children do not show how far their own surfels are from
+//! their planes. Along a direction d, surfels reach from the least `m - h` to the largest `m + h`,
+//! with `m = (p - c) . d` and `h = r |n x d|`, or `sqrt((U . d) (U . d) + (V . d) (V . d))` for an
+//! ellipse; the extent is the difference.
 //!
 //! ```text
 //!   e_p = the extent along the node's normal                                      (perpendicular)
@@ -167,8 +167,8 @@ impl Sequential {
         Self::with_color(surfels, f32::INFINITY, exec)
     }
 
-    /// [`Sequential::new`] with a limit on colours: if some surfels of a node differ from it by
-    /// more than `most` in a component of their colours, the node is good enough only where its
+    /// [`Sequential::new`] with a limit on colours. Some surfels of a node may differ from it by
+    /// more than `most` in a component of their colours. Such a node is good enough only where its
     /// disc is smaller than the threshold.
     ///
     /// # Errors

@@ -55,6 +55,7 @@ pub fn pow(x: f64, y: f64) -> f64 {
 pub fn powers_f32(x: &[f32; LANES], y: f32) -> [f32; LANES] {
     let whole = y.floor();
     let parts = (y - whole) * 16_777_216.0;
+    // Other exponents need more squares or roots than the bound covers.
     if !(0.0..=65_536.0).contains(&whole) || parts.floor() != parts {
         return x.map(|x| pow_f32(x, y));
     }

@@ -48,8 +48,8 @@ impl Light {
     ///
     /// # Errors
     /// [`Error::Invalid`] if a number is not finite, if the square of a direction's length is not a
-    /// normal `f32` (such a direction has lost its digits), or if a colour is not in [0,
-    /// [`MAX_RADIANCE`]].
+    /// normal `f32`, or if a colour is not in [0, [`MAX_RADIANCE`]]. (A direction with such a
+    /// length has lost its digits.)
     pub fn check(&self) -> Result<()> {
         let color = match *self {
             Self::Directional { towards, color } | Self::Headlight { towards, color } => {

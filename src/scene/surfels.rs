@@ -83,9 +83,9 @@ impl Surfels {
     /// Triangles, edges and the tangents of tubes are ignored.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if normals or radii are missing, if an array has the wrong length, if
-    /// there are prefiltered colours without colours, if nothing is left, or if there are more than
-    /// 2^32 - 2 surfels.
+    /// [`Error::Invalid`] if normals or radii are missing, if an array has the wrong length, or if
+    /// there are prefiltered colours without colours. Also if nothing is left, or if there are more
+    /// than 2^32 - 2 surfels.
     pub fn new(cloud: Cloud) -> Result<(Self, Dropped)> {
         Self::new_with(cloud, &Exec::sequential())
     }

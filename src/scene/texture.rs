@@ -167,6 +167,7 @@ impl Texture {
         let cells = &self.0[level];
         let reach = yy.sqrt();
         let [first, end] = axes[1].range(at.y - reach, at.y + reach);
+        // A degenerate ellipse has no cells, and takes the colour of the last level.
         for row in if det > 0.0 { first..end } else { 0..0 } {
             let (y, height) = axes[1].cell(row);
             let dy = y - at.y;

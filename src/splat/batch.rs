@@ -185,6 +185,7 @@ vectorized!(
             // -- Draw the visible ones
             for i in 0..LANES {
                 let Enlarged { surfel, times, .. } = item(first + i);
+                // The mask shows the compiler that the index is in range.
                 counts[fates[i] as usize & 7] += u64::from(times);
                 if fates[i] == Fate::Visible as u32 {
                     draw(first + i, splats.get(i, surfel));

@@ -111,9 +111,11 @@ fn on_circle<R: Real>(f: [R; 3]) -> Option<[Vector2<R>; 2]> {
     let length = (f[1] * f[1] + f[2] * f[2]).sqrt();
     let (a, b, c) = (f[1] / length, f[2] / length, f[0] / length);
     let rest = R::ONE - c * c;
+    // No point of the circle can solve the equation.
     if !rest.ge(R::ZERO).possibly() {
         return None;
     }
+    // A ball of `rest` may reach below 0, where only a part of its values solves the equation.
     let root = rest.at_least(R::ZERO).sqrt();
     Some([
         Vector2::new(-(c * a) - root * b, -(c * b) + root * a),

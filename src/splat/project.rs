@@ -89,7 +89,7 @@
 //! Bounds: they contain both the exact outline and the filter's circle of radius k sqrt(h). A disc
 //! that reaches the near plane has the bounds of its visible part ([`mod@super::crossing`]) instead
 //! of the outline's. The outline's bounds are k sqrt(xx) and k sqrt(yy) about its centre, each
-//! times 1 + (stretch ratio) 2^-18 with stretch = (sqrt(xx) sqrt(yy)) / area and ratio = t / (t -
+//! times 1 + (stretch ratio) 2^-18. Here stretch = (sqrt(xx) sqrt(yy)) / area and ratio = t / (t -
 //! half) (1 under an orthographic camera). At the end all bounds are moved outwards by 1/128 px.
 //!
 //! **Fate** is the first of the [`Reasons`] that holds in this arithmetic; `f32` and `f64` may
@@ -101,9 +101,9 @@
 //! 3. `BackFacing`: with culling, g >= 0. (At 0 the surfel has no area, and is `Degenerate`
 //!    already.)
 //! 4. `Outside`: the surfel cannot be seen. Either no pixel of the picture is in its bounds, or its
-//!    bounding sphere lies beyond a side of the view by more than the reach of the low-pass filter,
-//!    k sqrt(h) px. The sphere has its centre at p and the radius r or, for an ellipse, sqrt(k U .
-//!    k U + k V . k V). For the left side the condition is
+//!    bounding sphere lies beyond a side of the view. Beyond means by more than the reach of the
+//!    low-pass filter, k sqrt(h) px. The sphere has its centre at p and the radius r or, for an
+//!    ellipse, sqrt(k U . k U + k V . k V). For the left side the condition is
 //!
 //! ```text
 //!   fx p.x + cx t < -(r sqrt(fx fx + cx cx) + (k sqrt(h)) t)      orthographic: t = 1, and fx r
@@ -188,6 +188,7 @@ pub(crate) fn project_each<R: Real>(
     let shape = projector.covariance(&placed, disc);
     let crosses = projector.reaches_near_plane(&placed, &shape);
     for alternative in [false, true] {
+        // Each outcome of the near-plane test that is possible gives an outline.
         let possible = if alternative { crosses.possibly() } else { !crosses.certainly() };
         if possible {
             let (footprint, bounds) = projector.footprint(disc, (&placed, &shape), alternative);
@@ -342,6 +343,7 @@ impl<R: Real> Projector<R> {
         footprint.vy = scale / shape.yy.sqrt();
         footprint.amplitude = R::select(shape.area.gt(R::ZERO), R::ONE, R::ZERO);
 
+        // A disc that reaches the near plane has no outline; its visible part has bounds.
         let (low, high) = if crosses {
             crossing::corners(view, placed, disc)
         } else {

@@ -36,7 +36,6 @@ use std::mem::{offset_of, size_of};
 ///
 /// [`super::Footprint`] says how to draw the records; the numbers that all splats of a picture
 /// share are in [`Shared`].
-/// share are those of [`Shared`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct SplatRecord {

@@ -73,6 +73,7 @@ impl Line {
                 visit(x, y, numerator, denominator);
             }
         };
+        // A segment of length 0 has no denominator for a parameter.
         if a == b {
             return visit_inside(snap.pixel(a), 0, 1);
         }
@@ -81,6 +82,8 @@ impl Line {
         visit_inside(snap.pixel(a), 0, length);
         let (first, end) = self.samples(rect);
         for k in 0..end - first {
+            // The samples ascend along the axis; a line that runs the other way visits them in
+            // reverse.
             let i = if a[major] < b[major] { first + k } else { end - 1 - k };
             let along = (snap.center(i) - 2 * a[major]).abs();
             visit_inside(self.sample(i, along, length), along, length);

@@ -139,6 +139,8 @@ impl Triangle {
         let (mut first, mut end) = (0, i64::from(x1 - x0));
         for edge in &self.edges {
             let (excess, step) = (edge.at(x0, y) - edge.least, edge.step[0]);
+            // The weight grows along the row, falls, or stays: it bounds the start of the run, the
+            // end, or all of it.
             if step > 0 {
                 first = first.max(-excess.div_euclid(step));
             } else if step < 0 {

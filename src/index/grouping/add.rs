@@ -228,6 +228,8 @@ impl Members<'_> {
             }
             let (row, mut samples) = (graph.of(place), None);
             loop {
+                // Neighbours that come first and were not decided: each is decided before this
+                // place.
                 while let Some(other) = open.first_of(open.waits, &row) {
                     let theirs = state[other].load(Relaxed);
                     if is_open(theirs) {
@@ -237,6 +239,7 @@ impl Members<'_> {
                     open.decided |= if theirs == OUT { 0 } else { open.waits ^ left };
                     open.waits = left;
                 }
+                // Neighbours that were added: what they cover may make this place too big.
                 while let Some(other) = open.first_of(open.decided, &row) {
                     let samples = samples.get_or_insert_with(|| tree.samples(place));
                     open.mask |= covered_by(samples, &tree.discs[other]);

@@ -233,6 +233,8 @@ impl Coloring<'_> {
         let show = |done, of| (self.progress)("colouring", done, of);
         settle(color.len(), 1, self.exec, &show, |_, open| {
             let place = open.place;
+            // Decided already, left for the end, or one place has needed too many colours and all
+            // has failed.
             if color_of(place) != NONE || degree[place] < least || too_many.load(Relaxed) {
                 return None;
             }
@@ -243,6 +245,7 @@ impl Coloring<'_> {
             loop {
                 while let Some(other) = open.first_of(open.waits, &row) {
                     let theirs = color_of(other);
+                    // A neighbour that comes first has no colour yet: `settle` decides it before.
                     if theirs == NONE {
                         return Some(other);
                     }

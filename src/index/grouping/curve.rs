@@ -27,6 +27,7 @@ fn refine(points: &[Vec3], most: usize, numbered: &Numbered, order: &mut [u64]) 
     let in_one_cell = |a: &u64, b: &u64| numbered.cell(*a) == numbered.cell(*b);
     for run in order.chunk_by_mut(in_one_cell).filter(|run| run.len() > most) {
         let point = |of: u64| points[numbered.number(of)];
+        // No cells can separate points at one place.
         if run.iter().any(|&of| point(of) != point(run[0])) {
             let cells = Cells::around(run.iter().map(|&of| point(of)), numbered);
             run.iter_mut()

@@ -134,6 +134,7 @@ impl DiscTree {
                 let block = room.found[at * DISCS + left.trailing_zeros() as usize] as usize;
                 left &= left - 1;
                 let near = set_of(&self.blocks[block].near(own, factor));
+                // A disc is not its own neighbour.
                 let others = near & !(u32::from(block == i / DISCS) << (i % DISCS));
                 let first = (block * DISCS) as u32;
                 let [low, high] = [others & 0xFF, others >> BYTE];
@@ -153,6 +154,7 @@ impl DiscTree {
     fn search(&self, block: usize, factor: f64, room: &mut NearBlocks) {
         let level = self.levels.len().min(2) - 1;
         let of = block >> level;
+        // The call before has found the surroundings already.
         if room.of == Some((of, factor)) {
             return;
         }
@@ -168,7 +170,7 @@ impl DiscTree {
     /// The blocks that may hold a disc near a disc in a box.
     fn blocks_near(&self, bounds: &Bounds, factor: f64, found: &mut Vec<u32>) {
         found.clear();
-        let mut ahead = vec![(self.levels.len() - 1, 0)]; // somebody asks: there is a block
+        let mut ahead = vec![(self.levels.len() - 1, 0)]; // a caller has a place, so there is a block
         while let Some((level, index)) = ahead.pop() {
             if !self.levels[level][index].may_be_near(bounds, factor) {
                 continue;

@@ -25,6 +25,7 @@ pub(super) fn enlarged(group: &mut Scales<'_>, at_1: (f64, f64), target: f64) ->
         let (area, sum) = if step == 0 { at_1 } else { group.area(scale)? };
         let square = scale * scale;
         let next = ((target + square * (sum - area)) / sum).sqrt();
+        // NaN fails this comparison.
         if !(next < f64::from(MAX_SCALE)) {
             return Ok(Enlarged { scale: MAX_SCALE, converged: false });
         }

@@ -178,6 +178,7 @@ impl Work<'_> {
             let own = (0_u32..).zip(groups.own()).filter(|g| usize::from(*g.1) == k).map(|g| g.0);
             let tree = DiscTree::new(self.surfels, own, self.exec);
             let mut scales = Scales::new(&tree, self.exec);
+            // The search at scale 1 is used again by the larger scales.
             let at_1 = if enlarge {
                 scales.area(1.0)?
             } else {

@@ -90,8 +90,8 @@
 //! queue at priority p and has grown. It goes back with a larger priority, while all others are at
 //! p or below. So it is taken out again at once, nothing has changed, and step 2b adds it. The
 //! steps therefore reduce to this: visit surfels of other groups in descending order of how much
-//! the group covered of them at the beginning. Add each surfel of which the group, including the
-//! surfels added so far, covers at most `most`.
+//! the group covered of them at the beginning. Add a surfel if the group, including the surfels
+//! added so far, covers at most `most` of it.
 //!
 //! # Enlarge the radii of groups (4.2.2, extension 2)
 //!

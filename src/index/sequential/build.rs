@@ -134,6 +134,7 @@ fn grow(
     if range.len() <= JOB
         && let Some((part, root)) = rest.as_mut().and_then(|rest| rest.parts.next())
     {
+        // A job has built this subtree; its parents are counted from where it is appended.
         let parent = |node: Node| if node.parent == NONE { NONE } else { node.parent + at as u32 };
         nodes.extend(part.into_iter().map(|node| Node { parent: parent(node), ..node }));
         return root;

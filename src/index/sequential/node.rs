@@ -138,6 +138,7 @@ impl Leaves {
         let axes = axes(disc.normal);
         let measure = |range| self.measure(disc, &axes, range);
         let measured = match exec {
+            // Only the few large nodes near the root are worth measuring in parallel.
             Some(exec) if range.len() > CHUNK => {
                 let starts = range.clone().step_by(CHUNK);
                 let chunks = starts.map(|start| start..range.end.min(start + CHUNK)).collect();

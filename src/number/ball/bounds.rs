@@ -41,6 +41,7 @@ pub(super) fn clamped<P: Profile>(x: Ball<P>, low: Ball<P>, high: Ball<P>) -> Ba
 /// The hull of two values, about the one that the midpoints choose.
 pub(super) fn hull<P: Profile>(middle: bool, yes: Ball<P>, no: Ball<P>) -> Ball<P> {
     let (chosen, other) = if middle { (yes, no) } else { (no, yes) };
+    // About equal midpoints the larger radius holds both, without any slack.
     if chosen.middle.to_bits() == other.middle.to_bits() {
         return Ball::new(chosen.middle, larger(chosen.radius, other.radius));
     }

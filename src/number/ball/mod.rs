@@ -4,9 +4,9 @@
 //! from it. A [`Ball`] is a midpoint and a radius, both `f64`:
 //!
 //! - The midpoint is the value of the same formula in `f64`, bit for bit.
-//! - The radius bounds how far an `f32` result may lie from the midpoint, if the client does the
-//!   same operations on the same inputs and each operation rounds as the client's [`Profile`]
-//!   allows.
+//! - The radius bounds how far an `f32` result may lie from the midpoint. It assumes that the
+//!   client does the same operations on the same inputs, and that each operation rounds as the
+//!   [`Profile`] allows.
 //!
 //! The bound holds for whole formulas because it holds for each operation: the operands may be any
 //! values of their balls, in any combination.
@@ -44,7 +44,7 @@
 //! 2^-150 for [`Ieee`]. It is 0 for sums and square roots that round to nearest.
 //!
 //! The factors 1 + 2^-20 and 1 + 2^-40 exceed the rounding errors of the `f64` operations that
-//! compute the midpoint and the radius, so no rounding mode has to be changed. Where a formula
+//! compute the midpoint and the radius. So no rounding mode has to be changed. Where a formula
 //! needs the ends m - r and m + r of an interval, the ends are also moved outwards by about 2^-40
 //! r. A radius is therefore defined to about 2^-39 of itself, not to the bit; a midpoint is defined
 //! to the bit.

@@ -186,6 +186,7 @@ impl Profile for Gpu {
         6.0 + 4.0 * argument
     }
     fn power(bases: [f64; 2], exponent: f64) -> f64 {
+        // 0 times the logarithm of 0 would be NaN.
         if exponent == 0.0 {
             return Self::exponential(0.0);
         }

@@ -75,6 +75,7 @@ impl CameraMotion {
             return self.keys[nearest].pose;
         };
         let a = &self.keys[before];
+        // No arithmetic, so that the pose keeps its bits.
         if b.frame == frame || a.pose == b.pose {
             return b.pose;
         }

@@ -83,7 +83,7 @@ impl Map {
     /// ```
     ///
     /// pi is atan2(0, -1), rounded like every angle. u wraps around. Half a pixel from the poles
-    /// the first and the last row are repeated, as a texture unit clamps, so at a pole itself the
+    /// the first and the last row are repeated, as a texture unit clamps. So at a pole itself the
     /// light depends on the side from which you approach it. A vertical direction has u = 0,
     /// whatever the signs of its zeros. Where the columns have one colour, the result is exactly
     /// that colour.

@@ -26,9 +26,9 @@
 //! one picture may show the same number there.
 //!
 //! Where surfels are counted, they are counted in the order of their ids. This applies to the text
-//! of an explanation or of a verdict by a method that draws all surfels one by one, and to a
-//! verdict on wide ids. In a scene that has primitives, the ids of the primitives are counted on
-//! after the surfels.
+//! of an explanation or of a verdict by a method that draws all surfels one by one. It also applies
+//! to a verdict on wide ids, and to the ids of a scene that has primitives: there the count
+//! continues with the primitives after the surfels.
 //!
 //! In an object with [levels of detail](super::detail) only the surfels that a view looks at have
 //! ids, so the split may change from frame to frame. \[GBP04, 4.2\] has its two schemes for the
@@ -103,6 +103,7 @@ impl Ids {
         let fits = splits.into_iter().find_map(|split| Self::of(split, &counts));
         fits.map(|fits| Self { all, ..fits }).ok_or_else(|| {
             let objects = counts.len();
+            // Either one object has too many surfels for its bits, or there are too many objects.
             let large = counts.iter().position(|&count| count == most && count > 1 << LARGE);
             let what = match large {
                 Some(object) => format!(
@@ -143,6 +144,8 @@ impl Ids {
                 Split::Single(bits) => (objects.next()? << bits, 1 << bits),
                 Split::Stencil(bits) => {
                     let last = (1 << (32 - bits)) - 1;
+                    // A number whose lowest bits are all 1 could give a surfel the lowest 32 bits
+                    // of `NO_ID`.
                     let number = objects.find(|number| bits == 32 || number & last != last);
                     (number? << bits, 1 << bits)
                 }

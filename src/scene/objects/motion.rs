@@ -104,6 +104,7 @@ impl Motion {
             return self.keys[nearest].1;
         };
         let (first, a) = self.keys[before];
+        // No arithmetic, so that the place keeps its bits.
         if last == frame || a == b {
             return b;
         }
@@ -124,9 +125,11 @@ fn between(a: &Similarity, b: &Similarity, s: f64) -> Similarity {
 pub(crate) fn slerp(a: &DMat3, b: &DMat3, s: f64) -> DMat3 {
     let (p, mut q) = (quaternion(a), quaternion(b));
     let mut c = dot(p, q);
+    // q and -q are the same rotation; the closer one gives the shorter way.
     if c < 0.0 {
         (q, c) = (q.map(|part| -part), -c);
     }
+    // Between nearly equal rotations the division by k would lose the digits.
     let turned: [f64; 4] = if c >= 1.0 - 1.0 / 1_099_511_627_776.0 {
         std::array::from_fn(|i| p[i] + s * (q[i] - p[i]))
     } else {

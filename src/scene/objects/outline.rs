@@ -120,8 +120,8 @@ impl Objects {
         Self { source: Some(source), ..self }
     }
 
-    /// The hash of what geometries are read from, as views need them; none if the objects are
-    /// identified by what is in memory.
+    /// The hash of the source that geometries are read from, as views need them; none if the
+    /// objects are identified by their contents in memory.
     #[must_use]
     pub fn source(&self) -> Option<&[u8; 32]> {
         self.source.as_ref()

@@ -202,6 +202,7 @@ impl Objects {
             let i = i as usize;
             let [mut position, mut normal] = [surfels.position()[i], surfels.normal()[i]];
             let mut radius = surfels.radius()[i];
+            // An object in the identity place keeps every bit of its surfels.
             if moves {
                 place.place(&mut position);
                 place.turn(&mut normal);

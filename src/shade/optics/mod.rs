@@ -136,7 +136,6 @@ pub fn reflect<R: Real>(view: Vector3<R>, normal: Vector3<R>) -> Vector3<R> {
 ///
 /// The two forms of k are equal; each is used where it does not cancel. Where s = 0 the direction
 /// is -n for every ratio. With m = 1, as for no layers, T is -v up to the rounding of t.
-/// is -n for every ratio. With m = 1, as for no layers, T is -v up to the rounding of t.
 #[must_use]
 pub fn refract<R: Exact>(
     view: Vector3<R>,
@@ -261,6 +260,7 @@ pub(crate) fn shade_before<R: Real>(
     [0, 1, 2].map(|c| {
         let ratio = R::from_f32(refraction.ratio[c]);
         let (there, direction) = bent(view, normal, ratio, count);
+        // Where there certainly is no refracted direction, there is no light to look up.
         let beyond = if there.possibly() { light(direction)[c] } else { R::ZERO };
         let f = R::select(there, fresnel(cosine, ratio), R::ONE);
         let beyond = R::select(there, beyond, R::ZERO);

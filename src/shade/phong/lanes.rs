@@ -57,6 +57,7 @@ fn group<R: Exact>(
 ) {
     let mut depth = [R::ZERO; LANES];
     depth.copy_from_slice(&row.depth[first..first + LANES]);
+    // Empty stretches of a picture are common and need no shading.
     if !any(&mask(|i| depth[i].is_finite())) {
         *pixels = [[R::ZERO; 3]; LANES];
         return;

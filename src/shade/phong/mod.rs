@@ -127,6 +127,8 @@ impl<R: Real> Shader<R> {
             let l = place.from(p);
             let (n, cosine) = towards(l);
             let faces = cosine.gt(R::ZERO);
+            // A light that is certainly behind the surface adds nothing, and its power is
+            // expensive.
             if faces.possibly() {
                 let mirrored = mirrored(n, cosine, l, v);
                 let highlight = answer.highlight(cosine, mirrored);

@@ -36,7 +36,8 @@
 //! ```
 //!
 //! So a vertex on the guard band misses it by some roundings of 2^17 px, less than 1/16 px in
-//! `f32`, however far away the ends are, and [`crate::frame::raster::Snap::fixed`] holds it there.
+//! `f32`, however far away the ends are. [`crate::frame::raster::Snap::fixed`] then holds the
+//! vertex there.
 //!
 //! The result depends on the two ends and not on the direction, so triangles that share an edge get
 //! the same vertices on it. The same holds for a segment.
@@ -174,6 +175,8 @@ impl<R: Real> Clip<R> {
             let mut before = measured(polygon.last()?);
             let mut kept = Vec::with_capacity(polygon.len() + 1);
             for here in polygon.iter().map(measured) {
+                // Each edge adds its crossing with the plane, if it has one, and then its end, if
+                // that is inside.
                 match [certain(&before)?, certain(&here)?] {
                     [true, true] => kept.push(here.0),
                     [true, false] => kept.push(self.cut(plane, before, here)?),
@@ -197,6 +200,7 @@ impl<R: Real> Clip<R> {
     ) -> Option<Clipped<R, N>> {
         let (f, g) = (-e / (d - e), d / (d - e));
         let mut position = inside.position * f + outside.position * g;
+        // Rounding may have made t less than near.
         position.z = position.z.at_most(-self.near);
         plane.put(&mut position);
         let weights = std::array::from_fn(|i| inside.weights[i] * f + outside.weights[i] * g);

@@ -23,9 +23,9 @@
 //! weight is greater than 0, because a surface is either there or not. The same holds for an object
 //! without a prefix, whose finer objects have its weight w.
 //!
-//! **Where nothing is finer** and p(r) exceeds n, all n are drawn, with the radius `r_n` = `r_m`
-//! sqrt(`p_m` / n) with which they cover, because nothing more is known of the surface. `Decided:`
-//! here discs grow beyond the size asked for; with a fixed size there would be holes.
+//! **Where nothing is finer** and p(r) exceeds n, all n are drawn, because nothing more is known of
+//! the surface. They get the radius with which they cover, `r_n` = `r_m` sqrt(`p_m` / n).
+//! `Decided:` here discs grow beyond the size asked for; with a fixed size there would be holes.
 //!
 //! **Size.** s is the [size](Refinement::surfel_size) asked for, z the factor of the object's zone,
 //! and r = (size (`d_p` z)) / 2, where size is s, or a greater number because of the budget. In the
@@ -60,7 +60,8 @@
 //!
 //! An object with a prefix draws neither surfels nor primitives if its sphere is not in the view
 //! frustum. The test is the one of [`super`] with the margin 16 + s z, with the s that is asked for
-//! and not the budget's. Its finer objects have the weight that they would have.
+//! and not the budget's. Its finer objects have the weight that they would have if it were in
+//! sight.
 
 use super::prefix::Prefix;
 use super::{Disc, Eye, MARGIN, Shown};
@@ -256,6 +257,8 @@ impl Objects {
             let Drawn { count, weight, of_primitives } = drawn[at];
             let geometry = self.geometry(object);
             let seen = asked[at].seen;
+            // Without levels of detail an object is drawn even out of sight, unless it has faded
+            // out.
             match &geometry.detail {
                 _ if weight == 0.0 => Shown::nothing(),
                 None => Shown { count: self.count_of_all(object), ..Shown::default() },
@@ -313,6 +316,7 @@ impl Objects {
             let fits = total(&self.drawn_with(sizes[k], asked)) <= budget;
             *(if fits { &mut few } else { &mut many }) = k;
         }
+        // Even the largest size may exceed the budget: then the last objects lose their surfels.
         let mut drawn = self.drawn_with(sizes[few], asked);
         let mut left = budget;
         for one in &mut drawn {
@@ -370,6 +374,7 @@ impl Objects {
     fn disc_with(&self, object: u32, prefix: &Prefix, size: f64, asked: &Asked) -> Disc {
         let (mut radius, mut side) = (size * asked.pixel / 2.0, size * asked.factor);
         let of_all = prefix.radius_of_all();
+        // Discs grow beyond the size asked for only where nothing finer could fill the holes.
         if !self.has_finer(object) && of_all > radius {
             side *= of_all / radius;
             radius = of_all;
