@@ -1,6 +1,6 @@
 //! Alpha-blend transparent layers from front to back: each goes under what is there.
 //!
-//! The rule is the one of [Porter, Duff 1984, *Compositing Digital Images*], with the colour over
+//! The rule comes from [Porter, Duff 1984, *Compositing Digital Images*], with the colour over
 //! black, that is, multiplied by its opacity:
 //!
 //! ```text

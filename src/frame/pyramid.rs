@@ -7,8 +7,8 @@ use super::Plane;
 /// `Decided:` a level is half as wide and half as high as the next finer level, rounded up.
 /// (\[MKC08\] and \[MOC08\] show powers of two.) Pixel (X, Y) stands for the finer pixels (2X, 2Y),
 /// (2X + 1, 2Y), (2X, 2Y + 1), (2X + 1, 2Y + 1); the ones beyond the right or lower edge of an odd
-/// level do not exist. So a pixel of level l is a square of side 2^l pixels whose centre is (2^l (X
-/// + 1/2), 2^l (Y + 1/2)). Along a side that is a power of two, and not the shorter side, the
+/// level do not exist. So a pixel of level l is a square of side 2^l pixels whose centre is (2^l
+/// (X + 1/2), 2^l (Y + 1/2)). Along a side that is a power of two, and not the shorter side, the
 /// squares of all levels end where the picture ends. Along any other side the squares of some level
 /// reach beyond the picture.
 #[must_use]

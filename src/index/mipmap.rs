@@ -35,7 +35,7 @@
 //! Where the sum of w is not > 0, the colour is the colour of the level before. x.y is (x.x y.x +
 //! x.y y.y) + x.z y.z. A model of one colour has that colour at every level, bit for bit.
 //!
-//! # Decided
+//! # What the paper leaves open, decided here
 //!
 //! - \[GBP04\] says that samples are prefiltered, but not how. Pfister et al. 2000 (*Surfels*) do
 //!   it with Gaussians, on the texture that the surfels were sampled from. (1 - q)^2 is close to a

@@ -43,7 +43,7 @@
 //!
 //! - Centre, colour, opacity: the sum of w times the surfel's, divided by W.
 //! - Normal: N = the sum of w n, divided by its length L. `Decided:` if `L < 2^-16 W`, the normals
-//!   cancel: then the normal is the one of the child with the largest W, among equal ones the
+//!   cancel: then the node takes the normal of the child with the largest W, among equal ones the
 //!   first.
 //! - Radius: the largest `|c' - c| + r'` of a child's centre c' and radius r', with c the centre as
 //!   it was rounded. The radius of an ellipse here is its longer half axis. Whether its half axes
@@ -247,7 +247,7 @@ impl Sequential {
         holding(errors, &points[nodes], eye, scale)
     }
 
-    /// Whether a node is drawn, with one distance for all nodes; the ranges are the ones of
+    /// Whether a node is drawn, with one distance for all nodes; the ranges are as for
     /// [`Sequential::holds`].
     #[must_use]
     pub fn cuts(&self, node: usize, distance: f64, scale: f64) -> bool {

@@ -39,8 +39,8 @@ pub(crate) fn is_color(color: Vec3) -> bool {
 }
 
 impl Light {
-    /// The headlight of pictures that name no light: white, from the upper left, along (-1/2, 3/4,
-    /// 1) in view space.
+    /// The headlight of pictures that name no light: white, from the upper left, along (-1/2,
+    /// 3/4, 1) in view space.
     pub const DEFAULT: Self =
         Self::Headlight { towards: Vec3::new(-0.5, 0.75, 1.0), color: Vec3::ONE };
 

@@ -69,8 +69,9 @@ pub struct Scene {
     pub material: Phong,
     /// The environment around the surfels; black if absent.
     pub environment: Option<Environment>,
-    /// The objects, if the scene is made of objects. Surfels and primitives are then the ones of
-    /// the objects in their places, or none until [`crate::source::flatten()`] puts them there.
+    /// The objects, if the scene is made of objects. Surfels and primitives then belong to the
+    /// objects in their places, or there are none until [`crate::source::flatten()`] puts them
+    /// there.
     pub objects: Option<Objects>,
     /// How large surfels are drawn as point primitives, if the view chose sizes.
     pub sides: Option<Sides>,

@@ -54,7 +54,7 @@
 //! to 16 behind the tile of (x, y) count. On such an axis x = (u - floor u) W, y = (r - floor r) H
 //! with r = 1 - v. Beside an axis that does not repeat there is nothing, which has no weight.
 //!
-//! # Decided
+//! # What the papers leave open, decided here
 //!
 //! - (1 - q)^2 is the weight of [`crate::index::mipmap`], so prefiltered colours are the same kind
 //!   of mean whether they come from a texture or from neighbours. g g I makes the mean of a point

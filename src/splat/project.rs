@@ -57,9 +57,9 @@
 //!   amplitude = area / sqrt(det)
 //! ```
 //!
-//! `Departs:` the amplitude is the one of \[ZPvBG01\], whose Gaussians are normalized, times 2 pi s
-//! s (for an ellipse 2 pi |U x V|). So without the filter every splat has the weight 1 at its
-//! centre. Normalization removes the factor where the radii of neighbours are equal. Where they
+//! `Departs:` the amplitude is the amplitude of \[ZPvBG01\], whose Gaussians are normalized, times
+//! 2 pi s s (for an ellipse 2 pi |U x V|). So without the filter every splat has the weight 1 at
+//! its centre. Normalization removes the factor where the radii of neighbours are equal. Where they
 //! differ, a larger splat counts more than in \[ZPvBG01\], in proportion to its area. Bounds: k
 //! sqrt(xx') and k sqrt(yy') about the centre, by [`super::bounds::around`] with the stretch ux
 //! sqrt(xx').

@@ -14,9 +14,9 @@
 //! ```
 //!
 //! which is eq. 5 for c = 1 and modification 3 for c < 1. `Decided:` r is the radius of a surfel;
-//! for an ellipse it is the length of its longer half axis, `sqrt((x x + y y) + z z)`. Whatever
-//! lies in the disc of this radius counts as covered. Surfels that are near by the c of the
-//! [`Rules`] have an edge, unless
+//! for an ellipse it is the length of its longer half axis, `sqrt((x x + y y) + z z)`, so an
+//! ellipse counts as the disc around it. Surfels that are near by the c of the [`Rules`] have an
+//! edge, unless
 //!
 //! - `opposite` is set and `n_i . n_j < 0` (modification 2), or
 //! - they are [`Coplanar`] (modification 1). `Decided:` that is `n_i . n_j >= cosine`, and for n of

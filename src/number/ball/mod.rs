@@ -96,7 +96,7 @@ use std::fmt::Debug;
 pub struct Ball<P: Profile = Ieee> {
     /// The value of the formula in `f64`.
     pub middle: f64,
-    /// >= 0; +inf: any number or infinity; NaN: NaN as well.
+    /// At least 0; +inf: any number or infinity; NaN: NaN as well.
     pub radius: f64,
     terms: P::Terms,
 }

@@ -23,9 +23,9 @@
 //!
 //! The colour of an object replaces the colour of its geometry.
 //!
-//! `Decided:` the median radius, the unit of epsilon, is a lower median: the element of rank (n -
-//! 1) / 2 over all surfels of all objects in the frame. Each surfel counts with its object's median
-//! radius: the geometry's median radius times the object's scale, in f64, rounded to f32. So
+//! `Decided:` the median radius, the unit of epsilon, is a lower median: the element of rank
+//! (n - 1) / 2 over all surfels of all objects in the frame. Each surfel counts with its object's
+//! median radius: the geometry's median radius times the object's scale, in f64, rounded to f32. So
 //! epsilon does not change with the visible part of a scene or with how it is selected; where
 //! scales move, epsilon changes from frame to frame. Objects with levels of detail instead count
 //! all radii that are drawn, each once. Epsilon has to fit the discs that lie over each other, and

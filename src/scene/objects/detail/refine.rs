@@ -59,9 +59,8 @@
 //! Primitives stay as they are.
 //!
 //! An object with a prefix draws neither surfels nor primitives if its sphere is not in the view
-//! frustum. The test is the one of [`super`] with the margin 16 + s z, with the s that is asked for
-//! and not the budget's. Its finer objects have the weight that they would have if it were in
-//! sight.
+//! frustum. [`super`] defines the test; the margin is 16 + s z, with the s that is asked for and
+//! not the budget's. Its finer objects have the weight that they would have if it were in sight.
 
 use super::prefix::Prefix;
 use super::{Disc, Eye, MARGIN, Shown};
