@@ -31,8 +31,6 @@ use crate::number::Real;
 /// Whether a fragment is within the cut-off: `q <= limit`, the rim included; `limit` is k k.
 ///
 /// Source: the truncated kernel of \[ZPvBG01\].
-///
-/// Source: the truncated kernel of \[ZPvBG01\].
 #[inline(always)]
 pub fn inside<R: Real>(q: R, limit: R) -> R::Truth {
     q.le(limit)

@@ -13,7 +13,7 @@
 //!     c >= 1 - 2^-40   p + s (q - p), each component
 //!     else             k = sqrt(1 - c c), h = atan2(k, c)
 //!                      p (sin((1 - s) h) / k) + q (sin(s h) / k), each component
-//!                 then divided by its length, and made a matrix
+//!                then divided by its length, and made a matrix
 //! ```
 //!
 //! p u + q v is a product and a product, then their sum. sin and atan2 are the functions of
