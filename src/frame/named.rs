@@ -153,6 +153,7 @@ impl<R> Frame<R> {
             )));
         }
         let is_color = matches!(samples, Samples::Color(_));
+        // Only the channels of a colour have names of their own: R, G and B.
         if name.is_empty() && !is_color {
             let kind = samples.kind();
             let what = format!("a {kind} plane without a name; only the colour may have none");
@@ -165,6 +166,7 @@ impl<R> Frame<R> {
                      characters"
                 )));
             }
+            // Two planes may share a channel: a vector `a` and a scalar `a.X`.
             let mut others = self.planes.iter().map(|p| p.samples.channel_names(&p.name));
             if others.any(|names| names.contains(&channel)) {
                 return Err(Error::Invalid(format!("two channels are called `{channel}`")));

@@ -325,6 +325,7 @@ fn scale(height: u32, lens: Lens) -> Result<(Projection, f32)> {
         Lens::Focal(pixels) => (Projection::Perspective, pixels),
         Lens::Orthographic(units) => (Projection::Orthographic, height / units),
     };
+    // The rounding to f32 may turn a tiny scale into 0, or a huge one into infinity.
     if !(scale > 0.0 && (scale as f32).is_finite() && scale as f32 > 0.0) {
         let what = "camera: the focal length or orthographic height must be finite and > 0";
         return Err(Error::Invalid(what.into()));

@@ -172,6 +172,7 @@ impl DiscTree {
         found.clear();
         let mut ahead = vec![(self.levels.len() - 1, 0)]; // a caller has a place, so there is a block
         while let Some((level, index)) = ahead.pop() {
+            // Nothing below this box can be near.
             if !self.levels[level][index].may_be_near(bounds, factor) {
                 continue;
             }

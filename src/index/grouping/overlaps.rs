@@ -77,6 +77,7 @@ vectorized!(
                 row.visit_64(from, |number, j, lower| {
                     chosen |= u64::from(by(i, j, lower) != 0) << number;
                 });
+                // Most places have no neighbour in any set, and need no samples.
                 if chosen == 0 {
                     continue;
                 }

@@ -77,6 +77,7 @@ vectorized!(
             let (mut mask, mut samples) = (0, None);
             for &j in graph.of(i).all {
                 let other = &tree.discs[j as usize];
+                // The list goes up to a larger scale than this one.
                 if !own.is_near(other, scale) {
                     continue;
                 }
@@ -85,6 +86,7 @@ vectorized!(
                     DiscSamples::of(disc, tree.surfel[i])
                 });
                 mask |= samples.covered_by(&SpaceDisc { radius: scale * other.radius, ..*other });
+                // All samples are covered: no other disc can change that.
                 if mask == u64::MAX {
                     break;
                 }

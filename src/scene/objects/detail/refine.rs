@@ -168,6 +168,7 @@ impl Forest {
             }
         }
         let mut next = 0;
+        // From the roots down: this never reaches objects that are finer than themselves.
         while let Some(&object) = order.get(next) {
             order.extend(&finer[object as usize]);
             next += 1;
@@ -331,6 +332,7 @@ impl Objects {
         let mut one = |object: u32, coarser: Option<u32>| {
             let weight = coarser.map_or(1.0, |of| drawn[of as usize].of_primitives);
             let geometry = self.geometry(object);
+            // An object without a prefix only passes its weight on.
             let Some(prefix) = geometry.prefix() else {
                 drawn[object as usize] = Drawn { count: 0, weight, of_primitives: weight };
                 return;
