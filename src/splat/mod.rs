@@ -142,7 +142,7 @@ pub struct Footprint<R> {
     pub wy: R,
     /// The least nearness of the disc itself.
     pub w_far: R,
-    /// The greatest nearness of the disc itself, at most that of the near plane.
+    /// The greatest nearness of the disc itself, at most the nearness of the near plane.
     pub w_near: R,
     /// The weight at q = 0.
     pub amplitude: R,
