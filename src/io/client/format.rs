@@ -105,7 +105,7 @@ impl Format {
         match (self, self.codes()) {
             (Self::F32, _) => f64::from(value as f32),
             (Self::F16, _) => f16::from_f64(value).to_f64(),
-            // // The file holds -1 as all bits set.
+            // The file holds -1 as all bits set.
             (Self::U32, _) if (-2_147_483_648.0..0.0).contains(&value) => value + 4_294_967_296.0,
             (_, Some(codes)) => (value * codes).round() / codes,
             (_, None) => value,

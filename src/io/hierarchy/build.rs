@@ -1,4 +1,4 @@
-//! Makes the folder of a hierarchy, or goes on with one, see the [module](super).
+//! Make the folder of a hierarchy, or resume an unfinished one, see the [module](super).
 
 use super::bytes::Hash;
 use super::gather::{below, gather};
@@ -15,28 +15,31 @@ use crate::source::hierarchy::{Flaws, Settings, Traversal, approximate};
 use std::io::Write;
 use std::path::Path;
 
-/// What became of a scene.
+/// A summary of what was built.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Built {
     /// Name, triangles and flaws of each geometry.
     pub geometries: Vec<(String, u64, Flaws)>,
-    /// Nodes with enough triangles to be approximated.
+    /// Nodes that have enough triangles to be approximated.
     pub nodes: u32,
-    /// Of these, those that were there already.
+    /// How many of these were already in the folder.
     pub found: u32,
-    /// Of these, those of which no pixel sees anything.
+    /// How many of these no pixel sees.
     pub unseen: u32,
 }
 
-/// Makes the hierarchy of a scene in a folder, whose parent is there; or goes on with what is there. Models are taken as their triangles,
-/// in the order of [`SceneFile::models`] and [`SceneFile::geometries`].
+/// Makes the hierarchy of a scene in a folder, or resumes an unfinished one. The parent of the
+/// folder must exist. Models are taken as their triangles, in the order of [`SceneFile::models`]
+/// and [`SceneFile::geometries`].
 ///
-/// `progress` is told the name of a step, how much of it is done, and of how much: of "surfels" how many.
+/// `progress` gets the name of a step, how much of it is done, and the total; for "surfels" both
+/// are numbers of surfels.
 ///
 /// # Errors
-/// Those of [`SceneFile::load_polygons`]; [`Error::Usage`] if no surfel or no
-/// picture is asked for; [`Error::Format`] if the folder is of something else; [`Error::Io`] if it cannot be written
-/// to; as [`crate::source::candidates::candidates`], and if the process may not hold what one node needs.
+/// The errors of [`SceneFile::load_polygons`] and [`crate::source::candidates::candidates`].
+/// [`Error::Usage`] if you ask for no surfel or no picture. [`Error::Format`] if the folder holds
+/// something else. [`Error::Io`] if the folder cannot be written to. Also an error if the process
+/// may not hold what one node needs.
 pub fn build(
     file: &SceneFile,
     folder: &Path,
@@ -45,30 +48,30 @@ pub fn build(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Built> {
     let mut work = Work::begin(file, folder, settings, exec, progress)?;
-    // What is below comes first.
+    // Children have larger numbers, so this order makes them first.
     for node in (0..work.wanted.len() as u32).rev() {
         work.make(node)?;
     }
     work.finish()
 }
 
-/// A hierarchy in the making: the index grows.
+/// A hierarchy in the making. The index grows as nodes are made.
 pub(super) struct Work<'a> {
     hierarchy: Hierarchy,
     settings: &'a Settings,
     exec: &'a Exec,
     progress: &'a dyn Fn(&str, u64, u64),
-    /// How many surfels each node is to have.
+    /// How many surfels to make for each node.
     pub(super) wanted: Vec<u32>,
     made: Vec<bool>,
-    /// Of the nodes that are made, as they were wanted; and of all.
+    /// Surfels wanted by the nodes that are made, and by all nodes.
     surfels: u64,
     total: u64,
     built: Built,
 }
 
 impl<'a> Work<'a> {
-    /// Writes the geometries; nothing is approximated yet.
+    /// Writes the geometries; no node is approximated yet.
     pub(super) fn begin(
         file: &SceneFile,
         folder: &Path,
@@ -128,7 +131,8 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// Makes the surfels of a node, unless they are there; bottom-up those of what is below it first.
+    /// Makes the surfels of a node, unless they are in the folder; bottom-up, makes the nodes below
+    /// first.
     pub(super) fn make(&mut self, node: u32) -> Result<()> {
         let at = node as usize;
         let count = self.wanted[at];
@@ -171,7 +175,7 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// The nearest nodes below that are approximated.
+    /// Makes the nearest approximated nodes below.
     fn make_below(&mut self, node: u32) -> Result<()> {
         for child in below(&self.hierarchy, node) {
             if self.wanted[child as usize] > 0 {
@@ -192,7 +196,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// An error that says of which geometry it is.
+/// Adds the name of the geometry to an error.
 fn named(name: &str, error: Error) -> Error {
     match error {
         Error::Invalid(what) if !what.starts_with(name) => {
@@ -202,7 +206,7 @@ fn named(name: &str, error: Error) -> Error {
     }
 }
 
-/// Whether a model can be approximated.
+/// Refuses a model that cannot be approximated.
 fn check(name: &str, model: &Model) -> Result<()> {
     let what = match &model.source {
         Source::Shape { .. } => "a shape has surfels of its own and no triangles to approximate",
@@ -213,7 +217,7 @@ fn check(name: &str, model: &Model) -> Result<()> {
     Err(Error::Invalid(format!("{name}: {what}")))
 }
 
-/// The header of a geometry, which is written if it is not there.
+/// The header of a geometry's file; writes the file if it is missing.
 fn geometry(
     file: &SceneFile,
     model: &Model,
