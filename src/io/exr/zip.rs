@@ -1,12 +1,13 @@
-//! ZIP blocks by the fastest level of deflate.
+//! Compress ZIP blocks with the fastest level of deflate.
 //!
-//! The exr crate has one level, 4, which is slower. What is before deflate is that of the format, and undone by every reader.
+//! The exr crate offers only level 4, which is slower. The steps before deflate are the format's
+//! own, so that every reader can undo them.
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
 const LEVEL: u8 = 1;
 
-/// The block of these lines, whose samples have four bytes each in the order of this machine.
+/// Compresses the block of these lines; each sample has four bytes in the order of this machine.
 pub(super) fn compress(mut lines: Vec<u8>) -> Vec<u8> {
     if cfg!(target_endian = "big") {
         lines.as_chunks_mut::<4>().0.iter_mut().for_each(|sample| sample.reverse());
