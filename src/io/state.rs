@@ -28,9 +28,9 @@ const DIGITS: usize = 64;
 /// The surfels that a frame saw, and the number of the frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct State {
-    /// The frame that saw.
+    /// The number of the frame.
     pub frame: u32,
-    /// What it saw.
+    /// The surfels that it saw.
     pub seen: Seen,
 }
 

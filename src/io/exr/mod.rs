@@ -39,7 +39,7 @@ pub struct PictureHeader {
     pub text: Option<String>,
 }
 
-/// How the blocks of a written file are compressed; none of the ways loses a bit.
+/// How the blocks of a written file are compressed; every way is lossless.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Compression {
     /// Runs of equal bytes, line by line. Deflate saves little and takes long, because the

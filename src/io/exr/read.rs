@@ -31,9 +31,9 @@ const LEAST_BLOCK: u64 = 16;
 /// the file.
 ///
 /// The file may have scan lines or tiles, one part or several, and any compression but DWA and
-/// HTJ2K. Of several resolutions only the full one is read. In a file with several parts, a channel
-/// is called `part.channel`. `HALF` values are widened exactly (a signalling NaN becomes quiet);
-/// all other bits are kept.
+/// HTJ2K. If it has several resolutions, only the full one is read. In a file with several parts, a
+/// channel is called `part.channel`. `HALF` values are widened exactly (a signalling NaN becomes
+/// quiet); all other bits are kept.
 ///
 /// Memory holds the bytes of the file, the planes, and two batches of a few blocks a thread. The
 /// planes take at most 1376 bytes (twice that for `HALF`) for each byte of the file, because no

@@ -68,8 +68,8 @@ impl SceneFile {
         self.load_for(Purpose::Scene, exec, progress)
     }
 
-    /// [`SceneFile::load`] to find out what the scene contains. Of a hierarchy it reads the index
-    /// and the bounds, and no file of a node. Everything equals the result of [`SceneFile::load`],
+    /// [`SceneFile::load`] to find out what the scene contains. It reads the index and the bounds
+    /// of a hierarchy, and no file of a node. Everything equals the result of [`SceneFile::load`],
     /// except surfels and primitives of the hierarchy's geometries.
     ///
     /// # Errors

@@ -194,7 +194,7 @@ pub struct CameraChoice {
     pub up: Option<DVec3>,
     /// Keys over frames, in place of these three.
     pub motion: Option<CameraMotion>,
-    /// The opening.
+    /// The opening of the lens.
     pub lens: Option<Lens>,
 }
 

@@ -32,7 +32,7 @@ pub(super) struct Row {
     pub(super) color: Option<Vec3>,
 }
 
-/// Reads a table.
+/// Reads a table of places.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be read. [`Error::Format`], with the line or the vertex, if

@@ -33,7 +33,7 @@ pub struct Ready {
 
 impl SceneFile {
     /// Loads the scene in the frame to draw, and resolves camera and method. Errors in the settings
-    /// are found before large files are read. Of a hierarchy it reads only what the camera draws,
+    /// are found before large files are read. A hierarchy is read as far as the camera draws it,
     /// anew in each frame.
     ///
     /// `progress` gets the name of a step, how much of it is done, and the total.

@@ -44,10 +44,10 @@
 //!   made.
 //!
 //! Of a child's surfels, as many are drawn as cover at the resolution of the picture, by the
+//! The view draws as many of a child's surfels as cover at the resolution of the picture, by the
 //! estimate of [`crate::scene::objects::detail::prefix`]. Let P = 2 R / side ([`pixel`]), where R
 //! is half the diagonal of the node's box, or 1 if that is 0; k the scale of the child's place; n
 //! its surfels; `p_m` and `r_m` its estimate. In f64:
-//!
 //! ```text
 //!   r    = P / k
 //!   p    = min(n, ceil(p_m (q q))), at least 1      q = r_m / r

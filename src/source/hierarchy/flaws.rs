@@ -4,7 +4,7 @@
 //! over triangles of checked vertices, without the triangles that were dropped before:
 //!
 //! - *degenerate*: two corners at one place, or all three on a line: each component of (b - a) x (c - a) is 0 in f64.
-//! - *duplicate*: the three places, in any order, are those of a triangle before it.
+//! - *duplicate*: the three places, in any order, are the places of an earlier triangle.
 //! - *edges of many*: edges that belong to more than two triangles that are not degenerate. An edge
 //!   is a pair of different places. A mesh with such edges is no manifold.
 //!

@@ -183,7 +183,7 @@ pub fn around(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> (Vec3, Vec3) {
     (Vec3::new(least(0), least(1), least(2)), Vec3::new(most(0), most(1), most(2)))
 }
 
-/// Divides items into those that stay in a node and those of each child.
+/// Divides items into the items that stay in a node, and the items of each child.
 fn divide(
     here: Vec<u32>,
     depth: u32,

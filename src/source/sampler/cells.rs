@@ -180,7 +180,8 @@ mod tests {
         let points = [0.0, 1.0, 2.0, 8.0, 9.0].map(|x| Vec3::new(x, 0.0, 0.0));
         let colors = [1.0, 2.0, 4.0, 8.0, 16.0].map(Vec3::splat);
         let exec = Exec::new(2, 32).unwrap();
-        // All; then the right ones; of three picks those in the middle, 1 being as near to 0 as to 2.
+        // The cell of all points; then the right points; with three picks the middle ones, as 1 is
+        // as near to 0 as to 2.
         let found = of(&points, &colors, &[0, 4, 2], &exec).unwrap();
         assert_eq!(found, [31.0 / 5.0, 12.0, 4.0].map(|v: f32| Vec3::splat(v)));
         let twice = [points[0], points[0], points[4]];
@@ -189,8 +190,8 @@ mod tests {
         assert!(of(&points, &colors, &[], &exec).unwrap().is_empty());
     }
 
-    /// Of colours by chance, of variance v: a pick's own is 2 v off in the mean square from what it stands for,
-    /// and the mean of a large cell v, which is the least that one colour can be.
+    /// For random colours of variance v, the square error of a pick's own colour is 2 v on average,
+    /// and of the mean of a large cell v, the least possible for one colour.
     #[test]
     fn a_mean_halves_the_square_error_of_colours_by_chance() {
         let points = crate::source::Shape::Torus.surfels(20_000, 3).unwrap().position().to_vec();

@@ -55,6 +55,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
         let what = "a hierarchy is all that a scene shows: remove it, or the models and objects";
         return Err(Error::format(path, what));
     }
+    // Geometries alone draw nothing.
     if file.hierarchy.is_none() && file.model.is_empty() && file.object.is_empty() {
         let what = match file.geometry.as_slice() {
             [] => "there is no [[model]]: name a file or a shape",
@@ -142,7 +143,7 @@ through! {
     EnvironmentChoice: RawEnvironment, RawEnvironment::choice;
 }
 
-/// How many frames there are.
+/// The number of frames.
 struct Sequence(u32);
 
 impl Default for Sequence {
