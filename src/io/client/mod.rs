@@ -121,9 +121,11 @@
 //!
 //! # Colours
 //!
-//! The reader decodes `"srgb"` to linear light, together with what storing may have lost: a step;
-//! 2^-10 v in `f16`; 2^-18 v in `f32`, because shading languages compute the power inexactly; in
-//! floats at least 2^-18.
+//! The reader decodes `"srgb"` to linear light, together with what storing may have lost:
+//!
+//! - integer codes: a step;
+//! - `f16`: 2^-10 v, at least 2^-18;
+//! - `f32`: 2^-18 v, at least 2^-18, because shading languages compute the power inexactly.
 
 mod convert;
 mod files;

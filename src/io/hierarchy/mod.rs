@@ -146,15 +146,20 @@
 //!
 //! # What each hash covers
 //!
-//! - `plan`: `"splatref hierarchy 1\n"`; the settings (u32 most, side; u8 sampler: 0 greedy, 1 the
-//!   paper's, 2 as shipped, 3 random; u8 1 if bottom-up; u64 seed; u32 directions: 0 cube, 1 box,
-//!   else 2 + their number and f64 x y z of each); the f32 colour of triangles without one; u64
-//!   geometries; u64 objects, of each u64 geometry, u64 keys, of each key u32 frame and f64
-//!   rotation by columns, scale, translation; u8 1 and f32 r g b of its colour, or u8 0; of each
-//!   further property u32 bytes of its name, the name.
-//! - a geometry: u64 vertices, of each f32 position and normal; u8 1 and f32 colours of all, or u8
-//!   0; u64 triangles, of each u32 x 3; if there are opacities u8 1 and f32 of each vertex; of each
-//!   further property u8 2, u32 bytes of its name, the name, f32 of each vertex.
+//! - `plan`, in this order:
+//!   - `"splatref hierarchy 1\n"`;
+//!   - the settings: u32 most, side; u8 sampler: 0 greedy, 1 the paper's, 2 as shipped, 3 random;
+//!     u8 1 if bottom-up; u64 seed; u32 directions: 0 cube, 1 box, else 2 + their number and f64 x
+//!     y z of each;
+//!   - the f32 colour of triangles without one; u64 geometries;
+//!   - u64 objects, and of each: u64 geometry; u64 keys, of each key u32 frame and f64 rotation by
+//!     columns, scale, translation; u8 1 and f32 r g b of its colour, or u8 0;
+//!   - of each further property u32 bytes of its name, the name.
+//! - a geometry, in this order:
+//!   - u64 vertices, of each f32 position and normal; u8 1 and f32 colours of all, or u8 0;
+//!   - u64 triangles, of each u32 x 3;
+//!   - if there are opacities u8 1 and f32 of each vertex;
+//!   - of each further property u8 2, u32 bytes of its name, the name, f32 of each vertex.
 //! - the hierarchy: the hash of `plan`, then the hashes of the geometries.
 //!
 //! # Resume after an interruption

@@ -18,8 +18,9 @@
 //!   side = ceil(s sqrt(count / 200000)), at least 16, then at most s      s: Settings::side; in f64
 //! ```
 //!
-//! If there are fewer than 4 candidates for each of the surfels (4 count), or none at all, and the
-//! side is less than s, everything is drawn again with the side min(2 side, s), and so on.
+//! Everything is drawn again with the side min(2 side, s), and so on, while two things hold: the
+//! side is less than s, and there are fewer than 4 candidates for each of the surfels (4 count), or
+//! none at all.
 //!
 //! `Decided:` the paper draws pictures of 1024 pixels of everything, for 10k to 200k surfels. Here
 //! only a node with the paper's bound of surfels has that side. Smaller nodes have as many
@@ -43,11 +44,11 @@
 //!   properties of its surfel. Surfels are placed, and rounded to `f32`, before their squares are
 //!   made.
 //!
-//! Of a child's surfels, as many are drawn as cover at the resolution of the picture, by the
 //! The view draws as many of a child's surfels as cover at the resolution of the picture, by the
 //! estimate of [`crate::scene::objects::detail::prefix`]. Let P = 2 R / side ([`pixel`]), where R
 //! is half the diagonal of the node's box, or 1 if that is 0; k the scale of the child's place; n
 //! its surfels; `p_m` and `r_m` its estimate. In f64:
+//!
 //! ```text
 //!   r    = P / k
 //!   p    = min(n, ceil(p_m (q q))), at least 1      q = r_m / r

@@ -28,9 +28,11 @@ const NOWHERE: u32 = u32::MAX;
 ///    it. A vertex that is alone in its cluster, which closes a branch in a point, is a ring too. A
 ///    ring that no edge joins to another does not count.
 ///
-/// These triangles are not converted: a part without a boundary, which has no root and no rings;
-/// closed ends of more than three sides without a vertex in their middle; and the few triangles in
-/// the crotch of a fork that is one mesh.
+/// These triangles are not converted:
+///
+/// - a part without a boundary, because it has no root and no rings;
+/// - closed ends of more than three sides without a vertex in their middle;
+/// - the few triangles in the crotch of a fork that is one mesh.
 ///
 /// **The tubes.** Two rings with an edge between them are joined by a segment, which begins at the
 /// layer nearer to the root. So segments run from root to tip, and all segments of a branch agree.

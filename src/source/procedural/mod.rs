@@ -21,8 +21,8 @@
 //!
 //! The radius is everywhere **the spacing**: the square root of the area that a surfel stands for.
 //! (For a cell that is not square, it is the root mean square of its sides.) It covers with some
-//! margin: a displaced surfel is at most sqrt(1/2) * 5/4 = 0.88 spacings from the corners of its
-//! cell, and measurements found no point of a sphere farther than 0.77 spacings from its spiral. On
+//! margin. A displaced surfel is at most sqrt(1/2) * 5/4 = 0.88 spacings from the corners of its
+//! cell. On a sphere, measurements found no point farther than 0.77 spacings from its spiral. On
 //! average a point lies in pi discs.
 //!
 //! ```
