@@ -5,6 +5,7 @@
 //! it is, and its `HALF` channels as [`Storage::Half`]. For any other files, write one TOML file
 //! and put it beside them. Every key has a default, but there must be at least one plane. This
 //! example uses everything:
+//!
 //! ```toml
 #![doc = include_str!("example.toml")]
 //! ```
