@@ -210,9 +210,11 @@ impl Scaled {
             }
             None => 1.0,
         };
+        // An integer file stores codes of `format`, so that format decides the rounding.
         let stored = if file.is_whole() { format } else { file };
         if file.is_whole() {
             for (i, value) in components.iter_mut().flat_map(|c| c.iter_mut().enumerate()) {
+                // A larger code shows that `format` is wrong.
                 if *value > codes {
                     let (x, y) = (i % width as usize, i / width as usize);
                     let word = format.word();

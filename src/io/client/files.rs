@@ -108,6 +108,7 @@ impl<'e> Files<'e> {
                 raw::read(path, key, keys, format, components, size)
             }
             Kind::Npy => {
+                // The name does not matter: only the number of components does.
                 let image = npy::read(path, "v")?;
                 let names: Vec<String> =
                     image.channels.iter().map(|(name, _)| name.clone()).collect();
@@ -125,6 +126,7 @@ impl<'e> Files<'e> {
                 let picture = self.picture(path, kind)?;
                 let names = picture.names(wanted, keys, kind).map_err(refused)?;
                 let mut numbers = picture.numbers(&names).map_err(refused)?;
+                // A PNG has stored whole numbers as codes of colours.
                 if matches!(row.holds, Holds::Index | Holds::Count) {
                     numbers.as_codes();
                 }

@@ -116,6 +116,7 @@ fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
     for header in &meta.headers {
         let Vec2(width, height) = header.layer_size;
         let (data, display) = (header.data_window(), header.shared_attributes.display_window);
+        // A part of another size has no pixel-by-pixel counterpart.
         if data != display || header.layer_size != meta.headers[0].layer_size {
             return Err(format!(
                 "header: a data window of {width} x {height} pixels at ({}, {}) is not the display \
@@ -130,6 +131,7 @@ fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
             Compression::Uncompressed => 1,
             _ => MOST_EXPANSION,
         };
+        // A lower bound of the bytes that these pixels take in the file.
         needed = needed.saturating_add(bytes.div_ceil(expansion));
         blocks = blocks.saturating_add(header.chunk_count as u64);
     }

@@ -93,6 +93,7 @@ impl<'a> Work<'a> {
             .map(|model| (model.source.name(), model))
             .chain(file.geometries.iter().map(|one| (one.name.clone(), &one.model)))
             .collect();
+        // Check every model before the folder is made.
         for (name, model) in &models {
             check(name, model)?;
             check_properties(model, &settings.properties)?;
@@ -153,6 +154,7 @@ impl<'a> Work<'a> {
             let Settings { traversal, .. } = *self.settings;
             let drawn = |side| gather(&self.hierarchy, node, side, traversal);
             let (before, total) = (self.surfels, self.total);
+            // Only the sampler counts surfels; other steps have other totals.
             let picks = |_: &str, done, of| {
                 if of == u64::from(count) {
                     (self.progress)("surfels", before + done, total);
@@ -160,6 +162,7 @@ impl<'a> Work<'a> {
             };
             let cloud = approximate(&drawn, count, self.settings, self.exec, &picks)?;
             surfels::write(folder, &hash, node, &cloud)?;
+            // Read it back, because the estimate comes from the normals as stored.
             header = surfels::header(folder, &hash, node, further)?;
         }
         let Some(header) = header else {
@@ -236,6 +239,7 @@ fn geometry(
     let loaded = alone.load_polygons(properties, exec, progress)?;
     let triangles = &loaded.scene.primitives.triangles;
     let hash = mesh::hash(triangles);
+    // A damaged file is treated as missing, and written again.
     if let Ok(Some(header)) = mesh::read(folder, number) {
         if header.hash != hash {
             return Err(refused(folder, "another geometry"));
@@ -243,6 +247,7 @@ fn geometry(
         return Ok(header);
     }
     mesh::write(folder, number, &hash, triangles, loaded.dropped_primitives)?;
+    // Another process may have replaced the file meanwhile.
     match mesh::read(folder, number)? {
         Some(header) if header.hash == hash => Ok(header),
         _ => Err(refused(folder, "another geometry")),

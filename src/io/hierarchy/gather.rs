@@ -92,7 +92,7 @@ impl Gather<'_> {
 
     fn child(&mut self, node: u32, shown: &Shown) -> Result<()> {
         let Node { surfels, estimate, .. } = self.hierarchy.nodes()[node as usize];
-        // Only bottom-up draws the surfels of a node below in the place of its triangles.
+        // Top-down, or without surfels, the triangles below stand for themselves.
         if !self.bottom_up || surfels == 0 {
             return self.triangles(node, shown);
         }

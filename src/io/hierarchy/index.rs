@@ -143,6 +143,7 @@ impl Index {
         let properties = rest.word()?;
         let [n, o, g] = [nodes, objects, geometries].map(u64::from);
         let length = HEADER + n * OF_A_NODE + o * OF_AN_OBJECT + g * OF_A_GEOMETRY;
+        // Names follow, of any length; `rest` must be empty after them.
         let long = if properties == 0 { length } else { length.max(bytes.len() as u64) };
         if long != bytes.len() as u64 {
             return Err(format!(
@@ -212,6 +213,7 @@ impl Index {
             if next as usize > self.nodes.len() {
                 return Err("there are fewer nodes than the trees have".into());
             }
+            // Children come level by level, so each node's children begin where the last ones end.
             let mut child = range.start + 1;
             for number in range.clone() {
                 let node = &self.nodes[number as usize];

@@ -257,6 +257,7 @@ pub(super) fn part(
     file.read_exact(&mut start).map_err(io)?;
     let format = |what: String| Error::format(&path, what);
     let (header, _) = beginning(&mut Reader(&start)).map_err(format)?;
+    // The hash says whether the offsets of the index belong to this file.
     if header.hash != *hash || header.kind != kind {
         return Err(format("the geometry is not that of the index".into()));
     }

@@ -161,6 +161,7 @@ impl Hierarchy {
         let count = cloud.position.len();
         cloud.radius = Some(vec![radius(node); count]);
         let (surfels, _) = Surfels::new_or_none(cloud, exec)?;
+        // A dropped surfel would shift the prefixes that views draw.
         if surfels.len() != count {
             let lost = count - surfels.len();
             let what = format!("{}: {lost} of {count} surfels can be none", name(number));

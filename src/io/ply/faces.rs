@@ -30,6 +30,7 @@ pub(super) fn read(
             }
             Event::Value(..) => {}
             Event::End => {
+                // Fan both alike, so that coordinates stay with their corners.
                 if coordinates.is_some() {
                     let at = places(&numbers, corners.len())?;
                     of_corners.extend(fan(at));

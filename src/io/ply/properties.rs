@@ -81,6 +81,7 @@ pub(super) fn read(bytes: &[u8], names: &[String]) -> Reason<Vec<Property>> {
             }
             Ok(())
         })?;
+        // Later elements cannot change the vertices.
         if is_vertices {
             break;
         }

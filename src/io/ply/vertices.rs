@@ -254,6 +254,7 @@ fn slot(name: &str, kind: PropertyKind, groups: &groups::Reader) -> Result<Prope
         let what = format!("property {} is a list, but must be one number", quote(name));
         return Err(format!("element vertex: {what}"));
     };
+    // Only colours and opacities have codes; other integers are numbers.
     let color = COLOR.contains(&place) || place >= MIPMAP;
     if !color && !OPACITY.contains(&place) {
         return Ok(PropertyUse::Number(place, Decode::Keep));

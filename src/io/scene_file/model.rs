@@ -67,6 +67,7 @@ pub(super) fn check_draw(model: &Model, purpose: Purpose<'_>) -> Result<()> {
         };
         return Err(Error::Invalid(format!("{name}: {what}; remove the mipmaps")));
     }
+    // For candidates, a model is drawn as polygons that keep their opacities.
     let veiled = matches!(model.draw, Draw::Surfels | Draw::Points | Draw::Facets)
         || matches!(purpose, Purpose::Candidates(_));
     if model.opacity.is_some() && !veiled {

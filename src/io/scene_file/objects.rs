@@ -124,6 +124,7 @@ impl SceneFile {
             Places::One(motion) => add(0, motion.clone(), *color),
             Places::Table { path, transform } => {
                 for (number, row) in (0..).zip(table.unwrap_or_default()) {
+                    // Refuse rather than choose one of two colours.
                     if row.color.is_some() && color.is_some() {
                         let what = "the rows have colours, and the object has one: remove one";
                         return Err(Error::format(path, what));

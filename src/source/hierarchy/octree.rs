@@ -192,6 +192,7 @@ fn divide(
     bound: u64,
 ) -> (Vec<u32>, Vec<Vec<u32>>) {
     let weight: u64 = here.iter().map(|&item| items[item as usize].weight).sum();
+    // A single item cannot be divided, whatever its weight.
     if weight <= bound || here.len() == 1 {
         return (here, Vec::new());
     }

@@ -126,6 +126,7 @@ impl Progressive {
             }
             progress("picks", picks.order.index.len() as u64, count as u64);
             let drawn = rest.draw(samples);
+            // The last round accepts only as many as are still wanted.
             let room = accepted.min(count - picks.order.index.len());
             match self.schedule {
                 Schedule::Paper => {

@@ -133,6 +133,7 @@ pub fn spectrum(points: &[Vec3], exec: &Exec) -> Result<Spectrum> {
     let side = reach / BINS as f64;
     let area = |b: usize| PI * (side * side) * (2 * b + 1) as f64;
     let middle = |b: usize| (b as f64 + 0.5) / BINS as f64;
+    // Leave out near pairs, which samplers keep apart, and far pairs, where a surface curves.
     let outer = |b| {
         let s2 = middle(b) * middle(b);
         (s2 * (1.0 - s2)) * (s2 * (1.0 - s2))
