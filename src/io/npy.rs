@@ -4,10 +4,10 @@
 //! versions 1.0 to 3.0.
 
 use super::{Reason, input};
+use crate::error::{Error, Result};
 use crate::frame::Image;
 use crate::frame::image::Values;
 use crate::memory;
-use crate::{Error, Result};
 use std::fs::File;
 use std::io::{Read, Take};
 use std::path::Path;

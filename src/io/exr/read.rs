@@ -1,11 +1,11 @@
 //! Read an EXR file into an image, and trust nothing in it.
 
 use super::{ATTRIBUTE, ChannelType, PictureHeader, batch};
+use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::frame::image::{Image, Values};
 use crate::io::{Reason, input};
 use crate::memory;
-use crate::{Error, Result};
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{
     Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates,

@@ -1,7 +1,7 @@
 //! Check round trips, files of other programs, and hostile files.
 
 use super::*;
-use crate::Error;
+use crate::error::Error;
 use crate::frame::image::{Image, Values};
 use crate::frame::{Exec, Frame, NO_ID, NamedPlane, Plane, Samples};
 use exr::math::RoundingMode;

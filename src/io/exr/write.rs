@@ -1,10 +1,10 @@
 //! Write a frame to an EXR file.
 
 use super::{ATTRIBUTE, Compression, batch, zip};
+use crate::error::{Error, Result};
 use crate::frame::named::LONGEST_NAME;
 use crate::frame::{Channel, ChannelData, Exec, Frame};
 use crate::io::replace::Pending;
-use crate::{Error, Result};
 use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock};
 use exr::block::lines::LineRefMut;
 use exr::block::writer::ChunksWriter;

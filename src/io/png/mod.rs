@@ -6,10 +6,10 @@ mod read;
 pub(super) use read::read_linear;
 pub use read::{Stored, read};
 
+use crate::error::{Error, Result};
 use crate::frame::{Frame, Plane};
 use crate::io::replace::{Pending, write_atomically};
 use crate::io::srgb;
-use crate::{Error, Result};
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 use std::io;

@@ -1,11 +1,11 @@
 //! Read PNG files, and encode pictures for comparison with them.
 
 use super::{quantize, straight};
+use crate::error::{Error, Result};
 use crate::frame::image::Values;
 use crate::frame::{Image, Plane};
 use crate::io::{input, srgb};
 use crate::memory;
-use crate::{Error, Result};
 use image::codecs::png::PngDecoder;
 use image::{ColorType, ImageDecoder, ImageError, Limits};
 use std::io::Cursor;
