@@ -2,7 +2,7 @@
 
 use crate::io::scene_file::OutputSettings;
 use crate::method::Method;
-use crate::method::stored::Formats;
+use crate::method::buffer_formats::Formats;
 use crate::scene::{Camera, Counts, Groups, Projection, Scene};
 use crate::setting::{Fields, Word};
 
@@ -25,7 +25,7 @@ pub fn text(
         format!("[groups]\ncount = {}\nsha256 = \"{}\"\n\n", groups.len(), groups.sha256())
     });
     let chosen = method.values().into_iter().map(|(name, value)| (name, value.to_string()));
-    let settings = chosen.chain(method.resolved(scene, camera));
+    let settings = chosen.chain(method.settings_in_scene(scene, camera));
     let settings: String = settings.map(|(name, value)| format!("{name} = {value}\n")).collect();
     let primitives = if scene.primitives.is_empty() {
         String::new()
@@ -80,7 +80,7 @@ pub fn camera(camera: &Camera) -> String {
 mod tests {
     use super::*;
     use crate::io::scene_file::Number;
-    use crate::method::stored::Buffers;
+    use crate::method::buffer_formats::Buffers;
     use crate::scene::{Lens, Pose};
     use crate::setting::Value;
     use crate::source::Shape;

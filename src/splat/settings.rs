@@ -38,7 +38,7 @@ impl SplatSettings {
 
     /// The values that the settings take in a scene: names and values as TOML.
     #[must_use]
-    pub fn resolved(&self, scene: &Scene) -> Vec<(&'static str, String)> {
+    pub fn settings_in_scene(&self, scene: &Scene) -> Vec<(&'static str, String)> {
         vec![("epsilon_in_world_units", format!("{:?}", self.epsilon.resolve(&scene.surfels)))]
     }
 }

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::io::exr::Compression;
 use crate::method::Method;
-use crate::method::stored::Formats;
+use crate::method::buffer_formats::Formats;
 use crate::setting::{Field, Fields, Refused, Setting, Slot, Value, Visit, Words};
 
 /// Chosen settings, in the order in which they are set. A later value replaces an earlier one, and

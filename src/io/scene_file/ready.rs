@@ -211,7 +211,7 @@ impl OutputSettings {
     /// Draws a picture in the chosen number type and with the chosen planes, as files hold it.
     ///
     /// # Errors
-    /// As [`Session::render`], [`Session::define`] and [`Session::stored`], and [`Error::Invalid`]
+    /// As [`Session::render`], [`Session::define`] and [`Session::emulate`], and [`Error::Invalid`]
     /// if other formats are chosen with f64.
     pub fn draw<'s>(
         self,
@@ -224,7 +224,7 @@ impl OutputSettings {
                     "storage formats are those of f32; give number = \"f32\", or f32 storage";
                 return Err(Error::Invalid(what.into()));
             }
-            return Ok(Cow::Owned(session.stored(camera, self.formats, self.stages)?));
+            return Ok(Cow::Owned(session.emulate(camera, self.formats, self.stages)?));
         }
         Ok(match (self.number, self.stages) {
             (Number::F32, false) => Cow::Borrowed(session.render(camera)?),
