@@ -152,9 +152,7 @@ fn reference(scene: &Scene, camera: &Camera, exec: &Exec) -> Result<(Seen, f32)>
 
 fn seen(frame: &Frame<f32>, scene: &Scene) -> Result<Seen> {
     let ids = scene.objects.as_ref().map(|objects| objects.ids());
-    Seen::of(frame, |id| {
-        ids.and_then(|ids| ids.find(u64::from(id))).map(|(object, _)| object)
-    })
+    Seen::of(frame, |id| ids.and_then(|ids| ids.find(u64::from(id))).map(|(object, _)| object))
 }
 
 fn cells(wrong: &Wrong) -> String {

@@ -221,7 +221,7 @@ pub(super) fn camera(camera: &Camera) {
 /// The method, its settings, and what these come to in a scene.
 pub(super) fn method(method: &Method, scene: &Scene, camera: &Camera) {
     settings(method);
-    for (name, value) in method.resolved(scene, camera) {
+    for (name, value) in method.settings_in_scene(scene, camera) {
         line("", format!("{name} = {value}"));
     }
 }

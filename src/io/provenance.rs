@@ -1,18 +1,18 @@
-//! The text that a picture carries: what it is a picture of, and by which settings.
+//! Describe a picture in a text that its file carries: the scene, and the settings.
 
 use crate::io::scene_file::OutputSettings;
 use crate::method::Method;
-use crate::method::stored::Formats;
+use crate::method::buffer_formats::Formats;
 use crate::scene::{Camera, Counts, Groups, Projection, Scene};
 use crate::setting::{Fields, Word};
 
 /// The text as TOML, for the attribute [`super::exr::ATTRIBUTE`].
 ///
-/// Equal for equal pictures: nothing in it depends on the time, the machine, the directory or the
-/// way the picture was computed. Floats are the shortest decimals that give the same `f32`. The
-/// scene is identified by [`Scene::sha256`], its groups by [`crate::scene::Groups::sha256`],
-/// the camera by all its numbers. `bins_in_world_units` are `d_min`, `d_max` and n of \[ZP06, eq.
-/// 6\].
+/// Equal pictures have equal texts: nothing depends on the time, the machine, the directory or the
+/// way the picture was computed. Floats are the shortest decimals that give the same `f32`.
+/// [`Scene::sha256`] identifies the scene, [`crate::scene::Groups::sha256`] its groups, and the
+/// camera is described by all its numbers. `bins_in_world_units` are `d_min`, `d_max` and n of
+/// \[ZP06, eq. 6\].
 #[must_use]
 pub fn text(
     scene: &Scene,
@@ -25,7 +25,7 @@ pub fn text(
         format!("[groups]\ncount = {}\nsha256 = \"{}\"\n\n", groups.len(), groups.sha256())
     });
     let chosen = method.values().into_iter().map(|(name, value)| (name, value.to_string()));
-    let settings = chosen.chain(method.resolved(scene, camera));
+    let settings = chosen.chain(method.settings_in_scene(scene, camera));
     let settings: String = settings.map(|(name, value)| format!("{name} = {value}\n")).collect();
     let primitives = if scene.primitives.is_empty() {
         String::new()
@@ -49,7 +49,7 @@ pub fn text(
     )
 }
 
-/// Formats that are not those of `f32`, as TOML.
+/// The formats that differ from `f32`, as TOML.
 fn formats(formats: Formats) -> String {
     if formats.keep_all() {
         return String::new();
@@ -80,7 +80,7 @@ pub fn camera(camera: &Camera) -> String {
 mod tests {
     use super::*;
     use crate::io::scene_file::Number;
-    use crate::method::stored::Buffers;
+    use crate::method::buffer_formats::Buffers;
     use crate::scene::{Lens, Pose};
     use crate::setting::Value;
     use crate::source::Shape;

@@ -1,7 +1,7 @@
 //! What a method is: the interface that a row of the table of methods implements.
 
-use super::given::Given;
-use super::stored::{Buffers, DepthKey};
+use super::buffer_formats::{Buffers, DepthKey};
+use super::input_planes::InputPlanes;
 use super::{Picture, Stage};
 use crate::error::Result;
 use crate::frame::{Exec, Frame, Grid, NamedPlane, Pool, Rect};
@@ -139,7 +139,7 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
         &self,
         job: &Job<'_>,
         stage: &str,
-        given: &Given<'_, R>,
+        given: &InputPlanes<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>>;
 
     /// The levels that a stage makes, each from the one before, in the order in which they are made; empty of a
@@ -165,8 +165,8 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     }
 
     /// What the settings come to in a scene: names and values as TOML, for the text of a picture.
-    fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
+    fn settings_in_scene(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
         let _ = camera;
-        self.splats().map_or_else(Vec::new, |splats| splats.resolved(scene))
+        self.splats().map_or_else(Vec::new, |splats| splats.settings_in_scene(scene))
     }
 }

@@ -58,23 +58,23 @@
 
 mod algorithm;
 pub mod blue;
+pub mod buffer_formats;
+pub(crate) mod decisions;
 pub mod deferred;
 pub mod ewa;
 mod fast;
 pub(crate) mod fragment;
-mod given;
+mod input_planes;
 pub mod peeling;
 pub(crate) mod picture;
 pub mod planes;
 pub(crate) mod prepare;
 pub mod projection;
 pub mod pyramid;
-pub(crate) mod replay;
-pub(crate) mod resolved;
 pub mod session;
 pub mod single_pass;
 pub mod stage;
-pub mod stored;
+pub(crate) mod surface;
 mod table;
 pub mod template;
 #[cfg(test)]
@@ -84,7 +84,7 @@ pub mod transparent;
 pub mod transparent_hq;
 
 pub use algorithm::{Algorithm, Job};
-pub use given::Given;
+pub use input_planes::InputPlanes;
 pub use picture::{Laps, Picture};
 pub use session::Session;
 pub use stage::{Holds, PlaneRow, Stage, When};

@@ -1,8 +1,8 @@
 //! A scene that is drawn by one method from as many cameras as one likes.
 
+mod emulation;
 mod names;
 mod needs;
-mod stored;
 
 pub(crate) use names::Names;
 pub use needs::Making;

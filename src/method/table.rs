@@ -1,7 +1,7 @@
 //! The table of methods: one row a method, from which everything follows that is said of methods.
 
 use super::algorithm::{Algorithm, Job};
-use super::given::Given;
+use super::input_planes::InputPlanes;
 use super::{
     Picture, Stage, blue, deferred, ewa, peeling, pyramid, single_pass, template, transparent,
     transparent_hq,
@@ -124,8 +124,8 @@ macro_rules! methods {
 
             /// What the settings come to in a scene: names and values as TOML.
             #[must_use]
-            pub fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
-                match self { $(Self::$method(settings) => Algorithm::resolved(settings, scene, camera),)* }
+            pub fn settings_in_scene(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
+                match self { $(Self::$method(settings) => Algorithm::settings_in_scene(settings, scene, camera),)* }
             }
 
             pub(crate) fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
@@ -138,7 +138,7 @@ macro_rules! methods {
                 stage: &str,
                 from: &Frame<R>,
             ) -> Result<Frame<R>> {
-                let given = Given::new(from, job)?;
+                let given = InputPlanes::new(from, job)?;
                 let planes = match self {
                     $(Self::$method(settings) => settings.stage(job, stage, &given),)*
                 };

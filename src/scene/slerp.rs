@@ -7,9 +7,11 @@ use glam::{DMat3, DVec3};
 pub(crate) fn slerp(a: &DMat3, b: &DMat3, s: f64) -> DMat3 {
     let (p, mut q) = (quaternion(a), quaternion(b));
     let mut c = dot(p, q);
+    // q and -q are the same rotation; the closer one gives the shorter way.
     if c < 0.0 {
         (q, c) = (q.map(|part| -part), -c);
     }
+    // Between nearly equal rotations the division by k would lose the digits.
     let turned: [f64; 4] = if c >= 1.0 - 1.0 / 1_099_511_627_776.0 {
         std::array::from_fn(|i| p[i] + s * (q[i] - p[i]))
     } else {
@@ -70,7 +72,7 @@ mod tests {
         ) {
             let axis = DVec3::from_array(axis);
             prop_assume!(axis.length() > 0.1);
-            // About one axis a part of the way is a part of the angle.
+            // About one axis, a part of the way is a part of the angle.
             let [a, b] = [start, start + turn].map(|degrees| rotation(axis, degrees));
             let truth = rotation(axis, start + s * turn);
             let off = (slerp(&a, &b, s) - truth).to_cols_array();

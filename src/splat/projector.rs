@@ -4,7 +4,7 @@ use super::frustum::Frustum;
 use super::{Kernel, Outline, View};
 use crate::number::Real;
 
-/// All that the projection of a picture's surfels shares.
+/// All numbers that the projection of a picture's surfels shares.
 #[derive(Clone, Copy, Debug)]
 pub struct Projector<R> {
     /// The camera.
@@ -22,7 +22,7 @@ pub struct Projector<R> {
 }
 
 impl<R: Real> Projector<R> {
-    /// The shared numbers of a picture.
+    /// Computes the shared numbers of a picture.
     #[must_use]
     pub fn new(view: View<R>, kernel: &Kernel, cull: bool) -> Self {
         Self {

@@ -9,7 +9,7 @@
 mod epsilon;
 
 use super::client::{Band, Client, Storage, Ties};
-use super::{Judged, Verdict};
+use super::{StageVerdict, Verdict};
 use crate::error::Result;
 use crate::frame::Samples;
 use crate::method::{Method, Session};
@@ -80,7 +80,7 @@ impl Change {
 ///
 /// # Errors
 /// As [`Session::verify`].
-pub fn signature(
+pub fn likely_cause(
     session: &Session<'_>,
     camera: &Camera,
     client: &Client,
@@ -119,7 +119,7 @@ fn wrong_of(verdict: &Verdict, stage: &str) -> [u64; 2] {
 }
 
 /// What the wrong pixels of a stage plainly say.
-fn plain(wrong: &Judged) -> Option<String> {
+fn plain(wrong: &StageVerdict) -> Option<String> {
     let causes = &wrong.causes;
     let all = |count: u64| count == wrong.wrong;
     if all(causes.nan) {
@@ -134,7 +134,7 @@ fn plain(wrong: &Judged) -> Option<String> {
 }
 
 /// What the wrong pixels of a stage have in common, if no rule explains them.
-fn common(method: &Method, verdict: &Verdict, wrong: &Judged) -> Option<String> {
+fn common(method: &Method, verdict: &Verdict, wrong: &StageVerdict) -> Option<String> {
     let causes = &wrong.causes;
     let most = |count: u64| 20 * count >= 19 * wrong.wrong;
     let discarded = most(causes.outside + causes.absent) && 2 * causes.outside > wrong.wrong;

@@ -12,7 +12,7 @@ use crate::scene::Environment;
 use crate::shade::phong::Shader;
 use crate::splat::View;
 use crate::verdict::Fault;
-use crate::verdict::client::{Client, Storage, Stored};
+use crate::verdict::client::{Client, Storage, StoredPlane};
 use std::ops::Range;
 
 /// Told of a check: the place of its stage among those that are judged together, by how many bounds
@@ -70,13 +70,16 @@ fn read<P: Profile>(value: f64, storage: Storage) -> Option<Ball<P>> {
 }
 
 /// The number that the next stage reads at a pixel.
-pub(crate) fn input<P: Profile>(plane: &Stored<'_, f64>, at: (u32, u32)) -> Ball<P> {
+pub(crate) fn input<P: Profile>(plane: &StoredPlane<'_, f64>, at: (u32, u32)) -> Ball<P> {
     let value = *plane.plane.at(at.0, at.1);
     read(value, plane.storage).unwrap_or_else(|| plane.ball(at))
 }
 
 /// The three numbers that the next stage reads at a pixel.
-pub(crate) fn inputs<P: Profile>(plane: &Stored<'_, [f64; 3]>, at: (u32, u32)) -> [Ball<P>; 3] {
+pub(crate) fn inputs<P: Profile>(
+    plane: &StoredPlane<'_, [f64; 3]>,
+    at: (u32, u32),
+) -> [Ball<P>; 3] {
     let balls = plane.balls(at);
     let exact = |ball: Ball<P>| read(ball.middle, plane.storage).unwrap_or(ball);
     if plane.radii.is_some() { balls } else { balls.map(exact) }
@@ -85,7 +88,7 @@ pub(crate) fn inputs<P: Profile>(plane: &Stored<'_, [f64; 3]>, at: (u32, u32)) -
 /// One number against what it may be.
 pub(crate) fn number<P: Profile>(
     part: usize,
-    plane: &Stored<'_, f64>,
+    plane: &StoredPlane<'_, f64>,
     at: (u32, u32),
     truth: Ball<P>,
     report: &mut Report<'_>,
@@ -96,7 +99,7 @@ pub(crate) fn number<P: Profile>(
 /// Three numbers against what they may be; their letters are those of what the row holds.
 pub(crate) fn triple<P: Profile>(
     part: usize,
-    (plane, holds): (&Stored<'_, [f64; 3]>, Holds),
+    (plane, holds): (&StoredPlane<'_, [f64; 3]>, Holds),
     at: (u32, u32),
     truth: [Ball<P>; 3],
     report: &mut Report<'_>,
@@ -129,7 +132,7 @@ fn component_of<P: Profile>(
 /// An index or a count against what it must be.
 pub(crate) fn whole<T: Copy + Into<u32>>(
     part: usize,
-    plane: &Stored<'_, T>,
+    plane: &StoredPlane<'_, T>,
     at: (u32, u32),
     truth: T,
     report: &mut Report<'_>,

@@ -99,7 +99,7 @@ pub struct Client {
 
 /// A plane of a client.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stored<'a, T> {
+pub(crate) struct StoredPlane<'a, T> {
     /// The name of the row.
     pub(crate) name: &'static str,
     /// What stands for `#` in it.
@@ -110,14 +110,14 @@ pub(crate) struct Stored<'a, T> {
     pub(crate) radii: Option<&'a Plane<[f64; 3]>>,
 }
 
-impl<T> Stored<'_, T> {
+impl<T> StoredPlane<'_, T> {
     /// The name of the plane.
     pub(crate) fn channel(&self) -> String {
         numbered(self.name, self.number)
     }
 }
 
-impl Stored<'_, f64> {
+impl StoredPlane<'_, f64> {
     /// The number at a pixel, as far as it is known.
     #[inline(always)]
     pub(crate) fn ball<P: Profile>(&self, (x, y): (u32, u32)) -> Ball<P> {
@@ -126,7 +126,7 @@ impl Stored<'_, f64> {
     }
 }
 
-impl Stored<'_, [f64; 3]> {
+impl StoredPlane<'_, [f64; 3]> {
     /// The numbers at a pixel, as far as they are known.
     #[inline(always)]
     pub(crate) fn balls<P: Profile>(&self, (x, y): (u32, u32)) -> [Ball<P>; 3] {
@@ -245,12 +245,12 @@ impl Client {
     }
 
     /// One number a pixel, if the plane was handed in.
-    pub(crate) fn scalar(&self, row: &PlaneRow) -> Option<Stored<'_, f64>> {
+    pub(crate) fn scalar(&self, row: &PlaneRow) -> Option<StoredPlane<'_, f64>> {
         self.scalar_of(row, 0)
     }
 
     /// The same of a row that has numbers.
-    pub(crate) fn scalar_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, f64>> {
+    pub(crate) fn scalar_of(&self, row: &PlaneRow, number: usize) -> Option<StoredPlane<'_, f64>> {
         match self.samples(row, number)? {
             Samples::Scalar(plane) => Some(self.of(row, number, plane)),
             _ => None,
@@ -258,12 +258,16 @@ impl Client {
     }
 
     /// Colours or vectors, if the plane was handed in.
-    pub(crate) fn triple(&self, row: &PlaneRow) -> Option<Stored<'_, [f64; 3]>> {
+    pub(crate) fn triple(&self, row: &PlaneRow) -> Option<StoredPlane<'_, [f64; 3]>> {
         self.triple_of(row, 0)
     }
 
     /// The same of a row that has numbers.
-    pub(crate) fn triple_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, [f64; 3]>> {
+    pub(crate) fn triple_of(
+        &self,
+        row: &PlaneRow,
+        number: usize,
+    ) -> Option<StoredPlane<'_, [f64; 3]>> {
         match self.samples(row, number)? {
             Samples::Color(plane) | Samples::Vector(plane) => Some(self.of(row, number, plane)),
             _ => None,
@@ -271,12 +275,12 @@ impl Client {
     }
 
     /// Indices, if the plane was handed in.
-    pub(crate) fn index(&self, row: &PlaneRow) -> Option<Stored<'_, u32>> {
+    pub(crate) fn index(&self, row: &PlaneRow) -> Option<StoredPlane<'_, u32>> {
         self.index_of(row, 0)
     }
 
     /// The same of a row that has numbers.
-    pub(crate) fn index_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, u32>> {
+    pub(crate) fn index_of(&self, row: &PlaneRow, number: usize) -> Option<StoredPlane<'_, u32>> {
         match self.samples(row, number)? {
             Samples::Index(plane) => Some(self.of(row, number, plane)),
             _ => None,
@@ -284,12 +288,12 @@ impl Client {
     }
 
     /// Small counts, if the plane was handed in.
-    pub(crate) fn count(&self, row: &PlaneRow) -> Option<Stored<'_, u8>> {
+    pub(crate) fn count(&self, row: &PlaneRow) -> Option<StoredPlane<'_, u8>> {
         self.count_of(row, 0)
     }
 
     /// The same of a row that has numbers.
-    pub(crate) fn count_of(&self, row: &PlaneRow, number: usize) -> Option<Stored<'_, u8>> {
+    pub(crate) fn count_of(&self, row: &PlaneRow, number: usize) -> Option<StoredPlane<'_, u8>> {
         match self.samples(row, number)? {
             Samples::Count(plane) => Some(self.of(row, number, plane)),
             _ => None,
@@ -300,11 +304,16 @@ impl Client {
         self.frame.plane(&row.numbered(number))
     }
 
-    fn of<'a, T>(&'a self, row: &PlaneRow, number: usize, plane: &'a Plane<T>) -> Stored<'a, T> {
+    fn of<'a, T>(
+        &'a self,
+        row: &PlaneRow,
+        number: usize,
+        plane: &'a Plane<T>,
+    ) -> StoredPlane<'a, T> {
         let channel = row.numbered(number);
         let own = self.storage.get(&channel).or_else(|| self.storage.get(row.name));
         let storage = own.copied().unwrap_or_default();
-        Stored { name: row.name, number, plane, storage, radii: self.radii(&channel) }
+        StoredPlane { name: row.name, number, plane, storage, radii: self.radii(&channel) }
     }
 }
 

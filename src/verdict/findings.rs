@@ -152,7 +152,7 @@ impl Causes {
 
 /// What was found of one stage.
 #[derive(Clone, Debug)]
-pub struct Judged {
+pub struct StageVerdict {
     /// The stage.
     pub stage: &'static str,
     /// The planes of the client that were judged; empty if there are none.
@@ -172,7 +172,7 @@ pub struct Judged {
     pub worst: Option<Finding>,
 }
 
-impl Judged {
+impl StageVerdict {
     /// How many pixels have one of these doubts.
     #[must_use]
     pub fn doubtful(&self, doubts: u8) -> u64 {
@@ -195,7 +195,7 @@ pub enum Outcome {
 #[derive(Clone, Debug)]
 pub struct Verdict {
     /// Stage by stage, in their order.
-    pub stages: Vec<Judged>,
+    pub stages: Vec<StageVerdict>,
     /// How many pixels of the picture may be covered.
     pub covered: u64,
     /// In how many of them the sums are undecided.
@@ -216,7 +216,7 @@ impl Verdict {
 
     /// Of what was found stage by stage, and of pixels that may be covered and that are undecided.
     pub(crate) fn new(
-        stages: Vec<Judged>,
+        stages: Vec<StageVerdict>,
         [covered, undecided]: [u64; 2],
         budget: f64,
         shifts: Shifts,
@@ -226,7 +226,7 @@ impl Verdict {
     }
 
     /// The same with a stage before the others.
-    pub(crate) fn after(mut self, first: Judged) -> Self {
+    pub(crate) fn after(mut self, first: StageVerdict) -> Self {
         self.stages.insert(0, first);
         Self { unbounded: unbounded(&self.stages), ..self }
     }
@@ -268,13 +268,13 @@ impl Verdict {
 
     /// The first stage with a wrong pixel.
     #[must_use]
-    pub fn first_wrong(&self) -> Option<&Judged> {
+    pub fn first_wrong(&self) -> Option<&StageVerdict> {
         self.stages.iter().find(|stage| stage.wrong > 0)
     }
 }
 
 /// How many pixels have a number in some stage of which no bound can be given.
-fn unbounded(stages: &[Judged]) -> u64 {
+fn unbounded(stages: &[StageVerdict]) -> u64 {
     let pixels = stages.iter().map(|stage| stage.doubts.values().len()).max();
     let at = |pixel: &usize| {
         let mut doubts = stages.iter().filter_map(|stage| stage.doubts.values().get(*pixel));
@@ -287,8 +287,8 @@ fn unbounded(stages: &[Judged]) -> u64 {
 mod tests {
     use super::*;
 
-    fn stage(doubts: [u8; 3]) -> Judged {
-        Judged {
+    fn stage(doubts: [u8; 3]) -> StageVerdict {
+        StageVerdict {
             stage: "stage",
             planes: vec!["plane"],
             missing: Vec::new(),

@@ -3,11 +3,11 @@
 use crate::error::Result;
 use crate::frame::{Grid, Plane, Rect};
 use crate::method::Job;
-use crate::method::replay::Place;
+use crate::method::decisions::Place;
 use crate::method::tiled::pixels;
 use crate::number::Real;
-use crate::verdict::shift::Told;
-use crate::verdict::{Cause, Causes, Check, Doubt, Fault, Finding, Judged, Verdict};
+use crate::verdict::shift::ShiftSums;
+use crate::verdict::{Cause, Causes, Check, Doubt, Fault, Finding, StageVerdict, Verdict};
 
 /// What was found at a pixel: of wrong ones no more than is counted, as every pixel may be wrong.
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,7 +67,7 @@ impl Marks {
     }
 
     /// The marks of a whole picture as what was found of a stage.
-    pub(crate) fn whole(self, stage: &'static str, planes: Vec<&'static str>) -> Judged {
+    pub(crate) fn whole(self, stage: &'static str, planes: Vec<&'static str>) -> StageVerdict {
         whole(self.rect, (stage, planes), [self])
     }
 
@@ -165,11 +165,11 @@ impl PixelMarks<'_> {
 
 /// The marks of all tiles as what was found of each of `stages`: their names, and the planes that were
 /// judged.
-pub(crate) fn judged<const N: usize>(
+pub(crate) fn stage_verdicts<const N: usize>(
     job: &Job<'_>,
     stages: [(&'static str, Vec<&'static str>); N],
     tiles: Vec<[Marks; N]>,
-) -> Vec<Judged> {
+) -> Vec<StageVerdict> {
     let mut of_stages = [(); N].map(|()| Vec::new());
     for tile in tiles {
         of_stages.iter_mut().zip(tile).for_each(|(parts, marks)| parts.push(marks));
@@ -183,9 +183,9 @@ fn whole(
     picture: Rect,
     (stage, planes): (&'static str, Vec<&'static str>),
     parts: impl IntoIterator<Item = Marks>,
-) -> Judged {
+) -> StageVerdict {
     let Rect { x1: width, y1: height, .. } = picture;
-    let mut judged = Judged {
+    let mut judged = StageVerdict {
         stage,
         planes,
         missing: Vec::new(),
@@ -279,18 +279,18 @@ pub(crate) type StageMarks = (&'static str, Vec<&'static str>, Marks);
 
 /// What was found of a method that has levels before its picture, whose last N stages are judged tile by
 /// tile.
-pub(crate) struct Found<const N: usize> {
+pub(crate) struct MethodMarks<const N: usize> {
     pub(crate) levels: Vec<StageMarks>,
     pub(crate) stages: [(&'static str, Vec<&'static str>); N],
     pub(crate) tiles: Vec<[Marks; N]>,
 }
 
-impl<const N: usize> Found<N> {
+impl<const N: usize> MethodMarks<N> {
     /// All stages as planes.
-    pub(crate) fn judged(self, job: &Job<'_>) -> Vec<Judged> {
+    pub(crate) fn stage_verdicts(self, job: &Job<'_>) -> Vec<StageVerdict> {
         let levels = self.levels.into_iter();
         let levels = levels.map(|(stage, planes, marks)| marks.whole(stage, planes));
-        levels.chain(judged(job, self.stages, self.tiles)).collect()
+        levels.chain(stage_verdicts(job, self.stages, self.tiles)).collect()
     }
 
     /// Everything that was checked.
@@ -310,7 +310,7 @@ pub(crate) struct Counts {
     /// In how many of them the sums are undecided.
     pub(crate) undecided: u64,
     /// The undecided decisions whose outcome is known.
-    pub(crate) told: Told,
+    pub(crate) shifts: ShiftSums,
 }
 
 impl Counts {
@@ -318,7 +318,7 @@ impl Counts {
     pub(crate) fn add(&mut self, tile: Self) {
         self.covered += tile.covered;
         self.undecided += tile.undecided;
-        self.told.add(tile.told);
+        self.shifts.add(tile.shifts);
     }
 }
 
@@ -342,9 +342,9 @@ pub(crate) fn verdict<const N: usize>(
         all.add(counts);
         tiles.push(marks);
     }
-    let Counts { covered, undecided, told } = all;
-    let stages = judged(job, stages, tiles);
-    Verdict::new(stages, [covered, undecided], budget, told.shifts())
+    let Counts { covered, undecided, shifts } = all;
+    let stages = stage_verdicts(job, stages, tiles);
+    Verdict::new(stages, [covered, undecided], budget, shifts.sums())
 }
 
 /// Everything that `judge` asks at one pixel.

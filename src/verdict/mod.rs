@@ -41,4 +41,4 @@ pub mod transparent_hq;
 
 pub use fault::{Check, Fault};
 pub(crate) use findings::Cause;
-pub use findings::{Causes, Doubt, Finding, Judged, Outcome, Verdict};
+pub use findings::{Causes, Doubt, Finding, Outcome, StageVerdict, Verdict};

@@ -87,7 +87,7 @@ pub type Shifts = [Shift; LIMITS.len()];
 
 /// An undecided decision.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Open {
+pub(crate) struct OpenDecision {
     pub(crate) surfel: u32,
     /// Which of [`LIMITS`]; none if another decision on the fragment is undecided too.
     pub(crate) limit: Option<usize>,
@@ -99,14 +99,14 @@ pub(crate) struct Open {
 
 /// The decisions of a part of a picture that the client's numbers tell: those of each surfel together.
 #[derive(Debug, Default)]
-pub(crate) struct Told {
+pub(crate) struct ShiftSums {
     surfels: [BTreeMap<u32, f64>; LIMITS.len()],
     shifts: Shifts,
 }
 
-impl Told {
+impl ShiftSums {
     /// One more decision, and how the client took it.
-    pub(crate) fn take(&mut self, open: &Open, passed: bool) {
+    pub(crate) fn take(&mut self, open: &OpenDecision, passed: bool) {
         let Some(limit) = open.limit else { return };
         let slope = NORMAL / (DEVIATION * open.radius);
         let likely = 1.0 / (1.0 + libm::exp(-slope * open.distance));
@@ -123,7 +123,7 @@ impl Told {
     }
 
     /// The decisions of a pixel: decision i was passed if bit i of `taken` is set.
-    pub(crate) fn take_all(&mut self, open: &[Open], taken: usize) {
+    pub(crate) fn take_all(&mut self, open: &[OpenDecision], taken: usize) {
         for (bit, open) in open.iter().enumerate() {
             self.take(open, taken >> bit & 1 == 1);
         }
@@ -140,7 +140,7 @@ impl Told {
     }
 
     /// What all of them say.
-    pub(crate) fn shifts(self) -> Shifts {
+    pub(crate) fn sums(self) -> Shifts {
         let mut shifts = self.shifts;
         for (shift, surfels) in shifts.iter_mut().zip(self.surfels) {
             shift.variance = surfels.into_values().map(|score| score * score).sum();
@@ -161,17 +161,17 @@ mod tests {
             index += 1;
             low + (high - low) * f64::from(random::unit(seed, index))
         };
-        let mut told = Told::default();
+        let mut told = ShiftSums::default();
         for surfel in 0..400 {
             let radius = 1e-6 * between(0.5, 2.0);
             for _ in 0..3 {
                 let distance = radius * between(-1.0, 1.0);
                 let sum: f64 = (0..12).map(|_| between(-0.5, 0.5)).sum();
-                let open = Open { surfel, limit: Some(0), distance, radius };
+                let open = OpenDecision { surfel, limit: Some(0), distance, radius };
                 told.take(&open, distance + radius * (DEVIATION * sum + off) >= 0.0);
             }
         }
-        told.shifts()[0]
+        told.sums()[0]
     }
 
     #[test]

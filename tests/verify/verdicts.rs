@@ -6,7 +6,7 @@ use splatref::frame::Exec;
 use splatref::method::{Method, Session};
 use splatref::splat::Epsilon;
 use splatref::verdict::Verdict;
-use splatref::verdict::causes::signature;
+use splatref::verdict::causes::likely_cause;
 use splatref::verdict::client::{Client, Rounding, Ties};
 
 /// What is said of a client's picture of a case, however much of it is undecided.
@@ -156,7 +156,7 @@ fn named((scene, camera, settings): &Case, bug: Bug) -> Option<Option<String>> {
     client.rounding = Rounding::Ieee;
     let verdict = session.verify(camera, &client, 1.0).unwrap();
     verdict.first_wrong()?;
-    Some(signature(&session, camera, &client, &verdict).unwrap())
+    Some(likely_cause(&session, camera, &client, &verdict).unwrap())
 }
 
 #[test]

@@ -12,7 +12,7 @@ use splatref::io::scene_file::{FileKind, OutputSettings, SceneFile};
 use splatref::method::Session;
 use splatref::scene::Camera;
 use splatref::setting::Word;
-use splatref::verdict::causes::signature;
+use splatref::verdict::causes::likely_cause;
 use splatref::verdict::client::{Client, Rounding};
 use splatref::verdict::{Outcome, Verdict};
 use splatref::{Error, Result};
@@ -76,7 +76,7 @@ fn judge(args: &Args) -> Ended {
         progress::during("reading", || read((&described, args.promise), &session, camera, &exec))?;
     let (verdict, likely) = progress::during("judging", || -> Result<_> {
         let verdict = session.verify(camera, &client, args.budget)?;
-        let likely = signature(&session, camera, &client, &verdict)?;
+        let likely = likely_cause(&session, camera, &client, &verdict)?;
         Ok((verdict, likely))
     })?;
     let seen = report::Seen::new(&session, camera, (&verdict, likely))?;

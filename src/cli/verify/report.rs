@@ -8,7 +8,7 @@ use splatref::method::Session;
 use splatref::scene::Camera;
 use splatref::verdict::client::{Client, Rounding};
 use splatref::verdict::shift::{LIMITS, Shift};
-use splatref::verdict::{Doubt, Fault, Finding, Judged, Outcome, Verdict};
+use splatref::verdict::{Doubt, Fault, Finding, Outcome, StageVerdict, Verdict};
 
 /// A verdict, and what was looked up for its report.
 pub(super) struct Seen<'a> {
@@ -141,7 +141,7 @@ fn planes(client: &Client, method: &str) -> String {
 }
 
 /// A stage in words.
-fn judged(stage: &Judged) -> String {
+fn judged(stage: &StageVerdict) -> String {
     if stage.planes.is_empty() {
         return "not judged: none of its planes is there".into();
     }
@@ -188,8 +188,8 @@ pub(in crate::cli) fn leaning(limit: Doubt, shift: &Shift) -> String {
 
 /// What else could be handed in, so that more is judged.
 fn next(verdict: &Verdict) -> Option<String> {
-    let lacks = |stage: &&Judged| stage.planes.is_empty() || !stage.missing.is_empty();
-    let Judged { stage, missing, .. } = verdict.stages.iter().find(lacks)?;
+    let lacks = |stage: &&StageVerdict| stage.planes.is_empty() || !stage.missing.is_empty();
+    let StageVerdict { stage, missing, .. } = verdict.stages.iter().find(lacks)?;
     Some(match missing.as_slice() {
         [] => format!("hand in the planes of the stage {stage}: render --stages shows which"),
         [first, ..] => {
@@ -261,7 +261,7 @@ struct JsonFinding {
 }
 
 impl<'a> JsonStage<'a> {
-    fn new(stage: &'a Judged) -> Self {
+    fn new(stage: &'a StageVerdict) -> Self {
         let undecided = Doubt::ALL.map(|doubt| (doubt.name(), stage.doubtful(doubt as u8)));
         Self {
             stage: stage.stage,

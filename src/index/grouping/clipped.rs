@@ -10,7 +10,7 @@ use crate::frame::Exec;
 use crate::number::lanes::vectorized;
 use std::ops::Range;
 
-/// For each place, the samples that surfels of a lower index cover, all radii times `scale`.
+/// For each place, the samples that surfels of a lower index cover, with all radii times `scale`.
 pub(super) fn by_lower(
     tree: &DiscTree,
     scale: f64,
@@ -54,15 +54,15 @@ vectorized!(
     }
 );
 
-/// The covered area of eq. 7 for all radii times `scale`, divided by pi scale^2, and the sum of the
-/// squared radii: sums in ascending index.
+/// The covered area of eq. 7 with all radii times `scale`, divided by pi scale^2, and the sum of
+/// the squared radii: sums in ascending index.
 pub(super) fn area(tree: &DiscTree, covered: &Parts<Vec<u64>>) -> (f64, f64) {
     let [area] = areas(tree, |place| [covered.at(place).count_zeros() as u8]);
     (area, tree.square.iter().fold(0.0, |sum, square| sum + square))
 }
 
-/// The area of each of some sets, divided by pi, in ascending index; `open` tells how many samples of a place
-/// are not covered in each of them.
+/// The area of each of several sets, divided by pi, summed in ascending index. `open` tells how
+/// many samples of a place each set leaves uncovered.
 pub(super) fn areas<const SETS: usize>(
     tree: &DiscTree,
     open: impl Fn(usize) -> [u8; SETS],
@@ -76,7 +76,7 @@ pub(super) fn areas<const SETS: usize>(
     areas
 }
 
-/// [`areas`] of each of `count` groups, of which each rank is in one.
+/// [`areas`] for each of `count` groups; each rank is in one group.
 pub(super) fn areas_of_groups(
     tree: &DiscTree,
     count: usize,
@@ -90,12 +90,12 @@ pub(super) fn areas_of_groups(
     areas
 }
 
-/// What is open of a disc, divided by pi.
+/// The uncovered area of a disc, divided by pi.
 fn open_area(square: f64, open: u8) -> f64 {
     square * (f64::from(open) / SAMPLES as f64)
 }
 
-/// What there is of each place, by rank.
+/// Reorders a value of each place by rank.
 fn by_rank<T: Copy>(tree: &DiscTree, none: T, of: impl Fn(usize) -> T) -> Vec<T> {
     let mut all = vec![none; tree.rank.len()];
     for (place, &rank) in tree.rank.iter().enumerate() {

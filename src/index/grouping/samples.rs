@@ -8,14 +8,14 @@ use glam::DVec3;
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
-/// How many points of a disc are asked whether they are covered.
+/// How many points of a disc are tested for being covered.
 pub(super) const SAMPLES: usize = 64;
 
 /// The golden angle, pi (3 - sqrt(5)), in radians.
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
 /// The samples of the unit disc: x, y and x^2 + y^2 of each; and the cosines and sines of the
-/// angles that they are turned by.
+/// angles by which the samples are turned.
 struct Pattern {
     x: [f64; SAMPLES],
     y: [f64; SAMPLES],
@@ -41,7 +41,7 @@ pub(super) struct DiscSamples {
 }
 
 impl DiscSamples {
-    /// Of the disc of a surfel.
+    /// The samples of a surfel's disc.
     #[inline(always)]
     pub(super) fn new(disc: SpaceDisc, surfel: u32) -> Self {
         let (u, v) = axes(disc.normal.as_dvec3());
@@ -50,7 +50,7 @@ impl DiscSamples {
         Self { pattern, disc, u: c * u + s * v, v: c * v - s * u }
     }
 
-    /// Bit m is set if sample m is covered by a disc, see the [module](super).
+    /// Bit m is set if a disc covers sample m, see the [module](super).
     #[inline(always)]
     pub(super) fn covered_by(&self, other: &SpaceDisc) -> u64 {
         if self.disc.cosine(other) < 0.0 {
@@ -69,7 +69,7 @@ impl DiscSamples {
     }
 }
 
-/// Two perpendicular axes of the plane across a unit normal; no length has to be divided by.
+/// Two perpendicular axes of the plane across a unit normal, without dividing by a length.
 ///
 /// Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017.
 #[inline(always)]
@@ -83,7 +83,7 @@ fn axes(n: DVec3) -> (DVec3, DVec3) {
 }
 
 vectorized!(
-    /// [`DiscSamples::covered_by`], for those who are not compiled for vectors.
+    /// [`DiscSamples::covered_by`] for callers that are not compiled for vectors.
     pub(super) fn covered_by(samples: &DiscSamples, other: &SpaceDisc) -> u64 {
         samples.covered_by(other)
     }

@@ -1,4 +1,4 @@
-//! The files of planes, each read once.
+//! Read the files of planes, each once.
 
 use super::format::Format;
 use super::numbers::{Numbers, ask};
@@ -14,7 +14,7 @@ use crate::method::Holds;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What a file is, by its extension.
+/// The kind of a file, by its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Exr,
@@ -39,11 +39,11 @@ impl Kind {
 #[derive(Debug)]
 pub(super) struct Picture {
     pub(super) image: Image,
-    /// How it stores the channels, by name.
+    /// The stored format of each channel, by name.
     formats: BTreeMap<String, Format>,
 }
 
-/// The files that were read.
+/// The pictures that were read so far.
 #[derive(Debug)]
 pub(super) struct Files<'e> {
     exec: &'e Exec,
@@ -55,7 +55,7 @@ impl<'e> Files<'e> {
         Self { exec, pictures: BTreeMap::new() }
     }
 
-    /// The picture at `path`, an EXR or a PNG.
+    /// The picture at `path`, an EXR or a PNG; read on the first call.
     pub(super) fn picture(&mut self, path: &Path, kind: Kind) -> Result<&Picture> {
         if !self.pictures.contains_key(path) {
             let picture = if kind == Kind::Png { png(path)? } else { self.exr(path)? };
@@ -78,7 +78,7 @@ impl<'e> Files<'e> {
         Ok(Picture { image: exr::read_with(path, self.exec)?, formats })
     }
 
-    /// The numbers of a plane; those of a raw file have this size.
+    /// The numbers of a plane; `size` is for a raw file.
     pub(super) fn numbers(
         &mut self,
         wanted: &Wanted,
@@ -99,6 +99,7 @@ impl<'e> Files<'e> {
                 raw::read(path, key, keys, format, components, size)
             }
             Kind::Npy => {
+                // The name does not matter: only the number of components does.
                 let image = npy::read(path, "v")?;
                 let names: Vec<String> =
                     image.channels.iter().map(|(name, _)| name.clone()).collect();
@@ -116,6 +117,7 @@ impl<'e> Files<'e> {
                 let picture = self.picture(path, kind)?;
                 let names = picture.names(wanted, keys, kind).map_err(refused)?;
                 let mut numbers = picture.numbers(&names).map_err(refused)?;
+                // A PNG has stored whole numbers as codes of colours.
                 if matches!(row.holds, Holds::Index | Holds::Count) {
                     numbers.as_codes();
                 }
@@ -126,7 +128,7 @@ impl<'e> Files<'e> {
 }
 
 impl Picture {
-    /// The channels of a plane.
+    /// The names of a plane's channels in this file.
     fn names(&self, wanted: &Wanted, keys: &PlaneKeys, kind: Kind) -> Reason<Vec<String>> {
         let components = wanted.channels().len();
         if let Some(names) = &keys.channel {
@@ -144,7 +146,7 @@ impl Picture {
         if kind == Kind::Exr || names.iter().all(has) {
             return Ok(names);
         }
-        // A PNG has no names but those of its colours, which it may have for anything.
+        // A PNG has only the names of its colours, whatever its numbers mean.
         let colors = ["R", "G", "B"].map(str::to_owned);
         let [red, green, blue] = colors.each_ref().map(|name| self.image.channel(name));
         match components {
@@ -176,7 +178,7 @@ impl Picture {
                 return Err(format!("the channel `{name}` is {}, another is not", format.word()));
             }
             components.push(match values {
-                // Of a PNG: its codes, which `f32` had rounded.
+                // A PNG's codes, before they were rounded to `f32`.
                 Values::Float(values) if format.is_unorm() => {
                     values.iter().map(|&v| format.nearest(v.into())).collect()
                 }

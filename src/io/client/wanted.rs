@@ -3,17 +3,17 @@
 use super::parse::{DepthKeys, Encoding, PlaneKeys};
 use crate::method::{Holds, PlaneRow};
 
-/// A plane that is looked for.
+/// A plane to look for.
 #[derive(Clone, Debug)]
 pub(super) struct Wanted {
-    /// What the TOML file calls it, as it is written there.
+    /// The key of the plane, as the TOML file spells it.
     pub(super) key: String,
     /// The name of the plane.
     pub(super) name: String,
     pub(super) row: &'static PlaneRow,
-    /// What is said of it, and of all depths.
+    /// The keys of the plane, completed by the keys for all depths.
     pub(super) keys: PlaneKeys,
-    /// What is said of it alone.
+    /// The depth keys of this plane alone.
     pub(super) own_depth: DepthKeys,
 }
 
@@ -31,17 +31,17 @@ impl Wanted {
         Self { key, name: name.into(), row, keys, own_depth }
     }
 
-    /// Whether it holds depths t.
+    /// Whether the plane holds depths t.
     pub(super) fn is_depth(&self) -> bool {
         self.row.holds == Holds::Scalar && (self.name == "Z" || self.name.ends_with(".Z"))
     }
 
-    /// Whether it holds unit vectors in two numbers a pixel.
+    /// Whether the plane holds unit vectors in two numbers a pixel.
     pub(super) fn is_octahedral(&self) -> bool {
         self.keys.encoding == Some(Encoding::Octahedral)
     }
 
-    /// The names that the crate has for its channels; of two numbers those of the first two.
+    /// The crate's names for the channels; the first two for vectors in two numbers.
     pub(super) fn channels(&self) -> Vec<String> {
         let mut channels = self.row.holds.channels(&self.name);
         channels.truncate(if self.is_octahedral() { 2 } else { 3 });

@@ -1,4 +1,4 @@
-//! Makes the folder of a hierarchy, or goes on with one, see the [module](super).
+//! Make the folder of a hierarchy, or resume an unfinished one, see the [module](super).
 
 use super::bytes::Hash;
 use super::gather::{below, gather};
@@ -16,16 +16,16 @@ use glam::Vec3;
 use std::io::Write;
 use std::path::Path;
 
-/// What became of a scene.
+/// A summary of what was built.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Built {
     /// Name, triangles and flaws of each geometry.
     pub geometries: Vec<(String, u64, Flaws)>,
-    /// Nodes with enough triangles to be approximated.
+    /// Nodes that have enough triangles to be approximated.
     pub nodes: u32,
-    /// Of these, those that were there already.
+    /// How many of these were already in the folder.
     pub found: u32,
-    /// Of these, those of which no pixel sees anything.
+    /// How many of these no pixel sees.
     pub unseen: u32,
 }
 
@@ -48,30 +48,30 @@ pub(in crate::io) fn build(
     progress: Progress<'_>,
 ) -> Result<Built> {
     let mut work = Work::begin(scene, folder, settings, exec, progress)?;
-    // What is below comes first.
+    // Children have larger numbers, so this order makes them first.
     for node in (0..work.wanted.len() as u32).rev() {
         work.make(node)?;
     }
     work.finish()
 }
 
-/// A hierarchy in the making: the index grows.
+/// A hierarchy in the making. The index grows as nodes are made.
 pub(super) struct Work<'a> {
     hierarchy: Hierarchy,
     settings: &'a Settings,
     exec: &'a Exec,
     progress: Progress<'a>,
-    /// How many surfels each node is to have.
+    /// How many surfels to make for each node.
     pub(super) wanted: Vec<u32>,
     made: Vec<bool>,
-    /// Of the nodes that are made, as they were wanted; and of all.
+    /// Surfels wanted by the nodes that are made, and by all nodes.
     surfels: u64,
     total: u64,
     built: Built,
 }
 
 impl<'a> Work<'a> {
-    /// Writes the geometries; nothing is approximated yet.
+    /// Writes the geometries; no node is approximated yet.
     pub(super) fn begin(
         scene: Geometries<'_>,
         folder: &Path,
@@ -112,7 +112,8 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// Makes the surfels of a node, unless they are there; bottom-up those of what is below it first.
+    /// Makes the surfels of a node, unless they are in the folder; bottom-up, makes the nodes below
+    /// first.
     pub(super) fn make(&mut self, node: u32) -> Result<()> {
         let at = node as usize;
         let count = self.wanted[at];
@@ -133,6 +134,7 @@ impl<'a> Work<'a> {
             let Settings { traversal, .. } = *self.settings;
             let drawn = |side| gather(&self.hierarchy, node, side, traversal);
             let (before, total) = (self.surfels, self.total);
+            // Only the sampler counts surfels; other steps have other totals.
             let picks = |_: &str, done, of| {
                 if of == u64::from(count) {
                     (self.progress)("surfels", before + done, total);
@@ -140,6 +142,7 @@ impl<'a> Work<'a> {
             };
             let cloud = approximate(&drawn, count, self.settings, self.exec, &picks)?;
             surfels::write(folder, &hash, node, &cloud)?;
+            // Read it back, because the estimate comes from the normals as stored.
             header = surfels::header(folder, &hash, node, further)?;
         }
         let Some(header) = header else {
@@ -155,7 +158,7 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// The nearest nodes below that are approximated.
+    /// Makes the nearest approximated nodes below.
     fn make_below(&mut self, node: u32) -> Result<()> {
         for child in below(&self.hierarchy, node) {
             if self.wanted[child as usize] > 0 {
@@ -176,7 +179,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// An error that says of which geometry it is.
+/// Adds the name of the geometry to an error.
 fn named(name: &str, error: Error) -> Error {
     match error {
         Error::Invalid(what) if !what.starts_with(name) => {
@@ -186,7 +189,7 @@ fn named(name: &str, error: Error) -> Error {
     }
 }
 
-/// The header of a geometry, which is written if it is not there.
+/// The header of a geometry's file; writes the file if it is missing.
 fn geometry(
     folder: &Path,
     number: u32,
@@ -194,6 +197,7 @@ fn geometry(
 ) -> Result<mesh::Header> {
     let (triangles, dropped) = read()?;
     let hash = mesh::hash(&triangles);
+    // A damaged file is treated as missing, and written again.
     if let Ok(Some(header)) = mesh::read(folder, number) {
         if header.hash != hash {
             return Err(refused(folder, "another geometry"));
@@ -201,6 +205,7 @@ fn geometry(
         return Ok(header);
     }
     mesh::write(folder, number, &hash, &triangles, dropped)?;
+    // Another process may have replaced the file meanwhile.
     match mesh::read(folder, number)? {
         Some(header) if header.hash == hash => Ok(header),
         _ => Err(refused(folder, "another geometry")),

@@ -2,19 +2,19 @@
 
 use crate::scene::Vertices;
 
-/// Bytes of place and normal of a vertex, of its colour, and of any other number.
+/// Bytes in the file: a vertex's position and normal, its colour, any other number.
 const VERTEX: u64 = 24;
 const COLOR: u64 = 12;
 const NUMBER: u64 = 4;
 
-/// What the vertices of a geometry have beside places and normals.
+/// Which attributes vertices of a geometry have beside positions and normals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Kind {
     /// Colours.
     pub colored: bool,
     /// Opacities.
     pub veiled: bool,
-    /// So many further properties.
+    /// Number of further properties.
     pub properties: u32,
 }
 

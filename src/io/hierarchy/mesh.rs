@@ -18,21 +18,21 @@ use std::path::{Path, PathBuf};
 const MAGIC: &[u8; 16] = b"splatref mesh 1\n";
 const HEADER: u64 = 88;
 const OF_A_NODE: u64 = 56;
-/// Bytes of a triangle.
+/// Bytes in the file: a triangle.
 const TRIANGLE: u64 = 12;
-/// Bytes of the largest of both in memory, beside those of the file.
+/// How many times the bytes of the file a loaded block may take in memory.
 const IN_MEMORY: u64 = 2;
 
-/// What a file says of its geometry, but for its triangles.
+/// The contents of a geometry's file, without its triangles.
 pub(super) struct Header {
     pub(super) hash: Hash,
     pub(super) kind: Kind,
     pub(super) flaws: Flaws,
-    /// By their numbers in the geometry; without surfels.
+    /// Nodes by their numbers in the geometry; without surfels.
     pub(super) nodes: Vec<Node>,
 }
 
-/// Where a geometry is.
+/// The path of a geometry's file.
 pub(super) fn path(folder: &Path, geometry: u32) -> PathBuf {
     folder.join(format!("mesh-{geometry}"))
 }
@@ -75,7 +75,7 @@ pub(super) fn hash(triangles: &Triangles) -> Hash {
     hash.finalize().into()
 }
 
-/// Makes the tree of a geometry and writes both.
+/// Makes the tree of a geometry, and writes tree and triangles.
 pub(super) fn write(
     folder: &Path,
     geometry: u32,
@@ -129,7 +129,8 @@ fn size(node: &Node, kind: Kind) -> u64 {
     vertices.saturating_add(u64::from(node.triangles) * TRIANGLE)
 }
 
-/// The header of the file of a geometry, if there is a file; its nodes have the number of the geometry.
+/// Reads the header of a geometry's file, if there is a file; its nodes get the number of the
+/// geometry.
 pub(super) fn read(folder: &Path, geometry: u32) -> Result<Option<Header>> {
     let path = path(folder, geometry);
     if !path.exists() {
@@ -198,7 +199,7 @@ fn records_of(
     Ok(all)
 }
 
-/// The triangles of a node, as the index says.
+/// Reads the triangles of a node, from where the index says they are.
 pub(super) fn part(
     folder: &Path,
     hash: &Hash,
@@ -222,6 +223,7 @@ pub(super) fn part(
     file.read_exact(&mut start).map_err(io)?;
     let format = |what: String| Error::format(&path, what);
     let (header, _) = beginning(&mut Reader(&start)).map_err(format)?;
+    // The hash says whether the offsets of the index belong to this file.
     if header.hash != *hash || header.kind != kind {
         return Err(format("the geometry is not that of the index".into()));
     }

@@ -1,4 +1,4 @@
-//! The element `vertex`.
+//! Read the element `vertex`.
 
 use super::groups;
 use super::header::Element;
@@ -23,6 +23,7 @@ pub(super) fn read(
 ) -> Result<(), String> {
     let layout = Layout::new(element, groups)?;
     layout.arrays(cloud)?;
+    // Rows of one length are decoded in parallel, and cannot fail.
     if let Some(rows) = Rows::new(element, &layout, values.format()) {
         let bytes = values.rows(element, rows.stride())?;
         rows.append(bytes, cloud, exec);

@@ -11,15 +11,18 @@ use crate::source::hierarchy::Settings;
 use std::path::Path;
 
 impl SceneFile {
-    /// Makes the hierarchy of the scene in a folder, whose parent is there; or goes on with what is there. Models are taken as their triangles,
-    /// in the order of [`SceneFile::models`] and [`SceneFile::geometries`].
+    /// Makes the hierarchy of the scene in a folder, or resumes an unfinished one. The parent of the
+    /// folder must exist. Models are taken as their triangles, in the order of [`SceneFile::models`]
+    /// and [`SceneFile::geometries`].
     ///
-    /// `progress` is told the name of a step, how much of it is done, and of how much: of "surfels" how many.
+    /// `progress` gets the name of a step, how much of it is done, and the total; for "surfels" both
+    /// are numbers of surfels.
     ///
     /// # Errors
-    /// Those of [`SceneFile::load_polygons`]; [`Error::Usage`] if no surfel or no
-    /// picture is asked for; [`Error::Format`] if the folder is of something else; [`Error::Io`] if it cannot be written
-    /// to; as [`crate::source::candidates::candidates`], and if the process may not hold what one node needs.
+    /// The errors of [`SceneFile::load_polygons`] and [`crate::source::candidates::candidates`].
+    /// [`Error::Usage`] if you ask for no surfel or no picture. [`Error::Format`] if the folder holds
+    /// something else. [`Error::Io`] if the folder cannot be written to. Also an error if the process
+    /// may not hold what one node needs.
     pub fn approximate(
         &self,
         folder: &Path,
@@ -52,6 +55,7 @@ impl SceneFile {
             .map(|model| (model.source.name(), model))
             .chain(self.geometries.iter().map(|one| (one.name.clone(), &one.model)))
             .collect();
+        // Check every model before the folder is made.
         for (name, model) in &models {
             check(name, model)?;
             check_properties(model, &settings.properties)?;
@@ -84,7 +88,7 @@ impl SceneFile {
     }
 }
 
-/// Whether a model can be approximated.
+/// Refuses a model that cannot be approximated.
 fn check(name: &str, model: &Model) -> Result<()> {
     let what = match &model.source {
         Source::Shape { .. } => "a shape has surfels of its own and no triangles to approximate",

@@ -5,7 +5,7 @@ use crate::composite::decide;
 use crate::frame::NO_ID;
 use crate::method::Job;
 use crate::method::fragment::facing;
-use crate::method::resolved::Resolved;
+use crate::method::surface::SurfacePixel;
 use crate::method::tiled::Tiled;
 use crate::number::{Exact, Real};
 use crate::splat::View;
@@ -101,14 +101,14 @@ pub(crate) fn nearest<R: Exact>(job: &Job<'_>, squares: &Squares<R>) -> Tiled<Ke
 }
 
 /// What a pixel shows of what it keeps, in a scene with colours or without.
-pub(crate) fn shown<R: Exact>(job: &Job<'_>, kept: &Kept<R>, colored: bool) -> Resolved<R> {
+pub(crate) fn shown<R: Exact>(job: &Job<'_>, kept: &Kept<R>, colored: bool) -> SurfacePixel<R> {
     if kept.surfel == NO_ID {
-        return Resolved::EMPTY;
+        return SurfacePixel::EMPTY;
     }
     let (scene, i) = (job.scene, kept.surfel as usize);
     let normal = scene.surfels.normal()[i].to_array().map(R::from_f32);
     let color = scene.surfels.color().map_or(scene.material.color, |color| color[i]);
-    Resolved {
+    SurfacePixel {
         depth: kept.depth,
         id: kept.surfel,
         weight: R::ONE,

@@ -95,7 +95,7 @@ pub use settings::Settings;
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use std::fmt::Display;
@@ -126,7 +126,7 @@ impl Algorithm for Settings {
         &self,
         job: &Job<'_>,
         stage: &str,
-        given: &Given<'_, R>,
+        given: &InputPlanes<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
     }

@@ -7,11 +7,11 @@ use super::{Settings, fast, planes};
 use crate::error::Result;
 use crate::frame::{Framebuffer, NamedPlane, Pool, Wanted};
 use crate::method::Job;
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::projection::Has;
-use crate::method::resolved;
 use crate::method::stage::unknown;
+use crate::method::surface;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::Tally;
@@ -34,7 +34,7 @@ pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     match stage {
         "discs" => {
@@ -43,7 +43,7 @@ pub(super) fn stage<R: Exact>(
             left.extend(planes::pixels(target));
             Ok(left)
         }
-        "shading" => resolved::shade(job, given, Has::of(job.scene).color),
+        "shading" => surface::shade(job, given, Has::of(job.scene).color),
         _ => Err(unknown(stage)),
     }
 }
@@ -72,7 +72,7 @@ fn discs<R: Exact>(job: &Job<'_>, settings: &Settings, stages: bool) -> Result<D
     let kept = nearest(job, &squares);
     let wanted = wanted(job, stages);
     let pixels = kept.map(|kept| shown(job, kept, wanted.color));
-    let mut target = resolved::framebuffer(job, &pixels, wanted);
+    let mut target = surface::framebuffer(job, &pixels, wanted);
     if let Some(polygons) = Polygons::draw(job, settings)? {
         polygons.over(&mut target, job);
     }

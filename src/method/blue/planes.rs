@@ -3,8 +3,8 @@
 use super::discs::Kept;
 use crate::frame::{Framebuffer, NamedPlane, Plane};
 use crate::method::Job;
-use crate::method::resolved;
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
+use crate::method::surface;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
@@ -46,9 +46,9 @@ pub(super) const STAGES: &[Stage] = &[
     Stage {
         name: "discs",
         reads: &[],
-        leaves: &[COLOR, OFFSET, resolved::DEPTH, NORMAL, WEIGHT, ID],
+        leaves: &[COLOR, OFFSET, surface::DEPTH, NORMAL, WEIGHT, ID],
     },
-    resolved::shading(&["discs"]),
+    surface::shading(&["discs"]),
 ];
 
 /// What the discs leave that no picture without stages has.
@@ -70,7 +70,7 @@ pub(super) fn stages<R: Exact>(
 /// What the discs leave in every picture.
 pub(super) fn pixels<R: Exact>(target: Framebuffer<R>) -> Vec<NamedPlane<R>> {
     let Framebuffer { depth, id, weight, normal, .. } = target;
-    let mut planes = vec![resolved::DEPTH.scalar(0, depth)];
+    let mut planes = vec![surface::DEPTH.scalar(0, depth)];
     planes.extend(normal.map(|plane| NORMAL.triple(0, plane)));
     planes.push(WEIGHT.scalar(0, weight));
     planes.push(ID.index(0, id));

@@ -99,7 +99,7 @@ pub use settings::Settings;
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::scene::objects::Ids;
@@ -137,7 +137,7 @@ impl Algorithm for Settings {
         &self,
         job: &Job<'_>,
         stage: &str,
-        given: &Given<'_, R>,
+        given: &InputPlanes<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
     }
@@ -146,7 +146,7 @@ impl Algorithm for Settings {
         explain::explain::<R>(job, self, pixel)
     }
 
-    fn resolved(&self, scene: &Scene, _: &Camera) -> Vec<(&'static str, String)> {
+    fn settings_in_scene(&self, scene: &Scene, _: &Camera) -> Vec<(&'static str, String)> {
         let median = part::Whole::new(scene).median_radius();
         vec![("epsilon_in_world_units", format!("{:?}", self.splats.epsilon.in_units(median)))]
     }

@@ -14,11 +14,11 @@ use crate::method::Job;
 use crate::method::ewa::attributes::{Sums, attributes};
 use crate::method::ewa::normalization::resolve;
 use crate::method::ewa::planes as ewa;
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::prepare::Prepared;
-use crate::method::resolved::{self, Resolved};
 use crate::method::stage::unknown;
+use crate::method::surface::{self, SurfacePixel};
 use crate::method::tiled::{Tiled, pixels};
 use crate::number::Exact;
 use crate::splat::Tally;
@@ -59,7 +59,7 @@ pub(super) fn define<R: Exact>(
         left.extend(planes::indices(job, &kept));
         left.extend(planes::visibility(job, &depth, true));
         left.extend(ewa::attributes(&part.job(job), &sums));
-        left.extend(resolved::colors(&part.job(job), &averages));
+        left.extend(surface::colors(&part.job(job), &averages));
         left.extend(planes::shown(job, &ids(&shown, &averages)));
     }
     let wanted = Wanted {
@@ -67,7 +67,7 @@ pub(super) fn define<R: Exact>(
         color: whole.has_colors(),
         observed: false,
     };
-    let target = resolved::framebuffer(job, &averages, wanted);
+    let target = surface::framebuffer(job, &averages, wanted);
     Ok(Picture { seen: Some(now), ..finish(target, left, tally, clock, job) })
 }
 
@@ -91,7 +91,7 @@ pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     let (whole, before) = whole(job, settings)?;
     let selected = || Ok(whole.drawn(planes::given_selected(job, given)?, job));
@@ -120,11 +120,11 @@ pub(super) fn stage<R: Exact>(
             let polygons = Polygons::draw(job, settings, &whole)?;
             let shown = shown(job, settings, &part, &depth);
             let averages = normalization(job, (&shown, polygons.as_ref()), &sums);
-            let mut left = resolved::planes(&part.job(job), &averages);
+            let mut left = surface::planes(&part.job(job), &averages);
             left.extend(planes::shown(job, &ids(&shown, &averages)));
             Ok(left)
         }
-        "shading" => resolved::shade(job, given, whole.has_colors()),
+        "shading" => surface::shade(job, given, whole.has_colors()),
         _ => Err(unknown(stage)),
     }
 }
@@ -233,7 +233,7 @@ fn shown<R: Exact>(
 }
 
 /// All bits of the ids of a picture.
-fn ids<R: Exact>(shown: &Tiled<Nearest<R>>, averages: &Tiled<Resolved<R>>) -> Tiled<u64> {
+fn ids<R: Exact>(shown: &Tiled<Nearest<R>>, averages: &Tiled<SurfacePixel<R>>) -> Tiled<u64> {
     shown.with(averages, |nearest, shown| if shown.id == NO_ID { NONE } else { nearest.id })
 }
 
@@ -242,15 +242,15 @@ fn normalization<R: Exact>(
     job: &Job<'_>,
     (shown, polygons): (&Tiled<Nearest<R>>, Option<&Polygons<R>>),
     sums: &Tiled<Sums<R>>,
-) -> Tiled<Resolved<R>> {
+) -> Tiled<SurfacePixel<R>> {
     let splats = shown.with(sums, |nearest, sums| {
         if !(sums.weight > R::ZERO) || nearest.id == POLYGON {
-            return Resolved::EMPTY;
+            return SurfacePixel::EMPTY;
         }
-        Resolved { id: nearest.id as u32, ..resolve(&nearest.foremost(), sums) }
+        SurfacePixel { id: nearest.id as u32, ..resolve(&nearest.foremost(), sums) }
     });
     let Some(polygons) = polygons else { return splats };
     let below =
-        Tiled::new(job, |_, rect| pixels(rect).map(|(x, y)| polygons.resolved(x, y)).collect());
+        Tiled::new(job, |_, rect| pixels(rect).map(|(x, y)| polygons.surface(x, y)).collect());
     splats.with(&below, |splats, below| if splats.weight > R::ZERO { *splats } else { *below })
 }

@@ -11,9 +11,9 @@ use crate::error::{Error, Result};
 use crate::frame::{NO_ID, NamedPlane, Plane};
 use crate::method::Job;
 use crate::method::ewa::planes::{COLOR_SUM, COUNT, NORMAL_SUM, WEIGHT_SUM};
-use crate::method::given::Given;
-use crate::method::resolved;
+use crate::method::input_planes::InputPlanes;
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
+use crate::method::surface;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::View;
@@ -92,15 +92,15 @@ pub(super) const STAGES: &[Stage] = &[
         name: "normalization",
         reads: &["indices", "difference", "attributes"],
         leaves: &[
-            resolved::COLOR,
-            resolved::DEPTH,
-            resolved::NORMAL,
-            resolved::WEIGHT,
-            resolved::ID,
+            surface::COLOR,
+            surface::DEPTH,
+            surface::NORMAL,
+            surface::WEIGHT,
+            surface::ID,
             SHOWN_HIGH,
         ],
     },
-    resolved::shading(&["normalization"]),
+    surface::shading(&["normalization"]),
 ];
 
 /// What a pass of visibility splatting leaves: the first, or both.
@@ -142,7 +142,7 @@ fn high(id: u64) -> u8 {
 /// Somebody's visibility; nearness is that of the depth, rounded.
 pub(super) fn given_visibility<R: Exact>(
     job: &Job<'_>,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
     both: bool,
 ) -> Result<Tiled<Nearest<R>>> {
     let [depth, id, stencil] = rows(both);
@@ -171,7 +171,10 @@ pub(super) fn indices<R: Exact>(job: &Job<'_>, kept: &Tiled<Kept<R>>) -> Vec<Nam
 }
 
 /// B(i) as somebody selected it, ascending, each surfel once.
-pub(super) fn given_selected<R: Exact>(job: &Job<'_>, given: &Given<'_, R>) -> Result<Vec<u64>> {
+pub(super) fn given_selected<R: Exact>(
+    job: &Job<'_>,
+    given: &InputPlanes<'_, R>,
+) -> Result<Vec<u64>> {
     let mut selected: Vec<u64> = ids(job, given, [&CENTRE_ID, &CENTRE_HIGH])?.all();
     selected.retain(|&id| id != NONE);
     selected.sort_unstable();
@@ -205,7 +208,7 @@ impl GivenIds<'_> {
 /// The planes of ids, with their highest bits if 32 do not say all of them.
 fn ids<'a, R: Exact>(
     job: &Job<'_>,
-    given: &Given<'a, R>,
+    given: &InputPlanes<'a, R>,
     [id, stencil]: [&PlaneRow; 2],
 ) -> Result<GivenIds<'a>> {
     let whole = Whole::new(job.scene);

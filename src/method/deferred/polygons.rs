@@ -29,7 +29,7 @@ use crate::frame::raster::Snap;
 use crate::frame::{Exec, Framebuffer, NO_ID, Plane};
 use crate::method::Job;
 use crate::method::projection::{self, PixelSample, SampleKind};
-use crate::method::resolved::Resolved;
+use crate::method::surface::SurfacePixel;
 use crate::number::Exact;
 use crate::scene::{Scene, Surfels};
 use crate::splat::View;
@@ -86,12 +86,12 @@ impl<R: Exact> Polygons<R> {
     }
 
     /// What a pixel shows.
-    pub(super) fn resolved(&self, x: u32, y: u32) -> Resolved<R> {
+    pub(super) fn surface(&self, x: u32, y: u32) -> SurfacePixel<R> {
         let sample = self.samples.at(x, y);
         if sample.kind == SampleKind::Empty {
-            return Resolved::EMPTY;
+            return SurfacePixel::EMPTY;
         }
-        Resolved {
+        SurfacePixel {
             depth: self.nearest(x, y).depth,
             id: NO_ID,
             weight: R::ONE,
@@ -120,7 +120,7 @@ impl Polygons<f32> {
                 if weight[x] > 0.0 {
                     continue;
                 }
-                let shown = self.resolved(x as u32, y);
+                let shown = self.surface(x as u32, y);
                 (depth[x], weight[x]) = (shown.depth, shown.weight);
                 normal.iter_mut().for_each(|row| row[x] = shown.normal);
                 color.iter_mut().for_each(|row| row[x] = shown.color);

@@ -181,10 +181,8 @@ fn laws<R: Exact>(case: &Case) -> std::result::Result<(), TestCaseError> {
         prop_assert_eq!(kept, now.len());
         // What the frame saw is what it selected.
         if let Some((_, seen)) = shown.get(i as usize + 1) {
-            prop_assert_eq!(
-                seen.as_ref(),
-                Some(&Seen::from_selected(ids, case.settings.flags, &now))
-            );
+            let found = Seen::from_selected(ids, case.settings.flags, &now);
+            prop_assert_eq!(seen.as_ref(), Some(&found));
         }
         // The depth of pass 4 is that of plain visibility splatting of B(i-1) and B(i).
         let mut drawn = old.clone();

@@ -72,8 +72,8 @@ pub use crate::splat::SplatSettings as Settings;
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::given::Given;
-use crate::method::replay::Touch;
+use crate::method::decisions::Touch;
+use crate::method::input_planes::InputPlanes;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use std::fmt::Display;
@@ -105,7 +105,7 @@ impl Algorithm for Settings {
         &self,
         job: &Job<'_>,
         stage: &str,
-        given: &Given<'_, R>,
+        given: &InputPlanes<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
     }

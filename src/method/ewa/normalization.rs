@@ -3,12 +3,12 @@
 use super::attributes::Sums;
 use super::visibility::Foremost;
 use crate::composite::sum;
-use crate::method::resolved::Resolved;
+use crate::method::surface::SurfacePixel;
 use crate::number::Exact;
 
 /// At one pixel: depth of the nearest fragment; colour = sum / weight; normal = direction of sum / weight.
-pub(crate) fn resolve<R: Exact>(nearest: &Foremost<R>, sums: &Sums<R>) -> Resolved<R> {
-    Resolved {
+pub(crate) fn resolve<R: Exact>(nearest: &Foremost<R>, sums: &Sums<R>) -> SurfacePixel<R> {
+    SurfacePixel {
         depth: nearest.depth,
         id: nearest.id,
         weight: sums.weight,

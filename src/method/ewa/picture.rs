@@ -8,11 +8,11 @@ use super::{Settings, fast, planes};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool, Wanted};
 use crate::method::Job;
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::prepare::Prepared;
-use crate::method::resolved;
 use crate::method::stage::unknown;
+use crate::method::surface;
 use crate::number::Exact;
 use crate::scene::Scene;
 
@@ -37,9 +37,9 @@ pub(super) fn define<R: Exact>(
         left.extend(planes::visibility(&visible));
         left.extend(planes::attributes(job, &sums));
         left.push(planes::margin(&margins(job, settings, &visible)));
-        left.extend(resolved::colors(job, &averages));
+        left.extend(surface::colors(job, &averages));
     }
-    let target = resolved::framebuffer(job, &averages, wanted(job.scene, stages));
+    let target = surface::framebuffer(job, &averages, wanted(job.scene, stages));
     Ok(finish(target, left, splats.tally, clock, job))
 }
 
@@ -48,7 +48,7 @@ pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     let splats = || Prepared::splats(job, settings);
     match stage {
@@ -60,9 +60,9 @@ pub(super) fn stage<R: Exact>(
         "normalization" => {
             let visible = planes::given_visibility(job, given)?;
             let sums = planes::given_attributes(job, given)?;
-            Ok(resolved::planes(job, &visible.with(&sums, resolve)))
+            Ok(surface::planes(job, &visible.with(&sums, resolve)))
         }
-        "shading" => resolved::shade(job, given, job.scene.surfels.color().is_some()),
+        "shading" => surface::shade(job, given, job.scene.surfels.color().is_some()),
         _ => Err(unknown(stage)),
     }
 }

@@ -5,9 +5,9 @@ use super::visibility::Foremost;
 use crate::error::Result;
 use crate::frame::NamedPlane;
 use crate::method::Job;
-use crate::method::given::Given;
-use crate::method::resolved;
+use crate::method::input_planes::InputPlanes;
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
+use crate::method::surface;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::View;
@@ -76,15 +76,9 @@ pub(crate) const STAGES: &[Stage] = &[
     Stage {
         name: "normalization",
         reads: &["visibility", "attributes"],
-        leaves: &[
-            resolved::COLOR,
-            resolved::DEPTH,
-            resolved::NORMAL,
-            resolved::WEIGHT,
-            resolved::ID,
-        ],
+        leaves: &[surface::COLOR, surface::DEPTH, surface::NORMAL, surface::WEIGHT, surface::ID],
     },
-    resolved::shading(&["normalization"]),
+    surface::shading(&["normalization"]),
 ];
 
 /// What visibility splatting leaves.
@@ -98,7 +92,7 @@ pub(crate) fn visibility<R: Exact>(visible: &Tiled<Foremost<R>>) -> Vec<NamedPla
 /// Somebody's visibility; nearness is that of the depth, rounded.
 pub(crate) fn given_visibility<R: Exact>(
     job: &Job<'_>,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Tiled<Foremost<R>>> {
     let (depth, id) = (given.scalar(&NEAREST, 0)?, given.ids(&NEAREST_ID, 0)?);
     let view = View::new(job.camera);
@@ -127,7 +121,7 @@ pub(crate) fn margin<R: Exact>(margins: &Tiled<R>) -> NamedPlane<R> {
 /// Somebody's sums; opacities play no part in this method.
 pub(crate) fn given_attributes<R: Exact>(
     job: &Job<'_>,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Tiled<Sums<R>>> {
     let (normal, weight) = (given.triple(&NORMAL_SUM, 0)?, given.scalar(&WEIGHT_SUM, 0)?);
     let colored = job.scene.surfels.color().is_some();

@@ -3,9 +3,9 @@
 use crate::composite::decide;
 use crate::frame::NO_ID;
 use crate::method::Job;
+use crate::method::buffer_formats::DepthKey;
 use crate::method::fragment::TileSplats;
 use crate::method::prepare::Prepared;
-use crate::method::stored::DepthKey;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::{Shared, Splat};

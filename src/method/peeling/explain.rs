@@ -7,8 +7,8 @@ use crate::composite::under::Under;
 use crate::error::Result;
 use crate::frame::NO_ID;
 use crate::method::Job;
+use crate::method::decisions::{Place, Touch};
 use crate::method::ewa::explain::{TwoPasses, two_passes};
-use crate::method::replay::{Place, Touch};
 use crate::number::Exact;
 use std::fmt;
 

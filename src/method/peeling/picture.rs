@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::frame::{NamedPlane, Rect};
 use crate::method::Job;
 use crate::method::fragment::TileSplats;
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture};
 use crate::method::stage::unknown;
 use crate::method::tiled::Tiled;
@@ -72,7 +72,7 @@ pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     match (stage, planes::given_layers(given)) {
         ("layers", 0) => {
@@ -96,7 +96,7 @@ pub(super) fn stage<R: Exact>(
 fn next_layer<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
     before: usize,
 ) -> Result<Tiled<PeeledLayer<R>>> {
     let peeling = Peeling::<R>::project(job, settings);

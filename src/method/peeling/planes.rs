@@ -4,9 +4,9 @@ use super::layers::{PeeledLayer, PeeledPixel};
 use crate::composite::{decide, under::Under};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Plane};
-use crate::method::given::Given;
-use crate::method::resolved::{ALPHA, DEPTH, ID, SHADED};
+use crate::method::input_planes::InputPlanes;
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
+use crate::method::surface::{ALPHA, DEPTH, ID, SHADED};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
@@ -94,13 +94,13 @@ pub(super) fn shown<R: Exact>((color, alpha): (Plane<[R; 3]>, Plane<R>)) -> [Nam
 }
 
 /// How many of somebody's layers there are, one after the other from the first.
-pub(super) fn given_layers<R: Exact>(given: &Given<'_, R>) -> usize {
+pub(super) fn given_layers<R: Exact>(given: &InputPlanes<'_, R>) -> usize {
     (1..=STAGES as usize).take_while(|&number| given.has(&LAYER_DEPTH, number)).count()
 }
 
 /// `limit_j` of somebody's layer j at each pixel; +inf where there is no layer, as none follows.
 pub(super) fn given_limits<R: Exact>(
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
     number: usize,
     epsilon: R,
 ) -> Result<Tiled<R>> {
@@ -111,7 +111,7 @@ pub(super) fn given_limits<R: Exact>(
 /// Somebody's layers, blended: as many as some pixel has.
 ///
 /// A pixel with fewer has an opacity of 0 there, which changes nothing.
-pub(super) fn given_blends<R: Exact>(given: &Given<'_, R>) -> Result<Tiled<Under<R>>> {
+pub(super) fn given_blends<R: Exact>(given: &InputPlanes<'_, R>) -> Result<Tiled<Under<R>>> {
     let counts = given.count(&LAYERS, 0)?.values();
     let most = counts.iter().copied().max().unwrap_or(0);
     let layer = |number: usize| {

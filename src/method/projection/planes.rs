@@ -3,7 +3,7 @@
 use super::{Has, PixelSample, SampleKind};
 use crate::error::{Error, Result};
 use crate::frame::{NamedPlane, Plane};
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::{Holds, PlaneRow, Stage, When};
 use crate::number::{Exact, Real, Vector2, Vector3};
 
@@ -70,7 +70,10 @@ pub(crate) fn write<R: Exact>(samples: &Plane<PixelSample<R>>, has: Has) -> Vec<
 /// # Errors
 /// [`Error::Invalid`] if a plane is missing, or of another type or size, or if a pixel has a kind
 /// that there is not.
-pub(crate) fn read<R: Exact>(given: &Given<'_, R>, has: Has) -> Result<Plane<PixelSample<R>>> {
+pub(crate) fn read<R: Exact>(
+    given: &InputPlanes<'_, R>,
+    has: Has,
+) -> Result<Plane<PixelSample<R>>> {
     let [id, kind, depth, normal, extent, radius, left, upper, color, tangent] = &PLANES;
     let (id, kind) = (given.ids(id, 0)?, kinds(given, kind, 0)?);
     let scalar = |row| given.scalar(row, 0);
@@ -95,9 +98,9 @@ pub(crate) fn read<R: Exact>(given: &Given<'_, R>, has: Has) -> Result<Plane<Pix
 /// What each pixel shows.
 ///
 /// # Errors
-/// As [`Given::count`], and if a pixel has a kind that there is not.
+/// As [`InputPlanes::count`], and if a pixel has a kind that there is not.
 pub(crate) fn kinds<R: Exact>(
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
     row: &PlaneRow,
     number: usize,
 ) -> Result<Plane<SampleKind>> {

@@ -11,7 +11,7 @@ use crate::frame::raster::Snap;
 use crate::frame::{Frame, NamedPlane, Plane, Pool, pyramid};
 use crate::method::Job;
 use crate::method::PlaneRow;
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture};
 use crate::method::projection::{self, Has};
 use crate::method::stage::unknown;
@@ -102,7 +102,7 @@ pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     let levels = GivenLevels::new(job, given);
     match stage {
@@ -134,14 +134,14 @@ pub(super) fn levels(job: &Job<'_>, stage: &str) -> Vec<usize> {
 /// The levels as somebody's planes have them.
 struct GivenLevels<'a, R> {
     job: &'a Job<'a>,
-    given: &'a Given<'a, R>,
+    given: &'a InputPlanes<'a, R>,
     has: Has,
     /// The size of every level.
     sizes: Vec<[u32; 2]>,
 }
 
 impl<'a, R: Exact> GivenLevels<'a, R> {
-    fn new(job: &'a Job<'a>, given: &'a Given<'a, R>) -> Self {
+    fn new(job: &'a Job<'a>, given: &'a InputPlanes<'a, R>) -> Self {
         let sizes = pyramid::sizes(job.camera.width, job.camera.height);
         Self { job, given, has: Has::of(job.scene), sizes }
     }

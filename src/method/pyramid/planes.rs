@@ -8,7 +8,7 @@ use super::gbuffer::GBuffer;
 use crate::error::Result;
 use crate::frame::{NamedPlane, Plane, pyramid};
 use crate::method::Job;
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::projection::Has;
 use crate::method::projection::planes::{components, kinds, triple_at, vector};
 use crate::method::{Holds, PlaneRow, When};
@@ -141,7 +141,7 @@ pub(super) fn write_level<R: Exact>(
 /// [`crate::Error::Invalid`] if a plane is missing, or of another type or size, or if a cell has a
 /// kind that there is not.
 pub(super) fn read_level<R: Exact>(
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
     rows: &[PlaneRow; 9],
     level: usize,
     size: [u32; 2],

@@ -4,7 +4,7 @@ use super::geometry::ImagePixel;
 use crate::composite::groups::{WeightedFragment, compose};
 use crate::composite::{decide, sum};
 use crate::frame::NO_ID;
-use crate::method::resolved::Resolved;
+use crate::method::surface::SurfacePixel;
 use crate::number::Exact;
 
 /// What the compositing pass makes of one pixel.
@@ -44,9 +44,9 @@ pub(crate) fn composites<R: Exact>(
 
 impl<R: Exact> Composite<R> {
     /// Normalization.
-    pub(crate) fn resolved(&self) -> Resolved<R> {
+    pub(crate) fn surface(&self) -> SurfacePixel<R> {
         let Self { sums, id, .. } = *self;
-        Resolved {
+        SurfacePixel {
             depth: sums.depth,
             id,
             weight: sums.weight,

@@ -7,7 +7,7 @@ use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::NO_ID;
 use crate::method::Job;
-use crate::method::replay::{Decision, Place, Touch, touch};
+use crate::method::decisions::{Decision, Place, Touch, touch};
 use crate::number::Exact;
 use std::fmt;
 

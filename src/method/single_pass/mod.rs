@@ -66,7 +66,7 @@ use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::{Picture, Stage};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
@@ -106,7 +106,7 @@ impl Algorithm for Settings {
         &self,
         job: &Job<'_>,
         stage: &str,
-        given: &Given<'_, R>,
+        given: &InputPlanes<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
     }
@@ -115,10 +115,10 @@ impl Algorithm for Settings {
         explain::explain::<R>(job, self, pixel)
     }
 
-    fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
-        let mut resolved = self.splats.resolved(scene);
+    fn settings_in_scene(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
+        let mut resolved = self.splats.settings_in_scene(scene);
         if let DepthTest::Voronoi(bins) = &self.depth {
-            resolved.extend(bins.resolved(&self.splats, scene, camera));
+            resolved.extend(bins.settings_in_scene(&self.splats, scene, camera));
         }
         resolved
     }

@@ -6,10 +6,10 @@ use super::{Settings, fast, planes};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool, Rect, Wanted};
 use crate::method::Job;
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
-use crate::method::resolved;
 use crate::method::stage::unknown;
+use crate::method::surface;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::scene::Scene;
@@ -34,14 +34,14 @@ pub(super) fn define<R: Exact>(
 
     let Passes { images, composites } = passes(job, &geometry, stages, STAGES, &mut clock);
 
-    let averages = composites.map(Composite::resolved);
+    let averages = composites.map(Composite::surface);
     let mut left = Vec::new();
     if stages {
         left.extend(planes::geometry(job, settings, &images));
         left.extend(planes::sums(job, &composites));
-        left.extend(resolved::colors(job, &averages));
+        left.extend(surface::colors(job, &averages));
     }
-    let target = resolved::framebuffer(job, &averages, wanted(job.scene, stages));
+    let target = surface::framebuffer(job, &averages, wanted(job.scene, stages));
     Ok(finish(target, left, geometry.splats.tally, clock, job))
 }
 
@@ -96,7 +96,7 @@ pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     match stage {
         "geometry" => {
@@ -107,10 +107,10 @@ pub(super) fn stage<R: Exact>(
         "compositing" => {
             let composites = composite(job, settings, &planes::given_geometry(job, given)?);
             let mut left = planes::sums(job, &composites);
-            left.extend(resolved::planes(job, &composites.map(Composite::resolved)));
+            left.extend(surface::planes(job, &composites.map(Composite::surface)));
             Ok(left)
         }
-        "shading" => resolved::shade(job, given, job.scene.surfels.color().is_some()),
+        "shading" => surface::shade(job, given, job.scene.surfels.color().is_some()),
         _ => Err(unknown(stage)),
     }
 }

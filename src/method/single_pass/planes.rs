@@ -7,9 +7,9 @@ use crate::composite::groups::WeightedFragment;
 use crate::error::Result;
 use crate::frame::{NO_ID, NamedPlane};
 use crate::method::Job;
-use crate::method::given::Given;
-use crate::method::resolved;
+use crate::method::input_planes::InputPlanes;
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
+use crate::method::surface;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::View;
@@ -134,14 +134,14 @@ pub(super) const STAGES: &[Stage] = &[
             NORMAL_SUM,
             WEIGHT_SUM,
             COUNT,
-            resolved::COLOR,
-            resolved::DEPTH,
-            resolved::NORMAL,
-            resolved::WEIGHT,
-            resolved::ID,
+            surface::COLOR,
+            surface::DEPTH,
+            surface::NORMAL,
+            surface::WEIGHT,
+            surface::ID,
         ],
     },
-    resolved::shading(&["compositing"]),
+    surface::shading(&["compositing"]),
 ];
 
 /// What the geometry pass leaves.
@@ -156,7 +156,7 @@ pub(super) fn geometry<R: Exact>(
 /// Somebody's depth-images.
 pub(super) fn given_geometry<R: Exact>(
     job: &Job<'_>,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<Tiled<ImagePixel<R>>>> {
     given_images(job, &IMAGES, given)
 }
@@ -195,7 +195,7 @@ pub(crate) fn image_planes<R: Exact>(
 pub(crate) fn given_images<R: Exact>(
     job: &Job<'_>,
     rows: &ImageRows,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<Tiled<ImagePixel<R>>>> {
     let (view, surfels) = (View::new(job.camera), &job.scene.surfels);
     let colored = surfels.color().is_some();

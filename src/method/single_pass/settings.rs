@@ -107,7 +107,7 @@ impl BinCount {
 
     /// The bins of a picture as TOML: `d_min`, `d_max` and n of \[ZP06, eq. 6\], if there are not
     /// too many.
-    pub(crate) fn resolved(
+    pub(crate) fn settings_in_scene(
         &self,
         splats: &SplatSettings,
         scene: &Scene,

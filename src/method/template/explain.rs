@@ -2,7 +2,7 @@
 
 use super::normalization::normalize;
 use super::propagation::{self, propagate};
-use super::reconstruction::{Gathered, Placement, each_asked, weight};
+use super::reconstruction::{Gathered, Placement, each_query, weight};
 use super::{Center, Settings};
 use crate::error::Result;
 use crate::frame::Plane;
@@ -80,7 +80,7 @@ pub(super) fn explain<R: Exact>(
         Merged::new(level, (x, y), finer, R::from_f32(settings.reach(level - 1)))
     });
     let (mut gathered, mut asked) = (Gathered::empty(), Vec::new());
-    each_asked(&levels, settings, pixel, |a| {
+    each_query(&levels, settings, pixel, |a| {
         let (before, test) = (gathered, gathered.test(a.center));
         let given = weight(settings.falloff, a.form, a.square);
         if a.holds || a.own {

@@ -38,7 +38,7 @@ pub use settings::{Falloff, LevelRule, Settings};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::{Picture, Stage, projection};
 use crate::number::Exact;
 use std::fmt::Display;
@@ -86,7 +86,7 @@ impl Algorithm for Settings {
         &self,
         job: &Job<'_>,
         stage: &str,
-        given: &Given<'_, R>,
+        given: &InputPlanes<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
     }

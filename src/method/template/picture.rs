@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{NamedPlane, Plane, Pool, Wanted, pyramid};
 use crate::method::Job;
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::projection::{self, Has};
 use crate::method::stage::unknown;
@@ -73,7 +73,7 @@ pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     let Job { scene, camera, exec, .. } = *job;
     let has = Has::of(scene);
@@ -122,7 +122,7 @@ fn sizes(job: &Job<'_>, settings: &Settings) -> Vec<[u32; 2]> {
 fn given_levels<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<Plane<Center<R>>>> {
     let sizes = sizes(job, settings);
     (0..sizes.len()).map(|level| given_level(job, level, &sizes, given)).collect()
@@ -133,7 +133,7 @@ fn given_level<R: Exact>(
     job: &Job<'_>,
     level: usize,
     sizes: &[[u32; 2]],
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Plane<Center<R>>> {
     let has = Has::of(job.scene);
     if level == 0 {
@@ -146,7 +146,7 @@ fn given_level<R: Exact>(
 fn propagated<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     let sizes = sizes(job, settings);
     let levels = job.only(levels(job, settings, "propagation"));

@@ -9,7 +9,7 @@ use crate::composite::sum;
 use crate::error::Result;
 use crate::frame::{Framebuffer, NO_ID, NamedPlane, Plane, pyramid};
 use crate::method::Job;
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::projection::Has;
 use crate::method::projection::planes::{components, triple_at, vector};
 use crate::method::{Holds, PlaneRow, When};
@@ -132,7 +132,7 @@ pub(super) fn write_level<R: Exact>(
 /// [`crate::Error::Invalid`] if a plane is missing, or of another type or size, or if the scene has
 /// no surfel of an id.
 pub(super) fn read_level<R: Exact>(
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
     level: usize,
     size: [u32; 2],
     has: Has,
@@ -185,7 +185,7 @@ pub(super) fn write_id<R: Exact>(pixels: &Plane<Gathered<R>>) -> NamedPlane<R> {
 /// # Errors
 /// As [`read_level`].
 pub(super) fn read_gathered<R: Exact>(
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
     has: Has,
 ) -> Result<Plane<Gathered<R>>> {
     let [count, weight, depths, depth, radius, normal, color, id] = &GATHERED;
@@ -220,7 +220,10 @@ pub(super) fn write_normalized<R: Exact>(target: Framebuffer<R>) -> Vec<NamedPla
 ///
 /// # Errors
 /// As [`read_level`].
-pub(super) fn read_normalized<R: Exact>(given: &Given<'_, R>, has: Has) -> Result<Framebuffer<R>> {
+pub(super) fn read_normalized<R: Exact>(
+    given: &InputPlanes<'_, R>,
+    has: Has,
+) -> Result<Framebuffer<R>> {
     let [depth, normal, weight] = &NORMALIZATION;
     let [.., colors, _] = &GATHERED;
     let (depth, weight) = (given.scalar(depth, 0)?, given.scalar(weight, 0)?);

@@ -180,7 +180,7 @@ pub fn gather<R: Exact>(
     let rows = gathered.rows_mut();
     exec.ordered((0..).zip(rows).collect(), |(y, row): (u32, &mut [Gathered<R>])| {
         for (x, pixel) in (0..).zip(row) {
-            each_asked(levels, settings, (x, y), |asked| {
+            each_query(levels, settings, (x, y), |asked| {
                 if asked.holds || asked.own {
                     pixel.add(asked.center, weight(settings.falloff, asked.form, asked.square));
                 }
@@ -192,7 +192,7 @@ pub fn gather<R: Exact>(
 
 /// A centre that a pixel asks.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Asked<'a, R: Real> {
+pub(crate) struct CenterQuery<'a, R: Real> {
     pub(crate) center: &'a Center<R>,
     pub(super) level: usize,
     pub(super) cell: (u32, u32),
@@ -208,11 +208,11 @@ pub(crate) struct Asked<'a, R: Real> {
 }
 
 /// Calls `visit` for every centre that stays in the templates around a pixel, or may, in their order.
-pub(crate) fn each_asked<'a, R: Real>(
+pub(crate) fn each_query<'a, R: Real>(
     levels: &'a [Plane<Center<R>>],
     settings: &Settings,
     pixel: (u32, u32),
-    mut visit: impl FnMut(&Asked<'a, R>),
+    mut visit: impl FnMut(&CenterQuery<'a, R>),
 ) {
     for level in 0..levels.len() {
         search(levels, level, settings, pixel, &mut visit);
@@ -225,7 +225,7 @@ fn search<'a, R: Real>(
     level: usize,
     settings: &Settings,
     (x, y): (u32, u32),
-    visit: &mut impl FnMut(&Asked<'a, R>),
+    visit: &mut impl FnMut(&CenterQuery<'a, R>),
 ) {
     let (cells, h) = (&levels[level], settings.half());
     let is_top = level + 1 == levels.len();
@@ -245,7 +245,7 @@ fn search<'a, R: Real>(
             );
             let own = level == 0 && (cx, cy) == (x, y);
             let (cell, square, holds) = ((cx, cy), ellipse.square, ellipse.holds(form));
-            visit(&Asked { center, level, cell, form, square, stays, holds, own });
+            visit(&CenterQuery { center, level, cell, form, square, stays, holds, own });
         }
     }
 }

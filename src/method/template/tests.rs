@@ -62,7 +62,7 @@ fn assert_explained<R: Exact>(scene: &Scene, camera: &Camera, settings: &Setting
     let index = Index::default();
     let job = Job::new(scene, &index, camera, &exec);
     let (frame, has) = (settings.define::<R>(&job, true).unwrap().frame, Has::of(scene));
-    let given = Given::new(&frame, &job).unwrap();
+    let given = InputPlanes::new(&frame, &job).unwrap();
     let samples = projection::planes::read(&given, has).unwrap();
     let sizes = crate::frame::pyramid::sizes(frame.width, frame.height);
     let level = |l: usize| read_level(&given, l, sizes[l], has);

@@ -6,7 +6,7 @@ use super::blending::{Blending, GroupLayers};
 use crate::composite::decide;
 use crate::error::Result;
 use crate::method::Job;
-use crate::method::replay::{Decision, Place, Touch, touch};
+use crate::method::decisions::{Decision, Place, Touch, touch};
 use crate::number::Exact;
 use std::fmt;
 

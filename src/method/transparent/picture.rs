@@ -7,7 +7,7 @@ use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::{NamedPlane, Rect};
 use crate::method::Job;
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture};
 use crate::method::stage::unknown;
 use crate::method::tiled::Tiled;
@@ -107,7 +107,7 @@ pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     match stage {
         "blending" => {

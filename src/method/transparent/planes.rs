@@ -6,10 +6,10 @@ use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::{NamedPlane, Plane};
 use crate::method::Job;
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::picture::before_environment;
-use crate::method::resolved::{self, ALPHA, SHADED};
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
+use crate::method::surface::{self, ALPHA, SHADED};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
@@ -107,11 +107,11 @@ const AVERAGE_LAYERS: PlaneRow = PlaneRow::new(
 );
 const DEPTH: PlaneRow = PlaneRow {
     meaning: "least depth of the groups, each that of the layer blended last; +inf where there is none",
-    ..resolved::DEPTH
+    ..surface::DEPTH
 };
 const ID: PlaneRow = PlaneRow {
     meaning: "surfel of that layer, of equal depths the lower; 0xFFFF_FFFF where there is none",
-    ..resolved::ID
+    ..surface::ID
 };
 pub(crate) const LAYERS: PlaneRow = PlaneRow::new(
     "layers",
@@ -191,7 +191,7 @@ pub(crate) fn images_alone<R: Exact>(images: &[Tiled<GroupLayers<R>>]) -> Vec<Na
 /// Somebody's image of each group of the scene.
 pub(crate) fn given_images<R: Exact>(
     job: &Job<'_>,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<Tiled<GroupLayers<R>>>> {
     let image = |k: usize| {
         let (color, alpha) = (given.triple(&GROUP_COLOR, k)?, given.scalar(&GROUP_ALPHA, k)?);
@@ -224,7 +224,9 @@ pub(crate) fn averages<R: Exact>(averages: &Tiled<GroupAverage<R>>) -> [NamedPla
 }
 
 /// Somebody's averages, without a nearest surfel.
-pub(crate) fn given_averages<R: Exact>(given: &Given<'_, R>) -> Result<Tiled<GroupAverage<R>>> {
+pub(crate) fn given_averages<R: Exact>(
+    given: &InputPlanes<'_, R>,
+) -> Result<Tiled<GroupAverage<R>>> {
     let (color, alpha) = (given.triple(&AVERAGE_COLOR, 0)?, given.scalar(&AVERAGE_ALPHA, 0)?);
     let opacity = given.scalar(&AVERAGE_OPACITY, 0)?;
     let (hidden, layers) = (given.scalar(&AVERAGE_HIDDEN, 0)?, given.scalar(&AVERAGE_LAYERS, 0)?);

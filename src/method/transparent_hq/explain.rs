@@ -8,7 +8,7 @@ use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::method::Job;
-use crate::method::replay::Place;
+use crate::method::decisions::Place;
 use crate::method::single_pass::compositing::composites;
 use crate::method::single_pass::explain::{GroupsReplay, explain as explain_nearest};
 use crate::method::single_pass::geometry::Geometry;

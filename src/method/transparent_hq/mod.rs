@@ -66,7 +66,7 @@ use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};
 use crate::index::grouping::Grouping;
 use crate::method::algorithm::{Algorithm, Job};
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::{Picture, Stage, transparent};
 use crate::number::Exact;
 use crate::scene::{Camera, Scene};
@@ -104,7 +104,7 @@ impl Algorithm for Settings {
         &self,
         job: &Job<'_>,
         stage: &str,
-        given: &Given<'_, R>,
+        given: &InputPlanes<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
     }
@@ -113,7 +113,7 @@ impl Algorithm for Settings {
         explain::explain::<R>(job, self, pixel)
     }
 
-    fn resolved(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
-        self.layers.resolved(scene, camera)
+    fn settings_in_scene(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
+        self.layers.settings_in_scene(scene, camera)
     }
 }

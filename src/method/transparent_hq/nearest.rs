@@ -4,9 +4,9 @@ use super::Settings;
 use crate::composite::decide;
 use crate::frame::stencil::{Function, Operation, Outcome, Stencil};
 use crate::method::Job;
-use crate::method::resolved::Resolved;
 pub(crate) use crate::method::single_pass;
 use crate::method::single_pass::compositing::Composite;
+use crate::method::surface::SurfacePixel;
 use crate::method::tiled::{Tiled, pixels};
 use crate::number::{Exact, Vector3};
 use crate::shade::phong::Shader;
@@ -73,7 +73,7 @@ impl<R: Exact> Shading<R> {
 
     /// The nearest layer at a column and row.
     pub(super) fn layer(&self, (x, y): (u32, u32), composite: &Composite<R>) -> FrontLayer<R> {
-        let Resolved { depth, id, weight, normal, color } = composite.resolved();
+        let SurfacePixel { depth, id, weight, normal, color } = composite.surface();
         let [nx, ny, nz] = normal;
         let form = (Vector3::new(nx, ny, nz), Vector3::ZERO);
         let surface = self.own.unwrap_or(color);

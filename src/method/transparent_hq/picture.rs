@@ -6,7 +6,7 @@ use super::{Settings, planes};
 use crate::error::{Error, Result};
 use crate::frame::NamedPlane;
 use crate::method::Job;
-use crate::method::given::Given;
+use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture};
 use crate::method::single_pass::geometry::Geometry;
 use crate::method::single_pass::picture as first;
@@ -86,7 +86,7 @@ pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     check(job, settings)?;
     let mut clock = Clock::default();

@@ -7,11 +7,11 @@ use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::{NO_ID, NamedPlane, Plane};
 use crate::method::Job;
-use crate::method::given::Given;
-use crate::method::resolved::{self, ALPHA, DEPTH, ID, SHADED, WEIGHT};
+use crate::method::input_planes::InputPlanes;
 use crate::method::single_pass::geometry::ImagePixel;
 use crate::method::single_pass::planes::{ImageRows, given_images, image_planes};
 use crate::method::stage::{Holds, PlaneRow, Stage, When};
+use crate::method::surface::{self, ALPHA, DEPTH, ID, SHADED, WEIGHT};
 use crate::method::tiled::Tiled;
 use crate::method::transparent::averaging::GroupAverage;
 use crate::method::transparent::planes::{AVERAGES, blending, shown};
@@ -48,7 +48,7 @@ pub(crate) const NEAREST_MASK: PlaneRow = PlaneRow::new(
     "the stencil: 1 where the nearest layer is, else 0",
     When::Stages,
 );
-const NORMAL: PlaneRow = PlaneRow { when: When::Always, ..resolved::NORMAL };
+const NORMAL: PlaneRow = PlaneRow { when: When::Always, ..surface::NORMAL };
 pub(crate) const LAYERS_BY_OPACITY: PlaneRow = PlaneRow::new(
     "l",
     Holds::Scalar,
@@ -96,7 +96,7 @@ pub(super) fn geometry<R: Exact>(
 /// Somebody's depth-images of the nearest layer.
 pub(super) fn given_geometry<R: Exact>(
     job: &Job<'_>,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
 ) -> Result<Vec<Tiled<ImagePixel<R>>>> {
     given_images(job, &IMAGES, given)
 }
@@ -131,7 +131,7 @@ pub(super) fn nearest_planes<R: Exact>(
 }
 
 /// Somebody's nearest layer, as the other layers need it: without surfel and weight.
-pub(super) fn given_nearest<R: Exact>(given: &Given<'_, R>) -> Result<Tiled<FrontLayer<R>>> {
+pub(super) fn given_nearest<R: Exact>(given: &InputPlanes<'_, R>) -> Result<Tiled<FrontLayer<R>>> {
     let (color, opacity) = (given.triple(&NEAREST_COLOR, 0)?, given.scalar(&NEAREST_ALPHA, 0)?);
     let (mask, depth) = (given.count(&NEAREST_MASK, 0)?, given.scalar(&DEPTH, 0)?);
     let normal = given.triple(&NORMAL, 0)?;

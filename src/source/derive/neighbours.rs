@@ -1,13 +1,14 @@
-//! The k nearest neighbours of every point, exactly and in a fixed order.
+//! Find the k nearest neighbours of every point, exactly and in a fixed order.
 //!
-//! By the k-d tree of [`crate::index::point_tree`]: unlike a grid it does not care how unevenly the
-//! points are spread.
+//! The search uses the k-d tree of [`crate::index::point_tree`], because, unlike a grid, its speed
+//! does not depend on how evenly the points are spread.
 
 use crate::frame::Exec;
 use crate::index::point_tree::{Entry, PointTree, Search};
 use glam::Vec3;
 
-/// Ranges up to this length are searched through: so few points cost less than a branch for each.
+/// Ranges up to this length are searched linearly, because that costs less than a branch for each
+/// point.
 const LEAF: usize = 8;
 /// Points between two reports of progress, and points of one parallel job.
 const BATCH: usize = 1 << 16;
@@ -19,26 +20,27 @@ pub(super) struct Neighbours {
     tree: PointTree,
 }
 
-/// A point and how far it is.
+/// A neighbour and its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Neighbour {
     /// `(dx^2 + dy^2) + dz^2` in f64.
     pub(super) distance2: f64,
-    /// Its index.
+    /// The index of the neighbour.
     pub(super) id: u32,
 }
 
 impl Neighbours {
-    /// Of fewer than 2^32 finite points.
+    /// Needs fewer than 2^32 finite points.
     pub(super) fn new(points: &[Vec3], exec: &Exec) -> Self {
         Self { tree: PointTree::new(points, LEAF, exec) }
     }
 
-    /// `f(id, neighbours)` for every point, in the order of the ids.
+    /// Computes `f(id, neighbours)` for every point; results are in the order of the ids.
     ///
     /// The neighbours are the `k` other points, or all if there are fewer, with the smallest
-    /// (squared distance, index), ascending; both are exact properties of the points, so that the
-    /// tree and the threads leave no trace. `progress` gets points done and points in all.
+    /// (squared distance, index), in ascending order. Both are exact properties of the points, so
+    /// that neither the tree nor the threads change the result. `progress` gets the points done and
+    /// the total.
     pub(super) fn map<T: Copy + Default + Send>(
         &self,
         exec: &Exec,
@@ -89,7 +91,7 @@ struct Nearest<'a> {
 }
 
 impl Nearest<'_> {
-    /// No point farther than this is of interest.
+    /// Points farther away than this are not needed.
     fn reach(&self) -> f64 {
         match self.found.last() {
             Some(last) if self.found.len() == self.k => last.distance2,
@@ -117,7 +119,7 @@ impl Search for Nearest<'_> {
 
     #[inline]
     fn reaches(&self, offset: [f64; 3]) -> bool {
-        // At the same distance a lower index may still win.
+        // Search at equal distance too, because a lower index wins.
         length2(offset) <= self.reach()
     }
 }

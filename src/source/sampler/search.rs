@@ -1,13 +1,14 @@
-//! The search of the point that is nearest, by squared distances of [`super::greedy`].
+//! Search for the nearest point, by the squared distances of [`super::greedy`].
 
 use super::greedy::squared_distance;
 use crate::index::point_tree::{PointTree, Search};
 use glam::Vec3;
 
-/// Ranges of the tree of at most so many points are searched one by one.
+/// Ranges of the tree with at most this many points are searched linearly.
 pub(super) const LEAF: usize = 8;
 
-/// A squared distance, and the index of the point that is so far: the lower index of equal distances.
+/// A squared distance, and the index of the point at this distance. Of equal distances the lower
+/// index wins.
 pub(super) type Found = (f32, u32);
 
 /// Whether a search within this squared distance reaches points that are so far along each axis.
@@ -18,17 +19,17 @@ pub(super) fn is_within([x, y, z]: [f64; 3], reach2: f32) -> bool {
     (x * x + y * y) + z * z <= reach2
 }
 
-/// The search of the point of a tree that is nearest to a place.
+/// The search for the point of a tree that is nearest to a place.
 struct Nearest<'a> {
     tree: &'a PointTree,
     point: Vec3,
-    /// The point that does not count.
+    /// The index of a point to ignore.
     own: u32,
     found: Found,
 }
 
-/// The point nearest to a place, but for one that does not count; or what is found already if that is
-/// nearer, or as near and of a lower index.
+/// The point nearest to a place, except the point `own`; or `found` if that is nearer, or as near with
+/// a lower index.
 pub(super) fn nearest(tree: &PointTree, point: Vec3, own: u32, found: Found) -> Found {
     let mut nearest = Nearest { tree, point, own, found };
     tree.search(point, &mut nearest);

@@ -27,7 +27,7 @@ pub use page::{Files, PICTURES, outcome, page};
 use crate::error::Result;
 use crate::frame::{Exec, Plane};
 use crate::io::scene_file::SceneFile;
-use crate::method::stored::{Buffers, DepthBuffer, Formats};
+use crate::method::buffer_formats::{Buffers, DepthBuffer, Formats};
 use crate::progress::Progress;
 use crate::source::Shape;
 use subject::Subject;

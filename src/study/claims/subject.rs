@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Exec, Frame, Plane};
 use crate::index::grouping::{Extended, Extension, Grouping, Rules};
 use crate::io::scene_file::{CameraChoice, Ready, SceneFile};
-use crate::method::stored::Formats;
+use crate::method::buffer_formats::Formats;
 use crate::method::{Method, Session};
 use crate::scene::{Camera, Cloud, Groups, Scene, Similarity, Surfels};
 use crate::study::run::cameras::shifted;
@@ -141,7 +141,7 @@ impl<'e> Subject<'e> {
             return self.reference(method, groups);
         }
         kept(&self.pictures, (method, groups.copied(), self.formats), || {
-            self.session(method, groups)?.stored_planes(&self.camera, self.formats)
+            self.session(method, groups)?.emulate_planes(&self.camera, self.formats)
         })
     }
 

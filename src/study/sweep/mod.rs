@@ -39,7 +39,7 @@ pub struct Candidate {
     pub file: SceneFile,
     /// Whether it is tried in scenes with opacities alone.
     pub needs_opacity: bool,
-    /// Whether it imitates [formats](crate::method::stored) that the scene does not ask for: its errors are those of
+    /// Whether it imitates [formats](crate::method::buffer_formats) that the scene does not ask for: its errors are those of
     /// a GPU that has them, its times are of no use.
     pub imitates: bool,
 }

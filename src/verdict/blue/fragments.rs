@@ -14,12 +14,12 @@ use crate::splat::View;
 use crate::verdict::checks::Surface;
 use crate::verdict::marks::counted;
 use crate::verdict::projection::AllPolygons;
-use crate::verdict::shift::{CUT_OFF, Open};
+use crate::verdict::shift::{CUT_OFF, OpenDecision};
 use std::ops::Range;
 
 /// A fragment that may lie in a pixel.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct May<P: Profile> {
+pub(super) struct PossibleFragment<P: Profile> {
     pub(super) id: u32,
     pub(super) depth: Ball<P>,
     pub(super) offset: Ball<P>,
@@ -30,7 +30,7 @@ pub(super) struct May<P: Profile> {
     /// Whether its surfel certainly is drawn, somewhere.
     pub(super) drawn: bool,
     /// Whether it is inside its disc, if that and nothing else is undecided.
-    pub(super) open: Option<Open>,
+    pub(super) open: Option<OpenDecision>,
     /// Whether the back of its surfel is seen.
     pub(super) back: Three,
     /// What a triangle shows; that of a surfel is known.
@@ -86,8 +86,8 @@ impl<'a, P: Profile> Fragments<'a, P> {
         &self,
         (tile, rect): (usize, &Rect),
         keeps: impl Fn((u32, u32)) -> u32,
-    ) -> Vec<Vec<May<P>>> {
-        let mut found: Vec<Vec<May<P>>> = counted(*rect).map(|_| Vec::new()).collect();
+    ) -> Vec<Vec<PossibleFragment<P>>> {
+        let mut found: Vec<Vec<PossibleFragment<P>>> = counted(*rect).map(|_| Vec::new()).collect();
         for (possible, bins) in &self.surfels {
             bins.for_each(tile, |i| {
                 let one = &possible[i as usize];
@@ -99,7 +99,7 @@ impl<'a, P: Profile> Fragments<'a, P> {
         }
         if let Some(triangles) = &self.triangles {
             for (own, found) in triangles.fragments((tile, rect)).iter().zip(&mut found) {
-                found.extend(own.iter().map(|one| May {
+                found.extend(own.iter().map(|one| PossibleFragment {
                     id: self.scene.surfels.len() as u32 + one.index,
                     depth: one.depth,
                     offset: Ball::ZERO,
@@ -118,12 +118,13 @@ impl<'a, P: Profile> Fragments<'a, P> {
             }
         }
         for ((_, at), found) in counted(*rect).zip(&mut found) {
-            let most = |may: &May<P>| may.depth.middle + may.depth.radius;
+            let most = |may: &PossibleFragment<P>| may.depth.middle + may.depth.radius;
             let lying = found.iter().filter(|may| may.lies);
             let front = lying.copied().reduce(|a, b| if most(&b) < most(&a) { b } else { a });
             if let Some(front) = front {
                 let own = keeps(at);
-                let behind = |may: &May<P>| decide::before(front.depth, may.depth).certainly();
+                let behind =
+                    |may: &PossibleFragment<P>| decide::before(front.depth, may.depth).certainly();
                 found.retain(|may| may.id == own || !behind(may));
             }
         }
@@ -131,7 +132,7 @@ impl<'a, P: Profile> Fragments<'a, P> {
     }
 
     /// The fragment of a surfel at a pixel, if it may lie there.
-    fn fragment(&self, one: &Possible<P>, (x, y): (u32, u32)) -> Option<May<P>> {
+    fn fragment(&self, one: &Possible<P>, (x, y): (u32, u32)) -> Option<PossibleFragment<P>> {
         let PlacedSquare { edges, disc, .. } = &one.placed;
         let within = in_square(edges, (x, y));
         if !within.possibly() {
@@ -150,14 +151,14 @@ impl<'a, P: Profile> Fragments<'a, P> {
         let depth = narrower(fragment.t, Ball::new(-disc.p.z.middle, reach));
         let most = 0.5 * limit * (1.0 + ROUNDINGS) + f64::from(f32::MIN_POSITIVE);
         let offset = narrower(fragment.offset, Ball::new(0.5 * limit, most));
-        (within & holds).possibly().then(|| May {
+        (within & holds).possibly().then(|| PossibleFragment {
             id: one.surfel,
             depth,
             offset,
             rim: fragment.offset.middle / limit,
             lies: one.drawn && (within & holds).certainly(),
             drawn: one.drawn,
-            open: open.then(|| Open {
+            open: open.then(|| OpenDecision {
                 surfel: one.surfel,
                 limit: Some(CUT_OFF),
                 distance: (disc.limit.middle - fragment.offset.middle) / disc.limit.middle,
@@ -169,7 +170,7 @@ impl<'a, P: Profile> Fragments<'a, P> {
     }
 
     /// What a pixel shows of a fragment, seen from the front or from the back.
-    pub(super) fn surfaces(&self, may: &May<P>) -> [Option<Surface<P>>; 2] {
+    pub(super) fn surfaces(&self, may: &PossibleFragment<P>) -> [Option<Surface<P>>; 2] {
         if may.triangle.is_some() {
             return [may.triangle, None];
         }

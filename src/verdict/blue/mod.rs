@@ -45,10 +45,10 @@ use crate::scene::Surfels;
 use crate::verdict::checks::{Report, Shading, Surface, least_wrong};
 use crate::verdict::client::Client;
 use crate::verdict::marks::{self, Counts, Marks, PixelMarks, counted};
-use crate::verdict::shift::Told;
+use crate::verdict::shift::ShiftSums;
 use crate::verdict::{Check, Doubt, Fault, Verdict};
-use fragments::{Fragments, May};
-use planes::{BluePlanes, Says};
+use fragments::{Fragments, PossibleFragment};
+use planes::{BluePlanes, PixelContent};
 
 /// Judges the planes of a client.
 pub(super) fn verify<P: Profile>(
@@ -57,9 +57,9 @@ pub(super) fn verify<P: Profile>(
     client: &Client,
     budget: f64,
 ) -> Verdict {
-    let handed = BluePlanes::new(client);
-    let judge = Judge::<P>::new(job, settings, &handed);
-    marks::verdict(job, handed.stages(), budget, |tile, marks| judge.judge(tile, marks))
+    let client_planes = BluePlanes::new(client);
+    let judge = Judge::<P>::new(job, settings, &client_planes);
+    marks::verdict(job, client_planes.stages(), budget, |tile, marks| judge.judge(tile, marks))
 }
 
 /// Everything that is judged at one pixel.
@@ -69,43 +69,43 @@ pub(super) fn checks<P: Profile>(
     client: &Client,
     pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
-    let handed = BluePlanes::new(client);
-    let judge = Judge::<P>::new(job, settings, &handed);
-    let stages = handed.stages().map(|(stage, _)| stage);
+    let client_planes = BluePlanes::new(client);
+    let judge = Judge::<P>::new(job, settings, &client_planes);
+    let stages = client_planes.stages().map(|(stage, _)| stage);
     marks::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
 /// What all tiles share.
 struct Judge<'a, P: Profile> {
     surfels: &'a Surfels,
-    handed: &'a BluePlanes<'a>,
+    client_planes: &'a BluePlanes<'a>,
     fragments: Fragments<'a, P>,
     shading: Shading<'a, P>,
 }
 
 /// What an id tells of a fragment whose cut-off alone is undecided: of one that is in front of all others that may lie
 /// there, so that it is seen if it is inside, and only then. An empty pixel tells that it is not.
-fn tell<P: Profile>(id: u32, all: &[May<P>], told: &mut Told) {
-    let in_front = |may: &May<P>| {
+fn tell<P: Profile>(id: u32, all: &[PossibleFragment<P>], shifts: &mut ShiftSums) {
+    let in_front = |may: &PossibleFragment<P>| {
         let mut others = all.iter().filter(|other| other.id != may.id);
         others.all(|other| decide::before(may.depth, other.depth).certainly())
     };
     for may in all.iter().filter(|may| in_front(may)) {
         if let Some(open) = &may.open {
-            told.take(open, id == may.id);
+            shifts.take(open, id == may.id);
         }
     }
 }
 
 /// What a pixel shows.
-struct Shown<P: Profile> {
+struct PixelSurface<P: Profile> {
     id: u32,
     offset: Ball<P>,
     surface: Surface<P>,
     weight: Ball<P>,
 }
 
-impl<P: Profile> Shown<P> {
+impl<P: Profile> PixelSurface<P> {
     const EMPTY: Self = Self {
         id: NO_ID,
         offset: Ball::ZERO,
@@ -120,10 +120,10 @@ impl<P: Profile> Shown<P> {
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
-    fn new(job: &Job<'a>, settings: &Settings, handed: &'a BluePlanes<'a>) -> Self {
+    fn new(job: &Job<'a>, settings: &Settings, client_planes: &'a BluePlanes<'a>) -> Self {
         Self {
             surfels: &job.scene.surfels,
-            handed,
+            client_planes,
             fragments: Fragments::new(job, settings.cull),
             shading: Shading::new(job, Has::of(job.scene).color),
         }
@@ -132,13 +132,13 @@ impl<'a, P: Profile> Judge<'a, P> {
     /// Marks what is wrong at the pixels of a rectangle in a tile.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
         let mut counts = Counts::default();
-        let all = self.fragments.of_tile((tile, &rect), |at| self.handed.id(at));
+        let all = self.fragments.of_tile((tile, &rect), |at| self.client_planes.id(at));
         for ((pixel, at), own) in counted(rect).zip(&all) {
             let doubts = self.judge_pixel((pixel, at), own, marks);
             counts.covered += u64::from(!own.is_empty());
             counts.undecided += u64::from(doubts & Doubt::OF_SUMS != 0);
-            if self.handed.id.is_some() {
-                tell(self.handed.id(at), own, &mut counts.told);
+            if self.client_planes.id.is_some() {
+                tell(self.client_planes.id(at), own, &mut counts.shifts);
             }
         }
         counts
@@ -148,17 +148,18 @@ impl<'a, P: Profile> Judge<'a, P> {
     fn judge_pixel(
         &self,
         (pixel, at): (usize, (u32, u32)),
-        all: &[May<P>],
+        all: &[PossibleFragment<P>],
         marks: &mut [Marks; 2],
     ) -> u8 {
-        let says = self.handed.says(at);
+        let says = self.client_planes.says(at);
         // Of all that lies that whose greatest depth is least.
         let front = all.iter().filter(|may| may.lies).reduce(|front, may| {
-            let most = |may: &May<P>| may.depth.middle + may.depth.radius;
+            let most = |may: &PossibleFragment<P>| may.depth.middle + may.depth.radius;
             if most(may) < most(front) { may } else { front }
         });
         let shown = self.may_show(says, all, front);
-        let check = |shown: &Shown<P>, report: &mut Report<'_>| self.check(at, shown, report);
+        let check =
+            |shown: &PixelSurface<P>, report: &mut Report<'_>| self.check(at, shown, report);
         let best = least_wrong::<_, 2>(&shown, check);
         if let Some(best) = best {
             check(best, &mut |part, error, fault| marks[part].at(pixel).found(error, fault));
@@ -167,14 +168,14 @@ impl<'a, P: Profile> Judge<'a, P> {
         if best.is_none() {
             discs.found(f64::INFINITY, || self.absent(says, at));
         }
-        let depth = self.handed.depth.map(|plane| plane.ball(at));
+        let depth = self.client_planes.depth.map(|plane| plane.ball(at));
         let depth = depth.or(best.map(|best| best.surface.depth)).unwrap_or(Ball::INFINITY);
         let id = match says {
-            Says::Id(id) => id,
+            PixelContent::Id(id) => id,
             _ => best.map_or(NO_ID, |best| best.id),
         };
-        let before = |front: &&May<P>| {
-            says != Says::Nothing
+        let before = |front: &&PossibleFragment<P>| {
+            says != PixelContent::Nothing
                 && front.id != id
                 && decide::before(front.depth, depth).certainly()
         };
@@ -183,7 +184,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             let (surfel, depth, found) = (front.id, front.depth.middle, depth.middle);
             discs.found(error, || Fault::LeftOut { surfel, rim, depth, found });
         }
-        if let Says::Id(id) = says {
+        if let PixelContent::Id(id) = says {
             self.judge_ties(id, all, &mut discs);
         }
         let doubts = doubts(id, depth, all);
@@ -192,27 +193,32 @@ impl<'a, P: Profile> Judge<'a, P> {
     }
 
     /// All that a pixel may show.
-    fn may_show(&self, says: Says, all: &[May<P>], front: Option<&May<P>>) -> Vec<Shown<P>> {
-        let hidden = |may: &May<P>| {
+    fn may_show(
+        &self,
+        says: PixelContent,
+        all: &[PossibleFragment<P>],
+        front: Option<&PossibleFragment<P>>,
+    ) -> Vec<PixelSurface<P>> {
+        let hidden = |may: &PossibleFragment<P>| {
             front.is_some_and(|front| decide::before(front.depth, may.depth).certainly())
         };
-        let takes = |may: &May<P>| match says {
-            Says::Empty => false,
-            Says::Id(id) => id == may.id,
-            Says::Some => self.handed.depth.is_some() || !hidden(may),
-            Says::Nothing => !hidden(may),
+        let takes = |may: &PossibleFragment<P>| match says {
+            PixelContent::Empty => false,
+            PixelContent::Id(id) => id == may.id,
+            PixelContent::Some => self.client_planes.depth.is_some() || !hidden(may),
+            PixelContent::Nothing => !hidden(may),
         };
         let mut shown: Vec<_> =
             all.iter().filter(|may| takes(may)).flat_map(|may| self.shown(may)).collect();
-        if says == Says::Empty || (says == Says::Nothing && front.is_none()) {
-            shown.push(Shown::EMPTY);
+        if says == PixelContent::Empty || (says == PixelContent::Nothing && front.is_none()) {
+            shown.push(PixelSurface::EMPTY);
         }
         shown
     }
 
     /// What a pixel shows of a fragment: one, or that of either side.
-    fn shown(&self, may: &May<P>) -> impl Iterator<Item = Shown<P>> {
-        self.fragments.surfaces(may).into_iter().flatten().map(|surface| Shown {
+    fn shown(&self, may: &PossibleFragment<P>) -> impl Iterator<Item = PixelSurface<P>> {
+        self.fragments.surfaces(may).into_iter().flatten().map(|surface| PixelSurface {
             id: may.id,
             offset: may.offset,
             surface,
@@ -221,35 +227,36 @@ impl<'a, P: Profile> Judge<'a, P> {
     }
 
     /// Every plane at a pixel against what it may show.
-    fn check(&self, at: (u32, u32), shown: &Shown<P>, report: &mut Report<'_>) {
-        self.handed.check(at, shown, report);
-        let surface = self.handed.surface(at, &shown.surface);
-        self.handed.check_picture(at, self.shading.color(at, &surface), report);
-        let alpha = self.shading.alpha(self.handed.seen(at, shown.weight));
-        self.handed.check_alpha(at, alpha, report);
+    fn check(&self, at: (u32, u32), shown: &PixelSurface<P>, report: &mut Report<'_>) {
+        self.client_planes.check(at, shown, report);
+        let surface = self.client_planes.surface(at, &shown.surface);
+        self.client_planes.check_picture(at, self.shading.color(at, &surface), report);
+        let alpha = self.shading.alpha(self.client_planes.seen(at, shown.weight));
+        self.client_planes.check_alpha(at, alpha, report);
     }
 
     /// What is wrong where nothing that the client says may lie.
-    fn absent(&self, says: Says, at: (u32, u32)) -> Fault {
+    fn absent(&self, says: PixelContent, at: (u32, u32)) -> Fault {
         match says {
-            Says::Id(surfel) => match self.fragments.rim(surfel, at) {
+            PixelContent::Id(surfel) => match self.fragments.rim(surfel, at) {
                 Some(rim) => Fault::Outside { surfel, rim },
                 None => Fault::Absent { surfel },
             },
             _ => {
-                let found = self.handed.depth.map_or(f64::NAN, |plane| *plane.plane.at(at.0, at.1));
+                let found =
+                    self.client_planes.depth.map_or(f64::NAN, |plane| *plane.plane.at(at.0, at.1));
                 Fault::NoSuchDepth { found, closest: f64::INFINITY }
             }
         }
     }
 
     /// Whether a surfel is exactly as near as that of the client, and comes before it.
-    fn judge_ties(&self, found: u32, all: &[May<P>], pixel: &mut PixelMarks<'_>) {
+    fn judge_ties(&self, found: u32, all: &[PossibleFragment<P>], pixel: &mut PixelMarks<'_>) {
         let Some(own) = all.iter().find(|may| may.id == found) else { return };
         let count = self.surfels.len();
         for may in all.iter().filter(|may| may.lies && (may.id as usize) < count) {
             let surfel = may.id;
-            let first = self.handed.ties.keeps(surfel, found);
+            let first = self.client_planes.ties.keeps(surfel, found);
             let exact =
                 may.depth.middle == own.depth.middle && may.depth.radius + own.depth.radius == 0.0;
             let equal = || (found as usize) < count && self.surfels.are_equal(surfel, found);
@@ -261,7 +268,7 @@ impl<'a, P: Profile> Judge<'a, P> {
 }
 
 /// What is not certain of a pixel in which the client has this, at this depth.
-fn doubts<P: Profile>(id: u32, depth: Ball<P>, all: &[May<P>]) -> u8 {
+fn doubts<P: Profile>(id: u32, depth: Ball<P>, all: &[PossibleFragment<P>]) -> u8 {
     let mut doubts = 0;
     for may in all {
         let nearer = decide::before(may.depth, depth);

@@ -1,31 +1,31 @@
 //! The planes that a client has handed in.
 
-use super::Shown;
+use super::PixelSurface;
 use crate::frame::NO_ID;
 use crate::method::Holds;
 use crate::method::blue::planes::{COLOR, ID, NORMAL, OFFSET, WEIGHT};
-use crate::method::resolved::{ALPHA, DEPTH, SHADED};
+use crate::method::surface::{ALPHA, DEPTH, SHADED};
 use crate::number::Ball;
 use crate::number::ball::Profile;
 use crate::verdict::checks::{Report, Surface, number, triple, whole};
-use crate::verdict::client::{Client, Stored, Ties};
+use crate::verdict::client::{Client, StoredPlane, Ties};
 
 /// The planes, each if it is there.
 pub(super) struct BluePlanes<'a> {
     pub(super) ties: Ties,
-    color: Option<Stored<'a, [f64; 3]>>,
-    offset: Option<Stored<'a, f64>>,
-    pub(super) depth: Option<Stored<'a, f64>>,
-    normal: Option<Stored<'a, [f64; 3]>>,
-    weight: Option<Stored<'a, f64>>,
-    pub(super) id: Option<Stored<'a, u32>>,
-    shaded: Option<Stored<'a, [f64; 3]>>,
-    alpha: Option<Stored<'a, f64>>,
+    color: Option<StoredPlane<'a, [f64; 3]>>,
+    offset: Option<StoredPlane<'a, f64>>,
+    pub(super) depth: Option<StoredPlane<'a, f64>>,
+    normal: Option<StoredPlane<'a, [f64; 3]>>,
+    weight: Option<StoredPlane<'a, f64>>,
+    pub(super) id: Option<StoredPlane<'a, u32>>,
+    shaded: Option<StoredPlane<'a, [f64; 3]>>,
+    alpha: Option<StoredPlane<'a, f64>>,
 }
 
 /// What a client says is in a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Says {
+pub(super) enum PixelContent {
     /// It gives neither id, nor depth, nor weight.
     Nothing,
     Empty,
@@ -67,16 +67,16 @@ impl<'a> BluePlanes<'a> {
     }
 
     /// What a pixel is said to have.
-    pub(super) fn says(&self, at: (u32, u32)) -> Says {
-        let some = |there: bool| if there { Says::Some } else { Says::Empty };
+    pub(super) fn says(&self, at: (u32, u32)) -> PixelContent {
+        let some = |there: bool| if there { PixelContent::Some } else { PixelContent::Empty };
         match (self.id, self.depth, self.weight) {
             (Some(ids), ..) => match *ids.plane.at(at.0, at.1) {
-                NO_ID => Says::Empty,
-                id => Says::Id(id),
+                NO_ID => PixelContent::Empty,
+                id => PixelContent::Id(id),
             },
             (_, Some(depths), _) => some(*depths.plane.at(at.0, at.1) != f64::INFINITY),
             (_, _, Some(weights)) => some(*weights.plane.at(at.0, at.1) != 0.0),
-            _ => Says::Nothing,
+            _ => PixelContent::Nothing,
         }
     }
 
@@ -89,7 +89,7 @@ impl<'a> BluePlanes<'a> {
     pub(super) fn check<P: Profile>(
         &self,
         at: (u32, u32),
-        shown: &Shown<P>,
+        shown: &PixelSurface<P>,
         report: &mut Report<'_>,
     ) {
         if let Some(plane) = &self.id {

@@ -69,9 +69,9 @@
 //! - A client that goes on from other numbers than it stores, as a picture in f64 that is rounded once in the
 //!   end, may not promise `ieee`: what its planes say of one stage is not what the next was given.
 
-mod handed;
+mod client_planes;
 mod polygons;
-mod selected;
+mod selection;
 #[cfg(test)]
 mod tests;
 
@@ -92,15 +92,15 @@ use crate::scene::Surfels;
 use crate::verdict::checks::anything;
 use crate::verdict::client::Client;
 use crate::verdict::ewa::certificate::{self, Nearest, Other};
-use crate::verdict::ewa::handed::Handed;
+use crate::verdict::ewa::client_planes::ClientPlanes;
 use crate::verdict::ewa::pixel::PixelJudge;
 use crate::verdict::ewa::sums::{self, Continuations};
 use crate::verdict::ewa::swift::{self, SwiftSplats};
-use crate::verdict::marks::{Counts, Found, Marks, StageMarks, Watch, counted};
+use crate::verdict::marks::{Counts, Marks, MethodMarks, StageMarks, Watch, counted};
 use crate::verdict::projection::{AllPossible, SamplePlanes};
-use crate::verdict::shift::Told;
+use crate::verdict::shift::ShiftSums;
 use crate::verdict::{Check, Doubt, Verdict};
-use polygons::{Beside, Ground, Polygons, front};
+use polygons::{Ground, PolygonTile, Polygons, front};
 
 /// Judges the planes of a client, whose ids are ranks: how many ids are less.
 ///
@@ -113,8 +113,8 @@ pub(super) fn verify<P: Profile>(
     budget: f64,
 ) -> Result<Verdict> {
     let (found, counts) = judge::<P>(job, settings, client, Watch::All)?;
-    let Counts { covered, undecided, told } = counts;
-    Ok(Verdict::new(found.judged(job), [covered, undecided], budget, told.shifts()))
+    let Counts { covered, undecided, shifts } = counts;
+    Ok(Verdict::new(found.stage_verdicts(job), [covered, undecided], budget, shifts.sums()))
 }
 
 /// Everything that is judged at one pixel.
@@ -133,7 +133,7 @@ fn judge<P: Profile>(
     settings: &Settings,
     client: &Client,
     watch: Watch,
-) -> Result<(Found<4>, Counts)> {
+) -> Result<(MethodMarks<4>, Counts)> {
     let (whole, before) = whole(job, settings)?;
     let ground = Ground::new(job, &whole)?;
     let cull = settings.splats.cull;
@@ -147,7 +147,7 @@ fn judge<P: Profile>(
     let flagged = flagged.into_iter().filter(|&id| scene.draws(id));
     let flagged: Vec<_> = flagged.filter_map(|id| Some((scene.rank(id)?, true))).collect();
 
-    let first = handed::visibility(client);
+    let first = client_planes::visibility(client);
     let (visible, visibility) = scene.visible(&flagged, &first, watch);
     let epsilon = scene.epsilon();
     let limits = visible.map(|nearest| decide::limit(nearest.depth, epsilon));
@@ -163,26 +163,26 @@ fn judge<P: Profile>(
         drawn.extend(selected.iter().filter(|one| unseen(one)));
         drawn.sort_unstable();
     }
-    let handed = handed::rest(client, settings);
-    let of_polygons = handed::of_polygons(client, &handed);
-    let judge = Rest {
+    let client_planes = client_planes::rest(client, settings);
+    let of_polygons = client_planes::of_polygons(client, &client_planes);
+    let judge = LaterPasses {
         drawn: scene.splats(&drawn),
         chosen: scene.splats(&selected),
-        pixels: PixelJudge::of_surfels(job, scene.surfels(), &handed),
+        pixels: PixelJudge::of_surfels(job, scene.surfels(), &client_planes),
         without_sums: of_polygons.no_sums(),
         polygons: PixelJudge::of_surfels(job, scene.surfels(), &of_polygons),
         ground: scene.ground,
-        handed: &handed,
-        picture: (!settings.second).then(|| handed::picture(client)),
+        client_planes: &client_planes,
+        picture: (!settings.second).then(|| client_planes::picture(client)),
         surfels: scene.surfels(),
         visible: &visible,
     };
     let (tiles, counts) = judge.tiles(job.exec, watch.parts(&job.grid()), watch);
     let [(_, names), ..] = first.stages();
     let levels = vec![("visibility", names, visibility), indices];
-    let [nearest, sums, averages, shading] = handed.stages();
+    let [nearest, sums, averages, shading] = client_planes.stages();
     let stages = [("difference", nearest.1), sums, averages, shading];
-    Ok((Found { levels, stages, tiles }, counts))
+    Ok((MethodMarks { levels, stages, tiles }, counts))
 }
 
 /// Bytes of a surfel that pass 1 draws, in its place and projected in balls; once more in pass 3.
@@ -228,12 +228,12 @@ impl<'a, P: Profile> Scenery<'a, P> {
     fn visible(
         &self,
         flagged: &[(u32, bool)],
-        handed: &Handed<'_>,
+        client_planes: &ClientPlanes<'_>,
         watch: Watch,
     ) -> (Tiled<Nearest<P>>, Marks) {
         let (job, splats) = (self.job, self.splats(flagged));
         let judge = |(tile, rect): (usize, Rect), mut marks: Marks| {
-            let given = (handed, self.surfels());
+            let given = (client_planes, self.surfels());
             let others = beside(self.ground, (tile, &rect)).others;
             let found =
                 certificate::judge_among(&splats, &others, given, (tile, &rect), &mut marks);
@@ -274,27 +274,27 @@ impl<'a, P: Profile> Scenery<'a, P> {
         };
         let total = self.flat.ids().len() as u64;
         let selected = match client.index(&CENTRE_ID) {
-            Some(stored) => selected::listed(stored.plane, total),
-            None => selected::possible(&job, &points, &planes, total),
+            Some(stored) => selection::listed(stored.plane, total),
+            None => selection::possible(&job, &points, &planes, total),
         };
         (("indices", names, marks), selected)
     }
 }
 
 /// What polygons may leave in a tile.
-fn beside<P: Profile>(ground: Option<&Polygons<'_, P>>, tile: (usize, &Rect)) -> Beside<P> {
-    ground.map_or(Beside::NOTHING, |ground| ground.beside(tile))
+fn beside<P: Profile>(ground: Option<&Polygons<'_, P>>, tile: (usize, &Rect)) -> PolygonTile<P> {
+    ground.map_or(PolygonTile::NOTHING, |ground| ground.beside(tile))
 }
 
 /// What the tiles of the passes after the selection share.
-struct Rest<'a, P: Profile> {
+struct LaterPasses<'a, P: Profile> {
     /// The surfels of passes 1 and 3.
     drawn: SwiftSplats<P>,
     /// B(i).
     chosen: SwiftSplats<P>,
-    handed: &'a Handed<'a>,
+    client_planes: &'a ClientPlanes<'a>,
     /// Depth and id of the picture, if these may be those of pass 4: with `second` off.
-    picture: Option<Handed<'a>>,
+    picture: Option<ClientPlanes<'a>>,
     surfels: &'a Surfels,
     pixels: PixelJudge<'a, P>,
     /// Whether the client has no plane of the sums.
@@ -306,7 +306,7 @@ struct Rest<'a, P: Profile> {
     visible: &'a Tiled<Nearest<P>>,
 }
 
-impl<P: Profile> Rest<'_, P> {
+impl<P: Profile> LaterPasses<'_, P> {
     fn tiles(
         &self,
         exec: &Exec,
@@ -333,7 +333,7 @@ impl<P: Profile> Rest<'_, P> {
         let nearest = self.nearest((tile, &rect), &beside, first);
         let sums =
             sums::continuations(&self.chosen, self.surfels, &nearest, (tile, &rect), &mut rest[0]);
-        let (mut covered, mut told) = (0, Told::default());
+        let (mut covered, mut shifts) = (0, ShiftSums::default());
         for (pixel, at) in counted(rect) {
             let sums = sums.of(pixel);
             let others = beside.others(pixel);
@@ -346,23 +346,23 @@ impl<P: Profile> Rest<'_, P> {
             }
             let taken = self.pixels.judge((pixel, at), &shown, &sums, rest);
             if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
-                told.take_all(open, taken);
+                shifts.take_all(open, taken);
             }
         }
-        Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS), told }
+        Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS), shifts }
     }
 
     /// The nearest fragments that pass 3 has left.
     fn nearest(
         &self,
         (tile, rect): (usize, &Rect),
-        beside: &Beside<P>,
+        beside: &PolygonTile<P>,
         marks: &mut Marks,
     ) -> Vec<Nearest<P>> {
-        if self.picture.is_some() && self.handed.nothing() {
+        if self.picture.is_some() && self.client_planes.nothing() {
             return counted(*rect).map(|(_, (x, y))| *self.visible.at(x, y)).collect();
         }
-        let given = (self.handed, self.surfels);
+        let given = (self.client_planes, self.surfels);
         certificate::judge_among(&self.drawn, &beside.others, given, (tile, rect), marks)
     }
 

@@ -1,6 +1,6 @@
 //! Polygons of a client: what may be nearest beside splats, and what a pixel may show in their place.
 
-use super::Rest;
+use super::LaterPasses;
 use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::{NO_ID, Rect};
@@ -39,12 +39,12 @@ pub(super) struct Polygons<'a, P: Profile> {
 }
 
 /// What polygons may leave in the pixels of a tile; nothing of a scene without.
-pub(super) struct Beside<P: Profile> {
+pub(super) struct PolygonTile<P: Profile> {
     surfaces: Vec<Vec<Surface<P>>>,
     pub(super) others: Vec<Vec<Other<P>>>,
 }
 
-impl<P: Profile> Beside<P> {
+impl<P: Profile> PolygonTile<P> {
     pub(super) const NOTHING: Self = Self { surfaces: Vec::new(), others: Vec::new() };
 
     /// The others at a pixel.
@@ -62,8 +62,8 @@ impl<'a, P: Profile> Polygons<'a, P> {
     }
 
     /// What may lie in the pixels of a tile.
-    pub(super) fn beside(&self, tile: (usize, &Rect)) -> Beside<P> {
-        let mut found = Beside { surfaces: Vec::new(), others: Vec::new() };
+    pub(super) fn beside(&self, tile: (usize, &Rect)) -> PolygonTile<P> {
+        let mut found = PolygonTile { surfaces: Vec::new(), others: Vec::new() };
         for fragments in self.all.fragments(tile) {
             let drawn: Vec<_> = fragments.iter().map(|fragment| self.surface(fragment)).collect();
             let other = |(fragment, surface): (&PossibleFragment<P>, &Surface<P>)| Other {
@@ -104,12 +104,12 @@ pub(super) fn front<P: Profile>(nearest: &Nearest<P>, others: &[Other<P>]) -> [b
     }
 }
 
-impl<P: Profile> Rest<'_, P> {
+impl<P: Profile> LaterPasses<'_, P> {
     /// Marks what is wrong at a pixel in which polygons may lie: of all that it may show by what errs least.
     pub(super) fn judge_beside(
         &self,
         (pixel, at): (usize, (u32, u32)),
-        beside: &Beside<P>,
+        beside: &PolygonTile<P>,
         nearest: &Nearest<P>,
         sums: &Continuations<P>,
         marks: &mut [Marks; 3],
@@ -138,7 +138,7 @@ impl<P: Profile> Rest<'_, P> {
     fn may_show<'s>(
         &self,
         (pixel, at): (usize, (u32, u32)),
-        beside: &Beside<P>,
+        beside: &PolygonTile<P>,
         nearest: &Nearest<P>,
         sums: &'s Continuations<P>,
     ) -> Vec<Shown<'s, P>> {

@@ -1,5 +1,5 @@
 //! The end of the band of visible fragments, where a client is supposed to take epsilon for something
-//! else than a depth: what [`signature`](crate::verdict::causes) tries.
+//! else than a depth: what [`crate::verdict::causes`] tries.
 
 use super::certificate::Nearest;
 use crate::frame::Rect;

@@ -1,6 +1,6 @@
 //! The visibility pass of a client: what may be the nearest fragment, and what certainly is not.
 
-use super::handed::Handed;
+use super::client_planes::ClientPlanes;
 use super::swift::{Fragment, SwiftSplat, SwiftSplats, each_fragment, least_nearness};
 use crate::composite::decide;
 use crate::frame::{NO_ID, Rect};
@@ -59,7 +59,7 @@ struct Claim<P: Profile> {
 pub(crate) fn judge_among<P: Profile>(
     splats: &SwiftSplats<P>,
     others: &[Vec<Other<P>>],
-    given: (&Handed<'_>, &Surfels),
+    given: (&ClientPlanes<'_>, &Surfels),
     tile: (usize, &Rect),
     marks: &mut Marks,
 ) -> Vec<Nearest<P>> {
@@ -77,7 +77,7 @@ pub(crate) fn judge_among<P: Profile>(
 /// What is asked of the nearest fragments of a tile: of every fragment that may be nearer
 /// ([`Certificate::meet`]), and then of what the client says ([`Certificate::end`]).
 pub(super) struct Certificate<'a, P: Profile> {
-    handed: &'a Handed<'a>,
+    client_planes: &'a ClientPlanes<'a>,
     surfels: &'a Surfels,
     others: &'a [Vec<Other<P>>],
     claims: Vec<Claim<P>>,
@@ -90,17 +90,17 @@ impl<'a, P: Profile> Certificate<'a, P> {
     pub(super) fn new(
         splats: &SwiftSplats<P>,
         others: &'a [Vec<Other<P>>],
-        (handed, surfels): (&'a Handed<'a>, &'a Surfels),
+        (client_planes, surfels): (&'a ClientPlanes<'a>, &'a Surfels),
         tile: (usize, &Rect),
     ) -> Self {
-        let mut claims = claims(splats, others, handed, tile);
+        let mut claims = claims(splats, others, client_planes, tile);
         bound_open(splats, &mut claims, tile);
         let least = |claim: &Claim<P>| match claim.open {
             true => f64::INFINITY,
             false => least_nearness(&splats.shared, claim.nearest.depth),
         };
         let least = claims.iter().map(least).collect();
-        Self { handed, surfels, others, claims, least }
+        Self { client_planes, surfels, others, claims, least }
     }
 
     /// What later passes work with.
@@ -126,16 +126,16 @@ impl<'a, P: Profile> Certificate<'a, P> {
         // A comparison that NaN fails.
         let farther = fragment.most_near() < self.least[pixel];
         if !(claim.open || farther || fragment.is_of(claim.nearest.id)) {
-            let (against, mut marks) = (Against { fragment, t }, marks.at(pixel));
+            let (against, mut marks) = (Rival { fragment, t }, marks.at(pixel));
             against.judge(claim, &mut marks);
-            against.judge_tie(claim, (self.handed.ties, self.surfels), &mut marks);
+            against.judge_tie(claim, (self.client_planes.ties, self.surfels), &mut marks);
         }
     }
 
     /// Judges what the client says, and others against it.
     pub(super) fn end(&self, marks: &mut Marks) {
         for (pixel, claim) in self.claims.iter().enumerate().filter(|(_, claim)| !claim.open) {
-            claim.judge(self.handed, &mut marks.at(pixel));
+            claim.judge(self.client_planes, &mut marks.at(pixel));
             others_of(self.others, pixel).iter().for_each(|other| {
                 other.judge(claim, &mut marks.at(pixel));
             });
@@ -151,7 +151,7 @@ fn bound_open<P: Profile>(splats: &SwiftSplats<P>, claims: &mut [Claim<P>], tile
     }
     let least = |pixel: usize| if open[pixel] { f64::NAN } else { f64::INFINITY };
     each_fragment(splats, tile, least, |fragment, pixel| {
-        Against { fragment, t: fragment.depth() }.bound(&mut claims[pixel].range);
+        Rival { fragment, t: fragment.depth() }.bound(&mut claims[pixel].range);
     });
     for claim in claims.iter_mut().filter(|claim| claim.open) {
         claim.nearest.depth = between(claim.range);
@@ -162,14 +162,14 @@ fn bound_open<P: Profile>(splats: &SwiftSplats<P>, claims: &mut [Claim<P>], tile
 fn claims<P: Profile>(
     splats: &SwiftSplats<P>,
     others: &[Vec<Other<P>>],
-    handed: &Handed<'_>,
+    client_planes: &ClientPlanes<'_>,
     (tile, rect): (usize, &Rect),
 ) -> Vec<Claim<P>> {
     let mut claims: Vec<Claim<P>> = pixels(*rect)
         .enumerate()
         .map(|(pixel, at)| {
-            let id = handed.id.map(|ids| *ids.plane.at(at.0, at.1));
-            let depth = handed.depth.map_or(Ball::INFINITY, |depth| depth.ball(at));
+            let id = client_planes.id.map(|ids| *ids.plane.at(at.0, at.1));
+            let depth = client_planes.depth.map_or(Ball::INFINITY, |depth| depth.ball(at));
             let nothing = depth.middle == f64::INFINITY && id.is_none_or(|id| id == NO_ID);
             let error = if nothing { 0.0 } else { f64::INFINITY };
             let mut claim = Claim {
@@ -177,20 +177,20 @@ fn claims<P: Profile>(
                 error,
                 closest: Ball::INFINITY,
                 outside: None,
-                open: handed.says_nothing(at),
+                open: client_planes.says_nothing(at),
                 range: [f64::INFINITY; 2],
             };
-            claim.meet_others(handed, others_of(others, pixel));
+            claim.meet_others(client_planes, others_of(others, pixel));
             claim
         })
         .collect();
     let shared = &splats.shared;
-    let has_depth = handed.depth.is_some();
+    let has_depth = client_planes.depth.is_some();
     let mut meet = |splat: &Splat<Ball<P>>, pixel: usize, at| {
         let (q, w) = fragment(shared, &splat.footprint, at);
         claims[pixel].meet(shared, q, w, has_depth);
     };
-    if let Some(ids) = handed.id {
+    if let Some(ids) = client_planes.id {
         // The pixels of each surfel, which are few of those in its bounds.
         let shown =
             pixels(*rect).enumerate().map(|(pixel, at)| (*ids.plane.at(at.0, at.1), pixel, at));
@@ -231,17 +231,17 @@ impl<P: Profile> Claim<P> {
     }
 
     /// What is no splat and may be what the client means.
-    fn meet_others(&mut self, handed: &Handed<'_>, others: &[Other<P>]) {
+    fn meet_others(&mut self, client_planes: &ClientPlanes<'_>, others: &[Other<P>]) {
         let without_id = self.nearest.id.is_none_or(|id| id == NO_ID);
         if others.is_empty() || !(self.open || without_id) {
             return;
         }
         // What a picture shows there may be behind a fragment that no weight shows.
-        if handed.empty_is_open || self.open {
+        if client_planes.empty_is_open || self.open {
             (self.open, self.nearest.id) = (true, None);
         }
         others.iter().for_each(|other| other.bound(&mut self.range));
-        if handed.depth.is_none() && !self.open {
+        if client_planes.depth.is_none() && !self.open {
             // Of no id it may be any of them, or nothing.
             self.nearest.depth = between(self.range);
         } else if self.nearest.depth.middle < f64::INFINITY {
@@ -255,12 +255,13 @@ impl<P: Profile> Claim<P> {
     }
 
     /// Whether the claim itself can be.
-    fn judge(&self, handed: &Handed<'_>, pixel: &mut PixelMarks<'_>) {
+    fn judge(&self, client_planes: &ClientPlanes<'_>, pixel: &mut PixelMarks<'_>) {
         let Nearest { depth, id } = self.nearest;
-        if handed.depth.is_none() && self.error <= 1.0 {
+        if client_planes.depth.is_none() && self.error <= 1.0 {
             return;
         }
-        let channel = || handed.depth.map_or_else(String::new, |depth| depth.name.to_owned());
+        let channel =
+            || client_planes.depth.map_or_else(String::new, |depth| depth.name.to_owned());
         pixel.found(self.error, || match id {
             Some(NO_ID) => Fault::Value {
                 channel: channel(),
@@ -299,7 +300,7 @@ impl<P: Profile> Other<P> {
         }
     }
 
-    /// As [`Against::bound`].
+    /// As [`Rival::bound`].
     fn bound(&self, [least, most]: &mut [f64; 2]) {
         let Ball { middle, radius, .. } = self.depth;
         let radius = if radius.is_nan() { f64::INFINITY } else { radius };
@@ -311,12 +312,12 @@ impl<P: Profile> Other<P> {
 }
 
 /// A fragment that the client did not choose.
-struct Against<'a, P: Profile> {
+struct Rival<'a, P: Profile> {
     fragment: &'a Fragment<'a, P>,
     t: Ball<P>,
 }
 
-impl<P: Profile> Against<'_, P> {
+impl<P: Profile> Rival<'_, P> {
     /// Whether the fragment certainly is nearer than what the client has, or may be.
     fn judge(&self, claim: &Claim<P>, pixel: &mut PixelMarks<'_>) {
         let (fragment, depth) = (self.fragment, claim.nearest.depth);

@@ -38,7 +38,7 @@
 
 mod band;
 pub(crate) mod certificate;
-pub(crate) mod handed;
+pub(crate) mod client_planes;
 pub(crate) mod pixel;
 mod records;
 mod right;
@@ -56,11 +56,11 @@ use crate::number::lanes::LANES;
 use crate::scene::Surfels;
 use crate::verdict::client::Client;
 use crate::verdict::marks::{self, Counts, Marks, counted};
-use crate::verdict::shift::Told;
+use crate::verdict::shift::ShiftSums;
 use crate::verdict::{Check, Doubt, Verdict};
 use band::Bands;
 use certificate::{Certificate, Nearest};
-use handed::Handed;
+use client_planes::ClientPlanes;
 use pixel::PixelJudge;
 use right::{Errors, RightPixels};
 use sums::{AllSums, Continuations};
@@ -73,10 +73,10 @@ pub(super) fn verify<P: Profile>(
     client: &Client,
     budget: f64,
 ) -> Verdict {
-    let handed = Handed::new(client);
-    let judge = Judge::<P>::new(job, settings, &handed);
+    let client_planes = ClientPlanes::new(client);
+    let judge = Judge::<P>::new(job, settings, &client_planes);
     let verdict =
-        marks::verdict(job, handed.stages(), budget, |tile, marks| judge.judge(tile, marks));
+        marks::verdict(job, client_planes.stages(), budget, |tile, marks| judge.judge(tile, marks));
     match &client.records {
         Some(records) => verdict.after(records::judge::<P>(job, settings, records)),
         None => verdict,
@@ -90,16 +90,16 @@ pub(super) fn checks<P: Profile>(
     client: &Client,
     pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
-    let handed = Handed::new(client);
-    let judge = Judge::<P>::new(job, settings, &handed);
-    let stages = handed.stages().map(|(stage, _)| stage);
+    let client_planes = ClientPlanes::new(client);
+    let judge = Judge::<P>::new(job, settings, &client_planes);
+    let stages = client_planes.stages().map(|(stage, _)| stage);
     marks::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
 /// What all tiles share.
 struct Judge<'a, P: Profile> {
     surfels: &'a Surfels,
-    handed: &'a Handed<'a>,
+    client_planes: &'a ClientPlanes<'a>,
     splats: SwiftSplats<P>,
     bands: Bands<'a, P>,
     pixels: PixelJudge<'a, P>,
@@ -107,22 +107,22 @@ struct Judge<'a, P: Profile> {
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
-    fn new(job: &Job<'a>, settings: &Settings, handed: &'a Handed<'a>) -> Self {
-        let splats = match handed.records {
+    fn new(job: &Job<'a>, settings: &Settings, client_planes: &'a ClientPlanes<'a>) -> Self {
+        let splats = match client_planes.records {
             Some(records) => records::project(job, settings, records),
             None => swift::project(job, settings),
         };
-        let bands = Bands::new(job, handed.band, splats.epsilon);
-        let pixels = PixelJudge::new(job, handed);
-        let right = RightPixels::new(job, handed);
-        Self { surfels: &job.scene.surfels, handed, splats, bands, pixels, right }
+        let bands = Bands::new(job, client_planes.band, splats.epsilon);
+        let pixels = PixelJudge::new(job, client_planes);
+        let right = RightPixels::new(job, client_planes);
+        Self { surfels: &job.scene.surfels, client_planes, splats, bands, pixels, right }
     }
 
     /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
-        let Self { surfels, handed, splats, bands, pixels, .. } = self;
+        let Self { surfels, client_planes, splats, bands, pixels, .. } = self;
         let [first, rest @ ..] = marks;
-        let certificate = Certificate::new(splats, &[], (handed, surfels), (tile, &rect));
+        let certificate = Certificate::new(splats, &[], (client_planes, surfels), (tile, &rect));
         let nearest = certificate.nearest();
         let limits = bands.moved(&nearest, &rect);
         let beside = Some((&certificate, &mut *first));
@@ -130,7 +130,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         certificate.end(first);
         let right = self.right(rect, &nearest, &added.sums, &rest[0]);
         let sums = added.followed(|pixel| right[pixel].is_none());
-        let (mut covered, mut told) = (0, Told::default());
+        let (mut covered, mut shifts) = (0, ShiftSums::default());
         for (pixel, at) in counted(rect) {
             let is_finite = nearest[pixel].depth.middle.is_finite();
             if let Some(errors) = right[pixel] {
@@ -143,12 +143,12 @@ impl<'a, P: Profile> Judge<'a, P> {
             let sums = sums.of(pixel);
             let taken = pixels.judge((pixel, at), &nearest[pixel], &sums, rest);
             if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
-                told.take_all(open, taken);
+                shifts.take_all(open, taken);
             }
             let certain = matches!(sums, Continuations::One(_));
             covered += u64::from(is_finite || !certain);
         }
-        Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS), told }
+        Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS), shifts }
     }
 
     /// The errors of the pixels of a rectangle that are right, as far as that is seen at once.

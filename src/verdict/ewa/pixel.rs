@@ -2,7 +2,7 @@
 //! client has of the stage before.
 
 use super::certificate::Nearest;
-use super::handed::Handed;
+use super::client_planes::ClientPlanes;
 use super::sums::Continuations;
 use crate::composite::sum;
 use crate::frame::NO_ID;
@@ -27,7 +27,7 @@ pub(super) const SHADING: usize = 2;
 
 /// What all pixels share.
 pub(crate) struct PixelJudge<'a, P: Profile> {
-    handed: &'a Handed<'a>,
+    client_planes: &'a ClientPlanes<'a>,
     shading: Shading<'a, P>,
     /// Whether surfels have colours; else the material has one.
     colored: bool,
@@ -44,12 +44,16 @@ struct Averages<P: Profile> {
 }
 
 impl<'a, P: Profile> PixelJudge<'a, P> {
-    pub(crate) fn new(job: &Job<'a>, handed: &'a Handed<'a>) -> Self {
-        Self::of_surfels(job, &job.scene.surfels, handed)
+    pub(crate) fn new(job: &Job<'a>, client_planes: &'a ClientPlanes<'a>) -> Self {
+        Self::of_surfels(job, &job.scene.surfels, client_planes)
     }
 
     /// The same of the surfels of objects in their places.
-    pub(crate) fn of_surfels(job: &Job<'a>, surfels: &Surfels, handed: &'a Handed<'a>) -> Self {
+    pub(crate) fn of_surfels(
+        job: &Job<'a>,
+        surfels: &Surfels,
+        client_planes: &'a ClientPlanes<'a>,
+    ) -> Self {
         let colors = surfels.color().unwrap_or_default();
         let brightest = colors.iter().fold(1.0_f64, |brightest, color| {
             let [r, g, b] = color.to_array().map(f64::from);
@@ -58,13 +62,13 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         let colored = surfels.color().is_some();
         let shading = Shading::new(job, colored);
         let nowhere = sum::direction([Ball::ZERO; 3], Ball::ZERO);
-        Self { handed, shading, colored, brightest, nowhere }
+        Self { client_planes, shading, colored, brightest, nowhere }
     }
 
     /// The same of a layer, behind which others may be seen.
-    pub(crate) fn of_layer(job: &Job<'a>, handed: &'a Handed<'a>) -> Self {
+    pub(crate) fn of_layer(job: &Job<'a>, client_planes: &'a ClientPlanes<'a>) -> Self {
         let colored = job.scene.surfels.color().is_some();
-        Self { shading: Shading::of_layer(job, colored), ..Self::new(job, handed) }
+        Self { shading: Shading::of_layer(job, colored), ..Self::new(job, client_planes) }
     }
 
     /// Marks what is wrong at a pixel: by the continuation that errs least. Gives the number of the only
@@ -90,7 +94,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
 
     /// Whether, if nothing is at a pixel, the client has nothing: every check finds an error of 0.
     pub(super) fn is_right_of_nothing(&self, at: (u32, u32)) -> bool {
-        self.shading.is_black() && self.handed.is_empty(at)
+        self.shading.is_black() && self.client_planes.is_empty(at)
     }
 
     /// Opacity and shaded colour as the next pass reads them: the client's, else all that they may be.
@@ -100,8 +104,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         nearest: &Nearest<P>,
         sums: &Continuations<P>,
     ) -> (Ball<P>, [Ball<P>; 3]) {
-        let handed = self.handed;
-        if let (Some(opacity), Some(color)) = (&handed.opacity, &handed.shaded) {
+        let client_planes = self.client_planes;
+        if let (Some(opacity), Some(color)) = (&client_planes.opacity, &client_planes.shaded) {
             return (input(opacity, at), inputs(color, at));
         }
         let of = |sums: Option<&Sums<Ball<P>>>| {
@@ -115,20 +119,20 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             .reduce(|a, b| (a.0.either(b.0), Ball::either_of(a.1, b.1)))
             .unwrap_or_else(|| of(None));
         (
-            handed.opacity.map_or(opacity, |plane| input(&plane, at)),
-            handed.shaded.map_or(color, |plane| inputs(&plane, at)),
+            client_planes.opacity.map_or(opacity, |plane| input(&plane, at)),
+            client_planes.shaded.map_or(color, |plane| inputs(&plane, at)),
         )
     }
 
     /// Whether the picture has a depth and no id, as no splat leaves.
     pub(crate) fn shows_no_splats(&self, (x, y): (u32, u32)) -> bool {
-        let Handed { depth_copy, id_copy, .. } = self.handed;
+        let ClientPlanes { depth_copy, id_copy, .. } = self.client_planes;
         depth_copy.is_some_and(|plane| *plane.plane.at(x, y) < f64::INFINITY)
             && id_copy.is_some_and(|plane| *plane.plane.at(x, y) == NO_ID)
     }
 
     /// Every plane at a pixel that shows no splats but another surface, with these sums. A weight that the
-    /// picture shows is not that of the sums: `handed` has no such.
+    /// picture shows is not that of the sums: `client_planes` has no such.
     pub(crate) fn check_other(
         &self,
         at: (u32, u32),
@@ -139,29 +143,29 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         if let Some(sums) = sums {
             self.check_sums(at, &self.stored(sums), report);
         }
-        let (handed, Surface { depth, normal, color, .. }) = (self.handed, *surface);
-        if let (Some(plane), true) = (&handed.color, self.colored) {
+        let (client_planes, Surface { depth, normal, color, .. }) = (self.client_planes, *surface);
+        if let (Some(plane), true) = (&client_planes.color, self.colored) {
             triple(NORMALIZATION, (plane, Holds::Color), at, color, report);
         }
-        if let Some(plane) = &handed.normal {
+        if let Some(plane) = &client_planes.normal {
             triple(NORMALIZATION, (plane, Holds::Vector), at, normal, report);
         }
-        if let Some(plane) = &handed.depth_copy {
+        if let Some(plane) = &client_planes.depth_copy {
             number(NORMALIZATION, plane, at, depth, report);
         }
-        if let Some(plane) = &handed.id_copy {
+        if let Some(plane) = &client_planes.id_copy {
             whole(NORMALIZATION, plane, at, NO_ID, report);
         }
-        if let Some(plane) = &handed.weight_copy {
+        if let Some(plane) = &client_planes.weight_copy {
             number(NORMALIZATION, plane, at, Ball::<P>::ONE, report);
         }
-        if let Some(plane) = &handed.shaded {
-            let depth = handed.depth_copy.map_or(depth, |plane| plane.ball(at));
+        if let Some(plane) = &client_planes.shaded {
+            let depth = client_planes.depth_copy.map_or(depth, |plane| plane.ball(at));
             let color = self.color(at, depth, &Averages { normal, color });
             triple(SHADING, (plane, Holds::Color), at, color, report);
         }
-        if let Some(plane) = &handed.alpha {
-            let weight = handed.weight_copy.map_or(Ball::ONE, |plane| plane.ball(at));
+        if let Some(plane) = &client_planes.alpha {
+            let weight = client_planes.weight_copy.map_or(Ball::ONE, |plane| plane.ball(at));
             number(SHADING, plane, at, self.shading.alpha(weight), report);
         }
     }
@@ -182,14 +186,15 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         let averages = self.averages(at, sums);
         self.check_averages(at, (&averages, sums), report);
         self.check_copies(at, nearest, sums, report);
-        let handed = self.handed;
-        if let Some(plane) = &handed.shaded {
+        let client_planes = self.client_planes;
+        if let Some(plane) = &client_planes.shaded {
             let color = self.color(at, self.depth(at, nearest, sums), &averages);
             triple(SHADING, (plane, Holds::Color), at, color, report);
         }
-        if let Some(plane) = &handed.alpha {
-            let weight =
-                handed.weight_copy.map_or_else(|| self.weight_of(at, sums), |plane| plane.ball(at));
+        if let Some(plane) = &client_planes.alpha {
+            let weight = client_planes
+                .weight_copy
+                .map_or_else(|| self.weight_of(at, sums), |plane| plane.ball(at));
             number(SHADING, plane, at, self.shading.alpha(weight), report);
         }
     }
@@ -197,12 +202,12 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     /// Sums as the client may have stored them between two additions, each of which rounds a sum that
     /// is at most this large.
     fn stored<'s>(&self, sums: &'s Sums<Ball<P>>) -> Cow<'s, Sums<Ball<P>>> {
-        if self.handed.accumulator == Storage::Single {
+        if self.client_planes.accumulator == Storage::Single {
             return Cow::Borrowed(sums);
         }
         let heaviest = sums.weight.middle + sums.weight.radius;
         let lost = |largest: f64| {
-            f64::from(sums.count) * self.handed.accumulator.radius(heaviest * largest)
+            f64::from(sums.count) * self.client_planes.accumulator.radius(heaviest * largest)
         };
         Cow::Owned(Sums {
             weight: widened(sums.weight, lost(1.0)),
@@ -215,7 +220,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
 
     /// The sums of the attribute pass, as stored.
     fn check_sums(&self, at: (u32, u32), truth: &Sums<Ball<P>>, report: &mut Report<'_>) {
-        let Handed { weight, normal_sum, color_sum, count, mask, .. } = self.handed;
+        let ClientPlanes { weight, normal_sum, color_sum, count, mask, .. } = self.client_planes;
         if let Some(plane) = weight {
             number(ATTRIBUTES, plane, at, truth.weight, report);
         }
@@ -241,18 +246,18 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     /// The same of sums as stored, as all sums below are.
     fn weight_of(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
         let own = || sums.map_or_else(anything, |sums| sums.weight);
-        self.handed.weight.map_or_else(own, |plane| plane.ball(at))
+        self.client_planes.weight.map_or_else(own, |plane| plane.ball(at))
     }
 
     /// The averages of the client's sums, else of these; of none, they are any.
     fn averages(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Averages<P> {
         let weight = self.weight_of(at, sums);
         let unknown = [anything(); 3];
-        let normal = match &self.handed.normal_sum {
+        let normal = match &self.client_planes.normal_sum {
             Some(plane) => plane.balls(at),
             None => sums.map_or(unknown, |sums| sums.normal),
         };
-        let color = match &self.handed.color_sum {
+        let color = match &self.client_planes.color_sum {
             Some(plane) => plane.balls(at),
             None => sums.map_or(unknown, |sums| sums.color),
         };
@@ -277,14 +282,14 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         (averages, sums): (&Averages<P>, Option<&Sums<Ball<P>>>),
         report: &mut Report<'_>,
     ) {
-        let handed = self.handed;
-        if let (Some(plane), true) = (&handed.color, self.colored) {
+        let client_planes = self.client_planes;
+        if let (Some(plane), true) = (&client_planes.color, self.colored) {
             triple(NORMALIZATION, (plane, Holds::Color), at, averages.color, report);
         }
-        if let Some(plane) = &handed.normal {
+        if let Some(plane) = &client_planes.normal {
             triple(NORMALIZATION, (plane, Holds::Vector), at, averages.normal, report);
         }
-        if let Some(plane) = &handed.opacity {
+        if let Some(plane) = &client_planes.opacity {
             number(NORMALIZATION, plane, at, self.opacity(at, sums), report);
         }
     }
@@ -297,17 +302,17 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         sums: Option<&Sums<Ball<P>>>,
         report: &mut Report<'_>,
     ) {
-        let handed = self.handed;
-        if let (Some(first), Some(copy)) = (handed.weight, handed.weight_copy) {
+        let client_planes = self.client_planes;
+        if let (Some(first), Some(copy)) = (client_planes.weight, client_planes.weight_copy) {
             number(NORMALIZATION, &copy, at, first.ball::<P>(at), report);
         }
-        if handed.weightless {
+        if client_planes.weightless {
             return self.check_shown(at, nearest, sums, report);
         }
-        if let (Some(first), Some(copy)) = (handed.depth, handed.depth_copy) {
+        if let (Some(first), Some(copy)) = (client_planes.depth, client_planes.depth_copy) {
             number(NORMALIZATION, &copy, at, first.ball::<P>(at), report);
         }
-        if let (Some(first), Some(copy)) = (handed.id, handed.id_copy) {
+        if let (Some(first), Some(copy)) = (client_planes.id, client_planes.id_copy) {
             whole(NORMALIZATION, &copy, at, *first.plane.at(at.0, at.1), report);
         }
     }
@@ -321,13 +326,13 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         report: &mut Report<'_>,
     ) {
         let some = self.weight_of(at, sums).gt(Ball::ZERO);
-        if let Some(copy) = &self.handed.depth_copy {
+        if let Some(copy) = &self.client_planes.depth_copy {
             let empty = *copy.plane.at(at.0, at.1) == f64::INFINITY;
             let shown = some.decided().unwrap_or(!empty);
             let truth = if shown { nearest.depth } else { Ball::INFINITY };
             number(NORMALIZATION, copy, at, truth, report);
         }
-        if let Some(copy) = &self.handed.id_copy {
+        if let Some(copy) = &self.client_planes.id_copy {
             let empty = *copy.plane.at(at.0, at.1) == NO_ID;
             match (some.decided().unwrap_or(!empty), nearest.id) {
                 (false, _) => whole(NORMALIZATION, copy, at, NO_ID, report),
@@ -339,23 +344,23 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
 
     /// The depth that is shaded.
     fn depth(&self, at: (u32, u32), nearest: &Nearest<P>, sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
-        let own = if self.handed.weightless {
+        let own = if self.client_planes.weightless {
             match self.weight_of(at, sums).gt(Ball::ZERO).decided() {
                 Some(true) => nearest.depth,
                 Some(false) => Ball::INFINITY,
                 None => anything(),
             }
         } else {
-            let nothing = self.handed.nothing() && sums.is_some_and(|sums| sums.count == 0);
+            let nothing = self.client_planes.nothing() && sums.is_some_and(|sums| sums.count == 0);
             if nothing { Ball::INFINITY } else { nearest.depth }
         };
-        self.handed.depth_copy.map_or(own, |plane| plane.ball(at))
+        self.client_planes.depth_copy.map_or(own, |plane| plane.ball(at))
     }
 
     /// The shaded colour of the client's averages, else of these.
     fn color(&self, at: (u32, u32), depth: Ball<P>, averages: &Averages<P>) -> [Ball<P>; 3] {
-        let normal = self.handed.normal.map_or(averages.normal, |plane| plane.balls(at));
-        let color = self.handed.color.map_or(averages.color, |plane| plane.balls(at));
+        let normal = self.client_planes.normal.map_or(averages.normal, |plane| plane.balls(at));
+        let color = self.client_planes.color.map_or(averages.color, |plane| plane.balls(at));
         self.shading.color(at, &Surface { depth, normal, tangent: None, color })
     }
 }

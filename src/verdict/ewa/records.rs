@@ -14,7 +14,7 @@ use crate::splat::project::project_as;
 use crate::splat::record::SplatRecord;
 use crate::splat::{Footprint, Projector, Reasons, Splat, Tally, View, batch};
 use crate::verdict::marks::Marks;
-use crate::verdict::{Fault, Judged};
+use crate::verdict::{Fault, StageVerdict};
 
 /// The stage, and the name of what it judges.
 const STAGE: &str = "projection";
@@ -65,7 +65,7 @@ pub(super) fn judge<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
     records: &[SplatRecord],
-) -> Judged {
+) -> StageVerdict {
     let surfels = &job.scene.surfels;
     let projector =
         Projector::<Ball<P>>::new(View::new(job.camera), &settings.kernel, settings.cull);

@@ -10,7 +10,7 @@
 )]
 
 use super::certificate::Nearest;
-use super::handed::Handed;
+use super::client_planes::ClientPlanes;
 use super::pixel::{ATTRIBUTES, NORMALIZATION, SHADING};
 use super::sums::AllSums;
 use crate::composite::sum;
@@ -20,14 +20,14 @@ use crate::number::lanes::{LANES, each, vectorized};
 use crate::number::{Ball, Real};
 use crate::shade::phong::Shader;
 use crate::splat::View;
-use crate::verdict::client::{Storage, Stored, known};
+use crate::verdict::client::{Storage, StoredPlane, known};
 
 /// A number of each lane.
 type Numbers<P> = BallLanes<Common<P>>;
 
 /// What all pixels share.
 pub(super) struct RightPixels<'a, P: Profile> {
-    handed: &'a Handed<'a>,
+    client_planes: &'a ClientPlanes<'a>,
     shader: Shader<Ball<Common<P>>>,
     /// Whether surfels have colours; else this is the material's.
     colored: bool,
@@ -39,17 +39,27 @@ pub(super) type Errors = [f64; 3];
 
 impl<'a, P: Profile> RightPixels<'a, P> {
     /// None where formats or a background make more of the checks than is done here.
-    pub(super) fn new(job: &Job<'a>, handed: &'a Handed<'a>) -> Option<Self> {
-        let scalars =
-            [handed.depth, handed.weight, handed.depth_copy, handed.weight_copy, handed.alpha];
-        let triples =
-            [handed.normal_sum, handed.color_sum, handed.color, handed.normal, handed.shaded];
+    pub(super) fn new(job: &Job<'a>, client_planes: &'a ClientPlanes<'a>) -> Option<Self> {
+        let scalars = [
+            client_planes.depth,
+            client_planes.weight,
+            client_planes.depth_copy,
+            client_planes.weight_copy,
+            client_planes.alpha,
+        ];
+        let triples = [
+            client_planes.normal_sum,
+            client_planes.color_sum,
+            client_planes.color,
+            client_planes.normal,
+            client_planes.shaded,
+        ];
         let floats =
             scalars.iter().flatten().all(is_single) && triples.iter().flatten().all(is_single);
-        let other = handed.opacity.is_some()
-            || handed.mask.is_some()
-            || handed.weightless
-            || handed.accumulator != Storage::Single
+        let other = client_planes.opacity.is_some()
+            || client_planes.mask.is_some()
+            || client_planes.weightless
+            || client_planes.accumulator != Storage::Single
             || job.scene.environment.is_some();
         if other || !floats {
             return None;
@@ -62,7 +72,7 @@ impl<'a, P: Profile> RightPixels<'a, P> {
             lanes
         });
         let shader = shader.map(View::new(job.camera), Ball::rounding_as);
-        Some(Self { handed, shader, colored: scene.surfels.color().is_some(), plain })
+        Some(Self { client_planes, shader, colored: scene.surfels.color().is_some(), plain })
     }
 
     /// The errors of some pixels of a tile, at most [`LANES`] without an undecided fragment, if they are known
@@ -85,7 +95,7 @@ impl<'a, P: Profile> RightPixels<'a, P> {
 }
 
 /// Whether a plane holds `f32`, of which nothing else is said.
-fn is_single<T>(plane: &Stored<'_, T>) -> bool {
+fn is_single<T>(plane: &StoredPlane<'_, T>) -> bool {
     plane.storage == Storage::Single && plane.radii.is_none()
 }
 
@@ -131,12 +141,12 @@ impl<P: Profile> Pixels<P> {
 }
 
 /// By how many bounds each stage errs, and where that is all.
-struct Found {
+struct StageErrors {
     worst: [[f64; LANES]; 3],
     right: [u32; LANES],
 }
 
-impl Found {
+impl StageErrors {
     /// A number against what it may be.
     #[inline(always)]
     fn number<P: Profile>(&mut self, stage: usize, found: &Numbers<P>, truth: &Numbers<P>) {
@@ -174,13 +184,16 @@ impl Found {
 
 /// The numbers of a plane.
 #[inline(always)]
-fn scalars<P: Profile>(plane: &Stored<'_, f64>, at: &[(u32, u32); LANES]) -> Numbers<P> {
+fn scalars<P: Profile>(plane: &StoredPlane<'_, f64>, at: &[(u32, u32); LANES]) -> Numbers<P> {
     lanes(each(|i| *plane.plane.at(at[i].0, at[i].1)))
 }
 
 /// The triples of a plane.
 #[inline(always)]
-fn triples<P: Profile>(plane: &Stored<'_, [f64; 3]>, at: &[(u32, u32); LANES]) -> [Numbers<P>; 3] {
+fn triples<P: Profile>(
+    plane: &StoredPlane<'_, [f64; 3]>,
+    at: &[(u32, u32); LANES],
+) -> [Numbers<P>; 3] {
     let mut values = [[0.0; LANES]; 3];
     for i in 0..LANES {
         let [a, b, c] = *plane.plane.at(at[i].0, at[i].1);
@@ -219,9 +232,9 @@ fn means<const DIRECTION: bool, P: Profile>(
 
 vectorized!(
     /// What [`PixelJudge::check`](super::pixel::PixelJudge::check) finds.
-    fn judge<P: Profile>(of: &RightPixels<'_, P>, pixels: &Pixels<P>) -> Found {
-        let (handed, at) = (of.handed, &pixels.at);
-        let mut found = Found { worst: [[0.0; LANES]; 3], right: pixels.right };
+    fn judge<P: Profile>(of: &RightPixels<'_, P>, pixels: &Pixels<P>) -> StageErrors {
+        let (client_planes, at) = (of.client_planes, &pixels.at);
+        let mut found = StageErrors { worst: [[0.0; LANES]; 3], right: pixels.right };
         // -- Sums
         let (mut weight, mut normal) = (Numbers::<P>::ZERO, [Numbers::<P>::ZERO; 3]);
         for i in 0..LANES {
@@ -240,27 +253,27 @@ vectorized!(
             color[2].put(i, b.rounding_as());
             found.right[i] &= u32::from(known).wrapping_neg();
         }
-        if let Some(plane) = &handed.weight {
+        if let Some(plane) = &client_planes.weight {
             let own = scalars(plane, at);
             found.number(ATTRIBUTES, &own, &weight);
             weight = own;
         }
-        if let Some(plane) = &handed.normal_sum {
+        if let Some(plane) = &client_planes.normal_sum {
             let own = triples(plane, at);
             found.triple(ATTRIBUTES, &own, &normal);
             normal = own;
         }
-        if let Some(plane) = &handed.color_sum {
+        if let Some(plane) = &client_planes.color_sum {
             let own = triples(plane, at);
             found.triple(ATTRIBUTES, &own, &color);
             color = own;
         }
-        if let Some(plane) = &handed.count {
+        if let Some(plane) = &client_planes.count {
             found.same(|i| *plane.plane.at(at[i].0, at[i].1) == pixels.count[i]);
         }
         // -- Averages
         normal = means::<true, P>(&normal, &weight);
-        if let Some(plane) = &handed.normal {
+        if let Some(plane) = &client_planes.normal {
             let own = triples(plane, at);
             found.triple(NORMALIZATION, &own, &normal);
             normal = own;
@@ -270,37 +283,37 @@ vectorized!(
         } else {
             color = of.plain;
         }
-        if let (Some(plane), true) = (&handed.color, of.colored) {
+        if let (Some(plane), true) = (&client_planes.color, of.colored) {
             let own = triples(plane, at);
             found.triple(NORMALIZATION, &own, &color);
             color = own;
         }
         // -- Copies of what earlier passes left
         let mut depth = pixels.depth;
-        if let Some(plane) = &handed.depth_copy {
+        if let Some(plane) = &client_planes.depth_copy {
             let own = scalars(plane, at);
-            if let Some(first) = &handed.depth {
+            if let Some(first) = &client_planes.depth {
                 found.number(NORMALIZATION, &own, &scalars(first, at));
             }
             depth = own;
         }
-        if let Some(plane) = &handed.weight_copy {
+        if let Some(plane) = &client_planes.weight_copy {
             let own = scalars(plane, at);
-            if let Some(first) = &handed.weight {
+            if let Some(first) = &client_planes.weight {
                 found.number(NORMALIZATION, &own, &scalars(first, at));
             }
             weight = own;
         }
-        if let (Some(first), Some(copy)) = (&handed.id, &handed.id_copy) {
-            let id = |plane: &Stored<'_, u32>, i: usize| *plane.plane.at(at[i].0, at[i].1);
+        if let (Some(first), Some(copy)) = (&client_planes.id, &client_planes.id_copy) {
+            let id = |plane: &StoredPlane<'_, u32>, i: usize| *plane.plane.at(at[i].0, at[i].1);
             found.same(|i| id(first, i) == id(copy, i));
         }
         // -- Shading
-        if let Some(plane) = &handed.shaded {
+        if let Some(plane) = &client_planes.shaded {
             let shaded = of.shader.surfaces(at, &depth, &normal, &color);
             found.triple(SHADING, &triples(plane, at), &shaded);
         }
-        if let Some(plane) = &handed.alpha {
+        if let Some(plane) = &client_planes.alpha {
             let mut alpha = Numbers::<P>::ZERO;
             for i in 0..LANES {
                 let seen = weight.get(i).gt(Ball::ZERO);
@@ -327,11 +340,11 @@ mod tests {
     /// Holds what is found of a client in lanes against what is found without; how many pixels are right in
     /// lanes, and how many are wrong.
     fn compare<P: Profile>(job: &Job<'_>, settings: &Settings, client: &Client) -> [u64; 2] {
-        let handed = Handed::new(client);
-        let mut judge = Judge::<P>::new(job, settings, &handed);
+        let client_planes = ClientPlanes::new(client);
+        let mut judge = Judge::<P>::new(job, settings, &client_planes);
         let mut found = [0; 2];
         for (tile, rect) in job.grid().rects().into_iter().enumerate() {
-            let given = (&handed, judge.surfels);
+            let given = (&client_planes, judge.surfels);
             let mut marks = Marks::new(rect);
             let nearest =
                 certificate::judge_among(&judge.splats, &[], given, (tile, &rect), &mut marks);
@@ -341,7 +354,7 @@ mod tests {
             found[0] += right.iter().flatten().count() as u64;
         }
         let verdict = |judge: &Judge<'_, P>| {
-            marks::verdict(job, handed.stages(), 1.0, |tile, marks| judge.judge(tile, marks))
+            marks::verdict(job, client_planes.stages(), 1.0, |tile, marks| judge.judge(tile, marks))
         };
         let own = verdict(&judge);
         judge.right = None;

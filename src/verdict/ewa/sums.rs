@@ -13,7 +13,7 @@ use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::verdict::Doubt;
 use crate::verdict::marks::{Marks, PixelMarks};
-use crate::verdict::shift::{CUT_OFF, EPSILON, Open};
+use crate::verdict::shift::{CUT_OFF, EPSILON, OpenDecision};
 
 /// The most undecided fragments of a pixel of which all continuations are followed, 2^n of them.
 pub(crate) const MOST: u32 = 4;
@@ -25,7 +25,7 @@ pub(crate) enum Continuations<P: Profile> {
     One(Sums<Ball<P>>),
     /// One of these: number n takes undecided decision i if bit i of n is set. Which these are is empty
     /// where a method does not say.
-    Several(Vec<Sums<Ball<P>>>, Vec<Open>),
+    Several(Vec<Sums<Ball<P>>>, Vec<OpenDecision>),
     /// More than are followed: anything.
     Many,
 }
@@ -40,7 +40,7 @@ struct Part<P: Profile> {
     back: Three,
     weight: Ball<P>,
     /// The decision on it, if it is undecided.
-    open: Option<Open>,
+    open: Option<OpenDecision>,
 }
 
 /// The sums of each pixel of a tile, given the nearest fragments.
@@ -63,7 +63,7 @@ pub(super) fn add<'s, 'a, P: Profile>(
     tile: (usize, &'s Rect),
     mut certificate: Option<(&Certificate<'_, P>, &mut Marks)>,
     marks: &mut Marks,
-) -> Added<'s, 'a, P> {
+) -> Accumulation<'s, 'a, P> {
     let mut sums = AllSums::new(surfels, tile.1.pixels());
     let limits = limits(splats, nearest);
     let least = |pixel: usize| {
@@ -90,7 +90,7 @@ pub(super) fn add<'s, 'a, P: Profile>(
             marks.at(pixel).doubt(Doubt::Side, part.back.decided().is_none());
         },
     );
-    Added { splats, surfels, nearest, limits, tile, sums }
+    Accumulation { splats, surfels, nearest, limits, tile, sums }
 }
 
 /// The lesser of two bounds of a nearness; NaN, which bounds nothing, is less than all.
@@ -99,7 +99,7 @@ fn lesser(a: f64, b: f64) -> f64 {
 }
 
 /// What has been added up at the pixels of a tile.
-pub(super) struct Added<'s, 'a, P: Profile> {
+pub(super) struct Accumulation<'s, 'a, P: Profile> {
     splats: &'s SwiftSplats<P>,
     surfels: &'a Surfels,
     nearest: &'s [Nearest<P>],
@@ -108,7 +108,7 @@ pub(super) struct Added<'s, 'a, P: Profile> {
     pub(super) sums: AllSums<P>,
 }
 
-impl<'a, P: Profile> Added<'_, 'a, P> {
+impl<'a, P: Profile> Accumulation<'_, 'a, P> {
     /// What the sums may be at the pixels that are asked for.
     pub(super) fn followed(self, asked: impl Fn(usize) -> bool) -> TileSums<'a, P> {
         let Self { splats, surfels, nearest, limits, tile, sums } = self;
@@ -196,13 +196,13 @@ impl<P: Profile> AllSums<P> {
 }
 
 /// The decisions on a fragment.
-struct Asked {
+struct FragmentDecisions {
     drawn: bool,
     inside: Three,
     visible: Three,
 }
 
-impl Asked {
+impl FragmentDecisions {
     fn mark(&self, pixel: &mut PixelMarks<'_>) {
         pixel.doubt(Doubt::CutOff, self.inside.decided().is_none());
         pixel.doubt(Doubt::Epsilon, self.visible.decided().is_none());
@@ -215,7 +215,7 @@ impl Asked {
         &self,
         surfel: u32,
         limits: impl FnOnce() -> [([Ball<P>; 2], Ball<P>); 2],
-    ) -> Open {
+    ) -> OpenDecision {
         let limit = match (self.drawn, self.inside.decided(), self.visible.decided()) {
             (true, None, Some(_)) => Some(CUT_OFF),
             (true, Some(_), None) => Some(EPSILON),
@@ -226,7 +226,7 @@ impl Asked {
             [limit.middle - value.middle, limit.radius + value.radius].map(|x| x / whole.middle)
         });
         let [distance, radius] = share.unwrap_or_default();
-        Open { surfel, limit, distance, radius }
+        OpenDecision { surfel, limit, distance, radius }
     }
 }
 
@@ -254,7 +254,7 @@ fn each_part<P: Profile>(
     (nearest, limits, least): (&[Nearest<P>], &[Limit<P>], &[f64]),
     tile: (usize, &Rect),
     mut meet: impl FnMut(usize, &Fragment<'_, P>, Ball<P>),
-    mut take: impl FnMut(usize, Part<P>, &Asked),
+    mut take: impl FnMut(usize, Part<P>, &FragmentDecisions),
 ) {
     let shared = &splats.shared;
     each_fragment(
@@ -272,7 +272,7 @@ fn each_part<P: Profile>(
                 decide::visible(depth, limits[pixel].depth)
             };
             if visible.possibly() {
-                let asked = Asked { drawn, inside, visible };
+                let asked = FragmentDecisions { drawn, inside, visible };
                 let certain = drawn && (inside & visible).certainly();
                 let open = (!certain).then(|| {
                     asked.open(splat.surfel, || {

@@ -13,7 +13,7 @@ use crate::scene::Surfels;
 use crate::verdict::checks::{
     Report, Shading, Surface, input, least_wrong, number, triple, whole, widened,
 };
-use crate::verdict::client::Stored;
+use crate::verdict::client::StoredPlane;
 use crate::verdict::ewa::sums::MOST;
 use crate::verdict::marks::PixelMarks;
 use crate::verdict::single_pass::compositing::limit as band_end;
@@ -23,7 +23,7 @@ use crate::verdict::{Doubt, Fault};
 /// What all pixels share.
 pub(super) struct LayerJudge<'a, P: Profile> {
     surfels: &'a Surfels,
-    handed: &'a PeelingPlanes<'a>,
+    client_planes: &'a PeelingPlanes<'a>,
     shading: Shading<'a, P>,
     epsilon: Ball<P>,
     /// The most layers of a pixel.
@@ -34,7 +34,7 @@ pub(super) struct LayerJudge<'a, P: Profile> {
 
 /// What was found at a pixel.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Found {
+pub(super) struct PixelFindings {
     /// Whether something may be there.
     pub(super) covered: bool,
     /// Whether the sums of a layer are undecided.
@@ -60,7 +60,7 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
     pub(super) fn new(
         job: &Job<'a>,
         settings: &Settings,
-        handed: &'a PeelingPlanes<'a>,
+        client_planes: &'a PeelingPlanes<'a>,
         epsilon: Ball<P>,
     ) -> Self {
         let surfels = &job.scene.surfels;
@@ -70,7 +70,7 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
             brightest.at_least(r).at_least(g).at_least(b)
         });
         let shading = Shading::new(job, surfels.color().is_some());
-        Self { surfels, handed, shading, epsilon, most: settings.layers, brightest }
+        Self { surfels, client_planes, shading, epsilon, most: settings.layers, brightest }
     }
 
     /// Marks what is wrong with the layers of a pixel.
@@ -79,13 +79,13 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
         at: (u32, u32),
         fragments: &[Fragment<P>],
         pixel: &mut PixelMarks<'_>,
-    ) -> Found {
-        let handed = self.handed;
-        let mut found = Found { covered: handed.known() == 0, undecided: false };
+    ) -> PixelFindings {
+        let client_planes = self.client_planes;
+        let mut found = PixelFindings { covered: client_planes.known() == 0, undecided: false };
         let (mut limit, mut layers) = (-Ball::INFINITY, 0);
-        for (layer, planes) in handed.layers.iter().enumerate() {
-            let depth = handed.depth_of(layer);
-            let id = handed.surfel(at).filter(|_| layer == 0);
+        for (layer, planes) in client_planes.layers.iter().enumerate() {
+            let depth = client_planes.depth_of(layer);
+            let id = client_planes.surfel(at).filter(|_| layer == 0);
             if depth.is_none() && id.is_none() {
                 break;
             }
@@ -105,10 +105,12 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
             found.undecided |= all.as_ref().is_none_or(|all| all.len() > 1);
             self.check_layer(at, planes, stored, &all.unwrap_or_default(), pixel);
         }
-        if let (Some(plane), Some(copy)) = (handed.layers[0].depth, &handed.depth) {
+        if let (Some(plane), Some(copy)) = (client_planes.layers[0].depth, &client_planes.depth) {
             number(0, copy, at, plane.ball::<P>(at), &mut |_, e, fault| pixel.found(e, fault));
         }
-        if let Some(plane) = handed.number.filter(|_| handed.known() == handed.layers.len()) {
+        if let Some(plane) =
+            client_planes.number.filter(|_| client_planes.known() == client_planes.layers.len())
+        {
             self.check_number(at, &plane, (layers, &beyond(fragments, limit, None)), pixel);
         }
         found
@@ -118,11 +120,11 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
     fn check_number(
         &self,
         at: (u32, u32),
-        plane: &Stored<'_, u8>,
+        plane: &StoredPlane<'_, u8>,
         (layers, beyond): (u32, &[Beyond<'_, P>]),
         pixel: &mut PixelMarks<'_>,
     ) {
-        let all = layers as usize == self.handed.layers.len();
+        let all = layers as usize == self.client_planes.layers.len();
         let more = self.most > layers;
         let [least, most] = if !all || !more || beyond.is_empty() {
             [layers; 2]
@@ -220,7 +222,7 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
         // Each addition rounds a sum that is at most this large.
         let heaviest = sums.weight.middle + sums.weight.radius;
         let lost = |largest: f64| {
-            f64::from(sums.count) * self.handed.accumulator.radius(heaviest * largest)
+            f64::from(sums.count) * self.client_planes.accumulator.radius(heaviest * largest)
         };
         let weight = widened(sums.weight, lost(1.0));
         if let Some(plane) = &planes.alpha {
@@ -263,7 +265,7 @@ fn beyond<P: Profile>(
 struct Nearest<'j, 'a, P: Profile> {
     judge: &'j LayerJudge<'a, P>,
     at: (u32, u32),
-    depth: Option<Stored<'a, f64>>,
+    depth: Option<StoredPlane<'a, f64>>,
     /// Its surfel, of the first layer.
     id: Option<u32>,
 }
@@ -356,7 +358,7 @@ impl<P: Profile> Nearest<'_, '_, P> {
     fn judge_tie(&self, other: &Fragment<P>, own: &Fragment<P>, pixel: &mut PixelMarks<'_>) {
         let Some(id) = self.id else { return };
         let surfel = other.surfel;
-        let first = self.judge.handed.ties.keeps(surfel, id);
+        let first = self.judge.client_planes.ties.keeps(surfel, id);
         let exact = other.t.distance(own.t) == f64::INFINITY && other.t.middle == own.t.middle;
         if first && (exact || self.judge.surfels.are_equal(surfel, id)) {
             pixel.found(f64::INFINITY, || Fault::Tie { surfel, found: id });

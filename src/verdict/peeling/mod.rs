@@ -27,7 +27,7 @@
 //! A pixel is undecided if the sums of one of its layers have several continuations, or if its blending
 //! is not judged, for its number of layers or for its environment.
 
-mod blended;
+mod blending;
 mod layer;
 mod planes;
 #[cfg(test)]
@@ -53,9 +53,9 @@ pub(super) fn verify<P: Profile>(
     client: &Client,
     budget: f64,
 ) -> Verdict {
-    let handed = PeelingPlanes::new(client, settings);
-    let judge = Judge::<P>::new(job, settings, &handed);
-    marks::verdict(job, handed.stages(), budget, |tile, marks| judge.judge(tile, marks))
+    let client_planes = PeelingPlanes::new(client, settings);
+    let judge = Judge::<P>::new(job, settings, &client_planes);
+    marks::verdict(job, client_planes.stages(), budget, |tile, marks| judge.judge(tile, marks))
 }
 
 /// Everything that is judged at one pixel.
@@ -65,25 +65,25 @@ pub(super) fn checks<P: Profile>(
     client: &Client,
     pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
-    let handed = PeelingPlanes::new(client, settings);
-    let judge = Judge::<P>::new(job, settings, &handed);
-    let stages = handed.stages().map(|(stage, _)| stage);
+    let client_planes = PeelingPlanes::new(client, settings);
+    let judge = Judge::<P>::new(job, settings, &client_planes);
+    let stages = client_planes.stages().map(|(stage, _)| stage);
     marks::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
 /// What all tiles share.
 struct Judge<'a, P: Profile> {
-    handed: &'a PeelingPlanes<'a>,
+    client_planes: &'a PeelingPlanes<'a>,
     fragments: GroupFragments<'a, P>,
     layers: LayerJudge<'a, P>,
     backdrop: Backdrop<'a, P>,
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
-    fn new(job: &Job<'a>, settings: &'a Settings, handed: &'a PeelingPlanes<'a>) -> Self {
+    fn new(job: &Job<'a>, settings: &'a Settings, client_planes: &'a PeelingPlanes<'a>) -> Self {
         let fragments = GroupFragments::whole(job, &settings.splats);
-        let layers = LayerJudge::new(job, settings, handed, fragments.epsilon());
-        Self { handed, fragments, layers, backdrop: Backdrop::new(job) }
+        let layers = LayerJudge::new(job, settings, client_planes, fragments.epsilon());
+        Self { client_planes, fragments, layers, backdrop: Backdrop::new(job) }
     }
 
     /// Marks what is wrong at the pixels of a rectangle in a tile.
@@ -92,13 +92,17 @@ impl<'a, P: Profile> Judge<'a, P> {
         let mut counts = Counts::default();
         for y in rect.y0..rect.y1 {
             let row = Rect { y0: y, y1: y + 1, ..rect };
-            let fragments = self.fragments.of_row(tile, &row, |_, at| self.handed.surfel(at));
+            let fragments =
+                self.fragments.of_row(tile, &row, |_, at| self.client_planes.surfel(at));
             for (column, at) in counted(row) {
                 let pixel = (y - rect.y0) as usize * row.columns() + column;
                 let own: Vec<_> = fragments.at(column).of(0).copied().collect();
                 let found = self.layers.judge(at, &own, &mut layers.at(pixel));
-                let blends =
-                    blended::judge::<P>((self.handed, &self.backdrop), at, &mut blending.at(pixel));
+                let blends = blending::judge::<P>(
+                    (self.client_planes, &self.backdrop),
+                    at,
+                    &mut blending.at(pixel),
+                );
                 counts.covered += u64::from(found.covered);
                 counts.undecided += u64::from(found.undecided || !blends);
             }

@@ -4,16 +4,16 @@ use crate::method::peeling::Settings;
 use crate::method::peeling::planes::{
     LAYER_ALPHA, LAYER_COLOR, LAYER_COUNT, LAYER_DEPTH, LAYERS, STAGES,
 };
-use crate::method::resolved::{ALPHA, DEPTH, ID, SHADED};
-use crate::verdict::client::{Client, Storage, Stored, Ties};
+use crate::method::surface::{ALPHA, DEPTH, ID, SHADED};
+use crate::verdict::client::{Client, Storage, StoredPlane, Ties};
 
 /// The planes of a layer, each if it is there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LayerPlanes<'a> {
-    pub(super) color: Option<Stored<'a, [f64; 3]>>,
-    pub(super) alpha: Option<Stored<'a, f64>>,
-    pub(super) depth: Option<Stored<'a, f64>>,
-    pub(super) count: Option<Stored<'a, u8>>,
+    pub(super) color: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(super) alpha: Option<StoredPlane<'a, f64>>,
+    pub(super) depth: Option<StoredPlane<'a, f64>>,
+    pub(super) count: Option<StoredPlane<'a, u8>>,
 }
 
 /// The planes of a client, each if it is there.
@@ -22,16 +22,16 @@ pub(super) struct PeelingPlanes<'a> {
     /// The layers that leave planes, from the first.
     pub(super) layers: Vec<LayerPlanes<'a>>,
     /// Depth and surfel of the first.
-    pub(super) depth: Option<Stored<'a, f64>>,
-    pub(super) id: Option<Stored<'a, u32>>,
-    pub(super) number: Option<Stored<'a, u8>>,
+    pub(super) depth: Option<StoredPlane<'a, f64>>,
+    pub(super) id: Option<StoredPlane<'a, u32>>,
+    pub(super) number: Option<StoredPlane<'a, u8>>,
     /// The most layers of a pixel.
     pub(super) most: u32,
     pub(super) ties: Ties,
     pub(super) accumulator: Storage,
     /// The picture.
-    pub(super) shaded: Option<Stored<'a, [f64; 3]>>,
-    pub(super) alpha: Option<Stored<'a, f64>>,
+    pub(super) shaded: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(super) alpha: Option<StoredPlane<'a, f64>>,
 }
 
 impl<'a> PeelingPlanes<'a> {
@@ -57,7 +57,7 @@ impl<'a> PeelingPlanes<'a> {
     }
 
     /// The depth of a layer, counted from 0.
-    pub(super) fn depth_of(&self, layer: usize) -> Option<Stored<'a, f64>> {
+    pub(super) fn depth_of(&self, layer: usize) -> Option<StoredPlane<'a, f64>> {
         let own = self.layers[layer].depth;
         if layer == 0 { own.or(self.depth) } else { own }
     }

@@ -1,7 +1,7 @@
 //! What a client says is in a pixel, against all that may lie there.
 
 use super::Candidate;
-use super::planes::{SamplePlanes, Says};
+use super::planes::{PixelContent, SamplePlanes};
 use crate::composite::decide;
 use crate::method::projection::PixelSample;
 use crate::number::ball::Profile;
@@ -13,7 +13,7 @@ use crate::verdict::{Doubt, Fault};
 
 /// What is known of a pixel.
 pub(super) struct Claim<P: Profile> {
-    pub(super) says: Says,
+    pub(super) says: PixelContent,
     /// The client's depth, if it was handed in.
     depth: Option<Ball<P>>,
     /// Of what lies in the pixel that whose greatest depth is least.
@@ -40,13 +40,13 @@ impl<P: Profile> Claim<P> {
     pub(super) fn may_mean(&self, one: &Candidate<'_, P>) -> bool {
         let hidden = || self.front.is_some_and(|(_, t)| decide::before(t, one.depth()).certainly());
         match self.says {
-            Says::Id(id) => id == one.id(),
-            Says::Some(kind) => {
+            PixelContent::Id(id) => id == one.id(),
+            PixelContent::Some(kind) => {
                 let fits = kind.is_none_or(|kind| kind == one.kind());
                 fits && (self.depth.is_some() || !hidden())
             }
-            Says::Nothing => !hidden(),
-            Says::Empty | Says::Unjudged(_) => false,
+            PixelContent::Nothing => !hidden(),
+            PixelContent::Empty | PixelContent::Unjudged(_) => false,
         }
     }
 
@@ -80,9 +80,9 @@ impl<P: Profile> Claim<P> {
             pixel.found(error, fault);
         };
         match (&self.best, self.says) {
-            (_, Says::Unjudged(kind)) => planes.check_kind(at, kind, &mut report),
+            (_, PixelContent::Unjudged(kind)) => planes.check_kind(at, kind, &mut report),
             (Some((_, sample)), _) => planes.check(at, sample, &mut report),
-            (None, Says::Id(surfel)) => {
+            (None, PixelContent::Id(surfel)) => {
                 report(0, f64::INFINITY, &|| Fault::Absent { surfel });
             }
             // Something lies here: rule 3. But other planes may say what they do not of nothing.
@@ -94,9 +94,9 @@ impl<P: Profile> Claim<P> {
                 report(0, f64::INFINITY, &|| Fault::NoSuchDepth { found, closest });
             }
         }
-        if let (Some((surfel, t)), true) = (self.front, self.says != Says::Nothing) {
+        if let (Some((surfel, t)), true) = (self.front, self.says != PixelContent::Nothing) {
             let depth = self.depth();
-            if self.says != Says::Id(surfel) && decide::before(t, depth).certainly() {
+            if self.says != PixelContent::Id(surfel) && decide::before(t, depth).certainly() {
                 let (error, depth, found) = (t.distance(depth), t.middle, depth.middle);
                 // A sample has no rim.
                 pixel.found(error, || Fault::LeftOut { surfel, rim: 0.0, depth, found });
@@ -108,7 +108,7 @@ impl<P: Profile> Claim<P> {
     fn depth(&self) -> Ball<P> {
         let of_sample = || self.best.map_or(anywhere(), |(_, sample)| sample.depth);
         match self.says {
-            Says::Empty => Ball::INFINITY,
+            PixelContent::Empty => Ball::INFINITY,
             _ => self.depth.unwrap_or_else(of_sample),
         }
     }
@@ -120,7 +120,7 @@ impl<P: Profile> Claim<P> {
         (ties, surfels): (Ties, &Surfels),
         pixel: &mut PixelMarks<'_>,
     ) {
-        let (Says::Id(found), Some((_, sample)), Candidate::Surfel(surfel, _)) =
+        let (PixelContent::Id(found), Some((_, sample)), Candidate::Surfel(surfel, _)) =
             (self.says, &self.best, one)
         else {
             return;

@@ -52,7 +52,7 @@ use crate::scene::Surfels;
 use crate::verdict::Doubt;
 use crate::verdict::marks::{Marks, StageMarks, Watch, counted};
 use claim::Claim;
-use planes::Says;
+use planes::PixelContent;
 use primitives::{Pieces, PossiblePiece};
 
 /// A surfel that may be drawn.
@@ -164,7 +164,7 @@ impl<'a, P: Profile> AllPossible<'a, P> {
             let claim = &claims[pixel];
             if claim.may_have(&one) {
                 counts[pixel] += 1;
-                let sure = matches!(claim.says, Says::Some(_)) || one.lies();
+                let sure = matches!(claim.says, PixelContent::Some(_)) || one.lies();
                 found.push((pixel, one.id(), sure));
             }
         });
@@ -255,7 +255,9 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         });
         for (pixel, at) in counted(rect) {
             let claim = &mut claims[pixel];
-            if matches!(claim.says, Says::Empty | Says::Nothing) && claim.front.is_none() {
+            if matches!(claim.says, PixelContent::Empty | PixelContent::Nothing)
+                && claim.front.is_none()
+            {
                 claim.consider(planes, at, PixelSample::empty());
             }
             claim.judge(planes, at, &mut marks.at(pixel));

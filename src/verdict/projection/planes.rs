@@ -8,28 +8,28 @@ use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector2};
 use crate::scene::Scene;
 use crate::verdict::checks::{Report, input, inputs, number, triple, whole};
-use crate::verdict::client::{Client, Stored, Ties};
+use crate::verdict::client::{Client, StoredPlane, Ties};
 
 /// The planes of the projection, each if it is there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SamplePlanes<'a> {
     scene: &'a Scene,
     pub(super) ties: Ties,
-    pub(super) depth: Option<Stored<'a, f64>>,
-    id: Option<Stored<'a, u32>>,
-    kind: Option<Stored<'a, u8>>,
-    normal: Option<Stored<'a, [f64; 3]>>,
-    extent: Option<Stored<'a, f64>>,
-    radius: Option<Stored<'a, f64>>,
-    left: Option<Stored<'a, f64>>,
-    upper: Option<Stored<'a, f64>>,
-    color: Option<Stored<'a, [f64; 3]>>,
-    tangent: Option<Stored<'a, [f64; 3]>>,
+    pub(super) depth: Option<StoredPlane<'a, f64>>,
+    id: Option<StoredPlane<'a, u32>>,
+    kind: Option<StoredPlane<'a, u8>>,
+    normal: Option<StoredPlane<'a, [f64; 3]>>,
+    extent: Option<StoredPlane<'a, f64>>,
+    radius: Option<StoredPlane<'a, f64>>,
+    left: Option<StoredPlane<'a, f64>>,
+    upper: Option<StoredPlane<'a, f64>>,
+    color: Option<StoredPlane<'a, [f64; 3]>>,
+    tangent: Option<StoredPlane<'a, [f64; 3]>>,
 }
 
 /// What a client says is in a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Says {
+pub(super) enum PixelContent {
     /// It gives neither id, nor kind, nor depth.
     Nothing,
     Empty,
@@ -100,25 +100,30 @@ impl<'a> SamplePlanes<'a> {
     }
 
     /// What a pixel is said to have; of some primitives it is not known what they come to.
-    pub(super) fn says(&self, at: (u32, u32), unclear: &[u32]) -> Says {
+    pub(super) fn says(&self, at: (u32, u32), unclear: &[u32]) -> PixelContent {
         if let Some(ids) = self.id {
             return match *ids.plane.at(at.0, at.1) {
-                NO_ID => Says::Empty,
-                id if unclear.binary_search(&id).is_ok() => Says::Unjudged(kind_of(self.scene, id)),
-                id => Says::Id(id),
+                NO_ID => PixelContent::Empty,
+                id if unclear.binary_search(&id).is_ok() => {
+                    PixelContent::Unjudged(kind_of(self.scene, id))
+                }
+                id => PixelContent::Id(id),
             };
         }
         let says = match (self.kind, self.depth) {
             (Some(kinds), _) => match *kinds.plane.at(at.0, at.1) {
-                0 => Says::Empty,
-                kind => Says::Some(SampleKind::ALL.get(usize::from(kind)).copied()),
+                0 => PixelContent::Empty,
+                kind => PixelContent::Some(SampleKind::ALL.get(usize::from(kind)).copied()),
             },
-            (None, Some(depths)) if *depths.plane.at(at.0, at.1) == f64::INFINITY => Says::Empty,
-            (None, Some(_)) => Says::Some(None),
-            (None, None) => Says::Nothing,
+            (None, Some(depths)) if *depths.plane.at(at.0, at.1) == f64::INFINITY => {
+                PixelContent::Empty
+            }
+            (None, Some(_)) => PixelContent::Some(None),
+            (None, None) => PixelContent::Nothing,
         };
-        let sure = matches!(says, Says::Empty | Says::Some(Some(SampleKind::Surface)));
-        if sure || unclear.is_empty() { says } else { Says::Unjudged(None) }
+        let sure =
+            matches!(says, PixelContent::Empty | PixelContent::Some(Some(SampleKind::Surface)));
+        if sure || unclear.is_empty() { says } else { PixelContent::Unjudged(None) }
     }
 
     /// Every plane at a pixel against a sample.
@@ -202,10 +207,10 @@ impl<'a> SamplePlanes<'a> {
             (None, Some(id)) => kind_of(self.scene, id),
             (None, None) => None,
         };
-        let scalar = |plane: &Option<Stored<'_, f64>>| {
+        let scalar = |plane: &Option<StoredPlane<'_, f64>>| {
             plane.as_ref().map_or(Ball::ZERO, |plane| input(plane, at))
         };
-        let three = |plane: &Option<Stored<'_, [f64; 3]>>| {
+        let three = |plane: &Option<StoredPlane<'_, [f64; 3]>>| {
             plane.as_ref().map_or([Ball::ZERO; 3], |plane| inputs(plane, at))
         };
         PixelSample {

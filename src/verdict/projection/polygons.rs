@@ -47,7 +47,7 @@ enum Form<P: Profile> {
     Exact(Box<Piece<Ball<P>>>),
     Between(Box<(Piece<Ball<P>>, Depths)>),
     /// With the places of the corners, if these are known.
-    Open(Option<Intervals>),
+    OpenDecision(Option<Intervals>),
 }
 
 /// What a triangle may leave in a pixel.
@@ -102,7 +102,7 @@ impl<'a, P: Profile> AllPolygons<'a, P> {
                         }
                     }
                 }
-                Form::Open(intervals) => {
+                Form::OpenDecision(intervals) => {
                     let any = anything();
                     let normal = Vector3::new(any, any, any);
                     for (_, (x, y)) in counted(inner) {
@@ -149,7 +149,7 @@ fn triangle<P: Profile>(
         let depths = depths(projector, &p, &p);
         let bounds = reach(projector, &p);
         let index = index as u32;
-        drawn.push(PossiblePolygon { index, bounds, depths, form: Form::Open(None) });
+        drawn.push(PossiblePolygon { index, bounds, depths, form: Form::OpenDecision(None) });
         return;
     };
     for i in 2..polygon.len() {
@@ -185,7 +185,7 @@ fn piece<P: Profile>(
     let intervals = Intervals::new(snap, &places);
     let bounds = intervals.bounds(projector.size);
     if !intervals.is_turned() {
-        let form = Form::Open(Some(intervals));
+        let form = Form::OpenDecision(Some(intervals));
         return Some(PossiblePolygon { index: id.0, bounds, depths, form });
     }
     let raster = Triangle::new(snap, least.map(|(place, _)| place))?;

@@ -38,7 +38,7 @@ use crate::method::pyramid::planes::{PULL, PUSH};
 use crate::number::ball::Profile;
 use crate::verdict::checks::missing;
 use crate::verdict::client::Client;
-use crate::verdict::marks::{Found, Watch, counted};
+use crate::verdict::marks::{MethodMarks, Watch, counted};
 use crate::verdict::projection::{self as samples, SamplePlanes};
 use crate::verdict::shift::Shifts;
 use crate::verdict::{Check, Verdict};
@@ -57,7 +57,7 @@ pub(super) fn verify<P: Profile>(
     budget: f64,
 ) -> Verdict {
     let (found, covered) = judge::<P>(job, settings, client, Watch::All);
-    let mut stages = found.judged(job);
+    let mut stages = found.stage_verdicts(job);
     let last = pyramid::sizes(job.camera.width, job.camera.height).len() - 1;
     let has = Has::of(job.scene);
     stages[1].missing = missing(client, &PULL, 1..last + 1, has);
@@ -82,7 +82,7 @@ fn judge<P: Profile>(
     settings: &Settings,
     client: &Client,
     watch: Watch,
-) -> (Found<1>, u64) {
+) -> (MethodMarks<1>, u64) {
     // The settings have been checked: there is a grid of so many digits.
     let snap = Snap::new(settings.subpixel_bits).unwrap_or_default();
     let sizes = pyramid::sizes(job.camera.width, job.camera.height);
@@ -93,8 +93,8 @@ fn judge<P: Profile>(
     let projection = samples::judge::<P>(job, settings.cull, snap, &finest, watch);
     let levels = Levels::<P>::new(job, &sizes, &finest, [&pulled, &pushed]);
     let before = vec![projection, levels.pull(watch), levels.push(settings, watch)];
-    let handed = PicturePlanes::new(client);
-    let judge = PixelJudge::new(job, levels.finest(), &handed);
+    let client_planes = PicturePlanes::new(client);
+    let judge = PixelJudge::new(job, levels.finest(), &client_planes);
     let found = job.exec.ordered(watch.parts(&job.grid()), |(_, rect)| {
         let mut marks = watch.marks(rect);
         let at = counted(rect);
@@ -103,5 +103,5 @@ fn judge<P: Profile>(
     });
     let covered = found.iter().map(|(_, covered)| covered).sum();
     let tiles = found.into_iter().map(|(marks, _)| marks).collect();
-    (Found { levels: before, stages: [("shading", judge.names())], tiles }, covered)
+    (MethodMarks { levels: before, stages: [("shading", judge.names())], tiles }, covered)
 }

@@ -15,7 +15,7 @@ use crate::verdict::marks::PixelMarks;
 pub(super) struct PixelJudge<'a, P: Profile> {
     /// Level 0 after the push, if it is there.
     cells: Option<&'a Level<P>>,
-    handed: &'a PicturePlanes<'a>,
+    client_planes: &'a PicturePlanes<'a>,
     view: View<Ball<P>>,
     shading: Shading<'a, P>,
     has: Has,
@@ -25,17 +25,17 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     pub(super) fn new(
         job: &Job<'a>,
         cells: Option<&'a Level<P>>,
-        handed: &'a PicturePlanes<'a>,
+        client_planes: &'a PicturePlanes<'a>,
     ) -> Self {
         let has = Has::of(job.scene);
         let shading = Shading::new(job, has.color);
-        Self { cells, handed, view: View::new(job.camera), shading, has }
+        Self { cells, client_planes, view: View::new(job.camera), shading, has }
     }
 
     /// The names of the planes that are judged: without the finest level those of the picture that
     /// follow from others.
     pub(super) fn names(&self) -> Vec<&'static str> {
-        let PicturePlanes { shaded, alpha, depth, normal, tangent, kind } = self.handed;
+        let PicturePlanes { shaded, alpha, depth, normal, tangent, kind } = self.client_planes;
         let copies = [
             depth.map(|plane| plane.name),
             normal.map(|plane| plane.name),
@@ -55,20 +55,22 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             self.check_copies(at, cell, report);
         }
         self.check_picture(at, cell, report);
-        let depth = self.handed.depth.map(|plane| plane.plane.at(at.0, at.1).is_finite());
+        let depth = self.client_planes.depth.map(|plane| plane.plane.at(at.0, at.1).is_finite());
         cell.map_or(depth.unwrap_or(false), Cell::is_valid)
     }
 
     /// What the picture shows of a cell.
     fn check_copies(&self, at: (u32, u32), cell: &Cell<Ball<P>>, report: &mut Report<'_>) {
-        let handed = self.handed;
-        if let Some(plane) = &handed.depth {
+        let client_planes = self.client_planes;
+        if let Some(plane) = &client_planes.depth {
             number(0, plane, at, cell.front, report);
         }
-        if let Some(plane) = &handed.kind {
+        if let Some(plane) = &client_planes.kind {
             whole(0, plane, at, cell.kind as u8, report);
         }
-        for (plane, of) in [(&handed.normal, cell.normal), (&handed.tangent, cell.tangent)] {
+        for (plane, of) in
+            [(&client_planes.normal, cell.normal), (&client_planes.tangent, cell.tangent)]
+        {
             if let Some(plane) = plane {
                 triple(0, (plane, Holds::Vector), at, world(&self.view, of), report);
             }
@@ -78,20 +80,20 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     /// Colour and opacity, from the client's own depth and vectors: as they were before they were
     /// stored or after, since the same pass leaves them.
     fn check_picture(&self, at: (u32, u32), cell: Option<&Cell<Ball<P>>>, report: &mut Report<'_>) {
-        let handed = self.handed;
+        let client_planes = self.client_planes;
         let own = cell.map_or_else(anything, |cell| cell.front);
-        let depth = handed.depth.map_or(own, |plane| plane.ball(at));
-        if let Some(plane) = &handed.shaded {
+        let depth = client_planes.depth.map_or(own, |plane| plane.ball(at));
+        if let Some(plane) = &client_planes.shaded {
             let normal = || cell.map_or([anything(); 3], |cell| world(&self.view, cell.normal));
             let surface = Surface {
                 depth,
-                normal: handed.normal.map_or_else(normal, |plane| plane.balls(at)),
+                normal: client_planes.normal.map_or_else(normal, |plane| plane.balls(at)),
                 tangent: self.tangent(at, cell),
                 color: cell.map_or([anything(); 3], |cell| cell.color),
             };
             triple(0, (plane, Holds::Color), at, self.shading.color(at, &surface), report);
         }
-        if let Some(plane) = &handed.alpha {
+        if let Some(plane) = &client_planes.alpha {
             number(0, plane, at, self.shading.alpha(self.seen(at, depth, cell)), report);
         }
     }
@@ -111,7 +113,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
                 None => unknown,
             }
         };
-        let tangent = self.handed.tangent.map_or_else(own, |plane| plane.balls(at));
+        let tangent = self.client_planes.tangent.map_or_else(own, |plane| plane.balls(at));
         // Others have length 1, however coarsely they are stored.
         let null = |part: &Ball<P>| part.middle == 0.0 && part.radius < 0.5;
         (!tangent.iter().all(null)).then_some(tangent)
@@ -119,7 +121,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
 
     /// More than 0 where something is seen: by the kind, else by the depth.
     fn seen(&self, at: (u32, u32), depth: Ball<P>, cell: Option<&Cell<Ball<P>>>) -> Ball<P> {
-        let kind = self.handed.kind.map(|plane| *plane.plane.at(at.0, at.1) > 0);
+        let kind = self.client_planes.kind.map(|plane| *plane.plane.at(at.0, at.1) > 0);
         let known = kind.or(cell.map(Cell::is_valid));
         match known {
             Some(true) => Ball::ONE,

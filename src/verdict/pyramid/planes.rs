@@ -9,7 +9,7 @@ use crate::method::{Holds, PlaneRow};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector2};
 use crate::verdict::checks::{Report, input, inputs, number, triple, whole};
-use crate::verdict::client::{Client, Stored};
+use crate::verdict::client::{Client, StoredPlane};
 
 /// The cells of a level.
 pub(super) type Level<P> = Plane<Cell<Ball<P>>>;
@@ -17,15 +17,15 @@ pub(super) type Level<P> = Plane<Cell<Ball<P>>>;
 /// The planes of a level, each if it is there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CellPlanes<'a> {
-    kind: Option<Stored<'a, u8>>,
-    front: Option<Stored<'a, f64>>,
-    back: Option<Stored<'a, f64>>,
-    extent: Option<Stored<'a, f64>>,
-    right: Option<Stored<'a, f64>>,
-    down: Option<Stored<'a, f64>>,
-    normal: Option<Stored<'a, [f64; 3]>>,
-    color: Option<Stored<'a, [f64; 3]>>,
-    tangent: Option<Stored<'a, [f64; 3]>>,
+    kind: Option<StoredPlane<'a, u8>>,
+    front: Option<StoredPlane<'a, f64>>,
+    back: Option<StoredPlane<'a, f64>>,
+    extent: Option<StoredPlane<'a, f64>>,
+    right: Option<StoredPlane<'a, f64>>,
+    down: Option<StoredPlane<'a, f64>>,
+    normal: Option<StoredPlane<'a, [f64; 3]>>,
+    color: Option<StoredPlane<'a, [f64; 3]>>,
+    tangent: Option<StoredPlane<'a, [f64; 3]>>,
 }
 
 impl<'a> CellPlanes<'a> {
@@ -78,7 +78,7 @@ impl<'a> CellPlanes<'a> {
         if (has.color && color.is_none()) || (has.tangent && tangent.is_none()) {
             return None;
         }
-        let three = |plane: Option<Stored<'_, [f64; 3]>>, has: bool, at| {
+        let three = |plane: Option<StoredPlane<'_, [f64; 3]>>, has: bool, at| {
             plane.filter(|_| has).map_or([Ball::ZERO; 3], |plane| inputs(&plane, at))
         };
         Some(Plane::from_pixels(size, |x, y| {
@@ -135,12 +135,12 @@ impl<'a> CellPlanes<'a> {
 /// The planes of the picture, each if it is there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PicturePlanes<'a> {
-    pub(super) shaded: Option<Stored<'a, [f64; 3]>>,
-    pub(super) alpha: Option<Stored<'a, f64>>,
-    pub(super) depth: Option<Stored<'a, f64>>,
-    pub(super) normal: Option<Stored<'a, [f64; 3]>>,
-    pub(super) tangent: Option<Stored<'a, [f64; 3]>>,
-    pub(super) kind: Option<Stored<'a, u8>>,
+    pub(super) shaded: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(super) alpha: Option<StoredPlane<'a, f64>>,
+    pub(super) depth: Option<StoredPlane<'a, f64>>,
+    pub(super) normal: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(super) tangent: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(super) kind: Option<StoredPlane<'a, u8>>,
 }
 
 impl<'a> PicturePlanes<'a> {

@@ -11,7 +11,7 @@ use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::splat::View;
 use crate::verdict::checks::anything;
-use crate::verdict::ewa::handed::Handed;
+use crate::verdict::ewa::client_planes::ClientPlanes;
 use crate::verdict::ewa::sums::{Continuations, MOST};
 use crate::verdict::marks::PixelMarks;
 use crate::verdict::{Doubt, Fault};
@@ -21,7 +21,7 @@ const MOST_CHOICES: usize = 16;
 
 /// What all pixels share.
 pub(crate) struct Compositing<'a, P: Profile> {
-    handed: &'a Handed<'a>,
+    client_planes: &'a ClientPlanes<'a>,
     surfels: &'a Surfels,
     view: View<Ball<P>>,
     epsilon: Ball<P>,
@@ -31,9 +31,13 @@ pub(crate) struct Compositing<'a, P: Profile> {
 type Choice<'s, P> = Vec<&'s Sample<P>>;
 
 impl<'a, P: Profile> Compositing<'a, P> {
-    pub(crate) fn new(job: &Job<'a>, handed: &'a Handed<'a>, epsilon: Ball<P>) -> Self {
+    pub(crate) fn new(
+        job: &Job<'a>,
+        client_planes: &'a ClientPlanes<'a>,
+        epsilon: Ball<P>,
+    ) -> Self {
         let view = View::new(job.camera);
-        Self { handed, surfels: &job.scene.surfels, view, epsilon }
+        Self { client_planes, surfels: &job.scene.surfels, view, epsilon }
     }
 
     /// Marks what is wrong with the nearest fragment of a pixel; gives its depth, and what the sums
@@ -77,8 +81,8 @@ impl<'a, P: Profile> Compositing<'a, P> {
         groups: &[Samples<P>],
         pixel: &mut PixelMarks<'_>,
     ) -> (Option<Ball<P>>, Option<u32>) {
-        let said = self.handed.id.map(|plane| *plane.plane.at(at.0, at.1));
-        let own = self.handed.depth.map(|plane| plane.ball::<P>(at));
+        let said = self.client_planes.id.map(|plane| *plane.plane.at(at.0, at.1));
+        let own = self.client_planes.depth.map(|plane| plane.ball::<P>(at));
         if let Some(depth) = own {
             self.check_depth(depth, said, groups, pixel);
         }
@@ -112,7 +116,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
             Some(best) if misfit(best) <= misfit(truth) => Some(best),
             _ => Some(truth),
         });
-        let channel = || self.handed.depth.map_or_else(String::new, |plane| plane.channel());
+        let channel = || self.client_planes.depth.map_or_else(String::new, |plane| plane.channel());
         let fault = |truth: Ball<P>| Fault::Value {
             channel: channel(),
             found: depth.middle,
@@ -165,7 +169,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
             Some(best) if best.nearness.middle >= sample.nearness.middle => Some(best),
             _ => Some(sample),
         });
-        let channel = self.handed.id.map_or_else(String::new, |plane| plane.channel());
+        let channel = self.client_planes.id.map_or_else(String::new, |plane| plane.channel());
         let truth = nearest.map_or(NO_ID, |sample| sample.surfel);
         Fault::Whole { channel, found, truth }
     }
@@ -183,7 +187,8 @@ impl<'a, P: Profile> Compositing<'a, P> {
                 return (0.0, least.1);
             };
             let (surfel, found) = (other.surfel, own.surfel);
-            let channel = || self.handed.id.map_or_else(String::new, |plane| plane.channel());
+            let channel =
+                || self.client_planes.id.map_or_else(String::new, |plane| plane.channel());
             if error <= least.0 {
                 let fault = if nearer.certainly() {
                     Fault::Whole { channel: channel(), found, truth: surfel }
@@ -201,7 +206,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
         if one.surfel == other.surfel || one.surfel == NO_ID || other.surfel == NO_ID {
             return false;
         }
-        let first = self.handed.ties.keeps(one.surfel, other.surfel);
+        let first = self.client_planes.ties.keeps(one.surfel, other.surfel);
         let exact = one.nearness.distance(other.nearness) == f64::INFINITY
             && one.nearness.middle == other.nearness.middle;
         first && (exact || self.surfels.are_equal(one.surfel, other.surfel))

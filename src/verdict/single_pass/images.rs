@@ -1,7 +1,7 @@
 //! The depth-images of a client at a pixel: what each group may keep, and what it certainly does not.
 
+use super::client_planes::ImagePlanes;
 use super::fragments::{Fragment, GroupFragments, PixelFragments};
-use super::handed::ImagePlanes;
 use crate::composite::decide;
 use crate::composite::groups::WeightedFragment;
 use crate::frame::NO_ID;
@@ -11,7 +11,7 @@ use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::verdict::checks::{Report, number};
-use crate::verdict::client::{Stored, Ties};
+use crate::verdict::client::{StoredPlane, Ties};
 use crate::verdict::marks::PixelMarks;
 use crate::verdict::{Doubt, Fault};
 
@@ -226,7 +226,7 @@ impl<P: Profile> Group<'_, P> {
     }
 
     /// The plane of Voronoi-enhanced depths, under that depth test.
-    fn voronoi(&self) -> Option<&Stored<'_, f64>> {
+    fn voronoi(&self) -> Option<&StoredPlane<'_, f64>> {
         self.planes.voronoi.as_ref().filter(|_| self.images.fragments.voronoi())
     }
 

@@ -39,9 +39,9 @@
 //! A pixel is undecided if its sums have more than one continuation. The error of a number, and of a
 //! certificate that fails, is that of `ewa`.
 
+mod client_planes;
 pub(crate) mod compositing;
 pub(crate) mod fragments;
-mod handed;
 pub(crate) mod images;
 #[cfg(test)]
 mod tests;
@@ -56,22 +56,22 @@ use crate::number::ball::Profile;
 use crate::scene::Surfels;
 use crate::verdict::client::Client;
 use crate::verdict::ewa::certificate::Nearest;
-use crate::verdict::ewa::handed::Handed;
+use crate::verdict::ewa::client_planes::ClientPlanes;
 use crate::verdict::ewa::pixel::PixelJudge;
 use crate::verdict::ewa::sums::Continuations;
 use crate::verdict::marks::{self, Counts, Marks, counted};
 use crate::verdict::{Check, Verdict};
+use client_planes::ImagePlanes;
+pub(crate) use client_planes::sum_rows;
 use compositing::Compositing;
 use fragments::GroupFragments;
-use handed::ImagePlanes;
-pub(crate) use handed::sum_rows;
 use images::Images;
 
 /// How a method that works by groups calls their images and its stages, and what a client has of it.
 #[derive(Debug)]
 pub(crate) struct GroupsOf<'a> {
     pub(crate) client: &'a Client,
-    pub(crate) handed: Handed<'a>,
+    pub(crate) client_planes: ClientPlanes<'a>,
     pub(crate) images: &'static ImageRows,
     /// Whether the colour is that of a layer, behind which others may be seen.
     pub(crate) layer: bool,
@@ -82,8 +82,8 @@ const STAGES: [&str; 3] = ["geometry", "compositing", "shading"];
 
 impl<'a> GroupsOf<'a> {
     fn new(client: &'a Client) -> Self {
-        let handed = Handed::of(client, &sum_rows());
-        Self { client, handed, images: &IMAGES, layer: false }
+        let client_planes = ClientPlanes::of(client, &sum_rows());
+        Self { client, client_planes, images: &IMAGES, layer: false }
     }
 }
 
@@ -119,13 +119,13 @@ pub(super) fn checks<P: Profile>(
 
 /// What is found at a pixel.
 #[derive(Clone, Debug)]
-pub(crate) struct Found<P: Profile> {
+pub(crate) struct PixelFindings<P: Profile> {
     pub(crate) nearest: Nearest<P>,
     /// What its sums may be.
     sums: Continuations<P>,
 }
 
-impl<P: Profile> Found<P> {
+impl<P: Profile> PixelFindings<P> {
     /// Whether there is but one continuation.
     pub(crate) fn certain(&self) -> bool {
         matches!(self.sums, Continuations::One(_))
@@ -150,25 +150,26 @@ pub(crate) struct Judge<'a, P: Profile> {
 impl<'a, P: Profile> Judge<'a, P> {
     /// Projection.
     pub(crate) fn new(job: &Job<'a>, settings: &Settings, of: &'a GroupsOf<'a>) -> Result<Self> {
-        let GroupsOf { client, handed, images: rows, layer } = of;
+        let GroupsOf { client, client_planes, images: rows, layer } = of;
         let fragments = GroupFragments::project(job, settings)?;
         let images = (0..fragments.groups()).map(|k| ImagePlanes::new(client, rows, k)).collect();
         let surfels = &job.scene.surfels;
         let epsilon = fragments.epsilon();
-        let compositing = Compositing::new(job, handed, epsilon);
-        let pixels = if *layer { PixelJudge::of_layer } else { PixelJudge::new }(job, handed);
+        let compositing = Compositing::new(job, client_planes, epsilon);
+        let pixels =
+            if *layer { PixelJudge::of_layer } else { PixelJudge::new }(job, client_planes);
         Ok(Self { surfels, of, images, fragments, compositing, pixels })
     }
 
     /// The planes that geometry, compositing and shading judge.
     pub(crate) fn names(&self) -> [Vec<&'static str>; 3] {
-        let [(_, nearest), (_, sums), (_, averages), (_, shading)] = self.of.handed.stages();
+        let [(_, nearest), (_, sums), (_, averages), (_, shading)] = self.of.client_planes.stages();
         let compositing = [sums, averages, nearest].concat();
-        [handed::names(&self.images), compositing, shading]
+        [client_planes::names(&self.images), compositing, shading]
     }
 
     /// Opacity and colour of a pixel as the next pass reads them.
-    pub(crate) fn read(&self, at: (u32, u32), found: &Found<P>) -> (Ball<P>, [Ball<P>; 3]) {
+    pub(crate) fn read(&self, at: (u32, u32), found: &PixelFindings<P>) -> (Ball<P>, [Ball<P>; 3]) {
         self.pixels.read(at, &found.nearest, &found.sums)
     }
 
@@ -199,7 +200,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         (tile, above, row): (usize, usize, Rect),
         geometry: &mut Marks,
         parts: &mut [Marks; 3],
-    ) -> Vec<Found<P>> {
+    ) -> Vec<PixelFindings<P>> {
         let said = |group: usize, at| self.images[group].surfel(at);
         let fragments = self.fragments.of_row(tile, &row, said);
         let images =
@@ -210,7 +211,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             let (depth, sums) = self.compositing.judge(at, &samples, &mut parts[0].at(column));
             let nearest = Nearest { depth, id: None };
             self.pixels.judge((column, at), &nearest, &sums, parts);
-            Found { nearest, sums }
+            PixelFindings { nearest, sums }
         };
         counted(row).map(of_pixel).collect()
     }

@@ -20,7 +20,7 @@
 //! several. A cell is marked where its planes have it, whatever its level. What is copied from stage
 //! to stage (ids, depth and radius of the front, a centre that moves alone) must be equal.
 
-mod gathered;
+mod gathering;
 mod levels;
 mod pixel;
 mod planes;
@@ -37,7 +37,7 @@ use crate::method::template::{Settings, propagation};
 use crate::number::ball::Profile;
 use crate::verdict::checks::missing;
 use crate::verdict::client::Client;
-use crate::verdict::marks::{Found, Watch, counted};
+use crate::verdict::marks::{MethodMarks, Watch, counted};
 use crate::verdict::projection::{self as samples, SamplePlanes};
 use crate::verdict::shift::Shifts;
 use crate::verdict::{Check, Verdict};
@@ -56,7 +56,7 @@ pub(super) fn verify<P: Profile>(
     budget: f64,
 ) -> Verdict {
     let (found, covered) = judge::<P>(job, settings, client, Watch::All);
-    let mut stages = found.judged(job);
+    let mut stages = found.stage_verdicts(job);
     stages[1].missing =
         missing(client, &LEVELS, 1..levels(job, settings).len(), Has::of(job.scene));
     let undecided = stages[2].doubtful(ANY);
@@ -86,15 +86,15 @@ fn judge<P: Profile>(
     settings: &Settings,
     client: &Client,
     watch: Watch,
-) -> (Found<3>, u64) {
+) -> (MethodMarks<3>, u64) {
     let sizes = levels(job, settings);
     let finest = SamplePlanes::new(client, job.scene);
     let coarser: Vec<_> = (1..sizes.len()).map(|level| CenterPlanes::new(client, level)).collect();
     let projection = samples::judge::<P>(job, settings.cull, Snap::default(), &finest, watch);
     let levels = Levels::<P>::new(job, settings, &sizes, &finest, &coarser);
     let propagation = levels.judge(watch);
-    let handed = PicturePlanes::new(client);
-    let judge = PixelJudge::new(job, settings, levels.all(), &handed);
+    let client_planes = PicturePlanes::new(client);
+    let judge = PixelJudge::new(job, settings, levels.all(), &client_planes);
     let found = job.exec.ordered(watch.parts(&job.grid()), |(_, rect)| {
         let mut marks = [(); 3].map(|()| watch.marks(rect));
         let covered = counted(rect).filter(|at| judge.judge(*at, &mut marks)).count();
@@ -102,6 +102,6 @@ fn judge<P: Profile>(
     });
     let covered = found.iter().map(|(_, covered)| covered).sum();
     let tiles = found.into_iter().map(|(marks, _)| marks).collect();
-    let stages = handed.stages(judge.gathers());
-    (Found { levels: vec![projection, propagation], stages, tiles }, covered)
+    let stages = client_planes.stages(judge.gathers());
+    (MethodMarks { levels: vec![projection, propagation], stages, tiles }, covered)
 }

@@ -1,6 +1,6 @@
 //! One pixel of a client: what was gathered, averages and shading.
 
-use super::gathered::outcomes;
+use super::gathering::outcomes;
 use super::planes::{Level, PicturePlanes};
 use crate::composite::sum;
 use crate::frame::NO_ID;
@@ -27,7 +27,7 @@ const SHADING: usize = 2;
 pub(super) struct PixelJudge<'a, P: Profile> {
     settings: &'a Settings,
     levels: Option<Vec<Level<P>>>,
-    handed: &'a PicturePlanes<'a>,
+    client_planes: &'a PicturePlanes<'a>,
     view: View<Ball<P>>,
     shading: Shading<'a, P>,
     has: Has,
@@ -40,7 +40,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         job: &Job<'a>,
         settings: &'a Settings,
         levels: Option<Vec<Level<P>>>,
-        handed: &'a PicturePlanes<'a>,
+        client_planes: &'a PicturePlanes<'a>,
     ) -> Self {
         let (scene, has) = (job.scene, Has::of(job.scene));
         let colors = scene.surfels.color().unwrap_or_default();
@@ -50,7 +50,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         });
         let view = View::new(job.camera);
         let shading = Shading::new(job, has.color);
-        Self { settings, levels, handed, view, shading, has, brightest }
+        Self { settings, levels, client_planes, view, shading, has, brightest }
     }
 
     /// Whether the gathering is replayed.
@@ -70,7 +70,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         self.check(at, sums, &mut |part, error, fault| marks[part].at(pixel).found(error, fault));
         match sums {
             Some(sums) => sums.id != NO_ID,
-            None => replayed || self.handed.empty(at) == Some(false),
+            None => replayed || self.client_planes.empty(at) == Some(false),
         }
     }
 
@@ -87,12 +87,12 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             ..Gathered::empty()
         };
         // What comes next works with the client's own.
-        let (own, handed) = (sums.copied().unwrap_or(nothing), self.handed);
+        let (own, client_planes) = (sums.copied().unwrap_or(nothing), self.client_planes);
         let own = Gathered {
-            weight: handed.weight.map_or(own.weight, |plane| input(&plane, at)),
-            depths: handed.depths.map_or(own.depths, |plane| input(&plane, at)),
-            normals: handed.normals.map_or(own.normals, |plane| inputs(&plane, at)),
-            colors: handed.colors.map_or(own.colors, |plane| inputs(&plane, at)),
+            weight: client_planes.weight.map_or(own.weight, |plane| input(&plane, at)),
+            depths: client_planes.depths.map_or(own.depths, |plane| input(&plane, at)),
+            normals: client_planes.normals.map_or(own.normals, |plane| inputs(&plane, at)),
+            colors: client_planes.colors.map_or(own.colors, |plane| inputs(&plane, at)),
             ..own
         };
         self.check_averages(at, &own, report);
@@ -101,33 +101,33 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
 
     /// What was gathered.
     fn check_sums(&self, at: (u32, u32), sums: &Gathered<Ball<P>>, report: &mut Report<'_>) {
-        let handed = self.handed;
+        let client_planes = self.client_planes;
         // Each addition rounds a sum that is at most this large.
         let most = |ball: Ball<P>| ball.middle.abs() + ball.radius;
         let (heaviest, count) = (most(sums.weight), f64::from(sums.count));
-        let lost = |largest: f64| count * handed.accumulator.radius(largest);
-        if let Some(plane) = &handed.id {
+        let lost = |largest: f64| count * client_planes.accumulator.radius(largest);
+        if let Some(plane) = &client_planes.id {
             whole(RECONSTRUCTION, plane, at, sums.id, report);
         }
-        if let Some(plane) = &handed.count {
+        if let Some(plane) = &client_planes.count {
             whole(RECONSTRUCTION, plane, at, sums.count, report);
         }
         let scalars = [
-            (&handed.weight, widened(sums.weight, lost(heaviest))),
-            (&handed.depths, widened(sums.depths, lost(most(sums.depths)))),
-            (&handed.front, sums.depth),
-            (&handed.radius, sums.radius),
+            (&client_planes.weight, widened(sums.weight, lost(heaviest))),
+            (&client_planes.depths, widened(sums.depths, lost(most(sums.depths)))),
+            (&client_planes.front, sums.depth),
+            (&client_planes.radius, sums.radius),
         ];
         for (plane, truth) in scalars {
             if let Some(plane) = plane {
                 number(RECONSTRUCTION, plane, at, truth, report);
             }
         }
-        if let Some(plane) = &handed.normals {
+        if let Some(plane) = &client_planes.normals {
             let truth = sums.normals.map(|part| widened(part, lost(heaviest)));
             triple(RECONSTRUCTION, (plane, Holds::Vector), at, truth, report);
         }
-        if let Some(plane) = &handed.colors {
+        if let Some(plane) = &client_planes.colors {
             let truth = sums.colors.map(|part| widened(part, lost(heaviest * self.brightest)));
             triple(RECONSTRUCTION, (plane, Holds::Color), at, truth, report);
         }
@@ -135,35 +135,35 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
 
     /// The averages, and the weight again.
     fn check_averages(&self, at: (u32, u32), own: &Gathered<Ball<P>>, report: &mut Report<'_>) {
-        let handed = self.handed;
-        if let Some(plane) = &handed.depth {
+        let client_planes = self.client_planes;
+        if let Some(plane) = &client_planes.depth {
             number(NORMALIZATION, plane, at, normalization::depth(own), report);
         }
-        if let Some(plane) = &handed.normal {
+        if let Some(plane) = &client_planes.normal {
             let truth = normalization::normal(&self.view, own);
             triple(NORMALIZATION, (plane, Holds::Vector), at, truth, report);
         }
-        if let Some(plane) = &handed.weight_copy {
+        if let Some(plane) = &client_planes.weight_copy {
             number(NORMALIZATION, plane, at, own.weight, report);
         }
     }
 
     /// The picture.
     fn check_shading(&self, at: (u32, u32), own: &Gathered<Ball<P>>, report: &mut Report<'_>) {
-        let handed = self.handed;
-        let weight = handed.weight_copy.map_or(own.weight, |plane| input(&plane, at));
-        if let Some(plane) = &handed.shaded {
+        let client_planes = self.client_planes;
+        let weight = client_planes.weight_copy.map_or(own.weight, |plane| input(&plane, at));
+        if let Some(plane) = &client_planes.shaded {
             let depth = || normalization::depth(own);
             let normal = || normalization::normal(&self.view, own);
             let surface = Surface {
-                depth: handed.depth.map_or_else(depth, |plane| input(&plane, at)),
-                normal: handed.normal.map_or_else(normal, |plane| inputs(&plane, at)),
+                depth: client_planes.depth.map_or_else(depth, |plane| input(&plane, at)),
+                normal: client_planes.normal.map_or_else(normal, |plane| inputs(&plane, at)),
                 tangent: None,
                 color: if self.has.color { sum::average(own.colors, weight) } else { own.colors },
             };
             triple(SHADING, (plane, Holds::Color), at, self.shading.color(at, &surface), report);
         }
-        if let Some(plane) = &handed.alpha {
+        if let Some(plane) = &client_planes.alpha {
             number(SHADING, plane, at, self.shading.alpha(weight), report);
         }
     }

@@ -9,19 +9,19 @@ use crate::method::template::planes::{GATHERED, LEVELS, NORMALIZATION, SHADING};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector2};
 use crate::verdict::checks::{Report, input, inputs, number, triple, whole};
-use crate::verdict::client::{Client, Storage, Stored};
+use crate::verdict::client::{Client, Storage, StoredPlane};
 
 /// The planes of a level, each if it is there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CenterPlanes<'a> {
-    id: Option<Stored<'a, u32>>,
-    depth: Option<Stored<'a, f64>>,
-    radius: Option<Stored<'a, f64>>,
-    extent: Option<Stored<'a, f64>>,
-    left: Option<Stored<'a, f64>>,
-    upper: Option<Stored<'a, f64>>,
-    normal: Option<Stored<'a, [f64; 3]>>,
-    color: Option<Stored<'a, [f64; 3]>>,
+    id: Option<StoredPlane<'a, u32>>,
+    depth: Option<StoredPlane<'a, f64>>,
+    radius: Option<StoredPlane<'a, f64>>,
+    extent: Option<StoredPlane<'a, f64>>,
+    left: Option<StoredPlane<'a, f64>>,
+    upper: Option<StoredPlane<'a, f64>>,
+    normal: Option<StoredPlane<'a, [f64; 3]>>,
+    color: Option<StoredPlane<'a, [f64; 3]>>,
 }
 
 impl<'a> CenterPlanes<'a> {
@@ -113,22 +113,22 @@ pub(super) type Level<P> = Plane<Center<Ball<P>>>;
 /// The planes of the picture and of what was gathered for it, each if it is there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PicturePlanes<'a> {
-    pub(super) count: Option<Stored<'a, u8>>,
-    pub(super) weight: Option<Stored<'a, f64>>,
-    pub(super) depths: Option<Stored<'a, f64>>,
-    pub(super) front: Option<Stored<'a, f64>>,
-    pub(super) radius: Option<Stored<'a, f64>>,
-    pub(super) normals: Option<Stored<'a, [f64; 3]>>,
-    pub(super) colors: Option<Stored<'a, [f64; 3]>>,
-    pub(super) id: Option<Stored<'a, u32>>,
+    pub(super) count: Option<StoredPlane<'a, u8>>,
+    pub(super) weight: Option<StoredPlane<'a, f64>>,
+    pub(super) depths: Option<StoredPlane<'a, f64>>,
+    pub(super) front: Option<StoredPlane<'a, f64>>,
+    pub(super) radius: Option<StoredPlane<'a, f64>>,
+    pub(super) normals: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(super) colors: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(super) id: Option<StoredPlane<'a, u32>>,
     pub(super) accumulator: Storage,
     /// The averages, and the weight again.
-    pub(super) depth: Option<Stored<'a, f64>>,
-    pub(super) normal: Option<Stored<'a, [f64; 3]>>,
-    pub(super) weight_copy: Option<Stored<'a, f64>>,
+    pub(super) depth: Option<StoredPlane<'a, f64>>,
+    pub(super) normal: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(super) weight_copy: Option<StoredPlane<'a, f64>>,
     /// The picture.
-    pub(super) shaded: Option<Stored<'a, [f64; 3]>>,
-    pub(super) alpha: Option<Stored<'a, f64>>,
+    pub(super) shaded: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(super) alpha: Option<StoredPlane<'a, f64>>,
 }
 
 /// A stage, and the planes that it judges.
@@ -160,8 +160,8 @@ impl<'a> PicturePlanes<'a> {
     /// The stages, each with the planes that it judges; `gathers` says whether the gathering can be
     /// replayed.
     pub(super) fn stages(&self, gathers: bool) -> [StagePlanes; 3] {
-        let scalar = |plane: &Option<Stored<'_, f64>>| plane.map(|plane| plane.name);
-        let triple = |plane: &Option<Stored<'_, [f64; 3]>>| plane.map(|plane| plane.name);
+        let scalar = |plane: &Option<StoredPlane<'_, f64>>| plane.map(|plane| plane.name);
+        let triple = |plane: &Option<StoredPlane<'_, [f64; 3]>>| plane.map(|plane| plane.name);
         let sums = [
             self.count.map(|plane| plane.name),
             scalar(&self.weight),

@@ -24,12 +24,12 @@
 //!
 //! A pixel is undecided if a group has several continuations, or is not judged, or if its colour is not.
 
-pub(crate) mod averaged;
-pub(crate) mod drawn;
-pub(crate) mod layered;
+pub(crate) mod averages;
+pub(crate) mod drawings;
+pub(crate) mod layers;
+mod picture;
 pub(crate) mod planes;
-mod replayed;
-mod shown;
+mod replay;
 #[cfg(test)]
 mod tests;
 
@@ -39,14 +39,14 @@ use crate::method::Job;
 use crate::method::transparent::{Holes, Settings};
 use crate::number::ball::Profile;
 use crate::verdict::client::{Client, Ties};
-use crate::verdict::ewa::handed::Handed;
+use crate::verdict::ewa::client_planes::ClientPlanes;
 use crate::verdict::marks::{self, Counts, Marks, counted};
 use crate::verdict::single_pass::sum_rows;
 use crate::verdict::{Check, Verdict};
-use averaged::AveragePlanes;
-use layered::LayersJudge;
+use averages::AveragePlanes;
+use layers::LayersJudge;
+use picture::PictureJudge;
 use planes::GroupFound;
-use shown::Shown;
 
 /// The stages by their names.
 const STAGES: [&str; 2] = ["blending", "averaging"];
@@ -61,8 +61,8 @@ pub(super) fn verify<P: Profile>(
     client: &Client,
     budget: f64,
 ) -> Result<Verdict> {
-    let handed = handed(client);
-    let judge = Judge::<P>::new(job, settings, client, &handed)?;
+    let client_planes = client_planes(client);
+    let judge = Judge::<P>::new(job, settings, client, &client_planes)?;
     let [first, second] = STAGES;
     let averaging = [judge.averages.names(), judge.shown.names()].concat();
     let stages = [(first, judge.layers.names()), (second, averaging)];
@@ -76,15 +76,15 @@ pub(super) fn checks<P: Profile>(
     client: &Client,
     pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
-    let handed = handed(client);
-    let judge = Judge::<P>::new(job, settings, client, &handed)?;
+    let client_planes = client_planes(client);
+    let judge = Judge::<P>::new(job, settings, client, &client_planes)?;
     marks::checks(job, STAGES, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
 /// Depth and surfel of the picture. Depths of one surfel in two groups, or of two equal ones, may tie or
 /// not, as each group scales it.
-fn handed(client: &Client) -> Handed<'_> {
-    Handed { ties: Ties::Any, ..Handed::of(client, &sum_rows()) }
+fn client_planes(client: &Client) -> ClientPlanes<'_> {
+    ClientPlanes { ties: Ties::Any, ..ClientPlanes::of(client, &sum_rows()) }
 }
 
 /// What all tiles share.
@@ -92,7 +92,7 @@ struct Judge<'a, P: Profile> {
     layers: LayersJudge<'a, P>,
     averages: AveragePlanes<'a>,
     holes: Holes,
-    shown: Shown<'a, P>,
+    shown: PictureJudge<'a, P>,
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
@@ -100,13 +100,13 @@ impl<'a, P: Profile> Judge<'a, P> {
         job: &Job<'a>,
         settings: &Settings,
         client: &'a Client,
-        handed: &'a Handed<'a>,
+        client_planes: &'a ClientPlanes<'a>,
     ) -> Result<Self> {
         Ok(Self {
             layers: LayersJudge::project(job, settings, client)?,
             averages: AveragePlanes::new(client),
             holes: settings.holes,
-            shown: Shown::new(job, client, handed),
+            shown: PictureJudge::new(job, client, client_planes),
         })
     }
 

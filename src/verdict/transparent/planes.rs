@@ -1,6 +1,6 @@
 //! The planes that a client has handed in, and the groups that they are of.
 
-use super::replayed::Layers;
+use super::replay::Layers;
 use crate::method::Holds;
 use crate::method::transparent::planes::{
     GROUP_ALPHA, GROUP_BIN, GROUP_COLOR, GROUP_COUNT, GROUP_DEPTH, GROUP_HIDDEN, GROUP_ID,
@@ -11,20 +11,20 @@ use crate::number::{Ball, Real};
 use crate::verdict::checks::{
     Report, anything, input, inputs, least_wrong, number, triple, whole, widened,
 };
-use crate::verdict::client::{Client, Storage, Stored};
+use crate::verdict::client::{Client, Storage, StoredPlane};
 use crate::verdict::marks::PixelMarks;
 
 /// The planes of a group, each if it is there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GroupPlanes<'a> {
-    color: Option<Stored<'a, [f64; 3]>>,
-    alpha: Option<Stored<'a, f64>>,
-    opacity: Option<Stored<'a, f64>>,
-    bin: Option<Stored<'a, f64>>,
-    count: Option<Stored<'a, u8>>,
-    id: Option<Stored<'a, u32>>,
-    hidden: Option<Stored<'a, f64>>,
-    depth: Option<Stored<'a, f64>>,
+    color: Option<StoredPlane<'a, [f64; 3]>>,
+    alpha: Option<StoredPlane<'a, f64>>,
+    opacity: Option<StoredPlane<'a, f64>>,
+    bin: Option<StoredPlane<'a, f64>>,
+    count: Option<StoredPlane<'a, u8>>,
+    id: Option<StoredPlane<'a, u32>>,
+    hidden: Option<StoredPlane<'a, f64>>,
+    depth: Option<StoredPlane<'a, f64>>,
     accumulator: Storage,
 }
 
@@ -65,7 +65,7 @@ impl<'a> GroupPlanes<'a> {
     }
 
     fn names(&self) -> [Option<&'static str>; 8] {
-        let scalar = |plane: Option<Stored<'_, f64>>| plane.map(|plane| plane.name);
+        let scalar = |plane: Option<StoredPlane<'_, f64>>| plane.map(|plane| plane.name);
         [
             self.color.map(|plane| plane.name),
             scalar(self.alpha),
@@ -149,7 +149,7 @@ impl<'a> GroupPlanes<'a> {
         let any = |of: &dyn Fn(&Layers<P>) -> Ball<P>| {
             all.iter().flatten().map(of).reduce(Ball::either).unwrap_or(anything())
         };
-        let scalar = |plane: Option<Stored<'_, f64>>, of: &dyn Fn(&Layers<P>) -> Ball<P>| {
+        let scalar = |plane: Option<StoredPlane<'_, f64>>, of: &dyn Fn(&Layers<P>) -> Ball<P>| {
             plane.map_or_else(|| any(of), |plane| input(&plane, at))
         };
         let own = [0, 1, 2].map(|c| any(&|layers| layers.blend.color[c]));

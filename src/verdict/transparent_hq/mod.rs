@@ -23,7 +23,7 @@
 //! A pixel is undecided if the sums of its nearest layer have more than one continuation; if a group of
 //! the others has, or is not judged; or if its colour is not.
 
-mod shown;
+mod picture;
 #[cfg(test)]
 mod tests;
 
@@ -37,15 +37,15 @@ use crate::method::transparent_hq::planes::{IMAGES, NEAREST_ALPHA, NEAREST_COLOR
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real};
 use crate::verdict::checks::anything;
-use crate::verdict::client::{Client, Stored};
-use crate::verdict::ewa::handed::Handed;
+use crate::verdict::client::{Client, StoredPlane};
+use crate::verdict::ewa::client_planes::ClientPlanes;
 use crate::verdict::marks::{self, Counts, Marks, counted};
 use crate::verdict::single_pass::compositing::limit;
-use crate::verdict::single_pass::{self as groups, Found, GroupsOf, sum_rows};
-use crate::verdict::transparent::averaged::AveragePlanes;
-use crate::verdict::transparent::layered::LayersJudge;
+use crate::verdict::single_pass::{self as groups, GroupsOf, PixelFindings, sum_rows};
+use crate::verdict::transparent::averages::AveragePlanes;
+use crate::verdict::transparent::layers::LayersJudge;
 use crate::verdict::{Check, Verdict};
-use shown::Shown;
+use picture::PictureJudge;
 
 /// The stages by their names.
 const STAGES: [&str; 5] = ["geometry", "nearest", "blending", "averaging", "compositing"];
@@ -89,7 +89,7 @@ pub(super) fn checks<P: Profile>(
 
 /// The planes of the nearest layer. Its sums leave none, and the picture is not its alone.
 fn nearest(client: &Client) -> GroupsOf<'_> {
-    let handed = Handed {
+    let client_planes = ClientPlanes {
         normal_sum: None,
         color_sum: None,
         count: None,
@@ -98,30 +98,30 @@ fn nearest(client: &Client) -> GroupsOf<'_> {
         mask: client.count(&NEAREST_MASK),
         shaded: client.triple(&NEAREST_COLOR),
         alpha: None,
-        ..Handed::of(client, &sum_rows())
+        ..ClientPlanes::of(client, &sum_rows())
     };
-    GroupsOf { client, handed, images: &IMAGES, layer: true }
+    GroupsOf { client, client_planes, images: &IMAGES, layer: true }
 }
 
 /// What all tiles share.
 struct Judge<'a, P: Profile> {
     settings: &'a Settings,
-    handed: &'a Handed<'a>,
+    client_planes: &'a ClientPlanes<'a>,
     nearest: groups::Judge<'a, P>,
     others: LayersJudge<'a, P>,
     averages: AveragePlanes<'a>,
-    shown: Shown<'a, P>,
+    shown: PictureJudge<'a, P>,
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
     fn new(job: &Job<'a>, settings: &'a Settings, of: &'a GroupsOf<'a>) -> Result<Self> {
         Ok(Self {
             settings,
-            handed: &of.handed,
+            client_planes: &of.client_planes,
             nearest: groups::Judge::new(job, &single_pass(settings), of)?,
             others: LayersJudge::project(job, &settings.layers, of.client)?,
             averages: AveragePlanes::new(of.client),
-            shown: Shown::new(job, settings, of.client),
+            shown: PictureJudge::new(job, settings, of.client),
         })
     }
 
@@ -160,13 +160,13 @@ impl<'a, P: Profile> Judge<'a, P> {
     }
 
     /// The nearest layer as the next passes read it, without surfel, weight and mask.
-    fn front(&self, at: (u32, u32), found: &Found<P>) -> FrontLayer<Ball<P>> {
+    fn front(&self, at: (u32, u32), found: &PixelFindings<P>) -> FrontLayer<Ball<P>> {
         let (opacity, color) = self.nearest.read(at, found);
         FrontLayer {
-            depth: self.handed.depth.map_or(found.nearest.depth, |plane| plane.ball(at)),
+            depth: self.client_planes.depth.map_or(found.nearest.depth, |plane| plane.ball(at)),
             id: NO_ID,
             weight: Ball::ZERO,
-            normal: self.handed.normal.map_or([anything(); 3], |plane| plane.balls(at)),
+            normal: self.client_planes.normal.map_or([anything(); 3], |plane| plane.balls(at)),
             color,
             opacity,
             mask: 0,
@@ -175,8 +175,8 @@ impl<'a, P: Profile> Judge<'a, P> {
 
     /// Whether a fragment of a depth belongs to the other layers, behind one at depth `z`.
     fn behind(&self, (x, y): (u32, u32), z: Ball<P>) -> impl Fn(Ball<P>) -> Three {
-        let masked = |plane: Stored<'_, u8>| BEHIND.test(*plane.plane.at(x, y)).into();
-        let there = self.handed.mask.map_or_else(|| z.is_finite(), masked);
+        let masked = |plane: StoredPlane<'_, u8>| BEHIND.test(*plane.plane.at(x, y)).into();
+        let there = self.client_planes.mask.map_or_else(|| z.is_finite(), masked);
         let limit = limit(z, self.nearest.epsilon());
         move |t| there & !decide::visible(t, limit)
     }

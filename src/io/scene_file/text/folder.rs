@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use std::path::{Path, PathBuf, absolute};
 
-/// The folder that a file is written to.
+/// The folder that the file is written to.
 pub(super) struct Folder(PathBuf);
 
 impl Folder {
@@ -12,7 +12,8 @@ impl Folder {
         Ok(Self(whole.parent().unwrap_or(&whole).to_owned()))
     }
 
-    /// How the file calls another: by what follows the folder if it lies within, else by the whole path.
+    /// The path of another file in the text: relative if it lies in the folder or below, else
+    /// absolute.
     pub(super) fn path(&self, other: &Path) -> PathBuf {
         let whole = absolute(other).unwrap_or_else(|_| other.to_owned());
         whole.strip_prefix(&self.0).map(Path::to_owned).unwrap_or(whole)

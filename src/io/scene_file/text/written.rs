@@ -1,4 +1,4 @@
-//! A scene file as text.
+//! Write a scene file as text.
 
 use super::super::{CameraChoice, OutputSettings, SceneFile};
 use super::camera::RawCamera;
@@ -32,7 +32,7 @@ struct Tables {
     output: Option<Written>,
 }
 
-/// The text of a file at `path`, see [`SceneFile::text`].
+/// Writes the text of a file at `path`, see [`SceneFile::text`].
 pub(in crate::io::scene_file) fn write(file: &SceneFile, path: &Path) -> Result<String> {
     let tables = Tables::from_file(file, &Folder::containing(path)?)?;
     toml::to_string(&tables)
@@ -77,13 +77,13 @@ impl Tables {
     }
 }
 
-/// An array, if there is something in it.
+/// An array, if it is not empty.
 fn some<T>(all: impl Iterator<Item = T>) -> Option<Vec<T>> {
     let all: Vec<T> = all.collect();
     (!all.is_empty()).then_some(all)
 }
 
-/// The values that are not the default.
+/// The values that differ from their defaults.
 fn other_than<T: PartialEq>(values: Vec<T>, default: &[T]) -> Vec<T> {
     values.into_iter().filter(|value| !default.contains(value)).collect()
 }

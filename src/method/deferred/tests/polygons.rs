@@ -1,5 +1,5 @@
 use super::*;
-use crate::method::resolved::{COLOR, DEPTH, NORMAL, WEIGHT};
+use crate::method::surface::{COLOR, DEPTH, NORMAL, WEIGHT};
 use crate::scene::{Triangles, Vertices};
 
 /// A square in the plane z = `depth`, with colours or not.

@@ -4,14 +4,14 @@ use crate::number::lanes::vectorized;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
-/// What a distance is multiplied by in [`Sequential::holds`]: 1 - 2^-20.
+/// The factor on distances in [`Sequential::holds`]: 1 - 2^-20.
 const SHORTER: f64 = 1.0 - 1.0 / 1_048_576.0;
 
-/// The parent of the root, and the surfel of an inner node.
+/// Stands for the parent of the root, and for the surfel of an inner node.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// When each of a list of nodes is drawn, surfels and the discs that stand for them from afar; see
-/// [`crate::index::sequential`].
+/// Tells when each node of a list is drawn; nodes are surfels and the discs that stand for them
+/// from afar. See [`crate::index::sequential`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sequential {
     pub(crate) near: Vec<f32>,
@@ -38,30 +38,30 @@ impl Sequential {
         &self.far
     }
 
-    /// How far each node's centre is from that of its parent: 0 for the root.
+    /// The distance of each node's centre from its parent's centre: 0 for the root.
     #[must_use]
     pub fn gap(&self) -> &[f32] {
         &self.gap
     }
 
-    /// The parent of a node, by its place in the list; none for the root.
+    /// The parent of a node, as its place in the list; none for the root.
     #[must_use]
     pub fn parent(&self, node: usize) -> Option<usize> {
         Some(self.parent[node]).filter(|&parent| parent != NONE).map(|parent| parent as usize)
     }
 
-    /// The surfel that a node is, by its index; none if it is an inner node.
+    /// The index of the surfel that a node is; none for an inner node.
     #[must_use]
     pub fn surfel(&self, node: usize) -> Option<u32> {
         Some(self.surfel[node]).filter(|&surfel| surfel != NONE)
     }
 
-    /// How many nodes of the list are to be looked at: [`Sequential::holds`] and
+    /// How many nodes at the beginning of the list have to be looked at: [`Sequential::holds`] and
     /// [`Sequential::cuts`] take none of the others at `least_distance` or farther.
     #[must_use]
     pub fn prefix(&self, least_distance: f64, scale: f64) -> usize {
         let at = |i: usize| reaches(self.far_from[i], self.gap_from[i], least_distance, scale);
-        // Both fall along the list, and rounding keeps their order.
+        // Both values fall along the list, and rounding keeps their order, so bisection works.
         let (mut low, mut high) = (0, self.far.len());
         while low < high {
             let middle = low.midpoint(high);
@@ -74,7 +74,7 @@ impl Sequential {
         low
     }
 
-    /// Whether a node is drawn, with the distance of its own centre from the eye. Distances are
+    /// Whether a node is drawn, given the distance of its own centre from the eye. Distances are
     /// finite and >= 0, the scale is in [0, +inf].
     #[must_use]
     pub fn holds(&self, node: usize, distance: f64, scale: f64) -> bool {
@@ -82,8 +82,9 @@ impl Sequential {
             && reaches(self.far[node], self.gap[node], distance, scale)
     }
 
-    /// [`Sequential::holds`] of up to 64 consecutive nodes at some points, a bit each: with the distances of
-    /// these from an eye, `sqrt((dx dx + dy dy) + dz dz)`. The scale is finite and > 0.
+    /// [`Sequential::holds`] for up to 64 consecutive nodes at some points, one bit each. It uses
+    /// the distances of the points from an eye, `sqrt((dx dx + dy dy) + dz dz)`. The scale is
+    /// finite and > 0.
     pub(crate) fn holding(
         &self,
         nodes: Range<usize>,
@@ -95,7 +96,7 @@ impl Sequential {
         holding(errors, &points[nodes], eye, scale)
     }
 
-    /// Whether a node is drawn, with one distance for all nodes; ranges as for
+    /// Whether a node is drawn, with one distance for all nodes; the ranges are as for
     /// [`Sequential::holds`].
     #[must_use]
     pub fn cuts(&self, node: usize, distance: f64, scale: f64) -> bool {
@@ -112,7 +113,7 @@ vectorized!(
         for (i, p) in points[..count].iter().enumerate() {
             let d = DVec3::new(p.x.into(), p.y.into(), p.z.into()) - eye;
             let distance = ((d.x * d.x + d.y * d.y) + d.z * d.z).sqrt();
-            // Neither 0 nor +inf times a scale that is finite and > 0 needs a case of its own.
+            // The scale is finite and > 0, so 0 and +inf need no case of their own.
             let good = f64::from(near[i]) * scale <= distance;
             let parent = SHORTER * distance < f64::from(far[i]) * scale + f64::from(gap[i]);
             held[i] = u64::from(good & parent);
@@ -121,12 +122,12 @@ vectorized!(
     }
 );
 
-/// Whether a distance is below that from which on the parent is drawn.
+/// Whether a distance is below the one from which the parent is drawn.
 fn reaches(far: f32, gap: f32, distance: f64, scale: f64) -> bool {
     SHORTER * distance < times(far, scale) + f64::from(gap)
 }
 
-/// An error times a scale; 0 and +inf whatever the scale.
+/// An error times a scale; 0 and +inf stay as they are, whatever the scale.
 fn times(error: f32, scale: f64) -> f64 {
     let error = f64::from(error);
     if error == 0.0 || error == f64::INFINITY { error } else { error * scale }

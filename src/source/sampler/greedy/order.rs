@@ -2,28 +2,30 @@
 
 use crate::frame::Exec;
 
-/// Many regions have much border, and what is within reach of it is left to one thread.
+/// The most regions, because more regions have more border, and one thread must treat what is near
+/// a border.
 const MOST_REGIONS: usize = 16;
 
-/// Points in their order.
+/// Ordered points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Order {
-    /// The index of each pick; none comes twice.
+    /// The index of each pick; none occurs twice.
     pub index: Vec<u32>,
     /// For each pick, the squared distance to the nearest pick before it; +inf for the first.
     pub distance: Vec<f32>,
 }
 
-/// How the work is divided, which changes nothing of the result.
+/// How the work is divided; this does not change the result.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Division {
     /// The most regions.
     pub(super) regions: usize,
-    /// Points of a leaf of the tree, on the average.
+    /// Average number of points in a leaf of the tree.
     pub(super) leaf: usize,
-    /// The least picks before regions are treated in parallel: the first ones reach everything.
+    /// Regions are treated in parallel after this many picks, because the first picks reach
+    /// everything.
     pub(super) warm: usize,
-    /// The floor, in largest m.
+    /// The floor, as a fraction of the largest m.
     pub(super) floor: f32,
 }
 

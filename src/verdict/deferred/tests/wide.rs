@@ -69,7 +69,8 @@ fn ids_of_40_bits_are_judged() {
         for frame in [&shown.frame, &doubles] {
             let found = shown.judge(method, frame, Rounding::Gpu);
             assert_eq!((wrong(&found), found.outcome()), (None, Outcome::Right));
-            let judged = |stage: &crate::verdict::Judged| stage.planes.contains(&"indices.id");
+            let judged =
+                |stage: &crate::verdict::StageVerdict| stage.planes.contains(&"indices.id");
             assert!(found.stages.iter().any(judged));
             // Without the highest bits ids are not judged, and the rest is.
             let left = |plane: &&NamedPlane<f32>| !plane.name.ends_with("stencil");

@@ -97,7 +97,7 @@ fn front() -> Camera {
 fn sums(scene: &Scene, formats: Formats) -> Frame<f32> {
     let exec = Exec::new(2, 8).unwrap();
     let mut session = Session::new(scene, ewa::Settings::default().into(), &exec).unwrap();
-    session.stored(&front(), formats, true).unwrap().frame
+    session.emulate(&front(), formats, true).unwrap().frame
 }
 
 fn formats(buffers: Buffers) -> Formats {
@@ -148,7 +148,7 @@ fn layers_are_rounded_one_under_the_other() {
     let method = peeling::Settings { splats, layers: 64 }.into();
     let exec = Exec::new(2, 8).unwrap();
     let mut session = Session::new(&scene, method, &exec).unwrap();
-    let stored = session.stored(&front(), formats(Buffers::Unorm8), true).unwrap().frame;
+    let stored = session.emulate(&front(), formats(Buffers::Unorm8), true).unwrap().frame;
     let eight = |v: f64| (255.0 * v + 0.5).floor() / 255.0;
     let one = sums(&stack(1, 0.7), Formats::default());
     let weight = f64::from(*one.scalar("attributes.weight").unwrap().at(8, 8));
@@ -183,7 +183,7 @@ fn a_layer_may_begin_before_its_fragment() {
         let method = peeling::Settings { splats, layers: 5 }.into();
         let mut session = Session::new(&scene, method, &exec).unwrap();
         let formats = Formats { depth, ..Formats::default() };
-        let picture = session.stored(&front(), formats, false).unwrap().frame;
+        let picture = session.emulate(&front(), formats, false).unwrap().frame;
         assert_eq!(*picture.count("layers").unwrap().at(8, 8), layers, "{depth:?}");
         let shown = picture.color("").unwrap().values().as_flattened();
         assert!(shown.iter().all(|value| value.is_finite()), "{depth:?}");
@@ -205,7 +205,7 @@ fn stored_as_they_are_pictures_are_the_definition() {
     for method in Method::all() {
         let mut session = Session::new(&scene, method, &exec).unwrap();
         let whole = session.define::<f32>(&camera, false).unwrap().frame;
-        let stored = session.stored(&camera, Formats::default(), false).unwrap().frame;
+        let stored = session.emulate(&camera, Formats::default(), false).unwrap().frame;
         assert_eq!(stored.planes, whole.planes, "{}", method.name());
     }
 }
@@ -219,7 +219,7 @@ fn every_plane_holds_what_its_buffer_can() {
     for method in Method::all() {
         let mut session = Session::new(&scene, method, &exec).unwrap();
         let plain = session.define::<f32>(&camera, true).unwrap().frame;
-        let picture = session.stored(&camera, formats, true).unwrap().frame;
+        let picture = session.emulate(&camera, formats, true).unwrap().frame;
         assert_ne!(picture.color("").unwrap(), plain.color("").unwrap(), "{}", method.name());
         for NamedPlane { name, samples } in &picture.planes {
             let values: &[f32] = match samples {
@@ -246,7 +246,7 @@ fn what_is_stored_was_made_of_what_is_stored() {
     for (scene, camera) in sizes.map(torus) {
         for method in Method::all().into_iter().filter(one_by_one) {
             let mut session = Session::new(&scene, method, &exec).unwrap();
-            let mut frame = session.stored(&camera, formats, true).unwrap().frame;
+            let mut frame = session.emulate(&camera, formats, true).unwrap().frame;
             session.resume(None);
             let (job, range) = session.storing(&camera, formats).unwrap();
             for stage in method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
@@ -258,7 +258,7 @@ fn what_is_stored_was_made_of_what_is_stored() {
                 }
             }
             frame.planes.retain(|plane| session.is_shown(plane));
-            let shown = session.stored_planes(&camera, formats).unwrap();
+            let shown = session.emulate_planes(&camera, formats).unwrap();
             let sorted = |mut frame: Frame<f32>| {
                 frame.planes.sort_by(|a, b| a.name.cmp(&b.name));
                 frame
@@ -317,7 +317,7 @@ fn winners(scene: &Scene, method: Method, depth: DepthBuffer) -> Vec<u32> {
         .map(|_| Groups::new(vec![0; scene.surfels.len()], Vec::new(), vec![1.0]).unwrap());
     let mut session = Session::with_groups(scene, method, groups, &exec).unwrap();
     let formats = Formats { depth, ..Formats::default() };
-    let frame = session.stored(&front(), formats, true).unwrap().frame;
+    let frame = session.emulate(&front(), formats, true).unwrap().frame;
     let nearest = |plane: &NamedPlane<f32>| match &plane.samples {
         Samples::Index(ids) if !plane.name.starts_with("level") => Some(*ids.at(8, 8)),
         _ => None,

@@ -2,7 +2,7 @@
 //! stage of shading that they have in common.
 
 use super::algorithm::Job;
-use super::given::Given;
+use super::input_planes::InputPlanes;
 use super::picture::shaded;
 use super::stage::{Holds, PlaneRow, Stage, When};
 use super::tiled::Tiled;
@@ -12,7 +12,7 @@ use crate::number::Exact;
 
 /// The averages at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Resolved<R> {
+pub(crate) struct SurfacePixel<R> {
     /// Depth of the nearest fragment in world units; +inf where there is none.
     pub(crate) depth: R,
     /// Its surfel; [`crate::frame::NO_ID`] where there is none.
@@ -25,7 +25,7 @@ pub(crate) struct Resolved<R> {
     pub(crate) color: [R; 3],
 }
 
-impl<R: Exact> Resolved<R> {
+impl<R: Exact> SurfacePixel<R> {
     /// A pixel without weight.
     pub(crate) const EMPTY: Self = Self {
         depth: R::INFINITY,
@@ -96,7 +96,10 @@ pub(crate) const fn shading(normalized: &'static [&'static str]) -> Stage {
 }
 
 /// All planes of the averages.
-pub(crate) fn planes<R: Exact>(job: &Job<'_>, pixels: &Tiled<Resolved<R>>) -> Vec<NamedPlane<R>> {
+pub(crate) fn planes<R: Exact>(
+    job: &Job<'_>,
+    pixels: &Tiled<SurfacePixel<R>>,
+) -> Vec<NamedPlane<R>> {
     let mut planes: Vec<_> = colors(job, pixels).into_iter().collect();
     planes.push(DEPTH.scalar(0, pixels.plane(|pixel| pixel.depth)));
     planes.push(NORMAL.triple(0, pixels.plane(|pixel| pixel.normal)));
@@ -108,7 +111,7 @@ pub(crate) fn planes<R: Exact>(job: &Job<'_>, pixels: &Tiled<Resolved<R>>) -> Ve
 /// The average colours, if the scene has colours.
 pub(crate) fn colors<R: Exact>(
     job: &Job<'_>,
-    pixels: &Tiled<Resolved<R>>,
+    pixels: &Tiled<SurfacePixel<R>>,
 ) -> Option<NamedPlane<R>> {
     let colored = job.scene.surfels.color().is_some();
     colored.then(|| COLOR.triple(0, pixels.plane(|pixel| pixel.color)))
@@ -117,7 +120,7 @@ pub(crate) fn colors<R: Exact>(
 /// The averages as a framebuffer that can be shaded.
 pub(crate) fn framebuffer<R: Exact>(
     job: &Job<'_>,
-    pixels: &Tiled<Resolved<R>>,
+    pixels: &Tiled<SurfacePixel<R>>,
     wanted: Wanted,
 ) -> Framebuffer<R> {
     Framebuffer {
@@ -136,7 +139,7 @@ pub(crate) fn framebuffer<R: Exact>(
 /// The stage of shading, on somebody's averages, of surfels with colours or without.
 pub(crate) fn shade<R: Exact>(
     job: &Job<'_>,
-    given: &Given<'_, R>,
+    given: &InputPlanes<'_, R>,
     colored: bool,
 ) -> Result<Vec<NamedPlane<R>>> {
     let (depth, weight) = (given.scalar(&DEPTH, 0)?, given.scalar(&WEIGHT, 0)?);

@@ -1,7 +1,7 @@
 //! The picture of a client at a pixel: what is nearest, and what the average shows.
 
 use super::planes::GroupFound;
-use super::replayed::Layers;
+use super::replay::Layers;
 use crate::composite::groups::WeightedFragment;
 use crate::method::Holds;
 use crate::method::Job;
@@ -10,30 +10,39 @@ use crate::method::transparent::planes::LAYERS;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 use crate::verdict::checks::{Backdrop, is_bounded, number, triple};
-use crate::verdict::client::{Client, Stored};
-use crate::verdict::ewa::handed::Handed;
+use crate::verdict::client::{Client, StoredPlane};
+use crate::verdict::ewa::client_planes::ClientPlanes;
 use crate::verdict::marks::PixelMarks;
 use crate::verdict::single_pass::compositing::Compositing;
 use crate::verdict::single_pass::images::{Sample, Samples};
 
 /// What all pixels share.
-pub(super) struct Shown<'a, P: Profile> {
-    handed: &'a Handed<'a>,
-    layers: Option<Stored<'a, f64>>,
+pub(super) struct PictureJudge<'a, P: Profile> {
+    client_planes: &'a ClientPlanes<'a>,
+    layers: Option<StoredPlane<'a, f64>>,
     nearest: Compositing<'a, P>,
     backdrop: Backdrop<'a, P>,
 }
 
-impl<'a, P: Profile> Shown<'a, P> {
-    pub(super) fn new(job: &Job<'a>, client: &'a Client, handed: &'a Handed<'a>) -> Self {
-        let nearest = Compositing::new(job, handed, Ball::ZERO);
-        Self { handed, layers: client.scalar(&LAYERS), nearest, backdrop: Backdrop::new(job) }
+impl<'a, P: Profile> PictureJudge<'a, P> {
+    pub(super) fn new(
+        job: &Job<'a>,
+        client: &'a Client,
+        client_planes: &'a ClientPlanes<'a>,
+    ) -> Self {
+        let nearest = Compositing::new(job, client_planes, Ball::ZERO);
+        Self {
+            client_planes,
+            layers: client.scalar(&LAYERS),
+            nearest,
+            backdrop: Backdrop::new(job),
+        }
     }
 
     /// The names of the planes that are judged.
     pub(super) fn names(&self) -> Vec<&'static str> {
-        let Handed { shaded, alpha, depth, id, .. } = self.handed;
-        let scalar = |plane: &Option<Stored<'_, f64>>| plane.map(|plane| plane.name);
+        let ClientPlanes { shaded, alpha, depth, id, .. } = self.client_planes;
+        let scalar = |plane: &Option<StoredPlane<'_, f64>>| plane.map(|plane| plane.name);
         let all = [
             shaded.map(|plane| plane.name),
             scalar(alpha),
@@ -57,16 +66,16 @@ impl<'a, P: Profile> Shown<'a, P> {
         }
         let shown = self.backdrop.behind(average.blend, at);
         let report = &mut |_: usize, error: f64, fault: &dyn Fn() -> _| pixel.found(error, fault);
-        if let Some(plane) = &self.handed.shaded {
+        if let Some(plane) = &self.client_planes.shaded {
             triple(0, (plane, Holds::Color), at, shown.color, report);
         }
-        if let Some(plane) = &self.handed.alpha {
+        if let Some(plane) = &self.client_planes.alpha {
             number(0, plane, at, shown.alpha, report);
         }
         if let Some(plane) = &self.layers {
             number(0, plane, at, average.layers, report);
         }
-        self.handed.shaded.is_none() || is_bounded(&shown.color)
+        self.client_planes.shaded.is_none() || is_bounded(&shown.color)
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! The GPUs of the five papers blended into 8-bit or half-float buffers and tested depths of 16 or 24 bits:
 //! \[ZP06, 5.2\] counts on "current 8-bit color and alpha resolutions", \[MOC08, 4\] has "all buffers and textures"
-//! in 16-bit floats. [`super::Session::stored`] draws the definition of a method in `f32` and rounds what each
+//! in 16-bit floats. [`super::Session::emulate`] draws the definition of a method in `f32` and rounds what each
 //! [stage](super::Stage) leaves, before the next one reads it:
 //!
 //! - [`Buffers`] rounds planes of colours, vectors and numbers but depths, indices and counts.

@@ -9,15 +9,15 @@ use crate::method::transparent::planes::AVERAGES;
 use crate::number::Ball;
 use crate::number::ball::Profile;
 use crate::verdict::checks::{anything, input, inputs, number, triple};
-use crate::verdict::client::{Client, Stored};
+use crate::verdict::client::{Client, StoredPlane};
 use crate::verdict::marks::PixelMarks;
 
 /// The planes of the averages, each if it is there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AveragePlanes<'a> {
-    color: Option<Stored<'a, [f64; 3]>>,
+    color: Option<StoredPlane<'a, [f64; 3]>>,
     /// Opacity, sum of opacities, what is hidden, and count of layers.
-    scalars: [Option<Stored<'a, f64>>; 4],
+    scalars: [Option<StoredPlane<'a, f64>>; 4],
 }
 
 impl<'a> AveragePlanes<'a> {

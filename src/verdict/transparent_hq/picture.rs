@@ -3,7 +3,7 @@
 use crate::composite::over::Blend;
 use crate::method::Holds;
 use crate::method::Job;
-use crate::method::resolved::{ALPHA, SHADED};
+use crate::method::surface::{ALPHA, SHADED};
 use crate::method::transparent::averaging::GroupAverage;
 use crate::method::transparent_hq::Settings;
 use crate::method::transparent_hq::compositing::{Through, count, count_by_opacity};
@@ -13,20 +13,20 @@ use crate::number::Ball;
 use crate::number::ball::Profile;
 use crate::scene::Environment;
 use crate::verdict::checks::{Backdrop, is_bounded, number, triple};
-use crate::verdict::client::{Client, Stored};
+use crate::verdict::client::{Client, StoredPlane};
 use crate::verdict::marks::PixelMarks;
 
 /// The planes of the picture, each if it is there.
-pub(super) struct Shown<'a, P: Profile> {
-    color: Option<Stored<'a, [f64; 3]>>,
-    alpha: Option<Stored<'a, f64>>,
+pub(super) struct PictureJudge<'a, P: Profile> {
+    color: Option<StoredPlane<'a, [f64; 3]>>,
+    alpha: Option<StoredPlane<'a, f64>>,
     /// Counts of layers: by opacity, and as they are.
-    counts: [Option<Stored<'a, f64>>; 2],
+    counts: [Option<StoredPlane<'a, f64>>; 2],
     through: Through<'a, Ball<P>>,
     backdrop: Backdrop<'a, P>,
 }
 
-impl<'a, P: Profile> Shown<'a, P> {
+impl<'a, P: Profile> PictureJudge<'a, P> {
     pub(super) fn new(job: &Job<'a>, settings: &'a Settings, client: &'a Client) -> Self {
         Self {
             color: client.triple(&SHADED),

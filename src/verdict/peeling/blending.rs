@@ -11,18 +11,18 @@ use crate::verdict::marks::PixelMarks;
 
 /// Marks what is wrong with the picture at a pixel; whether it is judged, or there is nothing to judge.
 pub(super) fn judge<P: Profile>(
-    (handed, backdrop): (&PeelingPlanes<'_>, &Backdrop<'_, P>),
+    (client_planes, backdrop): (&PeelingPlanes<'_>, &Backdrop<'_, P>),
     at: (u32, u32),
     pixel: &mut PixelMarks<'_>,
 ) -> bool {
-    if handed.shaded.is_none() && handed.alpha.is_none() {
+    if client_planes.shaded.is_none() && client_planes.alpha.is_none() {
         return true;
     }
-    if !handed.blends() || more(handed, at) {
+    if !client_planes.blends() || more(client_planes, at) {
         return false;
     }
     let mut blend = Under::<Ball<P>>::CLEAR;
-    for layer in &handed.layers {
+    for layer in &client_planes.layers {
         if let (Some(alpha), Some(color)) = (&layer.alpha, &layer.color) {
             blend = blend.under(input(alpha, at), inputs(color, at));
         }
@@ -30,22 +30,22 @@ pub(super) fn judge<P: Profile>(
     let layers = Blend { color: blend.color, alpha: blend.alpha.at_most(Ball::ONE) };
     let Blend { color, alpha } = backdrop.behind(layers, at);
     let report = &mut |_: usize, error: f64, fault: &dyn Fn() -> _| pixel.found(error, fault);
-    if let Some(plane) = &handed.shaded {
+    if let Some(plane) = &client_planes.shaded {
         triple(0, (plane, Holds::Color), at, color, report);
     }
-    if let Some(plane) = &handed.alpha {
+    if let Some(plane) = &client_planes.alpha {
         number(0, plane, at, alpha, report);
     }
-    handed.shaded.is_none() || is_bounded(&color)
+    client_planes.shaded.is_none() || is_bounded(&color)
 }
 
 /// Whether a pixel may have more layers than leave planes.
-fn more(handed: &PeelingPlanes<'_>, (x, y): (u32, u32)) -> bool {
-    let last = handed.layers.len();
-    if handed.most as usize <= last {
+fn more(client_planes: &PeelingPlanes<'_>, (x, y): (u32, u32)) -> bool {
+    let last = client_planes.layers.len();
+    if client_planes.most as usize <= last {
         return false;
     }
-    match (&handed.number, handed.layers.last().and_then(|layer| layer.alpha)) {
+    match (&client_planes.number, client_planes.layers.last().and_then(|layer| layer.alpha)) {
         (Some(number), _) => usize::from(*number.plane.at(x, y)) > last,
         // A layer that is there, if the last one is.
         (None, Some(alpha)) => *alpha.plane.at(x, y) != 0.0,

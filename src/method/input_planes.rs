@@ -11,12 +11,12 @@ use crate::number::Exact;
 ///
 /// Their values are taken as they are: a stage computes with what a client has stored.
 #[derive(Clone, Copy, Debug)]
-pub struct Given<'a, R> {
+pub struct InputPlanes<'a, R> {
     frame: &'a Frame<R>,
     job: &'a Job<'a>,
 }
 
-impl<'a, R: Exact> Given<'a, R> {
+impl<'a, R: Exact> InputPlanes<'a, R> {
     /// The planes of a frame.
     ///
     /// # Errors
@@ -53,7 +53,7 @@ impl<'a, R: Exact> Given<'a, R> {
     /// Colours or vectors, as the row says.
     ///
     /// # Errors
-    /// As [`Given::scalar`].
+    /// As [`InputPlanes::scalar`].
     pub(crate) fn triple(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<[R; 3]>> {
         match (row.holds, self.samples(row, number)?) {
             (Holds::Color, Samples::Color(plane)) | (Holds::Vector, Samples::Vector(plane)) => {
@@ -66,7 +66,7 @@ impl<'a, R: Exact> Given<'a, R> {
     /// Colours or vectors, if the scene has these.
     ///
     /// # Errors
-    /// As [`Given::scalar`].
+    /// As [`InputPlanes::scalar`].
     pub(crate) fn triple_if(
         &self,
         has: bool,
@@ -79,7 +79,7 @@ impl<'a, R: Exact> Given<'a, R> {
     /// Small counts.
     ///
     /// # Errors
-    /// As [`Given::scalar`].
+    /// As [`InputPlanes::scalar`].
     pub(crate) fn count(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<u8>> {
         match self.samples(row, number)? {
             Samples::Count(plane) => self.sized(row, number, plane),
@@ -90,7 +90,7 @@ impl<'a, R: Exact> Given<'a, R> {
     /// Ids: surfels by index, then the primitives.
     ///
     /// # Errors
-    /// As [`Given::scalar`], and if the scene has nothing of an id.
+    /// As [`InputPlanes::scalar`], and if the scene has nothing of an id.
     pub(crate) fn ids(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<u32>> {
         let Samples::Index(plane) = self.samples(row, number)? else {
             return Err(of_another_type(row, number));

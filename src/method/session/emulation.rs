@@ -4,19 +4,19 @@ use super::{Making, Session};
 use crate::error::Result;
 use crate::frame::{Frame, NamedPlane};
 use crate::method::Job;
+use crate::method::buffer_formats::{DepthKey, DepthRange, Formats};
 use crate::method::stage::When;
-use crate::method::stored::{DepthKey, DepthRange, Formats};
 use crate::method::{Method, Picture};
 use crate::scene::Camera;
 
 impl Session<'_> {
     /// The picture by the definition in `f32`, as it becomes where passes leave their numbers in buffers of
-    /// these formats, see [`mod@crate::method::stored`]; with `stages`, the planes of every stage, too. What a
+    /// these formats, see [`mod@crate::method::buffer_formats`]; with `stages`, the planes of every stage, too. What a
     /// method carries to the next frame is what this frame saw in `f32`.
     ///
     /// # Errors
     /// As [`Session::define`].
-    pub fn stored(
+    pub fn emulate(
         &mut self,
         camera: &Camera,
         formats: Formats,
@@ -33,12 +33,12 @@ impl Session<'_> {
         Ok(picture)
     }
 
-    /// The planes of [`Session::stored`] without those of the stages. Nothing is carried to the next frame, and
+    /// The planes of [`Session::emulate`] without those of the stages. Nothing is carried to the next frame, and
     /// the picture in `f32` is not drawn for what else it tells.
     ///
     /// # Errors
     /// As [`Session::define`].
-    pub fn stored_planes(&self, camera: &Camera, formats: Formats) -> Result<Frame<f32>> {
+    pub fn emulate_planes(&self, camera: &Camera, formats: Formats) -> Result<Frame<f32>> {
         if self.stores_itself() {
             return Ok(self.defined(&self.storing(camera, formats)?.0, false)?.frame);
         }

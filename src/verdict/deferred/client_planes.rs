@@ -3,41 +3,41 @@
 use crate::method::deferred::Settings;
 use crate::method::deferred::planes::{BEFORE, BEFORE_ID, NEAREST, NEAREST_ID};
 use crate::method::ewa::planes::{COLOR_SUM, COUNT, NORMAL_SUM, WEIGHT_SUM};
-use crate::method::resolved;
+use crate::method::surface;
 use crate::verdict::client::Client;
-use crate::verdict::ewa::handed::{Handed, SumRows};
+use crate::verdict::ewa::client_planes::{ClientPlanes, SumRows};
 
 /// Depth and surfel of the nearest fragment of pass 1; nothing else.
-pub(super) fn visibility(client: &Client) -> Handed<'_> {
+pub(super) fn visibility(client: &Client) -> ClientPlanes<'_> {
     let (depth, id) = (client.scalar(&BEFORE), client.index(&BEFORE_ID));
-    Handed { depth, id, depth_copy: None, id_copy: None, ..of(client) }
+    ClientPlanes { depth, id, depth_copy: None, id_copy: None, ..of(client) }
 }
 
 /// What follows the selection. Of the picture's depth and id, if those of pass 3 are not there, empty
 /// pixels say nothing; with `second` off they may be those of pass 4, and say nothing of pass 1.
-pub(super) fn rest<'a>(client: &'a Client, settings: &Settings) -> Handed<'a> {
+pub(super) fn rest<'a>(client: &'a Client, settings: &Settings) -> ClientPlanes<'a> {
     let all = of(client);
     let (depth, id) = (client.scalar(&NEAREST), client.index(&NEAREST_ID));
     if depth.is_some() || id.is_some() || !settings.second {
-        return Handed { depth, id, ..all };
+        return ClientPlanes { depth, id, ..all };
     }
-    Handed { depth: all.depth_copy, id: all.id_copy, empty_is_open: true, ..all }
+    ClientPlanes { depth: all.depth_copy, id: all.id_copy, empty_is_open: true, ..all }
 }
 
 /// Depth and surfel of the picture alone, of which empty pixels say nothing.
-pub(super) fn picture(client: &Client) -> Handed<'_> {
+pub(super) fn picture(client: &Client) -> ClientPlanes<'_> {
     let all = of(client);
-    Handed { depth: all.depth_copy, id: all.id_copy, empty_is_open: true, ..all }
+    ClientPlanes { depth: all.depth_copy, id: all.id_copy, empty_is_open: true, ..all }
 }
 
 /// The same as [`rest`] where the picture's weight is that of a polygon.
-pub(super) fn of_polygons<'a>(client: &'a Client, rest: &Handed<'a>) -> Handed<'a> {
-    let (weight, weight_copy) = (client.scalar(&WEIGHT_SUM), client.scalar(&resolved::WEIGHT));
-    Handed { weight, weight_copy, ..*rest }
+pub(super) fn of_polygons<'a>(client: &'a Client, rest: &ClientPlanes<'a>) -> ClientPlanes<'a> {
+    let (weight, weight_copy) = (client.scalar(&WEIGHT_SUM), client.scalar(&surface::WEIGHT));
+    ClientPlanes { weight, weight_copy, ..*rest }
 }
 
 /// All but what is nearest, of which there are copies.
-fn of(client: &Client) -> Handed<'_> {
+fn of(client: &Client) -> ClientPlanes<'_> {
     let rows = SumRows {
         nearest: None,
         weight: WEIGHT_SUM,
@@ -45,12 +45,12 @@ fn of(client: &Client) -> Handed<'_> {
         color: COLOR_SUM,
         count: COUNT,
     };
-    Handed {
+    ClientPlanes {
         depth: None,
         id: None,
-        depth_copy: client.scalar(&resolved::DEPTH),
-        id_copy: client.index(&resolved::ID),
+        depth_copy: client.scalar(&surface::DEPTH),
+        id_copy: client.index(&surface::ID),
         weightless: true,
-        ..Handed::of(client, &rows)
+        ..ClientPlanes::of(client, &rows)
     }
 }

@@ -37,7 +37,7 @@ pub(super) struct GroupDrawings<P: Profile> {
 
 /// A fragment that may be inside.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Drawn<P: Profile> {
+pub(super) struct DrawnFragment<P: Profile> {
     pub(super) surfel: u32,
     /// Whether it certainly is drawn.
     pub(super) certain: bool,
@@ -53,12 +53,16 @@ pub(super) struct Drawn<P: Profile> {
 pub(crate) struct RowDrawings<P: Profile> {
     groups: usize,
     /// In the order of their places, those of a place from back to front.
-    all: Vec<(usize, Drawn<P>)>,
+    all: Vec<(usize, DrawnFragment<P>)>,
 }
 
 impl<P: Profile> RowDrawings<P> {
     /// Those of a group at a pixel, counted from the left.
-    pub(super) fn at(&self, column: usize, group: usize) -> impl Iterator<Item = &Drawn<P>> {
+    pub(super) fn at(
+        &self,
+        column: usize,
+        group: usize,
+    ) -> impl Iterator<Item = &DrawnFragment<P>> {
         let place = column * self.groups + group;
         let first = self.all.partition_point(|(at, _)| *at < place);
         self.all[first..].iter().take_while(move |(at, _)| *at == place).map(|(_, drawn)| drawn)
@@ -112,7 +116,7 @@ impl<P: Profile> GroupDrawings<P> {
                 let inside = decide::inside(q, shared.limit);
                 if inside.possibly() {
                     let t = shared.depth(w);
-                    let drawn = Drawn {
+                    let drawn = DrawnFragment {
                         surfel: splat.surfel,
                         certain: *certain,
                         inside,

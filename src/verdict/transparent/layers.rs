@@ -1,8 +1,8 @@
 //! The groups of a client, blended one by one.
 
-use super::drawn::{GroupDrawings, RowDrawings};
+use super::drawings::{GroupDrawings, RowDrawings};
 use super::planes::{self, GroupFound, GroupPlanes};
-use super::replayed::replay;
+use super::replay::replay;
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::Job;

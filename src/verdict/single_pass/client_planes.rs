@@ -6,8 +6,8 @@ use crate::method::single_pass::planes::{COLOR_SUM, COUNT, ImageRows, NORMAL_SUM
 use crate::number::Ball;
 use crate::number::ball::Profile;
 use crate::verdict::checks::{Report, input, inputs, number, triple, widened};
-use crate::verdict::client::{Client, Stored};
-use crate::verdict::ewa::handed::SumRows;
+use crate::verdict::client::{Client, StoredPlane};
+use crate::verdict::ewa::client_planes::SumRows;
 
 /// The rows of the compositing pass.
 pub(crate) fn sum_rows() -> SumRows {
@@ -23,12 +23,12 @@ pub(crate) fn sum_rows() -> SumRows {
 /// The planes of the depth-image of a group, each if it is there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ImagePlanes<'a> {
-    pub(super) depth: Option<Stored<'a, f64>>,
-    pub(super) id: Option<Stored<'a, u32>>,
-    weight: Option<Stored<'a, f64>>,
-    normal: Option<Stored<'a, [f64; 3]>>,
-    color: Option<Stored<'a, [f64; 3]>>,
-    pub(super) voronoi: Option<Stored<'a, f64>>,
+    pub(super) depth: Option<StoredPlane<'a, f64>>,
+    pub(super) id: Option<StoredPlane<'a, u32>>,
+    weight: Option<StoredPlane<'a, f64>>,
+    normal: Option<StoredPlane<'a, [f64; 3]>>,
+    color: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(super) voronoi: Option<StoredPlane<'a, f64>>,
 }
 
 impl<'a> ImagePlanes<'a> {

@@ -1,6 +1,6 @@
 //! The layers of a group at a pixel: what blending from back to front may come to.
 
-use super::drawn::Drawn;
+use super::drawings::DrawnFragment;
 use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::frame::NO_ID;
@@ -27,7 +27,7 @@ pub(super) struct Layers<P: Profile> {
 }
 
 /// What may have been blended; none if it is more than is followed.
-pub(super) struct Replayed<P: Profile> {
+pub(super) struct Replay<P: Profile> {
     pub(super) all: Option<Vec<Layers<P>>>,
     pub(super) doubts: u8,
 }
@@ -46,8 +46,8 @@ impl<P: Profile> Layers<P> {
     };
 
     /// With a fragment that passed the depth test in this bin.
-    fn with(&self, drawn: &Drawn<P>, bin: f64) -> Self {
-        let Drawn { alpha, color, t, surfel, .. } = *drawn;
+    fn with(&self, drawn: &DrawnFragment<P>, bin: f64) -> Self {
+        let DrawnFragment { alpha, color, t, surfel, .. } = *drawn;
         // Opacities are exact.
         let opaque = decide::opaque(alpha).certainly();
         let blend = self.blend.over(alpha, color);
@@ -80,9 +80,9 @@ impl<P: Profile> Layers<P> {
 /// Blends the fragments of a group at a pixel, from back to front, without those of a depth that does
 /// not stay.
 pub(super) fn replay<'d, P: Profile>(
-    fragments: impl Iterator<Item = &'d Drawn<P>>,
+    fragments: impl Iterator<Item = &'d DrawnFragment<P>>,
     stays: &impl Fn(Ball<P>) -> Three,
-) -> Replayed<P> {
+) -> Replay<P> {
     let (mut all, mut doubts) = (vec![Layers::EMPTY], 0);
     for drawn in fragments {
         let stays = stays(drawn.t);
@@ -91,7 +91,7 @@ pub(super) fn replay<'d, P: Profile>(
         }
         let [first, last] = drawn.bins;
         if !(last - first <= 1.0) {
-            return Replayed { all: None, doubts };
+            return Replay { all: None, doubts };
         }
         let certain = drawn.certain && (drawn.inside & stays).certainly();
         let mut next: Vec<Layers<P>> = Vec::with_capacity(all.len());
@@ -115,7 +115,7 @@ pub(super) fn replay<'d, P: Profile>(
             doubts |= if stays.certainly() { 0 } else { Doubt::Epsilon as u8 };
         }
         if next.len() > MOST {
-            return Replayed { all: None, doubts };
+            return Replay { all: None, doubts };
         }
         all = next;
     }
@@ -123,5 +123,5 @@ pub(super) fn replay<'d, P: Profile>(
         // Whatever was undecided: a bin, too, is a matter of nearness that moves sums.
         doubts |= Doubt::Epsilon as u8;
     }
-    Replayed { all: Some(all), doubts }
+    Replay { all: Some(all), doubts }
 }

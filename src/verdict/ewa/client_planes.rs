@@ -2,45 +2,45 @@
 
 use crate::frame::NO_ID;
 use crate::method::ewa::planes;
-use crate::method::resolved;
 use crate::method::stage::PlaneRow;
+use crate::method::surface;
 use crate::splat::record::SplatRecord;
-use crate::verdict::client::{Band, Client, Storage, Stored, Ties};
+use crate::verdict::client::{Band, Client, Storage, StoredPlane, Ties};
 
 /// The planes of a client, each if it is there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Handed<'a> {
+pub(crate) struct ClientPlanes<'a> {
     /// The splats, if the client has projected them.
     pub(crate) records: Option<&'a [SplatRecord]>,
     /// Depth and surfel of the nearest fragment: those of the visibility pass, else the picture's.
-    pub(crate) depth: Option<Stored<'a, f64>>,
-    pub(crate) id: Option<Stored<'a, u32>>,
+    pub(crate) depth: Option<StoredPlane<'a, f64>>,
+    pub(crate) id: Option<StoredPlane<'a, u32>>,
     pub(crate) ties: Ties,
     pub(crate) band: Band,
     /// The sums of the attribute pass; its weight may be the picture's.
-    pub(crate) weight: Option<Stored<'a, f64>>,
-    pub(crate) normal_sum: Option<Stored<'a, [f64; 3]>>,
-    pub(crate) color_sum: Option<Stored<'a, [f64; 3]>>,
-    pub(crate) count: Option<Stored<'a, u8>>,
+    pub(crate) weight: Option<StoredPlane<'a, f64>>,
+    pub(crate) normal_sum: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(crate) color_sum: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(crate) count: Option<StoredPlane<'a, u8>>,
     pub(crate) accumulator: Storage,
     /// The averages.
-    pub(crate) color: Option<Stored<'a, [f64; 3]>>,
-    pub(crate) normal: Option<Stored<'a, [f64; 3]>>,
-    pub(crate) opacity: Option<Stored<'a, f64>>,
+    pub(crate) color: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(crate) normal: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(crate) opacity: Option<StoredPlane<'a, f64>>,
     /// 1 where there is something, else 0.
-    pub(crate) mask: Option<Stored<'a, u8>>,
+    pub(crate) mask: Option<StoredPlane<'a, u8>>,
     /// Copies in the picture of what an earlier pass has left, if both are there.
-    pub(crate) depth_copy: Option<Stored<'a, f64>>,
-    pub(crate) id_copy: Option<Stored<'a, u32>>,
+    pub(crate) depth_copy: Option<StoredPlane<'a, f64>>,
+    pub(crate) id_copy: Option<StoredPlane<'a, u32>>,
     /// Whether a pixel of the picture that has no weight is empty, whatever fragment is nearest: the copies
     /// are judged so.
     pub(crate) weightless: bool,
     /// Whether a pixel that is empty says nothing of the nearest fragment: one of such a picture.
     pub(crate) empty_is_open: bool,
-    pub(crate) weight_copy: Option<Stored<'a, f64>>,
+    pub(crate) weight_copy: Option<StoredPlane<'a, f64>>,
     /// The picture.
-    pub(crate) shaded: Option<Stored<'a, [f64; 3]>>,
-    pub(crate) alpha: Option<Stored<'a, f64>>,
+    pub(crate) shaded: Option<StoredPlane<'a, [f64; 3]>>,
+    pub(crate) alpha: Option<StoredPlane<'a, f64>>,
 }
 
 /// The rows of what comes before the averages.
@@ -54,7 +54,7 @@ pub(crate) struct SumRows {
     pub(crate) count: PlaneRow,
 }
 
-impl<'a> Handed<'a> {
+impl<'a> ClientPlanes<'a> {
     pub(crate) fn new(client: &'a Client) -> Self {
         Self::of(
             client,
@@ -73,11 +73,11 @@ impl<'a> Handed<'a> {
         let first = |own: Option<_>, other: Option<_>| (own.or(other), own.and(other));
         let nearest = rows.nearest.as_ref();
         let own = nearest.and_then(|[depth, _]| client.scalar(depth));
-        let (depth, depth_copy) = first(own, client.scalar(&resolved::DEPTH));
+        let (depth, depth_copy) = first(own, client.scalar(&surface::DEPTH));
         let (weight, weight_copy) =
-            first(client.scalar(&rows.weight), client.scalar(&resolved::WEIGHT));
+            first(client.scalar(&rows.weight), client.scalar(&surface::WEIGHT));
         let own = nearest.and_then(|[_, id]| client.index(id));
-        let other = client.index(&resolved::ID);
+        let other = client.index(&surface::ID);
         Self {
             records: client.records.as_deref(),
             depth,
@@ -89,8 +89,8 @@ impl<'a> Handed<'a> {
             color_sum: client.triple(&rows.color),
             count: client.count(&rows.count),
             accumulator: client.accumulator,
-            color: client.triple(&resolved::COLOR),
-            normal: client.triple(&resolved::NORMAL),
+            color: client.triple(&surface::COLOR),
+            normal: client.triple(&surface::NORMAL),
             opacity: None,
             mask: None,
             depth_copy,
@@ -98,8 +98,8 @@ impl<'a> Handed<'a> {
             weightless: false,
             empty_is_open: false,
             weight_copy,
-            shaded: client.triple(&resolved::SHADED),
-            alpha: client.scalar(&resolved::ALPHA),
+            shaded: client.triple(&surface::SHADED),
+            alpha: client.scalar(&surface::ALPHA),
         }
     }
 
@@ -123,23 +123,25 @@ impl<'a> Handed<'a> {
 
     /// Whether every plane that is there says that nothing is at a pixel, and is black.
     pub(crate) fn is_empty(&self, (x, y): (u32, u32)) -> bool {
-        let far = |plane: Option<Stored<'_, f64>>| {
+        let far = |plane: Option<StoredPlane<'_, f64>>| {
             plane.is_none_or(|plane| *plane.plane.at(x, y) == f64::INFINITY)
         };
-        let none = |plane: Option<Stored<'_, u32>>| {
+        let none = |plane: Option<StoredPlane<'_, u32>>| {
             plane.is_none_or(|plane| *plane.plane.at(x, y) == NO_ID)
         };
-        let zero =
-            |plane: Option<Stored<'_, f64>>| plane.is_none_or(|plane| *plane.plane.at(x, y) == 0.0);
-        let zeros = |plane: Option<Stored<'_, [f64; 3]>>| {
+        let zero = |plane: Option<StoredPlane<'_, f64>>| {
+            plane.is_none_or(|plane| *plane.plane.at(x, y) == 0.0)
+        };
+        let zeros = |plane: Option<StoredPlane<'_, [f64; 3]>>| {
             // Not as arrays, which are compared by a call.
             plane.is_none_or(|plane| {
                 let [a, b, c] = *plane.plane.at(x, y);
                 (a == 0.0) & (b == 0.0) & (c == 0.0)
             })
         };
-        let clear =
-            |plane: Option<Stored<'_, u8>>| plane.is_none_or(|plane| *plane.plane.at(x, y) == 0);
+        let clear = |plane: Option<StoredPlane<'_, u8>>| {
+            plane.is_none_or(|plane| *plane.plane.at(x, y) == 0)
+        };
         far(self.depth)
             && far(self.depth_copy)
             && [self.id, self.id_copy].into_iter().all(none)
@@ -153,9 +155,9 @@ impl<'a> Handed<'a> {
     /// The stages, each with the planes that it judges.
     pub(crate) fn stages(&self) -> [(&'static str, Vec<&'static str>); 4] {
         let listed = |planes: &[Option<&'static str>]| planes.iter().flatten().copied().collect();
-        let scalar = |plane: &Option<Stored<'_, f64>>| plane.map(|plane| plane.name);
-        let triple = |plane: &Option<Stored<'_, [f64; 3]>>| plane.map(|plane| plane.name);
-        let index = |plane: &Option<Stored<'_, u32>>| plane.map(|plane| plane.name);
+        let scalar = |plane: &Option<StoredPlane<'_, f64>>| plane.map(|plane| plane.name);
+        let triple = |plane: &Option<StoredPlane<'_, [f64; 3]>>| plane.map(|plane| plane.name);
+        let index = |plane: &Option<StoredPlane<'_, u32>>| plane.map(|plane| plane.name);
         [
             ("visibility", listed(&[scalar(&self.depth), index(&self.id)])),
             (

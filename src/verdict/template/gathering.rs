@@ -1,7 +1,7 @@
 //! The gathering of a client, replayed: every outcome that its decisions allow.
 
 use super::planes::Level;
-use crate::method::template::reconstruction::{Asked, Gathered, each_asked, weight};
+use crate::method::template::reconstruction::{CenterQuery, Gathered, each_query, weight};
 use crate::method::template::{Center, Falloff, Settings};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
@@ -23,7 +23,7 @@ pub(super) fn outcomes<P: Profile>(
     pixel: (u32, u32),
 ) -> Outcomes<P> {
     let mut found = Outcomes { all: vec![Gathered::empty()], doubts: 0 };
-    each_asked(levels, settings, pixel, |asked| {
+    each_query(levels, settings, pixel, |asked| {
         let taken = (asked.holds | asked.own.into()) & asked.stays;
         if taken.possibly() && !found.all.is_empty() {
             found.ask(settings.falloff, asked);
@@ -34,7 +34,7 @@ pub(super) fn outcomes<P: Profile>(
 
 impl<P: Profile> Outcomes<P> {
     /// A centre that may be taken.
-    fn ask(&mut self, falloff: Falloff, asked: &Asked<'_, Ball<P>>) {
+    fn ask(&mut self, falloff: Falloff, asked: &CenterQuery<'_, Ball<P>>) {
         let taken = (asked.holds | asked.own.into()) & asked.stays;
         let weight = bounded_weight(falloff, asked);
         let mut all: Vec<Gathered<Ball<P>>> = Vec::with_capacity(self.all.len());
@@ -93,8 +93,8 @@ fn each_front<P: Profile>(
 
 /// The weight of a centre. At the centre itself the form may be 0 but for its radius: the root of a
 /// number below 0 bounds nothing, but that of the greatest does.
-fn bounded_weight<P: Profile>(falloff: Falloff, asked: &Asked<'_, Ball<P>>) -> Ball<P> {
-    let Asked { form, square, .. } = *asked;
+fn bounded_weight<P: Profile>(falloff: Falloff, asked: &CenterQuery<'_, Ball<P>>) -> Ball<P> {
+    let CenterQuery { form, square, .. } = *asked;
     let most = form.middle + form.radius;
     let reaches_zero = form.middle - form.radius <= 0.0 && most.is_finite();
     if falloff == Falloff::Linear && reaches_zero && square.gt(Ball::ZERO).certainly() {
