@@ -54,13 +54,13 @@ struct Cli {
 
 const EXAMPLES: &str = "\
 Examples:
-  splatref render                              a procedural scene, into out/
-  splatref render bunny.ply --outline raycast  a scan, framed by the camera
-  splatref compare a.exr b.exr                 exit code 0 if every plane is equal
-  splatref verify bunny.ply gpu.exr            whether a right renderer may draw this
-  splatref explain bunny.ply 512 400           why this pixel is what it is
+  splatref render                              render a procedural scene into out/
+  splatref render bunny.ply --outline raycast  render a scan; the camera frames it
+  splatref compare a.exr b.exr                 compare two pictures; exit code 0 if equal
+  splatref verify bunny.ply gpu.exr            check what another renderer drew
+  splatref explain bunny.ply 512 400           print how this pixel got its value
 
-Exit codes: 0 as it should be, 1 different or failed, 2 wrong usage.";
+Exit codes: 0 success, 1 different or failed, 2 wrong usage, 3 undecidable (verify, suite).";
 
 #[derive(Subcommand)]
 enum Command {

@@ -1,4 +1,4 @@
-//! `splatref render`: a scene into an EXR and a PNG.
+//! `splatref render`: renders a scene into an EXR and a PNG.
 
 use super::options::{ExecOptions, SceneOptions};
 use super::rows::{OfFiles, RowOptions};
@@ -31,7 +31,7 @@ pub(super) struct Args {
     /// or tree (with --method pyramid)
     #[arg(default_value = "cluster", hide_default_value = false)]
     scene: PathBuf,
-    /// Where the EXR goes, the PNG beside it [default: out/NAME.exr]
+    /// Write the EXR here, and the PNG beside it [default: out/NAME.exr]
     #[arg(short, long, value_name = "FILE.exr")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -40,12 +40,12 @@ pub(super) struct Args {
     #[arg(long, value_name = "N", default_value_t = 1,
         value_parser = clap::value_parser!(u32).range(1..))]
     repeat: u32,
-    /// Frames of the sequence, B not among them, each into an EXR and a PNG of its own: out/walk.exr
-    /// becomes out/walk.0000.exr and so on
+    /// Render frames A to B - 1 of the sequence, each into an EXR and a PNG of its own:
+    /// out/walk.exr becomes out/walk.0000.exr and so on
     #[arg(long, value_name = "A..B", value_parser = sequence::frames,
         conflicts_with_all = ["repeat", "frame"])]
     frames: Option<Range<u32>>,
-    /// Where what the last frame saw goes, for --state (method deferred)
+    /// Write the state after the last frame, for --state (method deferred)
     #[arg(long, value_name = "FILE")]
     keep_state: Option<PathBuf>,
     #[command(flatten)]
@@ -72,7 +72,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let loading = start.elapsed();
     let Ready { loaded, camera, method, .. } = &ready;
     let scene = &loaded.scene;
-    // The picture may lie in the session.
+    // Cloned, because the picture may borrow from the session.
     let groups = session.groups().cloned();
 
     let mut times = Vec::new();
@@ -80,7 +80,7 @@ pub(super) fn run(args: &Args) -> Ended {
         let before = session.seen().cloned();
         for _ in 1..args.repeat {
             timed(&mut times, || file.output.draw(&mut session, camera))?;
-            // The same frame again, not the next.
+            // Repeat the same frame, not the next one.
             session.resume(before.clone());
         }
         timed(&mut times, || file.output.draw(&mut session, camera))
@@ -110,10 +110,10 @@ pub(super) fn run(args: &Args) -> Ended {
     Ok(Ending::Good)
 }
 
-/// Where pictures go of which nobody says; made when they are written.
+/// The default folder of pictures; made when they are written.
 const FOLDER: &str = "out";
 
-/// Where the picture goes, or that of a frame.
+/// The path of the picture, or of one frame.
 pub(super) fn place(args: &Args, file: &SceneFile, frame: Option<u32>) -> Result<PathBuf> {
     let named = |path: &Path| match frame {
         None => path.to_owned(),
@@ -127,7 +127,9 @@ pub(super) fn place(args: &Args, file: &SceneFile, frame: Option<u32>) -> Result
         }
         Some(path) => {
             let path = path.display();
-            Err(Error::Usage(format!("{path}: the picture is an EXR; give a name in .exr")))
+            Err(Error::Usage(format!(
+                "{path}: the picture is an EXR; give a name that ends in .exr"
+            )))
         }
         None => {
             let path = named(&Path::new(FOLDER).join(format!("{}.exr", file.name)));
@@ -137,14 +139,14 @@ pub(super) fn place(args: &Args, file: &SceneFile, frame: Option<u32>) -> Result
     }
 }
 
-/// Writes what a frame saw, if somebody asked for that.
+/// Writes the state after a frame, if `--keep-state` asks for it.
 pub(super) fn keep(args: &Args, ready: &Ready, frame: u32, seen: Option<&Seen>) -> Result<()> {
     let (Some(path), Some(seen)) = (&args.keep_state, seen) else { return Ok(()) };
     let state = State { frame, seen: seen.clone() };
     state::pending(path, &state, &ready.identity()?)?.put()
 }
 
-/// Whether a state can be kept where it was asked for, beside these pictures: before anything is drawn.
+/// Checks, before anything is drawn, that the state can be written beside these pictures.
 pub(super) fn check_state(
     args: &Args,
     ready: &Ready,
@@ -158,7 +160,9 @@ pub(super) fn check_state(
     let Some(path) = &args.keep_state else { return Ok(()) };
     if !ready.method.draws_objects() {
         let name = ready.method.name();
-        let what = format!("--keep-state: the method {name} carries nothing from frame to frame");
+        let what = format!(
+            "--keep-state: the method {name} has no state between frames; give --method deferred"
+        );
         return Err(Error::Usage(what));
     }
     output::check(path, &args.scene, file)?;
@@ -169,7 +173,7 @@ pub(super) fn check_state(
     Ok(())
 }
 
-/// Makes the folder of pictures, if nobody says where they go.
+/// Makes the default folder, if no output is named.
 pub(super) fn make_folder(args: &Args) -> Result<()> {
     if args.output.is_some() {
         return Ok(());
@@ -178,7 +182,7 @@ pub(super) fn make_folder(args: &Args) -> Result<()> {
     fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))
 }
 
-/// Writes a picture and its preview, both before one is put in its place.
+/// Writes a picture and its preview; both are complete before either replaces an old file.
 pub(super) fn write(
     picture: &Path,
     frame: &Frame<f32>,
@@ -195,10 +199,10 @@ pub(super) fn write(
     small.map_or(Ok(()), Pending::put)
 }
 
-/// Each stage, and last the whole, of each repetition.
+/// The times of each repetition: each stage, and last the whole picture.
 type Times = Vec<Vec<(&'static str, Duration)>>;
 
-/// Draws once and notes how long it took.
+/// Draws once and records the times.
 fn timed<'s>(
     times: &mut Times,
     render: impl FnOnce() -> Result<Cow<'s, Picture<f32>>>,
@@ -211,7 +215,7 @@ fn timed<'s>(
     Ok(drawing)
 }
 
-/// How many threads there are, in words.
+/// The number of threads in words.
 pub(super) fn threads(exec: &Exec) -> String {
     match exec.threads() {
         1 => "1 thread".into(),

@@ -21,8 +21,8 @@ use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-Writes study.csv, study.json, chart.svg, chart.png, index.html and the pictures. What is found is kept as
-it goes: a study that was stopped goes on with --resume.
+Writes study.csv, study.json, chart.svg, chart.png, index.html and the pictures. Results are saved as
+they come; rerun the command with --resume to resume a study that was stopped.
 
 Examples:
   splatref study bunny.ply
@@ -209,7 +209,7 @@ impl Folder {
         let path = self.0.join(STATE);
         let bytes = fs::read(&path).map_err(|source| Error::io(&path, source))?;
         let before = serde_json::from_slice(&bytes)
-            .map_err(|error| Error::format(&path, format!("no study: {error}")))?;
+            .map_err(|error| Error::format(&path, format!("not a study: {error}")))?;
         study.resumed(before).map_err(|error| Error::format(&path, error.to_string()))
     }
 
@@ -254,7 +254,7 @@ impl Folder {
         let drawing = chart(study, loss);
         text(svg, &drawing.svg())?;
         let picture =
-            drawing.picture().ok_or_else(|| Error::Invalid("a chart without area".into()))?;
+            drawing.picture().ok_or_else(|| Error::Invalid("the chart has no area".into()))?;
         png::write_codes(png, [picture.width, picture.height], &picture.pixels)?;
         let read = |path: PathBuf| fs::read(&path).map_err(|source| Error::io(&path, source));
         let pictures = study.candidates.iter().map(|record| match record.measured {
@@ -323,9 +323,9 @@ fn print(study: &Study, loss: &Loss, total: Duration) {
     if left > 0 {
         report::line(
             "not tried",
-            format!("{left} candidates, for which there was no time; --resume goes on"),
+            format!("{left} candidates, because the time was up; resume with --resume"),
         );
     }
-    report::line("front", "* nothing else is both faster and nearer to the truth");
+    report::line("front", "* no other candidate is both faster and more accurate");
     report::time("total", vec![total]);
 }

@@ -111,7 +111,10 @@ fn arrays_of_numpy_are_compared_by_their_name() {
     let doubles: Vec<u8> = DEPTH.iter().flat_map(|v| f64::from(*v).to_le_bytes()).collect();
     npy(&at, "depth.npy", "<f8", "(2, 4, 1)", &doubles);
     let line = fails(at.path(), &["compare", "a.exr", "depth.npy"], 1);
-    assert!(line.contains("depth.npy: holds depth, which the other picture has not;"), "{line}");
+    assert!(
+        line.contains("depth.npy: holds depth, which the other picture does not have;"),
+        "{line}"
+    );
     assert!(line.contains("--as one of: Z, id, normal.X"), "{line}");
     assert_eq!(compared(&at, &["a.exr", "depth.npy", "--as", "Z"]).0, 0);
     assert_eq!(compared(&at, &["Z.npy", "depth.npy", "--as", "Z"]).0, 0);
