@@ -148,7 +148,7 @@ impl<R> Frame<R> {
         let ((width, height), size) = (samples.size(), (self.width, self.height));
         if (width, height) != size {
             return Err(Error::Invalid(format!(
-                "plane `{name}`: {width} x {height} pixels in a frame of {} x {}",
+                "plane `{name}` has {width} x {height} pixels, but the frame has {} x {}",
                 size.0, size.1
             )));
         }
@@ -156,7 +156,7 @@ impl<R> Frame<R> {
         // Only the channels of a colour have names of their own: R, G and B.
         if name.is_empty() && !is_color {
             let kind = samples.kind();
-            let what = format!("a {kind} plane without a name; only the colour may have none");
+            let what = format!("a {kind} plane has no name; only the colour may have none");
             return Err(Error::Invalid(what));
         }
         for channel in samples.channel_names(name) {
@@ -169,7 +169,9 @@ impl<R> Frame<R> {
             // Two planes may share a channel: a vector `a` and a scalar `a.X`.
             let mut others = self.planes.iter().map(|p| p.samples.channel_names(&p.name));
             if others.any(|names| names.contains(&channel)) {
-                return Err(Error::Invalid(format!("two channels are called `{channel}`")));
+                return Err(Error::Invalid(format!(
+                    "two channels are called `{channel}`; rename one"
+                )));
             }
         }
         self.planes.push(NamedPlane { name: name.to_owned(), samples });
@@ -261,7 +263,7 @@ impl<R> Frame<R> {
         let there = self.planes.iter().map(|p| format!("`{}` ({})", p.name, p.samples.kind()));
         let there: Vec<String> = there.collect();
         let there = if there.is_empty() { "none".into() } else { there.join(", ") };
-        Error::Invalid(format!("no {kind} plane is called `{name}`; the frame's planes: {there}"))
+        Error::Invalid(format!("no {kind} plane is called `{name}`; the frame has: {there}"))
     }
 }
 

@@ -60,7 +60,8 @@ pub fn read(path: &Path, name: &str) -> Result<Image> {
 
 /// Reads the dictionary at the start of a file; the array follows.
 fn header_text(file: &mut Take<File>) -> Reason<String> {
-    let early = |_| "byte 0: not an NPY file, or cut; write it again with numpy.save".to_owned();
+    let early =
+        |_| "byte 0: not an NPY file, or truncated; write it again with numpy.save".to_owned();
     let mut start = [0; 8];
     file.read_exact(&mut start).map_err(early)?;
     if start[..6] != *b"\x93NUMPY" {
@@ -77,7 +78,7 @@ fn header_text(file: &mut Take<File>) -> Reason<String> {
             file.read_exact(&mut length).map_err(early)?;
             u64::from(u32::from_le_bytes(length))
         }
-        other => return Err(format!("byte 6: NPY version {other}; 1 to 3 are known")),
+        other => return Err(format!("byte 6: NPY version {other}; versions 1 to 3 are read")),
     };
     if length > LONGEST_HEADER.min(file.limit()) {
         return Err(format!("byte 8: a header of {length} bytes; write it again with numpy.save"));
@@ -113,7 +114,7 @@ impl Array {
     /// the keys in any order.
     fn parse(text: &str) -> Reason<Self> {
         let dictionary = text.trim().strip_prefix('{').and_then(|t| t.strip_suffix('}'));
-        let dictionary = dictionary.ok_or("header: no dictionary; write it with numpy.save")?;
+        let dictionary = dictionary.ok_or("header: not a dictionary; write it with numpy.save")?;
         let descr = value(dictionary, "descr")?;
         let element = match descr.trim_matches(['\'', '"']) {
             "<f4" => Dtype::F32,
@@ -168,8 +169,8 @@ impl Array {
             return Ok(());
         }
         Err(format!(
-            "header: promises {width} x {height} pixels in {bytes} bytes, and {rest} follow; write it \
-             again"
+            "header: declares {width} x {height} pixels in {bytes} bytes, but {rest} follow; write \
+             it again"
         ))
     }
 

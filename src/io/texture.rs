@@ -34,7 +34,7 @@ pub fn read(path: &Path, exec: &Exec) -> Result<Texture> {
     let texels = match extension.as_deref() {
         Some("exr") => rgb(path, exec, "a texture", Texture::check_size)?,
         Some("png") => png(path)?,
-        _ => return Err(Error::format(path, "no texture; give a .png or an .exr")),
+        _ => return Err(Error::format(path, "not a texture; give a .png or an .exr")),
     };
     Texture::new(texels).map_err(|error| Error::format(path, error.to_string()))
 }
@@ -64,8 +64,10 @@ pub fn paint(
 ) -> Result<()> {
     let Some(coordinates) = &cloud.coordinates else {
         let Some(chosen) = chosen else { return Ok(()) };
-        let what =
-            format!("no texture coordinates, without which {} cannot be drawn", chosen.display());
+        let what = format!(
+            "no texture coordinates, so {} cannot be drawn; remove the texture",
+            chosen.display()
+        );
         return Err(Error::format(model, what));
     };
     let texture = match (chosen, cloud.textures.as_slice()) {
@@ -78,7 +80,8 @@ pub fn paint(
             };
             let (first, second) = (called(first), called(second));
             let what = format!(
-                "polygons of several textures, such as {first} and {second}; choose one `texture` for all"
+                "the polygons have several textures, such as {first} and {second}; choose one \
+                 `texture` for all"
             );
             return Err(Error::format(model, what));
         }
@@ -95,7 +98,7 @@ fn named(model: &Path, name: &str, exec: &Exec) -> Result<Texture> {
             let name = name.escape_debug();
             Error::format(
                 model,
-                format!("its texture {name}: {source}; put it there, or choose a `texture`"),
+                format!("its texture {name}: {source}; add the file, or choose a `texture`"),
             )
         }
         other => other,

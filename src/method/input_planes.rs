@@ -28,7 +28,7 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         }
         let size = |[width, height]: [u32; 2]| format!("{width} x {height}");
         Err(Error::Invalid(format!(
-            "planes of {} pixels, but the camera's picture has {}",
+            "the planes have {} pixels, but the camera's picture has {}",
             size(found),
             size(picture)
         )))
@@ -131,7 +131,7 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
             return Ok(plane);
         }
         Err(Error::Invalid(format!(
-            "the plane `{}` is {} x {}, the picture {} x {}",
+            "the plane `{}` is {} x {}, but the picture is {} x {}",
             row.numbered(number),
             found[0],
             found[1],
@@ -143,5 +143,5 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
 
 fn of_another_type(row: &PlaneRow, number: usize) -> Error {
     let (name, holds) = (row.numbered(number), row.holds.words());
-    Error::Invalid(format!("the plane `{name}` is of another type; give {holds}"))
+    Error::Invalid(format!("the plane `{name}` has another type; give {holds}"))
 }

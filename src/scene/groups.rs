@@ -79,7 +79,7 @@ impl Groups {
         };
         if let Some((surfel, group)) = all.chain(further).find(|member| !exists(member)) {
             return Err(Error::Invalid(format!(
-                "surfel {surfel} in group {group}: there are {} surfels and {groups} groups",
+                "surfel {surfel} is in group {group}, but there are {} surfels and {groups} groups",
                 own.len()
             )));
         }
@@ -126,7 +126,9 @@ impl Groups {
         if grouped == there {
             Ok(())
         } else {
-            Err(Error::Invalid(format!("groups of {grouped} surfels for a scene of {there}")))
+            Err(Error::Invalid(format!(
+                "the groups have {grouped} surfels, but the scene has {there}"
+            )))
         }
     }
 

@@ -89,7 +89,7 @@ impl<const N: usize> Indexed<N> {
             )));
         }
         if let Some(corner) = corners.iter().flatten().find(|&&corner| corner as usize >= n) {
-            return Err(Error::Invalid(format!("there is no vertex {corner}, only {n}")));
+            return Err(Error::Invalid(format!("vertex {corner} does not exist; there are {n}")));
         }
         let drawable: Vec<bool> = (0..n)
             .map(|i| {

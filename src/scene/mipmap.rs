@@ -30,7 +30,7 @@ impl Mipmap {
         check_levels(levels)?;
         if !colors.len().is_multiple_of(levels) {
             let count = colors.len();
-            let what = format!("{count} prefiltered colours are not {levels} for each surfel");
+            let what = format!("{count} prefiltered colours cannot be {levels} for each surfel");
             return Err(Error::Invalid(what));
         }
         Ok(Self { levels, colors })

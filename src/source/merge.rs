@@ -118,7 +118,8 @@ fn of_all<const N: usize>(parts: &[Indexed<N>]) -> Result<Vec<Property>> {
     let first = parts.first().map(names).unwrap_or_default();
     if let Some(other) = parts.iter().map(names).find(|names| *names != first) {
         let [a, b] = [first, other].map(|names| names.join(", "));
-        let what = format!("vertices have the properties [{a}] here and [{b}] there");
+        let what =
+            format!("models have different vertex properties, [{a}] and [{b}]; give all the same");
         return Err(Error::Invalid(what));
     }
     Ok(first.into_iter().map(|name| Property { name, values: Vec::new() }).collect())

@@ -192,7 +192,7 @@ impl Client {
             _ => return Err(Error::Invalid(format!("no colours or vectors are called `{plane}`"))),
         };
         if size != (radii.width(), radii.height()) {
-            let what = format!("the radii of the plane `{plane}` have another size than it");
+            let what = format!("the radii of the plane `{plane}` have another size than the plane");
             return Err(Error::Invalid(what));
         }
         self.radii.insert(plane.to_owned(), radii);

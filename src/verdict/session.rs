@@ -73,17 +73,18 @@ impl Session<'_> {
         if found != picture {
             let [width, height] = found;
             return Err(Error::Invalid(format!(
-                "planes of {width} x {height}, but the camera's picture has {} x {}",
+                "the planes have {width} x {height} pixels, but the camera's picture has {} x {}",
                 picture[0], picture[1]
             )));
         }
         if frame.planes.is_empty() {
-            let what = format!("no plane is called as one of the method {}", self.method().name());
+            let what =
+                format!("no plane has the name of a plane of the method {}", self.method().name());
             return Err(Error::Invalid(what));
         }
         if client.records.is_some() && !matches!(self.method(), Method::Ewa(_)) {
             let name = self.method().name();
-            let what = format!("records are judged of the method ewa alone, and this is {name}");
+            let what = format!("only the method ewa judges records, but this is {name}");
             return Err(Error::Invalid(what));
         }
         Ok(())

@@ -114,7 +114,7 @@ impl<'e> Files<'e> {
                     image.channels.iter().map(|(name, _)| name.clone()).collect();
                 if names.len() != components {
                     return Err(refused(format!(
-                        "{} numbers a pixel, and the plane holds {}",
+                        "{} numbers a pixel, but the plane holds {}",
                         names.len(),
                         row.holds.words()
                     )));
@@ -145,7 +145,7 @@ impl Picture {
                 return Ok(names.clone());
             }
             return Err(format!(
-                "`channel` has {} of them, and the plane holds {}; give {components}",
+                "`channel` names {} of them, but the plane holds {}; give {components}",
                 names.len(),
                 wanted.row.holds.words()
             ));
@@ -162,7 +162,7 @@ impl Picture {
             3 => Ok(colors.to_vec()),
             _ if red == green && green == blue => Ok(colors[..1].to_vec()),
             _ => {
-                Err("the PNG is not grey; say which `channel`: \"R\", \"G\", \"B\" or \"A\"".into())
+                Err("the PNG is not grey; give the `channel`: \"R\", \"G\", \"B\" or \"A\"".into())
             }
         }
     }
@@ -184,7 +184,10 @@ impl Picture {
                 Values::Index(_) => Format::U32,
             });
             if *file.get_or_insert(format) != format {
-                return Err(format!("the channel `{name}` is {}, another is not", format.word()));
+                return Err(format!(
+                    "the channel `{name}` is {}, but another is not",
+                    format.word()
+                ));
             }
             components.push(match values {
                 // A PNG's codes, before they were rounded to `f32`.

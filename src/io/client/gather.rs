@@ -75,7 +75,7 @@ pub(super) fn client(
     let mut unknown = Vec::new();
     if let Some(file) = &sidecar.file {
         if Kind::of(file) != Some(Kind::Exr) {
-            let what = "file: only an EXR has several planes; give others in [planes]";
+            let what = "file: only an EXR holds several planes; name other files in [planes]";
             return Err(Error::format(path, what));
         }
         let image = &files.picture(file, Kind::Exr)?.image;
@@ -84,7 +84,10 @@ pub(super) fn client(
         unknown = left(image, &wanted, file);
     }
     if wanted.is_empty() {
-        return Err(refused(format!("no channel is one of the planes {}", names(stages))));
+        return Err(refused(format!(
+            "no channel has the name of a plane; the planes are {}",
+            names(stages)
+        )));
     }
     let planes = read(path, sidecar, wanted, camera, &mut files)?;
     drop(files);
@@ -116,7 +119,10 @@ fn named(sidecar: &Sidecar, stages: &[Stage]) -> Reason<Vec<Wanted>> {
             format!("planes: no plane is called `{}`; there are {known}", key.escape_debug())
         })?;
         if let Some(twin) = all.iter().find(|other| other.name == name) {
-            return Err(format!("planes: `{}` and `{key}` are one plane; remove one", twin.key));
+            return Err(format!(
+                "planes: `{}` and `{key}` are the same plane; remove one",
+                twin.key
+            ));
         }
         all.push(Wanted::new(key, name, row, keys.clone(), sidecar.depth));
     }

@@ -83,7 +83,7 @@ impl<'a> Work<'a> {
             return Err(Error::Usage("a hierarchy of 0 surfels; give at least 1".into()));
         }
         if file.hierarchy.is_some() {
-            let what = format!("{} is a hierarchy already; name a mesh or a scene", file.name);
+            let what = format!("{} is a hierarchy already; give a mesh or a scene", file.name);
             return Err(Error::Usage(what));
         }
         Camera::check_size(settings.side, settings.side)?;
@@ -166,7 +166,7 @@ impl<'a> Work<'a> {
             header = surfels::header(folder, &hash, node, further)?;
         }
         let Some(header) = header else {
-            let what = "it was replaced by another hierarchy while this one was made";
+            let what = "another hierarchy replaced it while this one was made";
             return Err(Error::format(&surfels::path(folder, node), what));
         };
         let known = &mut self.hierarchy.index.nodes[at];
@@ -212,9 +212,13 @@ fn named(name: &str, error: Error) -> Error {
 /// Refuses a model that cannot be approximated.
 fn check(name: &str, model: &Model) -> Result<()> {
     let what = match &model.source {
-        Source::Shape { .. } => "a shape has surfels of its own and no triangles to approximate",
-        Source::File { prefix: Some(_), .. } => "a prefix is of points, which are not approximated",
-        Source::File { .. } if model.progressive => "progressive points are not approximated",
+        Source::Shape { .. } => "a shape has surfels of its own, but no triangles to sample",
+        Source::File { prefix: Some(_), .. } => {
+            "a prefix needs points, but a hierarchy samples triangles; remove it"
+        }
+        Source::File { .. } if model.progressive => {
+            "progressive needs points, but a hierarchy samples triangles; remove it"
+        }
         Source::File { .. } | Source::Tree { .. } => return Ok(()),
     };
     Err(Error::Invalid(format!("{name}: {what}")))

@@ -78,8 +78,8 @@ fn read_of_size(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<S
         return Err(Error::format(
             path,
             format!(
-                "header: promises {width} x {height} pixels, more than a file of {length} bytes can \
-                 hold; write it again"
+                "header: declares {width} x {height} pixels, more than a file of {length} bytes \
+                 can hold; write it again"
             ),
         ));
     }

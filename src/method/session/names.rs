@@ -48,7 +48,8 @@ impl<'a> Names<'a> {
     /// Puts indices in the place of ids. What is the id of none is the index of none.
     pub(super) fn number<R>(&self, frame: &mut Frame<R>) -> Result<()> {
         if self.ids.is_wide() {
-            let what = "ids of 40 bits: planes of ids hold 32 of them, which do not say the surfel";
+            let what = "ids have 40 bits, but planes of ids hold 32 of them, which do not identify \
+                        the surfel";
             return Err(Error::Invalid(what.into()));
         }
         each_id(frame, |id| self.index(id.into()).unwrap_or(NO_ID - 1));

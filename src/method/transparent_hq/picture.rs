@@ -61,7 +61,7 @@ pub(super) fn define<R: Exact>(
 /// Whether there is something to be refracted.
 pub(super) fn check(job: &Job<'_>, settings: &Settings) -> Result<()> {
     if settings.refraction.is_some() && job.scene.environment.is_none() {
-        let what = "refraction: there is nothing to be seen through it; give an environment";
+        let what = "refraction needs something to be seen through it; give an environment";
         return Err(Error::Invalid(what.into()));
     }
     Ok(())

@@ -107,7 +107,8 @@ impl Ids {
             let large = counts.iter().position(|&count| count == most && count > 1 << LARGE);
             let what = match large {
                 Some(object) => format!(
-                    "{} has {most} surfels; ids of {objects} objects leave room for {} in each",
+                    "{} has {most} surfels, but ids of {objects} objects leave room for {} in \
+                     each; split it",
                     name(object),
                     1_u64 << (WIDE - bits_for(objects as u64 + (1 << 8)))
                 ),
@@ -115,7 +116,7 @@ impl Ids {
                     let room = (1_u64 << (WIDE - bits)) - (1 << 8);
                     let first = name(room as usize);
                     let than = format!("the {room} that ids have room for");
-                    format!("{objects} objects, from {first} on more than {than}")
+                    format!("{objects} objects are too many: {first} exceeds {than}")
                 }
             };
             Error::Invalid(what)

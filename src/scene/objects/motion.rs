@@ -69,13 +69,13 @@ impl Motion {
     /// [`Error::Invalid`] if there is no key, if frames do not ascend, or as [`Similarity::check`].
     pub fn new(keys: Vec<(u32, Similarity)>) -> Result<Self> {
         if keys.is_empty() {
-            return Err(Error::Invalid("there are no keys".into()));
+            return Err(Error::Invalid("there are no keys; add one".into()));
         }
         for pair in keys.windows(2) {
             let [before, after] = [pair[0].0, pair[1].0];
             if before >= after {
                 return Err(Error::Invalid(format!(
-                    "a key of frame {after} after one of frame {before}: frames must ascend"
+                    "the key of frame {after} follows the key of frame {before}; sort keys by frame"
                 )));
             }
         }

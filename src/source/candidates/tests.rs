@@ -268,7 +268,7 @@ fn threads_and_tiles_change_nothing() {
 fn what_cannot_be_sampled_is_refused() {
     let none = Scene::unlit("none", Surfels::none());
     let error = found(&none, &Directions::Cube, 8).unwrap_err().to_string();
-    assert_eq!(error, "there are no triangles to take candidates from");
+    assert_eq!(error, "there are no triangles to sample");
     let scene = boxed(Vec3::ONE);
     let bad = Directions::These(vec![DVec3::X, DVec3::ZERO]);
     let error = found(&scene, &bad, 8).unwrap_err().to_string();

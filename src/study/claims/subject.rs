@@ -73,7 +73,7 @@ impl<'e> Subject<'e> {
                 let file = SceneFile { camera, ..(**file).clone() };
                 let Ready { loaded, camera, .. } = file.ready(exec, &quiet)?;
                 if loaded.scene.objects.is_some() || !loaded.scene.primitives.is_empty() {
-                    let what = format!("{}: claims are of scenes of surfels alone", file.name);
+                    let what = format!("{}: claims need scenes of surfels", file.name);
                     return Err(Error::Invalid(what));
                 }
                 (loaded.scene, camera)

@@ -122,7 +122,7 @@ impl Study {
     pub fn resumed(mut self, before: Self) -> Result<Self> {
         if before.of != self.of {
             return Err(Error::Invalid(
-                "the study to go on with is of another scene, camera, truth or version: leave out \
+                "the study to resume has another scene, camera, truth or version; leave out \
                  --resume, or give another -o"
                     .into(),
             ));

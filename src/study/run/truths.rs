@@ -121,7 +121,7 @@ impl Known {
         if self.unknown.is_none() {
             path.push(still.frame.color("")?.clone());
             for (i, camera) in cameras::path(camera).iter().enumerate().skip(1) {
-                progress("the truth along a path", i as u64, cameras::FRAMES.into());
+                progress("rendering the truth along a path", i as u64, cameras::FRAMES.into());
                 let truth = self.picture((camera, &[]), exec, &|_, _, _| ())?;
                 path.push(truth.frame.color("")?.clone());
             }
@@ -137,7 +137,7 @@ fn surfaces(
     progress: &dyn Fn(&str, u64, u64),
 ) -> std::result::Result<Vec<Surface>, String> {
     if file.hierarchy.is_some() {
-        return Err("a hierarchy shows what its nodes hold".into());
+        return Err("the triangles of a hierarchy are in its nodes".into());
     }
     let is_shape = |source: &Source| matches!(source, Source::Shape { .. });
     if let Some(geometry) = file.geometries.iter().find(|one| is_shape(&one.model.source)) {
@@ -160,7 +160,7 @@ fn surfaces(
     let scene =
         drawn(&meshes, |_| Draw::Polygons, exec, progress).map_err(|error| error.to_string())?;
     if !scene.surfels.is_empty() {
-        return Err("a part of the scene is points alone".into());
+        return Err("a part of the scene has only points".into());
     }
     all.push(Surface::Triangles(scene.primitives.triangles));
     Ok(all)

@@ -52,12 +52,12 @@ pub fn chart(found: &[AtPrefix]) -> Result<Drawing> {
         )));
     }
     if let Some(at) = found.iter().find(|at| !(at.unit > 0.0)) {
-        let what = "every order has two points at one place, so that no distance is relative";
+        let what = "every order has two points at one place, so no distance is relative";
         return Err(Error::Invalid(format!("prefix {}: {what}", at.prefix)));
     }
     if let Some(at) = found.iter().find(|at| !(greatest(at) <= MOST_UNITS)) {
         let what = format!("a distance is over {MOST_UNITS} times the largest least distance");
-        return Err(Error::Invalid(format!("prefix {}: {what}, which no chart shows", at.prefix)));
+        return Err(Error::Invalid(format!("prefix {}: {what}, too much for a chart", at.prefix)));
     }
     let spectra = found.iter().all(|at| at.spreads.iter().all(|s| s.spectrum.is_some()));
     let least = LEAST[usize::from(!spectra)];

@@ -53,7 +53,7 @@ pub fn of_surfaces(
 }
 
 /// What the work is called while it goes on.
-pub(super) const STEP: &str = "the true picture";
+pub(super) const STEP: &str = "rendering the true picture";
 /// Tiles between two reports of progress, at least.
 const SOME: usize = 64;
 

@@ -150,18 +150,22 @@ fn what_no_rule_covers() {
             "meaning = \"linear\"\nnear = 2\nfar = inf",
             "meaning is linear, but near = 2 and far = inf cannot be",
         ),
-        ("Z", "range = [0, 2]", "`range` means nothing to f32, only to unorm: remove it"),
-        ("Z", "channel = \"depth\"", "`channel` means nothing to a raw file: remove it"),
-        ("Z", "id_base = 1", "`id_base` means nothing to depths: remove it"),
-        ("Z", "encoding = \"srgb\"", "`encoding` means nothing to depths: remove it"),
+        ("Z", "range = [0, 2]", "`range` does not apply to f32, only to unorm: remove it"),
+        ("Z", "channel = \"depth\"", "`channel` does not apply to a raw file: remove it"),
+        ("Z", "id_base = 1", "`id_base` does not apply to depths: remove it"),
+        ("Z", "encoding = \"srgb\"", "`encoding` does not apply to depths: remove it"),
         (
             "Z",
             "format = \"u32\"",
             "whole numbers (u32), and the plane holds others; say the `format`",
         ),
-        ("weight", "meaning = \"1/t\"", "`meaning` means nothing to one number a pixel: remove it"),
-        ("weight", "empty = 0", "`empty` means nothing to one number a pixel: remove it"),
-        ("id", "premultiplied = true", "`premultiplied` means nothing to indices of 32 bits"),
+        (
+            "weight",
+            "meaning = \"1/t\"",
+            "`meaning` does not apply to one number a pixel: remove it",
+        ),
+        ("weight", "empty = 0", "`empty` does not apply to one number a pixel: remove it"),
+        ("id", "premultiplied = true", "`premultiplied` does not apply to indices of 32 bits"),
         ("id", "format = \"f32\"", "3.5 at pixel (0, 1) is no whole number from 0 to 4294967295"),
         ("id", "format = \"f32\"\nid_base = 3", "1 at pixel (0, 0) is no whole number"),
         (
@@ -169,7 +173,7 @@ fn what_no_rule_covers() {
             "format = \"unorm24\"",
             "format is unorm24, but indices and counts are whole: give u8",
         ),
-        ("id", "range = [0, 1]", "`range` means nothing to indices of 32 bits"),
+        ("id", "range = [0, 1]", "`range` does not apply to indices of 32 bits"),
     ] {
         let line = at.refusal(&format!("[planes.{plane}]\nfile = \"a.raw\"\n{keys}"));
         let place = format!(": planes.{plane}: {why}");
@@ -180,7 +184,7 @@ fn what_no_rule_covers() {
     let line = at.refusal(&format!("{color}premultiplied = true"));
     assert!(line.ends_with("planes.RGB: `premultiplied` needs the plane `A`"), "{line}");
     let line = at.refusal(&format!("{color}encoding = \"srgb\"\nrange = [0, 2]"));
-    assert!(line.contains("planes.RGB: `range` means nothing to sRGB: remove it, or"), "{line}");
+    assert!(line.contains("planes.RGB: `range` does not apply to sRGB: remove it, or"), "{line}");
     let at = at.with("f.raw", &floats(&[16_777_216.0, 0.0, 0.0, 0.0]));
     let line = at.refusal("[planes.id]\nfile = \"f.raw\"\nformat = \"f32\"");
     assert!(line.contains("only below 16777216 are all numbers told apart; store them"), "{line}");
@@ -215,7 +219,7 @@ fn files_that_lie() {
         ),
         (
             "planes.Z = { file = \"a.npy\", offset = 4 }",
-            "planes.Z: `offset` means nothing to an NPY: remove it",
+            "planes.Z: `offset` does not apply to an NPY: remove it",
         ),
     ] {
         let line = at.refusal(toml);

@@ -145,7 +145,7 @@ fn names_that_are_none_are_refused() {
         ),
         ("[[geometry]]\nshape = \"torus\"\n", None, "a geometry needs a `name`"),
         ("", None, "there is no [[object]] and no [[model]]"),
-        ("[[model]]\nname = \"a\"\nshape = \"torus\"\n", Some(5), "`name` means nothing to torus"),
+        ("[[model]]\nname = \"a\"\nshape = \"torus\"\n", Some(5), "`name` does not apply to torus"),
     ]);
     let found = refused("[[object]]\nof = \"tree\"\n");
     assert!(found.contains("no [[geometry]] has the name `tree`; there is none"), "{found}");

@@ -128,7 +128,7 @@ fn textures_of_what_has_none_are_refused() {
     let line = file.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err().to_string();
     assert!(line.contains("b.ply: no texture coordinates, without which"), "{line}");
     let line = refused(&format!("{SHAPE}{texture}\n"));
-    assert!(line.contains("`texture` means nothing to sphere: remove it"), "{line}");
+    assert!(line.contains("`texture` does not apply to sphere: remove it"), "{line}");
 }
 
 /// The same square with coordinates at the vertices of a PLY, at the corners of an OBJ, and with a

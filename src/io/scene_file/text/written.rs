@@ -35,7 +35,7 @@ struct Tables {
 pub(in crate::io::scene_file) fn write(file: &SceneFile, path: &Path) -> Result<String> {
     let tables = Tables::of(file, &Folder::of(path)?)?;
     toml::to_string(&tables)
-        .map_err(|error| Error::Invalid(format!("TOML cannot say the scene: {error}")))
+        .map_err(|error| Error::Invalid(format!("the scene cannot be written as TOML: {error}")))
 }
 
 impl Tables {
