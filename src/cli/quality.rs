@@ -185,8 +185,10 @@ fn spectra(
     row: &dyn Fn(&str, &str, String),
     cells: &dyn Fn(&[String]) -> String,
 ) {
-    say("spectra: least distance by that of the densest packing, power below the peak, the peak, \
-         and its frequency:");
+    say(
+        "spectra: least distance relative to the densest packing, power below the peak, the peak, \
+         and its frequency:",
+    );
     row("", "", cells(&["packing", "below", "peak", "at"].map(str::to_owned)));
     for AtPrefix { prefix, spreads, .. } in found {
         for spread in spreads {

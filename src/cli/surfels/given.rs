@@ -1,4 +1,4 @@
-//! The points to choose from: the points of a file, or what is seen of a mesh or of a scene.
+//! The points to choose from: the points of a file, or samples of a mesh or of a scene.
 
 use super::{Args, report};
 use splatref::frame::Exec;

@@ -1,17 +1,17 @@
-//! The chart: time against error, with the front.
+//! The chart of a study: time against error, with the front.
 
 use crate::study::chart::Drawing;
 use crate::study::chart::scatter::{Point, Scatter};
 use crate::study::run::{Record, Study};
 
-/// What is up in a chart: a figure as a loss, of which less is better.
+/// A figure on the y axis, as a loss: smaller is better.
 #[derive(Clone, Debug)]
 pub struct Loss {
-    /// What it is called, with its unit.
+    /// Its title, with its unit.
     pub title: String,
     /// The name of the figure.
     pub figure: &'static str,
-    /// The loss of a value of it.
+    /// Turns a value of the figure into a loss.
     pub of: fn(f64) -> f64,
 }
 
@@ -23,8 +23,8 @@ impl Loss {
     }
 }
 
-/// The points of a study, in the order of its candidates: those that were timed and measured. The
-/// first of each is the index of the candidate.
+/// The points of a study in the order of its candidates: those that were timed and measured. Each
+/// comes with the index of its candidate.
 #[must_use]
 pub fn points(study: &Study, loss: &Loss) -> Vec<(usize, Point)> {
     let mut methods: Vec<&str> = Vec::new();
@@ -44,7 +44,7 @@ pub fn points(study: &Study, loss: &Loss) -> Vec<(usize, Point)> {
     study.candidates.iter().enumerate().filter_map(point).collect()
 }
 
-/// The chart of a study.
+/// Draws the chart of a study.
 #[must_use]
 pub fn chart(study: &Study, loss: &Loss) -> Drawing {
     let [width, height] = study.of.size;

@@ -1,4 +1,4 @@
-//! Surfaces along rays, tile by tile.
+//! Casts rays at surfaces, tile by tile.
 
 use super::rays::Rays;
 use super::tile::{Seen, Tile};
@@ -13,12 +13,12 @@ use crate::source::procedural::Tracer;
 use crate::splat::View;
 use glam::{DMat3, DMat4, DVec3, Vec3};
 
-/// The true picture of surfaces under the lights of a scene, and its colours under shifts by eighths of a
-/// pixel, each 0 to 7; see the [module](super).
+/// The true picture of surfaces under the lights of a scene, and its colours under shifts by
+/// eighths of a pixel, each 0 to 7; see the [module](super).
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] as [`Camera::check`] and [`crate::scene::Similarity::check`], if a parameter of a
-/// shape is out of range, or if the process may not hold what it takes.
+/// [`crate::Error::Invalid`] as [`Camera::check`] and [`crate::scene::Similarity::check`], if a
+/// parameter of a shape is out of range, or if the memory limit is too low.
 pub fn of_surfaces(
     surfaces: &[Surface],
     scene: &Scene,
@@ -30,7 +30,7 @@ pub fn of_surfaces(
     camera.check()?;
     let grid = exec.grid(camera.width, camera.height);
     let mut all: Vec<(usize, Rect)> = grid.rects().into_iter().enumerate().collect();
-    // Some at a time, so that progress is seen and what they leave is put away.
+    // A few tiles at a time, so that progress is seen and results are stored early.
     let some = SOME.max(4 * exec.threads());
     ask(camera, shifts.len(), grid.side, exec)?;
     let caster = Caster::new(surfaces, scene, cull, camera, exec)?;
@@ -52,12 +52,13 @@ pub fn of_surfaces(
     Ok(Truth { frame: frame(color, alpha, depth, Some(normal)), how, shifted })
 }
 
-/// What the work is called while it goes on.
+/// The name of the step in progress reports.
 pub(super) const STEP: &str = "rendering the true picture";
-/// Tiles between two reports of progress, at least.
+/// The least number of tiles between two progress reports.
 const SOME: usize = 64;
 
-/// Whether the process may hold the planes, and the samples of the tiles that are worked on at once.
+/// Checks that the memory limit allows the planes, and the samples of the tiles that are computed
+/// at once.
 fn ask(camera: &Camera, shifts: usize, [wide, high]: [u32; 2], exec: &Exec) -> Result<()> {
     let pixels = u64::from(camera.width) * u64::from(camera.height);
     let planes = pixels * (32 + 12 * shifts as u64);
@@ -68,12 +69,12 @@ fn ask(camera: &Camera, shifts: usize, [wide, high]: [u32; 2], exec: &Exec) -> R
     })
 }
 
-/// Bytes of a sample: the nearest surface, of shapes with its normal and colour, and the colour.
+/// Bytes of a sample: the nearest surface, with normal and colour for shapes, and the colour.
 const OF_A_SAMPLE: u64 = 192;
-/// Bytes of a triangle while it is listed: twice its number and its bounds, and the tiles it is in.
+/// Bytes of a triangle while it is listed: its number twice, its bounds, and its tiles.
 const OF_A_TRIANGLE: u64 = 112;
 
-/// The planes of the picture, its colours as they are and under each shift.
+/// The planes of the picture, with its colours and those under each shift.
 struct Planes {
     colors: Vec<Plane<[f32; 3]>>,
     alpha: Plane<f32>,
@@ -103,7 +104,7 @@ impl Planes {
     }
 }
 
-/// Writes the values of the pixels of a rectangle, row by row.
+/// Writes the values of the pixels in a rectangle, row by row.
 fn put<T, U>(plane: &mut Plane<U>, rect: &Rect, values: &[T], of: impl Fn(&T) -> U) {
     let width = plane.width() as usize;
     for (y, row) in (rect.y0 as usize..).zip(values.chunks(rect.columns())) {
@@ -124,23 +125,23 @@ pub(super) struct Caster<'a> {
     pub(super) world_from_view: DMat4,
 }
 
-/// A surface made ready to be seen.
+/// A surface, prepared for rays.
 pub(super) enum Solid<'a> {
     Shape(Turned),
     Triangles {
         triangles: &'a Triangles,
         /// The numbers of those that may be seen, ascending.
         listed: Vec<u32>,
-        /// The tiles in which they may be.
+        /// The tiles in which they may be seen.
         bins: Bins,
     },
 }
 
-/// A shape in its place.
+/// A shape at its place.
 pub(super) struct Turned {
     pub(super) tracer: Tracer,
     pub(super) shape_from_view: DMat4,
-    /// Of directions.
+    /// Transforms directions.
     pub(super) world_from_shape: DMat3,
     /// Its one colour, if it has one.
     pub(super) color: Option<DVec3>,
@@ -203,7 +204,7 @@ impl<'a> Caster<'a> {
         Ok(Solid::Triangles { triangles, listed, bins })
     }
 
-    /// The pixels that may see a triangle, under a shift or none; none if no pixel may.
+    /// The pixels that may see a triangle, with or without a shift; `None` if no pixel may.
     fn rect(&self, placed: &Placed) -> Option<Rect> {
         let [left, top, right, bottom] = placed.bounds(&self.view)?;
         let from_behind = || placed.lines(self.reach).is_some_and(|lines| !lines.front);
@@ -212,7 +213,7 @@ impl<'a> Caster<'a> {
             if v > 0.0 { if v < f64::from(room) { v as u32 } else { room } } else { 0 }
         };
         let (width, height) = (self.camera.width, self.camera.height);
-        // Under a shift a pixel has samples of those to the left and above.
+        // Under a shift, a pixel takes samples of the pixels to the left and above.
         let x = [place(left, width), place(right + 2.0, width)];
         let y = [place(top, height), place(bottom + 2.0, height)];
         let rect = Rect { x0: x[0], y0: y[0], x1: x[1], y1: y[1] };
@@ -221,5 +222,5 @@ impl<'a> Caster<'a> {
     }
 }
 
-/// Triangles of one job.
+/// Triangles in one job.
 const CHUNK: usize = 1 << 14;
