@@ -56,8 +56,8 @@ use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "pyramid";
-    const SUMMARY: &'static str =
-        "one pixel a point, pull-push interpolation; ribbons, tubes, polygons and hybrids [MKC08]";
+    const SUMMARY: &'static str = "draw one pixel per point, interpolate by pull and push; \
+                                   ribbons, tubes, polygons and hybrids [MKC08]";
     const STAGES: &'static [Stage] = &[
         projection::planes::STAGE,
         Stage { name: "pull", reads: &["projection"], leaves: &planes::PULL },

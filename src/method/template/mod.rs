@@ -45,8 +45,8 @@ use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "template";
-    const SUMMARY: &'static str =
-        "one pixel a point, search with templates of k x k pixels in a pyramid [MOC08]";
+    const SUMMARY: &'static str = "draw one pixel per point, search with templates of k x k pixels \
+                                   in a pyramid [MOC08]";
     const STAGES: &'static [Stage] = &[
         projection::planes::STAGE,
         Stage { name: "propagation", reads: &["projection"], leaves: &planes::LEVELS },

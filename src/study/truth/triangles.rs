@@ -1,14 +1,14 @@
 //! Where rays meet triangles.
 //!
-//! A corner v in view space ([`View::point`], in f64) has the depth t = -v.z, and w = t under a
-//! perspective camera, w = 1 under an orthographic one. Seen along the ray of a sample, whose point at
-//! the depth t is (x w, y w, -t), the corner is at
+//! A corner v in view space ([`View::point`], in f64) has the depth t = -v.z. It has w = t under a
+//! perspective camera, and w = 1 under an orthographic one. The ray of a sample has the point
+//! (x w, y w, -t) at the depth t. Seen along this ray, the corner is at
 //!
 //! ```text
 //!   p = (v.x - x w, v.y - y w)
 //! ```
 //!
-//! and with p0, p1, p2 those of the corners, each e twice an area,
+//! Let the three corners be at p0, p1 and p2. Each e is twice an area:
 //!
 //! ```text
 //!   e0 = p1.x p2.y - p1.y p2.x    e1 = p2.x p0.y - p2.y p0.x    e2 = p0.x p1.y - p0.y p1.x
@@ -16,19 +16,21 @@
 //!   t  = (b0 t0 + b1 t1) + b2 t2
 //! ```
 //!
-//! The ray meets the triangle if no two of the three e have opposite signs, and not all are 0, and
-//! t is > near. The front is seen, the corners counter-clockwise, where s > 0.
+//! The ray meets the triangle if no two of the three e have opposite signs, not all are 0, and
+//! t > near. The front, with its corners counter-clockwise, is seen where s > 0.
 //!
-//! **Nothing falls between two triangles.** An e is the difference of the two rounded products; where
-//! these are equal it is the difference of what the roundings took away, each exactly \[Dekker: A
-//! Floating-Point Technique for Extending the Available Precision, 1971\]. So an e has the sign of the exact
-//! difference, and a zero is exact. A corner has one p, whichever triangle it is looked at in. What a
-//! ray meets is thus what is there exactly, of corners that are off by a rounding: a ray through
-//! the inside of a surface meets a triangle, one through an edge both of its triangles.
+//! **No ray falls between two triangles.** An e is the difference of two rounded products. If the
+//! products are equal, e is the difference of their rounding errors, which are computed exactly
+//! \[Dekker: A Floating-Point Technique for Extending the Available Precision, 1971\]. So an e has
+//! the sign of the exact difference, and a zero is exact. A corner has the same p in every triangle.
+//! For corners that are off by one rounding, a ray therefore meets exactly what is there: a ray
+//! through the inside of a surface meets a triangle, and a ray through an edge meets both of its
+//! triangles.
 //!
-//! The normal is that of the corners, (b0 n0 + b1 n1) + b2 n2 divided by its length; if that length
-//! is 0 it is that of corner 0. Colours are interpolated likewise. As polygons are drawn, see
-//! [`mod@crate::method::projection`], the corners alone say which side is the front.
+//! The normal interpolates the corners' normals, (b0 n0 + b1 n1) + b2 n2 divided by its length; if
+//! the length is 0, it is the normal of corner 0. Colours are interpolated likewise. The corners
+//! alone say which side is the front, as where polygons are drawn; see
+//! [`mod@crate::method::projection`].
 
 use crate::number::Vector3;
 use crate::scene::Triangles;
