@@ -358,11 +358,11 @@ mod tests {
         assert_eq!(names, ["B", "G", "R", "Z", "count", "id", "normal.X", "normal.Y", "normal.Z"]);
         assert_eq!(
             frame.scalar("id").unwrap_err().to_string(),
-            "no scalar plane is called `id`; the frame's planes: `` (color), `Z` (scalar), \
-             `normal` (vector), `id` (index), `count` (count)"
+            "no scalar plane is called `id`; the frame has: `` (color), `Z` (scalar), `normal` \
+             (vector), `id` (index), `count` (count)"
         );
         let none = Frame::<f32>::new(1, 1).count("z").unwrap_err().to_string();
-        assert_eq!(none, "no count plane is called `z`; the frame's planes: none");
+        assert_eq!(none, "no count plane is called `z`; the frame has: none");
     }
 
     #[test]
@@ -374,9 +374,9 @@ mod tests {
         for ((name, samples), why) in [
             (
                 ("weight".to_owned(), scalar(2, 3)),
-                "plane `weight`: 2 x 3 pixels in a frame of 3 x 2",
+                "plane `weight` has 2 x 3 pixels, but the frame has 3 x 2",
             ),
-            (("Z".to_owned(), scalar(3, 2)), "two channels are called `Z`"),
+            (("Z".to_owned(), scalar(3, 2)), "two channels are called `Z`; rename one"),
             ((String::new(), scalar(3, 2)), "only the colour may have none"),
             (vector(""), "only the colour may have none"),
             (("a\nb".to_owned(), scalar(3, 2)), "no control characters"),
@@ -390,6 +390,6 @@ mod tests {
         let (name, samples) = color("");
         frame.push(&name, samples).unwrap();
         let line = frame.push("R", scalar(3, 2)).unwrap_err().to_string();
-        assert_eq!(line, "two channels are called `R`", "a channel of the colour");
+        assert_eq!(line, "two channels are called `R`; rename one", "a channel of the colour");
     }
 }

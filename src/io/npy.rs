@@ -326,14 +326,14 @@ mod tests {
         let mut binary = npy("<f4", "(2, 3)", &data);
         binary[12] = 0xFF;
         for (bytes, why) in [
-            (b"".to_vec(), "not an NPY file, or cut"),
-            (b"\x93NUMP".to_vec(), "not an NPY file, or cut"),
+            (b"".to_vec(), "not an NPY file, or truncated"),
+            (b"\x93NUMP".to_vec(), "not an NPY file, or truncated"),
             (b"PK\x03\x04 an archive of arrays".to_vec(), "not an NPY file; give one"),
             (b"\x93NUMPY\x09\0\0\0".to_vec(), "version 9"),
             (b"\x93NUMPY\x01\0\x10\0{".to_vec(), "a header of 16 bytes"),
             (long, "a header of 4294967295 bytes"),
             (binary, "not text"),
-            (with_header("[]", &data), "no dictionary"),
+            (with_header("[]", &data), "not a dictionary"),
             (with_header("{'descr': '<f4', 'fortran_order': False}", &data), "no `shape`"),
             (with_header(fortran, &data), "Fortran order"),
             (npy(">f4", "(2, 3)", &data), "elements `>f4`"),
@@ -345,12 +345,12 @@ mod tests {
             (npy("<f4", "(1, 3, 2)", &data), "the shape (1, 3, 2)"),
             (npy("<f4", "(0, 3)", b""), "at least one pixel"),
             (npy("<f4", "(-2, -3)", &data), "the shape (-2, -3)"),
-            (npy("<f4", "(2, 3)", &data[1..]), "24 bytes, and 23 follow"),
-            (npy("<f4", "(2, 2)", &data), "16 bytes, and 24 follow"),
+            (npy("<f4", "(2, 3)", &data[1..]), "24 bytes, but 23 follow"),
+            (npy("<f4", "(2, 2)", &data), "16 bytes, but 24 follow"),
             // A few bytes that ask for more than any memory.
             (npy("<f8", "(4294967295, 4294967295, 3)", b""), "and 0 follow"),
             (npy("<f4", "(4294967296, 1)", b""), "the shape (4294967296, 1)"),
-            (npy("<f4", "(60000, 60000)", &data), "14400000000 bytes, and 24 follow"),
+            (npy("<f4", "(60000, 60000)", &data), "14400000000 bytes, but 24 follow"),
         ] {
             let error = read_bytes(&bytes, "a").unwrap_err();
             let line = error.to_string();

@@ -151,23 +151,35 @@ mod tests {
             parse(bytes, scene, &ids(counts)).unwrap_err()
         };
         let other = SCENE.replace('0', "1");
-        assert_eq!(words(&bytes, &other, &counts), "the state is of another scene");
+        assert_eq!(
+            words(&bytes, &other, &counts),
+            "the state belongs to another scene; give the scene that it was made with"
+        );
         for counts in [&counts[..3], &[1000, 3, 1, 65], &[999, 3, 0, 65]] {
-            assert_eq!(words(&bytes, SCENE, counts), "the state is of another scene");
+            assert_eq!(
+                words(&bytes, SCENE, counts),
+                "the state belongs to another scene; give the scene that it was made with"
+            );
         }
-        assert_eq!(words(b"splatref state 1\n", SCENE, &counts), "this is no state of splatref");
+        assert_eq!(
+            words(b"splatref state 1\n", SCENE, &counts),
+            "not a state of splatref; give one that render --keep-state wrote"
+        );
         for end in 0..bytes.len() {
             parse(&bytes[..end], SCENE, &ids(&counts)).unwrap_err();
         }
-        assert_eq!(words(&[&bytes[..], &[0; 8]].concat(), SCENE, &counts), "the state is damaged");
+        assert_eq!(
+            words(&[&bytes[..], &[0; 8]].concat(), SCENE, &counts),
+            "the state is damaged; write it again"
+        );
         // A flag of a group that does not exist.
         let mut high = bytes.clone();
         *high.last_mut().unwrap() |= 0x80;
-        assert_eq!(words(&high, SCENE, &counts), "the state is damaged");
+        assert_eq!(words(&high, SCENE, &counts), "the state is damaged; write it again");
         // More surfels selected than there are.
         let mut many = bytes;
         many[MAGIC.len() + DIGITS + 16 + 12 + 4] = 200;
-        assert_eq!(words(&many, SCENE, &counts), "the state is damaged");
+        assert_eq!(words(&many, SCENE, &counts), "the state is damaged; write it again");
     }
 
     proptest! {

@@ -175,7 +175,7 @@ mod tests {
                 .contains("several textures, such as a.png and none; choose")
         );
         let line = refused(&mut Cloud::default(), &model, Some(Path::new("x/b.exr")));
-        assert!(line.contains("a.ply: no texture coordinates, without which x/b.exr"), "{line}");
+        assert!(line.contains("a.ply: no texture coordinates, so x/b.exr"), "{line}");
         assert!(
             refused(&mut cloud(&[]), &model, Some(Path::new("b.jpg")))
                 .starts_with("b.jpg: no texture; give a .png")
@@ -193,7 +193,7 @@ mod tests {
         exr::write(&bad, &depth, "").unwrap();
         assert!(
             refused(&mut cloud(&[]), &model, Some(&bad))
-                .contains("no channel R; a texture has R, G and B")
+                .contains("no channel R; a texture needs R, G and B")
         );
         fs::write(&bad, "ply").unwrap();
         assert!(refused(&mut cloud(&[]), &model, Some(&bad)).contains("not an EXR"));
@@ -231,7 +231,7 @@ mod tests {
         let bytes = fs::read(&path).unwrap();
         for (side, what) in [
             (100_000_u32, "a.png: a texture of 100000 x 100000 pixels; give sides of 1 to 65536"),
-            (65_536, "a.png: header: promises 65536 x 65536 pixels, more than a file of"),
+            (65_536, "a.png: header: declares 65536 x 65536 pixels, more than a file of"),
             (0, "a.png: "),
         ] {
             let mut huge = bytes.clone();

@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn what_does_not_fit_together_is_refused() {
         let error = Triangles::new(vertices(3), vec![[0, 1, 3]]).unwrap_err();
-        assert_eq!(error.to_string(), "there is no vertex 3, only 3");
+        assert_eq!(error.to_string(), "vertex 3 does not exist; there are 3");
         let few = Vertices { radius: vec![1.0; 2], ..vertices(3) };
         let error = Triangles::new(few, vec![]).unwrap_err();
         assert_eq!(error.to_string(), "3 vertices, but 2 radii");

@@ -214,7 +214,7 @@ impl Slot<'_> {
                 )
             }
         };
-        format!("{name}: `{text}`; give {wanted}")
+        format!("{name} `{text}`; give {wanted}")
     }
 }
 

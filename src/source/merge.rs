@@ -248,7 +248,7 @@ mod tests {
         assert_eq!(all.properties.iter().map(|one| one.values.len()).collect::<Vec<_>>(), [4, 4]);
         for other in [&["b", "a"][..], &["a"], &[]] {
             let line = join(vec![part(None, &["a", "b"]), part(None, other)], Vec3::Y).unwrap_err();
-            let what = format!("[a, b] here and [{}] there", other.join(", "));
+            let what = format!("[a, b] and [{}]; give all the same", other.join(", "));
             assert!(line.to_string().ends_with(&what), "{line}");
         }
     }

@@ -132,7 +132,7 @@ fn arrays_of_numpy_are_compared_by_their_name() {
 
     npy(&at, "huge.npy", "<f8", "(4000000000, 4000000000)", b"");
     let line = fails(at.path(), &["compare", "a.exr", "huge.npy"], 1);
-    assert!(line.contains("huge.npy: header: promises"), "{line}");
+    assert!(line.contains("huge.npy: header: declares"), "{line}");
     fs::write(at.path().join("noise.npy"), "no array").unwrap();
     fails(at.path(), &["compare", "a.exr", "noise.npy"], 1);
     fails(at.path(), &["compare", "a.exr", "missing.npy"], 1);

@@ -99,7 +99,7 @@ fn only_the_pyramid_draws_them_and_deferred_and_blue_triangles() {
     let line = fails(at.path(), &["group", "all.toml", "-o", "b.ply"], 1);
     assert!(line.contains("only surfels are divided into groups"), "{line}");
     let line = fails(at.path(), &["render", "all.toml", "--opacity", "0.5"], 1);
-    assert!(line.contains("what is drawn as polygons is opaque"), "{line}");
+    assert!(line.contains("a model drawn as polygons is opaque"), "{line}");
     assert_eq!(names(at.path()), before, "nothing was written");
 }
 
@@ -158,7 +158,7 @@ fn a_tree_is_refused_where_it_cannot_be_drawn() {
             "tree has triangles or lines, but the method ewa does not draw them; use --method pyramid",
         ),
         (&["--method", "pyramid", "--opacity", "0.5"], "tree: a model drawn as lines is opaque"),
-        (&["--method", "pyramid", "--count", "0"], "a tree with 0 leaves"),
+        (&["--method", "pyramid", "--count", "0"], "a tree of 0 leaves"),
     ] {
         // An option that comes twice is another mistake.
         let count = if more.contains(&"--count") { 2 } else { 4 };

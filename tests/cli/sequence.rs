@@ -244,7 +244,7 @@ fn a_frame_goes_on_from_the_state_of_the_one_before() {
     fs::write(at.path().join("other.toml"), other).unwrap();
     let other = ["render", "other.toml", "--method", "deferred", "--frame", "2", "-o", "x.exr"];
     let line = fails(at.path(), &[&other[..], &["--state", "s.bin"]].concat(), 1);
-    assert!(line.contains("the state is of another scene"), "{line}");
+    assert!(line.contains("the state belongs to another scene"), "{line}");
     assert!(!at.path().join("x.exr").exists() && !at.path().join("t.bin").exists());
 }
 

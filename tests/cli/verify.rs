@@ -109,7 +109,7 @@ fn verdicts_of_a_suite_are_added() {
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("WRONG        ieee  cut-off: 200 undecided decisions"), "{said}");
     fs::write(at.path().join("no.json"), "{}").unwrap();
-    assert!(fails(at.path(), &["suite", "no.json"], 1).contains("no verdict"));
+    assert!(fails(at.path(), &["suite", "no.json"], 1).contains("not a verdict"));
 }
 
 #[test]

@@ -206,11 +206,11 @@ mod tests {
     fn keys_that_are_none_are_refused() {
         let one = Similarity::IDENTITY;
         let words = |keys| Motion::new(keys).unwrap_err().to_string();
-        assert_eq!(words(vec![]), "there are no keys");
-        let what = "a key of frame 3 after one of frame 3: frames must ascend";
+        assert_eq!(words(vec![]), "there are no keys; add one");
+        let what = "the key of frame 3 follows the key of frame 3; sort keys by frame";
         assert_eq!(words(vec![(1, one), (3, one), (3, one)]), what);
         let flat = place(DMat3::ZERO, 1.0, 0.0);
-        assert!(words(vec![(0, one), (1, flat)]).contains("no rotation"));
+        assert!(words(vec![(0, one), (1, flat)]).contains("not a rotation"));
     }
 
     proptest! {

@@ -272,7 +272,7 @@ fn what_cannot_be_sampled_is_refused() {
     let scene = boxed(Vec3::ONE);
     let bad = Directions::These(vec![DVec3::X, DVec3::ZERO]);
     let error = found(&scene, &bad, 8).unwrap_err().to_string();
-    assert_eq!(error, "the direction 0, 0, 0 is none");
+    assert_eq!(error, "the direction 0, 0, 0 must be finite and not 0");
     assert!(found(&scene, &Directions::These(vec![]), 8).is_err());
     assert!(found(&scene, &Directions::Cube, 0).is_err());
 }

@@ -224,11 +224,11 @@ mod tests {
                 averaged((points, colors), &order, count, &Exec::sequential(), &|_, _, _| ());
             done.unwrap_err().to_string()
         };
-        assert_eq!(run(&points, &colors[..1], 1), "1 colours of 2 points");
+        assert_eq!(run(&points, &colors[..1], 1), "1 colours, but 2 points");
         assert_eq!(run(&[Vec3::ZERO, Vec3::NAN], &colors, 1), "point 1 is not finite");
         let nan = run(&points, &[Vec3::INFINITY, Vec3::ONE], 1);
         assert_eq!(nan, "the colour of point 0 is not finite");
         assert_eq!(run(&points, &colors, 2), "colours of 2 points, but the order has 1");
-        assert_eq!(run(&[], &[], 0), "pick 0 of 0 points");
+        assert_eq!(run(&[], &[], 0), "pick 0, but there are 0 points");
     }
 }

@@ -118,7 +118,11 @@ fn values_of_vertices() {
     let one = |property, value: &str, expected| {
         refused(vertices("1", &[property], &format!("0 0 0 {value}")), expected);
     };
-    one("property uchar alpha", "256", "vertex 0 (line 9), property `alpha`: `256` is no number");
+    one(
+        "property uchar alpha",
+        "256",
+        "vertex 0 (line 9), property `alpha`: `256` is not a number",
+    );
     one("property char c", "1.0", "`1.0` is not a number of type char");
     one("property uint c", "-1", "`-1` is not a number of type uint");
 }
@@ -213,8 +217,8 @@ fn scales_of_groups() {
         grouped(&[ALSO, element, scale], value, rest, expected);
     };
     let one = ["element group 1", "property float scale"];
-    scales(one, "1 0", "1\n", "surfel 1 in group 1: there are 2 surfels and 1 groups");
-    scales(one, "0 1 2", "1\n", "surfel 1 in group 2: there are 2 surfels and 1 groups");
+    scales(one, "1 0", "1\n", "surfel 1 is in group 1, but there are 2 surfels and 1 groups");
+    scales(one, "0 1 2", "1\n", "surfel 1 is in group 2, but there are 2 surfels and 1 groups");
     scales(one, "0 0", "0\n", "group 0 (line 14), property `scale`: a scale of 0; it must be");
     scales(one, "0 0", "nan\n", "a scale of NaN; it must be finite and > 0");
     scales([one[0], "property float size"], "0 0", "1\n", "element group has no property scale");

@@ -215,7 +215,7 @@ fn what_a_file_lacks_is_one_line_with_its_name() {
     assert!(found.contains("a.ply: tubes need radii; give the property radius"), "{found}");
     let found = not_loaded(&ply(&[], ""), &model("draw = \"polygons\"\nopacity = 0.5\n"));
     assert!(
-        found.contains("a: what is drawn as polygons is opaque; remove the opacity"),
+        found.contains("a: a model drawn as polygons is opaque; remove the opacity"),
         "{found}"
     );
 }
@@ -292,8 +292,8 @@ fn what_is_not_of_a_tree_is_refused() {
     let found = refused(&model("leaves = 3\n"));
     assert!(found.contains("`leaves` does not apply to a file: remove it"), "{found}");
     for (more, what) in [
-        ("leaves = 0\n", "a tree with 0 leaves; ask for 1 to 1048576"),
-        ("opacity = 0.5\n", "tree: what is drawn as lines is opaque; remove the opacity"),
+        ("leaves = 0\n", "a tree of 0 leaves; give 1 to 1048576"),
+        ("opacity = 0.5\n", "tree: a model drawn as lines is opaque; remove the opacity"),
     ] {
         let found = not_loaded("", &tree(more));
         assert!(found.contains(what), "{found}");

@@ -177,7 +177,7 @@ fn what_is_no_graph_is_refused() {
     let (points, up) = ([Vec3::ZERO, Vec3::X], [Vec3::Z; 2]);
     let exec = Exec::sequential();
     for (points, normals, reach, what) in [
-        (&points[..], &up[..1], 1.0, "1 normals of 2 points"),
+        (&points[..], &up[..1], 1.0, "1 normals, but 2 points"),
         (&points, &up, 0.0, "a reach of 0"),
         (&points, &up, f32::NAN, "a reach of NaN"),
         (&points, &up, f32::INFINITY, "a reach of inf"),
