@@ -73,7 +73,7 @@ pub(super) fn bands(
     ];
     if camera.projection == Projection::Perspective {
         let slope = client.slope_of_depths().unwrap_or(1.0 / f64::from(camera.near));
-        let what = "the unit of epsilon: a difference of what a depth buffer holds, not of t";
+        let what = "the unit of epsilon: a difference of depth-buffer values, not of t";
         all.push((what, Band::OfNearness(slope)));
         let what = "the direction of epsilon: along the ray of the pixel, not along the view";
         all.push((what, Band::AlongRay));
@@ -96,9 +96,9 @@ pub(super) fn moved(session: &Session<'_>, client: &Client) -> Vec<(String, Chan
     };
     let epsilon = f64::from(epsilon);
     vec![
-        ("the depth is that of discs moved back by epsilon".into(), Change::Moved(epsilon)),
+        ("the depth comes from discs moved back by epsilon".into(), Change::Moved(epsilon)),
         (
-            "epsilon is on the wrong side: the depth is that of discs moved towards the eye".into(),
+            "epsilon is on the wrong side: the depth comes from discs moved towards the eye".into(),
             Change::Moved(-epsilon),
         ),
     ]
