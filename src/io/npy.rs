@@ -348,7 +348,7 @@ mod tests {
             (npy("<f4", "(2, 3)", &data[1..]), "24 bytes, but 23 follow"),
             (npy("<f4", "(2, 2)", &data), "16 bytes, but 24 follow"),
             // A few bytes that ask for more than any memory.
-            (npy("<f8", "(4294967295, 4294967295, 3)", b""), "and 0 follow"),
+            (npy("<f8", "(4294967295, 4294967295, 3)", b""), "but 0 follow"),
             (npy("<f4", "(4294967296, 1)", b""), "the shape (4294967296, 1)"),
             (npy("<f4", "(60000, 60000)", &data), "14400000000 bytes, but 24 follow"),
         ] {

@@ -61,7 +61,7 @@ impl Rules {
     pub fn check(&self) -> Result<()> {
         let unit = 0.0..=1.0;
         if !unit.contains(&self.overlap) {
-            let what = format!("overlap: {}; give 0 to 1", self.overlap);
+            let what = format!("overlap: c = {}; give 0 to 1", self.overlap);
             return Err(Error::Invalid(what));
         }
         let Some(Coplanar { cosine, offset, color }) = self.coplanar else { return Ok(()) };

@@ -259,7 +259,7 @@ mod tests {
             (b"\x76\x2f\x31\x01 an EXR".to_vec(), "write it again"),
             (good[..good.len() - 20].to_vec(), "write it again"),
             (damaged, "write it again"),
-            (huge, "promises 65535 x 65535 pixels, more than a file of"),
+            (huge, "declares 65535 x 65535 pixels, more than a file of"),
         ] {
             let line = read_bytes(&bytes).unwrap_err().to_string();
             assert!(line.contains("a.png: ") && line.contains(why), "{line}");

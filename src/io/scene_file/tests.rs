@@ -157,7 +157,7 @@ fn mipmaps_of_what_has_none_are_refused() {
     crate::io::ply::write(&folder.path().join("a.ply"), &points).unwrap();
     let text = "[[model]]\nfile = \"a.ply\"\nmipmaps = 1";
     let file = SceneFile::parse(text, &folder.path().join("a.toml")).unwrap();
-    let expected = "a.ply: mipmaps need colours, but the points have none";
+    let expected = "a.ply: mipmaps need colours, but the points have none; remove the mipmaps";
     assert!(error(&file).ends_with(expected), "{}", error(&file));
 }
 

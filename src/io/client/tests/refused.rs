@@ -66,12 +66,12 @@ fn raw_files_of_another_length() {
         ),
         (
             "[planes.Z]\nfile = \"a.raw\"\noffset = 9223372036854775807",
-            "planes.Z: 2 x 2 pixels of f32 take at least 9223372036854775823 bytes",
+            "planes.Z: 2 x 2 pixels of f32 need at least 9223372036854775823 bytes",
         ),
         (
             "[planes.Z]\nfile = \"a.raw\"\nrow_stride = 9223372036854775807\n\
              pixel_stride = 9223372036854775800",
-            "planes.Z: 2 x 2 pixels of f32 take at least 18446744073709551611 bytes",
+            "planes.Z: 2 x 2 pixels of f32 need at least 18446744073709551611 bytes",
         ),
         (
             "[planes.Z]\nfile = \"a.raw\"\nrow_stride = 16\npixel_stride = 9223372036854775800",
@@ -213,7 +213,7 @@ fn files_that_lie() {
     for (toml, why) in [
         ("file = \"one.exr\"", "one.exr: byte 0: not an EXR file"),
         ("planes.Z = \"one.npy\"", "one.npy: byte 0: not an NPY file"),
-        ("planes.id = \"big.npy\"", "promises 60000 x 60000 pixels"),
+        ("planes.id = \"big.npy\"", "declares 60000 x 60000 pixels"),
         ("planes.RGB = \"a.npy\"", "planes.RGB: 1 numbers a pixel, but the plane holds colours"),
         ("planes.Z = \"a.npy\"", "planes.Z: whole numbers (u32), but the plane holds others"),
         (

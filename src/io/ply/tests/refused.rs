@@ -30,14 +30,14 @@ fn lines_of_the_header() {
     header(&["format ascii 1.0"], "line 3: the format is given twice; keep one");
     header(&["hello\tworld"], "line 3: `hello\\tworld` is not a line of a PLY header");
     header(&["property float x"], "line 3: a property before the first element");
-    header(&["element vertex"], "line 3: `element vertex` is no line");
+    header(&["element vertex"], "line 3: `element vertex` is not a line");
     header(&["element a -1"], "line 3: element `a`: `-1` is not a count below 2^64");
     header(&["element a 18446744073709551616"], "is not a count below 2^64");
     header(&["element a 1", "element a 1"], "line 4: element `a` is declared twice");
     header(&["element a 1", "property half x"], "line 4: unknown type `half`; the types are char");
     header(&["element a 1", "property list float int i"], "line 4: property `i` counts its list");
-    header(&["element a 1", "property list uchar int"], "line 4: `property list uchar int` is no");
-    header(&[&"x".repeat(1000)], &format!("line 3: `{}...` is no line", "x".repeat(40)));
+    header(&["element a 1", "property list uchar int"], "line 4: `property list uchar int` is not");
+    header(&[&"x".repeat(1000)], &format!("line 3: `{}...` is not a line", "x".repeat(40)));
 }
 
 #[test]
@@ -64,7 +64,10 @@ fn elements_and_properties() {
     let above = first.map(|name| name.replace("mip1", "mip3"));
     let above: Vec<&str> = first.into_iter().chain(above.iter().map(String::as_str)).collect();
     leveled(&above, "has property mip3_red but no mip2_red; levels are declared from 1 on");
-    leveled(&["property float mip17_red"], "`mip17_red`, but prefiltered colours have 16 levels");
+    leveled(
+        &["property float mip17_red"],
+        "`mip17_red`, but prefiltered colours have at most 16 levels",
+    );
     leveled(&["property float mip99999999999999999999_blue"], "have at most 16 levels");
     leveled(&["property int mip1_red"], "property `mip1_red` has type int, but its range is known");
     leveled(&["property list uchar float mip1_red"], "property `mip1_red` is a list");

@@ -182,7 +182,7 @@ fn what_is_no_graph_is_refused() {
         (&points, &up, f32::NAN, "a reach of NaN"),
         (&points, &up, f32::INFINITY, "a reach of inf"),
         (&[Vec3::X, Vec3::NAN], &up, 1.0, "point 1 is not finite"),
-        (&points, &[Vec3::Z, Vec3::ZERO], 1.0, "the normal of point 1 is null"),
+        (&points, &[Vec3::Z, Vec3::ZERO], 1.0, "the normal of point 1 is zero"),
         (&points, &[Vec3::INFINITY, Vec3::Z], 1.0, "the normal of point 0 is zero or not finite"),
     ] {
         let error = Graph::new(points, normals, reach, &exec, SILENT).unwrap_err().to_string();
