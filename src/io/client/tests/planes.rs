@@ -89,7 +89,7 @@ fn numbers_at_distances() {
     let short = Folder::new().with("w.raw", &bytes[..13]);
     let line = short.refusal(&toml);
     assert!(
-        line.contains("w.raw: planes.weight: 2 x 2 pixels of unorm8 take at least 14"),
+        line.contains("w.raw: planes.weight: 2 x 2 pixels of unorm8 need at least 14"),
         "{line}"
     );
 }
