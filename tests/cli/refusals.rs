@@ -72,8 +72,8 @@ fn pictures_that_cannot_be_are_refused() {
         (&["--method", "single-pass", "--overlap", "nan"], "c = NaN"),
         (&["--method", "single-pass", "--groups", "0"], "0 groups"),
         (&["--method", "transparent", "--groups", "65"], "1 to 64"),
-        (&["--method", "transparent", "--bins", "0"], "n = 0"),
-        (&["--method", "transparent", "--bins", "65536"], "n = 65536"),
+        (&["--method", "transparent", "--bins", "0"], "bins: 0;"),
+        (&["--method", "transparent", "--bins", "65536"], "bins: 65536"),
         (&["--method", "transparent", "--epsilon", "1e-9"], "at most 65535 bins"),
         (&["--method", "single-pass", "--epsilon", "0"], "at most 65535 bins"),
         (&["--method", "transparent", "--refraction", "0.7"], "`refraction` does not apply to"),
@@ -82,7 +82,7 @@ fn pictures_that_cannot_be_are_refused() {
             &["--method", "transparent-hq", "--environment", "sky", "--refraction", "5"],
             "a ratio of 5",
         ),
-        (&["--method", "peeling", "--peel", "0"], "layers: 0"),
+        (&["--method", "peeling", "--peel", "0"], "peel: 0"),
     ] {
         let line = fails(at.path(), &small(more), 1);
         assert!(line.contains(what), "{line}");
