@@ -21,6 +21,7 @@ pub mod causes;
 mod checks;
 pub mod client;
 pub mod deferred;
+mod doubt;
 pub mod ewa;
 mod fault;
 mod findings;
@@ -39,6 +40,7 @@ mod tests;
 pub mod transparent;
 pub mod transparent_hq;
 
+pub use doubt::Doubt;
 pub use fault::{Check, Fault};
 pub(crate) use findings::Cause;
-pub use findings::{Causes, Doubt, Finding, Outcome, StageVerdict, Verdict};
+pub use findings::{Causes, Finding, Outcome, StageVerdict, Verdict};
