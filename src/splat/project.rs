@@ -148,6 +148,7 @@ pub fn project<R: Exact>(
 
 /// [`project`] of a surfel that reaches the near plane, or does not, as `crosses` says: what a
 /// number that cannot decide [`Projector::crosses`] asks for twice.
+#[inline(never)]
 #[must_use]
 pub fn project_as<R: Real>(
     projector: &Projector<R>,
