@@ -3,8 +3,9 @@
 //! The lanes are balls of [`Common`]: what these decide of a surfel is decided, and a splat of which they
 //! know every number is that of the plain ball, bit for bit. Of any other surfel they say nothing.
 //!
-//! A projection in balls is 80 kB of code for each width of vectors: what is done with a splat is called, not
-//! compiled into each.
+//! A projection in balls is 80 kB of code for each width of vectors. So what is done with a splat is called, not
+//! compiled into each; and there is one width, AVX2. AVX-512 was no faster. Without AVX2 nothing is known of any
+//! surfel, because two lanes gain less than they cost to compile.
 
 #![expect(
     clippy::needless_range_loop,
@@ -15,9 +16,10 @@ use super::disc_lanes::DiscLanes;
 use super::{Footprint, Projector, Reasons, Splat};
 use crate::frame::Rect;
 use crate::number::ball::{BallLanes, Common, Profile, Three};
-use crate::number::lanes::{LANES, vectorized};
+use crate::number::lanes::{LANES, vectorized_avx2};
 use crate::number::{Ball, Truth, Vector2};
 use crate::scene::Surfels;
+use multiversion::target::target_cfg_f;
 use std::ops::Range;
 
 /// What is known of a surfel: it certainly is not drawn, or certainly is and as this splat, or neither.
@@ -41,13 +43,16 @@ pub(crate) fn affine_surfels<P: Profile>(
     }
 }
 
-vectorized!(
+vectorized_avx2!(
     fn in_lanes<const TANGENTS: bool, P: Profile>(
         projector: &Projector<Ball<Common<P>>>,
         surfels: &Surfels,
         range: Range<usize>,
         draw: &mut dyn FnMut(usize, Option<Splat<Ball<P>>>),
     ) {
+        if !target_cfg_f!(target_feature = "avx2") {
+            return range.for_each(|surfel| draw(surfel, None));
+        }
         let projector = *projector;
         let picture = [projector.view.width, projector.view.height].map(|n| n.middle as u32);
         for some in seen::<TANGENTS, P>(&projector, surfels, range).chunks(LANES) {
